@@ -1,0 +1,209 @@
+//! Turns `modelDescription.xml` into Rust: one enum for each group of variables, the table of their
+//! properties, the enumeration types, and the GUID (a hash of the file). Writes the C header beside it.
+
+use std::error::Error;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::{env, fs};
+
+use roxmltree::{Document, Node};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    println!("cargo:rerun-if-changed=modelDescription.xml");
+    println!("cargo:rerun-if-changed=build.rs");
+    println!("cargo:rerun-if-changed=src/fmi2");
+    let out = PathBuf::from(env::var("OUT_DIR")?);
+    let xml = fs::read_to_string("modelDescription.xml")?;
+    let guid = guid(&xml);
+    let described = xml.replacen("guid=\"\"", &format!("guid=\"{guid}\""), 1);
+    if described == xml {
+        return Err("modelDescription.xml: guid=\"\" not found, it is filled in here".into());
+    }
+    fs::write(out.join("modelDescription.xml"), &described)?;
+    fs::write(out.join("variables.rs"), variables(&Document::parse(&xml)?, &guid)?)?;
+    header(&out)
+}
+
+/// 128-bit FNV-1a hash of the description, so that any change of a variable changes the GUID.
+fn guid(xml: &str) -> String {
+    let hash = xml
+        .bytes()
+        .fold(0x6c62_272e_07bb_0142_62b8_2175_6295_c58d_u128, |hash, byte| {
+            (hash ^ u128::from(byte)).wrapping_mul(0x0000_0000_0100_0000_0000_0000_0000_013b)
+        });
+    format!("{{{hash:032x}}}")
+}
+
+/// The groups of variables; each becomes an enum of its own, so that a `match` over it must serve every variable.
+const GROUPS: [(&str, &str); 7] = [
+    ("RealInput", "Continuous inputs."),
+    ("RealParameter", "Real parameters."),
+    ("IntegerParameter", "Integer parameters."),
+    ("EnumerationParameter", "Parameters that choose from a list."),
+    ("RealOutput", "Real outputs and calculated parameters."),
+    ("IntegerOutput", "Integer outputs and calculated parameters."),
+    ("BooleanOutput", "Boolean outputs."),
+];
+
+fn group(causality: &str, kind: &str) -> String {
+    let role = match causality {
+        "input" => "Input",
+        "parameter" => "Parameter",
+        _ => "Output",
+    };
+    format!("{kind}{role}")
+}
+
+fn variables(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> {
+    let element = |name: &str| {
+        document
+            .descendants()
+            .find(|node| node.has_tag_name(name))
+            .ok_or(format!("modelDescription.xml has no {name}"))
+    };
+    let mut code = format!(
+        "/// Identifies the variables this library serves: a hash of `modelDescription.xml`.\npub const GUID: &str = \"{guid}\";\n"
+    );
+
+    let types = element("TypeDefinitions")?;
+    for definition in types.children().filter(Node::is_element) {
+        if let Some(list) = definition.children().find(|node| node.has_tag_name("Enumeration")) {
+            enumeration(&mut code, definition, list)?;
+        }
+    }
+
+    let mut table = String::new();
+    let mut members = GROUPS.map(|_| String::new());
+    let mut arms = GROUPS.map(|_| String::new());
+    let mut all = GROUPS.map(|_| String::new());
+    let list = element("ModelVariables")?;
+    let mut count = 0;
+    for (index, variable) in list.children().filter(Node::is_element).enumerate() {
+        count = index + 1;
+        let name = attribute(variable, "name")?;
+        let value = variable.first_element_child().ok_or("a variable without a type")?;
+        let kind = value.tag_name().name();
+        let unit = value
+            .attribute("declaredType")
+            .and_then(|declared| types.children().find(|node| node.attribute("name") == Some(declared)))
+            .and_then(|definition| definition.first_element_child())
+            .and_then(|real| real.attribute("unit"))
+            .unwrap_or("");
+        let group = group(attribute(variable, "causality")?, kind);
+        let position = GROUPS
+            .iter()
+            .position(|(name, _)| *name == group)
+            .ok_or(format!("{name}: no group {group} in build.rs"))?;
+        let variant = camel(name);
+        let description = attribute(variable, "description")?;
+        let unit_note = if unit.is_empty() {
+            String::new()
+        } else {
+            format!(" \\[{unit}\\]")
+        };
+        writeln!(
+            members[position],
+            "    /// `{name}`: {description}{unit_note}.\n    {variant},"
+        )?;
+        writeln!(arms[position], "            Self::{variant} => &VARIABLES[{index}],")?;
+        write!(all[position], "Self::{variant}, ")?;
+        let number = |name: &str, default: &str| {
+            value
+                .attribute(name)
+                .map_or(default.to_owned(), |text| format!("{text}_f64"))
+        };
+        writeln!(
+            table,
+            "    Variable {{ name: {name:?}, value_reference: {}, group: Group::{group}({group}::{variant}), unit: {unit:?}, \
+             start: {}, min: {}, max: {} }},",
+            attribute(variable, "valueReference")?,
+            number("start", "0.0"),
+            number("min", "f64::NEG_INFINITY"),
+            number("max", "f64::INFINITY"),
+        )?;
+    }
+    writeln!(
+        code,
+        "/// Every variable of the component, in the order of `modelDescription.xml`.\npub static VARIABLES: [Variable; {count}] = [\n{table}];"
+    )?;
+    writeln!(
+        code,
+        "/// The group a variable belongs to, and which of the group it is.\n#[derive(Clone, Copy, Debug, PartialEq, Eq)]\npub enum Group {{"
+    )?;
+    for (name, doc) in GROUPS {
+        writeln!(code, "    /// {doc}\n    {name}({name}),")?;
+    }
+    writeln!(code, "}}")?;
+    for (position, (name, doc)) in GROUPS.iter().enumerate() {
+        writeln!(
+            code,
+            "/// {doc}\n#[derive(Clone, Copy, Debug, PartialEq, Eq)]\npub enum {name} {{\n{}}}\n\
+             impl {name} {{\n    /// All of them.\n    pub const ALL: &[Self] = &[{}];\n    /// Name, unit, range and start value.\n    \
+             pub fn variable(self) -> &'static Variable {{\n        match self {{\n{}        }}\n    }}\n}}",
+            members[position], all[position], arms[position]
+        )?;
+    }
+    Ok(code)
+}
+
+/// An enumeration type of the description as a Rust enum, with its values and names.
+fn enumeration(code: &mut String, definition: Node, list: Node) -> Result<(), Box<dyn Error>> {
+    let name = attribute(definition, "name")?;
+    let items: Vec<_> = list.children().filter(Node::is_element).collect();
+    writeln!(
+        code,
+        "/// {}.\n#[derive(Clone, Copy, Debug, PartialEq, Eq)]\npub enum {name} {{",
+        attribute(definition, "description")?
+    )?;
+    let (mut from, mut table) = (String::new(), String::new());
+    for item in items {
+        let (label, value) = (attribute(item, "name")?, attribute(item, "value")?);
+        writeln!(
+            code,
+            "    /// {}.\n    {label} = {value},",
+            attribute(item, "description")?
+        )?;
+        writeln!(from, "            {value} => Some(Self::{label}),")?;
+        write!(table, "({label:?}, {value}), ")?;
+    }
+    writeln!(
+        code,
+        "}}\nimpl {name} {{\n    /// Names and values of the choices.\n    pub const CHOICES: &[(&str, i32)] = &[{table}];\n    \
+         /// The choice with this value.\n    pub fn from_value(value: i32) -> Option<Self> {{\n        match value {{\n{from}            _ => None,\n        }}\n    }}\n}}"
+    )?;
+    Ok(())
+}
+
+fn attribute<'a>(node: Node<'a, '_>, name: &str) -> Result<&'a str, String> {
+    node.attribute(name)
+        .ok_or_else(|| format!("{:?} has no attribute {name}", node.tag_name().name()))
+}
+
+/// `contact.moving.youngsModulus` becomes `ContactMovingYoungsModulus`.
+fn camel(name: &str) -> String {
+    name.split('.')
+        .flat_map(|word| {
+            word.chars()
+                .take(1)
+                .map(|c| c.to_ascii_uppercase())
+                .chain(word.chars().skip(1))
+        })
+        .collect()
+}
+
+/// The C header of the exported functions, for C programs that link the library.
+fn header(out: &Path) -> Result<(), Box<dyn Error>> {
+    let include = out.join("include");
+    fs::create_dir_all(&include)?;
+    println!("cargo:rustc-env=RELAY_CONTACT_INCLUDE={}", include.display());
+    if Path::new("src/fmi2").exists() {
+        cbindgen::Builder::new()
+            .with_crate(env::var("CARGO_MANIFEST_DIR")?)
+            .with_language(cbindgen::Language::C)
+            .with_include_guard("RELAY_CONTACT_H")
+            .with_documentation(true)
+            .generate()?
+            .write_to_file(include.join("relay_contact.h"));
+    }
+    Ok(())
+}

@@ -1,0 +1,20 @@
+//! Relay contact on a cantilever spring under vibration.
+#![deny(unsafe_code)]
+#![warn(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::todo,
+    clippy::unimplemented,
+    clippy::unreachable,
+    clippy::indexing_slicing
+)]
+
+pub mod error;
+pub mod inputs;
+pub mod scene;
+pub mod simulation;
+pub mod variables;
+
+/// `modelDescription.xml` with the GUID filled in, as it stands in the packaged component.
+pub const MODEL_DESCRIPTION: &str = include_str!(concat!(env!("OUT_DIR"), "/modelDescription.xml"));

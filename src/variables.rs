@@ -1,0 +1,40 @@
+//! The variables of the component, generated from `modelDescription.xml` by `build.rs`: an enum for each group,
+//! so that a `match` over a group is refused by the compiler until every variable is served.
+
+// Descriptions are written for users, not for rustdoc.
+#![allow(clippy::doc_markdown)]
+
+include!(concat!(env!("OUT_DIR"), "/variables.rs"));
+
+/// What `modelDescription.xml` declares of a variable.
+#[derive(Clone, Copy, Debug)]
+pub struct Variable {
+    /// Name as users write it, for example `contact.overtravel`.
+    pub name: &'static str,
+    /// FMI value reference.
+    pub value_reference: u32,
+    /// Which variable it is, in Rust.
+    pub group: Group,
+    /// SI unit; empty for numbers that have none to declare.
+    pub unit: &'static str,
+    /// Start value (for enumerations: the value of the choice).
+    pub start: f64,
+    /// Smallest value allowed.
+    pub min: f64,
+    /// Largest value allowed.
+    pub max: f64,
+}
+
+impl Variable {
+    /// The variable with this FMI value reference.
+    pub fn by_value_reference(value_reference: u32) -> Option<&'static Self> {
+        VARIABLES
+            .iter()
+            .find(|variable| variable.value_reference == value_reference)
+    }
+
+    /// The variable with this name.
+    pub fn by_name(name: &str) -> Option<&'static Self> {
+        VARIABLES.iter().find(|variable| variable.name == name)
+    }
+}
