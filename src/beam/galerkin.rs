@@ -1,4 +1,4 @@
-//! Modes of the cantilever with its rivet, without contact, by Galerkin's method in a polynomial space.
+//! Modes of the cantilever with its rivet by Galerkin's method in a polynomial space.
 //!
 //! The basis on `xi = 2 x / L - 1` are the second antiderivatives of the orthonormal Legendre polynomials that vanish
 //! with their slope at the clamp. Then the bending stiffness is the unit matrix, only the first two functions move the
@@ -25,7 +25,7 @@ pub struct Space {
     tip_slope: DVector<f64>,
 }
 
-/// One mode of the cantilever, normalised to a modal mass of 1 kg.
+/// One mode, normalised to a modal mass of 1 kg.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mode {
     /// Square of the angular frequency, 1/s2.
@@ -57,9 +57,9 @@ impl Space {
         space
     }
 
-    /// The modes of the section under the axial compression (N), frequency ascending; `None` at or above the buckling
-    /// load.
-    pub fn modes(&self, section: &Section, axial_force: f64) -> Option<Vec<Mode>> {
+    /// The modes of the section under the axial compression (N) with an elastic support of `stiffness` (N/m) at the tip,
+    /// frequency ascending; `None` at or above the buckling load.
+    pub fn modes(&self, section: &Section, axial_force: f64, stiffness: f64) -> Option<Vec<Mode>> {
         let Section {
             length,
             bending_stiffness,
@@ -68,22 +68,22 @@ impl Space {
             tip_inertia,
         } = *section;
         let half_mass = mass_per_length * length / 2.0;
+        let half_stiffness = 8.0 * bending_stiffness / length.powi(3);
         let count = self.tip.len();
-        let compression = axial_force * length * length / (4.0 * bending_stiffness);
         let mut mass = self.mass.clone();
         mass.ger(tip_mass / half_mass, &self.tip, &self.tip, 1.0);
         let inertia = 4.0 * tip_inertia / (length * length * half_mass);
         mass.ger(inertia, &self.tip_slope, &self.tip_slope, 1.0);
-        let stiffness = DMatrix::identity(count, count) - &self.geometric * compression;
-        let factor = stiffness.cholesky()?;
+        let compression = axial_force * length * length / (4.0 * bending_stiffness);
+        let mut rigidity = DMatrix::identity(count, count) - &self.geometric * compression;
+        rigidity.ger(stiffness / half_stiffness, &self.tip, &self.tip, 1.0);
+        let factor = rigidity.cholesky()?;
         // Eigenvalues mu of R^-1 M R^-T are 1/omega^2: the low modes, which carry the motion, come out to full precision.
         let half = factor.l_dirty().solve_lower_triangular(&mass)?;
         let reduced = factor.l_dirty().solve_lower_triangular(&half.transpose())?;
-        let symmetric = (&reduced + reduced.transpose()) * 0.5;
-        let eigen = symmetric.symmetric_eigen();
+        let eigen = ((&reduced + reduced.transpose()) * 0.5).symmetric_eigen();
         let shapes = factor.l_dirty().tr_solve_lower_triangular(&eigen.eigenvectors)?;
         let largest = eigen.eigenvalues.max();
-        let frequency_scale = 8.0 * bending_stiffness / (length.powi(3) * half_mass);
         let mut modes: Vec<Mode> = eigen
             .eigenvalues
             .iter()
@@ -94,7 +94,7 @@ impl Space {
                 let normalisation = 1.0 / (mu * half_mass).sqrt();
                 let tip = shape.dot(&self.tip) * normalisation;
                 Mode {
-                    omega_squared: frequency_scale / mu,
+                    omega_squared: half_stiffness / (half_mass * mu),
                     tip,
                     participation: half_mass * shape.dot(&self.load) * normalisation + tip_mass * tip,
                 }
@@ -102,19 +102,6 @@ impl Space {
             .collect();
         modes.sort_by(|a, b| a.omega_squared.total_cmp(&b.omega_squared));
         Some(modes)
-    }
-
-    /// Angular frequencies (rad/s) of the section under the axial compression with an elastic support of `stiffness`
-    /// (N/m) at the tip, ascending; `None` at or above buckling.
-    pub fn supported_frequencies(&self, section: &Section, axial_force: f64, stiffness: f64) -> Option<Vec<f64>> {
-        let modes = self.modes(section, axial_force)?;
-        let diagonal = DVector::from_iterator(modes.len(), modes.iter().map(|mode| mode.omega_squared));
-        let tip = DVector::from_iterator(modes.len(), modes.iter().map(|mode| mode.tip));
-        let mut matrix = DMatrix::from_diagonal(&diagonal);
-        matrix.ger(stiffness, &tip, &tip, 1.0);
-        let mut squares: Vec<f64> = matrix.symmetric_eigenvalues().iter().copied().collect();
-        squares.sort_by(f64::total_cmp);
-        Some(squares.into_iter().map(f64::sqrt).collect())
     }
 }
 

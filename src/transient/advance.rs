@@ -14,7 +14,7 @@ const BUDGET: u64 = 10_000_000;
 const BUDGET_RATE: f64 = 1e7;
 
 /// Share of the tolerance that one step may use up.
-const SHARE: f64 = 0.05;
+const SHARE: f64 = 0.01;
 
 /// Power of the step length with which the error estimate grows.
 const ORDER: f64 = NODES as f64 + 2.0;

@@ -1,0 +1,100 @@
+//! The beam against closed forms: exact frequencies against Galerkin's, published eigenvalues, static compliance.
+
+#![allow(clippy::unwrap_used)]
+
+use relay_contact::beam::characteristic;
+use relay_contact::beam::galerkin::Space;
+use relay_contact::beam::section::Section;
+use relay_contact::beam::statics::Statics;
+
+/// E I = rho A = L = 1, so that omega = (beta L)^2.
+const UNIT: Section = Section {
+    length: 1.0,
+    bending_stiffness: 1.0,
+    mass_per_length: 1.0,
+    tip_mass: 0.0,
+    tip_inertia: 0.0,
+};
+
+#[test]
+fn published_eigenvalues_of_the_plain_beam() {
+    // Tip spring k L^3 / (E I) and beta L: cantilever, elastically supported, clamped-pinned (tables of beam vibration).
+    let cases: [(f64, &[f64]); 6] = [
+        (0.0, &[1.875_104_07, 4.694_091_13, 7.854_757_44]),
+        (1.0, &[2.010_003_32]),
+        (10.0, &[2.638_924_70]),
+        (100.0, &[3.640_541_72]),
+        (1000.0, &[3.897_800_81]),
+        // A support so stiff that it is pinned to nine digits: the eigenvalue differs by about beta^3 / (2 k).
+        (1e13, &[3.926_602_31, 7.068_582_75, 10.210_176_12]),
+    ];
+    for (support, published) in cases {
+        let exact = characteristic::frequencies(&UNIT, 0.0, support, published.len());
+        for (omega, published) in exact.iter().zip(published) {
+            assert!(
+                (omega.sqrt() - published).abs() < 1e-8,
+                "k = {support}: {} {published}",
+                omega.sqrt()
+            );
+        }
+    }
+}
+
+#[test]
+fn exact_frequencies_agree_with_galerkin() {
+    for (tip_mass, tip_inertia) in [(0.0, 0.0), (0.3, 0.0), (0.0, 0.02), (2.0, 0.1)] {
+        let section = Section {
+            tip_mass,
+            tip_inertia,
+            ..UNIT
+        };
+        for axial_force in [-30.0, -1.0, 0.0, 1e-4, 1.0, 2.4] {
+            for support in [0.0, 1.0, 5000.0, 1e7] {
+                let exact = characteristic::frequencies(&section, axial_force, support, 4);
+                let galerkin = Space::new(24).modes(&section, axial_force, support);
+                assert_eq!(exact.len(), 4);
+                for (exact, mode) in exact.iter().zip(&galerkin.unwrap()) {
+                    let error = (mode.omega_squared.sqrt() / exact - 1.0).abs();
+                    assert!(
+                        error < 1e-9,
+                        "m {tip_mass} J {tip_inertia} N {axial_force} k {support}: {exact} {error}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn an_axial_force_at_the_buckling_load_has_no_modes() {
+    let limit = UNIT.buckling_load();
+    assert!((limit - std::f64::consts::PI.powi(2) / 4.0).abs() < 1e-15);
+    assert!(Space::new(12).modes(&UNIT, 0.999_999 * limit, 0.0).is_some());
+    assert!(Space::new(12).modes(&UNIT, 1.000_001 * limit, 0.0).is_none());
+}
+
+#[test]
+fn static_compliance_follows_the_beam_column() {
+    let statics = Statics::new(&UNIT);
+    // Tip load: (tan(l) / l - 1) / N with l^2 = N / (E I); tension takes tanh.
+    for n in [0.5, 1.0, 2.0, 2.4, 2.46] {
+        let l = f64::sqrt(n);
+        let exact = (l.tan() / l - 1.0) / n;
+        assert!((statics.tip_compliance(n) / exact - 1.0).abs() < 1e-11, "{n}");
+        let exact = (1.0 - l.tanh() / l) / n;
+        assert!((statics.tip_compliance(-n) / exact - 1.0).abs() < 1e-11, "{n}");
+    }
+    assert!((statics.tip_compliance(0.0) - 1.0 / 3.0).abs() < 1e-15);
+    // Uniform load: q L^4 / (8 E I).
+    assert!((statics.gravity_compliance(0.0) + 1.0 / 8.0).abs() < 1e-15);
+    // A static tip load is met exactly by any number of modes of two or more.
+    for count in [2, 3, 7, 40] {
+        let compliance: f64 = Space::new(count)
+            .modes(&UNIT, 0.0, 0.0)
+            .unwrap()
+            .iter()
+            .map(|mode| mode.tip * mode.tip / mode.omega_squared)
+            .sum();
+        assert!((compliance - 1.0 / 3.0).abs() < 1e-14, "{count}: {compliance}");
+    }
+}
