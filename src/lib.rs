@@ -1,4 +1,35 @@
-//! Relay contact on a cantilever spring under vibration.
+//! Relay contact on a cantilever spring under vibration: contact force and contact resistance, opening and closing.
+//!
+//! How the parts follow from each other, each a module:
+//!
+//! ```text
+//! modelDescription.xml -> variables   what there is to set and to read
+//! scene       parameters and effects of one simulation
+//! beam        section -> modes of the cantilever, exact frequencies, static compliance
+//! contact     indentation -> contact force (Hertz, with dissipation)
+//! preload     static equilibrium of beam and contact
+//! model       Scene -> Model (never changes) and State (all that moves)
+//! transient   Model, State, inputs -> State after a communication step
+//! electrical  contact force -> resistance;   harmonic  the same contact in the frequency domain
+//! simulation  Model and State together, read by output
+//! fmi2        all of it behind the C interface of FMI 2.0
+//! ```
+//!
+//! ```
+//! use relay_contact::inputs::Inputs;
+//! use relay_contact::scene::Scene;
+//! use relay_contact::simulation::Simulation;
+//! use relay_contact::variables::{ExcitationKind, RealOutput};
+//!
+//! let mut scene = Scene::default();
+//! scene.effects.excitation = ExcitationKind::Sine; // 98 m/s2 at 1000 Hz
+//! let mut contact = Simulation::new(&scene, &Inputs::default(), 0.0)?;
+//! contact.step(&Inputs::default(), 0.0, 1e-3)?;
+//! assert!(contact.real(RealOutput::ContactForce) > 0.1);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Source of the physics: Zhang, Zhang, Meng, Ren, Machines 2025, 13(1), 52, <https://doi.org/10.3390/machines13010052>.
 #![deny(unsafe_code)]
 #![warn(
     clippy::unwrap_used,
