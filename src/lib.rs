@@ -40,6 +40,7 @@
     clippy::unreachable,
     clippy::indexing_slicing
 )]
+#![cfg_attr(test, allow(clippy::unwrap_used))]
 
 pub mod beam;
 pub mod contact;

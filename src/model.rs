@@ -61,13 +61,16 @@ pub struct ModeState {
     pub v: f64,
 }
 
+/// Room for the states of all modes; those in use come first.
+pub type ModeStates = [ModeState; MAX_MODES];
+
 /// Everything that moves. Plain numbers: saving a state is a copy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {
     /// Time, s.
     pub time: f64,
-    /// The modes in use come first.
-    pub modes: [ModeState; MAX_MODES],
+    /// The modes.
+    pub modes: ModeStates,
     /// Displacement of the fixed contact since the preload, m.
     pub support: f64,
     /// Its velocity over the last communication step, m/s.
@@ -185,6 +188,6 @@ impl Model {
 /// Modes for a tolerance: the error of the contact force falls about tenfold a mode, from some 1e-3 at seven, where it is
 /// slowest: after the contact has closed with a blow.
 fn modes_for(tolerance: f64) -> usize {
-    let digits = -tolerance.log10();
-    (digits.ceil().max(0.0) as usize + 5).min(MAX_MODES)
+    let digits = (0..11).take_while(|digits| tolerance < 10f64.powi(-digits)).count();
+    digits + 5
 }

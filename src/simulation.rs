@@ -5,7 +5,7 @@ use crate::error::{SceneError, StepError};
 use crate::inputs::Inputs;
 use crate::model::{Model, State};
 use crate::scene::Scene;
-use crate::transient::coefficients::Cache;
+use crate::transient::advance::Workspace;
 use crate::variables::{BooleanOutput, IntegerOutput, RealOutput};
 
 /// A simulation from its preload onwards.
@@ -13,7 +13,7 @@ use crate::variables::{BooleanOutput, IntegerOutput, RealOutput};
 pub struct Simulation {
     model: Model,
     state: State,
-    cache: Cache,
+    workspace: Workspace,
 }
 
 impl Simulation {
@@ -25,8 +25,12 @@ impl Simulation {
         let model = Model::new(scene, inputs.support_displacement)?;
         let mut state = model.initial_state(start_time);
         state.current = inputs.contact_current;
-        let cache = Cache::new(model.modes.len());
-        Ok(Self { model, state, cache })
+        let workspace = Workspace::new(&model);
+        Ok(Self {
+            model,
+            state,
+            workspace,
+        })
     }
 
     /// Advances over the communication step from `time` to `time + step_size`, s, with inputs held.
@@ -37,7 +41,7 @@ impl Simulation {
     /// A [`StepError`]; the state is then what it was before the call.
     pub fn step(&mut self, inputs: &Inputs, time: f64, step_size: f64) -> Result<(), StepError> {
         self.model
-            .step(&mut self.state, &mut self.cache, inputs, time, step_size)
+            .step(&mut self.state, &mut self.workspace, inputs, time, step_size)
     }
 
     /// The instant reached, s.

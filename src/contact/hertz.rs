@@ -69,7 +69,7 @@ impl Hertz {
 
     /// `g = d + (3/2) beta_c d'`, m: has the sign of the force where surfaces overlap, and reaches zero where they part.
     pub fn engagement(&self, d: f64, rate: f64) -> f64 {
-        1.5f64.mul_add(self.damping * rate, d)
+        d + 1.5 * self.damping * rate
     }
 
     /// The closed branch continued smoothly past the release (the force may turn negative), for the steps that end at

@@ -3,7 +3,30 @@
 use std::f64::consts::TAU;
 
 use crate::scene::Scene;
+use crate::transient::collocation::Nodal;
 use crate::variables::ExcitationKind;
+
+/// Base accelerations over a step, m/s2.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Accelerations {
+    /// At the start.
+    pub start: f64,
+    /// At the nodes.
+    pub nodes: Nodal,
+    /// At the end.
+    pub end: f64,
+}
+
+/// Sines and cosines of the angles the generator turns through from the start of a step: they depend on its length alone.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Turns {
+    /// To the nodes.
+    sin: Nodal,
+    /// See [`Turns::sin`].
+    cos: Nodal,
+    /// To the end.
+    end: (f64, f64),
+}
 
 /// The generator a scene asks for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,21 +61,51 @@ impl Generator {
         }
     }
 
-    /// Acceleration `offset` seconds after `time`, m/s2. A step that begins before the start ends at it at the latest.
-    pub fn acceleration(&self, time: f64, offset: f64) -> f64 {
+    /// Sine and cosine of the generator's phase at `time`, times its amplitude.
+    fn phasor(&self, time: f64) -> (f64, f64) {
         match *self {
-            Self::None => 0.0,
-            Self::Sine { start, .. } if time < start => 0.0,
             Self::Sine {
                 amplitude,
                 frequency,
                 phase,
                 start,
-            } => {
+            } if time >= start => {
                 // Whole turns are dropped before the phase is formed, so that late instants keep their digits.
-                let turns = (frequency * (time - start)).fract() + frequency * offset;
-                amplitude * TAU.mul_add(turns, phase).sin()
+                let (sin, cos) = (TAU * (frequency * (time - start)).fract() + phase).sin_cos();
+                (amplitude * sin, amplitude * cos)
             }
+            _ => (0.0, 0.0),
+        }
+    }
+
+    /// Accelerations over a step that begins at `time` (s) and has the given turns. A step that begins before the start of
+    /// the generator ends there at the latest.
+    pub fn over_step(&self, time: f64, turns: &Turns) -> Accelerations {
+        let (sin, cos) = match self {
+            Self::None => return Accelerations::default(),
+            Self::Sine { .. } => self.phasor(time),
+        };
+        let mut nodes = turns.cos;
+        for (node, turn) in nodes.iter_mut().zip(&turns.sin) {
+            *node = sin * *node + cos * turn;
+        }
+        Accelerations {
+            start: sin,
+            nodes,
+            end: sin * turns.end.1 + cos * turns.end.0,
+        }
+    }
+
+    /// The turns of a step of `length` seconds with these nodes.
+    pub fn turns(&self, length: f64, nodes: &Nodal) -> Turns {
+        let Self::Sine { frequency, .. } = *self else {
+            return Turns::default();
+        };
+        let angle = |x: f64| TAU * frequency * x * length;
+        Turns {
+            sin: nodes.map(|x| angle(x).sin()),
+            cos: nodes.map(|x| angle(x).cos()),
+            end: angle(1.0).sin_cos(),
         }
     }
 

@@ -1,6 +1,7 @@
 //! Everything of a step that depends on its length alone, and a cache of it.
 
-use crate::model::Mode;
+use crate::excitation::{Generator, Turns};
+use crate::model::{Mode, Model};
 use crate::transient::collocation::{Collocation, NODES, Nodal, SHAPES};
 use crate::transient::response::Response;
 
@@ -58,6 +59,8 @@ pub struct StepCoefficients {
     pub force: TipRows,
     /// Per base acceleration acting on the modes as `participation`.
     pub acceleration: TipRows,
+    /// Of the generator.
+    pub turns: Turns,
     /// Per force on the tip that the nodal polynomial misses.
     pub force_error: ErrorRows,
     /// Per base acceleration that the nodal polynomial misses.
@@ -72,14 +75,16 @@ impl StepCoefficients {
             modes: vec![ModeStep::default(); modes],
             force: TipRows::default(),
             acceleration: TipRows::default(),
+            turns: Turns::default(),
             force_error: ErrorRows::default(),
             acceleration_error: ErrorRows::default(),
         }
     }
 
     /// Computes the coefficients of the length in place.
-    fn fill(&mut self, length: f64, modes: &[Mode], collocation: &Collocation) {
+    fn fill(&mut self, length: f64, modes: &[Mode], generator: &Generator, collocation: &Collocation) {
         self.length = length;
+        self.turns = generator.turns(length, &collocation.nodes);
         self.force = TipRows::default();
         self.acceleration = TipRows::default();
         self.force_error = ErrorRows::default();
@@ -198,8 +203,8 @@ impl Cache {
         &self.collocation
     }
 
-    /// The coefficients of the length; `recurring` says whether to keep them for later.
-    pub fn get(&mut self, length: f64, recurring: bool, modes: &[Mode]) -> (&StepCoefficients, &Collocation) {
+    /// The coefficients of the length for the model; `recurring` says whether to keep them for later.
+    pub fn get(&mut self, length: f64, recurring: bool, model: &Model) -> (&StepCoefficients, &Collocation) {
         let slot = if recurring {
             (length.to_bits().wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 58) as usize % SLOTS
         } else {
@@ -213,7 +218,7 @@ impl Cache {
         )]
         let entry = &mut slots[slot];
         if entry.length.to_bits() != length.to_bits() {
-            entry.fill(length, modes, collocation);
+            entry.fill(length, &model.modes, &model.generator, collocation);
         }
         (entry, collocation)
     }

@@ -2,8 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::inputs::Inputs;
-use crate::model::{MAX_MODES, ModeState, Model, State};
+use crate::model::{ModeStates, Model, State};
 use crate::transient::coefficients::{ErrorRows, StepCoefficients};
 use crate::transient::collocation::{Collocation, NODES, Nodal, dot};
 
@@ -16,17 +15,6 @@ pub struct Drive {
     pub support_rate: f64,
 }
 
-impl Drive {
-    /// Inputs held over a communication step of `size` seconds that starts in `state`; the fixed contact, `moved` (m)
-    /// beyond the preload, reaches the input linearly.
-    pub fn new(inputs: &Inputs, target: f64, state: &State, size: f64) -> Self {
-        Self {
-            acceleration: inputs.base_acceleration,
-            support_rate: (target - state.support) / size,
-        }
-    }
-}
-
 /// A step computed but not yet taken.
 #[derive(Clone, Copy, Debug)]
 pub struct Trial {
@@ -36,8 +24,6 @@ pub struct Trial {
     pub indentations: Nodal,
     /// Its velocity at the nodes, m/s.
     pub rates: Nodal,
-    /// The modes at the end.
-    pub modes: [ModeState; MAX_MODES],
     /// Displacement of the fixed contact at the end, m.
     pub support: f64,
     /// Indentation at the end as deviation from the preload, m.
@@ -54,8 +40,9 @@ pub struct Trial {
 const ITERATIONS: u64 = 12;
 
 impl Model {
-    /// The step from `state` with the given coefficients, on the branch the state is on; `None` where Newton's method does
-    /// not converge. `newton` is the largest last correction of a nodal force, N.
+    /// The step from `state` with the given coefficients, on the branch the state is on, with the modes at its end in
+    /// `end_modes`; `None` where Newton's method does not converge. `newton` is the largest last correction of a nodal
+    /// force, N.
     pub fn trial(
         &self,
         state: &State,
@@ -63,10 +50,11 @@ impl Model {
         step: &StepCoefficients,
         collocation: &Collocation,
         newton: f64,
+        end_modes: &mut ModeStates,
     ) -> Option<Trial> {
         let h = step.length;
-        let acceleration = |x: f64| drive.acceleration + self.generator.acceleration(state.time, x * h);
-        let accelerations = collocation.nodes.map(acceleration);
+        let generated = self.generator.over_step(state.time, &step.turns);
+        let accelerations = generated.nodes.map(|generated| drive.acceleration + generated);
 
         // Indentation at the nodes without contact force.
         let mut free = collocation
@@ -93,10 +81,9 @@ impl Model {
         };
         let (indentations, rates) = at_nodes(step, &free, &free_rate, &forces);
 
-        let mut modes = [ModeState::default(); MAX_MODES];
         let support = state.support + drive.support_rate * h;
         let (mut indentation, mut rate) = (support, drive.support_rate);
-        for (((end, start), row), mode) in modes.iter_mut().zip(&state.modes).zip(&step.modes).zip(&self.modes) {
+        for (((end, start), row), mode) in end_modes.iter_mut().zip(&state.modes).zip(&step.modes).zip(&self.modes) {
             let mut load = forces;
             for (load, acceleration) in load.iter_mut().zip(&accelerations) {
                 *load = mode.tip * *load - mode.participation * acceleration;
@@ -109,7 +96,7 @@ impl Model {
 
         // What the nodal polynomials miss at both ends of the step belongs to P(2x-1) and (2x-1) P(2x-1).
         let missed = |values: &Nodal, start: f64, end: f64| {
-            let sign = if NODES % 2 == 0 { 1.0 } else { -1.0 };
+            let sign = if NODES.is_multiple_of(2) { 1.0 } else { -1.0 };
             let start = sign * (start - dot(values, &collocation.at_start));
             let end = end - dot(values, &collocation.at_end);
             [f64::midpoint(end, start), 0.5 * (end - start)]
@@ -125,7 +112,11 @@ impl Model {
         } else {
             [0.0; 2]
         };
-        let missed_acceleration = missed(&accelerations, acceleration(0.0), acceleration(1.0));
+        let missed_acceleration = missed(
+            &accelerations,
+            drive.acceleration + generated.start,
+            drive.acceleration + generated.end,
+        );
         let wrong = |rows: &ErrorRows, missed: [f64; 2]| (dot2(rows.displacement, missed), dot2(rows.velocity, missed));
         let (force_d, force_r) = wrong(&step.force_error, missed_force);
         let (base_d, base_r) = wrong(&step.acceleration_error, missed_acceleration);
@@ -143,7 +134,6 @@ impl Model {
             forces,
             indentations,
             rates,
-            modes,
             support,
             indentation,
             rate,
@@ -170,22 +160,28 @@ impl Model {
         } else {
             [state.force - self.preload.force; NODES]
         };
+        let d0 = self.preload.indentation;
         for iteration in 1..=ITERATIONS {
             let (indentations, rates) = at_nodes(step, free, free_rate, &forces);
-            let mut residual = SVector::<f64, NODES>::zeros();
-            let mut jacobian = SMatrix::<f64, NODES, NODES>::identity();
-            for (k, ((force, (d, rate)), (row, row_rate))) in forces
+            let laws = indentations
                 .iter()
-                .zip(indentations.iter().zip(&rates))
-                .zip(step.force.displacement.iter().zip(&step.force.velocity))
-                .enumerate()
+                .zip(&rates)
+                .map(|(d, rate)| self.hertz.closed_branch(d0 + d, *rate));
+            let rows = step.force.displacement.iter().zip(&step.force.velocity);
+            let mut residual = forces;
+            // Row by row dF/d(nodal force), column-major as nalgebra stores it: the transpose of the Jacobian.
+            let mut jacobian = [[0.0; NODES]; NODES];
+            for ((law, (row, row_rate)), (residual, gradient)) in
+                laws.zip(rows).zip(residual.iter_mut().zip(&mut jacobian))
             {
-                let law = self.hertz.closed_branch(self.preload.indentation + d, *rate);
-                residual[k] = force - (law.force - self.preload.force);
-                for (j, (compliance, mobility)) in row.iter().zip(row_rate).enumerate() {
-                    jacobian[(k, j)] += law.stiffness * compliance + law.damping * mobility;
+                *residual -= law.force - self.preload.force;
+                for ((entry, compliance), mobility) in gradient.iter_mut().zip(row).zip(row_rate) {
+                    *entry = law.stiffness * compliance + law.damping * mobility;
                 }
             }
+            let jacobian =
+                SMatrix::<f64, NODES, NODES>::from(jacobian).transpose() + SMatrix::<f64, NODES, NODES>::identity();
+            let residual = SVector::from(residual);
             let correction = jacobian.lu().solve(&residual)?;
             for (force, correction) in forces.iter_mut().zip(correction.iter()) {
                 *force -= correction;

@@ -1,46 +1,73 @@
 //! The contact opens: the instant within a step at which the force reaches zero.
 
-use crate::model::{Model, State};
-use crate::transient::collocation::Collocation;
+use crate::math::roots;
+use crate::transient::advance::{Cut, Integration};
 use crate::transient::nodal::Trial;
 
 /// Points at which the force polynomial is looked at where it comes near zero.
 const LOOKS: u32 = 32;
 
-impl Model {
+impl Integration<'_> {
+    /// Where the step of `length` seconds has to end because the contact opens, if it does.
+    pub(super) fn release(&mut self, trial: &Trial, length: f64) -> Option<Cut> {
+        let latest = self.first_open(trial)? * length;
+        let end = self.probe(latest);
+        if end.is_some_and(|end| self.engagement(&end) > 0.0) {
+            // The polynomial dips below zero, the force does not: the next step starts here, where it is lowest.
+            return (latest < length).then_some(Cut {
+                length: latest,
+                switches: false,
+            });
+        }
+        let start = self.model.hertz.engagement(
+            self.model.preload.indentation + self.state.indentation,
+            self.state.indentation_rate,
+        );
+        let engagement = |at: f64| {
+            if at > 0.0 {
+                self.probe(at).map_or(f64::NAN, |trial| self.engagement(&trial))
+            } else {
+                // The contact is closed there; just after a touch rounding could hide it.
+                start.max(f64::MIN_POSITIVE)
+            }
+        };
+        let length = roots::bracketed(engagement, 0.0, latest).unwrap_or(latest);
+        Some(Cut { length, switches: true })
+    }
+
     /// `g = d + (3/2) beta_c d'` at the end of the trial, m: negative once the contact has opened.
-    pub fn engagement(&self, trial: &Trial) -> f64 {
-        self.hertz
-            .engagement(self.preload.indentation + trial.indentation, trial.rate)
+    fn engagement(&self, trial: &Trial) -> f64 {
+        self.model
+            .hertz
+            .engagement(self.model.preload.indentation + trial.indentation, trial.rate)
     }
 
     /// Where in the step (in steps) the contact first looks open: a node or the end with no force left, or a place where
     /// the polynomial through the nodes dips below zero between them.
-    pub fn first_open(&self, state: &State, trial: &Trial, collocation: &Collocation) -> Option<f64> {
-        let d0 = self.preload.indentation;
-        let open = |d: &f64, rate: &f64| self.hertz.engagement(d0 + d, *rate) <= 0.0 || d0 + d <= 0.0;
-        let nodes = collocation
+    fn first_open(&self, trial: &Trial) -> Option<f64> {
+        let (preload, hertz) = (&self.model.preload, &self.model.hertz);
+        let collocation = self.workspace.cache.collocation();
+        let open = |d: f64, rate: f64| {
+            preload.indentation + d <= 0.0 || hertz.engagement(preload.indentation + d, rate) <= 0.0
+        };
+        let node = collocation
             .nodes
             .iter()
-            .zip(trial.indentations.iter().zip(&trial.rates));
-        let node = nodes
-            .clone()
-            .find(|(_, (d, rate))| open(d, rate))
+            .zip(trial.indentations.iter().zip(&trial.rates))
+            .find(|(_, (d, rate))| open(**d, **rate))
             .map(|(node, _)| *node);
-        let sure = node.or_else(|| open(&trial.indentation, &trial.rate).then_some(1.0));
+        let sure = node.or_else(|| open(trial.indentation, trial.rate).then_some(1.0));
 
-        let lowest = trial.forces.iter().fold(f64::INFINITY, |low, force| low.min(*force)) + self.preload.force;
-        let highest = trial
-            .forces
-            .iter()
-            .fold(state.force, |high, force| high.max(force + self.preload.force));
+        let forces = trial.forces.map(|force| preload.force + force);
+        let lowest = forces.iter().copied().fold(f64::INFINITY, f64::min);
+        let highest = forces.iter().copied().fold(self.state.force, f64::max);
         if sure.is_none() && lowest > 0.25 * highest {
             return None;
         }
         let dip = (1..LOOKS)
             .map(|k| f64::from(k) / f64::from(LOOKS))
             .take_while(|x| sure.is_none_or(|sure| *x < sure))
-            .find(|x| self.preload.force + collocation.interpolate(&trial.forces, *x) < 0.0);
+            .find(|x| collocation.interpolate(&forces, *x) < 0.0);
         dip.or(sure)
     }
 }

@@ -161,15 +161,15 @@ mod tests {
     /// The moments by quadrature of the impulse response over many panels.
     fn by_quadrature(omega_squared: f64, damping: f64, t: f64) -> [f64; MOMENTS] {
         let scale = omega_squared.sqrt().max(damping);
-        let panels = ((scale * t).ceil() as usize).clamp(1, 20_000);
+        let panels = (1..20_000).find(|panels| f64::from(*panels) >= scale * t).unwrap();
         let mut sums = [0.0; MOMENTS];
         for panel in 0..panels {
             for (x, weight) in legendre::gauss(12) {
-                let s = t * (panel as f64 + f64::midpoint(1.0, x)) / panels as f64;
+                let s = t * (f64::from(panel) + f64::midpoint(1.0, x)) / f64::from(panels);
                 let g = Response::new(omega_squared, damping, t - s).q_from_v;
                 let mut power = 1.0;
                 for (m, sum) in sums.iter_mut().enumerate() {
-                    *sum += weight * t / (2.0 * panels as f64) * g * power / t.powi(i32::try_from(m).unwrap() + 2);
+                    *sum += weight * t / (2.0 * f64::from(panels)) * g * power / t.powi(i32::try_from(m).unwrap() + 2);
                     power *= s / (m + 1) as f64;
                 }
             }

@@ -4,28 +4,42 @@
 //! known, the indentation is a cubic but for an error that the middle one of any three shows. Where the cubic's highest
 //! point clears zero by more than that error there is no touch; elsewhere the interval is halved.
 
-use crate::model::Model;
+use crate::math::roots;
+use crate::transient::advance::{Cut, Integration};
+use crate::transient::collocation::NODES;
+use crate::transient::nodal::Trial;
 
-/// Indentation d and its velocity at an instant of the step, in seconds from its start.
+/// Halvings before an interval counts as an instant.
+const DEPTH: u32 = 40;
+
+/// Indentation and its velocity at an instant of the step.
 #[derive(Clone, Copy, Debug)]
-pub struct Sample {
-    /// s.
-    pub at: f64,
-    /// m.
-    pub d: f64,
-    /// m/s.
-    pub rate: f64,
+struct Sample {
+    /// From the start of the step, s.
+    at: f64,
+    /// Indentation, m.
+    d: f64,
+    /// Its velocity, m/s.
+    rate: f64,
 }
 
-impl Model {
-    /// The first instant (s from the start of the step) at which the contact closes, given samples in order of time that
-    /// cover the step. `sample` evaluates the flight; `negligible` is the overlap that makes no force (m).
-    pub fn first_touch(
-        &self,
-        samples: &[Sample],
-        negligible: f64,
-        sample: &mut impl FnMut(f64) -> Sample,
-    ) -> Option<f64> {
+impl Integration<'_> {
+    /// Where the step of free flight of `length` seconds has to end because the contact closes, if it does.
+    pub(super) fn touchdown(&mut self, trial: &Trial, length: f64) -> Option<Cut> {
+        let sample = |at: f64, d: f64, rate: f64| Sample {
+            at,
+            d: self.model.preload.indentation + d,
+            rate,
+        };
+        let mut samples = [sample(0.0, self.state.indentation, self.state.indentation_rate); NODES + 2];
+        let nodes = self.workspace.cache.collocation().nodes;
+        let inner = nodes.iter().zip(&trial.indentations).zip(&trial.rates);
+        for (entry, ((node, d), rate)) in samples.iter_mut().skip(1).zip(inner) {
+            *entry = sample(node * length, *d, *rate);
+        }
+        if let Some(last) = samples.last_mut() {
+            *last = sample(length, trial.indentation, trial.rate);
+        }
         let error = samples
             .windows(3)
             .filter_map(|triple| match triple {
@@ -33,49 +47,61 @@ impl Model {
                 _ => None,
             })
             .fold(0.0, f64::max);
-        samples.windows(2).find_map(|pair| match pair {
-            [a, b] => self.touch_between(a, b, error, negligible, sample, 0),
+        let length = samples.windows(2).find_map(|pair| match pair {
+            [a, b] => self.touch_between(a, b, error, 0),
             _ => None,
-        })
+        })?;
+        (length > 0.0).then_some(Cut { length, switches: true })
     }
 
-    fn touch_between(
-        &self,
-        a: &Sample,
-        b: &Sample,
-        error: f64,
-        negligible: f64,
-        sample: &mut impl FnMut(f64) -> Sample,
-        depth: u32,
-    ) -> Option<f64> {
-        let open = |s: &Sample| s.d <= 0.0 || self.hertz.engagement(s.d, s.rate) <= 0.0;
-        if !open(b) {
-            // One touch, or several of which the first is wanted: halve until the interval holds a plain crossing.
-            let plain = a.d > 0.0 || (highest(a, b) <= b.d && a.rate >= 0.0) || depth > 40;
-            if plain {
-                return Some(self.crossing(a, b, sample));
-            }
-        } else if highest(a, b) + error < -negligible || (a.d > 0.0 && highest(a, b) <= a.d.max(b.d)) || depth > 40 {
-            return None;
-        }
-        let middle = sample(f64::midpoint(a.at, b.at));
-        let error = (middle.d - cubic(a, b, middle.at)).abs();
-        self.touch_between(a, &middle, error, negligible, sample, depth + 1)
-            .or_else(|| self.touch_between(&middle, b, error, negligible, sample, depth + 1))
-    }
-
-    /// The crossing between an open and a closed sample.
-    fn crossing(&self, a: &Sample, b: &Sample, sample: &mut impl FnMut(f64) -> Sample) -> f64 {
-        let value = |s: Sample| s.d.min(self.hertz.engagement(s.d, s.rate));
-        let mut f = |at: f64| {
-            if at == a.at {
-                // The start of the flight lies on the release itself; rounding must not make it look closed.
-                value(*a).min(-f64::MIN_POSITIVE)
+    /// The first instant between two samples (s from the start of the step) at which the contact closes; their cubic is
+    /// wrong by about `error` (m).
+    fn touch_between(&mut self, a: &Sample, b: &Sample, error: f64, depth: u32) -> Option<f64> {
+        // An overlap whose force is lost in the tolerance need not be found.
+        let negligible = self.model.hertz.indentation(1e-3 * self.tolerance);
+        let highest = highest(a, b);
+        if self.is_open(b) {
+            let clear = if a.d > 0.0 {
+                highest <= a.d.max(b.d)
             } else {
-                value(sample(at))
+                highest + error < negligible
+            };
+            if clear || depth > DEPTH {
+                return None;
+            }
+        } else if a.d > 0.0 || (highest <= b.d && a.rate >= 0.0) || depth > DEPTH {
+            return Some(self.crossing(a, b));
+        }
+        let middle = self.sample(f64::midpoint(a.at, b.at));
+        let error = (middle.d - cubic(a, b, middle.at)).abs();
+        self.touch_between(a, &middle, error, depth + 1)
+            .or_else(|| self.touch_between(&middle, b, error, depth + 1))
+    }
+
+    /// The instant of closing between an open and a closed sample.
+    fn crossing(&mut self, a: &Sample, b: &Sample) -> f64 {
+        let overlap = |at: f64| {
+            if at > a.at {
+                let Sample { d, rate, .. } = self.sample(at);
+                d.min(self.model.hertz.engagement(d, rate))
+            } else {
+                // A flight starts at the release itself; rounding must not make it look closed.
+                -f64::MIN_POSITIVE
             }
         };
-        crate::math::roots::bracketed(&mut f, a.at, b.at).unwrap_or(b.at)
+        roots::bracketed(overlap, a.at, b.at).unwrap_or(b.at)
+    }
+
+    fn is_open(&self, sample: &Sample) -> bool {
+        sample.d <= 0.0 || self.model.hertz.engagement(sample.d, sample.rate) <= 0.0
+    }
+
+    fn sample(&mut self, at: f64) -> Sample {
+        let d0 = self.model.preload.indentation;
+        let (d, rate) = self
+            .probe(at)
+            .map_or((f64::NAN, f64::NAN), |trial| (d0 + trial.indentation, trial.rate));
+        Sample { at, d, rate }
     }
 }
 

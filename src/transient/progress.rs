@@ -1,0 +1,79 @@
+//! Where a communication step stands. Integration steps end on halvings of it, so that their lengths, and with them their
+//! coefficients, come again.
+
+/// A communication step in progress.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress {
+    /// Start, s.
+    pub start: f64,
+    /// Length, s.
+    pub size: f64,
+    /// Part done, 0 to 1.
+    pub done: f64,
+}
+
+/// The next integration step.
+#[derive(Clone, Copy, Debug)]
+pub struct Target {
+    /// Length, s.
+    pub length: f64,
+    /// Whether the length is a halving of the communication step.
+    pub recurring: bool,
+    /// Part of the communication step done at its end.
+    pub done: f64,
+    /// The instant at its end, s.
+    pub time: f64,
+}
+
+impl Progress {
+    /// The next step from the instant `time` (s), not longer than about `wanted` (s), which ends at `corner` (s) at the
+    /// latest.
+    pub fn target(&self, wanted: f64, time: f64, corner: Option<f64>) -> Target {
+        let done = if self.done == 0.0 && wanted >= self.size {
+            1.0
+        } else {
+            self.grid_point(wanted)
+        };
+        if let Some(corner) = corner.filter(|corner| *corner < self.start + done * self.size) {
+            return self.cut(corner - time, corner);
+        }
+        let part = done - self.done;
+        // Halvings of one are exact in binary: nothing but the exponent is set.
+        let recurring = part.to_bits().trailing_zeros() >= f64::MANTISSA_DIGITS - 1;
+        Target {
+            length: part * self.size,
+            recurring,
+            done,
+            time: self.time(done),
+        }
+    }
+
+    /// The step of `length` (s) that ends at `time` (s), off the grid.
+    pub fn cut(&self, length: f64, time: f64) -> Target {
+        let done = (self.done + length / self.size).min(1.0);
+        let time = if done == 1.0 { self.time(done) } else { time };
+        Target {
+            length,
+            recurring: false,
+            done,
+            time,
+        }
+    }
+
+    /// The next point of the grid whose cells are at most `wanted` seconds long, unless it is too near to be worth a step.
+    fn grid_point(&self, wanted: f64) -> f64 {
+        let level = (self.size / wanted).log2().ceil().clamp(0.0, 52.0);
+        let cell = (-level).exp2();
+        let point = ((self.done / cell).floor() + 1.0) * cell;
+        let point = if point - self.done < 0.3 * cell {
+            point + cell
+        } else {
+            point
+        };
+        point.min(1.0)
+    }
+
+    fn time(&self, done: f64) -> f64 {
+        self.start + done * self.size
+    }
+}
