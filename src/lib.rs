@@ -47,6 +47,7 @@ pub mod contact;
 pub mod electrical;
 pub mod error;
 pub mod excitation;
+pub mod fmi2;
 pub mod harmonic;
 pub mod inputs;
 pub mod math;
