@@ -13,6 +13,7 @@
 pub mod error;
 pub mod inputs;
 pub mod scene;
+pub mod scene_file;
 pub mod simulation;
 pub mod variables;
 
