@@ -126,6 +126,7 @@ fn variables(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> 
         code,
         "/// Every variable of the component, in the order of `modelDescription.xml`.\npub static VARIABLES: [Variable; {count}] = [\n{table}];"
     )?;
+    writeln!(code, "{}", by_reference(&list)?)?;
     writeln!(
         code,
         "/// The group a variable belongs to, and which of the group it is.\n#[derive(Clone, Copy, Debug, PartialEq, Eq)]\npub enum Group {{"
@@ -144,6 +145,25 @@ fn variables(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> 
         )?;
     }
     Ok(code)
+}
+
+/// For each value reference up to the largest, the position of its variable in the table; `u16::MAX` for none.
+fn by_reference(list: &Node) -> Result<String, Box<dyn Error>> {
+    let mut positions = Vec::new();
+    for (index, variable) in list.children().filter(Node::is_element).enumerate() {
+        let reference = usize::from(attribute(variable, "valueReference")?.parse::<u16>()?);
+        if positions.len() <= reference {
+            positions.resize(reference + 1, u16::MAX);
+        }
+        if positions[reference] != u16::MAX {
+            return Err(format!("value reference {reference} is used twice").into());
+        }
+        positions[reference] = u16::try_from(index)?;
+    }
+    Ok(format!(
+        "static BY_VALUE_REFERENCE: [u16; {}] = {positions:?};",
+        positions.len()
+    ))
 }
 
 /// An enumeration type of the description as a Rust enum, with its values and names.
@@ -197,9 +217,16 @@ fn header(out: &Path) -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(&include)?;
     println!("cargo:rustc-env=RELAY_CONTACT_INCLUDE={}", include.display());
     if Path::new("src/fmi2").exists() {
-        cbindgen::Builder::new()
-            .with_crate(env::var("CARGO_MANIFEST_DIR")?)
+        let sources = ["types", "common", "values", "fmu_state", "co_simulation"];
+        sources
+            .iter()
+            .fold(cbindgen::Builder::new(), |builder, source| {
+                builder.with_src(format!("src/fmi2/{source}.rs"))
+            })
             .with_language(cbindgen::Language::C)
+            .with_no_includes()
+            .with_sys_include("stddef.h")
+            .with_cpp_compat(true)
             .with_include_guard("RELAY_CONTACT_H")
             .with_documentation(true)
             .generate()?

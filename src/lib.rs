@@ -11,6 +11,7 @@
 )]
 
 pub mod error;
+pub mod fmi2;
 pub mod inputs;
 pub mod scene;
 pub mod scene_file;

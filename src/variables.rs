@@ -28,9 +28,8 @@ pub struct Variable {
 impl Variable {
     /// The variable with this FMI value reference.
     pub fn by_value_reference(value_reference: u32) -> Option<&'static Self> {
-        VARIABLES
-            .iter()
-            .find(|variable| variable.value_reference == value_reference)
+        let position = BY_VALUE_REFERENCE.get(usize::try_from(value_reference).ok()?)?;
+        VARIABLES.get(usize::from(*position))
     }
 
     /// The variable with this name.

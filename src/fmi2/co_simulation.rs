@@ -1,0 +1,135 @@
+//! Communication steps and their status; derivatives of inputs and outputs, which are not supported.
+// Arguments that are not looked at keep their names for the header.
+#![allow(unused_variables)]
+
+use libc::size_t;
+
+use super::entry::{call, place};
+use super::failure::Failure;
+use super::instance::Instance;
+use super::states::{self, Function};
+use super::types::{
+    fmi2Boolean, fmi2Component, fmi2False, fmi2Integer, fmi2LastSuccessfulTime, fmi2Real, fmi2Status, fmi2StatusKind,
+    fmi2String, fmi2Terminated, fmi2ValueReference,
+};
+
+/// Not supported: an error that leaves the instance as it was.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: size_t,
+    order: *const fmi2Integer,
+    value: *const fmi2Real,
+) -> fmi2Status {
+    let body = |_: &mut Instance| Err(Failure::Unsupported("canInterpolateInputs"));
+    // SAFETY: the contract of the module.
+    unsafe { call(c, states::SET_REAL_INPUT_DERIVATIVES, body) }
+}
+
+/// Not supported: an error that leaves the instance as it was.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: size_t,
+    order: *const fmi2Integer,
+    value: *mut fmi2Real,
+) -> fmi2Status {
+    let body = |_: &mut Instance| Err(Failure::Unsupported("maxOutputDerivativeOrder"));
+    // SAFETY: the contract of the module.
+    unsafe { call(c, states::GET_REAL_OUTPUT_DERIVATIVES, body) }
+}
+
+/// Advances from the current communication point, which must be where the instance stands up to rounding, by a
+/// positive step. An error, never `fmi2Discard`, where the motion cannot be integrated: the log then tells instant and
+/// cause, and `fmi2GetRealStatus` the last successful time.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2DoStep(
+    c: fmi2Component,
+    currentCommunicationPoint: fmi2Real,
+    communicationStepSize: fmi2Real,
+    noSetFMUStatePriorToCurrentPoint: fmi2Boolean,
+) -> fmi2Status {
+    let body = |instance: &mut Instance| instance.step(currentCommunicationPoint, communicationStepSize);
+    // SAFETY: the contract of the module.
+    unsafe { call(c, states::DO_STEP, body) }
+}
+
+/// Always an error: a step is complete when `fmi2DoStep` returns, so there is none to cancel.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2CancelStep(c: fmi2Component) -> fmi2Status {
+    let body = |_: &mut Instance| Ok(());
+    // SAFETY: the contract of the module.
+    unsafe { call(c, states::CANCEL_STEP, body) }
+}
+
+/// Answers a question about the status, `fmi2Discard` where there is no answer.
+///
+/// # Safety
+/// The contract of the module.
+unsafe fn status<T>(
+    c: fmi2Component,
+    function: Function,
+    kind: fmi2StatusKind,
+    value: *mut T,
+    answer: impl Fn(&Instance) -> Option<T>,
+) -> fmi2Status {
+    let body = |instance: &mut Instance| {
+        // SAFETY: passed on to the caller.
+        let place = unsafe { place(value, "value") }?;
+        place.write(answer(instance).ok_or(Failure::StatusKind(kind))?);
+        Ok(())
+    };
+    // SAFETY: passed on to the caller.
+    unsafe { call(c, function, body) }
+}
+
+/// Always `fmi2Discard`: no step is ever pending.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetStatus(c: fmi2Component, s: fmi2StatusKind, value: *mut fmi2Status) -> fmi2Status {
+    // SAFETY: the contract of the module.
+    unsafe { status(c, states::GET_STATUS, s, value, |_| None) }
+}
+
+/// The last successful time, also after a step that failed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetRealStatus(c: fmi2Component, s: fmi2StatusKind, value: *mut fmi2Real) -> fmi2Status {
+    let answer = |instance: &Instance| (s == fmi2LastSuccessfulTime).then(|| instance.time());
+    // SAFETY: the contract of the module.
+    unsafe { status(c, states::GET_REAL_STATUS, s, value, answer) }
+}
+
+/// Always `fmi2Discard`: the standard has no such status.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetIntegerStatus(
+    c: fmi2Component,
+    s: fmi2StatusKind,
+    value: *mut fmi2Integer,
+) -> fmi2Status {
+    // SAFETY: the contract of the module.
+    unsafe { status(c, states::GET_INTEGER_STATUS, s, value, |_| None) }
+}
+
+/// Whether the component wants the simulation to end: it never does.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetBooleanStatus(
+    c: fmi2Component,
+    s: fmi2StatusKind,
+    value: *mut fmi2Boolean,
+) -> fmi2Status {
+    let answer = |_: &Instance| (s == fmi2Terminated).then_some(fmi2False);
+    // SAFETY: the contract of the module.
+    unsafe { status(c, states::GET_BOOLEAN_STATUS, s, value, answer) }
+}
+
+/// Always `fmi2Discard`: no step is ever pending.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetStringStatus(
+    c: fmi2Component,
+    s: fmi2StatusKind,
+    value: *mut fmi2String,
+) -> fmi2Status {
+    // SAFETY: the contract of the module.
+    unsafe { status(c, states::GET_STRING_STATUS, s, value, |_| None) }
+}

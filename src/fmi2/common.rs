@@ -1,0 +1,179 @@
+//! Versions, logging and the life cycle.
+// Arguments that are not looked at keep their names for the header.
+#![allow(unused_variables)]
+
+use std::ffi::CStr;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::ptr;
+
+use libc::{c_char, size_t};
+
+use super::entry::{array, call, hand_out, panic_text, take_back, text};
+use super::failure::Failure;
+use super::instance::Instance;
+use super::logger::Logger;
+use super::states;
+use super::types::{
+    fmi2Boolean, fmi2CallbackFunctions, fmi2CoSimulation, fmi2Component, fmi2Error, fmi2False, fmi2Real, fmi2Status,
+    fmi2String, fmi2Type,
+};
+use crate::variables::GUID;
+
+/// The platform types the functions use: "default".
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetTypesPlatform() -> *const c_char {
+    c"default".as_ptr()
+}
+
+/// The version of the standard: "2.0".
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetVersion() -> *const c_char {
+    c"2.0".as_ptr()
+}
+
+/// Chooses what is logged. Without a call all errors and warnings are. With categories, true shows these only, and
+/// false hides these; without, true shows all, and false, which is about debug messages, changes nothing.
+/// An unknown category is a warning and changes nothing: what a user sees of the log is no reason to stop a simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetDebugLogging(
+    c: fmi2Component,
+    loggingOn: fmi2Boolean,
+    nCategories: size_t,
+    categories: *const fmi2String,
+) -> fmi2Status {
+    let body = |instance: &mut Instance| {
+        // SAFETY: the contract of the module.
+        let categories = unsafe { array(categories, nCategories, "categories") }?;
+        let categories = categories
+            .iter()
+            // SAFETY: the contract of the module.
+            .map(|category| unsafe { text(*category, "categories") })
+            .collect::<Result<Vec<_>, _>>()?;
+        instance.choose_logging(loggingOn != fmi2False, &categories)
+    };
+    // SAFETY: the contract of the module.
+    unsafe { call(c, states::SET_DEBUG_LOGGING, body) }
+}
+
+/// Makes an instance, or null where a name is missing, the type is not co-simulation, or the GUID is that of
+/// another description. The callbacks are copied; of them only the logger is used, which may be null and must not
+/// call back into the instance. The location of resources is not needed and may be null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2Instantiate(
+    instanceName: fmi2String,
+    fmuType: fmi2Type,
+    fmuGUID: fmi2String,
+    fmuResourceLocation: fmi2String,
+    functions: *const fmi2CallbackFunctions,
+    visible: fmi2Boolean,
+    loggingOn: fmi2Boolean,
+) -> fmi2Component {
+    // SAFETY: the contract of the module.
+    let Ok([functions]) = (unsafe { array(functions, 1, "functions") }) else {
+        return ptr::null_mut();
+    };
+    // SAFETY: the contract of the module.
+    let (name, guid) = unsafe { (text(instanceName, "instanceName"), text(fmuGUID, "fmuGUID")) };
+    let name = name.ok().filter(|name| !name.is_empty());
+    let made = catch_unwind(AssertUnwindSafe(|| {
+        let logger = Logger::new(functions, name.unwrap_or(c"RelayContact"));
+        match refusal(name, fmuType, guid) {
+            None => hand_out(Instance::new(logger)),
+            Some(reason) => {
+                logger.log(fmi2Error, &format!("fmi2Instantiate: {reason}"));
+                ptr::null_mut()
+            }
+        }
+    }));
+    made.unwrap_or_else(|panic| {
+        let reason = panic_text(panic.as_ref());
+        let logger = Logger::new(functions, c"RelayContact");
+        logger.log(fmi2Error, &format!("fmi2Instantiate: {}", Failure::Panic(reason)));
+        ptr::null_mut()
+    })
+}
+
+/// Why no instance can be made.
+fn refusal(name: Option<&CStr>, kind: fmi2Type, guid: Result<&CStr, Failure>) -> Option<String> {
+    if name.is_none() {
+        return Some("instanceName is null or empty".to_owned());
+    }
+    if kind != fmi2CoSimulation {
+        return Some(format!(
+            "fmuType = {kind}: not allowed, allowed is 1 (fmi2CoSimulation)"
+        ));
+    }
+    match guid {
+        Err(failure) => Some(failure.to_string()),
+        Ok(guid) if guid.to_bytes() != GUID.as_bytes() => Some(format!(
+            "fmuGUID = {}: not allowed, allowed is {GUID}; library and modelDescription.xml do not belong together",
+            guid.to_string_lossy()
+        )),
+        Ok(_) => None,
+    }
+}
+
+/// Frees an instance. Null is ignored.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2FreeInstance(c: fmi2Component) {
+    // SAFETY: the contract of the module.
+    unsafe { take_back(c) }
+}
+
+/// Sets tolerance, start and stop time; without a call the start is at zero and there is no stop.
+/// The tolerance counts where `solver.tolerance` is 0. One that is no positive finite number is left aside with a warning.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetupExperiment(
+    c: fmi2Component,
+    toleranceDefined: fmi2Boolean,
+    tolerance: fmi2Real,
+    startTime: fmi2Real,
+    stopTimeDefined: fmi2Boolean,
+    stopTime: fmi2Real,
+) -> fmi2Status {
+    let tolerance = (toleranceDefined != fmi2False).then_some(tolerance);
+    let stop = (stopTimeDefined != fmi2False).then_some(stopTime);
+    let body = |instance: &mut Instance| instance.setup_experiment(tolerance, startTime, stop);
+    // SAFETY: the contract of the module.
+    unsafe { call(c, states::SETUP_EXPERIMENT, body) }
+}
+
+/// Enters Initialization Mode, in which outputs can be read for the parameters set so far.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2EnterInitializationMode(c: fmi2Component) -> fmi2Status {
+    let body = |instance: &mut Instance| {
+        instance.enter_initialization_mode();
+        Ok(())
+    };
+    // SAFETY: the contract of the module.
+    unsafe { call(c, states::ENTER_INITIALIZATION_MODE, body) }
+}
+
+/// Ends Initialization Mode: the contact is at rest in its preload. An error where the parameters do not fit together.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2ExitInitializationMode(c: fmi2Component) -> fmi2Status {
+    // SAFETY: the contract of the module.
+    unsafe { call(c, states::EXIT_INITIALIZATION_MODE, Instance::exit_initialization_mode) }
+}
+
+/// Ends the simulation. Values can still be read.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2Terminate(c: fmi2Component) -> fmi2Status {
+    let body = |instance: &mut Instance| {
+        instance.terminate();
+        Ok(())
+    };
+    // SAFETY: the contract of the module.
+    unsafe { call(c, states::TERMINATE, body) }
+}
+
+/// Brings back the start values and the state after `fmi2Instantiate`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2Reset(c: fmi2Component) -> fmi2Status {
+    let body = |instance: &mut Instance| {
+        instance.reset();
+        Ok(())
+    };
+    // SAFETY: the contract of the module.
+    unsafe { call(c, states::RESET, body) }
+}

@@ -1,0 +1,166 @@
+//! What every function does on its way in and out: is this an instance, may this be called now, what is left after a
+//! failure or a panic. And the checks of pointers.
+
+use std::any::Any;
+use std::cell::UnsafeCell;
+use std::ffi::CStr;
+use std::mem::MaybeUninit;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use super::failure::Failure;
+use super::instance::Instance;
+use super::states::Function;
+use super::types::{fmi2Component, fmi2Error, fmi2OK, fmi2Status, fmi2String};
+
+/// What a component points to. The guard comes first: it tells an instance from other memory, and keeps a second call
+/// out while one is at work, be it from another thread or from the importer's own log callback.
+#[repr(C)]
+struct Handle {
+    guard: AtomicU64,
+    instance: UnsafeCell<Instance>,
+}
+
+const IDLE: u64 = u64::from_be_bytes(*b"relay\0id");
+const BUSY: u64 = u64::from_be_bytes(*b"relay\0bu");
+const FREED: u64 = u64::from_be_bytes(*b"relay\0fr");
+
+/// Moves an instance to where C can point to it.
+pub(super) fn hand_out(instance: Instance) -> fmi2Component {
+    Box::into_raw(Box::new(Handle {
+        guard: AtomicU64::new(IDLE),
+        instance: UnsafeCell::new(instance),
+    }))
+    .cast()
+}
+
+/// Takes an instance back and drops it. What is no instance, or is in use, is left alone.
+///
+/// # Safety
+/// `component` is null or points to readable memory.
+pub(super) unsafe fn take_back(component: fmi2Component) {
+    // SAFETY: passed on to the caller.
+    if let Some(handle) = unsafe { occupy(component, FREED) } {
+        // SAFETY: the guard held IDLE, so the memory came from `hand_out` and nobody else uses it.
+        let handle = unsafe { Box::from_raw(handle.cast_mut()) };
+        // A panic must not reach C, and there is nobody left to be told.
+        let _ = catch_unwind(AssertUnwindSafe(move || drop(handle)));
+    }
+}
+
+/// The handle behind a component, its guard moved from idle to `next`; nothing for what is no idle instance.
+unsafe fn occupy(component: fmi2Component, next: u64) -> Option<*const Handle> {
+    let handle = component.cast_const().cast::<Handle>();
+    if handle.is_null() || !handle.is_aligned() {
+        return None;
+    }
+    // SAFETY: not null and aligned; the caller promises readable memory. Only a guard that holds IDLE is written.
+    let guard = unsafe { &(*handle).guard };
+    // A plain look first, so that memory which is no instance is not written to.
+    (guard.load(Ordering::Relaxed) == IDLE
+        && guard
+            .compare_exchange(IDLE, next, Ordering::Acquire, Ordering::Relaxed)
+            .is_ok())
+    .then_some(handle)
+}
+
+/// Runs one call on an instance: `body` if the state allows it, then the log and the state for what came of it.
+///
+/// # Safety
+/// `component` is null or points to readable memory.
+pub(super) unsafe fn call(
+    component: fmi2Component,
+    function: Function,
+    body: impl FnOnce(&mut Instance) -> Result<(), Failure>,
+) -> fmi2Status {
+    // SAFETY: passed on to the caller.
+    let Some(handle) = (unsafe { occupy(component, BUSY) }) else {
+        return fmi2Error;
+    };
+    // SAFETY: the guard held IDLE, so the memory came from `hand_out`; it holds BUSY now, so nobody else has a reference.
+    let (guard, instance) = unsafe { (&(*handle).guard, &mut *(*handle).instance.get()) };
+    let result = if function.allowed.contains(&instance.state()) {
+        catch_unwind(AssertUnwindSafe(|| body(instance))).unwrap_or_else(|panic| {
+            instance.abandon();
+            Err(Failure::Panic(panic_text(panic.as_ref())))
+        })
+    } else {
+        Err(Failure::CallOrder {
+            function,
+            state: instance.state(),
+        })
+    };
+    let status = match result {
+        Ok(()) => fmi2OK,
+        Err(failure) => instance.fail(function, &failure),
+    };
+    guard.store(IDLE, Ordering::Release);
+    status
+}
+
+/// What a panic said.
+pub(super) fn panic_text(panic: &(dyn Any + Send)) -> String {
+    panic
+        .downcast_ref::<&str>()
+        .map(ToString::to_string)
+        .or_else(|| panic.downcast_ref::<String>().cloned())
+        .unwrap_or_default()
+}
+
+fn usable<T>(pointer: *const T, length: usize) -> bool {
+    !pointer.is_null() && pointer.is_aligned() && length <= isize::MAX.unsigned_abs() / size_of::<T>().max(1)
+}
+
+/// An array to read. An empty one may be null.
+///
+/// # Safety
+/// Unless null, `pointer` leads to `length` elements that stay unchanged during the call.
+pub(super) unsafe fn array<'a, T>(pointer: *const T, length: usize, name: &'static str) -> Result<&'a [T], Failure> {
+    match length {
+        0 => Ok(&[]),
+        // SAFETY: usable, and the rest is promised by the caller.
+        _ if usable(pointer, length) => Ok(unsafe { std::slice::from_raw_parts(pointer, length) }),
+        _ => Err(Failure::Pointer(name)),
+    }
+}
+
+/// An array to write, whose elements need not hold a value yet. An empty one may be null.
+///
+/// # Safety
+/// Unless null, `pointer` leads to `length` elements that nobody else uses during the call.
+pub(super) unsafe fn array_mut<'a, T>(
+    pointer: *mut T,
+    length: usize,
+    name: &'static str,
+) -> Result<&'a mut [MaybeUninit<T>], Failure> {
+    match length {
+        0 => Ok(&mut []),
+        // SAFETY: usable, and the rest is promised by the caller.
+        _ if usable(pointer, length) => Ok(unsafe { std::slice::from_raw_parts_mut(pointer.cast(), length) }),
+        _ => Err(Failure::Pointer(name)),
+    }
+}
+
+/// A single place to write.
+///
+/// # Safety
+/// Unless null, `pointer` leads to an element that nobody else uses during the call.
+pub(super) unsafe fn place<'a, T>(pointer: *mut T, name: &'static str) -> Result<&'a mut MaybeUninit<T>, Failure> {
+    // SAFETY: passed on to the caller.
+    match unsafe { array_mut(pointer, 1, name) }? {
+        [place] => Ok(place),
+        _ => Err(Failure::Pointer(name)),
+    }
+}
+
+/// A text.
+///
+/// # Safety
+/// Unless null, `text` ends with a zero byte.
+pub(super) unsafe fn text<'a>(text: fmi2String, name: &'static str) -> Result<&'a CStr, Failure> {
+    if text.is_null() {
+        return Err(Failure::Pointer(name));
+    }
+    // SAFETY: not null, and the rest is promised by the caller.
+    Ok(unsafe { CStr::from_ptr(text) })
+}

@@ -1,0 +1,331 @@
+//! One instance of the component: what was set, the simulation once there is one, and where in its life it is.
+
+use std::ffi::CStr;
+
+use super::failure::Failure;
+use super::logger::Logger;
+use super::states::{Function, State};
+use super::types::fmi2Status;
+use crate::error::SceneError;
+use crate::inputs::Inputs;
+use crate::scene::Scene;
+use crate::simulation::Simulation;
+use crate::variables::{Group, Variable};
+
+/// Tolerances of the experiment above are lowered to this one, the largest that `solver.tolerance` allows.
+const LARGEST_TOLERANCE: f64 = 0.1;
+
+/// What `fmi2SetupExperiment` says. Start at zero, no tolerance and no end where it is not called.
+#[derive(Clone, Copy, Debug, Default)]
+struct Experiment {
+    tolerance: Option<f64>,
+    start_time: f64,
+    stop_time: Option<f64>,
+}
+
+#[derive(Debug)]
+pub(super) struct Instance {
+    state: State,
+    scene: Scene,
+    inputs: Inputs,
+    experiment: Experiment,
+    /// In Initialization Mode: made when an output is read, forgotten when something is set.
+    simulation: Option<Simulation>,
+    /// The instant up to which the simulation succeeded, s.
+    time: f64,
+    logger: Logger,
+}
+
+impl Instance {
+    pub(super) fn new(logger: Logger) -> Self {
+        Self {
+            state: State::Instantiated,
+            scene: Scene::default(),
+            inputs: Inputs::default(),
+            experiment: Experiment::default(),
+            simulation: None,
+            time: 0.0,
+            logger,
+        }
+    }
+
+    pub(super) fn state(&self) -> State {
+        self.state
+    }
+
+    pub(super) fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Logs a failure, moves to the state it leads to, and gives its status.
+    pub(super) fn fail(&mut self, function: Function, failure: &Failure) -> fmi2Status {
+        if failure.ends_instance() {
+            self.state = State::Error;
+        }
+        let status = failure.status();
+        self.logger.log(status, &format!("{}: {failure}", function.name));
+        status
+    }
+
+    /// Drops a simulation that may be half changed.
+    pub(super) fn abandon(&mut self) {
+        self.simulation = None;
+    }
+
+    pub(super) fn choose_logging(&mut self, on: bool, categories: &[&CStr]) -> Result<(), Failure> {
+        self.logger
+            .choose(on, categories)
+            .map_err(|unknown| Failure::Category(unknown.to_string_lossy().into_owned()))
+    }
+
+    pub(super) fn setup_experiment(
+        &mut self,
+        tolerance: Option<f64>,
+        start_time: f64,
+        stop_time: Option<f64>,
+    ) -> Result<(), Failure> {
+        if !start_time.is_finite() {
+            return Err(Failure::Argument {
+                name: "startTime",
+                value: start_time,
+                allowed: "allowed is any finite number".to_owned(),
+            });
+        }
+        if let Some(stop) = stop_time.filter(|stop| stop.is_nan() || *stop < start_time) {
+            return Err(Failure::Argument {
+                name: "stopTime",
+                value: stop,
+                allowed: format!("allowed is startTime = {start_time} s or more"),
+            });
+        }
+        let usable = tolerance.filter(|tolerance| tolerance.is_finite() && *tolerance > 0.0);
+        self.experiment = Experiment {
+            tolerance: usable.map(|tolerance| tolerance.min(LARGEST_TOLERANCE)),
+            start_time,
+            stop_time,
+        };
+        self.time = start_time;
+        match tolerance {
+            Some(unusable) if usable.is_none() => Err(Failure::Tolerance(unusable)),
+            _ => Ok(()),
+        }
+    }
+
+    pub(super) fn enter_initialization_mode(&mut self) {
+        self.state = State::InitializationMode;
+    }
+
+    pub(super) fn exit_initialization_mode(&mut self) -> Result<(), Failure> {
+        self.prepare().map_err(Failure::Initialisation)?;
+        self.state = State::StepComplete;
+        Ok(())
+    }
+
+    pub(super) fn terminate(&mut self) {
+        self.state = State::Terminated;
+    }
+
+    /// Back to the start values. The choice of what is logged stays: it is the importer's, not the simulation's.
+    pub(super) fn reset(&mut self) {
+        self.state = State::Instantiated;
+        self.scene = Scene::default();
+        self.inputs = Inputs::default();
+        self.experiment = Experiment::default();
+        self.simulation = None;
+        self.time = 0.0;
+    }
+
+    /// The simulation of what is set now.
+    fn prepare(&mut self) -> Result<&Simulation, SceneError> {
+        let simulation = match self.simulation.take() {
+            Some(simulation) => simulation,
+            None => Simulation::new(&self.experiment_scene(), &self.inputs, self.experiment.start_time)?,
+        };
+        Ok(self.simulation.insert(simulation))
+    }
+
+    /// The scene with the tolerance of the experiment where it has none of its own.
+    fn experiment_scene(&self) -> Scene {
+        let mut scene = self.scene;
+        if let Some(tolerance) = self.experiment.tolerance.filter(|_| scene.solver.tolerance == 0.0) {
+            scene.solver.tolerance = tolerance;
+        }
+        scene
+    }
+
+    /// The simulation to read the output `variable` from.
+    fn computed(&mut self, variable: &Variable) -> Result<&Simulation, Failure> {
+        if self.state == State::InitializationMode {
+            return self.prepare().map_err(Failure::Preview);
+        }
+        self.simulation.as_ref().ok_or(Failure::NotComputed {
+            name: variable.name,
+            state: self.state,
+        })
+    }
+
+    pub(super) fn real(&mut self, reference: u32) -> Result<f64, Failure> {
+        let variable = find("Real", reference)?;
+        match variable.group {
+            Group::RealOutput(output) => Ok(self.computed(variable)?.real(output)),
+            Group::RealInput(input) => Ok(self.inputs.real(input)),
+            Group::RealParameter(parameter) => Ok(self.scene.real(parameter)),
+            _ => Err(wrong_type("Real", variable)),
+        }
+    }
+
+    pub(super) fn integer(&mut self, reference: u32) -> Result<i32, Failure> {
+        let variable = find("Integer", reference)?;
+        match variable.group {
+            Group::IntegerOutput(output) => Ok(self.computed(variable)?.integer(output)),
+            Group::IntegerParameter(parameter) => Ok(self.scene.integer(parameter)),
+            Group::EnumerationParameter(parameter) => Ok(self.scene.enumeration(parameter)),
+            _ => Err(wrong_type("Integer", variable)),
+        }
+    }
+
+    pub(super) fn boolean(&mut self, reference: u32) -> Result<bool, Failure> {
+        let variable = find("Boolean", reference)?;
+        match variable.group {
+            Group::BooleanOutput(output) => Ok(self.computed(variable)?.boolean(output)),
+            _ => Err(wrong_type("Boolean", variable)),
+        }
+    }
+
+    /// Sets real inputs and parameters; all of them or, on an error, none.
+    pub(super) fn set_reals(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
+        let (mut scene, mut inputs) = (self.scene, self.inputs);
+        for (&reference, &value) in references.iter().zip(values) {
+            let variable = find("Real", reference)?;
+            match variable.group {
+                Group::RealInput(input) => inputs.set_real(input, value).map_err(Failure::Value)?,
+                Group::RealParameter(parameter) => {
+                    self.check_fixed(variable)?;
+                    scene.set_real(parameter, value).map_err(Failure::Value)?;
+                }
+                Group::RealOutput(_) => return Err(self.output_set(variable)),
+                _ => return Err(wrong_type("Real", variable)),
+            }
+        }
+        self.take_over(scene, inputs);
+        Ok(())
+    }
+
+    /// Sets integer and enumeration parameters; all of them or, on an error, none.
+    pub(super) fn set_integers(&mut self, references: &[u32], values: &[i32]) -> Result<(), Failure> {
+        let mut scene = self.scene;
+        for (&reference, &value) in references.iter().zip(values) {
+            let variable = find("Integer", reference)?;
+            match variable.group {
+                Group::IntegerParameter(parameter) => {
+                    self.check_fixed(variable)?;
+                    scene.set_integer(parameter, value).map_err(Failure::Value)?;
+                }
+                Group::EnumerationParameter(parameter) => {
+                    self.check_fixed(variable)?;
+                    scene.set_enumeration(parameter, value).map_err(Failure::Value)?;
+                }
+                Group::IntegerOutput(_) => return Err(self.output_set(variable)),
+                _ => return Err(wrong_type("Integer", variable)),
+            }
+        }
+        self.take_over(scene, self.inputs);
+        Ok(())
+    }
+
+    /// Refuses to set Booleans: there are only outputs.
+    pub(super) fn set_booleans(&mut self, references: &[u32]) -> Result<(), Failure> {
+        match references.first() {
+            None => Ok(()),
+            Some(&reference) => {
+                let variable = find("Boolean", reference)?;
+                Err(match variable.group {
+                    Group::BooleanOutput(_) => self.output_set(variable),
+                    _ => wrong_type("Boolean", variable),
+                })
+            }
+        }
+    }
+
+    fn take_over(&mut self, scene: Scene, inputs: Inputs) {
+        (self.scene, self.inputs) = (scene, inputs);
+        if self.state == State::InitializationMode {
+            self.simulation = None;
+        }
+    }
+
+    /// Fixed parameters can be set until initialisation ends.
+    fn check_fixed(&self, variable: &Variable) -> Result<(), Failure> {
+        match self.state {
+            State::Instantiated | State::InitializationMode => Ok(()),
+            state => Err(Failure::NotSettable {
+                name: variable.name,
+                state,
+                reason: "a fixed parameter can be set until initialisation ends",
+            }),
+        }
+    }
+
+    fn output_set(&self, variable: &Variable) -> Failure {
+        Failure::NotSettable {
+            name: variable.name,
+            state: self.state,
+            reason: "it is computed; inputs and parameters can be set",
+        }
+    }
+
+    /// Advances over one communication step.
+    pub(super) fn step(&mut self, point: f64, size: f64) -> Result<(), Failure> {
+        let end = point + size;
+        let refused = |name, value, allowed| Err(Failure::Argument { name, value, allowed });
+        if !(size.is_finite() && size > 0.0 && (!end.is_finite() || end > point)) {
+            let allowed = "allowed is a positive finite number above the floating-point spacing of time";
+            return refused("communicationStepSize", size, allowed.to_owned());
+        }
+        let slack = rounding(point, size);
+        if !(end.is_finite() && (point - self.time).abs() <= slack) {
+            let allowed = format!("the instance stands at {} s, allowed difference {slack:e} s", self.time);
+            return refused("currentCommunicationPoint", point, allowed);
+        }
+        // An importer that adds up its steps gathers rounding errors, far below a thousandth of a step in any run.
+        if let Some(stop) = self
+            .experiment
+            .stop_time
+            .filter(|stop| end > stop + slack.max(1e-3 * size))
+        {
+            let allowed = format!("the step ends at {end} s, after the stop time {stop} s of the experiment");
+            return refused("communicationStepSize", size, allowed);
+        }
+        let Some(simulation) = &mut self.simulation else {
+            return Err(Failure::Panic("no simulation after initialisation".to_owned()));
+        };
+        simulation.step(&self.inputs, point, size).map_err(Failure::Step)?;
+        self.time = simulation.time();
+        Ok(())
+    }
+}
+
+/// By how much two instants may differ and still be the same communication point, s.
+///
+/// An importer gets the end of a step as `t + h`, as `n h` or from a grid in another unit: three or four roundings, each
+/// of half a spacing of the floating-point numbers at that time, on its side and on this one. The second term is for
+/// importers that carry time or step with fewer digits; a shift of a thousand-millionth of a step cannot be seen in the result.
+fn rounding(point: f64, size: f64) -> f64 {
+    8.0 * f64::EPSILON * point.abs().max((point + size).abs()) + 1e-9 * size
+}
+
+fn find(kind: &'static str, reference: u32) -> Result<&'static Variable, Failure> {
+    Variable::by_value_reference(reference).ok_or(Failure::UnknownReference {
+        kind,
+        reference,
+        owner: None,
+    })
+}
+
+fn wrong_type(kind: &'static str, variable: &Variable) -> Failure {
+    Failure::UnknownReference {
+        kind,
+        reference: variable.value_reference,
+        owner: Some(variable.name),
+    }
+}

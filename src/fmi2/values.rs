@@ -1,0 +1,172 @@
+//! Reading and setting variables.
+
+use std::mem::MaybeUninit;
+
+use libc::size_t;
+
+use super::entry::{array, array_mut, call};
+use super::failure::Failure;
+use super::instance::Instance;
+use super::states::{self, Function};
+use super::types::{
+    fmi2Boolean, fmi2Component, fmi2False, fmi2Integer, fmi2Real, fmi2Status, fmi2String, fmi2True, fmi2ValueReference,
+};
+
+/// Reads one value for each reference.
+///
+/// # Safety
+/// The contract of the module.
+unsafe fn get<T>(
+    c: fmi2Component,
+    function: Function,
+    vr: *const fmi2ValueReference,
+    nvr: size_t,
+    value: *mut T,
+    read: impl Fn(&mut Instance, u32) -> Result<T, Failure>,
+) -> fmi2Status {
+    let body = |instance: &mut Instance| {
+        // SAFETY: passed on to the caller.
+        let (references, values) = unsafe { (array(vr, nvr, "vr")?, array_mut(value, nvr, "value")?) };
+        for (&reference, value) in references.iter().zip(values) {
+            MaybeUninit::write(value, read(instance, reference)?);
+        }
+        Ok(())
+    };
+    // SAFETY: passed on to the caller.
+    unsafe { call(c, function, body) }
+}
+
+/// Sets the values of the references, all or none.
+///
+/// # Safety
+/// The contract of the module.
+unsafe fn set<T>(
+    c: fmi2Component,
+    function: Function,
+    vr: *const fmi2ValueReference,
+    nvr: size_t,
+    value: *const T,
+    write: impl Fn(&mut Instance, &[u32], &[T]) -> Result<(), Failure>,
+) -> fmi2Status {
+    let body = |instance: &mut Instance| {
+        // SAFETY: passed on to the caller.
+        let (references, values) = unsafe { (array(vr, nvr, "vr")?, array(value, nvr, "value")?) };
+        write(instance, references, values)
+    };
+    // SAFETY: passed on to the caller.
+    unsafe { call(c, function, body) }
+}
+
+/// Reads real variables.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetReal(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: size_t,
+    value: *mut fmi2Real,
+) -> fmi2Status {
+    // SAFETY: the contract of the module.
+    unsafe { get(c, states::GET_REAL, vr, nvr, value, Instance::real) }
+}
+
+/// Reads integer and enumeration variables.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetInteger(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: size_t,
+    value: *mut fmi2Integer,
+) -> fmi2Status {
+    // SAFETY: the contract of the module.
+    unsafe { get(c, states::GET_INTEGER, vr, nvr, value, Instance::integer) }
+}
+
+/// Reads Boolean variables.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetBoolean(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: size_t,
+    value: *mut fmi2Boolean,
+) -> fmi2Status {
+    let read = |instance: &mut Instance, reference| {
+        let value = instance.boolean(reference)?;
+        Ok(if value { fmi2True } else { fmi2False })
+    };
+    // SAFETY: the contract of the module.
+    unsafe { get(c, states::GET_BOOLEAN, vr, nvr, value, read) }
+}
+
+/// Reads text variables, of which there are none.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetString(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: size_t,
+    value: *mut fmi2String,
+) -> fmi2Status {
+    let read = |_: &mut Instance, reference| Err(no_string(reference));
+    // SAFETY: the contract of the module.
+    unsafe { get(c, states::GET_STRING, vr, nvr, value, read) }
+}
+
+/// Sets real inputs and parameters. `fmi2Discard`, and none of them set, for a value outside its range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetReal(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: size_t,
+    value: *const fmi2Real,
+) -> fmi2Status {
+    // SAFETY: the contract of the module.
+    unsafe { set(c, states::SET_REAL, vr, nvr, value, Instance::set_reals) }
+}
+
+/// Sets integer and enumeration parameters. `fmi2Discard`, and none of them set, for a value that is not allowed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetInteger(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: size_t,
+    value: *const fmi2Integer,
+) -> fmi2Status {
+    // SAFETY: the contract of the module.
+    unsafe { set(c, states::SET_INTEGER, vr, nvr, value, Instance::set_integers) }
+}
+
+/// Sets Boolean inputs and parameters, of which there are none.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetBoolean(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: size_t,
+    value: *const fmi2Boolean,
+) -> fmi2Status {
+    let write = |instance: &mut Instance, references: &[u32], _: &[fmi2Boolean]| instance.set_booleans(references);
+    // SAFETY: the contract of the module.
+    unsafe { set(c, states::SET_BOOLEAN, vr, nvr, value, write) }
+}
+
+/// Sets text inputs and parameters, of which there are none.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetString(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: size_t,
+    value: *const fmi2String,
+) -> fmi2Status {
+    let write = |_: &mut Instance, references: &[u32], _: &[fmi2String]| match references.first() {
+        None => Ok(()),
+        Some(&reference) => Err(no_string(reference)),
+    };
+    // SAFETY: the contract of the module.
+    unsafe { set(c, states::SET_STRING, vr, nvr, value, write) }
+}
+
+fn no_string(reference: u32) -> Failure {
+    Failure::UnknownReference {
+        kind: "String",
+        reference,
+        owner: None,
+    }
+}
