@@ -1,14 +1,19 @@
 //! A scene under way: the model, its state, and the scratch the steps need.
 
+use crate::electrical;
 use crate::error::{SceneError, StepError};
 use crate::inputs::Inputs;
+use crate::model::{Model, State};
 use crate::scene::Scene;
+use crate::transient::coefficients::Cache;
 use crate::variables::{BooleanOutput, IntegerOutput, RealOutput};
 
 /// A simulation from its preload onwards.
 #[derive(Clone, Debug)]
 pub struct Simulation {
-    time: f64,
+    model: Model,
+    state: State,
+    cache: Cache,
 }
 
 impl Simulation {
@@ -16,9 +21,12 @@ impl Simulation {
     ///
     /// # Errors
     /// A [`SceneError`] where the scene cannot be simulated.
-    pub fn new(scene: &Scene, _inputs: &Inputs, start_time: f64) -> Result<Self, SceneError> {
-        scene.validate()?;
-        Ok(Self { time: start_time })
+    pub fn new(scene: &Scene, inputs: &Inputs, start_time: f64) -> Result<Self, SceneError> {
+        let model = Model::new(scene, inputs.support_displacement)?;
+        let mut state = model.initial_state(start_time);
+        state.current = inputs.contact_current;
+        let cache = Cache::new(model.modes.len());
+        Ok(Self { model, state, cache })
     }
 
     /// Advances over the communication step from `time` to `time + step_size`, s, with inputs held.
@@ -27,28 +35,63 @@ impl Simulation {
     ///
     /// # Errors
     /// A [`StepError`]; the state is then what it was before the call.
-    pub fn step(&mut self, _inputs: &Inputs, time: f64, step_size: f64) -> Result<(), StepError> {
-        self.time = time + step_size;
-        Ok(())
+    pub fn step(&mut self, inputs: &Inputs, time: f64, step_size: f64) -> Result<(), StepError> {
+        self.model
+            .step(&mut self.state, &mut self.cache, inputs, time, step_size)
     }
 
     /// The instant reached, s.
     pub fn time(&self) -> f64 {
-        self.time
+        self.state.time
+    }
+
+    /// The model.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The state.
+    pub fn state(&self) -> &State {
+        &self.state
     }
 
     /// A real output or calculated parameter, in its SI unit.
-    pub fn real(&self, _output: RealOutput) -> f64 {
-        0.0
+    pub fn real(&self, output: RealOutput) -> f64 {
+        let Self { model, state, .. } = self;
+        let conductance = || electrical::conductance(&model.scene.resistance, state.force);
+        match output {
+            RealOutput::ContactForce => state.force,
+            RealOutput::ContactConductance => conductance(),
+            RealOutput::ContactResistance => 1.0 / conductance(),
+            RealOutput::ContactVoltage => state.current / conductance(),
+            RealOutput::ContactIndentation => model.preload.indentation + state.indentation,
+            RealOutput::TipDisplacement => model.preload.deflection + state.support - state.indentation,
+            RealOutput::TipVelocity => state.support_rate - state.indentation_rate,
+            RealOutput::ContactLastOpening => state.last_opening,
+            RealOutput::ContactLastClosing => state.last_closing,
+            RealOutput::PreloadForce => model.preload.force,
+            RealOutput::PreloadIndentation => model.preload.indentation,
+            RealOutput::PreloadContactStiffness => model.preload.contact_stiffness,
+            RealOutput::PreloadAxialForce => model.preload.axial_force,
+            RealOutput::PreloadFrequency => model.frequency,
+        }
     }
 
-    /// An integer output or calculated parameter.
-    pub fn integer(&self, _output: IntegerOutput) -> i32 {
-        0
+    /// An integer output or calculated parameter; counts beyond the range of an integer stay at its end.
+    pub fn integer(&self, output: IntegerOutput) -> i32 {
+        let count = |n: u64| i32::try_from(n).unwrap_or(i32::MAX);
+        match output {
+            IntegerOutput::SolverSteps => count(self.state.steps),
+            IntegerOutput::SolverRejectedSteps => count(self.state.rejected_steps),
+            IntegerOutput::SolverIterations => count(self.state.iterations),
+            IntegerOutput::SolverModesUsed => count(self.model.modes.len() as u64),
+        }
     }
 
     /// A Boolean output.
-    pub fn boolean(&self, _output: BooleanOutput) -> bool {
-        false
+    pub fn boolean(&self, output: BooleanOutput) -> bool {
+        match output {
+            BooleanOutput::ContactClosed => self.state.closed,
+        }
     }
 }

@@ -1,9 +1,6 @@
 //! The variables of the component, generated from `modelDescription.xml` by `build.rs`: an enum for each group,
 //! so that a `match` over a group is refused by the compiler until every variable is served.
 
-// Descriptions are written for users, not for rustdoc.
-#![allow(clippy::doc_markdown)]
-
 include!(concat!(env!("OUT_DIR"), "/variables.rs"));
 
 /// What `modelDescription.xml` declares of a variable.

@@ -1,0 +1,139 @@
+//! Modes of the cantilever with its rivet, without contact, by Galerkin's method in a polynomial space.
+//!
+//! The basis on `xi = 2 x / L - 1` are the second antiderivatives of the orthonormal Legendre polynomials that vanish
+//! with their slope at the clamp. Then the bending stiffness is the unit matrix, only the first two functions move the
+//! tip, and the space holds the cubic a static tip load makes. So the static compliance at the tip is exact with
+//! any number of modes of two or more, and the contact force converges exponentially with their number.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::beam::section::Section;
+use crate::math::legendre;
+
+/// The polynomial space and its matrices, without dimensions.
+#[derive(Clone, Debug)]
+pub struct Space {
+    /// Integral of products of the functions over xi.
+    mass: DMatrix<f64>,
+    /// Integral of products of their slopes over xi.
+    pub(crate) geometric: DMatrix<f64>,
+    /// Integral of each function over xi.
+    pub(crate) load: DVector<f64>,
+    /// Value of each function at the tip.
+    pub(crate) tip: DVector<f64>,
+    /// Slope with respect to xi of each function at the tip.
+    tip_slope: DVector<f64>,
+}
+
+/// One mode of the cantilever, normalised to a modal mass of 1 kg.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mode {
+    /// Square of the angular frequency, 1/s2.
+    pub omega_squared: f64,
+    /// Displacement of the tip, 1/sqrt(kg).
+    pub tip: f64,
+    /// Modal force per base acceleration, sqrt(kg).
+    pub participation: f64,
+}
+
+impl Space {
+    /// The space spanned by `count` functions.
+    pub fn new(count: usize) -> Self {
+        let functions = |x: f64| functions(x, count);
+        let mut space = Self {
+            mass: DMatrix::zeros(count, count),
+            geometric: DMatrix::zeros(count, count),
+            load: DVector::zeros(count),
+            tip: functions(1.0).0,
+            tip_slope: functions(1.0).1,
+        };
+        // Degree 2 (count + 1) is integrated exactly.
+        for (x, weight) in legendre::gauss(count + 2) {
+            let (value, slope) = functions(x);
+            space.mass.ger(weight, &value, &value, 1.0);
+            space.geometric.ger(weight, &slope, &slope, 1.0);
+            space.load.axpy(weight, &value, 1.0);
+        }
+        space
+    }
+
+    /// The modes of the section under the axial compression (N), frequency ascending; `None` at or above the buckling
+    /// load.
+    pub fn modes(&self, section: &Section, axial_force: f64) -> Option<Vec<Mode>> {
+        let Section {
+            length,
+            bending_stiffness,
+            mass_per_length,
+            tip_mass,
+            tip_inertia,
+        } = *section;
+        let half_mass = mass_per_length * length / 2.0;
+        let count = self.tip.len();
+        let compression = axial_force * length * length / (4.0 * bending_stiffness);
+        let mut mass = self.mass.clone();
+        mass.ger(tip_mass / half_mass, &self.tip, &self.tip, 1.0);
+        let inertia = 4.0 * tip_inertia / (length * length * half_mass);
+        mass.ger(inertia, &self.tip_slope, &self.tip_slope, 1.0);
+        let stiffness = DMatrix::identity(count, count) - &self.geometric * compression;
+        let factor = stiffness.cholesky()?;
+        // Eigenvalues mu of R^-1 M R^-T are 1/omega^2: the low modes, which carry the motion, come out to full precision.
+        let half = factor.l_dirty().solve_lower_triangular(&mass)?;
+        let reduced = factor.l_dirty().solve_lower_triangular(&half.transpose())?;
+        let symmetric = (&reduced + reduced.transpose()) * 0.5;
+        let eigen = symmetric.symmetric_eigen();
+        let shapes = factor.l_dirty().tr_solve_lower_triangular(&eigen.eigenvectors)?;
+        let largest = eigen.eigenvalues.max();
+        let frequency_scale = 8.0 * bending_stiffness / (length.powi(3) * half_mass);
+        let mut modes: Vec<Mode> = eigen
+            .eigenvalues
+            .iter()
+            .zip(shapes.column_iter())
+            .map(|(&mu, shape)| {
+                // Of the highest of very many modes rounding leaves only the order of magnitude.
+                let mu = mu.max(f64::EPSILON * largest);
+                let normalisation = 1.0 / (mu * half_mass).sqrt();
+                let tip = shape.dot(&self.tip) * normalisation;
+                Mode {
+                    omega_squared: frequency_scale / mu,
+                    tip,
+                    participation: half_mass * shape.dot(&self.load) * normalisation + tip_mass * tip,
+                }
+            })
+            .collect();
+        modes.sort_by(|a, b| a.omega_squared.total_cmp(&b.omega_squared));
+        Some(modes)
+    }
+
+    /// Angular frequencies (rad/s) of the section under the axial compression with an elastic support of `stiffness`
+    /// (N/m) at the tip, ascending; `None` at or above buckling.
+    pub fn supported_frequencies(&self, section: &Section, axial_force: f64, stiffness: f64) -> Option<Vec<f64>> {
+        let modes = self.modes(section, axial_force)?;
+        let diagonal = DVector::from_iterator(modes.len(), modes.iter().map(|mode| mode.omega_squared));
+        let tip = DVector::from_iterator(modes.len(), modes.iter().map(|mode| mode.tip));
+        let mut matrix = DMatrix::from_diagonal(&diagonal);
+        matrix.ger(stiffness, &tip, &tip, 1.0);
+        let mut squares: Vec<f64> = matrix.symmetric_eigenvalues().iter().copied().collect();
+        squares.sort_by(f64::total_cmp);
+        Some(squares.into_iter().map(f64::sqrt).collect())
+    }
+}
+
+/// Values and slopes of the basis functions at `xi`.
+fn functions(x: f64, count: usize) -> (DVector<f64>, DVector<f64>) {
+    let p = legendre::polynomials(x, count + 2);
+    // Antiderivative of P_k that vanishes at -1; the recursion of the Legendre polynomials gives it in closed form.
+    let first = |k: usize| match k.checked_sub(1).and_then(|below| p.get(below)) {
+        None => x + 1.0,
+        Some(below) => (p.get(k + 1).copied().unwrap_or_default() - below) / (2 * k + 1) as f64,
+    };
+    let scale = |k: usize| (k as f64 + 0.5).sqrt();
+    let value = |k: usize| match k {
+        0 => (x + 1.0).powi(2) / 2.0,
+        1 => (x.powi(3) - 3.0 * x - 2.0) / 6.0,
+        k => (first(k + 1) - first(k - 1)) / (2 * k + 1) as f64,
+    };
+    (
+        DVector::from_fn(count, |k, _| scale(k) * value(k)),
+        DVector::from_fn(count, |k, _| scale(k) * first(k)),
+    )
+}

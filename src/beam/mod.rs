@@ -1,0 +1,7 @@
+//! The spring: section, axial force, exact characteristic equation, Galerkin modes and static compliance.
+
+pub mod axial;
+pub mod characteristic;
+pub mod galerkin;
+pub mod section;
+pub mod statics;

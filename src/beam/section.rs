@@ -1,0 +1,42 @@
+//! The uniform section of the spring and what it carries at its tip.
+
+use crate::scene::Scene;
+
+/// Stiffness and mass of the spring, and the rivet at its tip.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Section {
+    /// Free length L, m.
+    pub length: f64,
+    /// Bending stiffness E I, N m2.
+    pub bending_stiffness: f64,
+    /// Mass per length rho A, kg/m.
+    pub mass_per_length: f64,
+    /// Mass of the rivet m, kg.
+    pub tip_mass: f64,
+    /// Rotary inertia of the rivet J, kg m2.
+    pub tip_inertia: f64,
+}
+
+impl Section {
+    /// Rectangular section of the scene.
+    pub fn new(scene: &Scene) -> Self {
+        let beam = &scene.beam;
+        Self {
+            length: beam.length,
+            bending_stiffness: beam.youngs_modulus * beam.width * beam.thickness.powi(3) / 12.0,
+            mass_per_length: beam.density * beam.width * beam.thickness,
+            tip_mass: scene.tip.mass,
+            tip_inertia: scene.tip.rotary_inertia,
+        }
+    }
+
+    /// Axial compression at which the cantilever without contact buckles, pi^2 E I / (4 L^2), N.
+    pub fn buckling_load(&self) -> f64 {
+        (std::f64::consts::PI / (2.0 * self.length)).powi(2) * self.bending_stiffness
+    }
+
+    /// Tip stiffness 3 E I / L^3 without axial force, N/m.
+    pub fn tip_stiffness(&self) -> f64 {
+        3.0 * self.bending_stiffness / self.length.powi(3)
+    }
+}

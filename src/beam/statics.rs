@@ -1,0 +1,64 @@
+//! Static compliance of the cantilever at its tip, under axial compression.
+
+use crate::beam::galerkin::Space;
+use crate::beam::section::Section;
+
+/// Size of the polynomial space: the static shapes under any axial force below buckling are entire functions, which 20
+/// polynomials represent to rounding.
+const TERMS: usize = 20;
+
+/// Tip deflection per load, as a function of the axial force.
+///
+/// With the geometric stiffness diagonalised once, each compliance is the sum `b_i c_i / (1 - nu sigma_i)` over its
+/// modes, `nu = N L^2 / (4 E I)`.
+#[derive(Clone, Debug)]
+pub struct Statics {
+    section: Section,
+    /// sigma_i, tip_i, load_i.
+    terms: Vec<(f64, f64, f64)>,
+}
+
+impl Statics {
+    /// For the section.
+    pub fn new(section: &Section) -> Self {
+        let space = Space::new(TERMS);
+        let eigen = space.geometric.symmetric_eigen();
+        let terms = eigen
+            .eigenvalues
+            .iter()
+            .zip(eigen.eigenvectors.column_iter())
+            .map(|(&sigma, shape)| (sigma, shape.dot(&space.tip), shape.dot(&space.load)))
+            .collect();
+        Self {
+            section: *section,
+            terms,
+        }
+    }
+
+    /// Tip deflection per tip force, m/N; without axial force L^3 / (3 E I).
+    pub fn tip_compliance(&self, axial_force: f64) -> f64 {
+        self.sum(axial_force, |tip, _| tip * tip)
+    }
+
+    /// Tip deflection per constant base acceleration, m per m/s2, negative: the spring lags behind the frame.
+    pub fn gravity_compliance(&self, axial_force: f64) -> f64 {
+        let half_mass = self.section.mass_per_length * self.section.length / 2.0;
+        let tip_mass = self.section.tip_mass;
+        -self.sum(axial_force, |tip, load| tip * (half_mass * load + tip_mass * tip))
+    }
+
+    fn sum(&self, axial_force: f64, product: impl Fn(f64, f64) -> f64) -> f64 {
+        let Section {
+            length,
+            bending_stiffness,
+            ..
+        } = self.section;
+        let compression = axial_force * length * length / (4.0 * bending_stiffness);
+        let sum: f64 = self
+            .terms
+            .iter()
+            .map(|&(sigma, tip, load)| product(tip, load) / (1.0 - compression * sigma))
+            .sum();
+        sum * length.powi(3) / (8.0 * bending_stiffness)
+    }
+}

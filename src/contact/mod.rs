@@ -1,0 +1,3 @@
+//! The law between indentation and contact force.
+
+pub mod hertz;

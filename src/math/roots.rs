@@ -1,0 +1,62 @@
+//! Roots of scalar functions between two points where the sign differs.
+
+/// Root of `f` between `a` and `b`, to the spacing of floating-point numbers there; `None` unless `f(a)` and `f(b)`
+/// are finite and of different sign. Inverse quadratic interpolation where it is safe, bisection elsewhere.
+///
+/// T. R. Chandrupatla, Advances in Engineering Software 28 (1997) 145.
+pub fn bracketed(mut f: impl FnMut(f64) -> f64, a: f64, b: f64) -> Option<f64> {
+    let (mut x1, mut x2) = (b, a);
+    let (mut f1, mut f2) = (f(x1), f(x2));
+    if f1 == 0.0 {
+        return Some(x1);
+    }
+    if f2 == 0.0 {
+        return Some(x2);
+    }
+    if f1.is_nan() || f2.is_nan() || (f1 > 0.0) == (f2 > 0.0) {
+        return None;
+    }
+    let mut fraction = 0.5;
+    // Bisection alone would need 1100 halvings at the worst, from the largest number to the smallest.
+    for _ in 0..1100 {
+        let x = x1 + fraction * (x2 - x1);
+        let value = f(x);
+        let (x3, f3);
+        if (value > 0.0) == (f1 > 0.0) {
+            (x3, f3) = (x1, f1);
+        } else {
+            (x3, f3) = (x2, f2);
+            (x2, f2) = (x1, f1);
+        }
+        (x1, f1) = (x, value);
+        let best = if f1.abs() < f2.abs() { x1 } else { x2 };
+        let spacing = f64::EPSILON * best.abs() / (x2 - x1).abs();
+        if value == 0.0 || spacing > 0.5 || x1 == x2 {
+            return Some(best);
+        }
+        let ratio = (x1 - x2) / (x3 - x2);
+        let phi = (f1 - f2) / (f3 - f2);
+        fraction = if phi * phi < ratio && (1.0 - phi) * (1.0 - phi) < 1.0 - ratio {
+            f1 / (f2 - f1) * f3 / (f2 - f3) + (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (f3 - f2)
+        } else {
+            0.5
+        };
+        fraction = fraction.clamp(spacing, 1.0 - spacing);
+    }
+    Some(x1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::bracketed;
+
+    #[test]
+    fn roots_are_found_to_rounding_and_only_between_signs() {
+        let root = bracketed(|x| x * x - 2.0, 0.0, 2.0).unwrap();
+        assert!((root - 2.0_f64.sqrt()).abs() <= 4.0 * f64::EPSILON, "{root}");
+        let flat = bracketed(|x| (x - 1e-9).powi(3), -1.0, 3.0).unwrap();
+        assert!((flat - 1e-9).abs() < 1e-22, "{flat}");
+        assert_eq!(bracketed(|x| x * x + 1.0, -1.0, 1.0), None);
+        assert_eq!(bracketed(|_| f64::NAN, -1.0, 1.0), None);
+    }
+}

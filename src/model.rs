@@ -1,0 +1,189 @@
+//! Model and state: everything computed once from a scene, and the numbers that move.
+
+use crate::beam::characteristic;
+use crate::beam::galerkin::Space;
+use crate::beam::section::Section;
+use crate::contact::hertz::Hertz;
+use crate::error::SceneError;
+use crate::excitation::Generator;
+use crate::preload::Preload;
+use crate::scene::Scene;
+use crate::transient::collocation::{NODES, Nodal};
+use crate::variables::RealParameter;
+
+/// Largest number of modes.
+pub const MAX_MODES: usize = 40;
+
+/// One damped mode of the cantilever without contact, of modal mass 1 kg.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mode {
+    /// omega_i^2, 1/s2.
+    pub omega_squared: f64,
+    /// c_i = alpha + beta omega_i^2, 1/s (Machines 2025, 13(1), 52, eq. (22)).
+    pub damping: f64,
+    /// Tip displacement T_i, 1/sqrt(kg).
+    pub tip: f64,
+    /// Load per base acceleration g_i, sqrt(kg).
+    pub participation: f64,
+}
+
+/// Everything that stays the same during a simulation.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// What was asked for.
+    pub scene: Scene,
+    /// The spring.
+    pub section: Section,
+    /// The contact.
+    pub hertz: Hertz,
+    /// The equilibrium the motion is counted from.
+    pub preload: Preload,
+    /// The modes, frequency ascending.
+    pub modes: Vec<Mode>,
+    /// The base acceleration generated inside.
+    pub generator: Generator,
+    /// `support.displacement` at the start, m: part of the preload.
+    pub initial_support: f64,
+    /// Longest step, s: of the scene, and of the generator.
+    pub longest_step: f64,
+    /// What the tolerance is relative to, N: max(F_0, 3 E I max(|s|, 0.1 mm) / L^3).
+    pub force_scale: f64,
+    /// Lowest natural frequency with the contact as a spring, from the exact characteristic equation, Hz.
+    pub frequency: f64,
+}
+
+/// Displacement and velocity of a mode, as deviation from the preload.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ModeState {
+    /// m sqrt(kg).
+    pub q: f64,
+    /// m sqrt(kg) / s.
+    pub v: f64,
+}
+
+/// Everything that moves. Plain numbers: saving a state is a copy.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State {
+    /// Time, s.
+    pub time: f64,
+    /// The modes in use come first.
+    pub modes: [ModeState; MAX_MODES],
+    /// Displacement of the fixed contact since the preload, m.
+    pub support: f64,
+    /// Its velocity over the last communication step, m/s.
+    pub support_rate: f64,
+    /// Indentation minus preload indentation, m.
+    pub indentation: f64,
+    /// Velocity of the indentation, m/s.
+    pub indentation_rate: f64,
+    /// Contact force, N.
+    pub force: f64,
+    /// Whether the contact force is positive.
+    pub closed: bool,
+    /// Current through the contact over the last communication step, A.
+    pub current: f64,
+    /// Instant at which the force last reached zero, s; -1: not yet.
+    pub last_opening: f64,
+    /// Instant at which the force last left zero, s; -1: not yet.
+    pub last_closing: f64,
+    /// Step length the error estimate asks for, s.
+    pub next_step: f64,
+    /// Nodal forces of the last step, as deviation from the preload force, N: they predict those of the next.
+    pub nodal_forces: Nodal,
+    /// Length of the step they belong to, s; 0: none.
+    pub last_step: f64,
+    /// Accepted steps.
+    pub steps: u64,
+    /// Steps discarded and repeated shorter.
+    pub rejected_steps: u64,
+    /// Newton iterations.
+    pub iterations: u64,
+}
+
+impl Model {
+    /// The model of a scene, with the fixed contact displaced by `support` (m) at the start.
+    ///
+    /// # Errors
+    /// A [`SceneError`] where the scene cannot be simulated.
+    pub fn new(scene: &Scene, support: f64) -> Result<Self, SceneError> {
+        scene.validate()?;
+        let section = Section::new(scene);
+        let hertz = Hertz::new(&scene.contact);
+        let preload = Preload::new(scene, &section, &hertz, support)?;
+        let count = match usize::try_from(scene.solver.modes) {
+            Ok(count) if count > 0 => count.min(MAX_MODES),
+            _ => modes_for(scene.solver.effective_tolerance()),
+        };
+        let buckled = || SceneError::Buckled {
+            name: RealParameter::BeamAxialForce.variable().name,
+            value: preload.axial_force,
+            limit: section.buckling_load(),
+        };
+        let modes = Space::new(count)
+            .modes(&section, preload.axial_force)
+            .ok_or_else(buckled)?
+            .into_iter()
+            .map(|mode| Mode {
+                omega_squared: mode.omega_squared,
+                damping: scene.beam.mass_damping + scene.beam.stiffness_damping * mode.omega_squared,
+                tip: mode.tip,
+                participation: mode.participation,
+            })
+            .collect();
+        let reference = section.tip_stiffness() * scene.contact.overtravel.abs().max(1e-4);
+        let frequency = characteristic::frequencies(&section, preload.axial_force, preload.contact_stiffness, 1)
+            .first()
+            .map_or(0.0, |omega| omega / std::f64::consts::TAU);
+        let generator = Generator::new(scene);
+        Ok(Self {
+            scene: *scene,
+            section,
+            hertz,
+            preload,
+            modes,
+            generator,
+            initial_support: support,
+            longest_step: if scene.solver.maximum_step > 0.0 {
+                generator.longest_step().min(scene.solver.maximum_step)
+            } else {
+                generator.longest_step()
+            },
+            force_scale: preload.force.max(reference),
+            frequency,
+        })
+    }
+
+    /// At rest in the preload.
+    pub fn initial_state(&self, time: f64) -> State {
+        State {
+            time,
+            modes: [ModeState::default(); MAX_MODES],
+            support: 0.0,
+            support_rate: 0.0,
+            indentation: 0.0,
+            indentation_rate: 0.0,
+            force: self.preload.force,
+            closed: self.preload.force > 0.0,
+            current: 0.0,
+            last_opening: -1.0,
+            last_closing: -1.0,
+            next_step: self.first_step(),
+            nodal_forces: [0.0; NODES],
+            last_step: 0.0,
+            steps: 0,
+            rejected_steps: 0,
+            iterations: 0,
+        }
+    }
+
+    /// A step short against the motion that may begin, s.
+    pub fn first_step(&self) -> f64 {
+        (0.02 / self.frequency.max(1.0)).min(0.1 * self.generator.longest_step())
+    }
+}
+
+/// Modes for a tolerance: the force error of the paper's scene falls about tenfold a mode.
+fn modes_for(tolerance: f64) -> usize {
+    let digits = -tolerance.log10();
+    (digits.ceil().max(0.0) as usize + 3).clamp(3, MAX_MODES)
+}

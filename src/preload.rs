@@ -1,0 +1,110 @@
+//! Static equilibrium of spring and contact before any vibration.
+//!
+//! The tip deflection `y = w(L)` obeys `y = c(N) F_e(d) + c_g(N) g0` with `d = s + u - y`; `c` and `c_g` are the compliances
+//! of the cantilever under the axial force `N`, which itself may follow from `y`. The unknown is the indentation `d`,
+//! because `s - y` would lose four digits of it.
+
+use crate::beam::axial;
+use crate::beam::section::Section;
+use crate::beam::statics::Statics;
+use crate::contact::hertz::Hertz;
+use crate::error::SceneError;
+use crate::math::roots;
+use crate::scene::Scene;
+use crate::variables::{AxialForceKind, RealOutput, RealParameter};
+
+/// The equilibrium.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Preload {
+    /// Contact force F_0, N; 0 where the contact is open.
+    pub force: f64,
+    /// Indentation d_0, m; negative: a gap.
+    pub indentation: f64,
+    /// Tangent stiffness k_j0, N/m.
+    pub contact_stiffness: f64,
+    /// Deflection of the tip, m.
+    pub deflection: f64,
+    /// Axial force, compression positive, N.
+    pub axial_force: f64,
+}
+
+impl Preload {
+    /// Equilibrium of the scene with the fixed contact displaced by `support` (m).
+    ///
+    /// # Errors
+    /// [`SceneError::Buckled`] where the axial force reaches the buckling load of the cantilever.
+    pub fn new(scene: &Scene, section: &Section, hertz: &Hertz, support: f64) -> Result<Self, SceneError> {
+        let statics = Statics::new(section);
+        let reach = scene.contact.overtravel + support;
+        let gravity = scene.environment.gravity;
+        let axial = |y: f64| match scene.effects.axial_force {
+            AxialForceKind::None => 0.0,
+            AxialForceKind::FromPreload => axial::from_deflection(section, y),
+            AxialForceKind::Prescribed => scene.beam.axial_force,
+        };
+        let limit = section.buckling_load();
+        let check = |axial_force: f64| {
+            if axial_force < limit {
+                return Ok(());
+            }
+            let name = match scene.effects.axial_force {
+                AxialForceKind::Prescribed => RealParameter::BeamAxialForce.variable().name,
+                _ => RealOutput::PreloadAxialForce.variable().name,
+            };
+            Err(SceneError::Buckled {
+                name,
+                value: axial_force,
+                limit,
+            })
+        };
+
+        let alone = free_deflection(&statics, gravity, &axial);
+        if reach <= alone {
+            let axial_force = axial(alone);
+            check(axial_force)?;
+            return Ok(Self {
+                force: 0.0,
+                indentation: reach - alone,
+                contact_stiffness: 0.0,
+                deflection: alone,
+                axial_force,
+            });
+        }
+        let residual = |d: f64| {
+            let n = axial(reach - d);
+            let spring = (reach - d - statics.gravity_compliance(n) * gravity) / statics.tip_compliance(n);
+            hertz.elastic_force(d) - spring
+        };
+        // Without a sign change the spring gives no force against the contact: it has buckled under its own deflection.
+        let Some(indentation) = roots::bracketed(residual, 0.0, reach - alone) else {
+            return Err(check(axial(reach)).err().unwrap_or(SceneError::NotFinite {
+                name: RealOutput::PreloadIndentation.variable().name,
+                value: residual(0.0),
+            }));
+        };
+        let deflection = reach - indentation;
+        let axial_force = axial(deflection);
+        check(axial_force)?;
+        Ok(Self {
+            force: hertz.elastic_force(indentation),
+            indentation,
+            contact_stiffness: hertz.tangent_stiffness(indentation),
+            deflection,
+            axial_force,
+        })
+    }
+}
+
+/// Deflection of the tip without contact, m: zero but for gravity, where the axial force follows the deflection it
+/// causes. That feedback is weak (N grows with the square of y), so the iteration converges in a few rounds.
+fn free_deflection(statics: &Statics, gravity: f64, axial: &impl Fn(f64) -> f64) -> f64 {
+    let mut y = 0.0;
+    for _ in 0..50 {
+        let next = statics.gravity_compliance(axial(y)) * gravity;
+        if next == y {
+            break;
+        }
+        y = next;
+    }
+    y
+}

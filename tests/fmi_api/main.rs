@@ -1,0 +1,9 @@
+//! The FMI 2.0 functions, called through their C signatures.
+#![allow(clippy::undocumented_unsafe_blocks)] // every block calls a C function with what it needs, or, as the test says, without
+
+mod arguments;
+mod harness;
+mod life_cycle;
+mod logging;
+mod steps;
+mod values;
