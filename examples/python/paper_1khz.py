@@ -158,7 +158,9 @@ def comparison(run: Run) -> str:
     lines.append(
         "The section of the spring, its rivet mass, the contact radius and the damping are identified from the"
     )
-    lines.append("first four rows, so these show that the model is consistent; the resistances are predicted.")
+    lines.append(
+        "first four rows, so these show that the model is consistent; the resistances follow by the published power law."
+    )
     return "\n".join(lines)
 
 
@@ -173,7 +175,7 @@ def draw(run: Run, path: Path) -> None:
     """Draw the last periods."""
     shown = slice(len(run.time) - PERIODS_SHOWN * run.period - 1, None)
     time = 1e3 * run.time[shown]
-    figure, (above, middle, below) = plt.subplots(3, 1, sharex=True, figsize=(7, 6), layout="constrained")
+    figure, (above, middle, below) = plt.subplots(3, 1, sharex=True, figsize=(8, 6), layout="constrained")
     # Colours of Okabe and Ito, told apart also by the colour-blind.
     above.plot(time, run.acceleration[shown], color="#000000")
     above.set_ylabel("base acceleration\n[m/s²]")
@@ -186,10 +188,11 @@ def draw(run: Run, path: Path) -> None:
     below.set_ylabel("contact resistance\n[mΩ]")
     below.set_xlabel("time [ms]")
     for axes in (middle, below):
-        axes.legend(loc="upper right", fontsize="small")
+        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize="small", frameon=False)
     for axes in (above, middle, below):
         axes.grid(alpha=0.3)
     above.set_title(f"Relay contact, {run.excitation}", fontsize="medium")
+    figure.align_ylabels()
     figure.savefig(path, dpi=150)
     plt.close(figure)
 

@@ -5,10 +5,11 @@ use anyhow::Result;
 use crate::commands;
 use crate::{fmu, python};
 
-/// Builds the component, prepares Python, runs the case.
+/// Prepares Python, builds the component, runs the case.
 pub fn run() -> Result<()> {
-    let path = fmu::build()?;
+    // Python first: what is missing should be told before anything long starts.
     python::prepare()?;
+    let path = fmu::build()?;
     commands::run(
         python::python()
             .arg("examples/python/paper_1khz.py")
