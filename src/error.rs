@@ -66,6 +66,32 @@ pub enum SceneError {
         /// Its value.
         value: f64,
     },
+    /// A scene file that lacks a key.
+    #[error("{name}: missing, wanted is {allowed}")]
+    MissingKey {
+        /// Name of the key.
+        name: &'static str,
+        /// What it has to hold.
+        allowed: &'static str,
+    },
+    /// A value of the scene file itself, not of the model, that makes no sense.
+    #[error("{name} = {value}: not allowed, {allowed}")]
+    KeyOutOfRange {
+        /// Name of the key.
+        name: &'static str,
+        /// The value given.
+        value: f64,
+        /// The range allowed.
+        allowed: &'static str,
+    },
+    /// Any of these, with the line of the scene file it stands on.
+    #[error("line {line}: {error}")]
+    AtLine {
+        /// Line, counted from 1.
+        line: usize,
+        /// What is wrong there.
+        error: Box<SceneError>,
+    },
     /// A scene file that is not TOML.
     #[error("not a scene file: {0}")]
     Syntax(String),

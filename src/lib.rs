@@ -54,6 +54,7 @@ pub mod math;
 pub mod model;
 pub mod preload;
 pub mod scene;
+pub mod scene_file;
 pub mod simulation;
 pub mod transient;
 pub mod variables;

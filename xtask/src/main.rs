@@ -1,2 +1,54 @@
-//! x
-fn main() {}
+//! The project's tasks: `cargo xtask --help`.
+
+mod commands;
+mod demo;
+mod documentation;
+mod fmu;
+mod licences;
+mod package;
+mod python;
+mod scene;
+mod test;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+#[derive(Parser)]
+#[command(
+    name = "cargo xtask",
+    about = "Tasks of relay-contact",
+    arg_required_else_help = true
+)]
+struct Arguments {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Subcommand)]
+enum Task {
+    /// Build the component and pack it as dist/RelayContact.fmu
+    Fmu,
+    /// Run a scene and write what it looks at to out/NAME.csv
+    Scene(scene::Arguments),
+    /// Build the component, run the published 1 kHz case under FMPy, compare and plot
+    Demo,
+    /// Run every check and test
+    Test,
+}
+
+fn main() -> ExitCode {
+    let outcome = match Arguments::parse().task {
+        Task::Fmu => fmu::build().map(|path| println!("{}", path.display())),
+        Task::Scene(arguments) => scene::run(&arguments),
+        Task::Demo => demo::run(),
+        Task::Test => test::run(),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,0 +1,25 @@
+"""The component is a valid FMU in FMPy's judgement, and what belongs in the package is there."""
+
+import zipfile
+
+from component import FMU
+from fmpy import read_model_description
+from fmpy.validation import validate_fmu
+
+
+def test_fmpy_finds_no_problem() -> None:
+    assert validate_fmu(str(FMU)) == []
+
+
+def test_package_holds_documentation_licences_and_icon() -> None:
+    with zipfile.ZipFile(FMU) as archive:
+        names = set(archive.namelist())
+        assert archive.testzip() is None
+        page = archive.read("documentation/index.html").decode()
+        icon = archive.read("model.png")
+    licences = "documentation/licenses/"
+    assert {f"{licences}LICENSE-MIT", f"{licences}LICENSE-APACHE"} <= names
+    assert any(name.startswith(f"{licences}nalgebra-") for name in names)
+    assert icon.startswith(b"\x89PNG\r\n\x1a\n")
+    for variable in read_model_description(str(FMU)).modelVariables:
+        assert f"<code>{variable.name}</code>" in page

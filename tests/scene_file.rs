@@ -1,0 +1,207 @@
+//! Scene files: what they hold arrives in the scene, and what is wrong in them is said with its name, value and place.
+
+use std::error::Error;
+use std::fs;
+
+use relay_contact::error::SceneError;
+use relay_contact::inputs::Inputs;
+use relay_contact::scene::Scene;
+use relay_contact::scene_file::SceneFile;
+use relay_contact::variables::{ExcitationKind, RealInput, RealParameter};
+
+const HEAD: &str = "stop = 1\ncommunicationStep = 1e-3\noutputs = []\n";
+
+/// The message for a file of [`HEAD`] (three lines) and `rest`.
+fn message(rest: &str) -> String {
+    match format!("{HEAD}{rest}").parse::<SceneFile>() {
+        Ok(_) => "accepted".to_owned(),
+        Err(error) => error.to_string(),
+    }
+}
+
+#[test]
+fn every_scene_of_the_project_is_valid() -> Result<(), Box<dyn Error>> {
+    let mut count = 0;
+    for entry in fs::read_dir("scenes")? {
+        let path = entry?.path();
+        let file: SceneFile = fs::read_to_string(&path)?
+            .parse()
+            .map_err(|error| format!("{}: {error}", path.display()))?;
+        assert!(!file.title.is_empty() && !file.outputs.is_empty(), "{}", path.display());
+        assert!(file.communication_step <= file.stop, "{}", path.display());
+        count += 1;
+    }
+    assert!(count >= 2);
+    Ok(())
+}
+
+#[test]
+fn dotted_and_nested_tables_name_the_same_variables() -> Result<(), SceneError> {
+    let dotted =
+        "[parameters]\nbeam.length = 0.02\ncontact.moving.youngsModulus = 9e10\neffects.excitation = \"Sine\"\n";
+    let nested = "[parameters.beam]\nlength = 0.02\n[parameters.contact.moving]\nyoungsModulus = 9e10\n\
+                  [parameters.effects]\nexcitation = \"Sine\"\n";
+    let mut expected = Scene::default();
+    expected.set_real(RealParameter::BeamLength, 0.02)?;
+    expected.set_real(RealParameter::ContactMovingYoungsModulus, 9e10)?;
+    expected.effects.excitation = ExcitationKind::Sine;
+    for text in [dotted, nested] {
+        let file: SceneFile = format!("{HEAD}{text}").parse()?;
+        assert_eq!(file.scene, expected);
+        assert_eq!(file.inputs, Inputs::default());
+    }
+    Ok(())
+}
+
+#[test]
+fn inputs_and_outputs_are_taken() -> Result<(), SceneError> {
+    let file: SceneFile = "stop = 1\ncommunicationStep = 1e-3\noutputs = [\"contact.closed\", \"contact.force\"]\n\
+                           [inputs]\ncontact.current = 0.1\n"
+        .parse()?;
+    let names: Vec<_> = file.outputs.iter().map(|variable| variable.name).collect();
+    assert_eq!(names, ["contact.closed", "contact.force"]);
+    assert_eq!(file.inputs.real(RealInput::ContactCurrent), 0.1);
+    Ok(())
+}
+
+#[test]
+fn an_unknown_name_is_told_with_its_line_and_the_nearest_names() {
+    let misspelt = message("[parameters]\nbeam.lenght = 0.02\n");
+    assert!(
+        misspelt.starts_with("line 5: beam.lenght: no such parameter; nearest: beam.length,"),
+        "{misspelt}"
+    );
+    let omitted = message("[parameters]\n\novertravel = 1e-4\n");
+    assert!(
+        omitted.starts_with("line 6: overtravel: no such parameter; nearest: contact.overtravel,"),
+        "{omitted}"
+    );
+    let key = message("communicationStepp = 1\n");
+    assert!(
+        key.starts_with("line 4: communicationStepp: no such key of a scene file; nearest: communicationStep,"),
+        "{key}"
+    );
+    // An output is not a parameter, and a parameter not an input.
+    assert!(message("[parameters]\ncontact.force = 1\n").contains("contact.force: no such parameter"));
+    assert!(message("[inputs]\nbeam.length = 1\n").contains("beam.length: no such input"));
+    let output = "stop = 1\ncommunicationStep = 1\noutputs = [\"contact.forse\"]".parse::<SceneFile>();
+    assert!(output.is_err_and(|error| {
+        error
+            .to_string()
+            .starts_with("line 3: contact.forse: no such output; nearest: contact.force,")
+    }));
+}
+
+#[test]
+fn a_value_out_of_range_is_told_with_its_unit_and_the_range() {
+    for (rest, expected) in [
+        (
+            "beam.length = -0.0155",
+            "line 5: beam.length = -0.0155 m: not allowed, allowed is 0.001 to 0.2",
+        ),
+        (
+            "contact.fixed.poissonRatio = 0.6",
+            "line 5: contact.fixed.poissonRatio = 0.6: not allowed, allowed is more than -1 and less than 0.5",
+        ),
+        (
+            "resistance.open = 0",
+            "line 5: resistance.open = 0 Ohm: not allowed, allowed is 1 to 1000000000000000",
+        ),
+        (
+            "beam.length = nan",
+            "line 5: beam.length = NaN m: not allowed, allowed is 0.001 to 0.2",
+        ),
+        (
+            "solver.modes = 41",
+            "line 5: solver.modes = 41: not allowed, allowed is 0 to 40",
+        ),
+        (
+            "effects.excitation = \"Sinus\"",
+            "line 5: effects.excitation = Sinus: no such choice, allowed are None, Sine",
+        ),
+    ] {
+        assert_eq!(message(&format!("[parameters]\n{rest}\n")), expected);
+    }
+    assert_eq!(
+        message("[inputs]\nbase.acceleration = inf\n"),
+        "line 5: base.acceleration = inf m/s2: not allowed, allowed is any finite number"
+    );
+}
+
+#[test]
+fn a_value_of_the_wrong_type_is_told_with_the_type_wanted() {
+    for (rest, expected) in [
+        (
+            "beam.length = \"long\"",
+            "line 5: beam.length = \"long\": wrong type, allowed is a number",
+        ),
+        (
+            "solver.modes = 3.5",
+            "line 5: solver.modes = 3.5: wrong type, allowed is a whole number",
+        ),
+        (
+            "effects.excitation = 2",
+            "line 5: effects.excitation = 2: wrong type, allowed is the name of a choice, as a text",
+        ),
+    ] {
+        assert_eq!(message(&format!("[parameters]\n{rest}\n")), expected);
+    }
+    assert_eq!(
+        message("inputs = 3\n"),
+        "line 4: inputs = 3: wrong type, allowed is a table"
+    );
+    assert_eq!(
+        message("title = 3\n"),
+        "line 4: title = 3: wrong type, allowed is a text"
+    );
+}
+
+#[test]
+fn the_run_must_have_a_length_and_a_step() {
+    let parse = |text: &str| {
+        text.parse::<SceneFile>()
+            .map_or_else(|error| error.to_string(), |_| "accepted".to_owned())
+    };
+    assert_eq!(
+        parse("communicationStep = 1\noutputs = []"),
+        "stop: missing, wanted is a positive number of seconds"
+    );
+    assert_eq!(
+        parse("stop = 1\ncommunicationStep = 1"),
+        "outputs: missing, wanted is a list of output names"
+    );
+    assert_eq!(
+        parse("stop = 1\ncommunicationStep = 0\noutputs = []"),
+        "line 2: communicationStep = 0: not allowed, allowed is a positive number of seconds"
+    );
+    assert!(parse("stop = = 1").starts_with("not a scene file: TOML parse error at line 1"));
+}
+
+#[test]
+fn setting_by_name_takes_numbers_and_choices_and_keeps_the_rest_when_refused() -> Result<(), SceneError> {
+    let mut file: SceneFile = HEAD.parse()?;
+    file.set("beam.length", "0.02")?;
+    file.set("effects.excitation", "Sine")?;
+    file.set("base.acceleration", "-5")?;
+    file.set("solver.modes", "4")?;
+    file.set("stop", "0.5")?;
+    let kept = file.clone();
+    for (name, value) in [
+        ("beam.length", "1"),
+        ("beam.length", "long"),
+        ("effects.excitation", "Noise"),
+        ("base.acceleration", "nan"),
+        ("contact.force", "1"),
+        ("stop", "-1"),
+    ] {
+        assert!(file.set(name, value).is_err(), "{name} = {value}");
+    }
+    assert_eq!(file.scene, kept.scene);
+    assert_eq!(file.inputs, kept.inputs);
+    assert_eq!(file.stop, 0.5);
+    assert_eq!(file.scene.beam.length, 0.02);
+    assert_eq!(file.scene.solver.modes, 4);
+    assert_eq!(file.scene.effects.excitation, ExcitationKind::Sine);
+    assert_eq!(file.inputs.base_acceleration, -5.0);
+    Ok(())
+}

@@ -1,0 +1,73 @@
+//! Every check and test, in the order in which they fail fastest.
+
+use std::path::PathBuf;
+use std::process::Command;
+use std::time::Instant;
+
+use anyhow::Result;
+
+use crate::commands::{self, cargo};
+use crate::{fmu, python};
+
+/// Folders and files with Python in them.
+const PYTHON: [&str; 3] = ["examples/python", "conformance/fmpy", "docs"];
+
+/// Runs all stages; the first that fails ends it.
+pub fn run() -> Result<()> {
+    stage("format", || commands::run(cargo().args(["fmt", "--all", "--check"])))?;
+    stage("lint", || commands::run(&mut clippy(&[])))?;
+    stage("Rust tests", || commands::run(cargo().arg("test")))?;
+    let mut component = PathBuf::new();
+    stage("component", || {
+        component = fmu::build()?;
+        Ok(())
+    })?;
+    stage("Python environment", python::prepare)?;
+    stage("Python lint", || {
+        commands::run(python::python().args(["-m", "ruff", "check"]).args(PYTHON))
+    })?;
+    stage("Python format", || {
+        commands::run(python::python().args(["-m", "ruff", "format", "--check"]).args(PYTHON))
+    })?;
+    stage("Python types", || {
+        commands::run(python::python().args(["-m", "mypy"]).args(PYTHON))
+    })?;
+    stage("FMPy", || {
+        commands::run(
+            python::python()
+                .args(["-m", "pytest", "--quiet", "conformance/fmpy"])
+                .env("RELAY_CONTACT_FMU", &component),
+        )
+    })?;
+    // The crate's FMI bindings are generated at build time, which needs libclang.
+    let libclang = python::libclang()?;
+    stage("conformance lint", || {
+        commands::run(clippy(&["--package=conformance"]).env("LIBCLANG_PATH", &libclang))
+    })?;
+    stage("conformance", || {
+        commands::run(
+            cargo()
+                .args(["test", "--package=conformance"])
+                .env("LIBCLANG_PATH", &libclang)
+                .env("RELAY_CONTACT_FMU", &component),
+        )
+    })
+}
+
+fn stage(name: &str, work: impl FnOnce() -> Result<()>) -> Result<()> {
+    println!("== {name}");
+    let start = Instant::now();
+    work()?;
+    println!("== {name}: passed in {:.1} s", start.elapsed().as_secs_f64());
+    Ok(())
+}
+
+/// Clippy over the default members, or over `packages`; cargo's arguments come before those of the lints.
+fn clippy(packages: &[&str]) -> Command {
+    let mut clippy = cargo();
+    clippy
+        .arg("clippy")
+        .args(packages)
+        .args(["--all-targets", "--", "-D", "warnings"]);
+    clippy
+}
