@@ -164,3 +164,45 @@ pub(super) unsafe fn text<'a>(text: fmi2String, name: &'static str) -> Result<&'
     // SAFETY: not null, and the rest is promised by the caller.
     Ok(unsafe { CStr::from_ptr(text) })
 }
+
+#[cfg(test)]
+mod tests {
+    use std::ptr;
+
+    use super::super::states::{DO_STEP, GET_REAL, RESET, State};
+    use super::super::types::fmi2CallbackFunctions;
+    use super::*;
+    use crate::fmi2::logger::Logger;
+
+    #[test]
+    #[allow(clippy::panic)]
+    fn a_panic_becomes_an_error_that_a_reset_heals() {
+        let silent = fmi2CallbackFunctions {
+            logger: None,
+            allocateMemory: None,
+            freeMemory: None,
+            stepFinished: None,
+            componentEnvironment: ptr::null_mut(),
+        };
+        let component = hand_out(Instance::new(Logger::new(&silent, c"relay")));
+        let state = |instance: &mut Instance, expected| {
+            assert_eq!(instance.state(), expected);
+            Ok(())
+        };
+        // SAFETY: the component was handed out above and is freed at the end.
+        unsafe {
+            assert_eq!(call(component, RESET, |_| panic!("internal")), fmi2Error);
+            assert_eq!(
+                call(component, GET_REAL, |instance| state(instance, State::Error)),
+                fmi2OK
+            );
+            assert_eq!(call(component, DO_STEP, |_| Ok(())), fmi2Error);
+            let reset = |instance: &mut Instance| {
+                instance.reset();
+                state(instance, State::Instantiated)
+            };
+            assert_eq!(call(component, RESET, reset), fmi2OK);
+            take_back(component);
+        }
+    }
+}

@@ -284,7 +284,10 @@ impl Instance {
         }
         let slack = rounding(point, size);
         if !(end.is_finite() && (point - self.time).abs() <= slack) {
-            let allowed = format!("the instance stands at {} s, allowed difference {slack:e} s", self.time);
+            let allowed = format!(
+                "the instance stands at {} s, allowed difference {slack:.1e} s",
+                self.time
+            );
             return refused("currentCommunicationPoint", point, allowed);
         }
         // An importer that adds up its steps gathers rounding errors, far below a thousandth of a step in any run.

@@ -187,7 +187,8 @@ fn versions_are_those_of_fmi_2() {
 
 #[test]
 fn a_wrong_guid_type_or_name_makes_no_instance_and_says_why() {
-    let cases: [(Option<&str>, fmi2Type, Option<&str>, &[&str]); 6] = [
+    type Case<'a> = (Option<&'a str>, fmi2Type, Option<&'a str>, &'a [&'a str]);
+    let cases: [Case; 6] = [
         (
             Some("relay"),
             fmi2CoSimulation,
