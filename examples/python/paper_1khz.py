@@ -159,7 +159,7 @@ def comparison(run: Run) -> str:
         "The section of the spring, its rivet mass, the contact radius and the damping are identified from the"
     )
     lines.append(
-        "first four rows, so these show that the model is consistent; the resistances follow by the published power law."
+        "first four rows, so these show that the model is consistent; the resistances follow by the power law."
     )
     return "\n".join(lines)
 

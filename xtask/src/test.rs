@@ -1,5 +1,6 @@
 //! Every check and test, in the order in which they fail fastest.
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::Command;
 use std::time::Instant;
@@ -39,19 +40,32 @@ pub fn run() -> Result<()> {
                 .env("RELAY_CONTACT_FMU", &component),
         )
     })?;
-    // The crate's FMI bindings are generated at build time, which needs libclang.
-    let libclang = python::libclang()?;
+    let bindings = bindings()?;
     stage("conformance lint", || {
-        commands::run(clippy(&["--package=conformance"]).env("LIBCLANG_PATH", &libclang))
+        commands::run(clippy(&["--package=conformance"]).envs(bindings.clone()))
     })?;
     stage("conformance", || {
         commands::run(
             cargo()
                 .args(["test", "--package=conformance"])
-                .env("LIBCLANG_PATH", &libclang)
+                .envs(bindings.clone())
                 .env("RELAY_CONTACT_FMU", &component),
         )
     })
+}
+
+/// What the build of the conformance crate's FMI bindings needs in its environment: libclang, and the C compiler's
+/// own headers (`stddef.h`), which do not come with the libclang of `.venv`.
+fn bindings() -> Result<[(&'static str, OsString); 2]> {
+    let mut include = OsString::new();
+    if cfg!(unix) {
+        let folder = commands::output(commands::command("cc").arg("-print-file-name=include"))?;
+        include.push(format!("-I{}", folder.trim()));
+    }
+    Ok([
+        ("LIBCLANG_PATH", python::libclang()?.into_os_string()),
+        ("BINDGEN_EXTRA_CLANG_ARGS", include),
+    ])
 }
 
 fn stage(name: &str, work: impl FnOnce() -> Result<()>) -> Result<()> {
