@@ -9,7 +9,7 @@ pub enum SceneError {
     /// A value outside its range, or not a number.
     #[error("{name} = {value}{unit}: not allowed, {allowed}", unit = spaced(unit))]
     OutOfRange {
-        /// Name of the variable.
+        /// Name of the variable or key.
         name: &'static str,
         /// The value refused.
         value: f64,
@@ -33,7 +33,7 @@ pub enum SceneError {
     UnknownName {
         /// The name asked for.
         name: String,
-        /// What was looked for: parameter, input, output or key.
+        /// What was looked for: parameter, input or output.
         what: &'static str,
         /// The names that come nearest.
         nearest: String,
@@ -74,16 +74,6 @@ pub enum SceneError {
         /// What it has to hold.
         allowed: &'static str,
     },
-    /// A value of the scene file itself, not of the model, that makes no sense.
-    #[error("{name} = {value}: not allowed, {allowed}")]
-    KeyOutOfRange {
-        /// Name of the key.
-        name: &'static str,
-        /// The value given.
-        value: f64,
-        /// The range allowed.
-        allowed: &'static str,
-    },
     /// Any of these, with the line of the scene file it stands on.
     #[error("line {line}: {error}")]
     AtLine {
@@ -92,8 +82,8 @@ pub enum SceneError {
         /// What is wrong there.
         error: Box<SceneError>,
     },
-    /// A scene file that is not TOML.
-    #[error("not a scene file: {0}")]
+    /// A scene file that is not TOML, or with a key or a type of value that scene files do not have.
+    #[error("not a scene file: {}", .0.trim_end())]
     Syntax(String),
 }
 

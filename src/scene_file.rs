@@ -14,10 +14,13 @@
 //! contact.current = 0.1
 //! ```
 
+use std::collections::BTreeMap;
+use std::fmt;
 use std::str::FromStr;
 
+use serde::de::{self, Deserialize, Deserializer, MapAccess, Unexpected, Visitor};
 use toml::Spanned;
-use toml::de::{DeArray, DeTable, DeValue};
+use toml::de::ValueDeserializer;
 
 use crate::error::SceneError;
 use crate::inputs::Inputs;
@@ -41,7 +44,66 @@ pub struct SceneFile {
     pub inputs: Inputs,
 }
 
-const KEYS: [&str; 6] = ["title", "stop", "communicationStep", "outputs", "parameters", "inputs"];
+/// The file as it stands; what it says of variables is checked after it is read.
+#[derive(serde::Deserialize)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+struct Document {
+    #[serde(default)]
+    title: String,
+    stop: Option<Spanned<Value>>,
+    communication_step: Option<Spanned<Value>>,
+    outputs: Option<Vec<Spanned<String>>>,
+    #[serde(default)]
+    parameters: Table,
+    #[serde(default)]
+    inputs: Table,
+}
+
+/// Keys with their place in the file, by which an error finds its line.
+type Table = BTreeMap<Spanned<String>, Value>;
+
+enum Value {
+    Integer(i64),
+    Real(f64),
+    Text(String),
+    Table(Table),
+}
+
+impl<'de> Deserialize<'de> for Value {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ValueVisitor;
+        impl<'de> Visitor<'de> for ValueVisitor {
+            type Value = Value;
+
+            fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+                formatter.write_str("a number, a text or a table")
+            }
+
+            fn visit_i64<E>(self, value: i64) -> Result<Value, E> {
+                Ok(Value::Integer(value))
+            }
+
+            fn visit_f64<E>(self, value: f64) -> Result<Value, E> {
+                Ok(Value::Real(value))
+            }
+
+            fn visit_str<E>(self, value: &str) -> Result<Value, E> {
+                Ok(Value::Text(value.to_owned()))
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Value, A::Error> {
+                let mut table = Table::new();
+                // A date comes as a map too, the only one whose key has no place.
+                let no_place = |_| de::Error::invalid_type(Unexpected::Other("date or time"), &self);
+                while let Some(key) = map.next_key().map_err(no_place)? {
+                    table.insert(key, map.next_value()?);
+                }
+                Ok(Value::Table(table))
+            }
+        }
+        deserializer.deserialize_any(ValueVisitor)
+    }
+}
 
 impl FromStr for SceneFile {
     type Err = SceneError;
@@ -49,46 +111,26 @@ impl FromStr for SceneFile {
     /// Reads a scene file.
     ///
     /// # Errors
-    /// The first [`SceneError`] met, as [`SceneError::AtLine`] wherever it has a line.
+    /// The first [`SceneError`] met, with its line; only a missing key has none.
     fn from_str(text: &str) -> Result<Self, SceneError> {
-        let table = DeTable::parse(text).map_err(|error| SceneError::Syntax(error.to_string()))?;
-        let table = table.get_ref();
+        let document: Document = toml::from_str(text).map_err(|error| SceneError::Syntax(error.to_string()))?;
+        let missing = |name, allowed| SceneError::MissingKey { name, allowed };
+        let seconds = |name, value: Option<Spanned<Value>>| {
+            let value = value.ok_or(missing(name, "a positive number of seconds"))?;
+            at_line(text, &value, positive(name, value.get_ref()))
+        };
+        let output = |name: &Spanned<String>| at_line(text, name, variable(Role::Output, name.get_ref()));
+        let outputs = document.outputs.ok_or(missing("outputs", "a list of output names"))?;
         let mut file = Self {
-            title: String::new(),
-            stop: f64::NAN,
-            communication_step: f64::NAN,
-            outputs: Vec::new(),
+            title: document.title,
+            stop: seconds("stop", document.stop)?,
+            communication_step: seconds("communicationStep", document.communication_step)?,
+            outputs: outputs.iter().map(output).collect::<Result<_, _>>()?,
             scene: Scene::default(),
             inputs: Inputs::default(),
         };
-        for (key, value) in table {
-            let at_line = |error| at_line(text, key.span().start, error);
-            match key.get_ref().as_ref() {
-                "title" => {
-                    let DeValue::String(title) = value.get_ref() else {
-                        return Err(at_line(wrong_type("title", value.get_ref(), "a text")));
-                    };
-                    file.title = title.to_string();
-                }
-                "stop" => file.stop = positive("stop", value.get_ref()).map_err(at_line)?,
-                "communicationStep" => {
-                    file.communication_step = positive("communicationStep", value.get_ref()).map_err(at_line)?;
-                }
-                "outputs" => file.outputs = outputs(value.get_ref()).map_err(at_line)?,
-                "parameters" => file.apply(Role::Parameter, text, "parameters", "", key.span().start, value)?,
-                "inputs" => file.apply(Role::Input, text, "inputs", "", key.span().start, value)?,
-                unknown => return Err(at_line(unknown_name(unknown, "key of a scene file", KEYS.into_iter()))),
-            }
-        }
-        for (name, allowed) in [
-            ("stop", "a positive number of seconds"),
-            ("communicationStep", "a positive number of seconds"),
-            ("outputs", "a list of output names"),
-        ] {
-            if !table.contains_key(name) {
-                return Err(SceneError::MissingKey { name, allowed });
-            }
-        }
+        file.apply(Role::Parameter, text, "", &document.parameters)?;
+        file.apply(Role::Input, text, "", &document.inputs)?;
         Ok(file)
     }
 }
@@ -99,74 +141,52 @@ impl SceneFile {
     /// # Errors
     /// A [`SceneError`] for a name that does not exist or a value it cannot take; nothing is changed then.
     pub fn set(&mut self, name: &str, value: &str) -> Result<(), SceneError> {
-        let line = format!("value = {value}");
-        let parsed = DeTable::parse(&line)
-            .ok()
-            .and_then(|table| table.into_inner().remove("value"))
-            .map_or_else(|| DeValue::String(value.into()), Spanned::into_inner);
+        let parsed = ValueDeserializer::parse(value).and_then(Value::deserialize);
+        let value = parsed.unwrap_or_else(|_| Value::Text(value.to_owned()));
         match name {
-            "stop" => self.stop = positive("stop", &parsed)?,
-            "communicationStep" => self.communication_step = positive("communicationStep", &parsed)?,
-            _ => self.set_variable(Role::Settable, name, &parsed)?,
+            "stop" => self.stop = positive("stop", &value)?,
+            "communicationStep" => self.communication_step = positive("communicationStep", &value)?,
+            _ => self.set_variable(Role::Settable, name, &value)?,
         }
         Ok(())
     }
 
     /// Sets every variable of a table, nested tables as dotted names.
-    fn apply(
-        &mut self,
-        role: Role,
-        text: &str,
-        key: &str,
-        prefix: &str,
-        start: usize,
-        value: &Spanned<DeValue>,
-    ) -> Result<(), SceneError> {
-        match value.get_ref() {
-            DeValue::Table(table) => table.iter().try_for_each(|(key, value)| {
-                let name = if prefix.is_empty() {
-                    key.get_ref().to_string()
-                } else {
-                    format!("{prefix}.{}", key.get_ref())
-                };
-                self.apply(role, text, &name, &name, key.span().start, value)
-            }),
-            value if prefix.is_empty() => Err(at_line(text, start, wrong_type(key, value, "a table"))),
-            value => self
-                .set_variable(role, prefix, value)
-                .map_err(|error| at_line(text, start, error)),
-        }
+    fn apply(&mut self, role: Role, text: &str, prefix: &str, table: &Table) -> Result<(), SceneError> {
+        table.iter().try_for_each(|(key, value)| {
+            let name = format!("{prefix}{key}");
+            match value {
+                Value::Table(table) => self.apply(role, text, &format!("{name}."), table),
+                value => at_line(text, key, self.set_variable(role, &name, value)),
+            }
+        })
     }
 
-    fn set_variable(&mut self, role: Role, name: &str, value: &DeValue) -> Result<(), SceneError> {
-        let names = || VARIABLES.iter().filter(|variable| role.covers(variable));
-        let Some(variable) = names().find(|variable| variable.name == name) else {
-            let names = names().map(|variable| variable.name);
-            return Err(unknown_name(name, role.noun(), names));
-        };
+    fn set_variable(&mut self, role: Role, name: &str, value: &Value) -> Result<(), SceneError> {
+        let variable = variable(role, name)?;
         match variable.group {
             Group::RealParameter(parameter) => self.scene.set_real(parameter, number(name, value)?),
             Group::RealInput(input) => self.inputs.set_real(input, number(name, value)?),
             Group::IntegerParameter(parameter) => {
-                let allowed = "a whole number";
-                let number = integer(value).ok_or_else(|| wrong_type(name, value, allowed))?;
+                let number = match value {
+                    Value::Integer(value) => i32::try_from(*value).ok(),
+                    _ => None,
+                };
+                let number = number.ok_or_else(|| wrong_type(name, value, "a whole number"))?;
                 self.scene.set_integer(parameter, number)
             }
             Group::EnumerationParameter(parameter) => {
-                let DeValue::String(choice) = value else {
+                let Value::Text(choice) = value else {
                     return Err(wrong_type(name, value, "the name of a choice, as a text"));
                 };
                 let choices = choices(parameter);
-                let number = choices
-                    .iter()
-                    .find(|(label, _)| label == choice)
-                    .map(|(_, number)| *number);
-                let number = number.ok_or_else(|| SceneError::UnknownChoice {
+                let known = choices.iter().find(|(label, _)| label == choice);
+                let (_, number) = known.ok_or_else(|| SceneError::UnknownChoice {
                     name: variable.name,
-                    value: choice.to_string(),
+                    value: choice.clone(),
                     allowed: list(choices.iter().map(|(label, _)| *label)),
                 })?;
-                self.scene.set_enumeration(parameter, number)
+                self.scene.set_enumeration(parameter, *number)
             }
             Group::RealOutput(_) | Group::IntegerOutput(_) | Group::BooleanOutput(_) => Ok(()),
         }
@@ -184,14 +204,13 @@ enum Role {
 
 impl Role {
     fn covers(self, variable: &Variable) -> bool {
-        let role = match variable.group {
-            Group::RealInput(_) => return matches!(self, Self::Input | Self::Settable),
+        match variable.group {
             Group::RealParameter(_) | Group::IntegerParameter(_) | Group::EnumerationParameter(_) => {
-                return matches!(self, Self::Parameter | Self::Settable);
+                matches!(self, Self::Parameter | Self::Settable)
             }
-            Group::RealOutput(_) | Group::IntegerOutput(_) | Group::BooleanOutput(_) => self,
-        };
-        matches!(role, Self::Output)
+            Group::RealInput(_) => matches!(self, Self::Input | Self::Settable),
+            Group::RealOutput(_) | Group::IntegerOutput(_) | Group::BooleanOutput(_) => matches!(self, Self::Output),
+        }
     }
 
     fn noun(self) -> &'static str {
@@ -204,60 +223,54 @@ impl Role {
     }
 }
 
-fn outputs(value: &DeValue) -> Result<Vec<&'static Variable>, SceneError> {
-    let allowed = "a list of output names";
-    let DeValue::Array(array) = value else {
-        return Err(wrong_type("outputs", value, allowed));
+/// The variable of this name, or the error with the three names that come nearest.
+fn variable(role: Role, name: &str) -> Result<&'static Variable, SceneError> {
+    let variables = VARIABLES.iter().filter(|variable| role.covers(variable));
+    if let Some(variable) = variables.clone().find(|variable| variable.name == name) {
+        return Ok(variable);
+    }
+    // A user may have left out the group, so the last word counts as much as the whole.
+    let likeness = |known: &str| {
+        let word = known.rsplit('.').next().unwrap_or(known);
+        strsim::jaro_winkler(name, known).max(strsim::jaro_winkler(name, word))
     };
-    let array: &DeArray = array;
-    array
-        .iter()
-        .map(|item| {
-            let DeValue::String(name) = item.get_ref() else {
-                return Err(wrong_type("outputs", item.get_ref(), allowed));
-            };
-            let outputs = || VARIABLES.iter().filter(|variable| Role::Output.covers(variable));
-            outputs()
-                .find(|variable| variable.name == name)
-                .ok_or_else(|| unknown_name(name, Role::Output.noun(), outputs().map(|variable| variable.name)))
-        })
-        .collect()
+    let mut names: Vec<_> = variables.map(|variable| variable.name).collect();
+    names.sort_by(|a, b| likeness(b).total_cmp(&likeness(a)));
+    Err(SceneError::UnknownName {
+        name: name.to_owned(),
+        what: role.noun(),
+        nearest: list(names.into_iter().take(3)),
+    })
 }
 
-fn number(name: &str, value: &DeValue) -> Result<f64, SceneError> {
-    let number = match value {
-        DeValue::Float(float) => float.as_str().parse().ok(),
-        _ => integer(value).map(f64::from),
-    };
-    number.ok_or_else(|| wrong_type(name, value, "a number"))
+fn number(name: &str, value: &Value) -> Result<f64, SceneError> {
+    match value {
+        Value::Integer(value) => Ok(*value as f64),
+        Value::Real(value) => Ok(*value),
+        Value::Text(_) | Value::Table(_) => Err(wrong_type(name, value, "a number")),
+    }
 }
 
-fn integer(value: &DeValue) -> Option<i32> {
-    let DeValue::Integer(integer) = value else {
-        return None;
-    };
-    i32::from_str_radix(integer.as_str(), integer.radix()).ok()
-}
-
-fn positive(name: &'static str, value: &DeValue) -> Result<f64, SceneError> {
+fn positive(name: &'static str, value: &Value) -> Result<f64, SceneError> {
     let value = number(name, value)?;
     if value > 0.0 && value.is_finite() {
         Ok(value)
     } else {
-        let allowed = "allowed is a positive number of seconds";
-        Err(SceneError::KeyOutOfRange { name, value, allowed })
+        Err(SceneError::OutOfRange {
+            name,
+            value,
+            unit: "s",
+            allowed: "allowed is any positive finite number".into(),
+        })
     }
 }
 
-fn wrong_type(name: &str, value: &DeValue, allowed: &'static str) -> SceneError {
+fn wrong_type(name: &str, value: &Value, allowed: &'static str) -> SceneError {
     let value = match value {
-        DeValue::String(text) => format!("{text:?}"),
-        DeValue::Integer(integer) => integer.to_string(),
-        DeValue::Float(float) => float.to_string(),
-        DeValue::Boolean(boolean) => boolean.to_string(),
-        DeValue::Datetime(datetime) => datetime.to_string(),
-        DeValue::Array(_) => "[...]".to_owned(),
-        DeValue::Table(_) => "{...}".to_owned(),
+        Value::Integer(value) => value.to_string(),
+        Value::Real(value) => format!("{value:?}"),
+        Value::Text(value) => format!("{value:?}"),
+        Value::Table(_) => "{...}".to_owned(),
     };
     SceneError::WrongType {
         name: name.to_owned(),
@@ -266,30 +279,18 @@ fn wrong_type(name: &str, value: &DeValue, allowed: &'static str) -> SceneError 
     }
 }
 
-/// The error for a name that is none of `names`, with the three that come nearest to it.
-fn unknown_name(name: &str, what: &'static str, names: impl Iterator<Item = &'static str>) -> SceneError {
-    // A user may have left out the group, so the last word counts as much as the whole.
-    let likeness = |known: &str| {
-        let word = known.rsplit('.').next().unwrap_or(known);
-        strsim::jaro_winkler(name, known).max(strsim::jaro_winkler(name, word))
-    };
-    let mut names: Vec<_> = names.collect();
-    names.sort_by(|a, b| likeness(b).total_cmp(&likeness(a)));
-    SceneError::UnknownName {
-        name: name.to_owned(),
-        what,
-        nearest: list(names.into_iter().take(3)),
-    }
-}
-
 fn list(names: impl Iterator<Item = &'static str>) -> String {
     names.collect::<Vec<_>>().join(", ")
 }
 
-fn at_line(text: &str, position: usize, error: SceneError) -> SceneError {
-    let line = 1 + text.bytes().take(position).filter(|byte| *byte == b'\n').count();
-    SceneError::AtLine {
-        line,
+/// Gives an error the line of its place.
+fn at_line<T, U>(text: &str, place: &Spanned<U>, result: Result<T, SceneError>) -> Result<T, SceneError> {
+    result.map_err(|error| SceneError::AtLine {
+        line: 1 + text
+            .bytes()
+            .take(place.span().start)
+            .filter(|byte| *byte == b'\n')
+            .count(),
         error: Box::new(error),
-    }
+    })
 }
