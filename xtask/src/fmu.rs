@@ -1,10 +1,11 @@
 //! Builds the component and packs it.
 
-use std::fs;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use std::{env, fs};
 
 use anyhow::{Context, Result, bail};
-use cargo_metadata::MetadataCommand;
+use cargo_metadata::{Metadata, MetadataCommand};
 use relay_contact::MODEL_DESCRIPTION;
 
 use crate::commands::{cargo, command, output, root, run};
@@ -14,15 +15,30 @@ use crate::package::{Files, pack};
 
 /// Writes `dist/RelayContact.fmu` and gives its path.
 pub fn build() -> Result<PathBuf> {
-    build_library()?;
+    let metadata = MetadataCommand::new().current_dir(root()).exec()?;
+    build_library(&metadata)?;
     let path = root().join("dist/RelayContact.fmu");
     fs::create_dir_all(root().join("dist"))?;
-    fs::write(&path, pack(&files()?)?).with_context(|| format!("cannot write {}", path.display()))?;
+    fs::write(&path, pack(&files(&metadata)?)?).with_context(|| format!("cannot write {}", path.display()))?;
     Ok(path)
 }
 
-fn build_library() -> Result<()> {
-    let built = run(cargo().args(["build", "--release", "--package=relay-contact", "--lib"]));
+fn build_library(metadata: &Metadata) -> Result<()> {
+    let mut build = cargo();
+    build.args(["build", "--release", "--package=relay-contact", "--lib"]);
+    // Cargo takes rustc's flags from one place alone, so ours go where the user's are.
+    let given = |name, separator: char| {
+        let flags = env::var(name).ok()?;
+        let flags = flags.split(separator).filter(|flag| !flag.is_empty());
+        Some(flags.map(str::to_owned).collect::<Vec<_>>())
+    };
+    let ours = path_flags(metadata);
+    if let Some(flags) = given("CARGO_ENCODED_RUSTFLAGS", '\x1f').or_else(|| given("RUSTFLAGS", ' ')) {
+        build.env("CARGO_ENCODED_RUSTFLAGS", [flags, ours].concat().join("\x1f"));
+    } else {
+        build.arg(format!("--config=build.rustflags={ours:?}"));
+    }
+    let built = run(&mut build);
     // Rust links with the C compiler's help, and says so less plainly.
     if built.is_err() && cfg!(unix) && output(command("cc").arg("--version")).is_err() {
         bail!("no C compiler: Rust needs one to link (on Debian: apt-get install gcc libc6-dev)");
@@ -30,8 +46,21 @@ fn build_library() -> Result<()> {
     built
 }
 
-fn files() -> Result<Files> {
-    let metadata = MetadataCommand::new().current_dir(root()).exec()?;
+/// Flags that keep the folders of this machine out of the library: without them its messages of panics name their
+/// source files by whole path.
+fn path_flags(metadata: &Metadata) -> Vec<String> {
+    let foreign = metadata.packages.iter().filter(|package| package.source.is_some());
+    let crates: BTreeSet<_> = foreign
+        .filter_map(|package| package.manifest_path.parent()?.parent())
+        .collect();
+    let crates = crates
+        .iter()
+        .map(|folder| format!("--remap-path-prefix={folder}=crates"));
+    let project = format!("--remap-path-prefix={}=relay-contact", metadata.workspace_root);
+    crates.chain([project]).collect()
+}
+
+fn files(metadata: &Metadata) -> Result<Files> {
     let (folder, prefix, extension) = platform()?;
     let library = metadata
         .target_directory
@@ -46,7 +75,7 @@ fn files() -> Result<Files> {
             documentation::page()?.into_bytes(),
         ),
     ]);
-    for (path, text) in licences::texts(&metadata)? {
+    for (path, text) in licences::texts(metadata)? {
         files.insert(format!("documentation/licenses/{path}"), text);
     }
     Ok(files)
