@@ -29,7 +29,7 @@ struct Arguments {
 enum Task {
     /// Build the component and pack it as dist/RelayContact.fmu
     Fmu,
-    /// Run a scene and write what it looks at to out/NAME.csv
+    /// Run a scene and write what it looks at to out/scenes/NAME.csv
     Scene(scene::Arguments),
     /// Build the component, run the published 1 kHz case under FMPy, compare and plot
     Demo,

@@ -28,7 +28,7 @@ fn assignment(text: &str) -> Result<(String, String), String> {
     Ok((name.trim().to_owned(), value.trim().to_owned()))
 }
 
-/// Runs the scene, writes `out/<name>.csv` and prints a summary.
+/// Runs the scene, writes `out/scenes/<name>.csv` and prints a summary.
 pub fn run(arguments: &Arguments) -> Result<()> {
     let path = find(&arguments.scene)?;
     let text = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
@@ -37,8 +37,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         file.set(name, value)?;
     }
     let name = path.file_stem().context("a scene file needs a name")?;
-    let table = root().join("out").join(name).with_extension("csv");
-    fs::create_dir_all(root().join("out"))?;
+    let folder = root().join("out/scenes");
+    fs::create_dir_all(&folder)?;
+    let table = folder.join(name).with_extension("csv");
     println!("{}", file.title);
     let summary = simulate(&file, &table)?;
     println!("{summary}\n{}", table.display());
