@@ -102,7 +102,7 @@ impl Model {
             [f64::midpoint(end, start), 0.5 * (end - start)]
         };
         let d = self.preload.indentation + indentation;
-        let end_law = self.hertz.closed_branch(d, rate);
+        let end_law = self.law.closed_branch(d, rate);
         let missed_force = if state.closed {
             missed(
                 &forces,
@@ -127,8 +127,8 @@ impl Model {
                 end_law.stiffness * last(&step.force.displacement) + end_law.damping * last(&step.force.velocity);
             (end_law.stiffness * wrong_d + end_law.damping * wrong_r).abs() / (1.0 + gain.max(0.0))
         } else {
-            let stiffness = self.hertz.tangent_stiffness(self.hertz.indentation(self.force_scale));
-            stiffness * (wrong_d.abs() + self.hertz.damping * wrong_r.abs())
+            let stiffness = self.law.tangent_stiffness(self.force_scale);
+            stiffness * (wrong_d.abs() + self.law.damping() * wrong_r.abs())
         };
         Some(Trial {
             forces,
@@ -166,7 +166,7 @@ impl Model {
             let laws = indentations
                 .iter()
                 .zip(&rates)
-                .map(|(d, rate)| self.hertz.closed_branch(d0 + d, *rate));
+                .map(|(d, rate)| self.law.closed_branch(d0 + d, *rate));
             let rows = step.force.displacement.iter().zip(&step.force.velocity);
             let mut residual = forces;
             // Row by row dF/d(nodal force), column-major as nalgebra stores it: the transpose of the Jacobian.
