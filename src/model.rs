@@ -10,7 +10,7 @@ use crate::error::SceneError;
 use crate::excitation::Generator;
 use crate::preload::Preload;
 use crate::scene::Scene;
-use crate::transient::collocation::{NODES, Nodal};
+use crate::transient::collocation::{NODES, Prediction};
 use crate::variables::{ContactLawKind, RealParameter};
 
 /// Largest number of modes.
@@ -93,8 +93,8 @@ pub struct State {
     pub last_closing: f64,
     /// Step length the error estimate asks for, s.
     pub next_step: f64,
-    /// Nodal forces of the last step, as deviation from the preload force, N: they predict those of the next.
-    pub nodal_forces: Nodal,
+    /// Force over the last step, as deviation from the preload force, N: it predicts that of the next.
+    pub prediction: Prediction,
     /// Length of the step they belong to, s; 0: none.
     pub last_step: f64,
     /// Accepted steps.
@@ -189,7 +189,7 @@ impl Model {
             last_opening: -1.0,
             last_closing: -1.0,
             next_step: self.first_step(),
-            nodal_forces: [0.0; NODES],
+            prediction: [0.0; NODES + 1],
             last_step: 0.0,
             steps: 0,
             rejected_steps: 0,

@@ -230,7 +230,8 @@ impl Integration<'_> {
                 .law
                 .force(model.preload.indentation + trial.indentation, trial.rate);
         }
-        state.nodal_forces = trial.forces;
+        let collocation = self.workspace.cache.collocation();
+        state.prediction = collocation.prediction(&trial.forces, state.force - model.preload.force);
         state.last_step = target.length;
         state.next_step = next_step;
         state.steps += 1;
