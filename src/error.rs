@@ -58,6 +58,9 @@ pub enum SceneError {
         /// The buckling load of the cantilever, N.
         limit: f64,
     },
+    /// A linear contact law without a contact force to linearise about.
+    #[error("effects.contactLaw: Linearised and Bonded need a contact that is closed at rest, preload.force is 0 N")]
+    NoPreload,
     /// A scene for which a number of the model is not finite.
     #[error("{name} is {value} for this scene: the parameters are too extreme together")]
     NotFinite {

@@ -11,7 +11,7 @@ use crate::model::Model;
 /// Complex amplitude of the contact force per base acceleration, N per m/s2, at the angular frequency `omega` (rad/s).
 pub fn force_response(model: &Model, omega: f64) -> Complex<f64> {
     let stiffness = model.preload.contact_stiffness;
-    let contact = Complex::new(stiffness, omega * model.hertz.damping * stiffness);
+    let contact = Complex::new(stiffness, omega * model.law.damping() * stiffness);
     let (compliance, forcing) = model.modes.iter().fold(
         (Complex::new(0.0, 0.0), Complex::new(0.0, 0.0)),
         |(compliance, forcing), mode| {

@@ -4,12 +4,14 @@ use crate::beam::characteristic;
 use crate::beam::galerkin::Space;
 use crate::beam::section::Section;
 use crate::contact::hertz::Hertz;
+use crate::contact::law::Law;
+use crate::contact::linear::Linear;
 use crate::error::SceneError;
 use crate::excitation::Generator;
 use crate::preload::Preload;
 use crate::scene::Scene;
-use crate::transient::collocation::{NODES, Nodal};
-use crate::variables::RealParameter;
+use crate::transient::collocation::{NODES, Prediction};
+use crate::variables::{ContactLawKind, RealParameter};
 
 /// Largest number of modes.
 pub const MAX_MODES: usize = 40;
@@ -35,7 +37,7 @@ pub struct Model {
     /// The spring.
     pub section: Section,
     /// The contact.
-    pub hertz: Hertz,
+    pub law: Law,
     /// The equilibrium the motion is counted from.
     pub preload: Preload,
     /// The modes, frequency ascending.
@@ -91,8 +93,8 @@ pub struct State {
     pub last_closing: f64,
     /// Step length the error estimate asks for, s.
     pub next_step: f64,
-    /// Nodal forces of the last step, as deviation from the preload force, N: they predict those of the next.
-    pub nodal_forces: Nodal,
+    /// Force over the last step, as deviation from the preload force, N: it predicts that of the next.
+    pub prediction: Prediction,
     /// Length of the step they belong to, s; 0: none.
     pub last_step: f64,
     /// Accepted steps.
@@ -113,6 +115,16 @@ impl Model {
         let section = Section::new(scene);
         let hertz = Hertz::new(&scene.contact);
         let preload = Preload::new(scene, &section, &hertz, support)?;
+        let law = match scene.effects.contact_law {
+            ContactLawKind::Hertz => Law::Hertz(hertz),
+            _ if preload.force <= 0.0 => return Err(SceneError::NoPreload),
+            kind => Law::Linear(Linear {
+                stiffness: preload.contact_stiffness,
+                damping: hertz.damping,
+                offset: preload.indentation - preload.force / preload.contact_stiffness,
+                bonded: kind == ContactLawKind::Bonded,
+            }),
+        };
         let count = match usize::try_from(scene.solver.modes) {
             Ok(count) if count > 0 => count.min(MAX_MODES),
             _ => modes_for(scene.solver.effective_tolerance()),
@@ -141,7 +153,7 @@ impl Model {
         Ok(Self {
             scene: *scene,
             section,
-            hertz,
+            law,
             preload,
             modes,
             generator,
@@ -154,6 +166,12 @@ impl Model {
             force_scale: preload.force.max(reference),
             frequency,
         })
+    }
+
+    /// The law's engagement at an indentation given as deviation from the preload (m) that grows at `rate` (m/s), m: positive
+    /// while the contact is closed.
+    pub fn engagement(&self, indentation: f64, rate: f64) -> f64 {
+        self.law.engagement(self.preload.indentation + indentation, rate)
     }
 
     /// At rest in the preload.
@@ -171,7 +189,7 @@ impl Model {
             last_opening: -1.0,
             last_closing: -1.0,
             next_step: self.first_step(),
-            nodal_forces: [0.0; NODES],
+            prediction: [0.0; NODES + 1],
             last_step: 0.0,
             steps: 0,
             rejected_steps: 0,

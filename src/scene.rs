@@ -5,7 +5,8 @@
 
 use crate::error::SceneError;
 use crate::variables::{
-    AxialForceKind, EnumerationParameter, ExcitationKind, Group, IntegerParameter, RealParameter, VARIABLES, Variable,
+    AxialForceKind, ContactLawKind, EnumerationParameter, ExcitationKind, Group, IntegerParameter, RealParameter,
+    VARIABLES, Variable,
 };
 
 /// Parameters and effects of a simulation. SI units.
@@ -148,6 +149,8 @@ impl Solver {
 pub struct Effects {
     /// Generated base acceleration.
     pub excitation: ExcitationKind,
+    /// Contact law.
+    pub contact_law: ContactLawKind,
     /// Axial force.
     pub axial_force: AxialForceKind,
 }
@@ -206,6 +209,7 @@ impl Default for Scene {
             },
             effects: Effects {
                 excitation: ExcitationKind::None,
+                contact_law: ContactLawKind::Hertz,
                 axial_force: AxialForceKind::FromPreload,
             },
         }
@@ -239,6 +243,7 @@ impl Scene {
     pub fn enumeration(&self, parameter: EnumerationParameter) -> i32 {
         match parameter {
             EnumerationParameter::EffectsExcitation => self.effects.excitation as i32,
+            EnumerationParameter::EffectsContactLaw => self.effects.contact_law as i32,
             EnumerationParameter::EffectsAxialForce => self.effects.axial_force as i32,
         }
     }
@@ -282,6 +287,9 @@ impl Scene {
         match parameter {
             EnumerationParameter::EffectsExcitation => {
                 self.effects.excitation = ExcitationKind::from_value(value).ok_or_else(unknown)?;
+            }
+            EnumerationParameter::EffectsContactLaw => {
+                self.effects.contact_law = ContactLawKind::from_value(value).ok_or_else(unknown)?;
             }
             EnumerationParameter::EffectsAxialForce => {
                 self.effects.axial_force = AxialForceKind::from_value(value).ok_or_else(unknown)?;
@@ -342,6 +350,7 @@ impl Scene {
 pub fn choices(parameter: EnumerationParameter) -> &'static [(&'static str, i32)] {
     match parameter {
         EnumerationParameter::EffectsExcitation => ExcitationKind::CHOICES,
+        EnumerationParameter::EffectsContactLaw => ContactLawKind::CHOICES,
         EnumerationParameter::EffectsAxialForce => AxialForceKind::CHOICES,
     }
 }

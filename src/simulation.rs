@@ -95,7 +95,7 @@ impl Simulation {
     /// A Boolean output.
     pub fn boolean(&self, output: BooleanOutput) -> bool {
         match output {
-            BooleanOutput::ContactClosed => self.state.closed,
+            BooleanOutput::ContactClosed => self.state.force > 0.0,
         }
     }
 }

@@ -7,6 +7,7 @@
 //!
 //! With `g = d + (3/2) beta_c d'` this is `F = k_H d^(1/2) g`: the contact is closed while both `d` and `g` are positive.
 
+use crate::contact::Branch;
 use crate::scene::Contact;
 
 /// Constants of the contact law.
@@ -15,17 +16,6 @@ pub struct Hertz {
     /// k_H = (4/3) E* sqrt(R), N/m^1.5.
     pub coefficient: f64,
     /// Damping time beta_c, s.
-    pub damping: f64,
-}
-
-/// Force with its partial derivatives.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Linearised {
-    /// Force, N.
-    pub force: f64,
-    /// dF/dd, N/m.
-    pub stiffness: f64,
-    /// dF/dd', N s/m.
     pub damping: f64,
 }
 
@@ -58,33 +48,24 @@ impl Hertz {
         (force / self.coefficient).powf(2.0 / 3.0)
     }
 
-    /// Contact force at the indentation `d` (m) growing at `rate` (m/s), N.
-    pub fn force(&self, d: f64, rate: f64) -> f64 {
-        if d > 0.0 {
-            (self.coefficient * d.sqrt() * self.engagement(d, rate)).max(0.0)
-        } else {
-            0.0
-        }
-    }
-
-    /// `g = d + (3/2) beta_c d'`, m: has the sign of the force where surfaces overlap, and reaches zero where they part.
+    /// `min(d, g)`, m: positive while the contact is closed.
     pub fn engagement(&self, d: f64, rate: f64) -> f64 {
-        d + 1.5 * self.damping * rate
+        d.min(d + 1.5 * self.damping * rate)
     }
 
     /// The closed branch continued smoothly past the release (the force may turn negative), for the steps that end at
     /// the release.
-    pub fn closed_branch(&self, d: f64, rate: f64) -> Linearised {
+    pub fn closed_branch(&self, d: f64, rate: f64) -> Branch {
         if d <= 0.0 {
-            return Linearised {
+            return Branch {
                 force: 0.0,
                 stiffness: 0.0,
                 damping: 0.0,
             };
         }
         let root = self.coefficient * d.sqrt();
-        let g = self.engagement(d, rate);
-        Linearised {
+        let g = d + 1.5 * self.damping * rate;
+        Branch {
             force: root * g,
             stiffness: root * (1.0 + 0.5 * g / d),
             damping: 1.5 * self.damping * root,

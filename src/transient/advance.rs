@@ -227,10 +227,11 @@ impl Integration<'_> {
         state.indentation_rate = trial.rate;
         if state.closed {
             state.force = model
-                .hertz
+                .law
                 .force(model.preload.indentation + trial.indentation, trial.rate);
         }
-        state.nodal_forces = trial.forces;
+        let collocation = self.workspace.cache.collocation();
+        state.prediction = collocation.prediction(&trial.forces, state.force - model.preload.force);
         state.last_step = target.length;
         state.next_step = next_step;
         state.steps += 1;
@@ -261,8 +262,11 @@ impl Integration<'_> {
         self.state.support_rate += jump;
         self.state.indentation_rate += jump;
         let d = self.model.preload.indentation + self.state.indentation;
-        let force = self.model.hertz.force(d, self.state.indentation_rate);
-        let closed = force > 0.0;
+        let force = self.model.law.force(d, self.state.indentation_rate);
+        let closed = self
+            .model
+            .engagement(self.state.indentation, self.state.indentation_rate)
+            > 0.0;
         if closed != self.state.closed {
             self.switch(closed);
         }
@@ -275,12 +279,12 @@ impl Integration<'_> {
     /// follows: the step is chosen so short that what it misses moves the contact by less than a step's share of the error.
     fn first_closed_step(&self) -> f64 {
         let Self { model, state, .. } = self;
-        let d = (model.preload.indentation + state.indentation).max(0.0);
+        let d = model.preload.indentation + state.indentation;
         let speed = state.indentation_rate.abs();
         let mobility: f64 = model.modes.iter().map(|mode| mode.tip * mode.tip).sum();
         let mut h = model.first_step();
         for _ in 0..40 {
-            let law = model.hertz.closed_branch(d + speed * h, state.indentation_rate);
+            let law = model.law.closed_branch(d + speed * h, state.indentation_rate);
             let gain = mobility * h * (law.damping + 0.5 * h * law.stiffness.abs());
             if 0.1 * (law.force - state.force).abs() * gain / (1.0 + gain) <= SHARE * self.tolerance {
                 break;

@@ -30,9 +30,9 @@ pub struct ModeStep {
     pub v_from_load: Nodal,
 }
 
-/// Displacement and velocity of the tip per unit of a load, at the nodes (row: where, column: load at which node).
+/// Displacement and velocity of the tip at the nodes per unit of the load at a node, one load after the other.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct TipRows {
+pub struct TipColumns {
     /// Displacement.
     pub displacement: [Nodal; NODES],
     /// Velocity.
@@ -56,9 +56,9 @@ pub struct StepCoefficients {
     /// Mode by mode.
     pub modes: Vec<ModeStep>,
     /// Per force on the tip.
-    pub force: TipRows,
+    pub force: TipColumns,
     /// Per base acceleration acting on the modes as `participation`.
-    pub acceleration: TipRows,
+    pub acceleration: TipColumns,
     /// Of the generator.
     pub turns: Turns,
     /// Per force on the tip that the nodal polynomial misses.
@@ -73,8 +73,8 @@ impl StepCoefficients {
         Self {
             length: 0.0,
             modes: vec![ModeStep::default(); modes],
-            force: TipRows::default(),
-            acceleration: TipRows::default(),
+            force: TipColumns::default(),
+            acceleration: TipColumns::default(),
             turns: Turns::default(),
             force_error: ErrorRows::default(),
             acceleration_error: ErrorRows::default(),
@@ -85,8 +85,8 @@ impl StepCoefficients {
     fn fill(&mut self, length: f64, modes: &[Mode], generator: &Generator, collocation: &Collocation) {
         self.length = length;
         self.turns = generator.turns(length, &collocation.nodes);
-        self.force = TipRows::default();
-        self.acceleration = TipRows::default();
+        self.force = TipColumns::default();
+        self.acceleration = TipColumns::default();
         self.force_error = ErrorRows::default();
         self.acceleration_error = ErrorRows::default();
         for (mode, step) in modes.iter().zip(&mut self.modes) {
@@ -156,17 +156,18 @@ fn copy(to: &mut Nodal, from: &[f64]) {
     to.iter_mut().zip(from).for_each(|(to, from)| *to = *from);
 }
 
-fn add_row(rows: &mut TipRows, row: usize, factor: f64, displacement: &[f64], velocity: &[f64]) {
-    let add = |rows: &mut [Nodal; NODES], values: &[f64]| {
-        for entry in rows.iter_mut().skip(row).take(1) {
-            entry
+fn add_row(columns: &mut TipColumns, row: usize, factor: f64, displacement: &[f64], velocity: &[f64]) {
+    let add = |columns: &mut [Nodal; NODES], values: &[f64]| {
+        for (column, value) in columns.iter_mut().zip(values) {
+            column
                 .iter_mut()
-                .zip(values)
-                .for_each(|(sum, value)| *sum += factor * value);
+                .skip(row)
+                .take(1)
+                .for_each(|sum| *sum += factor * value);
         }
     };
-    add(&mut rows.displacement, displacement);
-    add(&mut rows.velocity, velocity);
+    add(&mut columns.displacement, displacement);
+    add(&mut columns.velocity, velocity);
 }
 
 fn add_error(rows: &mut ErrorRows, factor: f64, displacement: &[f64], velocity: &[f64]) {

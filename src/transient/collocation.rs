@@ -8,6 +8,9 @@ pub const NODES: usize = 4;
 /// A value at each node.
 pub type Nodal = [f64; NODES];
 
+/// A polynomial through the nodes and the end of a step, by its coefficients about the end: it predicts the next step.
+pub type Prediction = [f64; NODES + 1];
+
 /// Number of load shapes: one for each node, two for the error estimate.
 pub const SHAPES: usize = NODES + 2;
 
@@ -23,6 +26,9 @@ pub struct Collocation {
     pub at_start: Nodal,
     /// See [`Collocation::at_start`].
     pub at_end: Nodal,
+    /// Row by row the coefficients of y^0, y^1, ..., `y = x - 1`, of the polynomial that is 1 at one of the nodes or (the
+    /// last row) at the end of the step, and 0 at the others.
+    prediction: [Prediction; NODES + 1],
 }
 
 impl Collocation {
@@ -63,27 +69,71 @@ impl Collocation {
                 factorial *= (m + 1) as f64;
             }
         }
+        let prediction = prediction_basis(&nodes);
         Self {
             nodes,
             shapes,
             at_start,
             at_end,
+            prediction,
         }
     }
 
-    /// The nodal polynomial through `values`, at `x` (in steps; beyond 1 it extrapolates).
+    /// The nodal polynomial through `values`, at `x` (in steps).
     pub fn interpolate(&self, values: &Nodal, x: f64) -> f64 {
         let mut sum = 0.0;
         for (value, &own) in values.iter().zip(&self.nodes) {
-            let weight = self
-                .nodes
-                .iter()
-                .filter(|&&node| node != own)
-                .fold(1.0, |w, node| w * (x - node) / (own - node));
-            sum += value * weight;
+            let others = self.nodes.iter().filter(|&&node| node != own);
+            sum += value * others.map(|node| (x - node) / (own - node)).product::<f64>();
         }
         sum
     }
+
+    /// The polynomial through the values at the nodes and at the end.
+    pub fn prediction(&self, values: &Nodal, end: f64) -> Prediction {
+        let mut sum = [0.0; NODES + 1];
+        for (value, row) in values.iter().chain([&end]).zip(&self.prediction) {
+            for (sum, coefficient) in sum.iter_mut().zip(row) {
+                *sum += value * coefficient;
+            }
+        }
+        sum
+    }
+
+    /// Values of the prediction at the nodes of a step `ratio` times as long as the one it is from.
+    pub fn predict(&self, prediction: &Prediction, ratio: f64) -> Nodal {
+        self.nodes.map(|node| {
+            let y = node * ratio;
+            prediction
+                .iter()
+                .rev()
+                .fold(0.0, |sum, coefficient| sum * y + coefficient)
+        })
+    }
+}
+
+/// The Lagrange polynomials of the nodes and the end, about the end.
+fn prediction_basis(nodes: &Nodal) -> [Prediction; NODES + 1] {
+    let mut points = [0.0; NODES + 1];
+    for (point, node) in points.iter_mut().zip(nodes) {
+        *point = node - 1.0;
+    }
+    points.map(|own| {
+        let mut row = [0.0; NODES + 1];
+        if let Some(first) = row.first_mut() {
+            *first = 1.0;
+        }
+        for &point in points.iter().filter(|&&point| point != own) {
+            // Times (y - point) / (own - point).
+            let mut below = 0.0;
+            for coefficient in &mut row {
+                let value = (below - point * *coefficient) / (own - point);
+                below = *coefficient;
+                *coefficient = value;
+            }
+        }
+        row
+    })
 }
 
 impl Default for Collocation {

@@ -65,14 +65,8 @@ impl Model {
             subtract(&mut free, &row.tip_from_q, mode.q, &row.tip_from_v, mode.v);
             subtract(&mut free_rate, &row.rate_from_q, mode.q, &row.rate_from_v, mode.v);
         }
-        for ((free, free_rate), (row, row_rate)) in free
-            .iter_mut()
-            .zip(&mut free_rate)
-            .zip(step.acceleration.displacement.iter().zip(&step.acceleration.velocity))
-        {
-            *free += dot(row, &accelerations);
-            *free_rate += dot(row_rate, &accelerations);
-        }
+        add_columns(&mut free, &step.acceleration.displacement, &accelerations);
+        add_columns(&mut free_rate, &step.acceleration.velocity, &accelerations);
 
         let (forces, iterations) = if state.closed {
             self.closed_forces(state, step, collocation, &free, &free_rate, newton)?
@@ -102,7 +96,7 @@ impl Model {
             [f64::midpoint(end, start), 0.5 * (end - start)]
         };
         let d = self.preload.indentation + indentation;
-        let end_law = self.hertz.closed_branch(d, rate);
+        let end_law = self.law.closed_branch(d, rate);
         let missed_force = if state.closed {
             missed(
                 &forces,
@@ -122,13 +116,13 @@ impl Model {
         let (base_d, base_r) = wrong(&step.acceleration_error, missed_acceleration);
         let (wrong_d, wrong_r) = (base_d - force_d, base_r - force_r);
         let error = if state.closed {
-            let last = |rows: &[Nodal; NODES]| rows.last().map_or(0.0, |row| row.iter().sum::<f64>());
+            let last = |columns: &[Nodal; NODES]| columns.iter().filter_map(|column| column.last()).sum::<f64>();
             let gain =
                 end_law.stiffness * last(&step.force.displacement) + end_law.damping * last(&step.force.velocity);
             (end_law.stiffness * wrong_d + end_law.damping * wrong_r).abs() / (1.0 + gain.max(0.0))
         } else {
-            let stiffness = self.hertz.tangent_stiffness(self.hertz.indentation(self.force_scale));
-            stiffness * (wrong_d.abs() + self.hertz.damping * wrong_r.abs())
+            let stiffness = self.law.tangent_stiffness(self.force_scale);
+            stiffness * (wrong_d.abs() + self.law.damping() * wrong_r.abs())
         };
         Some(Trial {
             forces,
@@ -153,44 +147,44 @@ impl Model {
         newton: f64,
     ) -> Option<(Nodal, u64)> {
         let mut forces = if state.last_step > 0.0 {
-            let ratio = step.length / state.last_step;
-            collocation
-                .nodes
-                .map(|node| collocation.interpolate(&state.nodal_forces, 1.0 + node * ratio))
+            collocation.predict(&state.prediction, step.length / state.last_step)
         } else {
             [state.force - self.preload.force; NODES]
         };
         let d0 = self.preload.indentation;
         for iteration in 1..=ITERATIONS {
             let (indentations, rates) = at_nodes(step, free, free_rate, &forces);
-            let laws = indentations
-                .iter()
-                .zip(&rates)
-                .map(|(d, rate)| self.hertz.closed_branch(d0 + d, *rate));
-            let rows = step.force.displacement.iter().zip(&step.force.velocity);
             let mut residual = forces;
-            // Row by row dF/d(nodal force), column-major as nalgebra stores it: the transpose of the Jacobian.
-            let mut jacobian = [[0.0; NODES]; NODES];
-            for ((law, (row, row_rate)), (residual, gradient)) in
-                laws.zip(rows).zip(residual.iter_mut().zip(&mut jacobian))
+            let (mut stiffness, mut damping) = ([0.0; NODES], [0.0; NODES]);
+            for ((((residual, stiffness), damping), d), rate) in residual
+                .iter_mut()
+                .zip(&mut stiffness)
+                .zip(&mut damping)
+                .zip(&indentations)
+                .zip(&rates)
             {
+                let law = self.law.closed_branch(d0 + d, *rate);
                 *residual -= law.force - self.preload.force;
-                for ((entry, compliance), mobility) in gradient.iter_mut().zip(row).zip(row_rate) {
-                    *entry = law.stiffness * compliance + law.damping * mobility;
+                (*stiffness, *damping) = (law.stiffness, law.damping);
+            }
+            // The derivative of the residuals by each nodal force.
+            let mut jacobian = step.force.displacement;
+            for (column, velocity) in jacobian.iter_mut().zip(&step.force.velocity) {
+                for (((entry, velocity), stiffness), damping) in
+                    column.iter_mut().zip(velocity).zip(&stiffness).zip(&damping)
+                {
+                    *entry = stiffness * *entry + damping * velocity;
                 }
             }
-            let jacobian =
-                SMatrix::<f64, NODES, NODES>::from(jacobian).transpose() + SMatrix::<f64, NODES, NODES>::identity();
-            let residual = SVector::from(residual);
-            let correction = jacobian.lu().solve(&residual)?;
-            for (force, correction) in forces.iter_mut().zip(correction.iter()) {
+            let correction = solve(jacobian, residual)?;
+            let (mut largest, mut lowest) = (0.0_f64, f64::INFINITY);
+            for (force, correction) in forces.iter_mut().zip(&correction) {
                 *force -= correction;
+                largest = largest.max(correction.abs());
+                lowest = lowest.min(self.preload.force + *force);
             }
-            let largest = correction.amax();
-            if !largest.is_finite() {
-                return None;
-            }
-            if largest <= newton {
+            // Newton's method leaves about correction^2 / (6 F) where the law is Hertz's, nothing where it is linear.
+            if largest <= newton || largest * largest <= newton * lowest {
                 return Some((forces, iteration));
             }
         }
@@ -198,16 +192,56 @@ impl Model {
     }
 }
 
+/// Solves `(1 + A) x = b`, `A` column by column: Gauss-Jordan elimination, whose inner loops run down columns, as long as
+/// the pivots are far from zero, which they are for all but violent steps; else with pivoting.
+#[expect(
+    clippy::indexing_slicing,
+    reason = "every index runs over the fixed size of the arrays"
+)]
+fn solve(columns: [Nodal; NODES], right: Nodal) -> Option<Nodal> {
+    let mut a = columns;
+    for k in 0..NODES {
+        a[k][k] += 1.0;
+    }
+    let mut x = right;
+    for p in 0..NODES {
+        let pivot = a[p];
+        if pivot[p].is_nan() || pivot[p].abs() < 1e-2 {
+            let matrix = SMatrix::<f64, NODES, NODES>::from(columns) + SMatrix::<f64, NODES, NODES>::identity();
+            let solution = matrix.lu().solve(&SVector::from(right))?;
+            return solution.iter().all(|x| x.is_finite()).then(|| solution.into());
+        }
+        let inverse = 1.0 / pivot[p];
+        let eliminate = |column: &mut Nodal| {
+            let share = column[p] * inverse;
+            for k in 0..NODES {
+                column[k] -= pivot[k] * share;
+            }
+            column[p] = share;
+        };
+        for column in a.iter_mut().skip(p + 1) {
+            eliminate(column);
+        }
+        eliminate(&mut x);
+    }
+    Some(x)
+}
+
 /// Indentation and its velocity at the nodes under the nodal forces.
 fn at_nodes(step: &StepCoefficients, free: &Nodal, free_rate: &Nodal, forces: &Nodal) -> (Nodal, Nodal) {
     let (mut indentations, mut rates) = (*free, *free_rate);
-    for (indentation, row) in indentations.iter_mut().zip(&step.force.displacement) {
-        *indentation -= dot(row, forces);
-    }
-    for (rate, row) in rates.iter_mut().zip(&step.force.velocity) {
-        *rate -= dot(row, forces);
-    }
+    let loads = forces.map(|force| -force);
+    add_columns(&mut indentations, &step.force.displacement, &loads);
+    add_columns(&mut rates, &step.force.velocity, &loads);
     (indentations, rates)
+}
+
+fn add_columns(values: &mut Nodal, columns: &[Nodal; NODES], loads: &Nodal) {
+    for (column, load) in columns.iter().zip(loads) {
+        for (value, entry) in values.iter_mut().zip(column) {
+            *value += entry * load;
+        }
+    }
 }
 
 fn subtract(values: &mut Nodal, a: &Nodal, x: f64, b: &Nodal, y: f64) {

@@ -12,20 +12,20 @@ impl Integration<'_> {
     pub(super) fn release(&mut self, trial: &Trial, length: f64) -> Option<Cut> {
         let latest = self.first_open(trial)? * length;
         let end = self.probe(latest);
-        if end.is_some_and(|end| self.engagement(&end) > 0.0) {
+        if end.is_some_and(|end| self.model.engagement(end.indentation, end.rate) > 0.0) {
             // The polynomial dips below zero, the force does not: the next step starts here, where it is lowest.
             return (latest < length).then_some(Cut {
                 length: latest,
                 switches: false,
             });
         }
-        let start = self.model.hertz.engagement(
-            self.model.preload.indentation + self.state.indentation,
-            self.state.indentation_rate,
-        );
+        let start = self
+            .model
+            .engagement(self.state.indentation, self.state.indentation_rate);
         let engagement = |at: f64| {
             if at > 0.0 {
-                self.probe(at).map_or(f64::NAN, |trial| self.engagement(&trial))
+                self.probe(at)
+                    .map_or(f64::NAN, |trial| self.model.engagement(trial.indentation, trial.rate))
             } else {
                 // The contact is closed there; just after a touch rounding could hide it.
                 start.max(f64::MIN_POSITIVE)
@@ -35,21 +35,12 @@ impl Integration<'_> {
         Some(Cut { length, switches: true })
     }
 
-    /// `g = d + (3/2) beta_c d'` at the end of the trial, m: negative once the contact has opened.
-    fn engagement(&self, trial: &Trial) -> f64 {
-        self.model
-            .hertz
-            .engagement(self.model.preload.indentation + trial.indentation, trial.rate)
-    }
-
     /// Where in the step (in steps) the contact first looks open: a node or the end with no force left, or a place where
     /// the polynomial through the nodes dips below zero between them.
     fn first_open(&self, trial: &Trial) -> Option<f64> {
-        let (preload, hertz) = (&self.model.preload, &self.model.hertz);
+        let preload = &self.model.preload;
         let collocation = self.workspace.cache.collocation();
-        let open = |d: f64, rate: f64| {
-            preload.indentation + d <= 0.0 || hertz.engagement(preload.indentation + d, rate) <= 0.0
-        };
+        let open = |d: f64, rate: f64| self.model.engagement(d, rate) <= 0.0;
         let node = collocation
             .nodes
             .iter()
@@ -61,7 +52,7 @@ impl Integration<'_> {
         let forces = trial.forces.map(|force| preload.force + force);
         let lowest = forces.iter().copied().fold(f64::INFINITY, f64::min);
         let highest = forces.iter().copied().fold(self.state.force, f64::max);
-        if sure.is_none() && lowest > 0.25 * highest {
+        if sure.is_none() && (lowest > 0.25 * highest || self.model.law.never_opens()) {
             return None;
         }
         let dip = (1..LOOKS)

@@ -17,7 +17,7 @@ const DEPTH: u32 = 40;
 struct Sample {
     /// From the start of the step, s.
     at: f64,
-    /// Indentation, m.
+    /// Indentation as deviation from the preload, m.
     d: f64,
     /// Its velocity, m/s.
     rate: f64,
@@ -26,11 +26,7 @@ struct Sample {
 impl Integration<'_> {
     /// Where the step of free flight of `length` seconds has to end because the contact closes, if it does.
     pub(super) fn touchdown(&mut self, trial: &Trial, length: f64) -> Option<Cut> {
-        let sample = |at: f64, d: f64, rate: f64| Sample {
-            at,
-            d: self.model.preload.indentation + d,
-            rate,
-        };
+        let sample = |at: f64, d: f64, rate: f64| Sample { at, d, rate };
         let mut samples = [sample(0.0, self.state.indentation, self.state.indentation_rate); NODES + 2];
         let nodes = self.workspace.cache.collocation().nodes;
         let inner = nodes.iter().zip(&trial.indentations).zip(&trial.rates);
@@ -58,18 +54,13 @@ impl Integration<'_> {
     /// wrong by about `error` (m).
     fn touch_between(&mut self, a: &Sample, b: &Sample, error: f64, depth: u32) -> Option<f64> {
         // An overlap whose force is lost in the tolerance need not be found.
-        let negligible = self.model.hertz.indentation(1e-3 * self.tolerance);
-        let highest = highest(a, b);
+        let negligible = self.model.law.overlap(1e-3 * self.tolerance);
+        let bound = self.model.engagement(highest(a, b), a.rate.max(b.rate));
         if self.is_open(b) {
-            let clear = if a.d > 0.0 {
-                highest <= a.d.max(b.d)
-            } else {
-                highest + error < negligible
-            };
-            if clear || depth > DEPTH {
+            if bound + error < negligible || depth > DEPTH {
                 return None;
             }
-        } else if a.d > 0.0 || (highest <= b.d && a.rate >= 0.0) || depth > DEPTH {
+        } else if a.rate >= 0.0 && highest(a, b) <= b.d || depth > DEPTH {
             return Some(self.crossing(a, b));
         }
         let middle = self.sample(f64::midpoint(a.at, b.at));
@@ -83,7 +74,7 @@ impl Integration<'_> {
         let overlap = |at: f64| {
             if at > a.at {
                 let Sample { d, rate, .. } = self.sample(at);
-                d.min(self.model.hertz.engagement(d, rate))
+                self.model.engagement(d, rate)
             } else {
                 // A flight starts at the release itself; rounding must not make it look closed.
                 -f64::MIN_POSITIVE
@@ -93,14 +84,13 @@ impl Integration<'_> {
     }
 
     fn is_open(&self, sample: &Sample) -> bool {
-        sample.d <= 0.0 || self.model.hertz.engagement(sample.d, sample.rate) <= 0.0
+        self.model.engagement(sample.d, sample.rate) <= 0.0
     }
 
     fn sample(&mut self, at: f64) -> Sample {
-        let d0 = self.model.preload.indentation;
         let (d, rate) = self
             .probe(at)
-            .map_or((f64::NAN, f64::NAN), |trial| (d0 + trial.indentation, trial.rate));
+            .map_or((f64::NAN, f64::NAN), |trial| (trial.indentation, trial.rate));
         Sample { at, d, rate }
     }
 }

@@ -1,0 +1,70 @@
+//! The contact law a scene asks for.
+
+use crate::contact::Branch;
+use crate::contact::hertz::Hertz;
+use crate::contact::linear::Linear;
+
+/// A contact law.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Law {
+    /// Hertz with viscoelastic damping.
+    Hertz(Hertz),
+    /// Linearised about the preload.
+    Linear(Linear),
+}
+
+impl Law {
+    /// A length with the sign of the contact force: positive while the contact is closed, m.
+    pub fn engagement(&self, d: f64, rate: f64) -> f64 {
+        match self {
+            Self::Hertz(hertz) => hertz.engagement(d, rate),
+            Self::Linear(linear) => linear.engagement(d, rate),
+        }
+    }
+
+    /// Contact force at the indentation `d` (m) growing at `rate` (m/s), N.
+    pub fn force(&self, d: f64, rate: f64) -> f64 {
+        if self.engagement(d, rate) > 0.0 {
+            self.closed_branch(d, rate).force
+        } else {
+            0.0
+        }
+    }
+
+    /// Force and derivatives on the closed branch, continued where the contact would be open.
+    pub fn closed_branch(&self, d: f64, rate: f64) -> Branch {
+        match self {
+            Self::Hertz(hertz) => hertz.closed_branch(d, rate),
+            Self::Linear(linear) => linear.closed_branch(d, rate),
+        }
+    }
+
+    /// Whether the contact holds whatever pulls at it.
+    pub fn never_opens(&self) -> bool {
+        matches!(self, Self::Linear(linear) if linear.bonded)
+    }
+
+    /// Indentation beyond that of first touch at which a contact at rest bears `force` (N), m.
+    pub fn overlap(&self, force: f64) -> f64 {
+        match self {
+            Self::Hertz(hertz) => hertz.indentation(force),
+            Self::Linear(linear) => force / linear.stiffness,
+        }
+    }
+
+    /// Tangent stiffness under `force` (N), N/m.
+    pub fn tangent_stiffness(&self, force: f64) -> f64 {
+        match self {
+            Self::Hertz(hertz) => hertz.tangent_stiffness(hertz.indentation(force)),
+            Self::Linear(linear) => linear.stiffness,
+        }
+    }
+
+    /// Damping time beta_c, s.
+    pub fn damping(&self) -> f64 {
+        match self {
+            Self::Hertz(hertz) => hertz.damping,
+            Self::Linear(linear) => linear.damping,
+        }
+    }
+}

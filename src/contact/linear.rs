@@ -1,0 +1,43 @@
+//! The contact law linearised about the preload, with or without the cut where the force would turn into tension.
+//!
+//! `F = max(0, F_0 + k_j0 (d - d_0) + beta_c k_j0 d')`, which the modal and frequency-domain analyses of Machines 2025,
+//! 13(1), 52 use; bonded: the same without the cut.
+
+use crate::contact::Branch;
+
+/// Constants of the linear law.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Linear {
+    /// k_j0, N/m.
+    pub stiffness: f64,
+    /// Damping time beta_c, s.
+    pub damping: f64,
+    /// Indentation at which the force of a contact at rest is zero, d_0 - F_0 / k_j0, m.
+    pub offset: f64,
+    /// Whether the contact can pull.
+    pub bonded: bool,
+}
+
+impl Linear {
+    /// Force over stiffness, m: positive while the contact is closed, which it always is when bonded.
+    pub fn engagement(&self, d: f64, rate: f64) -> f64 {
+        if self.bonded {
+            f64::INFINITY
+        } else {
+            self.branch_engagement(d, rate)
+        }
+    }
+
+    /// The force without the cut.
+    pub fn closed_branch(&self, d: f64, rate: f64) -> Branch {
+        Branch {
+            force: self.stiffness * self.branch_engagement(d, rate),
+            stiffness: self.stiffness,
+            damping: self.damping * self.stiffness,
+        }
+    }
+
+    fn branch_engagement(&self, d: f64, rate: f64) -> f64 {
+        d - self.offset + self.damping * rate
+    }
+}
