@@ -200,8 +200,8 @@ impl Model {
 )]
 fn solve(columns: [Nodal; NODES], right: Nodal) -> Option<Nodal> {
     let mut a = columns;
-    for k in 0..NODES {
-        a[k][k] += 1.0;
+    for (k, column) in a.iter_mut().enumerate() {
+        column[k] += 1.0;
     }
     let mut x = right;
     for p in 0..NODES {
