@@ -10,7 +10,7 @@ use crate::error::SceneError;
 use crate::excitation::Generator;
 use crate::preload::Preload;
 use crate::scene::Scene;
-use crate::transient::collocation::{NODES, Prediction};
+use crate::transient::collocation::Predictions;
 use crate::variables::{ContactLawKind, RealParameter};
 
 /// Largest number of modes.
@@ -91,10 +91,12 @@ pub struct State {
     pub last_opening: f64,
     /// Instant at which the force last left zero, s; -1: not yet.
     pub last_closing: f64,
-    /// Step length the error estimate asks for, s.
-    pub next_step: f64,
+    /// Longest step with few nodes that the error estimate allows, s.
+    pub short_step: f64,
+    /// Longest step with many nodes that the error estimate allows, s.
+    pub long_step: f64,
     /// Force over the last step, as deviation from the preload force, N: it predicts that of the next.
-    pub prediction: Prediction,
+    pub predictions: Predictions,
     /// Length of the step they belong to, s; 0: none.
     pub last_step: f64,
     /// Accepted steps.
@@ -188,8 +190,9 @@ impl Model {
             current: 0.0,
             last_opening: -1.0,
             last_closing: -1.0,
-            next_step: self.first_step(),
-            prediction: [0.0; NODES + 1],
+            short_step: self.first_step(),
+            long_step: self.first_step(),
+            predictions: Predictions::default(),
             last_step: 0.0,
             steps: 0,
             rejected_steps: 0,

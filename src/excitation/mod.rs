@@ -7,25 +7,36 @@ use crate::transient::collocation::Nodal;
 use crate::variables::ExcitationKind;
 
 /// Base accelerations over a step, m/s2.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Accelerations {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accelerations<const S: usize> {
     /// At the start.
     pub start: f64,
     /// At the nodes.
-    pub nodes: Nodal,
+    pub nodes: Nodal<S>,
     /// At the end.
     pub end: f64,
 }
 
 /// Sines and cosines of the angles the generator turns through from the start of a step: they depend on its length alone.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Turns {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turns<const S: usize> {
     /// To the nodes.
-    sin: Nodal,
+    sin: Nodal<S>,
     /// See [`Turns::sin`].
-    cos: Nodal,
+    cos: Nodal<S>,
     /// To the end.
     end: (f64, f64),
+}
+
+impl<const S: usize> Turns<S> {
+    /// Without a generator.
+    pub fn none() -> Self {
+        Self {
+            sin: [0.0; S],
+            cos: [0.0; S],
+            end: (0.0, 0.0),
+        }
+    }
 }
 
 /// The generator a scene asks for.
@@ -80,9 +91,15 @@ impl Generator {
 
     /// Accelerations over a step that begins at `time` (s) and has the given turns. A step that begins before the start of
     /// the generator ends there at the latest.
-    pub fn over_step(&self, time: f64, turns: &Turns) -> Accelerations {
+    pub fn over_step<const S: usize>(&self, time: f64, turns: &Turns<S>) -> Accelerations<S> {
         let (sin, cos) = match self {
-            Self::None => return Accelerations::default(),
+            Self::None => {
+                return Accelerations {
+                    start: 0.0,
+                    nodes: [0.0; S],
+                    end: 0.0,
+                };
+            }
             Self::Sine { .. } => self.phasor(time),
         };
         let mut nodes = turns.cos;
@@ -97,9 +114,9 @@ impl Generator {
     }
 
     /// The turns of a step of `length` seconds with these nodes.
-    pub fn turns(&self, length: f64, nodes: &Nodal) -> Turns {
+    pub fn turns<const S: usize>(&self, length: f64, nodes: &Nodal<S>) -> Turns<S> {
         let Self::Sine { frequency, .. } = *self else {
-            return Turns::default();
+            return Turns::none();
         };
         let angle = |x: f64| TAU * frequency * x * length;
         Turns {

@@ -4,7 +4,7 @@ use crate::error::{StepError, StepErrorCause};
 use crate::inputs::Inputs;
 use crate::model::{MAX_MODES, ModeState, ModeStates, Model, State};
 use crate::transient::coefficients::Cache;
-use crate::transient::collocation::NODES;
+use crate::transient::collocation::{Collocation, LONG, SHORT};
 use crate::transient::nodal::{Drive, Trial};
 use crate::transient::progress::{Progress, Target};
 
@@ -16,13 +16,23 @@ const BUDGET_RATE: f64 = 1e7;
 /// Share of the tolerance that one step may use up.
 const SHARE: f64 = 0.01;
 
-/// Power of the step length with which the error estimate grows.
-const ORDER: f64 = NODES as f64 + 2.0;
+/// Growth from step to step that shows the steps are still finding their length.
+const GROWING: f64 = 1.5;
+
+/// How much longer than a short step a long one has to be to be worth its cost.
+const WORTH: f64 = 2.0;
+
+/// Tolerances at which the rounding of the polynomials of many nodes begins to show.
+const LONG_FLOOR: f64 = 3e-11;
+
+/// Many nodes reach at most about this many times as far as few.
+const LONGER: f64 = 16.0;
 
 /// Scratch of the steps. Nothing in it changes a result, only the time it takes.
 #[derive(Clone, Debug)]
 pub struct Workspace {
-    pub(super) cache: Cache,
+    short: Cache<SHORT>,
+    long: Cache<LONG>,
     /// The modes at the end of the step about to be taken.
     end: ModeStates,
     /// The modes at instants looked at.
@@ -33,10 +43,29 @@ impl Workspace {
     /// For the model.
     pub fn new(model: &Model) -> Self {
         Self {
-            cache: Cache::new(model.modes.len()),
+            short: Cache::new(model.modes.len()),
+            long: Cache::new(model.modes.len()),
             end: [ModeState::default(); MAX_MODES],
             probe: [ModeState::default(); MAX_MODES],
         }
+    }
+}
+
+/// A workspace for steps with `S` nodes.
+pub(super) trait Room<const S: usize> {
+    /// The cache, and room for the modes at the end of the step and at instants looked at.
+    fn parts(&mut self) -> (&mut Cache<S>, &mut ModeStates, &mut ModeStates);
+}
+
+impl Room<SHORT> for Workspace {
+    fn parts(&mut self) -> (&mut Cache<SHORT>, &mut ModeStates, &mut ModeStates) {
+        (&mut self.short, &mut self.end, &mut self.probe)
+    }
+}
+
+impl Room<LONG> for Workspace {
+    fn parts(&mut self) -> (&mut Cache<LONG>, &mut ModeStates, &mut ModeStates) {
+        (&mut self.long, &mut self.end, &mut self.probe)
     }
 }
 
@@ -44,11 +73,21 @@ impl Workspace {
 pub(super) struct Integration<'a> {
     pub(super) model: &'a Model,
     pub(super) state: &'a mut State,
-    pub(super) workspace: &'a mut Workspace,
+    workspace: &'a mut Workspace,
     drive: Drive,
     progress: Progress,
     /// Error allowed in the contact force, N.
     pub(super) tolerance: f64,
+}
+
+/// What a step says about the next.
+struct Advice {
+    /// Whether it was taken.
+    taken: bool,
+    /// How many times as long as this one it could have been.
+    growth: f64,
+    /// Length wanted next, s.
+    length: f64,
 }
 
 /// A step that ends before it was meant to.
@@ -140,85 +179,172 @@ impl Integration<'_> {
         }
     }
 
-    /// One integration step, taken or rejected.
+    /// One integration step, taken or rejected: with few nodes where they reach far enough, else with many.
     fn advance(&mut self) -> Result<(), StepError> {
+        let left = (1.0 - self.progress.done) * self.progress.size;
+        let State {
+            short_step,
+            time,
+            last_closing,
+            ..
+        } = *self.state;
+        // Just after a blow the force is no polynomial of high degree.
+        let smooth = if last_closing < 0.0 {
+            f64::INFINITY
+        } else {
+            time - last_closing
+        };
+        let long_step = self.state.long_step.min(smooth);
+        if self.tolerance <= LONG_FLOOR * self.model.force_scale || left <= short_step || long_step < WORTH * short_step
+        {
+            let advice = self.advance_with::<SHORT>(short_step)?;
+            self.state.short_step = advice.length;
+            if advice.taken && advice.growth < GROWING {
+                self.state.long_step = self.state.long_step.max(2.0 * WORTH * advice.length);
+            }
+        } else {
+            let advice = self.advance_with::<LONG>(long_step)?;
+            self.state.long_step = advice.length;
+            // Where a long step is far shorter than it might be, a short one will do.
+            if advice.taken {
+                self.state.short_step = short_step.max(advice.growth * left.min(long_step) / LONGER);
+            }
+        }
+        Ok(())
+    }
+
+    /// One step of `S` nodes, taken or rejected, of `wanted` seconds or less.
+    fn advance_with<const S: usize>(&mut self, wanted: f64) -> Result<Advice, StepError>
+    where
+        Workspace: Room<S>,
+    {
         let shortest = 8.0 * f64::EPSILON * (self.progress.start.abs() + self.progress.size);
-        let wanted = self.state.next_step.min(self.model.longest_step).max(shortest);
+        let wanted = wanted.min(self.model.longest_step).max(shortest);
         let corner = self.model.generator.next_break(self.state.time);
         let mut target = self.progress.target(wanted, self.state.time, corner);
 
-        let attempt = self.attempt(&target);
+        let attempt = self.attempt::<S>(&target);
         let ratio = attempt
             .as_ref()
             .map_or(f64::INFINITY, |trial| trial.error / (SHARE * self.tolerance));
+        // The error estimate grows with this power of the step length.
+        let reach = |ratio: f64| ratio.powf(-1.0 / (S as f64 + 2.0));
         let Some(mut trial) = attempt.filter(|_| ratio <= 1.0 || target.length <= 2.0 * shortest) else {
             if target.length <= 2.0 * shortest || ratio.is_nan() {
                 return Err(self.error(StepErrorCause::NotFinite));
             }
-            self.reject(target.length * (0.8 * ratio.powf(-1.0 / ORDER)).clamp(0.1, 0.5));
-            return Ok(());
+            return Ok(self.reject(target.length * (0.8 * reach(ratio)).clamp(0.1, 0.5)));
         };
 
-        let cut = if self.state.closed {
-            self.release(&trial, target.length)
-        } else {
-            self.touchdown(&trial, target.length)
-        };
-        if let Some(Cut { length, .. }) = cut {
-            target = self.progress.cut(length, self.state.time + length);
-            if let Some(shorter) = self.attempt(&target) {
-                trial = shorter;
+        let mut switches = false;
+        if let Some(part) = self.first_suspect(&trial, target.length) {
+            if S != SHORT {
+                // Events are located in short steps; long ones end before.
+                return Ok(self.reject(0.9 * part * target.length));
+            }
+            let cut = if self.state.closed {
+                self.release::<S>(part * target.length, target.length)
             } else {
-                self.reject(0.25 * length);
-                return Ok(());
+                self.touchdown(&trial, target.length)
+            };
+            if let Some(cut) = cut {
+                target = self.progress.cut(cut.length, self.state.time + cut.length);
+                switches = cut.switches;
+                match self.attempt::<S>(&target) {
+                    Some(shorter) => trial = shorter,
+                    None => return Ok(self.reject(0.25 * cut.length)),
+                }
             }
         }
         if !(trial.indentation.is_finite() && trial.rate.is_finite()) {
             return Err(self.error(StepErrorCause::NotFinite));
         }
-        let growth = if ratio < 1e-6 {
-            4.0
-        } else {
-            (0.9 * ratio.powf(-1.0 / ORDER)).clamp(0.5, 4.0)
-        };
-        // A step cut short by the grid says nothing against the length wanted before.
-        let next = if target.length < 0.9 * wanted {
-            wanted.max(growth * target.length)
-        } else {
-            growth * target.length
-        };
-        self.take(&trial, &target, next);
-        if cut.is_some_and(|cut| cut.switches) {
-            self.switch(!self.state.closed);
+        self.take(&trial, &target);
+        if switches {
+            return Ok(Advice {
+                taken: true,
+                growth: f64::INFINITY,
+                length: self.switch(!self.state.closed),
+            });
         }
-        Ok(())
+        let growth = if ratio < 1e-7 {
+            64.0
+        } else {
+            (0.9 * reach(ratio)).clamp(0.5, 64.0)
+        };
+        let length = growth.min(4.0) * target.length;
+        // A step cut short by the grid says nothing against the length wanted before.
+        Ok(Advice {
+            taken: true,
+            growth,
+            length: if target.length < 0.9 * wanted {
+                wanted.max(length)
+            } else {
+                length
+            },
+        })
+    }
+
+    /// Where in the step (in steps) the contact first looks as if it switched.
+    fn first_suspect<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> Option<f64>
+    where
+        Workspace: Room<S>,
+    {
+        if self.state.closed {
+            self.first_open(trial)
+        } else {
+            self.first_near(trial, length)
+        }
     }
 
     /// The step to the target, with the modes at its end kept for [`Integration::take`].
-    fn attempt(&mut self, target: &Target) -> Option<Trial> {
-        let Workspace { cache, end, .. } = &mut *self.workspace;
+    fn attempt<const S: usize>(&mut self, target: &Target) -> Option<Trial<S>>
+    where
+        Workspace: Room<S>,
+    {
+        let (cache, end, _) = self.workspace.parts();
         let (step, collocation) = cache.get(target.length, target.recurring, self.model);
         self.model
             .trial(self.state, &self.drive, step, collocation, 1e-2 * self.tolerance, end)
     }
 
     /// A step of `length` seconds only to be looked at.
-    pub(super) fn probe(&mut self, length: f64) -> Option<Trial> {
-        let Workspace { cache, probe, .. } = &mut *self.workspace;
+    pub(super) fn probe<const S: usize>(&mut self, length: f64) -> Option<Trial<S>>
+    where
+        Workspace: Room<S>,
+    {
+        let (cache, _, probe) = self.workspace.parts();
         let (step, collocation) = cache.get(length, false, self.model);
         self.model
             .trial(self.state, &self.drive, step, collocation, 1e-2 * self.tolerance, probe)
     }
 
-    fn reject(&mut self, next_step: f64) {
+    /// The polynomials of the steps.
+    pub(super) fn collocation<const S: usize>(&mut self) -> &Collocation<S>
+    where
+        Workspace: Room<S>,
+    {
+        self.workspace.parts().0.collocation()
+    }
+
+    /// Gives up a step; the next one is to have the length.
+    fn reject(&mut self, length: f64) -> Advice {
         self.state.rejected_steps += 1;
-        self.state.next_step = next_step;
+        Advice {
+            taken: false,
+            growth: 1.0,
+            length,
+        }
     }
 
     /// The trial becomes the state.
-    fn take(&mut self, trial: &Trial, target: &Target, next_step: f64) {
+    fn take<const S: usize>(&mut self, trial: &Trial<S>, target: &Target)
+    where
+        Workspace: Room<S>,
+    {
         let Self { model, state, .. } = self;
-        for ((mode, end), _) in state.modes.iter_mut().zip(&self.workspace.end).zip(&model.modes) {
+        let (cache, end, _) = Room::<S>::parts(self.workspace);
+        for ((mode, end), _) in state.modes.iter_mut().zip(end).zip(&model.modes) {
             *mode = *end;
         }
         state.time = target.time;
@@ -230,26 +356,32 @@ impl Integration<'_> {
                 .law
                 .force(model.preload.indentation + trial.indentation, trial.rate);
         }
-        let collocation = self.workspace.cache.collocation();
-        state.prediction = collocation.prediction(&trial.forces, state.force - model.preload.force);
+        let ratio = if state.last_step > 0.0 {
+            target.length / state.last_step
+        } else {
+            0.0
+        };
+        let end = state.force - model.preload.force;
+        state.predictions = cache
+            .collocation()
+            .predictions(&trial.forces, end, &state.predictions, ratio);
         state.last_step = target.length;
-        state.next_step = next_step;
         state.steps += 1;
         state.iterations += trial.iterations;
         self.progress.done = target.done;
     }
 
-    /// The contact opens or closes at the instant of the state.
-    fn switch(&mut self, closed: bool) {
+    /// The contact opens or closes at the instant of the state; the step to take next.
+    fn switch(&mut self, closed: bool) -> f64 {
         self.state.closed = closed;
         self.state.force = 0.0;
         self.state.last_step = 0.0;
         if closed {
             self.state.last_closing = self.state.time;
-            self.state.next_step = self.state.next_step.min(self.first_closed_step());
+            self.first_closed_step()
         } else {
             self.state.last_opening = self.state.time;
-            self.state.next_step = self.state.next_step.max(0.1 * self.model.first_step());
+            0.1 * self.model.first_step()
         }
     }
 
@@ -272,7 +404,9 @@ impl Integration<'_> {
         }
         self.state.force = force;
         self.state.last_step = 0.0;
-        self.state.next_step = self.state.next_step.min(self.first_closed_step());
+        let next = self.first_closed_step();
+        self.state.short_step = self.state.short_step.min(next);
+        self.state.long_step = self.state.long_step.min(next);
     }
 
     /// First step after the surfaces meet, s. The dissipative force starts as the square root of time, which no polynomial

@@ -1,21 +1,21 @@
 //! Everything of a step that depends on its length alone, and a cache of it.
 
-use crate::excitation::{Generator, Turns};
-use crate::model::{Mode, Model};
-use crate::transient::collocation::{Collocation, NODES, Nodal, SHAPES};
+use crate::excitation::Turns;
+use crate::model::Model;
+use crate::transient::collocation::{Collocation, MAX_SHAPES, Nodal};
 use crate::transient::response::Response;
 
 /// How a mode moves over a step. Its tip displacement counts, so the rows for the nodes carry the factor of the mode's tip.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct ModeStep {
+#[derive(Clone, Copy, Debug)]
+pub struct ModeStep<const S: usize> {
     /// Tip displacement at the nodes per initial q, and per initial v.
-    pub tip_from_q: Nodal,
+    pub tip_from_q: Nodal<S>,
     /// See [`ModeStep::tip_from_q`].
-    pub tip_from_v: Nodal,
+    pub tip_from_v: Nodal<S>,
     /// Tip velocity at the nodes per initial q, and per initial v.
-    pub rate_from_q: Nodal,
+    pub rate_from_q: Nodal<S>,
     /// See [`ModeStep::rate_from_q`].
-    pub rate_from_v: Nodal,
+    pub rate_from_v: Nodal<S>,
     /// q and v at the end per initial q and v, and per nodal load.
     pub q_from_q: f64,
     /// See [`ModeStep::q_from_q`].
@@ -25,18 +25,18 @@ pub struct ModeStep {
     /// See [`ModeStep::q_from_q`].
     pub v_from_v: f64,
     /// See [`ModeStep::q_from_q`].
-    pub q_from_load: Nodal,
+    pub q_from_load: Nodal<S>,
     /// See [`ModeStep::q_from_q`].
-    pub v_from_load: Nodal,
+    pub v_from_load: Nodal<S>,
 }
 
 /// Displacement and velocity of the tip at the nodes per unit of the load at a node, one load after the other.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct TipColumns {
+#[derive(Clone, Copy, Debug)]
+pub struct TipColumns<const S: usize> {
     /// Displacement.
-    pub displacement: [Nodal; NODES],
+    pub displacement: [Nodal<S>; S],
     /// Velocity.
-    pub velocity: [Nodal; NODES],
+    pub velocity: [Nodal<S>; S],
 }
 
 /// Displacement and velocity of the tip at the end of the step per unit of the two shapes of the error estimate.
@@ -50,176 +50,198 @@ pub struct ErrorRows {
 
 /// The coefficients of a step of one length.
 #[derive(Clone, Debug)]
-pub struct StepCoefficients {
+pub struct StepCoefficients<const S: usize> {
     /// The length, s.
     pub length: f64,
     /// Mode by mode.
-    pub modes: Vec<ModeStep>,
+    pub modes: Vec<ModeStep<S>>,
     /// Per force on the tip.
-    pub force: TipColumns,
+    pub force: TipColumns<S>,
     /// Per base acceleration acting on the modes as `participation`.
-    pub acceleration: TipColumns,
+    pub acceleration: TipColumns<S>,
     /// Of the generator.
-    pub turns: Turns,
+    pub turns: Turns<S>,
     /// Per force on the tip that the nodal polynomial misses.
     pub force_error: ErrorRows,
     /// Per base acceleration that the nodal polynomial misses.
     pub acceleration_error: ErrorRows,
 }
 
-impl StepCoefficients {
+impl<const S: usize> TipColumns<S> {
+    const ZERO: Self = Self {
+        displacement: [[0.0; S]; S],
+        velocity: [[0.0; S]; S],
+    };
+
+    fn add(&mut self, node: usize, factor: f64, displacement: &[f64], velocity: &[f64]) {
+        for (columns, values) in [(&mut self.displacement, displacement), (&mut self.velocity, velocity)] {
+            for (column, value) in columns.iter_mut().zip(values) {
+                set(column, node, |sum| sum + factor * value);
+            }
+        }
+    }
+}
+
+impl ErrorRows {
+    fn add(&mut self, factor: f64, displacement: &[f64], velocity: &[f64]) {
+        for (sums, values) in [(&mut self.displacement, displacement), (&mut self.velocity, velocity)] {
+            sums.iter_mut()
+                .zip(values)
+                .for_each(|(sum, value)| *sum += factor * value);
+        }
+    }
+}
+
+impl<const S: usize> StepCoefficients<S> {
     /// Room for the modes, no length yet.
     fn empty(modes: usize) -> Self {
+        let mode = ModeStep {
+            tip_from_q: [0.0; S],
+            tip_from_v: [0.0; S],
+            rate_from_q: [0.0; S],
+            rate_from_v: [0.0; S],
+            q_from_q: 0.0,
+            q_from_v: 0.0,
+            v_from_q: 0.0,
+            v_from_v: 0.0,
+            q_from_load: [0.0; S],
+            v_from_load: [0.0; S],
+        };
         Self {
             length: 0.0,
-            modes: vec![ModeStep::default(); modes],
-            force: TipColumns::default(),
-            acceleration: TipColumns::default(),
-            turns: Turns::default(),
+            modes: vec![mode; modes],
+            force: TipColumns::ZERO,
+            acceleration: TipColumns::ZERO,
+            turns: Turns::none(),
             force_error: ErrorRows::default(),
             acceleration_error: ErrorRows::default(),
         }
     }
 
     /// Computes the coefficients of the length in place.
-    fn fill(&mut self, length: f64, modes: &[Mode], generator: &Generator, collocation: &Collocation) {
+    fn fill(&mut self, length: f64, model: &Model, collocation: &Collocation<S>) {
         self.length = length;
-        self.turns = generator.turns(length, &collocation.nodes);
-        self.force = TipColumns::default();
-        self.acceleration = TipColumns::default();
+        self.turns = model.generator.turns(length, &collocation.nodes);
+        self.force = TipColumns::ZERO;
+        self.acceleration = TipColumns::ZERO;
         self.force_error = ErrorRows::default();
         self.acceleration_error = ErrorRows::default();
-        for (mode, step) in modes.iter().zip(&mut self.modes) {
+        for (mode, step) in model.modes.iter().zip(&mut self.modes) {
             let tip = mode.tip;
-            for (row, &node) in collocation.nodes.iter().enumerate() {
-                let response = Response::new(mode.omega_squared, mode.damping, node * length);
-                let set = |values: &mut Nodal, value: f64| values.iter_mut().skip(row).take(1).for_each(|v| *v = value);
-                set(&mut step.tip_from_q, tip * response.q_from_q);
-                set(&mut step.tip_from_v, tip * response.q_from_v);
-                set(&mut step.rate_from_q, tip * response.v_from_q);
-                set(&mut step.rate_from_v, tip * response.v_from_v);
-                let (displacement, velocity) = shape_responses(&response, node, length, collocation);
-                add_row(&mut self.force, row, tip * tip, &displacement, &velocity);
-                add_row(
-                    &mut self.acceleration,
-                    row,
-                    tip * mode.participation,
-                    &displacement,
-                    &velocity,
-                );
+            for (node, &x) in collocation.nodes.iter().enumerate() {
+                let response = Response::new(mode.omega_squared, mode.damping, x * length, S);
+                set(&mut step.tip_from_q, node, |_| tip * response.q_from_q);
+                set(&mut step.tip_from_v, node, |_| tip * response.q_from_v);
+                set(&mut step.rate_from_q, node, |_| tip * response.v_from_q);
+                set(&mut step.rate_from_v, node, |_| tip * response.v_from_v);
+                let (displacement, velocity) = shape_responses(&response, x, length, collocation, S);
+                self.force.add(node, tip * tip, &displacement, &velocity);
+                self.acceleration
+                    .add(node, tip * mode.participation, &displacement, &velocity);
             }
-            let response = Response::new(mode.omega_squared, mode.damping, length);
+            let response = Response::new(mode.omega_squared, mode.damping, length, S + 2);
             step.q_from_q = response.q_from_q;
             step.q_from_v = response.q_from_v;
             step.v_from_q = response.v_from_q;
             step.v_from_v = response.v_from_v;
-            let (displacement, velocity) = shape_responses(&response, 1.0, length, collocation);
-            copy(&mut step.q_from_load, &displacement);
-            copy(&mut step.v_from_load, &velocity);
-            add_error(&mut self.force_error, tip * tip, &displacement, &velocity);
-            add_error(
-                &mut self.acceleration_error,
-                tip * mode.participation,
-                &displacement,
-                &velocity,
-            );
+            let (displacement, velocity) = shape_responses(&response, 1.0, length, collocation, S + 2);
+            let ((load_q, error_q), (load_v, error_v)) = (displacement.split_at(S), velocity.split_at(S));
+            step.q_from_load
+                .iter_mut()
+                .zip(load_q)
+                .for_each(|(to, from)| *to = *from);
+            step.v_from_load
+                .iter_mut()
+                .zip(load_v)
+                .for_each(|(to, from)| *to = *from);
+            self.force_error.add(tip * tip, error_q, error_v);
+            self.acceleration_error.add(tip * mode.participation, error_q, error_v);
         }
     }
 }
 
-/// Displacement and velocity of a mode at `x` (in steps) for each load shape.
-fn shape_responses(
+fn set<const S: usize>(values: &mut Nodal<S>, node: usize, value: impl Fn(f64) -> f64) {
+    if let Some(entry) = values.get_mut(node) {
+        *entry = value(*entry);
+    }
+}
+
+/// Displacement and velocity of a mode at `x` (in steps) for each of the first `count` load shapes, whose degrees are below
+/// `count`.
+fn shape_responses<const S: usize>(
     response: &Response,
     x: f64,
     length: f64,
-    collocation: &Collocation,
-) -> ([f64; SHAPES], [f64; SHAPES]) {
+    collocation: &Collocation<S>,
+    count: usize,
+) -> ([f64; MAX_SHAPES], [f64; MAX_SHAPES]) {
     let t = x * length;
-    let mut displacement = [0.0; SHAPES];
-    let mut velocity = [0.0; SHAPES];
-    for ((shape, displacement), velocity) in collocation.shapes.iter().zip(&mut displacement).zip(&mut velocity) {
+    let mut displacement = [0.0; MAX_SHAPES];
+    let mut velocity = [0.0; MAX_SHAPES];
+    let shapes = collocation.shapes.iter().take(count);
+    for ((shape, displacement), velocity) in shapes.zip(&mut displacement).zip(&mut velocity) {
         let mut power = 1.0;
         let mut below = response.q_from_v / t;
-        for (coefficient, &moment) in shape.iter().zip(&response.moments) {
-            *displacement += coefficient * power * moment;
-            *velocity += coefficient * power * below;
+        let mut sizes = (0.0, 0.0);
+        for (coefficient, &moment) in shape.iter().zip(&response.moments).take(count) {
+            let terms = (coefficient * power * moment, coefficient * power * below);
+            *displacement += terms.0;
+            *velocity += terms.1;
+            sizes = (sizes.0 + terms.0.abs(), sizes.1 + terms.1.abs());
             power *= x;
             below = moment;
         }
-        *displacement *= t * t;
-        *velocity *= t;
+        // What cancels down to rounding is nothing.
+        let significant = |sum: f64, size: f64| {
+            if sum.abs() > 16.0 * f64::EPSILON * size {
+                sum
+            } else {
+                0.0
+            }
+        };
+        *displacement = t * t * significant(*displacement, sizes.0);
+        *velocity = t * significant(*velocity, sizes.1);
     }
     (displacement, velocity)
 }
 
-fn copy(to: &mut Nodal, from: &[f64]) {
-    to.iter_mut().zip(from).for_each(|(to, from)| *to = *from);
-}
-
-fn add_row(columns: &mut TipColumns, row: usize, factor: f64, displacement: &[f64], velocity: &[f64]) {
-    let add = |columns: &mut [Nodal; NODES], values: &[f64]| {
-        for (column, value) in columns.iter_mut().zip(values) {
-            column
-                .iter_mut()
-                .skip(row)
-                .take(1)
-                .for_each(|sum| *sum += factor * value);
-        }
-    };
-    add(&mut columns.displacement, displacement);
-    add(&mut columns.velocity, velocity);
-}
-
-fn add_error(rows: &mut ErrorRows, factor: f64, displacement: &[f64], velocity: &[f64]) {
-    let add = |sums: &mut [f64; 2], values: &[f64]| {
-        sums.iter_mut()
-            .zip(values.iter().skip(NODES))
-            .for_each(|(sum, value)| *sum += factor * value);
-    };
-    add(&mut rows.displacement, displacement);
-    add(&mut rows.velocity, velocity);
-}
-
 /// Coefficients by step length. What is in the cache never changes a result, only the time it takes.
 #[derive(Clone, Debug)]
-pub struct Cache {
-    collocation: Collocation,
-    slots: Vec<StepCoefficients>,
+pub struct Cache<const S: usize> {
+    collocation: Collocation<S>,
+    slots: Vec<StepCoefficients<S>>,
+    other: StepCoefficients<S>,
 }
 
-/// Slots for step lengths that come again; one more serves the lengths that do not.
+/// Slots for step lengths that come again.
 const SLOTS: usize = 64;
 
-impl Cache {
+impl<const S: usize> Cache<S> {
     /// For a model with this many modes.
     pub fn new(modes: usize) -> Self {
         Self {
             collocation: Collocation::new(),
-            slots: vec![StepCoefficients::empty(modes); SLOTS + 1],
+            slots: vec![StepCoefficients::empty(modes); SLOTS],
+            other: StepCoefficients::empty(modes),
         }
     }
 
-    /// The nodes.
-    pub fn collocation(&self) -> &Collocation {
+    /// The polynomials.
+    pub fn collocation(&self) -> &Collocation<S> {
         &self.collocation
     }
 
     /// The coefficients of the length for the model; `recurring` says whether to keep them for later.
-    pub fn get(&mut self, length: f64, recurring: bool, model: &Model) -> (&StepCoefficients, &Collocation) {
-        let slot = if recurring {
-            (length.to_bits().wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 58) as usize % SLOTS
-        } else {
-            SLOTS
-        };
-        let Self { collocation, slots } = self;
-        let slot = slot.min(slots.len() - 1);
-        #[expect(
-            clippy::indexing_slicing,
-            reason = "the slot is below the length, see the line above"
-        )]
-        let entry = &mut slots[slot];
+    pub fn get(&mut self, length: f64, recurring: bool, model: &Model) -> (&StepCoefficients<S>, &Collocation<S>) {
+        let Self {
+            collocation,
+            slots,
+            other,
+        } = self;
+        let slot = (length.to_bits().wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 58) as usize;
+        let entry = slots.get_mut(slot).filter(|_| recurring).unwrap_or(other);
         if entry.length.to_bits() != length.to_bits() {
-            entry.fill(length, &model.modes, &model.generator, collocation);
+            entry.fill(length, model, collocation);
         }
         (entry, collocation)
     }

@@ -1,86 +1,92 @@
 //! The polynomial in time that stands for contact force and base acceleration within a step.
+//!
+//! A step has `S` Gauss nodes: eight for long steps, four where a short one is wanted (a communication step of a
+//! microsecond, the time just after a blow).
 
 use crate::math::legendre;
 
-/// Gauss nodes in a step.
-pub const NODES: usize = 4;
+/// Nodes of a short step.
+pub const SHORT: usize = 4;
+/// Nodes of a long step.
+pub const LONG: usize = 8;
+/// Largest number of load shapes: one for each node, two for the error estimate.
+pub const MAX_SHAPES: usize = LONG + 2;
 
 /// A value at each node.
-pub type Nodal = [f64; NODES];
+pub type Nodal<const S: usize> = [f64; S];
 
-/// A polynomial through the nodes and the end of a step, by its coefficients about the end: it predicts the next step.
-pub type Prediction = [f64; NODES + 1];
+/// Nodes that a flat prediction goes through, beside the end.
+const FLAT: usize = 3;
 
-/// Number of load shapes: one for each node, two for the error estimate.
-pub const SHAPES: usize = NODES + 2;
+/// A polynomial through the end and nodes of a step, by its coefficients about the end: it predicts the next step.
+pub type Prediction = [f64; LONG + 1];
 
-/// Nodes on [0, 1], and the shapes as polynomials in `x = t / h`.
-#[derive(Clone, Debug)]
-pub struct Collocation {
-    /// Nodes, ascending.
-    pub nodes: Nodal,
-    /// Coefficients of `x^m / m!`, m = 0, 1, ..., of: the Lagrange polynomials of the nodes, then `P(2x - 1)` and
-    /// `(2x - 1) P(2x - 1)`, where `P` is the Legendre polynomial that vanishes at the nodes.
-    pub shapes: [[f64; SHAPES]; SHAPES],
-    /// Lagrange polynomials at the start and the end of the step.
-    pub at_start: Nodal,
-    /// See [`Collocation::at_start`].
-    pub at_end: Nodal,
-    /// Row by row the coefficients of y^0, y^1, ..., `y = x - 1`, of the polynomial that is 1 at one of the nodes or (the
-    /// last row) at the end of the step, and 0 at the others.
-    prediction: [Prediction; NODES + 1],
+/// Two predictions of the force over the next step, one through all nodes and one through the last few, and which of the
+/// two was the better one last time.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Predictions {
+    steep: Prediction,
+    flat: Prediction,
+    use_flat: bool,
 }
 
-impl Collocation {
+/// The polynomials of a step with `S` nodes.
+#[derive(Clone, Debug)]
+pub struct Collocation<const S: usize> {
+    /// Nodes on [0, 1], ascending.
+    pub nodes: Nodal<S>,
+    /// Coefficients of `x^m / m!`, m = 0, 1, ..., `x = t / h`, of the S + 2 load shapes: the Lagrange polynomials of the
+    /// nodes, then `P(2x - 1)` and `(2x - 1) P(2x - 1)`, where `P` is the Legendre polynomial that vanishes at the nodes.
+    pub shapes: Vec<[f64; MAX_SHAPES]>,
+    /// Lagrange polynomials at the start and the end of the step.
+    pub at_start: Nodal<S>,
+    /// See [`Collocation::at_start`].
+    pub at_end: Nodal<S>,
+    /// Row by row the coefficients of y^0, y^1, ..., `y = x - 1`, of the polynomial that is 1 at one of the nodes or (the
+    /// last row) at the end of the step, and 0 at the others.
+    steep: Vec<Prediction>,
+    /// The same with the last three nodes and the end alone, which long extrapolation suits better.
+    flat: Vec<Prediction>,
+}
+
+impl<const S: usize> Collocation<S> {
     /// The nodes and shapes.
     pub fn new() -> Self {
-        let mut nodes = [0.0; NODES];
-        for (node, (x, _)) in nodes.iter_mut().zip(legendre::gauss(NODES)) {
+        let mut nodes = [0.0; S];
+        for (node, (x, _)) in nodes.iter_mut().zip(legendre::gauss(S)) {
             *node = f64::midpoint(1.0, x);
         }
-        let mut shapes = [[0.0; SHAPES]; SHAPES];
-        for (shape, &own) in shapes.iter_mut().zip(&nodes) {
-            let others = nodes.iter().filter(|&&node| node != own);
-            let scale: f64 = others.clone().map(|node| own - node).product();
-            *shape = others.fold(constant(1.0 / scale), |shape, &node| times(shape, 1.0, -node));
-        }
+        let through_nodes = lagrange::<MAX_SHAPES>(&nodes);
         // P(2x - 1) is the product of its linear factors, 1 at x = 1.
-        let scale: f64 = nodes.iter().map(|node| 1.0 - node).product();
-        let legendre = nodes
-            .iter()
-            .fold(constant(1.0 / scale), |shape, &node| times(shape, 1.0, -node));
-        for (shape, value) in shapes
-            .iter_mut()
-            .skip(NODES)
-            .zip([legendre, times(legendre, 2.0, -1.0)])
-        {
-            *shape = value;
-        }
-        let mut at_start = [0.0; NODES];
-        let mut at_end = [0.0; NODES];
-        for ((start, end), shape) in at_start.iter_mut().zip(&mut at_end).zip(&shapes) {
+        let legendre = nodes.iter().fold(one(), |shape, node| {
+            times(shape, 1.0 / (1.0 - node), -node / (1.0 - node))
+        });
+        let mut at_start = [0.0; S];
+        let mut at_end = [0.0; S];
+        for ((start, end), shape) in at_start.iter_mut().zip(&mut at_end).zip(&through_nodes) {
             *start = shape.first().copied().unwrap_or_default();
             *end = shape.iter().sum();
         }
-        for shape in &mut shapes {
-            let mut factorial = 1.0;
-            for (m, coefficient) in shape.iter_mut().enumerate() {
-                *coefficient *= factorial;
-                factorial *= (m + 1) as f64;
-            }
-        }
-        let prediction = prediction_basis(&nodes);
+        let shapes = through_nodes
+            .into_iter()
+            .chain([legendre, times(legendre, 2.0, -1.0)])
+            .map(by_factorials)
+            .collect();
+        let about_end: Vec<_> = nodes.iter().map(|node| node - 1.0).chain([0.0]).collect();
+        let steep = lagrange(&about_end);
+        let flat = lagrange(about_end.get(S - FLAT..).unwrap_or_default());
         Self {
             nodes,
             shapes,
             at_start,
             at_end,
-            prediction,
+            steep,
+            flat,
         }
     }
 
     /// The nodal polynomial through `values`, at `x` (in steps).
-    pub fn interpolate(&self, values: &Nodal, x: f64) -> f64 {
+    pub fn interpolate(&self, values: &Nodal<S>, x: f64) -> f64 {
         let mut sum = 0.0;
         for (value, &own) in values.iter().zip(&self.nodes) {
             let others = self.nodes.iter().filter(|&&node| node != own);
@@ -89,19 +95,45 @@ impl Collocation {
         sum
     }
 
-    /// The polynomial through the values at the nodes and at the end.
-    pub fn prediction(&self, values: &Nodal, end: f64) -> Prediction {
-        let mut sum = [0.0; NODES + 1];
-        for (value, row) in values.iter().chain([&end]).zip(&self.prediction) {
-            for (sum, coefficient) in sum.iter_mut().zip(row) {
-                *sum += value * coefficient;
+    /// The predictions from the values at the nodes and at the end of a step, after those that led to it, which held for a
+    /// step `ratio` times as long as the one before.
+    pub fn predictions(&self, values: &Nodal<S>, end: f64, before: &Predictions, ratio: f64) -> Predictions {
+        let through = |basis: &[Prediction], values: &mut dyn Iterator<Item = &f64>| {
+            let mut sum = [0.0; LONG + 1];
+            for (value, row) in values.zip(basis) {
+                for (sum, coefficient) in sum.iter_mut().zip(row) {
+                    *sum += value * coefficient;
+                }
             }
+            sum
+        };
+        let wrong = |prediction| {
+            let predicted = self.evaluate(prediction, ratio);
+            predicted
+                .iter()
+                .zip(values)
+                .fold(0.0_f64, |worst, (a, b)| worst.max((a - b).abs()))
+        };
+        Predictions {
+            steep: through(&self.steep, &mut values.iter().chain([&end])),
+            flat: through(&self.flat, &mut values.iter().skip(S - FLAT).chain([&end])),
+            use_flat: ratio > 0.0 && wrong(&before.flat) < wrong(&before.steep),
         }
-        sum
     }
 
-    /// Values of the prediction at the nodes of a step `ratio` times as long as the one it is from.
-    pub fn predict(&self, prediction: &Prediction, ratio: f64) -> Nodal {
+    /// Values predicted at the nodes of a step `ratio` times as long as the one the predictions are from.
+    pub fn predict(&self, predictions: &Predictions, ratio: f64) -> Nodal<S> {
+        self.evaluate(
+            if predictions.use_flat {
+                &predictions.flat
+            } else {
+                &predictions.steep
+            },
+            ratio,
+        )
+    }
+
+    fn evaluate(&self, prediction: &Prediction, ratio: f64) -> Nodal<S> {
         self.nodes.map(|node| {
             let y = node * ratio;
             prediction
@@ -112,46 +144,35 @@ impl Collocation {
     }
 }
 
-/// The Lagrange polynomials of the nodes and the end, about the end.
-fn prediction_basis(nodes: &Nodal) -> [Prediction; NODES + 1] {
-    let mut points = [0.0; NODES + 1];
-    for (point, node) in points.iter_mut().zip(nodes) {
-        *point = node - 1.0;
-    }
-    points.map(|own| {
-        let mut row = [0.0; NODES + 1];
-        if let Some(first) = row.first_mut() {
-            *first = 1.0;
-        }
-        for &point in points.iter().filter(|&&point| point != own) {
-            // Times (y - point) / (own - point).
-            let mut below = 0.0;
-            for coefficient in &mut row {
-                let value = (below - point * *coefficient) / (own - point);
-                below = *coefficient;
-                *coefficient = value;
-            }
-        }
-        row
-    })
-}
-
-impl Default for Collocation {
+impl<const S: usize> Default for Collocation<S> {
     fn default() -> Self {
         Self::new()
     }
 }
 
-fn constant(value: f64) -> [f64; SHAPES] {
-    let mut shape = [0.0; SHAPES];
+/// Coefficients of the polynomials that are 1 at one of the points and 0 at the others.
+fn lagrange<const N: usize>(points: &[f64]) -> Vec<[f64; N]> {
+    points
+        .iter()
+        .map(|own| {
+            let others = points.iter().filter(|point| *point != own);
+            others.fold(one(), |shape, point| {
+                times(shape, 1.0 / (own - point), -point / (own - point))
+            })
+        })
+        .collect()
+}
+
+fn one<const N: usize>() -> [f64; N] {
+    let mut shape = [0.0; N];
     if let Some(first) = shape.first_mut() {
-        *first = value;
+        *first = 1.0;
     }
     shape
 }
 
 /// The polynomial times `a x + b`.
-fn times(shape: [f64; SHAPES], a: f64, b: f64) -> [f64; SHAPES] {
+fn times<const N: usize>(shape: [f64; N], a: f64, b: f64) -> [f64; N] {
     let mut below = 0.0;
     shape.map(|coefficient| {
         let value = b * coefficient + a * below;
@@ -160,7 +181,17 @@ fn times(shape: [f64; SHAPES], a: f64, b: f64) -> [f64; SHAPES] {
     })
 }
 
+/// Coefficients of `x^m / m!` instead of `x^m`.
+fn by_factorials(mut shape: [f64; MAX_SHAPES]) -> [f64; MAX_SHAPES] {
+    let mut factorial = 1.0;
+    for (m, coefficient) in shape.iter_mut().enumerate() {
+        *coefficient *= factorial;
+        factorial *= (m + 1) as f64;
+    }
+    shape
+}
+
 /// Scalar product of two sets of nodal values.
-pub fn dot(a: &Nodal, b: &Nodal) -> f64 {
+pub fn dot<const S: usize>(a: &Nodal<S>, b: &Nodal<S>) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -1,10 +1,8 @@
 //! One step: the nodal contact forces and the motion they give.
 
-use nalgebra::{SMatrix, SVector};
-
 use crate::model::{ModeStates, Model, State};
 use crate::transient::coefficients::{ErrorRows, StepCoefficients};
-use crate::transient::collocation::{Collocation, NODES, Nodal, dot};
+use crate::transient::collocation::{Collocation, Nodal, dot};
 
 /// What drives the contact over a communication step.
 #[derive(Clone, Copy, Debug)]
@@ -17,13 +15,13 @@ pub struct Drive {
 
 /// A step computed but not yet taken.
 #[derive(Clone, Copy, Debug)]
-pub struct Trial {
+pub struct Trial<const S: usize> {
     /// Nodal forces as deviation from the preload force, N.
-    pub forces: Nodal,
+    pub forces: Nodal<S>,
     /// Indentation at the nodes as deviation from the preload, m.
-    pub indentations: Nodal,
+    pub indentations: Nodal<S>,
     /// Its velocity at the nodes, m/s.
-    pub rates: Nodal,
+    pub rates: Nodal<S>,
     /// Displacement of the fixed contact at the end, m.
     pub support: f64,
     /// Indentation at the end as deviation from the preload, m.
@@ -43,15 +41,15 @@ impl Model {
     /// The step from `state` with the given coefficients, on the branch the state is on, with the modes at its end in
     /// `end_modes`; `None` where Newton's method does not converge. `newton` is the largest last correction of a nodal
     /// force, N.
-    pub fn trial(
+    pub fn trial<const S: usize>(
         &self,
         state: &State,
         drive: &Drive,
-        step: &StepCoefficients,
-        collocation: &Collocation,
+        step: &StepCoefficients<S>,
+        collocation: &Collocation<S>,
         newton: f64,
         end_modes: &mut ModeStates,
-    ) -> Option<Trial> {
+    ) -> Option<Trial<S>> {
         let h = step.length;
         let generated = self.generator.over_step(state.time, &step.turns);
         let accelerations = generated.nodes.map(|generated| drive.acceleration + generated);
@@ -60,7 +58,7 @@ impl Model {
         let mut free = collocation
             .nodes
             .map(|node| state.support + drive.support_rate * (node * h));
-        let mut free_rate = [drive.support_rate; NODES];
+        let mut free_rate = [drive.support_rate; S];
         for (mode, row) in state.modes.iter().zip(&step.modes) {
             subtract(&mut free, &row.tip_from_q, mode.q, &row.tip_from_v, mode.v);
             subtract(&mut free_rate, &row.rate_from_q, mode.q, &row.rate_from_v, mode.v);
@@ -71,7 +69,7 @@ impl Model {
         let (forces, iterations) = if state.closed {
             self.closed_forces(state, step, collocation, &free, &free_rate, newton)?
         } else {
-            ([-self.preload.force; NODES], 0)
+            ([-self.preload.force; S], 0)
         };
         let (indentations, rates) = at_nodes(step, &free, &free_rate, &forces);
 
@@ -89,8 +87,8 @@ impl Model {
         }
 
         // What the nodal polynomials miss at both ends of the step belongs to P(2x-1) and (2x-1) P(2x-1).
-        let missed = |values: &Nodal, start: f64, end: f64| {
-            let sign = if NODES.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let missed = |values: &Nodal<S>, start: f64, end: f64| {
+            let sign = if S.is_multiple_of(2) { 1.0 } else { -1.0 };
             let start = sign * (start - dot(values, &collocation.at_start));
             let end = end - dot(values, &collocation.at_end);
             [f64::midpoint(end, start), 0.5 * (end - start)]
@@ -116,7 +114,7 @@ impl Model {
         let (base_d, base_r) = wrong(&step.acceleration_error, missed_acceleration);
         let (wrong_d, wrong_r) = (base_d - force_d, base_r - force_r);
         let error = if state.closed {
-            let last = |columns: &[Nodal; NODES]| columns.iter().filter_map(|column| column.last()).sum::<f64>();
+            let last = |columns: &[Nodal<S>; S]| columns.iter().filter_map(|column| column.last()).sum::<f64>();
             let gain =
                 end_law.stiffness * last(&step.force.displacement) + end_law.damping * last(&step.force.velocity);
             (end_law.stiffness * wrong_d + end_law.damping * wrong_r).abs() / (1.0 + gain.max(0.0))
@@ -137,25 +135,25 @@ impl Model {
     }
 
     /// Newton's method for the nodal forces on the closed branch; with the number of iterations.
-    fn closed_forces(
+    fn closed_forces<const S: usize>(
         &self,
         state: &State,
-        step: &StepCoefficients,
-        collocation: &Collocation,
-        free: &Nodal,
-        free_rate: &Nodal,
+        step: &StepCoefficients<S>,
+        collocation: &Collocation<S>,
+        free: &Nodal<S>,
+        free_rate: &Nodal<S>,
         newton: f64,
-    ) -> Option<(Nodal, u64)> {
+    ) -> Option<(Nodal<S>, u64)> {
         let mut forces = if state.last_step > 0.0 {
-            collocation.predict(&state.prediction, step.length / state.last_step)
+            collocation.predict(&state.predictions, step.length / state.last_step)
         } else {
-            [state.force - self.preload.force; NODES]
+            [state.force - self.preload.force; S]
         };
         let d0 = self.preload.indentation;
         for iteration in 1..=ITERATIONS {
             let (indentations, rates) = at_nodes(step, free, free_rate, &forces);
             let mut residual = forces;
-            let (mut stiffness, mut damping) = ([0.0; NODES], [0.0; NODES]);
+            let (mut stiffness, mut damping) = ([0.0; S], [0.0; S]);
             for ((((residual, stiffness), damping), d), rate) in residual
                 .iter_mut()
                 .zip(&mut stiffness)
@@ -192,43 +190,44 @@ impl Model {
     }
 }
 
-/// Solves `(1 + A) x = b`, `A` column by column: Gauss-Jordan elimination, whose inner loops run down columns, as long as
-/// the pivots are far from zero, which they are for all but violent steps; else with pivoting.
+/// Solves `(1 + A) x = b`, `A` column by column, by Gauss-Jordan elimination, whose inner loops run down columns; rows are
+/// exchanged only where a pivot is small, which happens in violent steps alone. `None` where the matrix is singular.
 #[expect(
     clippy::indexing_slicing,
     reason = "every index runs over the fixed size of the arrays"
 )]
-fn solve(columns: [Nodal; NODES], right: Nodal) -> Option<Nodal> {
-    let mut a = columns;
+fn solve<const S: usize>(mut a: [Nodal<S>; S], mut x: Nodal<S>) -> Option<Nodal<S>> {
     for (k, column) in a.iter_mut().enumerate() {
         column[k] += 1.0;
     }
-    let mut x = right;
-    for p in 0..NODES {
-        let pivot = a[p];
-        if pivot[p].is_nan() || pivot[p].abs() < 1e-2 {
-            let matrix = SMatrix::<f64, NODES, NODES>::from(columns) + SMatrix::<f64, NODES, NODES>::identity();
-            let solution = matrix.lu().solve(&SVector::from(right))?;
-            return solution.iter().all(|x| x.is_finite()).then(|| solution.into());
+    for p in 0..S {
+        if a[p][p].abs() < 0.1 {
+            let largest = (p..S).max_by(|i, j| a[p][*i].abs().total_cmp(&a[p][*j].abs()))?;
+            a.iter_mut().for_each(|column| column.swap(p, largest));
+            x.swap(p, largest);
         }
+        let pivot = a[p];
         let inverse = 1.0 / pivot[p];
-        let eliminate = |column: &mut Nodal| {
+        let eliminate = |column: &mut Nodal<S>| {
             let share = column[p] * inverse;
-            for k in 0..NODES {
+            for k in 0..S {
                 column[k] -= pivot[k] * share;
             }
             column[p] = share;
         };
-        for column in a.iter_mut().skip(p + 1) {
-            eliminate(column);
-        }
+        a.iter_mut().skip(p + 1).for_each(eliminate);
         eliminate(&mut x);
     }
-    Some(x)
+    x.iter().all(|x| x.is_finite()).then_some(x)
 }
 
 /// Indentation and its velocity at the nodes under the nodal forces.
-fn at_nodes(step: &StepCoefficients, free: &Nodal, free_rate: &Nodal, forces: &Nodal) -> (Nodal, Nodal) {
+fn at_nodes<const S: usize>(
+    step: &StepCoefficients<S>,
+    free: &Nodal<S>,
+    free_rate: &Nodal<S>,
+    forces: &Nodal<S>,
+) -> (Nodal<S>, Nodal<S>) {
     let (mut indentations, mut rates) = (*free, *free_rate);
     let loads = forces.map(|force| -force);
     add_columns(&mut indentations, &step.force.displacement, &loads);
@@ -236,7 +235,7 @@ fn at_nodes(step: &StepCoefficients, free: &Nodal, free_rate: &Nodal, forces: &N
     (indentations, rates)
 }
 
-fn add_columns(values: &mut Nodal, columns: &[Nodal; NODES], loads: &Nodal) {
+fn add_columns<const S: usize>(values: &mut Nodal<S>, columns: &[Nodal<S>; S], loads: &Nodal<S>) {
     for (column, load) in columns.iter().zip(loads) {
         for (value, entry) in values.iter_mut().zip(column) {
             *value += entry * load;
@@ -244,7 +243,7 @@ fn add_columns(values: &mut Nodal, columns: &[Nodal; NODES], loads: &Nodal) {
     }
 }
 
-fn subtract(values: &mut Nodal, a: &Nodal, x: f64, b: &Nodal, y: f64) {
+fn subtract<const S: usize>(values: &mut Nodal<S>, a: &Nodal<S>, x: f64, b: &Nodal<S>, y: f64) {
     for ((value, a), b) in values.iter_mut().zip(a).zip(b) {
         *value -= a * x + b * y;
     }

@@ -66,7 +66,7 @@ impl Progress {
         let cell = (-level).exp2();
         let point = ((self.done / cell).floor() + 1.0) * cell;
         let point = if point - self.done < 0.3 * cell {
-            point + cell
+            point + 0.5 * cell
         } else {
             point
         };

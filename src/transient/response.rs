@@ -8,8 +8,8 @@
 //! upward from the closed form of `G` where the oscillator is fast against the step, downward from a power series where
 //! it is slow, and for a strongly overdamped oscillator with one fast and one slow root each root apart.
 
-/// Number of load powers: the nodal polynomials and the two of the error estimate.
-pub const MOMENTS: usize = super::collocation::NODES + 2;
+/// Largest number of load powers: those of the nodal polynomials and of the two shapes of the error estimate.
+pub const MOMENTS: usize = super::collocation::MAX_SHAPES;
 
 /// The state `(q, v)` after a time `t` per initial state, and the responses to powers of time.
 #[derive(Clone, Copy, Debug)]
@@ -22,13 +22,13 @@ pub struct Response {
     pub v_from_q: f64,
     /// v per initial v.
     pub v_from_v: f64,
-    /// `Psi_m / t^(m+2)`.
+    /// `Psi_m / t^(m+2)`, as many as were asked for.
     pub moments: [f64; MOMENTS],
 }
 
 impl Response {
-    /// After the time `t` > 0 (s), for `omega_squared` > 0 (1/s2) and `damping` c >= 0 (1/s).
-    pub fn new(omega_squared: f64, damping: f64, t: f64) -> Self {
+    /// After the time `t` > 0 (s), for `omega_squared` >= 0 (1/s2) and `damping` c >= 0 (1/s), with `count` moments.
+    pub fn new(omega_squared: f64, damping: f64, t: f64, count: usize) -> Self {
         let half = damping / 2.0;
         let discriminant = half * half - omega_squared;
         // Magnitudes of the slow and the fast root, times t.
@@ -38,7 +38,7 @@ impl Response {
             let (l1, l2) = (-omega_squared / (half + w), -(half + w));
             let (e1, e2) = ((l1 * t).exp(), (l2 * t).exp());
             q_from_v = -e1 * (-2.0 * w * t).exp_m1() / (2.0 * w);
-            v_from_v = l1.mul_add(q_from_v, e2);
+            v_from_v = l1 * q_from_v + e2;
             q_from_q = e2 - l2 * q_from_v;
             (slow, fast) = (-l1 * t, -l2 * t);
         } else {
@@ -52,11 +52,11 @@ impl Response {
         }
         let (c, w) = (damping * t, omega_squared * t * t);
         let moments = if slow >= 4.0 {
-            upward(c, w, v_from_v, q_from_v / t)
+            upward(c, w, v_from_v, q_from_v / t, count)
         } else if fast <= 8.0 {
-            downward(c, w)
+            downward(c, w, count)
         } else {
-            split(slow, fast)
+            split(slow, fast, count)
         };
         Self {
             q_from_q,
@@ -69,25 +69,25 @@ impl Response {
 }
 
 /// From `Psi_(-2)` and `Psi_(-1) / t` up.
-fn upward(c: f64, w: f64, below2: f64, below1: f64) -> [f64; MOMENTS] {
-    let (mut y2, mut y1, mut power) = (below2, below1, 1.0);
-    let mut m = 0.0;
-    [0.0; MOMENTS].map(|_| {
-        let y = (power - c * y1 - y2) / w;
-        (y2, y1) = (y1, y);
+fn upward(c: f64, w: f64, below2: f64, below1: f64, count: usize) -> [f64; MOMENTS] {
+    let (mut y2, mut y1, mut power, mut m) = (below2, below1, 1.0, 0.0);
+    let mut moments = [0.0; MOMENTS];
+    for moment in moments.iter_mut().take(count) {
+        *moment = (power - c * y1 - y2) / w;
+        (y2, y1) = (y1, *moment);
         m += 1.0;
         power /= m;
-        y
-    })
+    }
+    moments
 }
 
 /// The two highest moments by their power series `sum gamma_k / (m + 2 + k)!`, the others by the recursion.
-fn downward(c: f64, w: f64) -> [f64; MOMENTS] {
-    let top = MOMENTS - 1;
+fn downward(c: f64, w: f64, count: usize) -> [f64; MOMENTS] {
+    let top = count.min(MOMENTS) - 1;
     let factorial = |n: usize| (2..=n).fold(1.0, |product, k| product * k as f64);
     let mut inverse = 1.0 / factorial(top + 1);
-    let (mut below, mut gamma) = (0.0, 1.0);
-    let (mut y, mut y_below) = (0.0, 0.0);
+    let (mut below, mut gamma) = (0.0, 1.0_f64);
+    let (mut y, mut y_below) = (0.0_f64, 0.0);
     let mut order = (top + 1) as f64;
     // Roots times t are at most 8: the terms fall below rounding after 8 e or so, 60 is far beyond.
     for _ in 0..60 {
@@ -96,58 +96,57 @@ fn downward(c: f64, w: f64) -> [f64; MOMENTS] {
         inverse /= order;
         y += gamma * inverse;
         (below, gamma) = (gamma, -c * gamma - w * below);
-        if gamma.abs() * inverse < f64::EPSILON * 1e-2 * y.abs()
-            && below.abs() * inverse < f64::EPSILON * 1e-2 * y.abs()
-        {
+        if gamma.abs().max(below.abs()) * inverse < f64::EPSILON * 1e-2 * y.abs() {
             break;
         }
     }
     let mut moments = [0.0; MOMENTS];
     let mut power = 1.0 / factorial(top);
     let mut m = top as f64;
-    for moment in moments.iter_mut().rev() {
+    for moment in moments.iter_mut().take(top + 1).rev() {
         *moment = y;
         (y, y_below) = (y_below, power - c * y_below - w * y);
         power *= m;
         m -= 1.0;
     }
-    // The loop consumed y_m, y_(m-1) in turn; what it computed below m = 0 is not needed.
     moments
 }
 
 /// Partial fractions `(E_m(l1) - E_m(l2)) / (l1 - l2)`, `E_m(l) = t^(m+1) phi_(m+1)(l t)`.
-fn split(slow: f64, fast: f64) -> [f64; MOMENTS] {
-    let a = phi(-slow);
-    let b = phi(-fast);
-    let mut moments = [0.0; MOMENTS];
-    for (moment, (a, b)) in moments.iter_mut().zip(a.into_iter().zip(b)) {
-        *moment = (a - b) / (fast - slow);
+fn split(slow: f64, fast: f64, count: usize) -> [f64; MOMENTS] {
+    let mut moments = phi(-slow, count);
+    for (moment, fast_part) in moments.iter_mut().zip(phi(-fast, count)) {
+        *moment = (*moment - fast_part) / (fast - slow);
     }
     moments
 }
 
-/// `phi_1(z) ... `, where `phi_0 = e^z` and `phi_(k+1)(z) = (phi_k(z) - 1/k!) / z`, for z < 0.
-fn phi(z: f64) -> [f64; MOMENTS] {
+/// `phi_1(z) ... phi_count(z)`, where `phi_0 = e^z` and `phi_(k+1)(z) = (phi_k(z) - 1/k!) / z`, for z < 0: downward from the
+/// series of the highest where z is small, upward elsewhere.
+fn phi(z: f64, count: usize) -> [f64; MOMENTS] {
     let mut values = [0.0; MOMENTS];
-    if z < -2.0 {
+    if z < -4.0 {
         let (mut value, mut inverse, mut k) = (z.exp(), 1.0, 0.0);
-        for entry in &mut values {
+        for entry in values.iter_mut().take(count) {
             value = (value - inverse) / z;
             *entry = value;
             k += 1.0;
             inverse /= k;
         }
     } else {
-        let mut inverse: f64 = 1.0;
-        for (k, entry) in values.iter_mut().enumerate() {
-            inverse /= (k + 1) as f64;
-            let (mut term, mut sum, mut n) = (inverse, 0.0, (k + 1) as f64);
-            while term.abs() > f64::EPSILON * 1e-2 * inverse {
-                sum += term;
-                n += 1.0;
-                term *= z / n;
-            }
-            *entry = sum;
+        let mut n = count as f64;
+        let mut inverse = (2..=count).fold(1.0, |product, k| product / k as f64);
+        let (mut term, mut value, mut order) = (inverse, 0.0, n);
+        while term.abs() > f64::EPSILON * 1e-2 * inverse {
+            value += term;
+            order += 1.0;
+            term *= z / order;
+        }
+        for entry in values.iter_mut().take(count).rev() {
+            *entry = value;
+            inverse *= n;
+            n -= 1.0;
+            value = z * value + inverse;
         }
     }
     values
@@ -164,9 +163,9 @@ mod tests {
         let panels = (1..20_000).find(|panels| f64::from(*panels) >= scale * t).unwrap();
         let mut sums = [0.0; MOMENTS];
         for panel in 0..panels {
-            for (x, weight) in legendre::gauss(12) {
+            for (x, weight) in legendre::gauss(16) {
                 let s = t * (f64::from(panel) + f64::midpoint(1.0, x)) / f64::from(panels);
-                let g = Response::new(omega_squared, damping, t - s).q_from_v;
+                let g = Response::new(omega_squared, damping, t - s, 1).q_from_v;
                 let mut power = 1.0;
                 for (m, sum) in sums.iter_mut().enumerate() {
                     *sum += weight * t / (2.0 * f64::from(panels)) * g * power / t.powi(i32::try_from(m).unwrap() + 2);
@@ -184,7 +183,7 @@ mod tests {
                 let (omega, t) = (1e4, omega_t / 1e4);
                 let (w, c) = (omega * omega, 2.0 * ratio * omega);
                 let exact = by_quadrature(w, c, t);
-                let found = Response::new(w, c, t).moments;
+                let found = Response::new(w, c, t, MOMENTS).moments;
                 for (m, (found, exact)) in found.iter().zip(exact).enumerate() {
                     // The recursions lose up to about three digits where they change direction.
                     assert!(
@@ -205,8 +204,8 @@ mod tests {
             (1e10, 8e5, 1e-5),
             (1e12, 1e9, 1e-5),
         ] {
-            let once = Response::new(w, c, t);
-            let twice = Response::new(w, c, 2.0 * t);
+            let once = Response::new(w, c, t, 1);
+            let twice = Response::new(w, c, 2.0 * t, 1);
             let q = once.q_from_q * once.q_from_q + once.q_from_v * once.v_from_q;
             let g = once.q_from_q * once.q_from_v + once.q_from_v * once.v_from_v;
             assert!((q - twice.q_from_q).abs() < 1e-14, "{w} {c} {t}");

@@ -5,8 +5,8 @@
 //! point clears zero by more than that error there is no touch; elsewhere the interval is halved.
 
 use crate::math::roots;
-use crate::transient::advance::{Cut, Integration};
-use crate::transient::collocation::NODES;
+use crate::transient::advance::{Cut, Integration, Room, Workspace};
+use crate::transient::collocation::LONG;
 use crate::transient::nodal::Trial;
 
 /// Halvings before an interval counts as an instant.
@@ -24,56 +24,109 @@ struct Sample {
 }
 
 impl Integration<'_> {
+    /// Where in the step of free flight of `length` seconds (in steps) the contact may first close: the start of the first
+    /// interval between samples in which it is not clear of it.
+    pub(super) fn first_near<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> Option<f64>
+    where
+        Workspace: Room<S>,
+    {
+        let (samples, error) = self.samples(trial, length);
+        let samples = samples.get(..S + 2).unwrap_or_default();
+        samples.windows(2).find_map(|pair| match pair {
+            [a, b] => (!self.is_open(b) || !self.is_clear(a, b, error)).then_some(a.at / length),
+            _ => None,
+        })
+    }
+
     /// Where the step of free flight of `length` seconds has to end because the contact closes, if it does.
-    pub(super) fn touchdown(&mut self, trial: &Trial, length: f64) -> Option<Cut> {
-        let sample = |at: f64, d: f64, rate: f64| Sample { at, d, rate };
-        let mut samples = [sample(0.0, self.state.indentation, self.state.indentation_rate); NODES + 2];
-        let nodes = self.workspace.cache.collocation().nodes;
-        let inner = nodes.iter().zip(&trial.indentations).zip(&trial.rates);
-        for (entry, ((node, d), rate)) in samples.iter_mut().skip(1).zip(inner) {
-            *entry = sample(node * length, *d, *rate);
-        }
-        if let Some(last) = samples.last_mut() {
-            *last = sample(length, trial.indentation, trial.rate);
-        }
-        let error = samples
-            .windows(3)
-            .filter_map(|triple| match triple {
-                [a, b, c] => Some((b.d - cubic(a, c, b.at)).abs()),
-                _ => None,
-            })
-            .fold(0.0, f64::max);
+    pub(super) fn touchdown<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> Option<Cut>
+    where
+        Workspace: Room<S>,
+    {
+        let (samples, error) = self.samples(trial, length);
+        let samples = samples.get(..S + 2).unwrap_or_default();
         let length = samples.windows(2).find_map(|pair| match pair {
-            [a, b] => self.touch_between(a, b, error, 0),
+            [a, b] => self.touch_between::<S>(a, b, error, 0),
             _ => None,
         })?;
         (length > 0.0).then_some(Cut { length, switches: true })
     }
 
-    /// The first instant between two samples (s from the start of the step) at which the contact closes; their cubic is
-    /// wrong by about `error` (m).
-    fn touch_between(&mut self, a: &Sample, b: &Sample, error: f64, depth: u32) -> Option<f64> {
+    /// Start, nodes and end of a step, and by how much the cubics between them are wrong, m.
+    fn samples<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> ([Sample; LONG + 2], f64)
+    where
+        Workspace: Room<S>,
+    {
+        let start = Sample {
+            at: 0.0,
+            d: self.state.indentation,
+            rate: self.state.indentation_rate,
+        };
+        let mut samples = [start; LONG + 2];
+        let nodes = self.collocation::<S>().nodes;
+        for (entry, ((node, &d), &rate)) in samples
+            .iter_mut()
+            .skip(1)
+            .zip(nodes.iter().zip(&trial.indentations).zip(&trial.rates))
+        {
+            *entry = Sample {
+                at: node * length,
+                d,
+                rate,
+            };
+        }
+        for entry in samples.iter_mut().skip(S + 1) {
+            *entry = Sample {
+                at: length,
+                d: trial.indentation,
+                rate: trial.rate,
+            };
+        }
+        let error = samples
+            .windows(3)
+            .take(S)
+            .filter_map(|triple| match triple {
+                [a, b, c] => Some((b.d - cubic(a, c, b.at)).abs()),
+                _ => None,
+            })
+            .fold(0.0, f64::max);
+        (samples, error)
+    }
+
+    /// Whether the contact stays open between two open samples.
+    fn is_clear(&self, a: &Sample, b: &Sample, error: f64) -> bool {
         // An overlap whose force is lost in the tolerance need not be found.
         let negligible = self.model.law.overlap(1e-3 * self.tolerance);
-        let bound = self.model.engagement(highest(a, b), a.rate.max(b.rate));
+        self.model.engagement(highest(a, b), a.rate.max(b.rate)) + error < negligible
+    }
+
+    /// The first instant between two samples (s from the start of the step) at which the contact closes; their cubic is
+    /// wrong by about `error` (m).
+    fn touch_between<const S: usize>(&mut self, a: &Sample, b: &Sample, error: f64, depth: u32) -> Option<f64>
+    where
+        Workspace: Room<S>,
+    {
         if self.is_open(b) {
-            if bound + error < negligible || depth > DEPTH {
+            if self.is_clear(a, b, error) || depth > DEPTH {
                 return None;
             }
         } else if a.rate >= 0.0 && highest(a, b) <= b.d || depth > DEPTH {
-            return Some(self.crossing(a, b));
+            return Some(self.crossing::<S>(a, b));
         }
-        let middle = self.sample(f64::midpoint(a.at, b.at));
+        let middle = self.sample::<S>(f64::midpoint(a.at, b.at));
         let error = (middle.d - cubic(a, b, middle.at)).abs();
-        self.touch_between(a, &middle, error, depth + 1)
-            .or_else(|| self.touch_between(&middle, b, error, depth + 1))
+        self.touch_between::<S>(a, &middle, error, depth + 1)
+            .or_else(|| self.touch_between::<S>(&middle, b, error, depth + 1))
     }
 
     /// The instant of closing between an open and a closed sample.
-    fn crossing(&mut self, a: &Sample, b: &Sample) -> f64 {
+    fn crossing<const S: usize>(&mut self, a: &Sample, b: &Sample) -> f64
+    where
+        Workspace: Room<S>,
+    {
         let overlap = |at: f64| {
             if at > a.at {
-                let Sample { d, rate, .. } = self.sample(at);
+                let Sample { d, rate, .. } = self.sample::<S>(at);
                 self.model.engagement(d, rate)
             } else {
                 // A flight starts at the release itself; rounding must not make it look closed.
@@ -87,7 +140,10 @@ impl Integration<'_> {
         self.model.engagement(sample.d, sample.rate) <= 0.0
     }
 
-    fn sample(&mut self, at: f64) -> Sample {
+    fn sample<const S: usize>(&mut self, at: f64) -> Sample
+    where
+        Workspace: Room<S>,
+    {
         let (d, rate) = self
             .probe(at)
             .map_or((f64::NAN, f64::NAN), |trial| (trial.indentation, trial.rate));
