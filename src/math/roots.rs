@@ -1,12 +1,18 @@
 //! Roots of scalar functions between two points where the sign differs.
 
-/// Root of `f` between `a` and `b`, to the spacing of floating-point numbers there; `None` unless `f(a)` and `f(b)`
-/// are finite and of different sign. Inverse quadratic interpolation where it is safe, bisection elsewhere.
+/// Root of `f` between `a` and `b`, to the spacing of floating-point numbers there; `None` unless `f(a)` and `f(b)` are
+/// numbers of different sign.
+pub fn bracketed(mut f: impl FnMut(f64) -> f64, a: f64, b: f64) -> Option<f64> {
+    let ends = ((a, f(a)), (b, f(b)));
+    between(f, ends.0, ends.1, 0.0)
+}
+
+/// The same where the values at the two points are known, to within `resolution`. Inverse quadratic interpolation where
+/// it is safe, bisection elsewhere.
 ///
 /// T. R. Chandrupatla, Advances in Engineering Software 28 (1997) 145.
-pub fn bracketed(mut f: impl FnMut(f64) -> f64, a: f64, b: f64) -> Option<f64> {
-    let (mut x1, mut x2) = (b, a);
-    let (mut f1, mut f2) = (f(x1), f(x2));
+pub fn between(mut f: impl FnMut(f64) -> f64, a: (f64, f64), b: (f64, f64), resolution: f64) -> Option<f64> {
+    let ((mut x2, mut f2), (mut x1, mut f1)) = (a, b);
     if f1 == 0.0 {
         return Some(x1);
     }
@@ -16,7 +22,8 @@ pub fn bracketed(mut f: impl FnMut(f64) -> f64, a: f64, b: f64) -> Option<f64> {
     if f1.is_nan() || f2.is_nan() || (f1 > 0.0) == (f2 > 0.0) {
         return None;
     }
-    let mut fraction = 0.5;
+    // The secant first: the function is nearly straight where an event is sought.
+    let mut fraction = f1 / (f1 - f2);
     // Bisection alone would need 1100 halvings at the worst, from the largest number to the smallest.
     for _ in 0..1100 {
         let x = x1 + fraction * (x2 - x1);
@@ -30,7 +37,7 @@ pub fn bracketed(mut f: impl FnMut(f64) -> f64, a: f64, b: f64) -> Option<f64> {
         }
         (x1, f1) = (x, value);
         let best = if f1.abs() < f2.abs() { x1 } else { x2 };
-        let spacing = f64::EPSILON * best.abs() / (x2 - x1).abs();
+        let spacing = (f64::EPSILON * best.abs()).max(resolution) / (x2 - x1).abs();
         if value == 0.0 || spacing > 0.5 || x1 == x2 {
             return Some(best);
         }

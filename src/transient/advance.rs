@@ -221,7 +221,7 @@ impl Integration<'_> {
     where
         Workspace: Room<S>,
     {
-        let shortest = 8.0 * f64::EPSILON * (self.progress.start.abs() + self.progress.size);
+        let shortest = 8.0 * self.resolution();
         let wanted = wanted.min(self.model.longest_step).max(shortest);
         let corner = self.model.generator.next_break(self.state.time);
         let mut target = self.progress.target(wanted, self.state.time, corner);
@@ -321,9 +321,18 @@ impl Integration<'_> {
         Workspace: Room<S>,
     {
         let (cache, _, probe) = self.workspace.parts();
-        let (step, collocation) = cache.get(length, false, self.model);
+        let (step, collocation) = if self.state.closed {
+            cache.get(length, false, self.model)
+        } else {
+            cache.flight(length, self.model)
+        };
         self.model
             .trial(self.state, &self.drive, step, collocation, 1e-2 * self.tolerance, probe)
+    }
+
+    /// Difference between instants that cannot be told apart, s.
+    pub(super) fn resolution(&self) -> f64 {
+        f64::EPSILON * (self.progress.start.abs() + self.progress.size)
     }
 
     /// The polynomials of the steps.

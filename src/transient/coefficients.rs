@@ -53,6 +53,8 @@ pub struct ErrorRows {
 pub struct StepCoefficients<const S: usize> {
     /// The length, s.
     pub length: f64,
+    /// Whether the rows for the nodes are filled in; free flight does not need them.
+    complete: bool,
     /// Mode by mode.
     pub modes: Vec<ModeStep<S>>,
     /// Per force on the tip.
@@ -109,6 +111,7 @@ impl<const S: usize> StepCoefficients<S> {
         };
         Self {
             length: 0.0,
+            complete: false,
             modes: vec![mode; modes],
             force: TipColumns::ZERO,
             acceleration: TipColumns::ZERO,
@@ -119,8 +122,9 @@ impl<const S: usize> StepCoefficients<S> {
     }
 
     /// Computes the coefficients of the length in place.
-    fn fill(&mut self, length: f64, model: &Model, collocation: &Collocation<S>) {
+    fn fill(&mut self, length: f64, complete: bool, model: &Model, collocation: &Collocation<S>) {
         self.length = length;
+        self.complete = complete;
         self.turns = model.generator.turns(length, &collocation.nodes);
         self.force = TipColumns::ZERO;
         self.acceleration = TipColumns::ZERO;
@@ -128,7 +132,7 @@ impl<const S: usize> StepCoefficients<S> {
         self.acceleration_error = ErrorRows::default();
         for (mode, step) in model.modes.iter().zip(&mut self.modes) {
             let tip = mode.tip;
-            for (node, &x) in collocation.nodes.iter().enumerate() {
+            for (node, &x) in collocation.nodes.iter().enumerate().filter(|_| complete) {
                 let response = Response::new(mode.omega_squared, mode.damping, x * length, S);
                 set(&mut step.tip_from_q, node, |_| tip * response.q_from_q);
                 set(&mut step.tip_from_v, node, |_| tip * response.q_from_v);
@@ -240,9 +244,16 @@ impl<const S: usize> Cache<S> {
         } = self;
         let slot = (length.to_bits().wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 58) as usize;
         let entry = slots.get_mut(slot).filter(|_| recurring).unwrap_or(other);
-        if entry.length.to_bits() != length.to_bits() {
-            entry.fill(length, model, collocation);
+        if entry.length.to_bits() != length.to_bits() || !entry.complete {
+            entry.fill(length, true, model, collocation);
         }
         (entry, collocation)
+    }
+
+    /// The coefficients of a step of free flight that is only to be looked at.
+    pub fn flight(&mut self, length: f64, model: &Model) -> (&StepCoefficients<S>, &Collocation<S>) {
+        let Self { collocation, other, .. } = self;
+        other.fill(length, false, model, collocation);
+        (other, collocation)
     }
 }

@@ -14,28 +14,27 @@ impl Integration<'_> {
     where
         Workspace: Room<S>,
     {
-        let end = self.probe::<S>(latest);
-        if end.is_some_and(|end| self.model.engagement(end.indentation, end.rate) > 0.0) {
+        let model = self.model;
+        let engagement =
+            |trial: Option<Trial<S>>| trial.map_or(f64::NAN, |trial| model.engagement(trial.indentation, trial.rate));
+        let end = engagement(self.probe(latest));
+        if end > 0.0 {
             // The polynomial dips below zero, the force does not: the next step starts here, where it is lowest.
             return (latest < length).then_some(Cut {
                 length: latest,
                 switches: false,
             });
         }
-        let start = self
-            .model
-            .engagement(self.state.indentation, self.state.indentation_rate);
-        let engagement = |at: f64| {
-            if at > 0.0 {
-                self.probe::<S>(at)
-                    .map_or(f64::NAN, |trial| self.model.engagement(trial.indentation, trial.rate))
-            } else {
-                // The contact is closed there; just after a touch rounding could hide it.
-                start.max(f64::MIN_POSITIVE)
-            }
-        };
-        let length = roots::bracketed(engagement, 0.0, latest).unwrap_or(latest);
-        Some(Cut { length, switches: true })
+        // The contact is closed at the start; just after a touch rounding could hide it.
+        let start = model
+            .engagement(self.state.indentation, self.state.indentation_rate)
+            .max(f64::MIN_POSITIVE);
+        let resolution = self.resolution();
+        let length = roots::between(|at| engagement(self.probe(at)), (0.0, start), (latest, end), resolution);
+        Some(Cut {
+            length: length.unwrap_or(latest),
+            switches: true,
+        })
     }
 
     /// Where in the step (in steps) the contact first looks open: a node or the end with no force left, or a place where

@@ -124,16 +124,13 @@ impl Integration<'_> {
     where
         Workspace: Room<S>,
     {
-        let overlap = |at: f64| {
-            if at > a.at {
-                let Sample { d, rate, .. } = self.sample::<S>(at);
-                self.model.engagement(d, rate)
-            } else {
-                // A flight starts at the release itself; rounding must not make it look closed.
-                -f64::MIN_POSITIVE
-            }
-        };
-        roots::bracketed(overlap, a.at, b.at).unwrap_or(b.at)
+        let model = self.model;
+        let engagement = |sample: &Sample| model.engagement(sample.d, sample.rate);
+        // A flight starts at the release itself; rounding must not make it look closed.
+        let start = engagement(a).min(-f64::MIN_POSITIVE);
+        let resolution = self.resolution();
+        let overlap = |at| engagement(&self.sample::<S>(at));
+        roots::between(overlap, (a.at, start), (b.at, engagement(b)), resolution).unwrap_or(b.at)
     }
 
     fn is_open(&self, sample: &Sample) -> bool {
