@@ -13,8 +13,6 @@ pub struct Accelerations<const S: usize> {
     pub start: f64,
     /// At the nodes.
     pub nodes: Nodal<S>,
-    /// At the end.
-    pub end: f64,
 }
 
 /// Sines and cosines of the angles the generator turns through from the start of a step: they depend on its length alone.
@@ -24,8 +22,6 @@ pub struct Turns<const S: usize> {
     sin: Nodal<S>,
     /// See [`Turns::sin`].
     cos: Nodal<S>,
-    /// To the end.
-    end: (f64, f64),
 }
 
 impl<const S: usize> Turns<S> {
@@ -34,7 +30,6 @@ impl<const S: usize> Turns<S> {
         Self {
             sin: [0.0; S],
             cos: [0.0; S],
-            end: (0.0, 0.0),
         }
     }
 }
@@ -97,7 +92,6 @@ impl Generator {
                 return Accelerations {
                     start: 0.0,
                     nodes: [0.0; S],
-                    end: 0.0,
                 };
             }
             Self::Sine { .. } => self.phasor(time),
@@ -106,11 +100,7 @@ impl Generator {
         for (node, turn) in nodes.iter_mut().zip(&turns.sin) {
             *node = sin * *node + cos * turn;
         }
-        Accelerations {
-            start: sin,
-            nodes,
-            end: sin * turns.end.1 + cos * turns.end.0,
-        }
+        Accelerations { start: sin, nodes }
     }
 
     /// The turns of a step of `length` seconds with these nodes.
@@ -122,7 +112,6 @@ impl Generator {
         Turns {
             sin: nodes.map(|x| angle(x).sin()),
             cos: nodes.map(|x| angle(x).cos()),
-            end: angle(1.0).sin_cos(),
         }
     }
 

@@ -367,20 +367,19 @@ impl Integration<'_> {
         state.support = trial.support;
         state.indentation = trial.indentation;
         state.indentation_rate = trial.rate;
-        if state.closed {
-            state.force = model
-                .law
-                .force(model.preload.indentation + trial.indentation, trial.rate);
-        }
         let ratio = if state.last_step > 0.0 {
             target.length / state.last_step
         } else {
             0.0
         };
-        let end = state.force - model.preload.force;
+        let start = state.force - model.preload.force;
         state.predictions = cache
             .collocation()
-            .predictions(&trial.forces, end, &state.predictions, ratio);
+            .predictions(start, &trial.forces, &state.predictions, ratio);
+        if state.closed {
+            let force = model.preload.force + trial.forces.last().copied().unwrap_or_default();
+            state.force = if model.law.never_opens() { force } else { force.max(0.0) };
+        }
         state.last_step = target.length;
         state.steps += 1;
         state.iterations += trial.iterations;

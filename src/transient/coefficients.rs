@@ -39,13 +39,13 @@ pub struct TipColumns<const S: usize> {
     pub velocity: [Nodal<S>; S],
 }
 
-/// Displacement and velocity of the tip at the end of the step per unit of the two shapes of the error estimate.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct ErrorRows {
+/// Displacement and velocity of the tip at the nodes per unit of the shape of the error estimate.
+#[derive(Clone, Copy, Debug)]
+pub struct ErrorColumn<const S: usize> {
     /// Displacement.
-    pub displacement: [f64; 2],
+    pub displacement: Nodal<S>,
     /// Velocity.
-    pub velocity: [f64; 2],
+    pub velocity: Nodal<S>,
 }
 
 /// The coefficients of a step of one length.
@@ -64,9 +64,9 @@ pub struct StepCoefficients<const S: usize> {
     /// Of the generator.
     pub turns: Turns<S>,
     /// Per force on the tip that the nodal polynomial misses.
-    pub force_error: ErrorRows,
+    pub force_error: ErrorColumn<S>,
     /// Per base acceleration that the nodal polynomial misses.
-    pub acceleration_error: ErrorRows,
+    pub acceleration_error: ErrorColumn<S>,
 }
 
 impl<const S: usize> TipColumns<S> {
@@ -84,13 +84,15 @@ impl<const S: usize> TipColumns<S> {
     }
 }
 
-impl ErrorRows {
-    fn add(&mut self, factor: f64, displacement: &[f64], velocity: &[f64]) {
-        for (sums, values) in [(&mut self.displacement, displacement), (&mut self.velocity, velocity)] {
-            sums.iter_mut()
-                .zip(values)
-                .for_each(|(sum, value)| *sum += factor * value);
-        }
+impl<const S: usize> ErrorColumn<S> {
+    const ZERO: Self = Self {
+        displacement: [0.0; S],
+        velocity: [0.0; S],
+    };
+
+    fn add(&mut self, node: usize, factor: f64, displacement: f64, velocity: f64) {
+        set(&mut self.displacement, node, |sum| sum + factor * displacement);
+        set(&mut self.velocity, node, |sum| sum + factor * velocity);
     }
 }
 
@@ -116,8 +118,8 @@ impl<const S: usize> StepCoefficients<S> {
             force: TipColumns::ZERO,
             acceleration: TipColumns::ZERO,
             turns: Turns::none(),
-            force_error: ErrorRows::default(),
-            acceleration_error: ErrorRows::default(),
+            force_error: ErrorColumn::ZERO,
+            acceleration_error: ErrorColumn::ZERO,
         }
     }
 
@@ -128,38 +130,42 @@ impl<const S: usize> StepCoefficients<S> {
         self.turns = model.generator.turns(length, &collocation.nodes);
         self.force = TipColumns::ZERO;
         self.acceleration = TipColumns::ZERO;
-        self.force_error = ErrorRows::default();
-        self.acceleration_error = ErrorRows::default();
+        self.force_error = ErrorColumn::ZERO;
+        self.acceleration_error = ErrorColumn::ZERO;
+        // The last node is the end.
+        let skipped = if complete { 0 } else { S - 1 };
         for (mode, step) in model.modes.iter().zip(&mut self.modes) {
             let tip = mode.tip;
-            for (node, &x) in collocation.nodes.iter().enumerate().filter(|_| complete) {
-                let response = Response::new(mode.omega_squared, mode.damping, x * length, S);
+            for (node, &x) in collocation.nodes.iter().enumerate().skip(skipped) {
+                let response = Response::new(mode.omega_squared, mode.damping, x * length, S + 1);
                 set(&mut step.tip_from_q, node, |_| tip * response.q_from_q);
                 set(&mut step.tip_from_v, node, |_| tip * response.q_from_v);
                 set(&mut step.rate_from_q, node, |_| tip * response.v_from_q);
                 set(&mut step.rate_from_v, node, |_| tip * response.v_from_v);
-                let (displacement, velocity) = shape_responses(&response, x, length, collocation, S);
+                let (displacement, velocity) = shape_responses(&response, x, length, collocation);
                 self.force.add(node, tip * tip, &displacement, &velocity);
                 self.acceleration
                     .add(node, tip * mode.participation, &displacement, &velocity);
+                let last = |values: [f64; MAX_SHAPES]| values.get(S).copied().unwrap_or_default();
+                let (error_q, error_v) = (last(displacement), last(velocity));
+                self.force_error.add(node, tip * tip, error_q, error_v);
+                self.acceleration_error
+                    .add(node, tip * mode.participation, error_q, error_v);
+                if node + 1 == S {
+                    step.q_from_q = response.q_from_q;
+                    step.q_from_v = response.q_from_v;
+                    step.v_from_q = response.v_from_q;
+                    step.v_from_v = response.v_from_v;
+                    step.q_from_load
+                        .iter_mut()
+                        .zip(displacement)
+                        .for_each(|(to, from)| *to = from);
+                    step.v_from_load
+                        .iter_mut()
+                        .zip(velocity)
+                        .for_each(|(to, from)| *to = from);
+                }
             }
-            let response = Response::new(mode.omega_squared, mode.damping, length, S + 2);
-            step.q_from_q = response.q_from_q;
-            step.q_from_v = response.q_from_v;
-            step.v_from_q = response.v_from_q;
-            step.v_from_v = response.v_from_v;
-            let (displacement, velocity) = shape_responses(&response, 1.0, length, collocation, S + 2);
-            let ((load_q, error_q), (load_v, error_v)) = (displacement.split_at(S), velocity.split_at(S));
-            step.q_from_load
-                .iter_mut()
-                .zip(load_q)
-                .for_each(|(to, from)| *to = *from);
-            step.v_from_load
-                .iter_mut()
-                .zip(load_v)
-                .for_each(|(to, from)| *to = *from);
-            self.force_error.add(tip * tip, error_q, error_v);
-            self.acceleration_error.add(tip * mode.participation, error_q, error_v);
         }
     }
 }
@@ -170,24 +176,22 @@ fn set<const S: usize>(values: &mut Nodal<S>, node: usize, value: impl Fn(f64) -
     }
 }
 
-/// Displacement and velocity of a mode at `x` (in steps) for each of the first `count` load shapes, whose degrees are below
-/// `count`.
+/// Displacement and velocity of a mode at `x` (in steps) for each of the S + 1 load shapes.
 fn shape_responses<const S: usize>(
     response: &Response,
     x: f64,
     length: f64,
     collocation: &Collocation<S>,
-    count: usize,
 ) -> ([f64; MAX_SHAPES], [f64; MAX_SHAPES]) {
     let t = x * length;
     let mut displacement = [0.0; MAX_SHAPES];
     let mut velocity = [0.0; MAX_SHAPES];
-    let shapes = collocation.shapes.iter().take(count);
+    let shapes = collocation.shapes.iter();
     for ((shape, displacement), velocity) in shapes.zip(&mut displacement).zip(&mut velocity) {
         let mut power = 1.0;
         let mut below = response.q_from_v / t;
         let mut sizes = (0.0, 0.0);
-        for (coefficient, &moment) in shape.iter().zip(&response.moments).take(count) {
+        for (coefficient, &moment) in shape.iter().zip(&response.moments).take(S + 1) {
             let terms = (coefficient * power * moment, coefficient * power * below);
             *displacement += terms.0;
             *velocity += terms.1;

@@ -1,6 +1,7 @@
 //! The polynomial in time that stands for contact force and base acceleration within a step.
 //!
-//! A step has `S` Gauss nodes: eight for long steps, four where a short one is wanted (a communication step of a
+//! A step has `S` Radau nodes, the last at its end, so that the contact force there obeys the contact law exactly, however
+//! stiff its damping is (Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.5): eight for long steps, four where a short one is wanted (a communication step of a
 //! microsecond, the time just after a blow).
 
 use crate::math::legendre;
@@ -9,16 +10,16 @@ use crate::math::legendre;
 pub const SHORT: usize = 4;
 /// Nodes of a long step.
 pub const LONG: usize = 8;
-/// Largest number of load shapes: one for each node, two for the error estimate.
-pub const MAX_SHAPES: usize = LONG + 2;
+/// Largest number of load shapes: one for each node, one for the error estimate.
+pub const MAX_SHAPES: usize = LONG + 1;
 
 /// A value at each node.
 pub type Nodal<const S: usize> = [f64; S];
 
-/// Nodes that a flat prediction goes through, beside the end.
-const FLAT: usize = 3;
+/// Nodes that a flat prediction goes through.
+const FLAT: usize = 4;
 
-/// A polynomial through the end and nodes of a step, by its coefficients about the end: it predicts the next step.
+/// A polynomial through the nodes of a step, by its coefficients about the end: it predicts the next step.
 pub type Prediction = [f64; LONG + 1];
 
 /// Two predictions of the force over the next step, one through all nodes and one through the last few, and which of the
@@ -35,17 +36,15 @@ pub struct Predictions {
 pub struct Collocation<const S: usize> {
     /// Nodes on [0, 1], ascending.
     pub nodes: Nodal<S>,
-    /// Coefficients of `x^m / m!`, m = 0, 1, ..., `x = t / h`, of the S + 2 load shapes: the Lagrange polynomials of the
-    /// nodes, then `P(2x - 1)` and `(2x - 1) P(2x - 1)`, where `P` is the Legendre polynomial that vanishes at the nodes.
+    /// Coefficients of `x^m / m!`, m = 0, 1, ..., `x = t / h`, of the S + 1 load shapes: the Lagrange polynomials of the
+    /// nodes, then the polynomial of degree S that vanishes at the nodes and is 1 at the start.
     pub shapes: Vec<[f64; MAX_SHAPES]>,
-    /// Lagrange polynomials at the start and the end of the step.
+    /// Lagrange polynomials at the start of the step.
     pub at_start: Nodal<S>,
-    /// See [`Collocation::at_start`].
-    pub at_end: Nodal<S>,
-    /// Row by row the coefficients of y^0, y^1, ..., `y = x - 1`, of the polynomial that is 1 at one of the nodes or (the
-    /// last row) at the end of the step, and 0 at the others.
+    /// Row by row the coefficients of y^0, y^1, ..., `y = x - 1`, of the polynomial that is 1 at the start (the first row) or
+    /// at one of the nodes, and 0 at the others.
     steep: Vec<Prediction>,
-    /// The same with the last three nodes and the end alone, which long extrapolation suits better.
+    /// The same with the last nodes alone, which long extrapolation suits better.
     flat: Vec<Prediction>,
 }
 
@@ -53,33 +52,27 @@ impl<const S: usize> Collocation<S> {
     /// The nodes and shapes.
     pub fn new() -> Self {
         let mut nodes = [0.0; S];
-        for (node, (x, _)) in nodes.iter_mut().zip(legendre::gauss(S)) {
+        for (node, x) in nodes.iter_mut().zip(legendre::radau(S)) {
             *node = f64::midpoint(1.0, x);
         }
         let through_nodes = lagrange::<MAX_SHAPES>(&nodes);
-        // P(2x - 1) is the product of its linear factors, 1 at x = 1.
-        let legendre = nodes.iter().fold(one(), |shape, node| {
-            times(shape, 1.0 / (1.0 - node), -node / (1.0 - node))
-        });
+        let vanishing = nodes.iter().fold(one(), |shape, node| times(shape, -1.0 / node, 1.0));
         let mut at_start = [0.0; S];
-        let mut at_end = [0.0; S];
-        for ((start, end), shape) in at_start.iter_mut().zip(&mut at_end).zip(&through_nodes) {
+        for (start, shape) in at_start.iter_mut().zip(&through_nodes) {
             *start = shape.first().copied().unwrap_or_default();
-            *end = shape.iter().sum();
         }
         let shapes = through_nodes
             .into_iter()
-            .chain([legendre, times(legendre, 2.0, -1.0)])
+            .chain([vanishing])
             .map(by_factorials)
             .collect();
-        let about_end: Vec<_> = nodes.iter().map(|node| node - 1.0).chain([0.0]).collect();
+        let about_end: Vec<_> = [-1.0].into_iter().chain(nodes.iter().map(|node| node - 1.0)).collect();
         let steep = lagrange(&about_end);
-        let flat = lagrange(about_end.get(S - FLAT..).unwrap_or_default());
+        let flat = lagrange(about_end.get(S + 1 - FLAT..).unwrap_or_default());
         Self {
             nodes,
             shapes,
             at_start,
-            at_end,
             steep,
             flat,
         }
@@ -95,9 +88,9 @@ impl<const S: usize> Collocation<S> {
         sum
     }
 
-    /// The predictions from the values at the nodes and at the end of a step, after those that led to it, which held for a
+    /// The predictions from the values at the start and at the nodes of a step, after those that led to it, which held for a
     /// step `ratio` times as long as the one before.
-    pub fn predictions(&self, values: &Nodal<S>, end: f64, before: &Predictions, ratio: f64) -> Predictions {
+    pub fn predictions(&self, start: f64, values: &Nodal<S>, before: &Predictions, ratio: f64) -> Predictions {
         let through = |basis: &[Prediction], values: &mut dyn Iterator<Item = &f64>| {
             let mut sum = [0.0; LONG + 1];
             for (value, row) in values.zip(basis) {
@@ -115,8 +108,8 @@ impl<const S: usize> Collocation<S> {
                 .fold(0.0_f64, |worst, (a, b)| worst.max((a - b).abs()))
         };
         Predictions {
-            steep: through(&self.steep, &mut values.iter().chain([&end])),
-            flat: through(&self.flat, &mut values.iter().skip(S - FLAT).chain([&end])),
+            steep: through(&self.steep, &mut [&start].into_iter().chain(values)),
+            flat: through(&self.flat, &mut values.iter().skip(S - FLAT)),
             use_flat: ratio > 0.0 && wrong(&before.flat) < wrong(&before.steep),
         }
     }

@@ -1,7 +1,7 @@
 //! One step: the nodal contact forces and the motion they give.
 
 use crate::model::{ModeStates, Model, State};
-use crate::transient::coefficients::{ErrorRows, StepCoefficients};
+use crate::transient::coefficients::{ErrorColumn, StepCoefficients};
 use crate::transient::collocation::{Collocation, Nodal, dot};
 
 /// What drives the contact over a communication step.
@@ -32,6 +32,19 @@ pub struct Trial<const S: usize> {
     pub error: f64,
     /// Newton iterations spent.
     pub iterations: u64,
+}
+
+/// The nodal forces of a step on the closed branch.
+struct Solution<const S: usize> {
+    /// Deviation from the preload force, N.
+    forces: Nodal<S>,
+    iterations: u64,
+    /// Change of the last nodal force per force that the polynomial misses at the start.
+    from_force: f64,
+    /// The same per base acceleration, N per m/s2.
+    from_acceleration: f64,
+    /// Change of the law's force at the end per force on the tip throughout the step.
+    gain: f64,
 }
 
 /// Newton iterations before a step is judged too long.
@@ -66,11 +79,18 @@ impl Model {
         add_columns(&mut free, &step.acceleration.displacement, &accelerations);
         add_columns(&mut free_rate, &step.acceleration.velocity, &accelerations);
 
-        let (forces, iterations) = if state.closed {
+        let solution = if state.closed {
             self.closed_forces(state, step, collocation, &free, &free_rate, newton)?
         } else {
-            ([-self.preload.force; S], 0)
+            Solution {
+                forces: [-self.preload.force; S],
+                iterations: 0,
+                from_force: 0.0,
+                from_acceleration: 0.0,
+                gain: 0.0,
+            }
         };
+        let Solution { forces, iterations, .. } = solution;
         let (indentations, rates) = at_nodes(step, &free, &free_rate, &forces);
 
         let support = state.support + drive.support_rate * h;
@@ -86,42 +106,14 @@ impl Model {
             rate -= mode.tip * end.v;
         }
 
-        // What the nodal polynomials miss at both ends of the step belongs to P(2x-1) and (2x-1) P(2x-1).
-        let missed = |values: &Nodal<S>, start: f64, end: f64| {
-            let sign = if S.is_multiple_of(2) { 1.0 } else { -1.0 };
-            let start = sign * (start - dot(values, &collocation.at_start));
-            let end = end - dot(values, &collocation.at_end);
-            [f64::midpoint(end, start), 0.5 * (end - start)]
-        };
-        let d = self.preload.indentation + indentation;
-        let end_law = self.law.closed_branch(d, rate);
-        let missed_force = if state.closed {
-            missed(
-                &forces,
-                state.force - self.preload.force,
-                end_law.force - self.preload.force,
-            )
-        } else {
-            [0.0; 2]
-        };
-        let missed_acceleration = missed(
-            &accelerations,
-            drive.acceleration + generated.start,
-            drive.acceleration + generated.end,
+        let at_start = drive.acceleration + generated.start;
+        let error = self.error(
+            state,
+            step,
+            collocation,
+            &solution,
+            at_start - dot(&accelerations, &collocation.at_start),
         );
-        let wrong = |rows: &ErrorRows, missed: [f64; 2]| (dot2(rows.displacement, missed), dot2(rows.velocity, missed));
-        let (force_d, force_r) = wrong(&step.force_error, missed_force);
-        let (base_d, base_r) = wrong(&step.acceleration_error, missed_acceleration);
-        let (wrong_d, wrong_r) = (base_d - force_d, base_r - force_r);
-        let error = if state.closed {
-            let last = |columns: &[Nodal<S>; S]| columns.iter().filter_map(|column| column.last()).sum::<f64>();
-            let gain =
-                end_law.stiffness * last(&step.force.displacement) + end_law.damping * last(&step.force.velocity);
-            (end_law.stiffness * wrong_d + end_law.damping * wrong_r).abs() / (1.0 + gain.max(0.0))
-        } else {
-            let stiffness = self.law.tangent_stiffness(self.force_scale);
-            stiffness * (wrong_d.abs() + self.law.damping() * wrong_r.abs())
-        };
         Some(Trial {
             forces,
             indentations,
@@ -134,7 +126,37 @@ impl Model {
         })
     }
 
-    /// Newton's method for the nodal forces on the closed branch; with the number of iterations.
+    /// Estimate of what a step adds to the error of the contact force, N.
+    ///
+    /// At the nodes the polynomials are right; what they miss at the start tells how much of the shape that vanishes at the
+    /// nodes they lack. What that does to the nodal forces is known to first order ([`Solution`]). Modes slow against the step
+    /// hardly feel it at the end (the shape is orthogonal to polynomials of low degree); they see an error of twice the order,
+    /// about the square of what is missed.
+    fn error<const S: usize>(
+        &self,
+        state: &State,
+        step: &StepCoefficients<S>,
+        collocation: &Collocation<S>,
+        solution: &Solution<S>,
+        missed_acceleration: f64,
+    ) -> f64 {
+        if !state.closed {
+            let last = |values: &Nodal<S>| values.last().map_or(0.0, |value| (value * missed_acceleration).abs());
+            let rows = &step.acceleration_error;
+            let wrong = last(&rows.displacement) + self.law.damping() * last(&rows.velocity);
+            return self.law.tangent_stiffness(self.force_scale) * wrong;
+        }
+        let forces = &solution.forces;
+        let missed = state.force - self.preload.force - dot(forces, &collocation.at_start);
+        let fast = (solution.from_acceleration * missed_acceleration - solution.from_force * missed).abs();
+        let largest = forces.iter().fold(self.force_scale, |largest, force| {
+            largest.max((self.preload.force + force).abs())
+        });
+        let gain = solution.gain.max(0.0);
+        fast + missed * missed / largest * gain / (1.0 + gain)
+    }
+
+    /// Newton's method for the nodal forces on the closed branch.
     fn closed_forces<const S: usize>(
         &self,
         state: &State,
@@ -143,7 +165,7 @@ impl Model {
         free: &Nodal<S>,
         free_rate: &Nodal<S>,
         newton: f64,
-    ) -> Option<(Nodal<S>, u64)> {
+    ) -> Option<Solution<S>> {
         let mut forces = if state.last_step > 0.0 {
             collocation.predict(&state.predictions, step.length / state.last_step)
         } else {
@@ -174,7 +196,12 @@ impl Model {
                     *entry = stiffness * *entry + damping * velocity;
                 }
             }
-            let correction = solve(jacobian, residual)?;
+            let force_error = react(&step.force_error, &stiffness, &damping);
+            let acceleration_error = react(&step.acceleration_error, &stiffness, &damping);
+            let last = |values: &Nodal<S>| values.last().copied().unwrap_or_default();
+            let gain = jacobian.iter().map(last).sum();
+            let [correction, force_error, acceleration_error] =
+                solve(jacobian, [residual, force_error, acceleration_error])?;
             let (mut largest, mut lowest) = (0.0_f64, f64::INFINITY);
             for (force, correction) in forces.iter_mut().zip(&correction) {
                 *force -= correction;
@@ -183,28 +210,35 @@ impl Model {
             }
             // Newton's method leaves about correction^2 / (6 F) where the law is Hertz's, nothing where it is linear.
             if largest <= newton || largest * largest <= newton * lowest {
-                return Some((forces, iteration));
+                return Some(Solution {
+                    forces,
+                    iterations: iteration,
+                    from_force: last(&force_error),
+                    from_acceleration: last(&acceleration_error),
+                    gain,
+                });
             }
         }
         None
     }
 }
 
-/// Solves `(1 + A) x = b`, `A` column by column, by Gauss-Jordan elimination, whose inner loops run down columns; rows are
+/// Solves `(1 + A) x = b` for several `b`, `A` column by column, by Gauss-Jordan elimination, whose inner loops run down columns; rows are
 /// exchanged only where a pivot is small, which happens in violent steps alone. `None` where the matrix is singular.
 #[expect(
     clippy::indexing_slicing,
     reason = "every index runs over the fixed size of the arrays"
 )]
-fn solve<const S: usize>(mut a: [Nodal<S>; S], mut x: Nodal<S>) -> Option<Nodal<S>> {
+fn solve<const S: usize, const R: usize>(mut a: [Nodal<S>; S], mut right: [Nodal<S>; R]) -> Option<[Nodal<S>; R]> {
     for (k, column) in a.iter_mut().enumerate() {
         column[k] += 1.0;
     }
     for p in 0..S {
         if a[p][p].abs() < 0.1 {
             let largest = (p..S).max_by(|i, j| a[p][*i].abs().total_cmp(&a[p][*j].abs()))?;
-            a.iter_mut().for_each(|column| column.swap(p, largest));
-            x.swap(p, largest);
+            for column in a.iter_mut().chain(&mut right) {
+                column.swap(p, largest);
+            }
         }
         let pivot = a[p];
         let inverse = 1.0 / pivot[p];
@@ -215,10 +249,18 @@ fn solve<const S: usize>(mut a: [Nodal<S>; S], mut x: Nodal<S>) -> Option<Nodal<
             }
             column[p] = share;
         };
-        a.iter_mut().skip(p + 1).for_each(eliminate);
-        eliminate(&mut x);
+        a.iter_mut().skip(p + 1).chain(&mut right).for_each(eliminate);
     }
-    x.iter().all(|x| x.is_finite()).then_some(x)
+    right.iter().flatten().all(|x| x.is_finite()).then_some(right)
+}
+
+/// Forces of the law at the nodes that belong to displacements and velocities of the tip.
+fn react<const S: usize>(tip: &ErrorColumn<S>, stiffness: &Nodal<S>, damping: &Nodal<S>) -> Nodal<S> {
+    let mut forces = tip.displacement;
+    for (((force, velocity), stiffness), damping) in forces.iter_mut().zip(&tip.velocity).zip(stiffness).zip(damping) {
+        *force = stiffness * *force + damping * velocity;
+    }
+    forces
 }
 
 /// Indentation and its velocity at the nodes under the nodal forces.
@@ -247,8 +289,4 @@ fn subtract<const S: usize>(values: &mut Nodal<S>, a: &Nodal<S>, x: f64, b: &Nod
     for ((value, a), b) in values.iter_mut().zip(a).zip(b) {
         *value -= a * x + b * y;
     }
-}
-
-fn dot2(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

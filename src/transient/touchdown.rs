@@ -31,7 +31,7 @@ impl Integration<'_> {
         Workspace: Room<S>,
     {
         let (samples, error) = self.samples(trial, length);
-        let samples = samples.get(..S + 2).unwrap_or_default();
+        let samples = samples.get(..S + 1).unwrap_or_default();
         samples.windows(2).find_map(|pair| match pair {
             [a, b] => (!self.is_open(b) || !self.is_clear(a, b, error)).then_some(a.at / length),
             _ => None,
@@ -44,7 +44,7 @@ impl Integration<'_> {
         Workspace: Room<S>,
     {
         let (samples, error) = self.samples(trial, length);
-        let samples = samples.get(..S + 2).unwrap_or_default();
+        let samples = samples.get(..S + 1).unwrap_or_default();
         let length = samples.windows(2).find_map(|pair| match pair {
             [a, b] => self.touch_between::<S>(a, b, error, 0),
             _ => None,
@@ -52,8 +52,8 @@ impl Integration<'_> {
         (length > 0.0).then_some(Cut { length, switches: true })
     }
 
-    /// Start, nodes and end of a step, and by how much the cubics between them are wrong, m.
-    fn samples<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> ([Sample; LONG + 2], f64)
+    /// Start and nodes of a step, and by how much the cubics between them are wrong, m.
+    fn samples<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> ([Sample; LONG + 1], f64)
     where
         Workspace: Room<S>,
     {
@@ -62,7 +62,7 @@ impl Integration<'_> {
             d: self.state.indentation,
             rate: self.state.indentation_rate,
         };
-        let mut samples = [start; LONG + 2];
+        let mut samples = [start; LONG + 1];
         let nodes = self.collocation::<S>().nodes;
         for (entry, ((node, &d), &rate)) in samples
             .iter_mut()
@@ -75,16 +75,9 @@ impl Integration<'_> {
                 rate,
             };
         }
-        for entry in samples.iter_mut().skip(S + 1) {
-            *entry = Sample {
-                at: length,
-                d: trial.indentation,
-                rate: trial.rate,
-            };
-        }
         let error = samples
             .windows(3)
-            .take(S)
+            .take(S - 1)
             .filter_map(|triple| match triple {
                 [a, b, c] => Some((b.d - cubic(a, c, b.at)).abs()),
                 _ => None,
