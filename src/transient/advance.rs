@@ -13,11 +13,9 @@ const BUDGET: u64 = 10_000_000;
 /// See [`BUDGET`].
 const BUDGET_RATE: f64 = 1e7;
 
-/// Share of the tolerance that one short step may use up, and one long one: found by comparing errors with tolerances over
+/// Share of the tolerance that one step may use up: found by comparing errors with tolerances over
 /// scenes (`tests/calibration.rs`).
-const SHARE: f64 = 0.01;
-/// See [`SHARE`].
-const LONG_SHARE: f64 = 0.002;
+const SHARE: f64 = 0.2;
 
 /// Growth from step to step that shows the steps are still finding their length.
 const GROWING: f64 = 1.5;
@@ -227,15 +225,19 @@ impl Integration<'_> {
         let mut target = self.progress.target(wanted, self.state.time, corner);
 
         let attempt = self.attempt::<S>(&target);
-        // Below the rounding of the force the estimate says nothing.
-        let rounding = 32.0 * f64::EPSILON * self.model.force_scale;
-        let ratio = attempt.as_ref().map_or(f64::INFINITY, |trial| {
-            // Not `max`, which would hide a NaN.
-            let error = if trial.error <= rounding { 0.0 } else { trial.error };
-            error / (if S == LONG { LONG_SHARE } else { SHARE } * self.tolerance)
-        });
+        // Below the rounding of the force the estimate says nothing. (Not `max`, which would hide a NaN.)
+        let rounding = 32.0 * f64::EPSILON * self.model.force_scale.max(self.state.force);
+        let allowed = SHARE * self.tolerance;
+        let ratio_of = |trial: &Trial<S>| {
+            if trial.error <= rounding {
+                0.0
+            } else {
+                trial.error / allowed
+            }
+        };
+        let ratio = attempt.as_ref().map_or(f64::INFINITY, ratio_of);
         // The error estimate grows with this power of the step length.
-        let reach = |ratio: f64| ratio.powf(-1.0 / (S as f64 + 2.0));
+        let reach = |ratio: f64| ratio.powf(-1.0 / (S as f64 + 1.0));
         let Some(mut trial) = attempt.filter(|_| ratio <= 1.0 || target.length <= 2.0 * shortest) else {
             if target.length <= 2.0 * shortest || ratio.is_nan() {
                 return Err(self.error(StepErrorCause::NotFinite));
@@ -257,9 +259,10 @@ impl Integration<'_> {
             if let Some(cut) = cut {
                 target = self.progress.cut(cut.length, self.state.time + cut.length);
                 switches = cut.switches;
+                // What the law does close to the event may be too much for one step up to it.
                 match self.attempt::<S>(&target) {
-                    Some(shorter) => trial = shorter,
-                    None => return Ok(self.reject(0.25 * cut.length)),
+                    Some(shorter) if ratio_of(&shorter) <= 1.0 || target.length <= 2.0 * shortest => trial = shorter,
+                    _ => return Ok(self.reject(0.5 * cut.length)),
                 }
             }
         }
