@@ -3,8 +3,8 @@
 //! m = 156 kg, k = 2e6 N/m, stop 1e10 N/m, gap 1 mm, force 3000 sin(2 pi 5 t) N, from rest. The instants were computed from
 //! the closed form between switchings.
 
-use crate::common::{Rig, compose, oscillator, penalty};
-use crate::digits;
+use crate::common::{Rig, compose, oscillator};
+use crate::{digits, penalty};
 use relay_contact::excitation::Generator;
 use relay_contact::inputs::Inputs;
 

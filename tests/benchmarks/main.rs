@@ -17,6 +17,9 @@ mod restitution;
 mod shock;
 mod sphere_on_beam;
 
+use relay_contact::contact::law::Law;
+use relay_contact::contact::linear::Linear;
+
 /// All digits given, the last one rounded, and `error` beside it.
 fn digits(value: f64, published: f64, last_digit: f64, error: f64) {
     assert!(
@@ -24,4 +27,14 @@ fn digits(value: f64, published: f64, last_digit: f64, error: f64) {
         "{value} against {published}, {:e}",
         value - published
     );
+}
+
+/// A spring (N/m) that only pushes.
+pub fn penalty(stiffness: f64) -> Law {
+    Law::Linear(Linear {
+        stiffness,
+        damping: 0.0,
+        offset: 0.0,
+        bonded: false,
+    })
 }

@@ -77,12 +77,6 @@ impl Rig {
         let Preload { indentation, force, .. } = model.preload;
         modes + contact(indentation + state.indentation) - contact(indentation) - force * state.indentation
     }
-
-    /// Work of one metre per second squared of base acceleration from the preload to here, J.
-    pub fn base_work(&self) -> f64 {
-        let pairs = self.model.modes.iter().zip(&self.state.modes);
-        -pairs.map(|(mode, at)| mode.participation * at.q).sum::<f64>()
-    }
 }
 
 /// A model put together from modes: `gap` (m) in front of the contact, tolerance relative to `force_scale` (N).
@@ -118,14 +112,4 @@ pub fn oscillator(mass: f64, stiffness: f64) -> Mode {
 /// Hertzian contact `k d^(3/2)` (N/m^1.5) with the damping time (s).
 pub fn hertz(coefficient: f64, damping: f64) -> Law {
     Law::Hertz(Hertz { coefficient, damping })
-}
-
-/// A spring (N/m) that only pushes.
-pub fn penalty(stiffness: f64) -> Law {
-    Law::Linear(Linear {
-        stiffness,
-        damping: 0.0,
-        offset: 0.0,
-        bonded: false,
-    })
 }

@@ -1,0 +1,63 @@
+//! Extreme springs.
+
+use crate::ride::Ride;
+use relay_contact::beam::section::Section;
+use relay_contact::error::SceneError;
+use relay_contact::model::Model;
+use relay_contact::scene::Scene;
+use relay_contact::variables::AxialForceKind;
+
+#[test]
+fn a_spring_without_damping() {
+    let mut scene = Scene::default();
+    scene.beam.stiffness_damping = 0.0;
+    Ride::shaken(scene).keeps_its_properties();
+}
+
+#[test]
+fn a_system_without_damping() {
+    let mut scene = Scene::default();
+    scene.beam.stiffness_damping = 0.0;
+    scene.contact.damping = 0.0;
+    Ride::shaken(scene).keeps_its_properties();
+}
+
+#[test]
+fn a_spring_of_strong_damping() {
+    let mut scene = Scene::default();
+    scene.beam.stiffness_damping = 1e-2;
+    Ride::shaken(scene).keeps_its_properties();
+}
+
+#[test]
+fn a_spring_without_rivet() {
+    let mut scene = Scene::default();
+    scene.tip.mass = 0.0;
+    Ride::shaken(scene).keeps_its_properties();
+}
+
+#[test]
+fn an_axial_force_just_below_buckling() {
+    let mut scene = Scene::default();
+    scene.effects.axial_force = AxialForceKind::Prescribed;
+    scene.beam.axial_force = 0.999 * Section::new(&scene).buckling_load();
+    Ride::shaken(scene).keeps_its_properties();
+}
+
+#[test]
+fn an_axial_force_above_buckling_is_an_error_that_says_so() {
+    let mut scene = Scene::default();
+    scene.effects.axial_force = AxialForceKind::Prescribed;
+    let limit = Section::new(&scene).buckling_load();
+    for force in [limit, 1.001 * limit, 2.0 * limit, 100.0 * limit, 1e6] {
+        scene.beam.axial_force = force;
+        assert_eq!(
+            Model::new(&scene, 0.0).err(),
+            Some(SceneError::Buckled {
+                name: "beam.axialForce",
+                value: force,
+                limit
+            })
+        );
+    }
+}
