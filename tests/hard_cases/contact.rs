@@ -174,6 +174,30 @@ fn impact(damping: f64) {
     .keeps_its_properties();
 }
 
+/// The surfaces touch without force at the start, and the fixed contact moves in at once.
+#[test]
+fn a_touch_at_the_start() {
+    let mut scene = Scene::default();
+    scene.contact.overtravel = 0.0;
+    let ride = Ride {
+        scene,
+        speed: 0.0,
+        segments: vec![Segment {
+            duration: 1e-3,
+            acceleration: 0.0,
+            support: 1e-4,
+        }],
+        steps: 100_000,
+    };
+    let outcome = ride.run(1).unwrap();
+    assert!(
+        (0.0..1e-9).contains(&outcome.rig.state.last_closing),
+        "{:?}",
+        outcome.rig.state.last_closing
+    );
+    ride.keeps_its_properties();
+}
+
 /// The surfaces touch without force at the start.
 #[test]
 fn no_gap_and_no_overlap() {

@@ -37,7 +37,7 @@ pub struct Outcome {
     pub forces: Vec<f64>,
     /// Longest rise of the energy over what was put in, J.
     made: f64,
-    /// Energy at the start and all work, taken positive, J.
+    /// Energy at the start, also that of the preload, and all work, taken positive, J.
     throughput: f64,
     /// Way of the indentation and of the fixed contact, m.
     path: f64,
@@ -94,7 +94,7 @@ impl Ride {
         let mut outcome = Outcome {
             forces: Vec::new(),
             made: 0.0,
-            throughput: lowest,
+            throughput: lowest + rig.model.preload.force * rig.model.preload.indentation.max(0.0),
             path: 0.0,
             rig,
         };
