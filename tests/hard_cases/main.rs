@@ -4,7 +4,8 @@
 //! depend on the communication step. See [`ride`] for what these mean in numbers.
 //!
 //! Long forms, left out of the default run:
-//! - `PROPTEST_CASES=100000 cargo test --release --test hard_cases campaign` draws that many scenes.
+//! - `PROPTEST_CASES=100000 cargo test --release --test hard_cases campaign` draws that many scenes
+//!   (`PROPTEST_RNG_SEED=...` draws others; `-- --include-ignored` asks for all properties).
 //! - `cargo test --release --test hard_cases endurance -- --ignored` takes a million contact cycles and ten million
 //!   steps.
 
