@@ -1,0 +1,46 @@
+//! Energy without damping: nothing takes any away, nothing may add to it.
+//!
+//! A contact force wrong by at most `e` along a path of length `s` of the tip changes the energy by at most `e s`.
+
+use crate::common::Rig;
+use relay_contact::inputs::Inputs;
+use relay_contact::model::Model;
+use relay_contact::scene::Scene;
+use relay_contact::variables::ContactLawKind;
+
+#[test]
+#[ignore = "undamped blows: the energy drifts by up to twenty times the tolerance"]
+fn energy_stays_without_damping() {
+    for tolerance in [1e-3, 1e-6, 1e-9] {
+        // From a swing that stays closed to blows that open the contact for most of the time.
+        for speed in [1e-5, 1e-3, 0.1] {
+            for law in [
+                ContactLawKind::Hertz,
+                ContactLawKind::Linearised,
+                ContactLawKind::Bonded,
+            ] {
+                let mut scene = Scene::default();
+                scene.beam.stiffness_damping = 0.0;
+                scene.contact.damping = 0.0;
+                scene.effects.contact_law = law;
+                scene.solver.tolerance = tolerance;
+                scene.solver.modes = 6;
+                let mut rig = Rig::new(Model::new(&scene, 0.0).unwrap());
+                let velocities: Vec<f64> = rig.model.modes.iter().map(|mode| speed * mode.participation).collect();
+                rig.launch(&velocities);
+                let start = rig.energy();
+                let (mut worst, mut path) = (0.0_f64, 0.0);
+                for k in 1..=5000 {
+                    let before = rig.state.indentation;
+                    rig.run_to(&Inputs::default(), f64::from(k) * 2e-6).unwrap();
+                    path += (rig.state.indentation - before).abs();
+                    let excess =
+                        (rig.energy() - start).abs() / (tolerance * rig.model.force_scale * path + 1e-13 * start);
+                    worst = worst.max(excess);
+                }
+                println!("tolerance {tolerance:e}, {law:?} at {speed} m/s: {worst:.1e} of the energy allowed");
+                assert!(worst <= 1.0, "tolerance {tolerance:e}, {law:?} at {speed} m/s: {worst}");
+            }
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! What the tests of the integrator share: a model under way, also one put together from modes without a beam, its energy,
+//! and what is given to it.
+
+use relay_contact::contact::hertz::Hertz;
+use relay_contact::contact::law::Law;
+use relay_contact::contact::linear::Linear;
+use relay_contact::error::StepError;
+use relay_contact::inputs::Inputs;
+use relay_contact::model::{Mode, Model, State};
+use relay_contact::preload::Preload;
+use relay_contact::scene::Scene;
+use relay_contact::transient::advance::Workspace;
+
+/// A model with its state.
+pub struct Rig {
+    pub model: Model,
+    pub state: State,
+    workspace: Workspace,
+}
+
+impl Rig {
+    /// The model at rest in its preload.
+    pub fn new(model: Model) -> Self {
+        Self {
+            state: model.initial_state(0.0),
+            workspace: Workspace::new(&model),
+            model,
+        }
+    }
+
+    /// Sets the modal velocities at the start, in the order of the modes, and what follows from them.
+    pub fn launch(&mut self, velocities: &[f64]) {
+        let Self { model, state, .. } = self;
+        state.indentation_rate = 0.0;
+        for ((mode, v), constants) in state.modes.iter_mut().zip(velocities).zip(&model.modes) {
+            mode.v = *v;
+            state.indentation_rate -= constants.tip * v;
+        }
+        let d = model.preload.indentation + state.indentation;
+        state.force = model.law.force(d, state.indentation_rate);
+        state.closed = model.engagement(state.indentation, state.indentation_rate) > 0.0;
+    }
+
+    /// Advances to the instant `time` (s) with the inputs held.
+    pub fn run_to(&mut self, inputs: &Inputs, time: f64) -> Result<(), StepError> {
+        let Self {
+            model,
+            state,
+            workspace,
+        } = self;
+        let start = state.time;
+        model.step(state, workspace, inputs, start, time - start)
+    }
+
+    /// Energy above that of the preload, J: kinetic and strain energy of the modes about the preload, and the contact's
+    /// elastic energy above its tangent there, `V(d) - V(d_0) - F_0 (d - d_0)`. Never negative, as V is convex.
+    pub fn energy(&self) -> f64 {
+        let Self { model, state, .. } = self;
+        let modes: f64 = model
+            .modes
+            .iter()
+            .zip(&state.modes)
+            .map(|(mode, at)| 0.5 * (at.v * at.v + mode.omega_squared * at.q * at.q))
+            .sum();
+        let contact = |d: f64| match model.law {
+            Law::Hertz(hertz) => 0.4 * hertz.elastic_force(d) * d.max(0.0),
+            Law::Linear(Linear {
+                stiffness,
+                offset,
+                bonded,
+                ..
+            }) => {
+                let overlap = if bonded { d - offset } else { (d - offset).max(0.0) };
+                0.5 * stiffness * overlap * overlap
+            }
+        };
+        let Preload { indentation, force, .. } = model.preload;
+        modes + contact(indentation + state.indentation) - contact(indentation) - force * state.indentation
+    }
+}
+
+/// A model put together from modes: `gap` (m) in front of the contact, tolerance relative to `force_scale` (N).
+pub fn compose(modes: &[Mode], law: Law, gap: f64, tolerance: f64, force_scale: f64) -> Model {
+    let mut scene = Scene::default();
+    scene.solver.tolerance = tolerance;
+    let model = Model::new(&scene, 0.0).unwrap();
+    Model {
+        preload: Preload {
+            force: 0.0,
+            indentation: -gap,
+            contact_stiffness: 0.0,
+            deflection: 0.0,
+            axial_force: 0.0,
+        },
+        modes: modes.to_vec(),
+        law,
+        force_scale,
+        ..model
+    }
+}
+
+/// A mass (kg) on a spring (N/m), without damping. A base acceleration acts on it as on any mass.
+pub fn oscillator(mass: f64, stiffness: f64) -> Mode {
+    Mode {
+        omega_squared: stiffness / mass,
+        damping: 0.0,
+        tip: 1.0 / mass.sqrt(),
+        participation: mass.sqrt(),
+    }
+}
+
+/// Hertzian contact `k d^(3/2)` (N/m^1.5) with the damping time (s).
+pub fn hertz(coefficient: f64, damping: f64) -> Law {
+    Law::Hertz(Hertz { coefficient, damping })
+}
