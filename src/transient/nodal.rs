@@ -39,11 +39,15 @@ struct Solution<const S: usize> {
     /// Deviation from the preload force, N.
     forces: Nodal<S>,
     iterations: u64,
-    /// Change of the last nodal force per force that the polynomial misses at the start.
-    from_force: f64,
-    /// The same per base acceleration, N per m/s2.
-    from_acceleration: f64,
-    /// Change of the law's force at the end per force on the tip throughout the step.
+    /// Displacement and velocity of the tip at the end per force that the polynomial misses at the start.
+    by_force: (f64, f64),
+    /// The same per base acceleration.
+    by_acceleration: (f64, f64),
+    /// Greatest stiffness and damping of the law at the nodes.
+    stiffness: f64,
+    /// See [`Solution::stiffness`].
+    damping: f64,
+    /// Change of the law's force at the end, at these, per force on the tip throughout the step.
     gain: f64,
 }
 
@@ -85,8 +89,10 @@ impl Model {
             Solution {
                 forces: [-self.preload.force; S],
                 iterations: 0,
-                from_force: 0.0,
-                from_acceleration: 0.0,
+                by_force: (0.0, 0.0),
+                by_acceleration: (0.0, 0.0),
+                stiffness: 0.0,
+                damping: 0.0,
                 gain: 0.0,
             }
         };
@@ -148,12 +154,14 @@ impl Model {
         }
         let forces = &solution.forces;
         let missed = state.force - self.preload.force - dot(forces, &collocation.at_start);
-        let fast = (solution.from_acceleration * missed_acceleration - solution.from_force * missed).abs();
+        let (by_force, by_acceleration) = (solution.by_force, solution.by_acceleration);
+        let wrong_d = by_acceleration.0 * missed_acceleration - by_force.0 * missed;
+        let wrong_r = by_acceleration.1 * missed_acceleration - by_force.1 * missed;
+        let fast = (solution.stiffness * wrong_d).abs() + (solution.damping * wrong_r).abs();
         let largest = forces.iter().fold(self.force_scale, |largest, force| {
             largest.max((self.preload.force + force).abs())
         });
-        let gain = solution.gain.max(0.0);
-        fast + missed * missed / largest * gain / (1.0 + gain)
+        fast + missed * missed / largest * solution.gain / (1.0 + solution.gain)
     }
 
     /// Newton's method for the nodal forces on the closed branch.
@@ -198,8 +206,6 @@ impl Model {
             }
             let force_error = react(&step.force_error, &stiffness, &damping);
             let acceleration_error = react(&step.acceleration_error, &stiffness, &damping);
-            let last = |values: &Nodal<S>| values.last().copied().unwrap_or_default();
-            let gain = jacobian.iter().map(last).sum();
             let [correction, force_error, acceleration_error] =
                 solve(jacobian, [residual, force_error, acceleration_error])?;
             let (mut largest, mut lowest) = (0.0_f64, f64::INFINITY);
@@ -210,12 +216,30 @@ impl Model {
             }
             // Newton's method leaves about correction^2 / (6 F) where the law is Hertz's, nothing where it is linear.
             if largest <= newton || largest * largest <= newton * lowest {
+                let last = |columns: &[Nodal<S>; S], loads: &Nodal<S>| {
+                    let entries = columns.iter().filter_map(|column| column.last());
+                    entries.zip(loads).map(|(entry, load)| entry * load).sum::<f64>()
+                };
+                let tip = |error: &ErrorColumn<S>, loads: &Nodal<S>| {
+                    let end = |values: &Nodal<S>| values.last().copied().unwrap_or_default();
+                    (
+                        end(&error.displacement) - last(&step.force.displacement, loads),
+                        end(&error.velocity) - last(&step.force.velocity, loads),
+                    )
+                };
+                let greatest = |values: &Nodal<S>| values.iter().copied().fold(0.0, f64::max);
+                let (stiffness, damping) = (greatest(&stiffness), greatest(&damping));
+                let steady = [1.0; S];
+                let gain =
+                    stiffness * last(&step.force.displacement, &steady) + damping * last(&step.force.velocity, &steady);
                 return Some(Solution {
                     forces,
                     iterations: iteration,
-                    from_force: last(&force_error),
-                    from_acceleration: last(&acceleration_error),
-                    gain,
+                    by_force: tip(&step.force_error, &force_error),
+                    by_acceleration: tip(&step.acceleration_error, &acceleration_error),
+                    stiffness,
+                    damping,
+                    gain: gain.max(0.0),
                 });
             }
         }
