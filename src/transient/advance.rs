@@ -15,7 +15,10 @@ const BUDGET_RATE: f64 = 1e7;
 
 /// Share of the tolerance that one step may use up: found by comparing errors with tolerances over
 /// scenes (`tests/calibration.rs`).
-const SHARE: f64 = 0.2;
+const SHARE: f64 = 0.05;
+
+/// Rounding of a contact force, relative to it.
+const ROUNDING: f64 = 1e-13;
 
 /// Growth from step to step that shows the steps are still finding their length.
 const GROWING: f64 = 1.5;
@@ -225,11 +228,15 @@ impl Integration<'_> {
         let mut target = self.progress.target(wanted, self.state.time, corner);
 
         let attempt = self.attempt::<S>(&target);
-        // Below the rounding of the force the estimate says nothing. (Not `max`, which would hide a NaN.)
-        let rounding = 32.0 * f64::EPSILON * self.model.force_scale.max(self.state.force);
         let allowed = SHARE * self.tolerance;
+        let (preload, scale) = (self.model.preload.force, self.model.force_scale);
         let ratio_of = |trial: &Trial<S>| {
-            if trial.error <= rounding {
+            // Below the rounding of the force the estimate says nothing. (Not `max`, which would hide a NaN.)
+            let largest = trial
+                .forces
+                .iter()
+                .fold(scale, |largest, force| largest.max((preload + force).abs()));
+            if trial.error <= ROUNDING * largest {
                 0.0
             } else {
                 trial.error / allowed
@@ -257,6 +264,10 @@ impl Integration<'_> {
                 self.touchdown(&trial, target.length)
             };
             if let Some(cut) = cut {
+                if cut.length <= 0.0 {
+                    let length = self.switch(!self.state.closed);
+                    return Ok(self.reject(length));
+                }
                 target = self.progress.cut(cut.length, self.state.time + cut.length);
                 switches = cut.switches;
                 // What the law does close to the event may be too much for one step up to it.

@@ -7,6 +7,9 @@ use crate::transient::nodal::Trial;
 /// Points at which the force polynomial is looked at where it comes near zero.
 const LOOKS: u32 = 32;
 
+/// The golden section.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
 impl Integration<'_> {
     /// Where the step of `length` seconds has to end because the contact opens, which it has done after `latest` seconds
     /// if it does at all.
@@ -62,10 +65,31 @@ impl Integration<'_> {
         if sure.is_none() && (lowest > 0.25 * highest || model.law.never_opens()) {
             return None;
         }
-        let dip = (1..LOOKS)
-            .map(|k| f64::from(k) / f64::from(LOOKS))
+        let force = |x: f64| collocation.interpolate(&forces, x);
+        // Before the first node the polynomial extrapolates: there it is no evidence.
+        let first = collocation.nodes.first().copied().unwrap_or_default();
+        let look = |k: u32| f64::from(k) / f64::from(LOOKS);
+        if let Some(dip) = (1..LOOKS)
+            .map(look)
+            .skip_while(|x| *x < first)
             .take_while(|x| sure.is_none_or(|sure| *x < sure))
-            .find(|x| collocation.interpolate(&forces, *x) < 0.0);
-        dip.or(sure)
+            .find(|x| force(*x) < 0.0)
+        {
+            return Some(dip);
+        }
+        // The lowest place between two looks, by golden section.
+        let lowest = (1..LOOKS)
+            .map(look)
+            .min_by(|a, b| force(*a).total_cmp(&force(*b)))
+            .unwrap_or_default();
+        let (mut a, mut b) = ((lowest - look(1)).max(first), lowest + look(1));
+        for _ in 0..25 {
+            let (c, d) = (b - GOLDEN * (b - a), a + GOLDEN * (b - a));
+            (a, b) = if force(c) < force(d) { (a, d) } else { (c, b) };
+        }
+        let bottom = f64::midpoint(a, b);
+        (sure.is_none_or(|sure| bottom < sure) && force(bottom) < 0.0)
+            .then_some(bottom)
+            .or(sure)
     }
 }

@@ -49,7 +49,8 @@ impl Integration<'_> {
             [a, b] => self.touch_between::<S>(a, b, error, 0),
             _ => None,
         })?;
-        (length > 0.0).then_some(Cut { length, switches: true })
+        // A flight that begins with the release itself may look closed there by rounding.
+        (length > 0.0 || self.state.last_opening < self.state.time).then_some(Cut { length, switches: true })
     }
 
     /// Start and nodes of a step, and by how much the cubics between them are wrong, m.
