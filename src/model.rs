@@ -210,5 +210,5 @@ impl Model {
 /// where the error of the contact force falls tenfold with every 1.6 modes (`tests/calibration.rs`).
 fn modes_for(tolerance: f64) -> usize {
     let digits = (0..11).take_while(|digits| tolerance < 10f64.powi(-digits)).count();
-    10 + (8 * digits).div_ceil(5)
+    12 + (8 * digits).div_ceil(5)
 }

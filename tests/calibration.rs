@@ -168,13 +168,11 @@ fn the_error_of_a_closed_contact_stays_below_the_tolerance_asked() {
 }
 
 #[test]
-#[ignore = "the modes chosen from the tolerance are too few for the first microseconds after a blow"]
 fn the_error_of_a_bouncing_contact_stays_below_the_tolerance_asked() {
     check(&blows());
 }
 
 #[test]
-#[ignore = "1.65 where the communication step leaves the integrator free: 98 m/s2 in one step per ms"]
 fn a_digit_costs_less_than_half_as_much_again() {
     let mut failures = Vec::new();
     for case in closed().into_iter().chain(blows()) {

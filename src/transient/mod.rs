@@ -1,7 +1,7 @@
 //! The transient integrator.
 //!
 //! The beam is linear and only its tip is loaded, so the modes are propagated exactly and the whole nonlinearity is one
-//! scalar function of one scalar, the tip. Over a step the contact force is a polynomial through Gauss nodes
+//! scalar function of one scalar, the tip. Over a step the contact force is a polynomial through Radau nodes
 //! ([`collocation`]); each mode's exact response to it ([`response`], [`coefficients`]) gives the indentation at the nodes,
 //! and Newton's method on the nodal forces alone closes the loop ([`nodal`]). Steps adapt to an estimate of the
 //! force's error ([`advance`], on a grid: [`progress`]) and end where the contact opens ([`release`]) or closes ([`touchdown`]).

@@ -8,7 +8,7 @@ use crate::digits;
 use relay_contact::inputs::Inputs;
 
 #[test]
-#[ignore = "steps grow too long: the error estimate is blind to modes slow against the step"]
+#[ignore = "at a tolerance of 1e-10 the force misses by 3e-10"]
 fn greatest_force_and_duration() {
     let rest = Inputs::default();
     for tolerance in [1e-2, 1e-4, 1e-6, 1e-8, 1e-10] {
@@ -42,7 +42,6 @@ fn greatest_force_and_duration() {
 }
 
 #[test]
-#[ignore = "steps grow too long: the error estimate is blind to modes slow against the step"]
 fn digits_of_the_unit_problem() {
     let model = compose(&[oscillator(1.0, 0.0)], hertz(1.0, 0.0), 1.0, 1e-10, 1.0);
     let mut rig = Rig::new(model);

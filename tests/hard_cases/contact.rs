@@ -95,7 +95,6 @@ fn a_grazing_touch() {
 
 /// A mass that falls on the contact again and again, a little less high each time, until it lies still under its weight.
 #[test]
-#[ignore = "steps grow too long: the error estimate is blind to modes slow against the step"]
 fn chatter_that_accumulates() {
     let (mass, weight) = (1e-4, 100.0);
     let model = compose(&[oscillator(mass, 0.0)], hertz(9.3e9, 1e-6), 1e-6, 1e-6, mass * weight);
@@ -149,7 +148,6 @@ fn an_impact_at_10_metres_per_second() {
 }
 
 #[test]
-#[ignore = "steps grow too long: the error estimate is blind to modes slow against the step"]
 fn an_undamped_impact_at_10_metres_per_second() {
     impact(0.0);
 }
@@ -207,7 +205,6 @@ fn no_gap_and_no_overlap() {
 }
 
 #[test]
-#[ignore = "steps grow too long: the error estimate is blind to modes slow against the step"]
 fn open_for_a_second_then_closing() {
     let segment = |duration, support| Segment {
         duration,

@@ -23,7 +23,6 @@ fn a_tolerance_below_the_floor() {
 }
 
 #[test]
-#[ignore = "steps grow too long: the error estimate is blind to modes slow against the step"]
 fn one_mode() {
     let mut scene = Scene::default();
     scene.solver.modes = 1;
