@@ -64,6 +64,14 @@ impl Progress {
     fn grid_point(&self, wanted: f64) -> f64 {
         let level = (self.size / wanted).log2().ceil().clamp(0.0, 52.0);
         let cell = (-level).exp2();
+        // From a point of the grid the step is a halving: as long as wanted, or shorter where only finer cells begin here.
+        let aligned = (0..6)
+            .map(|finer| cell * 0.5_f64.powi(finer))
+            .find(|cell| (self.done / cell).fract() == 0.0);
+        if let Some(cell) = aligned {
+            return (self.done + cell).min(1.0);
+        }
+        // After an event the grid has to be found again.
         let point = ((self.done / cell).floor() + 1.0) * cell;
         let point = if point - self.done < 0.3 * cell {
             point + 0.5 * cell
