@@ -1,5 +1,6 @@
 //! The project's tasks: `cargo xtask --help`.
 
+mod accuracy;
 mod commands;
 mod demo;
 mod documentation;
@@ -33,6 +34,8 @@ enum Task {
     Scene(scene::Arguments),
     /// Build the component, run the published 1 kHz case under FMPy, compare and plot
     Demo,
+    /// Measure what accuracy costs, beside other integrators; rewrite docs/accuracy.csv, its figures and its tables
+    Accuracy(accuracy::Arguments),
     /// Run every check and test
     Test,
 }
@@ -42,6 +45,7 @@ fn main() -> ExitCode {
         Task::Fmu => fmu::build().map(|path| println!("{}", path.display())),
         Task::Scene(arguments) => scene::run(&arguments),
         Task::Demo => demo::run(),
+        Task::Accuracy(arguments) => accuracy::run(&arguments),
         Task::Test => test::run(),
     };
     match outcome {

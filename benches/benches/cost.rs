@@ -1,0 +1,176 @@
+//! What a communication step costs through the C interface, and what starting costs:
+//! `cargo bench --package benches --bench cost`. Medians of several turns; the scene is the published one at tolerance 1e-6.
+
+use cpu_time::ThreadTime;
+use std::ffi::CString;
+use std::ptr;
+
+use benches::machine;
+use relay_contact::fmi2::{
+    fmi2CallbackFunctions, fmi2CoSimulation, fmi2Component, fmi2DoStep, fmi2EnterInitializationMode,
+    fmi2ExitInitializationMode, fmi2FreeInstance, fmi2GetInteger, fmi2Instantiate, fmi2OK, fmi2SetInteger, fmi2SetReal,
+    fmi2SetupExperiment, fmi2Status, fmi2True,
+};
+use relay_contact::variables::{GUID, Variable};
+
+const TURNS: usize = 9;
+
+fn main() {
+    println!("{}\n", machine::description());
+    println!(
+        "{:<44}{:>12}{:>14}{:>14}",
+        "", "us/doStep", "us/inner step", "s/simulated s"
+    );
+    for (name, step, count) in [
+        ("shaken, step 1 us", 1e-6, 20_000_u32),
+        ("shaken, step 10 us", 1e-5, 5_000),
+        ("shaken, step 100 us", 1e-4, 1_000),
+        ("shaken, step 1 ms", 1e-3, 100),
+    ] {
+        report(name, true, &vec![step; count as usize]);
+    }
+    let mut random = Random(1);
+    let mut draw = |low: f64, high: f64| low * (high / low).powf(random.next());
+    let around: Vec<f64> = (0..20_000).map(|_| draw(0.5e-6, 2e-6)).collect();
+    report("shaken, random steps 0.5 to 2 us", true, &around);
+    let wide: Vec<f64> = (0..5_000).map(|_| draw(1e-7, 1e-4)).collect();
+    report("shaken, random steps 0.1 to 100 us", true, &wide);
+    report("at rest, an hour in 1 step", false, &[3600.0]);
+    report("at rest, an hour in 3600 steps", false, &vec![1.0; 3600]);
+
+    let starts = median((0..TURNS).map(|_| {
+        let start = ThreadTime::now();
+        drop(Component::new(true));
+        start.elapsed().as_secs_f64()
+    }));
+    println!("\ninstantiate, set up, initialise, free: {:.1} us", 1e6 * starts);
+}
+
+/// Runs the communication steps several times over, each from the start, and prints what one cost.
+fn report(name: &str, shaken: bool, sizes: &[f64]) {
+    let simulated: f64 = sizes.iter().sum();
+    let mut steps = 0;
+    let time = median((0..TURNS).map(|_| {
+        let mut component = Component::new(shaken);
+        let start = ThreadTime::now();
+        for size in sizes {
+            component.step(*size);
+        }
+        let time = start.elapsed().as_secs_f64();
+        steps = component.integer("solver.steps");
+        time
+    }));
+    println!(
+        "{name:<44}{:>12.3}{:>14.3}{:>14.2e}",
+        1e6 * time / sizes.len() as f64,
+        1e6 * time / f64::from(steps.max(1)),
+        time / simulated
+    );
+}
+
+fn median(times: impl Iterator<Item = f64>) -> f64 {
+    let mut times: Vec<f64> = times.collect();
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
+}
+
+/// An instance behind the C interface.
+struct Component {
+    c: fmi2Component,
+    time: f64,
+}
+
+impl Component {
+    fn new(shaken: bool) -> Self {
+        let guid = CString::new(GUID).expect("no zero byte in the GUID");
+        let silent = fmi2CallbackFunctions {
+            logger: None,
+            allocateMemory: None,
+            freeMemory: None,
+            stepFinished: None,
+            componentEnvironment: ptr::null_mut(),
+        };
+        let name = c"bench".as_ptr();
+        // SAFETY: pointers to what is declared here, with its length; the texts end with a zero byte.
+        let component = unsafe {
+            let c = fmi2Instantiate(
+                name,
+                fmi2CoSimulation,
+                guid.as_ptr(),
+                ptr::null(),
+                &raw const silent,
+                0,
+                0,
+            );
+            assert!(!c.is_null());
+            Self { c, time: 0.0 }
+        };
+        component.set_integer("effects.excitation", if shaken { 2 } else { 1 });
+        component.set_integer("effects.axialForce", 2);
+        component.set_real("excitation.amplitude", 98.0);
+        component.set_real("excitation.frequency", 1000.0);
+        component.set_real("solver.tolerance", 1e-6);
+        // SAFETY: the instance was made above.
+        unsafe {
+            check(fmi2SetupExperiment(component.c, 0, 0.0, 0.0, 0, 0.0));
+            check(fmi2EnterInitializationMode(component.c));
+            check(fmi2ExitInitializationMode(component.c));
+        }
+        component
+    }
+
+    fn step(&mut self, size: f64) {
+        // SAFETY: the instance is alive until it is dropped.
+        check(unsafe { fmi2DoStep(self.c, self.time, size, fmi2True) });
+        self.time += size;
+    }
+
+    fn set_real(&self, name: &str, value: f64) {
+        let reference = reference(name);
+        // SAFETY: pointers to one element each.
+        check(unsafe { fmi2SetReal(self.c, &raw const reference, 1, &raw const value) });
+    }
+
+    fn set_integer(&self, name: &str, value: i32) {
+        let reference = reference(name);
+        // SAFETY: pointers to one element each.
+        check(unsafe { fmi2SetInteger(self.c, &raw const reference, 1, &raw const value) });
+    }
+
+    fn integer(&self, name: &str) -> i32 {
+        let (reference, mut value) = (reference(name), 0);
+        // SAFETY: pointers to one element each.
+        check(unsafe { fmi2GetInteger(self.c, &raw const reference, 1, &raw mut value) });
+        value
+    }
+}
+
+impl Drop for Component {
+    fn drop(&mut self) {
+        // SAFETY: the instance is freed here and not used again.
+        unsafe { fmi2FreeInstance(self.c) };
+    }
+}
+
+fn reference(name: &str) -> u32 {
+    Variable::by_name(name)
+        .expect("a variable of the component")
+        .value_reference
+}
+
+fn check(status: fmi2Status) {
+    assert_eq!(status, fmi2OK);
+}
+
+/// Numbers from 0 to 1 that look random and are the same every time (splitmix64).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 * 2f64.powi(-53)
+    }
+}

@@ -1,0 +1,223 @@
+/* The contact's modal equations integrated by SUNDIALS CVODE: BDF, dense analytic Jacobian, root finding, and a restart at
+ * every opening and closing. The problem comes on standard input as numbers, in the order in which main() reads them; the
+ * results go to standard output, a key and its numbers on each line. States are deviations from the preload. */
+#include <cvode/cvode.h>
+#include <math.h>
+#include <nvector/nvector_serial.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sundials/sundials_version.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+#include <time.h>
+
+enum { HERTZ, LINEARISED, BONDED };
+
+typedef struct {
+    int modes, law, closed;
+    double *omega_squared, *damping, *tip, *participation;
+    double law_a, law_b, law_c; /* Hertz: k_H, beta_c, unused; linear: stiffness, beta_c, offset */
+    double preload_force, preload_indentation, amplitude, angular_frequency, phase, support_rate;
+} problem;
+
+typedef struct {
+    double force, stiffness, damping;
+} branch;
+
+static double number(void) {
+    double value;
+    if (scanf("%lf", &value) != 1) {
+        fprintf(stderr, "cvode: a number is missing on standard input\n");
+        exit(2);
+    }
+    return value;
+}
+
+static double *array(int count) {
+    double *values = malloc(sizeof(double) * (size_t)count);
+    if (!values) exit(2);
+    return values;
+}
+
+/* The closed branch, continued past the release so that a step may run over it before the root is found. */
+static branch closed_branch(const problem *p, double d, double rate) {
+    branch b = {0.0, 0.0, 0.0};
+    if (p->law != HERTZ) {
+        b.force = p->law_a * (d - p->law_c + p->law_b * rate);
+        b.stiffness = p->law_a;
+        b.damping = p->law_a * p->law_b;
+    } else if (d > 0.0) {
+        double root = p->law_a * sqrt(d), g = d + 1.5 * p->law_b * rate;
+        b.force = root * g;
+        b.stiffness = root * (1.0 + 0.5 * g / d);
+        b.damping = 1.5 * p->law_b * root;
+    }
+    return b;
+}
+
+/* Positive while the contact is closed. */
+static double engagement(const problem *p, double d, double rate) {
+    if (p->law == HERTZ) return fmin(d, d + 1.5 * p->law_b * rate);
+    return d - p->law_c + p->law_b * rate;
+}
+
+static void indentation(const problem *p, double t, const double *y, double *d, double *rate) {
+    double e = p->support_rate * t, e_rate = p->support_rate;
+    for (int i = 0; i < p->modes; i++) {
+        e -= p->tip[i] * y[i];
+        e_rate -= p->tip[i] * y[p->modes + i];
+    }
+    *d = p->preload_indentation + e;
+    *rate = e_rate;
+}
+
+static int right_hand_side(realtype t, N_Vector yv, N_Vector dyv, void *data) {
+    const problem *p = data;
+    const double *y = N_VGetArrayPointer(yv);
+    double *dy = N_VGetArrayPointer(dyv), d, rate;
+    indentation(p, t, y, &d, &rate);
+    double force = (p->closed ? closed_branch(p, d, rate).force : 0.0) - p->preload_force;
+    double acceleration = p->amplitude * sin(p->angular_frequency * t + p->phase);
+    for (int i = 0; i < p->modes; i++) {
+        double q = y[i], v = y[p->modes + i];
+        dy[i] = v;
+        dy[p->modes + i] =
+            p->tip[i] * force - p->participation[i] * acceleration - p->damping[i] * v - p->omega_squared[i] * q;
+    }
+    return 0;
+}
+
+static int jacobian(realtype t, N_Vector yv, N_Vector dyv, SUNMatrix j, void *data, N_Vector w1, N_Vector w2, N_Vector w3) {
+    (void)dyv, (void)w1, (void)w2, (void)w3;
+    const problem *p = data;
+    int n = p->modes;
+    double d, rate;
+    indentation(p, t, N_VGetArrayPointer(yv), &d, &rate);
+    branch b = {0.0, 0.0, 0.0};
+    if (p->closed) b = closed_branch(p, d, rate);
+    SUNMatZero(j);
+    for (int column = 0; column < n; column++) {
+        double *by_q = SUNDenseMatrix_Column(j, column), *by_v = SUNDenseMatrix_Column(j, n + column);
+        for (int row = 0; row < n; row++) {
+            by_q[n + row] = -p->tip[row] * b.stiffness * p->tip[column];
+            by_v[n + row] = -p->tip[row] * b.damping * p->tip[column];
+        }
+        by_q[n + column] -= p->omega_squared[column];
+        by_v[n + column] -= p->damping[column];
+        by_v[column] = 1.0;
+    }
+    return 0;
+}
+
+static int roots(realtype t, N_Vector yv, realtype *g, void *data) {
+    double d, rate;
+    indentation(data, t, N_VGetArrayPointer(yv), &d, &rate);
+    g[0] = engagement(data, d, rate);
+    return 0;
+}
+
+/* Processor time of this thread. */
+static double seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static long totals[4]; /* steps, error test failures, Newton iterations, Jacobians */
+
+/* CVodeReInit sets the counters to zero. */
+static void count(void *cvode) {
+    long steps, failures, iterations, jacobians;
+    CVodeGetNumSteps(cvode, &steps);
+    CVodeGetNumErrTestFails(cvode, &failures);
+    CVodeGetNumNonlinSolvIters(cvode, &iterations);
+    CVodeGetNumJacEvals(cvode, &jacobians);
+    totals[0] += steps, totals[1] += failures, totals[2] += iterations, totals[3] += jacobians;
+}
+
+static void silent(int code, const char *module, const char *function, char *message, void *data) {
+    (void)code, (void)module, (void)function, (void)message, (void)data;
+}
+
+int main(void) {
+    problem p;
+    p.modes = (int)number();
+    int n = p.modes;
+    p.omega_squared = array(n), p.damping = array(n), p.tip = array(n), p.participation = array(n);
+    for (int i = 0; i < n; i++) {
+        p.omega_squared[i] = number(), p.damping[i] = number(), p.tip[i] = number(), p.participation[i] = number();
+    }
+    p.law = (int)number(), p.law_a = number(), p.law_b = number(), p.law_c = number();
+    p.preload_force = number(), p.preload_indentation = number();
+    p.amplitude = number(), p.angular_frequency = number(), p.phase = number(), p.support_rate = number();
+    p.closed = p.preload_force > 0.0;
+    double relative = number();
+    double *absolute = array(2 * n);
+    for (int i = 0; i < 2 * n; i++) absolute[i] = number();
+    double end = number();
+    int cells = (int)number();
+    double budget = number(); /* s of processor time */
+
+    SUNContext context;
+    if (SUNContext_Create(NULL, &context)) return 2;
+    N_Vector y = N_VNew_Serial(2 * n, context), tolerances = N_VMake_Serial(2 * n, absolute, context);
+    N_VConst(0.0, y);
+    void *cvode = CVodeCreate(CV_BDF, context);
+    SUNMatrix matrix = SUNDenseMatrix(2 * n, 2 * n, context);
+    SUNLinearSolver linear = SUNLinSol_Dense(y, matrix, context);
+    CVodeInit(cvode, right_hand_side, 0.0, y);
+    CVodeSetErrHandlerFn(cvode, silent, NULL);
+    CVodeSVtolerances(cvode, relative, tolerances);
+    CVodeSetUserData(cvode, &p);
+    CVodeSetMaxNumSteps(cvode, 500000);
+    CVodeSetLinearSolver(cvode, linear, matrix);
+    CVodeSetJacFn(cvode, jacobian);
+    if (p.law != BONDED) CVodeRootInit(cvode, 1, roots);
+    CVodeSetNoInactiveRootWarn(cvode);
+
+    double *forces = array(cells + 1), *events = array(10000);
+    int event_count = 0, direction = p.closed ? -1 : 1, flag = CV_SUCCESS;
+    double d, rate, t = 0.0;
+    if (p.law != BONDED) CVodeSetRootDirection(cvode, &direction);
+    double start = seconds();
+    forces[0] = p.preload_force;
+    for (int cell = 1; cell <= cells; cell++) {
+        double target = end * cell / cells;
+        while ((flag = CVode(cvode, target, y, &t, CV_NORMAL)) == CV_ROOT_RETURN && event_count < 10000) {
+            events[event_count++] = t;
+            p.closed = !p.closed;
+            direction = p.closed ? -1 : 1;
+            count(cvode);
+            CVodeReInit(cvode, t, y);
+            CVodeSetRootDirection(cvode, &direction);
+            if (target - t < 1e-12 * end) break; /* too close for a step */
+        }
+        if (flag < 0 || event_count == 10000) break;
+        if (seconds() - start > budget) {
+            flag = -100;
+            break;
+        }
+        indentation(&p, t, N_VGetArrayPointer(y), &d, &rate);
+        double force = p.closed ? closed_branch(&p, d, rate).force : 0.0;
+        forces[cell] = p.law == BONDED ? force : fmax(force, 0.0);
+    }
+    double spent = seconds() - start;
+    count(cvode);
+    printf("version %s\n", SUNDIALS_VERSION);
+    if (event_count == 10000) flag = -101;
+    if (flag < 0) {
+        const char *cause = flag == -100   ? "out of its time budget"
+                            : flag == -101 ? "openings and closings without end"
+                                           : CVodeGetReturnFlagName(flag);
+        printf("failure %.17g %s\n", t, cause);
+        return 0;
+    }
+    printf("time %.9g\n", spent);
+    printf("work %ld %ld %ld %ld\n", totals[0], totals[1], totals[2], totals[3]);
+    printf("events");
+    for (int i = 0; i < event_count; i++) printf(" %.17g", events[i]);
+    printf("\nforces");
+    for (int i = 0; i <= cells; i++) printf(" %.17g", forces[i]);
+    printf("\n");
+    return 0;
+}

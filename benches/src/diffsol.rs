@@ -1,0 +1,162 @@
+//! The Rust library diffsol: BDF and an ESDIRK of order 3, dense, with analytic Jacobian-vector products and root finding.
+//!
+//! The absolute tolerance is the tolerance asked for in units of [`Problem::scales`], the relative one [`Problem::relative`] times it. At an
+//! opening or a closing the solver is started anew on the other branch.
+
+use cpu_time::ThreadTime;
+
+use ::diffsol::{
+    DiffsolError, NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquations, OdeSolverMethod, OdeSolverStopReason,
+};
+
+use crate::integrator::{BUDGET, Failure, Integrator, Run, Setting};
+use crate::problem::Problem;
+
+/// More openings and closings than this are no result.
+const MOST_EVENTS: usize = 10_000;
+
+/// A method of diffsol.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Diffsol {
+    /// Backward differentiation, orders 1 to 5.
+    Bdf,
+    /// Explicit first stage, singly diagonally implicit Runge-Kutta, order 3, four stages.
+    Esdirk34,
+}
+
+impl Integrator for Diffsol {
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Bdf => "diffsol BDF",
+            Self::Esdirk34 => "diffsol ESDIRK34",
+        }
+    }
+
+    fn run(&self, problem: &Problem, setting: Setting) -> Result<Run, Failure> {
+        let start = ThreadTime::now();
+        let mut run = Run {
+            forces: vec![problem.model.preload.force],
+            ..Run::default()
+        };
+        let mut branch = Start {
+            time: 0.0,
+            state: vec![0.0; 2 * problem.modes()],
+            closed: problem.starts_closed(),
+        };
+        while run.forces.len() <= problem.cells as usize {
+            let stopped = |error: &DiffsolError| Failure::Stopped(format!("t = {:.6e} s: {error}", branch.time));
+            let next = self
+                .branch(problem, &branch, setting.value(), start, &mut run)
+                .map_err(|error| stopped(&error))?;
+            if run.events.len() > MOST_EVENTS {
+                return Err(Failure::Stopped("openings and closings without end".to_owned()));
+            }
+            match next {
+                Some(next) => branch = next,
+                None if start.elapsed().as_secs_f64() > BUDGET => {
+                    return Err(Failure::Stopped("out of its time budget".to_owned()));
+                }
+                None => break,
+            }
+        }
+        run.time = start.elapsed().as_secs_f64();
+        Ok(run)
+    }
+}
+
+/// Where a branch starts.
+struct Start {
+    time: f64,
+    state: Vec<f64>,
+    closed: bool,
+}
+
+impl Diffsol {
+    /// Runs on one branch, to where it ends or to the end of the simulation.
+    fn branch(
+        self,
+        problem: &Problem,
+        from: &Start,
+        tolerance: f64,
+        clock: ThreadTime,
+        run: &mut Run,
+    ) -> Result<Option<Start>, DiffsolError> {
+        type Lu = NalgebraLU<f64>;
+        let closed = from.closed;
+        let absolute: Vec<f64> = problem.scales().iter().map(|scale| tolerance * scale).collect();
+        let mut ode = OdeBuilder::<NalgebraMat<f64>>::new()
+            .t0(from.time)
+            .rtol(problem.relative * tolerance)
+            .atol(absolute)
+            .rhs_implicit(
+                |state, _, time, derivative| problem.derivative(closed, time, state, derivative),
+                |state, _, time, direction, product| problem.jacobian_times(closed, time, state, direction, product),
+            )
+            .init(|_, _, state| state.copy_from_slice(&from.state), from.state.len())
+            .root(
+                |state, _, time, root| {
+                    // Of a contact that cannot open the engagement is infinite.
+                    root.fill(problem.engagement(time, state).min(1.0));
+                },
+                1,
+            )
+            .build()?;
+        // The first steps after a blow are short.
+        ode.ode_options.min_timestep = 1e-20;
+        match self {
+            Self::Bdf => drive(problem, closed, ode.bdf::<Lu>()?, clock, run),
+            Self::Esdirk34 => drive(problem, closed, ode.esdirk34::<Lu>()?, clock, run),
+        }
+    }
+}
+
+fn drive<'a, E, S>(
+    problem: &Problem,
+    closed: bool,
+    mut solver: S,
+    clock: ThreadTime,
+    run: &mut Run,
+) -> Result<Option<Start>, DiffsolError>
+where
+    E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a,
+    S: OdeSolverMethod<'a, E>,
+{
+    let mut next = None;
+    let mut cell = u32::try_from(run.forces.len()).unwrap_or(u32::MAX);
+    let mut steps = 0_u32;
+    while cell <= problem.cells && next.is_none() {
+        // Reading the processor time costs as much as half a step: not every time.
+        steps += 1;
+        if steps.is_multiple_of(1000) && clock.elapsed().as_secs_f64() > BUDGET {
+            break;
+        }
+        let mut reached = f64::INFINITY;
+        if let OdeSolverStopReason::RootFound(root, _) = solver.step()? {
+            // A branch starts where the engagement is zero but for rounding: crossing into the branch is no end of it.
+            let state = solver.state();
+            if (problem.engagement(state.t, state.y.batch_as_slice(0)) > 0.0) != closed {
+                reached = root;
+            }
+        }
+        let end = reached.min(solver.state().t);
+        while cell <= problem.cells && problem.instant(cell) <= end {
+            let time = problem.instant(cell);
+            let state = solver.interpolate(time)?;
+            run.forces.push(problem.force(closed, time, state.batch_as_slice(0)));
+            cell += 1;
+        }
+        if reached.is_finite() && cell <= problem.cells {
+            run.events.push(reached);
+            next = Some(Start {
+                time: reached,
+                state: solver.interpolate(reached)?.batch_as_slice(0).to_vec(),
+                closed: !closed,
+            });
+        }
+    }
+    let work = solver.get_statistics();
+    run.steps += work.number_of_steps as u64;
+    run.rejected += work.number_of_error_test_failures as u64;
+    run.iterations += work.number_of_nonlinear_solver_iterations as u64;
+    Ok(next)
+}

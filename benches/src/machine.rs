@@ -1,0 +1,38 @@
+//! Where the measurements were made.
+
+use std::fs;
+use std::process::Command;
+use std::thread::available_parallelism;
+
+use crate::cvode::Cvode;
+
+/// Processor, compiler and library versions, in one line.
+pub fn description() -> String {
+    let processor = fs::read_to_string("/proc/cpuinfo")
+        .ok()
+        .and_then(|text| {
+            let line = text.lines().find(|line| line.starts_with("model name"))?.to_owned();
+            Some(line.split_once(": ")?.1.to_owned())
+        })
+        .unwrap_or_else(|| std::env::consts::ARCH.to_owned());
+    let cores = available_parallelism().map_or(1, usize::from);
+    let rustc = Command::new("rustc")
+        .arg("--version")
+        .output()
+        .ok()
+        .and_then(|output| String::from_utf8(output.stdout).ok())
+        .map_or_else(|| "rustc".to_owned(), |text| text.trim().to_owned());
+    let sundials = Cvode::new()
+        .version()
+        .map_or("without SUNDIALS".to_owned(), |version| format!("SUNDIALS {version}"));
+    let diffsol = locked_version("diffsol").unwrap_or_default();
+    let own = env!("CARGO_PKG_VERSION");
+    format!("{processor}, {cores} cores, one used; {rustc}; relay-contact {own}, diffsol {diffsol}, {sundials}")
+}
+
+/// The version of a package in Cargo.lock.
+fn locked_version(package: &str) -> Option<String> {
+    let mut lines = include_str!("../../Cargo.lock").lines();
+    lines.find(|line| *line == format!("name = \"{package}\""))?;
+    Some(lines.next()?.split('"').nth(1)?.to_owned())
+}

@@ -1,0 +1,87 @@
+//! The scenes compared. All start from rest, without axial force.
+
+use relay_contact::error::SceneError;
+use relay_contact::model::Model;
+use relay_contact::scene::Scene;
+use relay_contact::variables::{AxialForceKind, ContactLawKind, ExcitationKind};
+
+use crate::problem::Problem;
+
+/// Modes of the references that stand for the continuum.
+pub const MANY_MODES: i32 = 20;
+
+/// The published case: 98 m/s2 at 1000 Hz, 50 ms; the contact stays closed.
+///
+/// # Errors
+/// A [`SceneError`] where the scene cannot be simulated, as for all here.
+pub fn paper() -> Result<Problem, SceneError> {
+    with_default_modes("paper", shaken(98.0), 0.0, 0.05, 500)
+}
+
+/// 400 m/s2: the contact opens in every period; first 5 ms.
+///
+/// # Errors
+/// See [`paper`].
+pub fn chatter() -> Result<Problem, SceneError> {
+    Ok(Problem {
+        relative: 0.01,
+        ..with_default_modes("chatter", shaken(400.0), 0.0, 0.005, 250)?
+    })
+}
+
+/// The contact starts open by 20 um, and the fixed contact comes at 60 mm/s: it closes with a blow and bounces. Contact
+/// damping is 1 us here; with the specimen's it would not bounce. 5 ms.
+///
+/// # Errors
+/// See [`paper`].
+pub fn closing_bounce() -> Result<Problem, SceneError> {
+    let mut scene = still();
+    scene.contact.overtravel = -20e-6;
+    scene.contact.damping = 1e-6;
+    with_default_modes("closing bounce", scene, 0.06, 0.005, 250)
+}
+
+/// The published case with the contact linearised and bonded, so that everything is linear.
+///
+/// # Errors
+/// See [`paper`].
+pub fn linear() -> Result<Problem, SceneError> {
+    let mut scene = shaken(98.0);
+    scene.effects.contact_law = ContactLawKind::Bonded;
+    with_default_modes("linear", scene, 0.0, 0.05, 500)
+}
+
+/// All of them.
+///
+/// # Errors
+/// See [`paper`].
+pub fn all() -> Result<Vec<Problem>, SceneError> {
+    Ok(vec![paper()?, chatter()?, closing_bounce()?, linear()?])
+}
+
+fn still() -> Scene {
+    let mut scene = Scene::default();
+    scene.effects.axial_force = AxialForceKind::None;
+    scene
+}
+
+fn shaken(amplitude: f64) -> Scene {
+    let mut scene = still();
+    scene.effects.excitation = ExcitationKind::Sine;
+    scene.excitation.amplitude = amplitude;
+    scene.excitation.frequency = 1000.0;
+    scene
+}
+
+/// With as many modes as the component itself chooses at its default tolerance.
+fn with_default_modes(
+    name: &'static str,
+    mut scene: Scene,
+    support_rate: f64,
+    end: f64,
+    cells: u32,
+) -> Result<Problem, SceneError> {
+    let chosen = Model::new(&scene, 0.0)?.modes.len();
+    scene.solver.modes = i32::try_from(chosen).unwrap_or(MANY_MODES);
+    Problem::new(name, &scene, support_rate, end, cells)
+}

@@ -1,0 +1,235 @@
+//! Measurements as text: a CSV of all of them, and tables of the cheapest run at equal or better error.
+
+use std::fmt::Write as _;
+
+use crate::integrator::Failure;
+use crate::study::{Measured, Row};
+
+/// The part of a study in which the component chooses its own modes.
+pub const DELIVERED: &str = "delivered";
+
+/// The part of a study in which all integrators work on the same modes.
+pub const PEERS: &str = "peers";
+
+/// All tables, with the machine and what failed.
+pub fn report(rows: &[Row]) -> String {
+    let mut text = format!(
+        "Measured on: {}.\n\nWhat the component delivers:\n\n{}\nBeside others, on the same modes. Each cell: processor time per simulated second of the cheapest run whose error is at most that of the \
+         column, and in brackets how many times the component's.\n",
+        crate::machine::description(),
+        delivered(rows),
+    );
+    for scene in ["paper", "linear", "chatter", "closing bounce"] {
+        let _ = write!(
+            text,
+            "\nScene *{scene}*, error of the contact force relative to the preload:\n\n"
+        );
+        text += &ratios(
+            rows,
+            scene,
+            &[1e-2, 1e-4, 1e-6, 1e-8, 1e-10],
+            |level| format!("{level:.0e}"),
+            |run| Some(run.force_error),
+        );
+    }
+    for scene in ["chatter", "closing bounce"] {
+        let _ = write!(
+            text,
+            "\nScene *{scene}*, error of the instants of opening and closing:\n\n"
+        );
+        text += &ratios(
+            rows,
+            scene,
+            &[1e-6, 1e-7, 1e-8, 1e-9, 1e-10],
+            |level| format!("{level:.0e} s"),
+            |run| run.event_error,
+        );
+    }
+    text += "\nRuns that gave no result:\n\n";
+    let failures = failures(rows);
+    text + if failures.is_empty() { "- none\n" } else { &failures }
+}
+
+/// What the component delivers at each tolerance, with the modes it chooses itself, against the motion with many modes.
+fn delivered(rows: &[Row]) -> String {
+    let rows: Vec<&Row> = rows.iter().filter(|row| row.case.part == DELIVERED).collect();
+    let mut tolerances: Vec<f64> = rows.iter().map(|row| row.case.setting.value()).collect();
+    tolerances.sort_by(|a, b| b.total_cmp(a));
+    tolerances.dedup();
+    let found = |scene: &str, tolerance: f64| -> Option<(usize, Measured)> {
+        let row = rows
+            .iter()
+            .find(|row| row.case.problem.name == scene && row.case.setting.value() == tolerance)?;
+        Some((row.modes, *row.outcome.as_ref().ok()?))
+    };
+    let mut text = String::from(
+        "| tolerance | modes | force error, paper | force error, chatter | force error, closing bounce | opening durations, \
+         chatter | opening durations, closing bounce | time per simulated s, paper | chatter |\n|---|",
+    );
+    text.push_str(&"---:|".repeat(8));
+    text.push('\n');
+    for tolerance in tolerances {
+        let [paper, chatter, bounce] = ["paper", "chatter", "closing bounce"].map(|scene| found(scene, tolerance));
+        let force = |run: Option<(usize, Measured)>| {
+            run.map_or("failed".to_owned(), |(_, run)| format!("{:.0e}", run.force_error))
+        };
+        let duration = |run: Option<(usize, Measured)>| {
+            run.and_then(|(_, run)| run.duration_error)
+                .map_or("failed".to_owned(), |error| format!("{:.0e} µs", 1e6 * error))
+        };
+        let cost = |run: Option<(usize, Measured)>| run.map_or("failed".to_owned(), |(_, run)| seconds(run.cost));
+        let _ = writeln!(
+            text,
+            "| {tolerance:.0e} | {} | {} | {} | {} | {} | {} | {} | {} |",
+            paper.map_or(0, |(modes, _)| modes),
+            force(paper),
+            force(chatter),
+            force(bounce),
+            duration(chatter),
+            duration(bounce),
+            cost(paper),
+            cost(chatter),
+        );
+    }
+    text
+}
+
+/// All rows as CSV.
+pub fn csv(rows: &[Row]) -> String {
+    let mut text = String::from(
+        "part,scene,integrator,setting,value,modes,seconds_per_second,force_error,event_error_us,opening_duration_error_us,\
+         events,steps,rejected,iterations,reference_force_error,reference_event_error_us,outcome\n",
+    );
+    for row in rows {
+        let case = &row.case;
+        let _ = write!(
+            text,
+            "{},{},{},{},{:e},{},",
+            case.part,
+            case.problem.name,
+            case.integrator.name(),
+            case.setting.kind(),
+            case.setting.value(),
+            row.modes,
+        );
+        let micro = |seconds: Option<f64>| seconds.map_or(String::new(), |seconds| format!("{:.4e}", 1e6 * seconds));
+        let outcome = match &row.outcome {
+            Ok(run) => {
+                let _ = write!(
+                    text,
+                    "{:.4e},{:.4e},{},{},{},{},{},{},",
+                    run.cost,
+                    run.force_error,
+                    micro(run.event_error),
+                    micro(run.duration_error),
+                    run.events,
+                    run.steps,
+                    run.rejected,
+                    run.iterations,
+                );
+                "ok".to_owned()
+            }
+            Err(failure) => {
+                text.push_str(",,,,,,,,");
+                failure.to_string().replace(['"', ',', '\n'], " ")
+            }
+        };
+        let _ = writeln!(
+            text,
+            "{:.4e},{},{outcome}",
+            case.reference.force_error,
+            micro(Some(case.reference.event_error)),
+        );
+    }
+    text
+}
+
+/// Time per simulated second of the cheapest run of each integrator that is at least as accurate as each level, and how many
+/// times that of the component; a table in Markdown. The error is the one `error` picks.
+fn ratios(
+    rows: &[Row],
+    scene: &str,
+    levels: &[f64],
+    heading: impl Fn(f64) -> String,
+    error: impl Fn(&Measured) -> Option<f64>,
+) -> String {
+    let rows: Vec<&Row> = rows
+        .iter()
+        .filter(|row| row.case.part == PEERS && row.case.problem.name == scene)
+        .filter(|row| !matches!(row.outcome, Err(Failure::Unavailable(_))))
+        .collect();
+    let cheapest = |integrator: &str, level: f64| {
+        rows.iter()
+            .filter(|row| row.case.integrator.name() == integrator)
+            .filter_map(|row| row.outcome.as_ref().ok())
+            .filter(|run| error(run).is_some_and(|error| error <= level))
+            .map(|run| run.cost)
+            .min_by(f64::total_cmp)
+    };
+    let mut names: Vec<&str> = rows.iter().map(|row| row.case.integrator.name()).collect();
+    let mut seen = std::collections::HashSet::new();
+    names.retain(|name| seen.insert(*name));
+    let Some(own) = names.first().copied() else {
+        return String::new();
+    };
+    let mut text = String::from("| |");
+    for level in levels {
+        let _ = write!(text, " {} |", heading(*level));
+    }
+    text.push_str("\n|---|");
+    text.push_str(&"---:|".repeat(levels.len()));
+    text.push('\n');
+    for name in names {
+        let _ = write!(text, "| {name} |");
+        for level in levels {
+            let _ = match (cheapest(name, *level), cheapest(own, *level)) {
+                (Some(cost), _) if name == own => write!(text, " {} |", seconds(cost)),
+                (Some(cost), Some(least)) => write!(text, " {} ({}) |", seconds(cost), factor(cost / least)),
+                (Some(cost), None) => write!(text, " {} |", seconds(cost)),
+                (None, _) => write!(text, " not reached |"),
+            };
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// The runs that gave no result, a line each; an integrator that is not installed has one line.
+fn failures(rows: &[Row]) -> String {
+    let mut lines = Vec::new();
+    for row in rows {
+        let case = &row.case;
+        let integrator = case.integrator.name();
+        let line = match &row.outcome {
+            Ok(_) => continue,
+            Err(failure @ Failure::Unavailable(_)) => format!("- {integrator}: {failure}\n"),
+            Err(failure) => format!(
+                "- {}, {integrator}, {} {:.0e}: {failure}\n",
+                case.problem.name,
+                case.setting.kind(),
+                case.setting.value(),
+            ),
+        };
+        if !lines.contains(&line) {
+            lines.push(line);
+        }
+    }
+    lines.concat()
+}
+
+/// A time in a unit that fits.
+fn seconds(time: f64) -> String {
+    match time {
+        t if t >= 1.0 => format!("{} s", digits(t)),
+        t => format!("{} ms", digits(1e3 * t)),
+    }
+}
+
+fn factor(ratio: f64) -> String {
+    format!("{}×", digits(ratio))
+}
+
+/// Two digits, or all before the point.
+fn digits(x: f64) -> String {
+    if x < 9.95 { format!("{x:.1}") } else { format!("{x:.0}") }
+}
