@@ -5,7 +5,7 @@ use crate::error::{SceneError, StepError};
 use crate::inputs::Inputs;
 use crate::model::{Model, State};
 use crate::scene::Scene;
-use crate::transient::advance::Workspace;
+use crate::transient::workspace::Workspace;
 use crate::variables::{BooleanOutput, IntegerOutput, RealOutput};
 
 /// A simulation from its preload onwards.

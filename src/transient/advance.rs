@@ -2,11 +2,11 @@
 
 use crate::error::{StepError, StepErrorCause};
 use crate::inputs::Inputs;
-use crate::model::{MAX_MODES, ModeState, ModeStates, Model, State};
-use crate::transient::coefficients::Cache;
+use crate::model::{Model, State};
 use crate::transient::collocation::{Collocation, LONG, SHORT};
 use crate::transient::nodal::{Drive, Trial};
 use crate::transient::progress::{Progress, Target};
+use crate::transient::workspace::{Room, Workspace};
 
 /// Integration steps a communication step may take, and further ones per second of it.
 const BUDGET: u64 = 10_000_000;
@@ -34,47 +34,6 @@ const LONG_FLOOR: f64 = 3e-11;
 
 /// Many nodes reach at most about this many times as far as few.
 const LONGER: f64 = 16.0;
-
-/// Scratch of the steps. Nothing in it changes a result, only the time it takes.
-#[derive(Clone, Debug)]
-pub struct Workspace {
-    short: Cache<SHORT>,
-    long: Cache<LONG>,
-    /// The modes at the end of the step about to be taken.
-    end: ModeStates,
-    /// The modes at instants looked at.
-    probe: ModeStates,
-}
-
-impl Workspace {
-    /// For the model.
-    pub fn new(model: &Model) -> Self {
-        Self {
-            short: Cache::new(model.modes.len()),
-            long: Cache::new(model.modes.len()),
-            end: [ModeState::default(); MAX_MODES],
-            probe: [ModeState::default(); MAX_MODES],
-        }
-    }
-}
-
-/// A workspace for steps with `S` nodes.
-pub(super) trait Room<const S: usize> {
-    /// The cache, and room for the modes at the end of the step and at instants looked at.
-    fn parts(&mut self) -> (&mut Cache<S>, &mut ModeStates, &mut ModeStates);
-}
-
-impl Room<SHORT> for Workspace {
-    fn parts(&mut self) -> (&mut Cache<SHORT>, &mut ModeStates, &mut ModeStates) {
-        (&mut self.short, &mut self.end, &mut self.probe)
-    }
-}
-
-impl Room<LONG> for Workspace {
-    fn parts(&mut self) -> (&mut Cache<LONG>, &mut ModeStates, &mut ModeStates) {
-        (&mut self.long, &mut self.end, &mut self.probe)
-    }
-}
 
 /// A communication step under way.
 pub(super) struct Integration<'a> {

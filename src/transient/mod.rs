@@ -4,7 +4,7 @@
 //! scalar function of one scalar, the tip. Over a step the contact force is a polynomial through Radau nodes
 //! ([`collocation`]); each mode's exact response to it ([`response`], [`coefficients`]) gives the indentation at the nodes,
 //! and Newton's method on the nodal forces alone closes the loop ([`nodal`]). Steps adapt to an estimate of the
-//! force's error ([`advance`], on a grid: [`progress`]) and end where the contact opens ([`release`]) or closes ([`touchdown`]).
+//! force's error ([`advance`], on a grid: [`progress`], in room made once: [`workspace`]) and end where the contact opens ([`release`]) or closes ([`touchdown`]).
 
 pub mod advance;
 pub mod coefficients;
@@ -14,3 +14,4 @@ pub mod progress;
 pub mod release;
 pub mod response;
 pub mod touchdown;
+pub mod workspace;

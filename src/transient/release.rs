@@ -1,8 +1,9 @@
 //! The contact opens: the instant within a step at which the force reaches zero.
 
 use crate::math::roots;
-use crate::transient::advance::{Cut, Integration, Room, Workspace};
+use crate::transient::advance::{Cut, Integration};
 use crate::transient::nodal::Trial;
+use crate::transient::workspace::{Room, Workspace};
 
 /// Points at which the force polynomial is looked at where it comes near zero.
 const LOOKS: u32 = 32;

@@ -5,9 +5,10 @@
 //! point clears zero by more than that error there is no touch; elsewhere the interval is halved.
 
 use crate::math::roots;
-use crate::transient::advance::{Cut, Integration, Room, Workspace};
+use crate::transient::advance::{Cut, Integration};
 use crate::transient::collocation::LONG;
 use crate::transient::nodal::Trial;
+use crate::transient::workspace::{Room, Workspace};
 
 /// Halvings before an interval counts as an instant.
 const DEPTH: u32 = 40;

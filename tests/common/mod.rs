@@ -9,7 +9,7 @@ use relay_contact::inputs::Inputs;
 use relay_contact::model::{Mode, Model, State};
 use relay_contact::preload::Preload;
 use relay_contact::scene::Scene;
-use relay_contact::transient::advance::Workspace;
+use relay_contact::transient::workspace::Workspace;
 
 /// A model with its state.
 pub struct Rig {

@@ -1,0 +1,46 @@
+//! Room for the steps, made once, so that no step allocates.
+
+use crate::model::{MAX_MODES, ModeState, ModeStates, Model};
+use crate::transient::coefficients::Cache;
+use crate::transient::collocation::{LONG, SHORT};
+
+/// Scratch of the steps. Nothing in it changes a result, only the time it takes.
+#[derive(Clone, Debug)]
+pub struct Workspace {
+    short: Cache<SHORT>,
+    long: Cache<LONG>,
+    /// The modes at the end of the step about to be taken.
+    end: ModeStates,
+    /// The modes at instants looked at.
+    probe: ModeStates,
+}
+
+impl Workspace {
+    /// For the model.
+    pub fn new(model: &Model) -> Self {
+        Self {
+            short: Cache::new(model.modes.len()),
+            long: Cache::new(model.modes.len()),
+            end: [ModeState::default(); MAX_MODES],
+            probe: [ModeState::default(); MAX_MODES],
+        }
+    }
+}
+
+/// A workspace for steps with `S` nodes.
+pub(super) trait Room<const S: usize> {
+    /// The cache, and room for the modes at the end of the step and at instants looked at.
+    fn parts(&mut self) -> (&mut Cache<S>, &mut ModeStates, &mut ModeStates);
+}
+
+impl Room<SHORT> for Workspace {
+    fn parts(&mut self) -> (&mut Cache<SHORT>, &mut ModeStates, &mut ModeStates) {
+        (&mut self.short, &mut self.end, &mut self.probe)
+    }
+}
+
+impl Room<LONG> for Workspace {
+    fn parts(&mut self) -> (&mut Cache<LONG>, &mut ModeStates, &mut ModeStates) {
+        (&mut self.long, &mut self.end, &mut self.probe)
+    }
+}
