@@ -20,9 +20,6 @@ const SHARE: f64 = 0.05;
 /// See [`SHARE`].
 const UNDAMPED_SHARE: f64 = 0.004;
 
-/// Rounding of a contact force, relative to it.
-const ROUNDING: f64 = 1e-13;
-
 /// Growth from step to step that shows the steps are still finding their length.
 const GROWING: f64 = 1.5;
 
@@ -197,19 +194,7 @@ impl Integration<'_> {
 
         let attempt = self.attempt::<S>(&target);
         let allowed = self.allowed;
-        let (preload, scale) = (self.model.preload.force, self.model.force_scale);
-        let ratio_of = |trial: &Trial<S>| {
-            // Below the rounding of the force the estimate says nothing. (Not `max`, which would hide a NaN.)
-            let largest = trial
-                .forces
-                .iter()
-                .fold(scale, |largest, force| largest.max((preload + force).abs()));
-            if trial.error <= ROUNDING * largest {
-                0.0
-            } else {
-                trial.error / allowed
-            }
-        };
+        let ratio_of = |trial: &Trial<S>| trial.error / allowed;
         let ratio = attempt.as_ref().map_or(f64::INFINITY, ratio_of);
         // The error estimate grows with this power of the step length.
         let reach = |ratio: f64| ratio.powf(-1.0 / (S as f64 + 1.0));

@@ -1,8 +1,8 @@
 //! The polynomial in time that stands for contact force and base acceleration within a step.
 //!
 //! A step has `S` Radau nodes, the last at its end, so that the contact force there obeys the contact law exactly, however
-//! stiff its damping is (Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.5): eight for long steps, four where a short one is wanted (a communication step of a
-//! microsecond, the time just after a blow).
+//! stiff its damping is (Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.5): eight for long steps,
+//! four where a short one is wanted (a communication step of a microsecond, the time just after a blow).
 
 use crate::math::legendre;
 

@@ -51,6 +51,9 @@ struct Solution<const S: usize> {
     gain: f64,
 }
 
+/// Rounding of a contact force, relative to it.
+const ROUNDING: f64 = 1e-13;
+
 /// Newton iterations before a step is judged too long.
 const ITERATIONS: u64 = 12;
 
@@ -146,22 +149,25 @@ impl Model {
         solution: &Solution<S>,
         missed_acceleration: f64,
     ) -> f64 {
-        if !state.closed {
-            let last = |values: &Nodal<S>| values.last().map_or(0.0, |value| (value * missed_acceleration).abs());
-            let rows = &step.acceleration_error;
-            let wrong = last(&rows.displacement) + self.law.damping() * last(&rows.velocity);
-            return self.law.tangent_stiffness(self.force_scale) * wrong;
-        }
         let forces = &solution.forces;
-        let missed = state.force - self.preload.force - dot(forces, &collocation.at_start);
-        let (by_force, by_acceleration) = (solution.by_force, solution.by_acceleration);
-        let wrong_d = by_acceleration.0 * missed_acceleration - by_force.0 * missed;
-        let wrong_r = by_acceleration.1 * missed_acceleration - by_force.1 * missed;
-        let fast = (solution.stiffness * wrong_d).abs() + (solution.damping * wrong_r).abs();
         let largest = forces.iter().fold(self.force_scale, |largest, force| {
             largest.max((self.preload.force + force).abs())
         });
-        fast + 3.0 * missed * missed / largest * solution.gain / (1.0 + solution.gain)
+        let error = if state.closed {
+            let missed = state.force - self.preload.force - dot(forces, &collocation.at_start);
+            let (by_force, by_acceleration) = (solution.by_force, solution.by_acceleration);
+            let wrong_d = by_acceleration.0 * missed_acceleration - by_force.0 * missed;
+            let wrong_r = by_acceleration.1 * missed_acceleration - by_force.1 * missed;
+            let fast = (solution.stiffness * wrong_d).abs() + (solution.damping * wrong_r).abs();
+            fast + 3.0 * missed * missed / largest * solution.gain / (1.0 + solution.gain)
+        } else {
+            let last = |values: &Nodal<S>| values.last().map_or(0.0, |value| (value * missed_acceleration).abs());
+            let rows = &step.acceleration_error;
+            let wrong = last(&rows.displacement) + self.law.damping() * last(&rows.velocity);
+            self.law.tangent_stiffness(self.force_scale) * wrong
+        };
+        // Below the rounding of the force the estimate says nothing. (Not `max`, which would hide a NaN.)
+        if error <= ROUNDING * largest { 0.0 } else { error }
     }
 
     /// Newton's method for the nodal forces on the closed branch.
@@ -247,8 +253,9 @@ impl Model {
     }
 }
 
-/// Solves `(1 + A) x = b` for several `b`, `A` column by column, by Gauss-Jordan elimination, whose inner loops run down columns; rows are
-/// exchanged only where a pivot is small, which happens in violent steps alone. `None` where the matrix is singular.
+/// Solves `(1 + A) x = b` for several `b`, `A` column by column, by Gauss-Jordan elimination, whose inner loops run down
+/// columns; rows are exchanged only where a pivot is small, which happens in violent steps alone. `None` where the matrix
+/// is singular.
 #[expect(
     clippy::indexing_slicing,
     reason = "every index runs over the fixed size of the arrays"

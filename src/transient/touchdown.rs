@@ -167,5 +167,5 @@ fn highest(a: &Sample, b: &Sample) -> f64 {
     [larger / p, r / larger]
         .into_iter()
         .filter(|x| 0.0 < *x && *x < 1.0)
-        .fold(ends, |high, x| high.max(cubic(a, b, x.mul_add(h, a.at))))
+        .fold(ends, |high, x| high.max(cubic(a, b, a.at + x * h)))
 }
