@@ -66,7 +66,7 @@ pub struct ModeState {
 /// Room for the states of all modes; those in use come first.
 pub type ModeStates = [ModeState; MAX_MODES];
 
-/// Everything that moves. Plain numbers: saving a state is a copy.
+/// The motion at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {
     /// Time, s.
@@ -85,8 +85,6 @@ pub struct State {
     pub force: f64,
     /// Whether the contact force is positive.
     pub closed: bool,
-    /// Current through the contact over the last communication step, A.
-    pub current: f64,
     /// Instant at which the force last reached zero, s; -1: not yet.
     pub last_opening: f64,
     /// Instant at which the force last left zero, s; -1: not yet.
@@ -187,7 +185,6 @@ impl Model {
             indentation_rate: 0.0,
             force: self.preload.force,
             closed: self.preload.force > 0.0,
-            current: 0.0,
             last_opening: -1.0,
             last_closing: -1.0,
             short_step: self.first_step(),

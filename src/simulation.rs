@@ -5,6 +5,7 @@ use crate::error::{SceneError, StepError};
 use crate::inputs::Inputs;
 use crate::model::{Model, State};
 use crate::scene::Scene;
+use crate::transient::dense::Course;
 use crate::transient::workspace::Workspace;
 use crate::variables::{BooleanOutput, IntegerOutput, RealOutput};
 
@@ -12,7 +13,7 @@ use crate::variables::{BooleanOutput, IntegerOutput, RealOutput};
 #[derive(Clone, Debug)]
 pub struct Simulation {
     model: Model,
-    state: State,
+    course: Course,
     workspace: Workspace,
 }
 
@@ -23,12 +24,12 @@ impl Simulation {
     /// A [`SceneError`] where the scene cannot be simulated.
     pub fn new(scene: &Scene, inputs: &Inputs, start_time: f64) -> Result<Self, SceneError> {
         let model = Model::new(scene, inputs.support_displacement)?;
-        let mut state = model.initial_state(start_time);
-        state.current = inputs.contact_current;
+        let mut course = Course::new(model.initial_state(start_time));
+        course.current = inputs.contact_current;
         let workspace = Workspace::new(&model);
         Ok(Self {
             model,
-            state,
+            course,
             workspace,
         })
     }
@@ -41,12 +42,12 @@ impl Simulation {
     /// A [`StepError`]; the state is then what it was before the call.
     pub fn step(&mut self, inputs: &Inputs, time: f64, step_size: f64) -> Result<(), StepError> {
         self.model
-            .step(&mut self.state, &mut self.workspace, inputs, time, step_size)
+            .step(&mut self.course, &mut self.workspace, inputs, time, step_size)
     }
 
     /// The instant reached, s.
     pub fn time(&self) -> f64 {
-        self.state.time
+        self.course.time
     }
 
     /// The model.
@@ -54,23 +55,24 @@ impl Simulation {
         &self.model
     }
 
-    /// The state.
+    /// The last state that the integrator has reached, at or before [`Simulation::time`].
     pub fn state(&self) -> &State {
-        &self.state
+        self.course.state()
     }
 
     /// A real output or calculated parameter, in its SI unit.
     pub fn real(&self, output: RealOutput) -> f64 {
-        let Self { model, state, .. } = self;
-        let conductance = || electrical::conductance(&model.scene.resistance, state.force);
+        let Self { model, course, .. } = self;
+        let (state, tip) = (course.state(), || course.tip(model));
+        let conductance = || electrical::conductance(&model.scene.resistance, tip().force);
         match output {
-            RealOutput::ContactForce => state.force,
+            RealOutput::ContactForce => tip().force,
             RealOutput::ContactConductance => conductance(),
             RealOutput::ContactResistance => 1.0 / conductance(),
-            RealOutput::ContactVoltage => state.current / conductance(),
-            RealOutput::ContactIndentation => model.preload.indentation + state.indentation,
-            RealOutput::TipDisplacement => model.preload.deflection + state.support - state.indentation,
-            RealOutput::TipVelocity => state.support_rate - state.indentation_rate,
+            RealOutput::ContactVoltage => course.current / conductance(),
+            RealOutput::ContactIndentation => model.preload.indentation + tip().indentation,
+            RealOutput::TipDisplacement => model.preload.deflection + state.support - tip().indentation,
+            RealOutput::TipVelocity => state.support_rate - tip().rate,
             RealOutput::ContactLastOpening => state.last_opening,
             RealOutput::ContactLastClosing => state.last_closing,
             RealOutput::PreloadForce => model.preload.force,
@@ -85,9 +87,9 @@ impl Simulation {
     pub fn integer(&self, output: IntegerOutput) -> i32 {
         let count = |n: u64| i32::try_from(n).unwrap_or(i32::MAX);
         match output {
-            IntegerOutput::SolverSteps => count(self.state.steps),
-            IntegerOutput::SolverRejectedSteps => count(self.state.rejected_steps),
-            IntegerOutput::SolverIterations => count(self.state.iterations),
+            IntegerOutput::SolverSteps => count(self.state().steps),
+            IntegerOutput::SolverRejectedSteps => count(self.state().rejected_steps),
+            IntegerOutput::SolverIterations => count(self.state().iterations),
             IntegerOutput::SolverModesUsed => count(self.model.modes.len() as u64),
         }
     }
@@ -95,7 +97,7 @@ impl Simulation {
     /// A Boolean output.
     pub fn boolean(&self, output: BooleanOutput) -> bool {
         match output {
-            BooleanOutput::ContactClosed => self.state.force > 0.0,
+            BooleanOutput::ContactClosed => self.course.tip(&self.model).force > 0.0,
         }
     }
 }

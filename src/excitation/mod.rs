@@ -115,6 +115,14 @@ impl Generator {
         }
     }
 
+    /// Whether there is an acceleration at `time` (s) or just after it.
+    pub fn is_active(&self, time: f64) -> bool {
+        match *self {
+            Self::None => false,
+            Self::Sine { start, .. } => time >= start,
+        }
+    }
+
     /// The next instant after `time` at which the acceleration is not smooth, s.
     pub fn next_break(&self, time: f64) -> Option<f64> {
         match *self {

@@ -1,9 +1,9 @@
 //! A communication step as a sequence of integration steps.
 
 use crate::error::{StepError, StepErrorCause};
-use crate::inputs::Inputs;
 use crate::model::{Model, State};
 use crate::transient::collocation::{Collocation, LONG, SHORT};
+use crate::transient::dense::Span;
 use crate::transient::nodal::{Drive, Trial};
 use crate::transient::progress::{Progress, Target};
 use crate::transient::workspace::{Room, Workspace};
@@ -13,12 +13,13 @@ const BUDGET: u64 = 10_000_000;
 /// See [`BUDGET`].
 const BUDGET_RATE: f64 = 1e7;
 
-/// Share of the tolerance that one step may use up, found by comparing errors with tolerances over scenes
-/// (`tests/calibration.rs`): where the errors of earlier steps die out, and where beam or contact have no damping and the
-/// errors add up.
-const SHARE: f64 = 0.05;
-/// See [`SHARE`].
-const UNDAMPED_SHARE: f64 = 0.004;
+/// Share of the tolerance that one step may use up. Found by comparing errors with tolerances over scenes
+/// (`tests/calibration.rs`): a blow makes the errors of the motion before it a hundred times larger, and without damping errors
+/// add up.
+const SHARE: f64 = 0.004;
+
+/// Error of the contact force within a step, per force that its polynomial misses at the start.
+const INSIDE: f64 = 0.3;
 
 /// Growth from step to step that shows the steps are still finding their length.
 const GROWING: f64 = 1.5;
@@ -39,6 +40,8 @@ pub(super) struct Integration<'a> {
     workspace: &'a mut Workspace,
     drive: Drive,
     progress: Progress,
+    /// The instant beyond which the step is looked into, s, and what the tip does in it.
+    span: Option<(f64, &'a mut Span)>,
     /// Error allowed in the contact force, N.
     pub(super) tolerance: f64,
     /// Error allowed in a step, N.
@@ -63,56 +66,63 @@ pub(super) struct Cut {
     pub(super) switches: bool,
 }
 
+/// How far to advance.
+#[derive(Debug)]
+pub(super) enum Steps<'a> {
+    /// From the instant `time` (s) by `size` (s), neither more nor less.
+    Exactly {
+        /// s.
+        time: f64,
+        /// s.
+        size: f64,
+    },
+    /// By one step as long as the error allows, also within it where it goes beyond the instant `until` (s); what the tip
+    /// does in it goes to `span`.
+    Own {
+        /// s.
+        until: f64,
+        /// See [`Steps::Own`].
+        span: &'a mut Span,
+    },
+}
+
 impl Model {
-    /// Advances the state over the communication step from `time` to `time + size` (s) with the inputs held.
+    /// Advances the state.
     ///
     /// # Errors
     /// A [`StepError`]; the state is then unchanged.
-    pub fn step(
+    pub(super) fn advance(
         &self,
         state: &mut State,
         workspace: &mut Workspace,
-        inputs: &Inputs,
-        time: f64,
-        size: f64,
+        drive: Drive,
+        steps: Steps,
     ) -> Result<(), StepError> {
-        if !(size > 0.0 && size.is_finite() && (time + size).is_finite()) {
-            return Err(StepError {
-                time,
-                cause: StepErrorCause::StepSize,
-            });
-        }
         let saved = *state;
-        state.time = time;
-        state.current = inputs.contact_current;
-        // The fixed contact moves linearly to the input.
-        let support = inputs.support_displacement - self.initial_support;
-        let drive = Drive {
-            acceleration: inputs.base_acceleration,
-            support_rate: (support - state.support) / size,
+        let (progress, span) = match steps {
+            Steps::Exactly { time, size } => {
+                state.time = time;
+                (Progress::over(time, size), None)
+            }
+            Steps::Own { until, span } => {
+                let size = state.short_step.max(state.long_step);
+                (Progress::free(state.time, size), Some((until, span)))
+            }
         };
         let tolerance = self.scene.solver.effective_tolerance() * self.force_scale;
-        let beam = &self.scene.beam;
-        let damped = beam.stiffness_damping.max(beam.mass_damping) > 0.0 && self.law.damping() > 0.0;
-        let allowed = if damped { SHARE } else { UNDAMPED_SHARE } * tolerance;
-        let progress = Progress {
-            start: time,
-            size,
-            done: 0.0,
-        };
         let result = Integration {
             model: self,
             state,
             workspace,
             drive,
             progress,
+            span,
             tolerance,
-            allowed,
+            allowed: SHARE * tolerance,
         }
         .run();
-        match result {
-            Ok(()) => state.support = support,
-            Err(_) => *state = saved,
+        if result.is_err() {
+            *state = saved;
         }
         result
     }
@@ -132,6 +142,13 @@ impl Integration<'_> {
             if self.attempts() >= limit {
                 return Err(self.error(StepErrorCause::Budget(budget)));
             }
+            if !self.progress.free && self.model.rests(self.state, &self.drive, self.tolerance) {
+                let corner = self.model.generator.next_break(self.state.time);
+                let target = self.progress.target(f64::INFINITY, self.state.time, corner);
+                (self.state.time, self.progress.done) = (target.time, target.done);
+                self.state.last_step = 0.0;
+                continue;
+            }
             self.advance()?;
         }
         Ok(())
@@ -150,7 +167,7 @@ impl Integration<'_> {
 
     /// One integration step, taken or rejected: with few nodes where they reach far enough, else with many.
     fn advance(&mut self) -> Result<(), StepError> {
-        let left = (1.0 - self.progress.done) * self.progress.size;
+        let left = self.progress.left();
         let State {
             short_step,
             time,
@@ -194,7 +211,14 @@ impl Integration<'_> {
 
         let attempt = self.attempt::<S>(&target);
         let allowed = self.allowed;
-        let ratio_of = |trial: &Trial<S>| trial.error / allowed;
+        // Short steps may be wrong inside; then they are not looked into.
+        let looked_into = self.span.as_ref().is_some_and(|(until, _)| *until < target.time);
+        let inside = if looked_into && S != SHORT {
+            INSIDE / self.tolerance
+        } else {
+            0.0
+        };
+        let ratio_of = |trial: &Trial<S>| (trial.error / allowed.max(trial.rounding)).max(trial.missed * inside);
         let ratio = attempt.as_ref().map_or(f64::INFINITY, ratio_of);
         // The error estimate grows with this power of the step length.
         let reach = |ratio: f64| ratio.powf(-1.0 / (S as f64 + 1.0));
@@ -327,6 +351,13 @@ impl Integration<'_> {
     {
         let Self { model, state, .. } = self;
         let (cache, end, _) = Room::<S>::parts(self.workspace);
+        if let Some((_, span)) = &mut self.span {
+            let collocation = cache.collocation();
+            span.good = INSIDE * trial.missed <= self.tolerance;
+            span.indentation = collocation.through(state.indentation, &trial.indentations);
+            span.rate = collocation.through(state.indentation_rate, &trial.rates);
+            span.force = collocation.through(state.force - model.preload.force, &trial.forces);
+        }
         for ((mode, end), _) in state.modes.iter_mut().zip(end).zip(&model.modes) {
             *mode = *end;
         }

@@ -91,15 +91,6 @@ impl<const S: usize> Collocation<S> {
     /// The predictions from the values at the start and at the nodes of a step, after those that led to it, which held for a
     /// step `ratio` times as long as the one before.
     pub fn predictions(&self, start: f64, values: &Nodal<S>, before: &Predictions, ratio: f64) -> Predictions {
-        let through = |basis: &[Prediction], values: &mut dyn Iterator<Item = &f64>| {
-            let mut sum = [0.0; LONG + 1];
-            for (value, row) in values.zip(basis) {
-                for (sum, coefficient) in sum.iter_mut().zip(row) {
-                    *sum += value * coefficient;
-                }
-            }
-            sum
-        };
         let wrong = |prediction| {
             let predicted = self.evaluate(prediction, ratio);
             predicted
@@ -108,10 +99,15 @@ impl<const S: usize> Collocation<S> {
                 .fold(0.0_f64, |worst, (a, b)| worst.max((a - b).abs()))
         };
         Predictions {
-            steep: through(&self.steep, &mut [&start].into_iter().chain(values)),
-            flat: through(&self.flat, &mut values.iter().skip(S - FLAT)),
+            steep: self.through(start, values),
+            flat: combine(&self.flat, values.iter().skip(S - FLAT)),
             use_flat: ratio > 0.0 && wrong(&before.flat) < wrong(&before.steep),
         }
+    }
+
+    /// The polynomial through the values at the start and at the nodes, about the end.
+    pub fn through(&self, start: f64, values: &Nodal<S>) -> Prediction {
+        combine(&self.steep, [&start].into_iter().chain(values))
     }
 
     /// Values predicted at the nodes of a step `ratio` times as long as the one the predictions are from.
@@ -154,6 +150,16 @@ fn lagrange<const N: usize>(points: &[f64]) -> Vec<[f64; N]> {
             })
         })
         .collect()
+}
+
+fn combine<'a>(basis: &[Prediction], values: impl Iterator<Item = &'a f64>) -> Prediction {
+    let mut sum = [0.0; LONG + 1];
+    for (value, row) in values.zip(basis) {
+        for (sum, coefficient) in sum.iter_mut().zip(row) {
+            *sum += value * coefficient;
+        }
+    }
+    sum
 }
 
 fn one<const N: usize>() -> [f64; N] {

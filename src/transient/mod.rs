@@ -9,9 +9,11 @@
 pub mod advance;
 pub mod coefficients;
 pub mod collocation;
+pub mod dense;
 pub mod nodal;
 pub mod progress;
 pub mod release;
 pub mod response;
+pub mod rest;
 pub mod touchdown;
 pub mod workspace;

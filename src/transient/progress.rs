@@ -1,4 +1,4 @@
-//! Where a communication step stands. Integration steps end on halvings of it, so that their lengths, and with them their
+//! Where a communication step stands. Integration steps end on halvings of it, or are free to be longer than it; either way their lengths, and with them their
 //! coefficients, come again.
 
 /// A communication step in progress.
@@ -10,6 +10,8 @@ pub struct Progress {
     pub size: f64,
     /// Part done, 0 to 1.
     pub done: f64,
+    /// Whether the one step taken may be longer.
+    pub free: bool,
 }
 
 /// The next integration step.
@@ -26,9 +28,49 @@ pub struct Target {
 }
 
 impl Progress {
+    /// At the start of the communication step from `start` by `size` (s).
+    pub fn over(start: f64, size: f64) -> Self {
+        Self {
+            start,
+            size,
+            done: 0.0,
+            free: false,
+        }
+    }
+
+    /// At the start of one free step, at the instant `start` (s), likely of about `size` (s).
+    pub fn free(start: f64, size: f64) -> Self {
+        Self {
+            free: true,
+            ..Self::over(start, size)
+        }
+    }
+
+    /// What is left to do, s.
+    pub fn left(&self) -> f64 {
+        if self.free {
+            f64::INFINITY
+        } else {
+            (1.0 - self.done) * self.size
+        }
+    }
+
     /// The next step from the instant `time` (s), not longer than about `wanted` (s), which ends at `corner` (s) at the
     /// latest.
     pub fn target(&self, wanted: f64, time: f64, corner: Option<f64>) -> Target {
+        if self.free {
+            let length = round_down(wanted);
+            let corner = corner.filter(|corner| *corner < time + length);
+            return corner.map_or(
+                Target {
+                    length,
+                    recurring: true,
+                    done: 1.0,
+                    time: time + length,
+                },
+                |corner| self.cut(corner - time, corner),
+            );
+        }
         let done = if self.done == 0.0 && wanted >= self.size {
             1.0
         } else {
@@ -50,8 +92,16 @@ impl Progress {
 
     /// The step of `length` (s) that ends at `time` (s), off the grid.
     pub fn cut(&self, length: f64, time: f64) -> Target {
-        let done = (self.done + length / self.size).min(1.0);
-        let time = if done == 1.0 { self.time(done) } else { time };
+        let done = if self.free {
+            1.0
+        } else {
+            (self.done + length / self.size).min(1.0)
+        };
+        let time = if done == 1.0 && !self.free {
+            self.time(done)
+        } else {
+            time
+        };
         Target {
             length,
             recurring: false,
@@ -84,4 +134,9 @@ impl Progress {
     fn time(&self, done: f64) -> f64 {
         self.start + done * self.size
     }
+}
+
+/// The next lower power of two or one and a half times a power of two: of these few lengths the coefficients are kept.
+fn round_down(length: f64) -> f64 {
+    f64::from_bits(length.to_bits() & (u64::MAX << (f64::MANTISSA_DIGITS - 2)))
 }

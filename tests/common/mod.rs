@@ -9,20 +9,25 @@ use relay_contact::inputs::Inputs;
 use relay_contact::model::{Mode, Model, State};
 use relay_contact::preload::Preload;
 use relay_contact::scene::Scene;
+use relay_contact::transient::dense::Course;
 use relay_contact::transient::workspace::Workspace;
 
 /// A model with its state.
 pub struct Rig {
     pub model: Model,
+    /// The whole motion at the instant reached.
     pub state: State,
+    course: Course,
     workspace: Workspace,
 }
 
 impl Rig {
     /// The model at rest in its preload.
     pub fn new(model: Model) -> Self {
+        let state = model.initial_state(0.0);
         Self {
-            state: model.initial_state(0.0),
+            state,
+            course: Course::new(state),
             workspace: Workspace::new(&model),
             model,
         }
@@ -39,6 +44,7 @@ impl Rig {
         let d = model.preload.indentation + state.indentation;
         state.force = model.law.force(d, state.indentation_rate);
         state.closed = model.engagement(state.indentation, state.indentation_rate) > 0.0;
+        self.course = Course::new(*state);
     }
 
     /// Advances to the instant `time` (s) with the inputs held.
@@ -46,10 +52,13 @@ impl Rig {
         let Self {
             model,
             state,
+            course,
             workspace,
         } = self;
-        let start = state.time;
-        model.step(state, workspace, inputs, start, time - start)
+        let start = course.time;
+        model.step(course, workspace, inputs, start, time - start)?;
+        *state = model.state(course, workspace)?;
+        Ok(())
     }
 
     /// Energy above that of the preload, J: kinetic and strain energy of the modes about the preload, and the contact's

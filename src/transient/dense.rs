@@ -1,0 +1,204 @@
+//! Communication steps, and output between the integrator's own steps.
+//!
+//! Where communication steps are long, the integrator steps exactly to their ends. Where they are short (a circuit's) or of
+//! ever new lengths, and what drives the contact goes on as before, the integrator goes its own way ahead of them, in steps
+//! as long as the error allows, and the communication points lie inside a step: there the contact force is read from the
+//! step's polynomial. An input that changes meanwhile takes the motion back to the communication point, exactly, from the start
+//! of the step.
+
+use crate::error::{StepError, StepErrorCause};
+use crate::inputs::Inputs;
+use crate::model::{Model, State};
+use crate::transient::advance::Steps;
+use crate::transient::collocation::Prediction;
+use crate::transient::nodal::Drive;
+use crate::transient::workspace::Workspace;
+
+/// How many of the integrator's steps a communication step has to be long for the integrator to end one with it.
+const LONG: f64 = 4.0;
+
+/// Everything that moves: the motion around a communication point. Plain numbers: saving it is a copy.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Course {
+    /// The communication point, s.
+    pub time: f64,
+    /// Current through the contact over the last communication step, A.
+    pub current: f64,
+    /// Length of the last communication step, s.
+    size: f64,
+    /// What drove the contact over it.
+    drive: Drive,
+    /// The motion at the communication point, or before it where the integrator is ahead.
+    start: State,
+    /// Where the integrator is.
+    end: State,
+    /// The tip in between.
+    span: Span,
+}
+
+/// The tip over a step: polynomials about its end, in steps. Deviations from the preload.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Span {
+    /// Whether they are within the tolerance; just after a blow no polynomial is.
+    pub good: bool,
+    /// Contact force, N.
+    pub force: Prediction,
+    /// Indentation, m.
+    pub indentation: Prediction,
+    /// Its velocity, m/s.
+    pub rate: Prediction,
+}
+
+/// The tip at a communication point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tip {
+    /// Contact force, N.
+    pub force: f64,
+    /// Indentation minus preload indentation, m.
+    pub indentation: f64,
+    /// Its velocity, m/s.
+    pub rate: f64,
+}
+
+impl Course {
+    /// From a state on.
+    pub fn new(state: State) -> Self {
+        Self {
+            time: state.time,
+            current: 0.0,
+            size: 0.0,
+            drive: Drive {
+                acceleration: 0.0,
+                support_rate: 0.0,
+            },
+            start: state,
+            end: state,
+            span: Span::default(),
+        }
+    }
+
+    /// The last state that the integrator has reached by the communication point, at or before it.
+    pub fn state(&self) -> &State {
+        if self.end.time <= self.time {
+            &self.end
+        } else {
+            &self.start
+        }
+    }
+
+    /// The tip at the communication point.
+    pub fn tip(&self, model: &Model) -> Tip {
+        let state = self.state();
+        if state.time == self.end.time {
+            return Tip {
+                force: state.force,
+                indentation: state.indentation,
+                rate: state.indentation_rate,
+            };
+        }
+        let y = (self.time - self.end.time) / (self.end.time - self.start.time);
+        let at = |values: &Prediction| values.iter().rev().fold(0.0, |sum, value| sum * y + value);
+        let force = model.preload.force + at(&self.span.force);
+        Tip {
+            force: match state.closed {
+                true if model.law.never_opens() => force,
+                true => force.max(f64::MIN_POSITIVE),
+                false => 0.0,
+            },
+            indentation: at(&self.span.indentation),
+            rate: at(&self.span.rate),
+        }
+    }
+}
+
+impl Model {
+    /// Advances over the communication step from `time` to `time + size` (s) with the inputs held.
+    ///
+    /// # Errors
+    /// A [`StepError`]; the course is then unchanged.
+    pub fn step(
+        &self,
+        course: &mut Course,
+        workspace: &mut Workspace,
+        inputs: &Inputs,
+        time: f64,
+        size: f64,
+    ) -> Result<(), StepError> {
+        let until = time + size;
+        if !(size > 0.0 && size.is_finite() && until.is_finite()) {
+            return Err(StepError {
+                time,
+                cause: StepErrorCause::StepSize,
+            });
+        }
+        // Lengths that differ by the rounding of time are one.
+        let size = if (size - course.size).abs() <= 4.0 * f64::EPSILON * until.abs() {
+            course.size
+        } else {
+            size
+        };
+        // The fixed contact moves linearly to the input.
+        let support = inputs.support_displacement - self.initial_support;
+        let from = course.state().support;
+        let drive = Drive {
+            acceleration: inputs.base_acceleration,
+            support_rate: (support - from) / size,
+        };
+        let steady = drive == course.drive && drive.support_rate == 0.0;
+        let ahead = course.time < course.end.time;
+        let reach = course.end.short_step.max(course.end.long_step);
+        if steady && (ahead || size < reach || size < LONG * reach && size != course.size) {
+            if until > course.end.time {
+                self.go_ahead(course, workspace, until)?;
+            }
+        } else {
+            let mut state = self.state(course, workspace)?;
+            self.advance(&mut state, workspace, drive, Steps::Exactly { time, size })?;
+            state.support = support;
+            (course.start, course.end) = (state, state);
+            course.drive = drive;
+        }
+        course.size = size;
+        course.time = until;
+        course.current = inputs.contact_current;
+        Ok(())
+    }
+
+    /// The whole motion at the communication point.
+    ///
+    /// # Errors
+    /// A [`StepError`] where it cannot be found.
+    pub fn state(&self, course: &Course, workspace: &mut Workspace) -> Result<State, StepError> {
+        let mut state = *course.state();
+        let (time, size) = (state.time, course.time - state.time);
+        if size > 0.0 {
+            self.advance(&mut state, workspace, course.drive, Steps::Exactly { time, size })?;
+        }
+        Ok(state)
+    }
+
+    /// Advances the integrator by its own steps until it is at `time` (s) or ahead of it.
+    fn go_ahead(&self, course: &mut Course, workspace: &mut Workspace, time: f64) -> Result<(), StepError> {
+        let (mut start, mut end) = (course.start, course.end);
+        let mut span = course.span;
+        while end.time < time {
+            start = end;
+            self.advance(
+                &mut end,
+                workspace,
+                course.drive,
+                Steps::Own {
+                    until: time,
+                    span: &mut span,
+                },
+            )?;
+        }
+        if end.time > time && !span.good {
+            end = start;
+            let (start, size) = (end.time, time - end.time);
+            self.advance(&mut end, workspace, course.drive, Steps::Exactly { time: start, size })?;
+        }
+        (course.start, course.end, course.span) = (start, end, span);
+        Ok(())
+    }
+}

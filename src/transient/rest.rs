@@ -1,0 +1,37 @@
+//! A contact at rest stays at rest until what drives it changes: nothing is integrated meanwhile.
+
+use crate::model::{Model, State};
+use crate::transient::nodal::Drive;
+
+/// Change of the contact force, in tolerances, that a contact at rest may still have before it.
+const UNREST: f64 = 1e-2;
+
+impl Model {
+    /// Whether the contact force stays within a hundredth of `tolerance` (N) of what it is, under a constant base acceleration
+    /// and with the fixed contact at rest.
+    ///
+    /// The potential energy is convex, and each mode has at least its own stiffness: a net load `r` on it is at most
+    /// `r^2 / (2 omega^2)` above the equilibrium. With the kinetic energy this bounds the energy left, which never grows; and a
+    /// force that differs by `e` from that of the equilibrium takes at least `e^2 / (2 k)` of it, `k` the greatest stiffness on the way.
+    pub(super) fn rests(&self, state: &State, drive: &Drive, tolerance: f64) -> bool {
+        if drive.support_rate != 0.0 || self.generator.is_active(state.time) {
+            return false;
+        }
+        let d = self.preload.indentation + state.indentation;
+        let force = self.law.force(d, 0.0);
+        let mut energy = 0.0;
+        for (mode, at) in self.modes.iter().zip(&state.modes) {
+            let load = mode.tip * (force - self.preload.force)
+                - mode.participation * drive.acceleration
+                - mode.omega_squared * at.q;
+            let strain = if load == 0.0 {
+                0.0
+            } else {
+                load * load / mode.omega_squared
+            };
+            energy += 0.5 * (strain + at.v * at.v);
+        }
+        let change = UNREST * tolerance;
+        energy <= change * change / (2.0 * self.law.tangent_stiffness(force + change))
+    }
+}
