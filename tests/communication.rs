@@ -1,0 +1,158 @@
+//! Communication points: what is read there does not depend on how many there are, or where the integrator's own steps end.
+
+#![allow(clippy::unwrap_used)]
+
+use relay_contact::inputs::Inputs;
+use relay_contact::scene::Scene;
+use relay_contact::simulation::Simulation;
+use relay_contact::variables::{BooleanOutput, ExcitationKind, IntegerOutput, RealOutput};
+
+fn shaken(amplitude: f64, tolerance: f64) -> Scene {
+    let mut scene = Scene::default();
+    scene.effects.excitation = ExcitationKind::Sine;
+    scene.excitation.amplitude = amplitude;
+    scene.solver.tolerance = tolerance;
+    scene
+}
+
+/// Force, indentation and velocity of the tip at every 10 us, with communication steps of `size` us.
+fn motion(scene: &Scene, size: u32, inputs: impl Fn(f64) -> Inputs) -> Vec<[f64; 3]> {
+    let mut simulation = Simulation::new(scene, &inputs(0.0), 0.0).unwrap();
+    let mut rows = Vec::new();
+    for k in 0..2000 / size {
+        let time = |k: u32| 1e-6 * f64::from(k * size);
+        simulation
+            .step(&inputs(time(k)), time(k), 1e-6 * f64::from(size))
+            .unwrap();
+        if ((k + 1) * size).is_multiple_of(10) {
+            let outputs = [
+                RealOutput::ContactForce,
+                RealOutput::ContactIndentation,
+                RealOutput::TipVelocity,
+            ];
+            rows.push(outputs.map(|output| simulation.real(output)));
+        }
+    }
+    rows
+}
+
+fn check(scene: &Scene, size: u32, inputs: impl Fn(f64) -> Inputs + Copy) {
+    let model = Simulation::new(scene, &Inputs::default(), 0.0).unwrap().model().clone();
+    let exact = {
+        let mut scene = *scene;
+        scene.solver.tolerance = 1e-10;
+        motion(&scene, 10, inputs)
+    };
+    // A force wrong by the tolerance belongs to an indentation wrong by that over the stiffness, and where the contact is open to
+    // a spring bent wrongly; its velocity changes with the period of the beam's third mode at the fastest.
+    let force = model.scene.solver.tolerance * model.force_scale;
+    let way = force / model.section.tip_stiffness();
+    let allowed = [force, way, way * 2.0 * std::f64::consts::PI * 9100.0];
+    for (row, (found, exact)) in motion(scene, size, inputs).iter().zip(&exact).enumerate() {
+        for ((found, exact), allowed) in found.iter().zip(exact).zip(allowed) {
+            let error = (found - exact).abs();
+            assert!(
+                error <= allowed,
+                "{} us, steps of {size} us: {found} {exact}, {:.1e} of what is allowed",
+                10 * (row + 1),
+                error / allowed
+            );
+        }
+    }
+}
+
+#[test]
+fn what_is_read_inside_the_integrators_steps_is_within_the_tolerance() {
+    for amplitude in [98.0, 400.0] {
+        for tolerance in [1e-3, 1e-5, 1e-7] {
+            for size in [1, 2, 5, 10] {
+                check(&shaken(amplitude, tolerance), size, |_| Inputs::default());
+            }
+        }
+    }
+}
+
+#[test]
+fn an_input_that_changes_counts_from_its_communication_point_on() {
+    let pulsed = |time: f64| Inputs {
+        base_acceleration: if (time / 3e-4).fract() < 0.5 { 40.0 } else { -60.0 },
+        ..Inputs::default()
+    };
+    for size in [1, 2, 5, 10] {
+        check(&shaken(98.0, 1e-6), size, pulsed);
+    }
+}
+
+#[test]
+fn events_show_from_the_communication_point_after_them_on() {
+    let scene = shaken(400.0, 1e-6);
+    let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
+    let (mut openings, mut closings, mut seen) = (0, 0, [-1.0; 2]);
+    let size = 3e-7;
+    for k in 0..7200_u32 {
+        let time = f64::from(k) * size;
+        simulation.step(&Inputs::default(), time, size).unwrap();
+        let now = simulation.time();
+        let events = [RealOutput::ContactLastOpening, RealOutput::ContactLastClosing].map(|o| simulation.real(o));
+        for ((event, seen), count) in events.iter().zip(&mut seen).zip([&mut openings, &mut closings]) {
+            if event != seen {
+                assert!((time..=now).contains(event), "{event} seen at {now}");
+                (*seen, *count) = (*event, *count + 1);
+            }
+        }
+        let closed = events[1] >= events[0];
+        assert_eq!(simulation.boolean(BooleanOutput::ContactClosed), closed, "{now}");
+        assert_eq!(simulation.real(RealOutput::ContactForce) > 0.0, closed, "{now}");
+    }
+    assert!(openings >= 2 && closings >= 2, "{openings} {closings}");
+}
+
+#[test]
+fn a_contact_at_rest_is_not_integrated() {
+    for parts in [1, 3600] {
+        let scene = Scene::default();
+        let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
+        let force = simulation.real(RealOutput::ContactForce);
+        let size = 3600.0 / f64::from(parts);
+        for k in 0..parts {
+            simulation.step(&Inputs::default(), f64::from(k) * size, size).unwrap();
+        }
+        assert_eq!(simulation.real(RealOutput::ContactForce), force);
+        assert_eq!(simulation.integer(IntegerOutput::SolverSteps), 0);
+        // An input wakes it, and the motion after it comes to rest where the force is what statics say.
+        let pressed = Inputs {
+            base_acceleration: 10.0,
+            ..Inputs::default()
+        };
+        simulation.step(&pressed, 3600.0, 1.0).unwrap();
+        let steps = simulation.integer(IntegerOutput::SolverSteps);
+        assert!(steps > 5, "{steps}");
+        simulation.step(&pressed, 3601.0, 1e6).unwrap();
+        assert_eq!(simulation.integer(IntegerOutput::SolverSteps), steps);
+        // A steady load on a propped cantilever with a mass at the prop, the prop all but rigid.
+        let section = &simulation.model().section;
+        let statics = 10.0 * (0.375 * section.mass_per_length * section.length + section.tip_mass);
+        let added = simulation.real(RealOutput::ContactForce) - force;
+        assert!((added / statics - 1.0).abs() < 1e-3, "{added} {statics}");
+    }
+}
+
+#[test]
+fn a_generator_that_starts_late_wakes_the_contact_in_time() {
+    let mut scene = shaken(98.0, 1e-6);
+    let start = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
+    scene.excitation.start_time = 1234.5;
+    for size in [1235.0_f64, 1234.5] {
+        let mut late = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
+        let mut prompt = start.clone();
+        let end = 1234.5 + 2.3e-4;
+        late.step(&Inputs::default(), 0.0, size.min(end)).unwrap();
+        if late.time() < end {
+            late.step(&Inputs::default(), late.time(), end - late.time()).unwrap();
+        }
+        prompt.step(&Inputs::default(), 0.0, 2.3e-4).unwrap();
+        let [late, prompt] = [&late, &prompt].map(|simulation| simulation.real(RealOutput::ContactForce));
+        // At 1234 s time has a spacing of 2e-13 s, and the force changes by some 1e3 N/s.
+        assert!((late - prompt).abs() < 1e-6 * prompt, "{late} {prompt}");
+    }
+}
