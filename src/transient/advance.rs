@@ -91,6 +91,10 @@ impl Model {
             acceleration: inputs.base_acceleration,
             support_rate: (support - state.support) / size,
         };
+        if self.step_exactly(state, &mut workspace.propagator, &drive, size) {
+            state.support = support;
+            return Ok(());
+        }
         let tolerance = self.scene.solver.effective_tolerance() * self.force_scale;
         let beam = &self.scene.beam;
         let damped = beam.stiffness_damping.max(beam.mass_damping) > 0.0 && self.law.damping() > 0.0;

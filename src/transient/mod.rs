@@ -5,13 +5,19 @@
 //! ([`collocation`]); each mode's exact response to it ([`response`], [`coefficients`]) gives the indentation at the nodes,
 //! and Newton's method on the nodal forces alone closes the loop ([`nodal`]). Steps adapt to an estimate of the
 //! force's error ([`advance`], on a grid: [`progress`], in room made once: [`workspace`]) and end where the contact opens ([`release`]) or closes ([`touchdown`]).
+//!
+//! Where the contact is linear and stays closed, a communication step is one exact step ([`linear`]) in the eigenvectors of beam
+//! and contact ([`secular`], [`zeros`]).
 
 pub mod advance;
 pub mod coefficients;
 pub mod collocation;
+pub mod linear;
 pub mod nodal;
 pub mod progress;
 pub mod release;
 pub mod response;
+pub mod secular;
 pub mod touchdown;
 pub mod workspace;
+pub mod zeros;

@@ -82,7 +82,6 @@ fn within_the_tolerance_of_the_closed_form() {
 /// The exact solution at any step length, one step per communication step. Rounding: the sum of the modes' displacements
 /// loses some two digits, the phase at `t` some more.
 #[test]
-#[ignore = "linear scenes are not yet recognised and stepped exactly"]
 fn machine_precision_in_single_steps() {
     for size in [1e-7, 1.3e-5, 1e-3, 0.7] {
         let mut rig = Rig::new(Model::new(&scene(ContactLawKind::Bonded), 0.0).unwrap());
