@@ -36,10 +36,8 @@ pub fn pairs(problem: &Problem, undamped: &[(f64, f64)]) -> Option<Vec<Pair>> {
             } else {
                 change
             };
-            let size = change.norm();
-            if !size.is_finite() {
-                return None;
-            }
+            // On a pole, to rounding: the zero is there.
+            let change = if change.is_finite() { change } else { Complex::default() };
             let beam = zero.beam - change * problem.stiffness_damping;
             let contact = zero.contact - change * problem.contact_damping;
             *zeros.get_mut(n)? = at(problem, zero.value - change, beam, contact);
