@@ -1,28 +1,21 @@
 //! Exact steps of any length where beam and contact are linear.
 //!
-//! With the contact as a spring and damper at the tip, the eigenvalues of the motion come in pairs ([`secular`]), each a damped
-//! oscillator of its own that [`Response`] propagates exactly. A step goes from the cantilever's modes to these oscillators,
-//! moves them, and comes back. Their scale is such that each adds its displacement `x` to the contact force.
+//! With the contact as a spring and damper at the tip, the eigenvalues of the motion come in pairs ([`super::secular`]), each a damped
+//! oscillator of its own that is propagated exactly ([`super::oscillator`]). A step goes from the cantilever's modes to these
+//! oscillators, moves them, and comes back.
 //!
 //! Constant and linear loads (base acceleration held, fixed contact moving linearly) are taken out by a particular solution,
 //! which cannot be large as every oscillator has a stiffness. The generator's sine is taken as response from rest, which stays
 //! right at a resonance without damping.
 
-use std::f64::consts::TAU;
-
-use nalgebra::Complex;
-
 use crate::contact::law::Law;
 use crate::contact::linear::Linear;
-use crate::excitation::{self, Generator};
+use crate::excitation::Generator;
 use crate::model::{MAX_MODES, Mode, Model, State};
 use crate::scene::Scene;
 use crate::transient::nodal::Drive;
-use crate::transient::response::Response;
+use crate::transient::oscillator::{Coordinates, Oscillator, Propagator, set};
 use crate::transient::secular::{EigenPair, Problem};
-
-/// Displacements of the oscillators, then their velocities; or displacement and velocity of mode after mode.
-type Coordinates = [f64; 2 * MAX_MODES];
 
 /// Largest error of taking the motion of a single mode apart and putting it together again, relative to its amplitude. High
 /// modes lose most, and move least: the contact force is then right to some 1e-13 of its scale.
@@ -41,23 +34,8 @@ pub struct ClosedLoop {
     acceleration: Coordinates,
     force: Coordinates,
     ramp: Coordinates,
-    /// Steady motion under the generator with unit amplitude at phase 0, real part: per cosine, and imaginary: per sine.
+    /// Steady motion under the generator with unit amplitude, per sine and per cosine of its phase.
     steady: [Coordinates; 2],
-}
-
-/// `x'' + c x' + nu x`.
-#[derive(Clone, Copy, Debug)]
-struct Oscillator {
-    omega_squared: f64,
-    damping: f64,
-    /// Unit base acceleration as a velocity that adds to x', and as an acceleration.
-    load: [f64; 2],
-    /// The same for a unit force on the tip.
-    push: [f64; 2],
-    /// Its roots where they are real and apart, 1/s, each with its contact force.
-    apart: Option<[(f64, f64); 2]>,
-    /// Contact force per displacement and per velocity.
-    force: [f64; 2],
 }
 
 /// A square matrix, column after column, with columns of zeros up to a multiple of four.
@@ -96,153 +74,6 @@ impl Columns {
         }
         sums
     }
-}
-
-/// Everything of a step that depends on its length alone, for the last length.
-#[derive(Clone, Debug)]
-pub struct Propagator {
-    length: f64,
-    x_from_x: [f64; MAX_MODES],
-    x_from_v: [f64; MAX_MODES],
-    v_from_x: [f64; MAX_MODES],
-    v_from_v: [f64; MAX_MODES],
-    /// Motion from rest under the generator with unit amplitude: per sine and per cosine of its phase at the start.
-    from_sine: Coordinates,
-    from_cosine: Coordinates,
-}
-
-impl Default for Propagator {
-    /// No length yet.
-    fn default() -> Self {
-        Self {
-            length: 0.0,
-            x_from_x: [0.0; MAX_MODES],
-            x_from_v: [0.0; MAX_MODES],
-            v_from_x: [0.0; MAX_MODES],
-            v_from_v: [0.0; MAX_MODES],
-            from_sine: [0.0; 2 * MAX_MODES],
-            from_cosine: [0.0; 2 * MAX_MODES],
-        }
-    }
-}
-
-impl Propagator {
-    fn fill(&mut self, length: f64, oscillators: &[Oscillator], generator: &Generator) {
-        self.length = length;
-        let count = oscillators.len();
-        let responses = oscillators
-            .iter()
-            .map(|oscillator| Response::new(oscillator.omega_squared, oscillator.damping, length, 1));
-        let entries = self.x_from_x.iter_mut().zip(&mut self.x_from_v);
-        let entries = entries.zip(self.v_from_x.iter_mut().zip(&mut self.v_from_v));
-        for (((x_from_x, x_from_v), (v_from_x, v_from_v)), response) in entries.zip(responses.clone()) {
-            (*x_from_x, *x_from_v) = (response.q_from_q, response.q_from_v);
-            (*v_from_x, *v_from_v) = (response.v_from_q, response.v_from_v);
-        }
-        if let Some(frequency) = generator.frequency() {
-            let turn = Complex::from_polar(1.0, TAU * excitation::turned(frequency, length));
-            for (n, (oscillator, response)) in oscillators.iter().zip(responses).enumerate() {
-                let driven = oscillator.loaded(oscillator.driven_from_rest(&response, frequency, turn, length));
-                set(&mut self.from_sine, n, count, driven.map(|motion| motion.re));
-                set(&mut self.from_cosine, n, count, driven.map(|motion| motion.im));
-            }
-        }
-    }
-}
-
-/// Sets displacement and velocity of an oscillator.
-fn set(coordinates: &mut Coordinates, oscillator: usize, count: usize, [x, v]: [f64; 2]) {
-    for (at, value) in [(oscillator, x), (count + oscillator, v)] {
-        if let Some(entry) = coordinates.get_mut(at) {
-            *entry = value;
-        }
-    }
-}
-
-impl Oscillator {
-    /// Displacement and velocity under base acceleration, from those of the response to an acceleration `x''` of its course.
-    fn loaded(&self, [y, y_rate]: [Complex<f64>; 2]) -> [Complex<f64>; 2] {
-        let [kick, push] = self.load;
-        [
-            (y_rate + y * self.damping) * kick + y * push,
-            y_rate * push - y * (self.omega_squared * kick),
-        ]
-    }
-
-    /// No contact force of the free motion exceeds this.
-    fn largest_force(&self, x: f64, v: f64) -> f64 {
-        if let Some([(l1, force1), (l2, force2)]) = self.apart {
-            // Each root decays without a swing.
-            return (((v - l2 * x) * force1).abs() + ((l1 * x - v) * force2).abs()) / (l1 - l2).abs();
-        }
-        // No energy comes in.
-        let [per_x, per_v] = self.force;
-        ((x * x + v * v / self.omega_squared) * (per_x * per_x + per_v * per_v * self.omega_squared)).sqrt()
-    }
-
-    /// Displacement and velocity at rest under a load.
-    fn at_rest(&self, [kick, push]: [f64; 2]) -> [f64; 2] {
-        [(push + self.damping * kick) / self.omega_squared, -kick]
-    }
-
-    /// Displacement and velocity at the start of a particular motion under a load that grows with time.
-    fn at_ramp(&self, load: [f64; 2]) -> [f64; 2] {
-        let [x, v] = self.at_rest(load);
-        [-(v + self.damping * x) / self.omega_squared, x]
-    }
-
-    /// Amplitude of displacement and velocity under a unit acceleration of the frequency (Hz).
-    fn steady(&self, frequency: f64) -> [Complex<f64>; 2] {
-        let omega = TAU * frequency;
-        let y = 1.0 / Complex::new(self.omega_squared - omega * omega, omega * self.damping);
-        [y, y * Complex::new(0.0, omega)]
-    }
-
-    /// Displacement and velocity `length` seconds after rest under the acceleration `e^(i omega t)`, which is `turn` there.
-    fn driven_from_rest(
-        &self,
-        response: &Response,
-        frequency: f64,
-        turn: Complex<f64>,
-        length: f64,
-    ) -> [Complex<f64>; 2] {
-        let omega = Complex::new(0.0, TAU * frequency);
-        let half = 0.5 * self.damping;
-        let w = (self.omega_squared - half * half).max(0.0).sqrt();
-        if w <= half {
-            // Far from any resonance: the steady motion less a free one.
-            let [y, y_rate] = self.steady(frequency);
-            return [
-                y * turn - (y * response.q_from_q + y_rate * response.q_from_v),
-                y_rate * turn - (y * response.v_from_q + y_rate * response.v_from_v),
-            ];
-        }
-        // Each of the two roots l apart: the integral of e^(l (length - t)) e^(i omega t).
-        let driven = |root: Complex<f64>| {
-            let free = (root * length).exp();
-            let rate = omega - root;
-            let z = rate * length;
-            if z.norm() > 0.5 {
-                (turn - free) / rate
-            } else {
-                free * length * growth(z)
-            }
-        };
-        let root = Complex::new(-half, w);
-        let (upper, lower) = (driven(root), driven(root.conj()));
-        let both = Complex::new(0.0, 2.0 * w);
-        [(upper - lower) / both, (root * upper - root.conj() * lower) / both]
-    }
-}
-
-/// (e^z - 1) / z for small z, by its power series.
-fn growth(z: Complex<f64>) -> Complex<f64> {
-    let (mut term, mut sum) = (Complex::from(1.0), Complex::from(1.0));
-    for n in 2..20 {
-        term *= z / f64::from(n);
-        sum += term;
-    }
-    sum
 }
 
 impl ClosedLoop {
@@ -366,14 +197,8 @@ impl ClosedLoop {
         drive: &Drive,
         length: f64,
     ) -> bool {
-        let Self {
-            contact: Linear { stiffness, damping, .. },
-            ..
-        } = *self;
+        let Linear { stiffness, damping, .. } = self.contact;
         let count = self.oscillators.len();
-        if propagator.length.to_bits() != length.to_bits() {
-            propagator.fill(length, &self.oscillators, &model.generator);
-        }
         let mut motion = [0.0; 2 * MAX_MODES];
         for (pair, mode) in motion.chunks_exact_mut(2).zip(state.modes.iter().take(count)) {
             if let [q, v] = pair {
@@ -392,6 +217,7 @@ impl ClosedLoop {
         if !model.law.never_opens() && !self.stays_closed(model, &free, &steady, (sine, cosine), length) {
             return false;
         }
+        propagator.set_length(length, &self.oscillators, &model.generator);
         let (x, v) = free.split_at(count);
         let mut moved = [0.0; 2 * MAX_MODES];
         let (x_end, v_end) = moved.split_at_mut(count);
@@ -514,7 +340,9 @@ impl Model {
             ..closed_loop.contact
         };
         let longest = self.scene.solver.maximum_step;
-        if *law != expected || !(state.closed || law.bonded) || (longest > 0.0 && size > longest) {
+        // A model's parts can be exchanged after it was made.
+        let own = *law == expected && self.modes.len() == closed_loop.oscillators.len();
+        if !own || !(state.closed || law.bonded) || (longest > 0.0 && size > longest) {
             return false;
         }
         let end = state.time + size;

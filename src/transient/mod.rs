@@ -7,13 +7,14 @@
 //! force's error ([`advance`], on a grid: [`progress`], in room made once: [`workspace`]) and end where the contact opens ([`release`]) or closes ([`touchdown`]).
 //!
 //! Where the contact is linear and stays closed, a communication step is one exact step ([`linear`]) in the eigenvectors of beam
-//! and contact ([`secular`], [`zeros`]).
+//! and contact ([`oscillator`], [`secular`], [`zeros`]).
 
 pub mod advance;
 pub mod coefficients;
 pub mod collocation;
 pub mod linear;
 pub mod nodal;
+pub mod oscillator;
 pub mod progress;
 pub mod release;
 pub mod response;

@@ -3,7 +3,7 @@
 use crate::model::{MAX_MODES, ModeState, ModeStates, Model};
 use crate::transient::coefficients::Cache;
 use crate::transient::collocation::{LONG, SHORT};
-use crate::transient::linear::Propagator;
+use crate::transient::oscillator::Propagator;
 
 /// Scratch of the steps. Nothing in it changes a result, only the time it takes.
 #[derive(Clone, Debug)]
