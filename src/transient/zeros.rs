@@ -21,9 +21,9 @@ type Zero = Root<Complex<f64>>;
 /// The zeros in pairs, from the zeros without damping, each with the square of its mode's tip displacement.
 pub fn pairs(problem: &Problem, undamped: &[(f64, f64)]) -> Option<Vec<Pair>> {
     let mut zeros: Vec<Zero> = undamped.iter().flat_map(|mode| first_guess(problem, *mode)).collect();
+    let mut settled = vec![false; zeros.len()];
     for _ in 0..ROUNDS {
-        let mut settled = true;
-        for n in 0..zeros.len() {
+        for (n, settled) in settled.iter_mut().enumerate().filter(|(_, settled)| !**settled) {
             let zero = *zeros.get(n)?;
             let newton = newton(problem, &zero);
             let others = zeros.iter().enumerate().filter(|(other, _)| *other != n);
@@ -41,10 +41,10 @@ pub fn pairs(problem: &Problem, undamped: &[(f64, f64)]) -> Option<Vec<Pair>> {
             let beam = zero.beam - change * problem.stiffness_damping;
             let contact = zero.contact - change * problem.contact_damping;
             *zeros.get_mut(n)? = at(problem, zero.value - change, beam, contact);
-            settled &= change.norm() <= 1e-14 * resolution(problem, &zero);
+            *settled = change.norm() <= 1e-14 * resolution(problem, &zero);
         }
-        if settled {
-            return paired(problem, zeros);
+        if settled.iter().all(|settled| *settled) {
+            break;
         }
     }
     paired(problem, zeros)
