@@ -154,7 +154,7 @@ pub struct EigenPair {
 }
 
 /// Relative distance within which two real zeros are treated as close.
-const CLOSE: f64 = 1e-2;
+const CLOSE: f64 = 1e-1;
 
 impl Problem {
     /// The eigenvalues and eigenvectors, a pair for each mode; `None` where they cannot be told apart.

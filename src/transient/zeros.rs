@@ -8,9 +8,11 @@ use nalgebra::Complex;
 use crate::transient::secular::{Number, Pair, Problem, Root};
 
 /// Relative distance within which two real zeros are a close pair.
-const CLOSE: f64 = 1e-2;
-/// Imaginary part, relative to the zero, below which it may be real.
-const REAL: f64 = 1e-6;
+const CLOSE: f64 = 1e-1;
+/// The same among those that crowd at `-1 / beta`.
+const CROWDED: f64 = 1e-2;
+/// Imaginary part, relative to the zero, below which it is taken for one of a close pair, or real.
+const REAL: f64 = 1e-4;
 /// Rounds before the search is given up.
 const ROUNDS: usize = 100;
 /// Terms of the power series about a close pair.
@@ -57,24 +59,29 @@ fn first_guess(problem: &Problem, (nu, tip): (f64, f64)) -> [Zero; 2] {
     let half = Complex::new(-0.5 * damping.max(0.0), 0.0);
     let w = (half * half - nu).sqrt();
     let fast = half - w;
-    [fast, nu / fast].map(|value| {
+    [(fast, -0.03), (nu / fast, 0.03)].map(|(value, part)| {
         let contact = value * problem.contact_damping + 1.0;
         let beam = -value * (value + (damping.max(0.0) - problem.stiffness_damping * nu)) / nu;
         let zero = at(problem, value, beam, contact);
-        // Off the real axis, or two real zeros could never become complex ones.
-        let aside = Complex::new(0.0, (0.03 * resolution(problem, &zero)).copysign(value.im));
+        // Off the real axis, or two real zeros could never become complex ones; to either side, or equal ones could not part.
+        let aside = Complex::new(0.0, part * resolution(problem, &zero));
         let beam = zero.beam + aside * problem.stiffness_damping;
         at(problem, value + aside, beam, contact + aside * problem.contact_damping)
     })
 }
 
-/// The zero, its three parts in accord to all digits.
+/// The zero, its three parts in accord to all digits: `beam` and `contact` count where they are small.
 fn at(problem: &Problem, value: Complex<f64>, beam: Complex<f64>, contact: Complex<f64>) -> Zero {
-    let beta = problem.stiffness_damping;
-    let contact = if beta > 0.0 && beam.norm() < 0.5 {
-        (beam * problem.contact_damping + (beta - problem.contact_damping)) / beta
-    } else {
+    let (beta, beta_c) = (problem.stiffness_damping, problem.contact_damping);
+    let is_small = |part: Complex<f64>| part.norm() < 0.5;
+    let direct = (value * beta + 1.0, value * beta_c + 1.0);
+    let beam = if is_small(direct.0) { beam } else { direct.0 };
+    let contact = if is_small(direct.0) {
+        (beam * beta_c + (beta - beta_c)) / beta
+    } else if is_small(direct.1) {
         contact
+    } else {
+        direct.1
     };
     Zero { value, beam, contact }
 }
@@ -143,8 +150,9 @@ fn paired(problem: &Problem, zeros: Vec<Zero>) -> Option<Vec<Pair>> {
     let mut rest = real.as_slice();
     while let [a, others @ ..] = rest {
         rest = others;
+        let close = if a.beam.norm() < 0.1 { CROWDED } else { CLOSE };
         if let [b, beyond @ ..] = others
-            && difference(problem, a, b).norm() < CLOSE * resolution(problem, a)
+            && difference(problem, a, b).norm() < close * resolution(problem, a)
         {
             rest = beyond;
             pairs.push(close_pair(problem, a, b));

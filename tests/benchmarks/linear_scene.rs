@@ -132,13 +132,76 @@ fn stiffen(scene: &mut Scene, factor: f64) {
     scene.contact.fixed.youngs_modulus *= root.powi(2).min(100.0);
 }
 
-/// The motion under held acceleration, moving support and the generator, by the exponential of the matrix of all of it.
+/// Largest error of the contact force, relative to its scale, under held acceleration, moving support and the generator,
+/// against the exponential of the matrix of all of it.
 ///
 /// Both round each mode to the last place in every step, and the force is the sum of what spring and damper make of the modes,
 /// up to 1000 times the force scale with the stiff contact.
+fn error_against_the_exponential(scene: &Scene) -> f64 {
+    let length = 3e-6;
+    let mut rig = Rig::new(Model::new(scene, 0.0).unwrap());
+    let model = rig.model.clone();
+    let Law::Linear(contact) = model.law else { panic!() };
+    let (k, beta_c) = (contact.stiffness, contact.damping);
+    let (n, omega) = (model.modes.len(), TAU * scene.excitation.frequency);
+    // q_i w, v_i, then u, u', held acceleration, sine, cosine: w makes displacements as large as velocities.
+    let w = model.modes.last().unwrap().omega_squared.sqrt();
+    let mut matrix = DMatrix::zeros(2 * n + 5, 2 * n + 5);
+    for (i, mode) in model.modes.iter().enumerate() {
+        matrix[(i, n + i)] = w;
+        matrix[(n + i, i)] = -mode.omega_squared / w;
+        matrix[(n + i, n + i)] = -mode.damping;
+        for (j, other) in model.modes.iter().enumerate() {
+            matrix[(n + i, j)] -= k * mode.tip * other.tip / w;
+            matrix[(n + i, n + j)] -= k * beta_c * mode.tip * other.tip;
+        }
+        matrix[(n + i, 2 * n)] = k * mode.tip;
+        matrix[(n + i, 2 * n + 1)] = k * beta_c * mode.tip;
+        matrix[(n + i, 2 * n + 2)] = -mode.participation;
+        matrix[(n + i, 2 * n + 3)] = -mode.participation;
+    }
+    matrix[(2 * n, 2 * n + 1)] = 1.0;
+    matrix[(2 * n + 3, 2 * n + 4)] = omega;
+    matrix[(2 * n + 4, 2 * n + 3)] = -omega;
+    let matrix = matrix * length;
+    let step = matrix.exp();
+
+    let mut motion = DVector::zeros(2 * n + 5);
+    let (mut support, mut worst) = (0.0, 0.0_f64);
+    for count in 0..40 {
+        let start = rig.state.time;
+        let inputs = Inputs {
+            base_acceleration: if count < 20 { 30.0 } else { -50.0 },
+            support_displacement: 1e-9 * f64::from(count % 7),
+            ..Inputs::default()
+        };
+        let phase = TAU * turned(scene.excitation.frequency, start);
+        let rate = (inputs.support_displacement - support) / length;
+        let loads = [
+            support,
+            rate,
+            inputs.base_acceleration,
+            AMPLITUDE * phase.sin(),
+            AMPLITUDE * phase.cos(),
+        ];
+        motion.rows_mut(2 * n, 5).copy_from_slice(&loads);
+        motion = &step * motion;
+        support = inputs.support_displacement;
+        rig.run_to(&inputs, f64::from(count + 1) * length).unwrap();
+
+        let mut force = k * (support + beta_c * rate);
+        for (i, mode) in model.modes.iter().enumerate() {
+            let parts = [motion[i] / w, beta_c * motion[n + i]].map(|part| k * mode.tip * part);
+            force -= parts[0] + parts[1];
+        }
+        worst = worst.max((rig.state.force - model.preload.force - force).abs());
+    }
+    assert_eq!(rig.state.steps, 40);
+    worst / model.force_scale
+}
+
 #[test]
 fn every_damping_and_load_against_the_matrix_exponential() {
-    let length = 3e-6;
     for damping in DAMPINGS {
         for (modes, factor, mass) in [
             (1, 1.0, 22.6e-6),
@@ -152,67 +215,34 @@ fn every_damping_and_load_against_the_matrix_exponential() {
             stiffen(&mut scene, factor);
             // At the resonance, which without damping has no steady motion.
             scene.excitation.frequency = Model::new(&scene, 0.0).unwrap().frequency;
-            let mut rig = Rig::new(Model::new(&scene, 0.0).unwrap());
-            let model = rig.model.clone();
-            let Law::Linear(contact) = model.law else { panic!() };
-            let (k, beta_c) = (contact.stiffness, contact.damping);
-            let (n, omega) = (model.modes.len(), TAU * scene.excitation.frequency);
-            // q_i w, v_i, then u, u', held acceleration, sine, cosine: w makes displacements as large as velocities.
-            let w = model.modes.last().unwrap().omega_squared.sqrt();
-            let mut matrix = DMatrix::zeros(2 * n + 5, 2 * n + 5);
-            for (i, mode) in model.modes.iter().enumerate() {
-                matrix[(i, n + i)] = w;
-                matrix[(n + i, i)] = -mode.omega_squared / w;
-                matrix[(n + i, n + i)] = -mode.damping;
-                for (j, other) in model.modes.iter().enumerate() {
-                    matrix[(n + i, j)] -= k * mode.tip * other.tip / w;
-                    matrix[(n + i, n + j)] -= k * beta_c * mode.tip * other.tip;
-                }
-                matrix[(n + i, 2 * n)] = k * mode.tip;
-                matrix[(n + i, 2 * n + 1)] = k * beta_c * mode.tip;
-                matrix[(n + i, 2 * n + 2)] = -mode.participation;
-                matrix[(n + i, 2 * n + 3)] = -mode.participation;
-            }
-            matrix[(2 * n, 2 * n + 1)] = 1.0;
-            matrix[(2 * n + 3, 2 * n + 4)] = omega;
-            matrix[(2 * n + 4, 2 * n + 3)] = -omega;
-            let matrix = matrix * length;
-            let step = matrix.exp();
-
-            let mut motion = DVector::zeros(2 * n + 5);
-            let (mut support, mut worst) = (0.0, 0.0_f64);
-            for count in 0..40 {
-                let start = rig.state.time;
-                let inputs = Inputs {
-                    base_acceleration: if count < 20 { 30.0 } else { -50.0 },
-                    support_displacement: 1e-9 * f64::from(count % 7),
-                    ..Inputs::default()
-                };
-                let phase = TAU * turned(scene.excitation.frequency, start);
-                let rate = (inputs.support_displacement - support) / length;
-                let loads = [
-                    support,
-                    rate,
-                    inputs.base_acceleration,
-                    AMPLITUDE * phase.sin(),
-                    AMPLITUDE * phase.cos(),
-                ];
-                motion.rows_mut(2 * n, 5).copy_from_slice(&loads);
-                motion = &step * motion;
-                support = inputs.support_displacement;
-                rig.run_to(&inputs, f64::from(count + 1) * length).unwrap();
-
-                let mut force = k * (support + beta_c * rate);
-                for (i, mode) in model.modes.iter().enumerate() {
-                    let parts = [motion[i] / w, beta_c * motion[n + i]].map(|part| k * mode.tip * part);
-                    force -= parts[0] + parts[1];
-                }
-                worst = worst.max((rig.state.force - model.preload.force - force).abs());
-            }
-            worst /= model.force_scale;
+            let worst = error_against_the_exponential(&scene);
             println!("{damping:?}, {modes} modes, stiffness x {factor}, tip {mass}: {worst:.1e}");
-            assert_eq!(rig.state.steps, 40, "{damping:?} {modes} {factor} {mass}");
             assert!(worst < 1e-12, "{damping:?} {modes} {factor} {mass}: {worst:e}");
+        }
+    }
+}
+
+/// Two equal eigenvalues, which have one eigenvector: with one damping for beam and contact, and with two.
+#[test]
+fn through_critical_damping() {
+    let model = Model::new(&damped(ContactLawKind::Bonded, 1, (0.0, 0.0, 0.0)), 0.0).unwrap();
+    let mode = model.modes[0];
+    let contact = model.preload.contact_stiffness * mode.tip * mode.tip;
+    let critical = 2.0 * (mode.omega_squared + contact).sqrt();
+    for off in [
+        0.0, 1e-15, -1e-15, 1e-12, -1e-12, 1e-8, -1e-8, 1e-5, -1e-5, 1e-4, 1e-3, 1e-2, -1e-2,
+    ] {
+        let both = critical * (1.0 + off) / (mode.omega_squared + contact);
+        let beam = 1e-6;
+        let unequal = (critical * (1.0 + off) - beam * mode.omega_squared) / contact;
+        for damping in [
+            (0.0, both, both),
+            (0.0, beam, unequal),
+            (0.0, 0.0, critical * (1.0 + off) / contact),
+        ] {
+            let worst = error_against_the_exponential(&damped(ContactLawKind::Bonded, 1, damping));
+            println!("{off:e} {damping:?}: {worst:.1e}");
+            assert!(worst < 1e-12, "{off:e} {damping:?}: {worst:e}");
         }
     }
 }
