@@ -11,6 +11,7 @@ use crate::excitation::Generator;
 use crate::preload::Preload;
 use crate::scene::Scene;
 use crate::transient::collocation::Predictions;
+use crate::transient::linear::ClosedLoop;
 use crate::variables::{ContactLawKind, RealParameter};
 
 /// Largest number of modes.
@@ -42,6 +43,8 @@ pub struct Model {
     pub preload: Preload,
     /// The modes, frequency ascending.
     pub modes: Vec<Mode>,
+    /// Modes and contact together, where they are linear.
+    pub closed_loop: Option<ClosedLoop>,
     /// The base acceleration generated inside.
     pub generator: Generator,
     /// `support.displacement` at the start, m: part of the preload.
@@ -134,7 +137,7 @@ impl Model {
             value: preload.axial_force,
             limit: section.buckling_load(),
         };
-        let modes = Space::new(count)
+        let modes: Vec<Mode> = Space::new(count)
             .modes(&section, preload.axial_force, 0.0)
             .ok_or_else(buckled)?
             .into_iter()
@@ -150,12 +153,17 @@ impl Model {
             .first()
             .map_or(0.0, |omega| omega / std::f64::consts::TAU);
         let generator = Generator::new(scene);
+        let closed_loop = match law {
+            Law::Linear(contact) => ClosedLoop::new(scene, &modes, contact, &generator),
+            Law::Hertz(_) => None,
+        };
         Ok(Self {
             scene: *scene,
             section,
             law,
             preload,
             modes,
+            closed_loop,
             generator,
             initial_support: support,
             longest_step: if scene.solver.maximum_step > 0.0 {

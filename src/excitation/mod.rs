@@ -68,7 +68,7 @@ impl Generator {
     }
 
     /// Sine and cosine of the generator's phase at `time`, times its amplitude.
-    fn phasor(&self, time: f64) -> (f64, f64) {
+    pub(crate) fn phasor(&self, time: f64) -> (f64, f64) {
         match *self {
             Self::Sine {
                 amplitude,
@@ -76,11 +76,18 @@ impl Generator {
                 phase,
                 start,
             } if time >= start => {
-                // Whole turns are dropped before the phase is formed, so that late instants keep their digits.
-                let (sin, cos) = (TAU * (frequency * (time - start)).fract() + phase).sin_cos();
+                let (sin, cos) = (TAU * turned(frequency, time - start) + phase).sin_cos();
                 (amplitude * sin, amplitude * cos)
             }
             _ => (0.0, 0.0),
+        }
+    }
+
+    /// Frequency, Hz.
+    pub(crate) fn frequency(&self) -> Option<f64> {
+        match *self {
+            Self::None => None,
+            Self::Sine { frequency, .. } => Some(frequency),
         }
     }
 
@@ -138,4 +145,11 @@ impl Generator {
             Self::Sine { frequency, .. } => 0.25 / frequency,
         }
     }
+}
+
+/// Turns of a rotation at `frequency` (Hz) over a time (s) beyond whole ones. These are dropped before anything is rounded, so
+/// that late instants keep their digits.
+pub(crate) fn turned(frequency: f64, time: f64) -> f64 {
+    let turns = frequency * time;
+    turns.fract() + frequency.mul_add(time, -turns)
 }

@@ -99,17 +99,21 @@ impl Model {
         steps: Steps,
     ) -> Result<(), StepError> {
         let saved = *state;
+        let tolerance = self.scene.solver.effective_tolerance() * self.force_scale;
         let (progress, span) = match steps {
             Steps::Exactly { time, size } => {
-                state.time = time;
-                (Progress::over(time, size), None)
+                state.time = self.rests_until(state, &drive, tolerance, time + size).unwrap_or(time);
+                let left = size - (state.time - time);
+                if left <= 0.0 || self.step_exactly(state, &mut workspace.propagator, &drive, left) {
+                    return Ok(());
+                }
+                (Progress::over(state.time, left), None)
             }
             Steps::Own { until, span } => {
                 let size = state.short_step.max(state.long_step);
                 (Progress::free(state.time, size), Some((until, span)))
             }
         };
-        let tolerance = self.scene.solver.effective_tolerance() * self.force_scale;
         let result = Integration {
             model: self,
             state,
@@ -142,14 +146,13 @@ impl Integration<'_> {
             if self.attempts() >= limit {
                 return Err(self.error(StepErrorCause::Budget(budget)));
             }
-            if !self.progress.free && self.model.rests(self.state, &self.drive, self.tolerance) {
-                let corner = self.model.generator.next_break(self.state.time);
-                let target = self.progress.target(f64::INFINITY, self.state.time, corner);
-                (self.state.time, self.progress.done) = (target.time, target.done);
-                self.state.last_step = 0.0;
-                continue;
-            }
             self.advance()?;
+            let Progress { free, .. } = self.progress;
+            let end = self.progress.end();
+            if !free && let Some(until) = self.model.rests_until(self.state, &self.drive, self.tolerance, end) {
+                let target = self.progress.cut(until - self.state.time, until);
+                (self.state.time, self.progress.done) = (target.time, target.done);
+            }
         }
         Ok(())
     }

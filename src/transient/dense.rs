@@ -132,7 +132,7 @@ impl Model {
             });
         }
         // Lengths that differ by the rounding of time are one.
-        let size = if (size - course.size).abs() <= 4.0 * f64::EPSILON * until.abs() {
+        let size = if (size - course.size).abs() <= f64::EPSILON * until.abs() {
             course.size
         } else {
             size
@@ -144,7 +144,7 @@ impl Model {
             acceleration: inputs.base_acceleration,
             support_rate: (support - from) / size,
         };
-        let steady = drive == course.drive && drive.support_rate == 0.0;
+        let steady = drive == course.drive && drive.support_rate == 0.0 && self.closed_loop.is_none();
         let ahead = course.time < course.end.time;
         let reach = course.end.short_step.max(course.end.long_step);
         if steady && (ahead || size < reach || size < LONG * reach && size != course.size) {
@@ -155,6 +155,7 @@ impl Model {
             let mut state = self.state(course, workspace)?;
             self.advance(&mut state, workspace, drive, Steps::Exactly { time, size })?;
             state.support = support;
+            state.time = until;
             (course.start, course.end) = (state, state);
             course.drive = drive;
         }

@@ -4,16 +4,25 @@
 //! scalar function of one scalar, the tip. Over a step the contact force is a polynomial through Radau nodes
 //! ([`collocation`]); each mode's exact response to it ([`response`], [`coefficients`]) gives the indentation at the nodes,
 //! and Newton's method on the nodal forces alone closes the loop ([`nodal`]). Steps adapt to an estimate of the
-//! force's error ([`advance`], on a grid: [`progress`], in room made once: [`workspace`]) and end where the contact opens ([`release`]) or closes ([`touchdown`]).
+//! force's error ([`advance`], on a grid: [`progress`], in room made once: [`workspace`]) and end where the contact opens
+//! ([`release`]) or closes ([`touchdown`]). Communication points may lie inside a step ([`dense`]), and a contact at rest takes none
+//! ([`rest`]).
+//!
+//! Where the contact is linear and stays closed, a communication step is one exact step ([`linear`]) in the eigenvectors of beam
+//! and contact ([`oscillator`], [`secular`], [`zeros`]).
 
 pub mod advance;
 pub mod coefficients;
 pub mod collocation;
 pub mod dense;
+pub mod linear;
 pub mod nodal;
+pub mod oscillator;
 pub mod progress;
 pub mod release;
 pub mod response;
 pub mod rest;
+pub mod secular;
 pub mod touchdown;
 pub mod workspace;
+pub mod zeros;

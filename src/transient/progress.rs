@@ -46,6 +46,11 @@ impl Progress {
         }
     }
 
+    /// The end of the communication step, s.
+    pub fn end(&self) -> f64 {
+        self.time(1.0)
+    }
+
     /// What is left to do, s.
     pub fn left(&self) -> f64 {
         if self.free {

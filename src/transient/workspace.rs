@@ -3,6 +3,7 @@
 use crate::model::{MAX_MODES, ModeState, ModeStates, Model};
 use crate::transient::coefficients::Cache;
 use crate::transient::collocation::{LONG, SHORT};
+use crate::transient::oscillator::Propagator;
 
 /// Scratch of the steps. Nothing in it changes a result, only the time it takes.
 #[derive(Clone, Debug)]
@@ -13,6 +14,8 @@ pub struct Workspace {
     end: ModeStates,
     /// The modes at instants looked at.
     probe: ModeStates,
+    /// Of exact steps.
+    pub(super) propagator: Propagator,
 }
 
 impl Workspace {
@@ -23,6 +26,7 @@ impl Workspace {
             long: Cache::new(model.modes.len()),
             end: [ModeState::default(); MAX_MODES],
             probe: [ModeState::default(); MAX_MODES],
+            propagator: Propagator::default(),
         }
     }
 }
