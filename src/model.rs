@@ -11,6 +11,7 @@ use crate::excitation::Generator;
 use crate::preload::Preload;
 use crate::scene::Scene;
 use crate::transient::collocation::Predictions;
+use crate::transient::machine::Machine;
 use crate::variables::{ContactLawKind, RealParameter};
 
 /// Largest number of modes.
@@ -52,6 +53,8 @@ pub struct Model {
     pub force_scale: f64,
     /// Lowest natural frequency with the contact as a spring, from the exact characteristic equation, Hz.
     pub frequency: f64,
+    /// What the steps are computed with.
+    pub machine: Machine,
 }
 
 /// Displacement and velocity of a mode, as deviation from the preload.
@@ -167,6 +170,7 @@ impl Model {
             },
             force_scale: preload.force.max(reference),
             frequency,
+            machine: Machine::detect(),
         })
     }
 

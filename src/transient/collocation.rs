@@ -5,6 +5,7 @@
 //! four where a short one is wanted (a communication step of a microsecond, the time just after a blow).
 
 use crate::math::legendre;
+use crate::transient::machine::Arithmetic;
 
 /// Nodes of a short step.
 pub const SHORT: usize = 4;
@@ -185,6 +186,7 @@ fn by_factorials(mut shape: [f64; MAX_SHAPES]) -> [f64; MAX_SHAPES] {
 }
 
 /// Scalar product of two sets of nodal values.
-pub fn dot<const S: usize>(a: &Nodal<S>, b: &Nodal<S>) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+#[inline(always)]
+pub fn dot<const S: usize, A: Arithmetic>(a: &Nodal<S>, b: &Nodal<S>) -> f64 {
+    a.iter().zip(b).fold(0.0, |sum, (a, b)| A::mul_add(*a, *b, sum))
 }

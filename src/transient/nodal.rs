@@ -3,6 +3,7 @@
 use crate::model::{ModeStates, Model, State};
 use crate::transient::coefficients::{ErrorColumn, StepCoefficients};
 use crate::transient::collocation::{Collocation, Nodal, dot};
+use crate::transient::machine::{Arithmetic, compiled_for};
 
 /// What drives the contact over a communication step.
 #[derive(Clone, Copy, Debug)]
@@ -70,6 +71,20 @@ impl Model {
         newton: f64,
         end_modes: &mut ModeStates,
     ) -> Option<Trial<S>> {
+        compiled_for!(self.machine, A => self.compute::<S, A>(state, drive, step, collocation, newton, end_modes))
+    }
+
+    /// [`Model::trial`] for a machine.
+    #[inline(always)]
+    fn compute<const S: usize, A: Arithmetic>(
+        &self,
+        state: &State,
+        drive: &Drive,
+        step: &StepCoefficients<S>,
+        collocation: &Collocation<S>,
+        newton: f64,
+        end_modes: &mut ModeStates,
+    ) -> Option<Trial<S>> {
         let h = step.length;
         let generated = self.generator.over_step(state.time, &step.turns);
         let accelerations = generated.nodes.map(|generated| drive.acceleration + generated);
@@ -80,14 +95,14 @@ impl Model {
             .map(|node| state.support + drive.support_rate * (node * h));
         let mut free_rate = [drive.support_rate; S];
         for (mode, row) in state.modes.iter().zip(&step.modes) {
-            subtract(&mut free, &row.tip_from_q, mode.q, &row.tip_from_v, mode.v);
-            subtract(&mut free_rate, &row.rate_from_q, mode.q, &row.rate_from_v, mode.v);
+            subtract::<S, A>(&mut free, &row.tip_from_q, mode.q, &row.tip_from_v, mode.v);
+            subtract::<S, A>(&mut free_rate, &row.rate_from_q, mode.q, &row.rate_from_v, mode.v);
         }
-        add_columns(&mut free, &step.acceleration.displacement, &accelerations);
-        add_columns(&mut free_rate, &step.acceleration.velocity, &accelerations);
+        add_columns::<S, A>(&mut free, &step.acceleration.displacement, &accelerations);
+        add_columns::<S, A>(&mut free_rate, &step.acceleration.velocity, &accelerations);
 
         let solution = if state.closed {
-            self.closed_forces(state, step, collocation, &free, &free_rate, newton)?
+            self.closed_forces::<S, A>(state, step, collocation, &free, &free_rate, newton)?
         } else {
             Solution {
                 forces: [-self.preload.force; S],
@@ -100,7 +115,7 @@ impl Model {
             }
         };
         let Solution { forces, iterations, .. } = solution;
-        let (indentations, rates) = at_nodes(step, &free, &free_rate, &forces);
+        let (indentations, rates) = at_nodes::<S, A>(step, &free, &free_rate, &forces);
 
         let support = state.support + drive.support_rate * h;
         let (mut indentation, mut rate) = (support, drive.support_rate);
@@ -109,19 +124,19 @@ impl Model {
             for (load, acceleration) in load.iter_mut().zip(&accelerations) {
                 *load = mode.tip * *load - mode.participation * acceleration;
             }
-            end.q = row.q_from_q * start.q + row.q_from_v * start.v + dot(&row.q_from_load, &load);
-            end.v = row.v_from_q * start.q + row.v_from_v * start.v + dot(&row.v_from_load, &load);
+            end.q = row.q_from_q * start.q + row.q_from_v * start.v + dot::<S, A>(&row.q_from_load, &load);
+            end.v = row.v_from_q * start.q + row.v_from_v * start.v + dot::<S, A>(&row.v_from_load, &load);
             indentation -= mode.tip * end.q;
             rate -= mode.tip * end.v;
         }
 
         let at_start = drive.acceleration + generated.start;
-        let error = self.error(
+        let error = self.error::<S, A>(
             state,
             step,
             collocation,
             &solution,
-            at_start - dot(&accelerations, &collocation.at_start),
+            at_start - dot::<S, A>(&accelerations, &collocation.at_start),
         );
         Some(Trial {
             forces,
@@ -141,7 +156,8 @@ impl Model {
     /// nodes they lack. What that does to the nodal forces is known to first order ([`Solution`]). Modes slow against the step
     /// hardly feel it at the end (the shape is orthogonal to polynomials of low degree); they see an error of twice the order,
     /// about three times the square of what is missed (an impact of a free mass on a Hertz contact).
-    fn error<const S: usize>(
+    #[inline(always)]
+    fn error<const S: usize, A: Arithmetic>(
         &self,
         state: &State,
         step: &StepCoefficients<S>,
@@ -154,7 +170,7 @@ impl Model {
             largest.max((self.preload.force + force).abs())
         });
         let error = if state.closed {
-            let missed = state.force - self.preload.force - dot(forces, &collocation.at_start);
+            let missed = state.force - self.preload.force - dot::<S, A>(forces, &collocation.at_start);
             let (by_force, by_acceleration) = (solution.by_force, solution.by_acceleration);
             let wrong_d = by_acceleration.0 * missed_acceleration - by_force.0 * missed;
             let wrong_r = by_acceleration.1 * missed_acceleration - by_force.1 * missed;
@@ -171,7 +187,8 @@ impl Model {
     }
 
     /// Newton's method for the nodal forces on the closed branch.
-    fn closed_forces<const S: usize>(
+    #[inline(always)]
+    fn closed_forces<const S: usize, A: Arithmetic>(
         &self,
         state: &State,
         step: &StepCoefficients<S>,
@@ -187,7 +204,7 @@ impl Model {
         };
         let d0 = self.preload.indentation;
         for iteration in 1..=ITERATIONS {
-            let (indentations, rates) = at_nodes(step, free, free_rate, &forces);
+            let (indentations, rates) = at_nodes::<S, A>(step, free, free_rate, &forces);
             let mut residual = forces;
             let (mut stiffness, mut damping) = ([0.0; S], [0.0; S]);
             for ((((residual, stiffness), damping), d), rate) in residual
@@ -207,13 +224,13 @@ impl Model {
                 for (((entry, velocity), stiffness), damping) in
                     column.iter_mut().zip(velocity).zip(&stiffness).zip(&damping)
                 {
-                    *entry = stiffness * *entry + damping * velocity;
+                    *entry = A::mul_add(*stiffness, *entry, damping * velocity);
                 }
             }
-            let force_error = react(&step.force_error, &stiffness, &damping);
-            let acceleration_error = react(&step.acceleration_error, &stiffness, &damping);
+            let force_error = react::<S, A>(&step.force_error, &stiffness, &damping);
+            let acceleration_error = react::<S, A>(&step.acceleration_error, &stiffness, &damping);
             let [correction, force_error, acceleration_error] =
-                solve(jacobian, [residual, force_error, acceleration_error])?;
+                solve::<S, 3, A>(jacobian, [residual, force_error, acceleration_error])?;
             let (mut largest, mut lowest) = (0.0_f64, f64::INFINITY);
             for (force, correction) in forces.iter_mut().zip(&correction) {
                 *force -= correction;
@@ -260,7 +277,8 @@ impl Model {
     clippy::indexing_slicing,
     reason = "every index runs over the fixed size of the arrays"
 )]
-fn solve<const S: usize, const R: usize>(mut a: [Nodal<S>; S], mut right: [Nodal<S>; R]) -> Option<[Nodal<S>; R]> {
+#[inline(always)]
+fn solve<const S: usize, const R: usize, A: Arithmetic>(mut a: [Nodal<S>; S], mut right: [Nodal<S>; R]) -> Option<[Nodal<S>; R]> {
     for (k, column) in a.iter_mut().enumerate() {
         column[k] += 1.0;
     }
@@ -276,7 +294,7 @@ fn solve<const S: usize, const R: usize>(mut a: [Nodal<S>; S], mut right: [Nodal
         let eliminate = |column: &mut Nodal<S>| {
             let share = column[p] * inverse;
             for k in 0..S {
-                column[k] -= pivot[k] * share;
+                column[k] = A::mul_add(-pivot[k], share, column[k]);
             }
             column[p] = share;
         };
@@ -286,16 +304,18 @@ fn solve<const S: usize, const R: usize>(mut a: [Nodal<S>; S], mut right: [Nodal
 }
 
 /// Forces of the law at the nodes that belong to displacements and velocities of the tip.
-fn react<const S: usize>(tip: &ErrorColumn<S>, stiffness: &Nodal<S>, damping: &Nodal<S>) -> Nodal<S> {
+#[inline(always)]
+fn react<const S: usize, A: Arithmetic>(tip: &ErrorColumn<S>, stiffness: &Nodal<S>, damping: &Nodal<S>) -> Nodal<S> {
     let mut forces = tip.displacement;
     for (((force, velocity), stiffness), damping) in forces.iter_mut().zip(&tip.velocity).zip(stiffness).zip(damping) {
-        *force = stiffness * *force + damping * velocity;
+        *force = A::mul_add(*stiffness, *force, damping * velocity);
     }
     forces
 }
 
 /// Indentation and its velocity at the nodes under the nodal forces.
-fn at_nodes<const S: usize>(
+#[inline(always)]
+fn at_nodes<const S: usize, A: Arithmetic>(
     step: &StepCoefficients<S>,
     free: &Nodal<S>,
     free_rate: &Nodal<S>,
@@ -303,21 +323,23 @@ fn at_nodes<const S: usize>(
 ) -> (Nodal<S>, Nodal<S>) {
     let (mut indentations, mut rates) = (*free, *free_rate);
     let loads = forces.map(|force| -force);
-    add_columns(&mut indentations, &step.force.displacement, &loads);
-    add_columns(&mut rates, &step.force.velocity, &loads);
+    add_columns::<S, A>(&mut indentations, &step.force.displacement, &loads);
+    add_columns::<S, A>(&mut rates, &step.force.velocity, &loads);
     (indentations, rates)
 }
 
-fn add_columns<const S: usize>(values: &mut Nodal<S>, columns: &[Nodal<S>; S], loads: &Nodal<S>) {
+#[inline(always)]
+fn add_columns<const S: usize, A: Arithmetic>(values: &mut Nodal<S>, columns: &[Nodal<S>; S], loads: &Nodal<S>) {
     for (column, load) in columns.iter().zip(loads) {
         for (value, entry) in values.iter_mut().zip(column) {
-            *value += entry * load;
+            *value = A::mul_add(*entry, *load, *value);
         }
     }
 }
 
-fn subtract<const S: usize>(values: &mut Nodal<S>, a: &Nodal<S>, x: f64, b: &Nodal<S>, y: f64) {
+#[inline(always)]
+fn subtract<const S: usize, A: Arithmetic>(values: &mut Nodal<S>, a: &Nodal<S>, x: f64, b: &Nodal<S>, y: f64) {
     for ((value, a), b) in values.iter_mut().zip(a).zip(b) {
-        *value -= a * x + b * y;
+        *value -= A::mul_add(*a, x, b * y);
     }
 }
