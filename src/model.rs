@@ -14,7 +14,7 @@ use crate::transient::collocation::Predictions;
 use crate::transient::machine::Machine;
 use crate::variables::{ContactLawKind, RealParameter};
 
-/// Largest number of modes.
+/// Largest number of modes: a multiple of four, the modes a step computes at once.
 pub const MAX_MODES: usize = 40;
 
 /// One damped mode of the cantilever without contact, of modal mass 1 kg.

@@ -1,7 +1,7 @@
 //! One step: the nodal contact forces and the motion they give.
 
 use crate::model::{ModeStates, Model, State};
-use crate::transient::coefficients::{ErrorColumn, StepCoefficients};
+use crate::transient::coefficients::{ErrorColumn, Modal, StepCoefficients};
 use crate::transient::collocation::{Collocation, Nodal, dot};
 use crate::transient::machine::{Arithmetic, compiled_for};
 
@@ -87,17 +87,25 @@ impl Model {
     ) -> Option<Trial<S>> {
         let h = step.length;
         let generated = self.generator.over_step(state.time, &step.turns);
-        let accelerations = generated.nodes.map(|generated| drive.acceleration + generated);
+        let mut accelerations = generated.nodes;
+        for acceleration in &mut accelerations {
+            *acceleration += drive.acceleration;
+        }
 
         // Indentation at the nodes without contact force.
-        let mut free = collocation
-            .nodes
-            .map(|node| state.support + drive.support_rate * (node * h));
+        let mut free = [state.support; S];
+        add_times::<S, A>(&mut free, &collocation.nodes, drive.support_rate * h);
         let mut free_rate = [drive.support_rate; S];
+        // A sum of its own for q and v each: they do not wait for one another.
+        let [mut from_q, mut from_v, mut rate_from_q, mut rate_from_v] = [[0.0; S]; 4];
         for (mode, row) in state.modes.iter().zip(&step.modes) {
-            subtract::<S, A>(&mut free, &row.tip_from_q, mode.q, &row.tip_from_v, mode.v);
-            subtract::<S, A>(&mut free_rate, &row.rate_from_q, mode.q, &row.rate_from_v, mode.v);
+            add_times::<S, A>(&mut from_q, &row.tip_from_q, mode.q);
+            add_times::<S, A>(&mut from_v, &row.tip_from_v, mode.v);
+            add_times::<S, A>(&mut rate_from_q, &row.rate_from_q, mode.q);
+            add_times::<S, A>(&mut rate_from_v, &row.rate_from_v, mode.v);
         }
+        subtract(&mut free, &from_q, &from_v);
+        subtract(&mut free_rate, &rate_from_q, &rate_from_v);
         add_columns::<S, A>(&mut free, &step.acceleration.displacement, &accelerations);
         add_columns::<S, A>(&mut free_rate, &step.acceleration.velocity, &accelerations);
 
@@ -118,17 +126,8 @@ impl Model {
         let (indentations, rates) = at_nodes::<S, A>(step, &free, &free_rate, &forces);
 
         let support = state.support + drive.support_rate * h;
-        let (mut indentation, mut rate) = (support, drive.support_rate);
-        for (((end, start), row), mode) in end_modes.iter_mut().zip(&state.modes).zip(&step.modes).zip(&self.modes) {
-            let mut load = forces;
-            for (load, acceleration) in load.iter_mut().zip(&accelerations) {
-                *load = mode.tip * *load - mode.participation * acceleration;
-            }
-            end.q = row.q_from_q * start.q + row.q_from_v * start.v + dot::<S, A>(&row.q_from_load, &load);
-            end.v = row.v_from_q * start.q + row.v_from_v * start.v + dot::<S, A>(&row.v_from_load, &load);
-            indentation -= mode.tip * end.q;
-            rate -= mode.tip * end.v;
-        }
+        let (tip, tip_rate) = end_of_modes::<S, A>(state, step, self.modes.len(), &forces, &accelerations, end_modes);
+        let (indentation, rate) = (support - tip, drive.support_rate - tip_rate);
 
         let at_start = drive.acceleration + generated.start;
         let error = self.error::<S, A>(
@@ -198,7 +197,7 @@ impl Model {
         newton: f64,
     ) -> Option<Solution<S>> {
         let mut forces = if state.last_step > 0.0 {
-            collocation.predict(&state.predictions, step.length / state.last_step)
+            collocation.predict::<A>(&state.predictions, step.length / state.last_step)
         } else {
             [state.force - self.preload.force; S]
         };
@@ -270,6 +269,63 @@ impl Model {
     }
 }
 
+/// Modes computed at once.
+const LANES: usize = 4;
+
+/// The modes in use at the end of a step, into `ends`. Returns displacement and velocity of the tip.
+#[inline(always)]
+#[expect(
+    clippy::indexing_slicing,
+    reason = "the room for the modes is a whole number of lanes"
+)]
+fn end_of_modes<const S: usize, A: Arithmetic>(
+    state: &State,
+    step: &StepCoefficients<S>,
+    modes: usize,
+    forces: &Nodal<S>,
+    accelerations: &Nodal<S>,
+    ends: &mut ModeStates,
+) -> (f64, f64) {
+    let rows = &step.end;
+    let (mut tip, mut tip_rate) = ([0.0; LANES], [0.0; LANES]);
+    let lanes = |values: &Modal, first: usize| -> [f64; LANES] { std::array::from_fn(|i| values[first + i]) };
+    for first in (0..modes).step_by(LANES) {
+        let starts = &state.modes[first..first + LANES];
+        let (start_q, start_v): ([f64; LANES], [f64; LANES]) = (
+            std::array::from_fn(|i| starts[i].q),
+            std::array::from_fn(|i| starts[i].v),
+        );
+        let (tips, participations) = (lanes(&rows.tip, first), lanes(&rows.participation, first));
+        let (mut q, mut v) = ([0.0; LANES], [0.0; LANES]);
+        add::<LANES, A>(&mut q, &lanes(&rows.q_from_q, first), &start_q);
+        add::<LANES, A>(&mut q, &lanes(&rows.q_from_v, first), &start_v);
+        add::<LANES, A>(&mut v, &lanes(&rows.v_from_q, first), &start_q);
+        add::<LANES, A>(&mut v, &lanes(&rows.v_from_v, first), &start_v);
+        for node in 0..S {
+            let mut load = [0.0; LANES];
+            for i in 0..LANES {
+                load[i] = A::mul_add(tips[i], forces[node], -participations[i] * accelerations[node]);
+            }
+            add::<LANES, A>(&mut q, &lanes(&rows.q_from_load[node], first), &load);
+            add::<LANES, A>(&mut v, &lanes(&rows.v_from_load[node], first), &load);
+        }
+        add::<LANES, A>(&mut tip, &tips, &q);
+        add::<LANES, A>(&mut tip_rate, &tips, &v);
+        for (end, (q, v)) in ends[first..first + LANES].iter_mut().zip(q.iter().zip(&v)) {
+            (end.q, end.v) = (*q, *v);
+        }
+    }
+    (tip.iter().sum(), tip_rate.iter().sum())
+}
+
+/// Adds the products of the values.
+#[inline(always)]
+fn add<const N: usize, A: Arithmetic>(sum: &mut [f64; N], a: &[f64; N], b: &[f64; N]) {
+    for ((sum, a), b) in sum.iter_mut().zip(a).zip(b) {
+        *sum = A::mul_add(*a, *b, *sum);
+    }
+}
+
 /// Solves `(1 + A) x = b` for several `b`, `A` column by column, by Gauss-Jordan elimination, whose inner loops run down
 /// columns; rows are exchanged only where a pivot is small, which happens in violent steps alone. `None` where the matrix
 /// is singular.
@@ -278,7 +334,10 @@ impl Model {
     reason = "every index runs over the fixed size of the arrays"
 )]
 #[inline(always)]
-fn solve<const S: usize, const R: usize, A: Arithmetic>(mut a: [Nodal<S>; S], mut right: [Nodal<S>; R]) -> Option<[Nodal<S>; R]> {
+fn solve<const S: usize, const R: usize, A: Arithmetic>(
+    mut a: [Nodal<S>; S],
+    mut right: [Nodal<S>; R],
+) -> Option<[Nodal<S>; R]> {
     for (k, column) in a.iter_mut().enumerate() {
         column[k] += 1.0;
     }
@@ -322,7 +381,10 @@ fn at_nodes<const S: usize, A: Arithmetic>(
     forces: &Nodal<S>,
 ) -> (Nodal<S>, Nodal<S>) {
     let (mut indentations, mut rates) = (*free, *free_rate);
-    let loads = forces.map(|force| -force);
+    let mut loads = *forces;
+    for load in &mut loads {
+        *load = -*load;
+    }
     add_columns::<S, A>(&mut indentations, &step.force.displacement, &loads);
     add_columns::<S, A>(&mut rates, &step.force.velocity, &loads);
     (indentations, rates)
@@ -331,15 +393,20 @@ fn at_nodes<const S: usize, A: Arithmetic>(
 #[inline(always)]
 fn add_columns<const S: usize, A: Arithmetic>(values: &mut Nodal<S>, columns: &[Nodal<S>; S], loads: &Nodal<S>) {
     for (column, load) in columns.iter().zip(loads) {
-        for (value, entry) in values.iter_mut().zip(column) {
-            *value = A::mul_add(*entry, *load, *value);
-        }
+        add_times::<S, A>(values, column, *load);
     }
 }
 
 #[inline(always)]
-fn subtract<const S: usize, A: Arithmetic>(values: &mut Nodal<S>, a: &Nodal<S>, x: f64, b: &Nodal<S>, y: f64) {
+fn add_times<const S: usize, A: Arithmetic>(values: &mut Nodal<S>, a: &Nodal<S>, x: f64) {
+    for (value, a) in values.iter_mut().zip(a) {
+        *value = A::mul_add(*a, x, *value);
+    }
+}
+
+#[inline(always)]
+fn subtract<const S: usize>(values: &mut Nodal<S>, a: &Nodal<S>, b: &Nodal<S>) {
     for ((value, a), b) in values.iter_mut().zip(a).zip(b) {
-        *value -= A::mul_add(*a, x, b * y);
+        *value -= a + b;
     }
 }
