@@ -102,9 +102,10 @@ impl<const S: usize> Shapes<S> {
 /// `n`-fold integrals by Cauchy's formula, `(x - s)^(n-1) / (n-1)!` times the shape from 0 to x, and Gauss quadrature.
 fn integrals<const S: usize>(nodes: &Nodal<S>) -> Vec<Table<S>> {
     let mut tables = vec![(Table::<S>::ZERO, Table::<S>::ZERO); TERMS];
+    let points: Vec<_> = legendre::gauss(POINTS).collect();
     for (i, &x) in nodes.iter().enumerate() {
-        for (point, weight) in legendre::gauss(POINTS) {
-            let s = x * f64::midpoint(1.0, point);
+        for (point, weight) in &points {
+            let s = x * f64::midpoint(1.0, *point);
             let values: Vec<f64> = shape_values(nodes, s).collect();
             let mut kernel = 0.5 * weight * x;
             for (n, (table, sizes)) in tables.iter_mut().enumerate() {
