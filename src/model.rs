@@ -12,9 +12,10 @@ use crate::preload::Preload;
 use crate::scene::Scene;
 use crate::transient::collocation::Predictions;
 use crate::transient::linear::ClosedLoop;
+use crate::transient::machine::Machine;
 use crate::variables::{ContactLawKind, RealParameter};
 
-/// Largest number of modes.
+/// Largest number of modes: a multiple of four, the modes a step computes at once.
 pub const MAX_MODES: usize = 40;
 
 /// One damped mode of the cantilever without contact, of modal mass 1 kg.
@@ -55,6 +56,8 @@ pub struct Model {
     pub force_scale: f64,
     /// Lowest natural frequency with the contact as a spring, from the exact characteristic equation, Hz.
     pub frequency: f64,
+    /// What the steps are computed with.
+    pub machine: Machine,
 }
 
 /// Displacement and velocity of a mode, as deviation from the preload.
@@ -173,6 +176,7 @@ impl Model {
             },
             force_scale: preload.force.max(reference),
             frequency,
+            machine: Machine::detect(),
         })
     }
 

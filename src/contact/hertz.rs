@@ -55,6 +55,7 @@ impl Hertz {
 
     /// The closed branch continued smoothly past the release (the force may turn negative), for the steps that end at
     /// the release.
+    #[inline(always)]
     pub fn closed_branch(&self, d: f64, rate: f64) -> Branch {
         if d <= 0.0 {
             return Branch {

@@ -32,6 +32,7 @@ impl Law {
     }
 
     /// Force and derivatives on the closed branch, continued where the contact would be open.
+    #[inline(always)]
     pub fn closed_branch(&self, d: f64, rate: f64) -> Branch {
         match self {
             Self::Hertz(hertz) => hertz.closed_branch(d, rate),

@@ -29,6 +29,7 @@ impl Linear {
     }
 
     /// The force without the cut.
+    #[inline(always)]
     pub fn closed_branch(&self, d: f64, rate: f64) -> Branch {
         Branch {
             force: self.stiffness * self.branch_engagement(d, rate),

@@ -93,6 +93,7 @@ impl Generator {
 
     /// Accelerations over a step that begins at `time` (s) and has the given turns. A step that begins before the start of
     /// the generator ends there at the latest.
+    #[inline(always)]
     pub fn over_step<const S: usize>(&self, time: f64, turns: &Turns<S>) -> Accelerations<S> {
         let (sin, cos) = match self {
             Self::None => {

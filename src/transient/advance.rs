@@ -315,11 +315,7 @@ impl Integration<'_> {
         Workspace: Room<S>,
     {
         let (cache, _, probe) = self.workspace.parts();
-        let (step, collocation) = if self.state.closed {
-            cache.get(length, false, self.model)
-        } else {
-            cache.flight(length, self.model)
-        };
+        let (step, collocation) = cache.get(length, false, self.model);
         self.model
             .trial(self.state, &self.drive, step, collocation, 1e-2 * self.tolerance, probe)
     }
@@ -374,9 +370,10 @@ impl Integration<'_> {
             0.0
         };
         let start = state.force - model.preload.force;
-        state.predictions = cache
-            .collocation()
-            .predictions(start, &trial.forces, &state.predictions, ratio);
+        state.predictions =
+            cache
+                .collocation()
+                .predictions(model.machine, start, &trial.forces, &state.predictions, ratio);
         if state.closed {
             let force = model.preload.force + trial.forces.last().copied().unwrap_or_default();
             state.force = if model.law.never_opens() { force } else { force.max(0.0) };

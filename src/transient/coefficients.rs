@@ -1,11 +1,13 @@
 //! Everything of a step that depends on its length alone, and a cache of it.
 
 use crate::excitation::Turns;
-use crate::model::Model;
-use crate::transient::collocation::{Collocation, MAX_SHAPES, Nodal};
-use crate::transient::response::Response;
+use crate::model::{MAX_MODES, Mode, Model};
+use crate::transient::collocation::{Collocation, Nodal};
+use crate::transient::machine::{Arithmetic, compiled_for};
+use crate::transient::response::{FreeMotion, Oscillator, Pair, Sum, add, scaled};
+use crate::transient::shapes::Table;
 
-/// How a mode moves over a step. Its tip displacement counts, so the rows for the nodes carry the factor of the mode's tip.
+/// How a mode moves over a step, at the nodes. Its tip displacement counts, so the rows for the nodes carry the factor of the mode's tip.
 #[derive(Clone, Copy, Debug)]
 pub struct ModeStep<const S: usize> {
     /// Tip displacement at the nodes per initial q, and per initial v.
@@ -16,18 +18,59 @@ pub struct ModeStep<const S: usize> {
     pub rate_from_q: Nodal<S>,
     /// See [`ModeStep::rate_from_q`].
     pub rate_from_v: Nodal<S>,
-    /// q and v at the end per initial q and v, and per nodal load.
-    pub q_from_q: f64,
-    /// See [`ModeStep::q_from_q`].
-    pub q_from_v: f64,
-    /// See [`ModeStep::q_from_q`].
-    pub v_from_q: f64,
-    /// See [`ModeStep::q_from_q`].
-    pub v_from_v: f64,
-    /// See [`ModeStep::q_from_q`].
-    pub q_from_load: Nodal<S>,
-    /// See [`ModeStep::q_from_q`].
-    pub v_from_load: Nodal<S>,
+}
+
+/// A value for each mode; those beyond the modes in use are zero.
+pub type Modal = [f64; MAX_MODES];
+
+/// How the modes end a step, mode by mode so that several are computed at once.
+#[derive(Clone, Copy, Debug)]
+pub struct EndRows<const S: usize> {
+    /// q and v at the end per initial q and v, and per load at each node.
+    pub q_from_q: Modal,
+    /// See [`EndRows::q_from_q`].
+    pub q_from_v: Modal,
+    /// See [`EndRows::q_from_q`].
+    pub v_from_q: Modal,
+    /// See [`EndRows::q_from_q`].
+    pub v_from_v: Modal,
+    /// See [`EndRows::q_from_q`].
+    pub q_from_load: [Modal; S],
+    /// See [`EndRows::q_from_q`].
+    pub v_from_load: [Modal; S],
+    /// Load per force on the tip, and tip displacement per q.
+    pub tip: Modal,
+    /// Load per base acceleration.
+    pub participation: Modal,
+}
+
+impl<const S: usize> EndRows<S> {
+    const ZERO: Self = Self {
+        q_from_q: [0.0; MAX_MODES],
+        q_from_v: [0.0; MAX_MODES],
+        v_from_q: [0.0; MAX_MODES],
+        v_from_v: [0.0; MAX_MODES],
+        q_from_load: [[0.0; MAX_MODES]; S],
+        v_from_load: [[0.0; MAX_MODES]; S],
+        tip: [0.0; MAX_MODES],
+        participation: [0.0; MAX_MODES],
+    };
+
+    #[expect(clippy::indexing_slicing, reason = "no model has more modes than there is room for")]
+    fn set(&mut self, i: usize, mode: &Mode, free: &FreeMotion, q_from_load: &Nodal<S>, v_from_load: &Nodal<S>) {
+        self.q_from_q[i] = free.q_from_q;
+        self.q_from_v[i] = free.q_from_v;
+        self.v_from_q[i] = free.v_from_q;
+        self.v_from_v[i] = free.v_from_v;
+        for (row, load) in self.q_from_load.iter_mut().zip(q_from_load) {
+            row[i] = *load;
+        }
+        for (row, load) in self.v_from_load.iter_mut().zip(v_from_load) {
+            row[i] = *load;
+        }
+        self.tip[i] = mode.tip;
+        self.participation[i] = mode.participation;
+    }
 }
 
 /// Displacement and velocity of the tip at the nodes per unit of the load at a node, one load after the other.
@@ -53,10 +96,10 @@ pub struct ErrorColumn<const S: usize> {
 pub struct StepCoefficients<const S: usize> {
     /// The length, s.
     pub length: f64,
-    /// Whether the rows for the nodes are filled in; free flight does not need them.
-    complete: bool,
     /// Mode by mode.
     pub modes: Vec<ModeStep<S>>,
+    /// The same at the end.
+    pub end: EndRows<S>,
     /// Per force on the tip.
     pub force: TipColumns<S>,
     /// Per base acceleration acting on the modes as `participation`.
@@ -74,14 +117,6 @@ impl<const S: usize> TipColumns<S> {
         displacement: [[0.0; S]; S],
         velocity: [[0.0; S]; S],
     };
-
-    fn add(&mut self, node: usize, factor: f64, displacement: &[f64], velocity: &[f64]) {
-        for (columns, values) in [(&mut self.displacement, displacement), (&mut self.velocity, velocity)] {
-            for (column, value) in columns.iter_mut().zip(values) {
-                set(column, node, |sum| sum + factor * value);
-            }
-        }
-    }
 }
 
 impl<const S: usize> ErrorColumn<S> {
@@ -89,11 +124,6 @@ impl<const S: usize> ErrorColumn<S> {
         displacement: [0.0; S],
         velocity: [0.0; S],
     };
-
-    fn add(&mut self, node: usize, factor: f64, displacement: f64, velocity: f64) {
-        set(&mut self.displacement, node, |sum| sum + factor * displacement);
-        set(&mut self.velocity, node, |sum| sum + factor * velocity);
-    }
 }
 
 impl<const S: usize> StepCoefficients<S> {
@@ -104,17 +134,11 @@ impl<const S: usize> StepCoefficients<S> {
             tip_from_v: [0.0; S],
             rate_from_q: [0.0; S],
             rate_from_v: [0.0; S],
-            q_from_q: 0.0,
-            q_from_v: 0.0,
-            v_from_q: 0.0,
-            v_from_v: 0.0,
-            q_from_load: [0.0; S],
-            v_from_load: [0.0; S],
         };
         Self {
             length: 0.0,
-            complete: false,
             modes: vec![mode; modes],
+            end: EndRows::ZERO,
             force: TipColumns::ZERO,
             acceleration: TipColumns::ZERO,
             turns: Turns::none(),
@@ -124,93 +148,54 @@ impl<const S: usize> StepCoefficients<S> {
     }
 
     /// Computes the coefficients of the length in place.
-    fn fill(&mut self, length: f64, complete: bool, model: &Model, collocation: &Collocation<S>) {
+    fn fill(&mut self, length: f64, model: &Model, collocation: &Collocation<S>) {
+        compiled_for!(model.machine, A => self.compute::<A>(length, model, collocation));
+    }
+
+    #[inline(always)]
+    fn compute<A: Arithmetic>(&mut self, length: f64, model: &Model, collocation: &Collocation<S>) {
+        let (h, shapes) = (length, &collocation.shapes);
         self.length = length;
-        self.complete = complete;
         self.turns = model.generator.turns(length, &collocation.nodes);
-        self.force = TipColumns::ZERO;
-        self.acceleration = TipColumns::ZERO;
-        self.force_error = ErrorColumn::ZERO;
-        self.acceleration_error = ErrorColumn::ZERO;
-        // The last node is the end.
-        let skipped = if complete { 0 } else { S - 1 };
-        for (mode, step) in model.modes.iter().zip(&mut self.modes) {
+        let (mut force, mut acceleration) = (Sum::<S>::ZERO, Sum::<S>::ZERO);
+        for (i, (mode, step)) in model.modes.iter().zip(&mut self.modes).enumerate() {
             let tip = mode.tip;
-            for (node, &x) in collocation.nodes.iter().enumerate().skip(skipped) {
-                let response = Response::new(mode.omega_squared, mode.damping, x * length, S + 1);
-                set(&mut step.tip_from_q, node, |_| tip * response.q_from_q);
-                set(&mut step.tip_from_v, node, |_| tip * response.q_from_v);
-                set(&mut step.rate_from_q, node, |_| tip * response.v_from_q);
-                set(&mut step.rate_from_v, node, |_| tip * response.v_from_v);
-                let (displacement, velocity) = shape_responses(&response, x, length, collocation);
-                self.force.add(node, tip * tip, &displacement, &velocity);
-                self.acceleration
-                    .add(node, tip * mode.participation, &displacement, &velocity);
-                let last = |values: [f64; MAX_SHAPES]| values.get(S).copied().unwrap_or_default();
-                let (error_q, error_v) = (last(displacement), last(velocity));
-                self.force_error.add(node, tip * tip, error_q, error_v);
-                self.acceleration_error
-                    .add(node, tip * mode.participation, error_q, error_v);
-                if node + 1 == S {
-                    step.q_from_q = response.q_from_q;
-                    step.q_from_v = response.q_from_v;
-                    step.v_from_q = response.v_from_q;
-                    step.v_from_v = response.v_from_v;
-                    step.q_from_load
-                        .iter_mut()
-                        .zip(displacement)
-                        .for_each(|(to, from)| *to = from);
-                    step.v_from_load
-                        .iter_mut()
-                        .zip(velocity)
-                        .for_each(|(to, from)| *to = from);
-                }
-            }
+            let oscillator = Oscillator::new(mode.omega_squared, mode.damping, h);
+            let response = oscillator.response::<S, A>(&collocation.nodes, shapes);
+            force.add::<A>(tip * tip, &response);
+            acceleration.add::<A>(tip * mode.participation, &response);
+
+            let Pair { q, v } = &response.impulse;
+            step.tip_from_v = scaled(q, tip * h);
+            step.rate_from_v = scaled(v, tip);
+            step.tip_from_q = scaled(v, tip);
+            add::<S, A>(&mut step.tip_from_q, tip * mode.damping * h, q);
+            step.rate_from_q = scaled(q, -tip * mode.omega_squared * h);
+
+            let end = FreeMotion::new(mode.omega_squared, mode.damping, h);
+            let loads = response.at_end::<A>(shapes);
+            self.end
+                .set(i, mode, &end, &scaled(&loads.q, h * h), &scaled(&loads.v, h));
         }
+        (self.force, self.force_error) = in_seconds(force.at_nodes::<A>(shapes), h);
+        (self.acceleration, self.acceleration_error) = in_seconds(acceleration.at_nodes::<A>(shapes), h);
     }
 }
-
-fn set<const S: usize>(values: &mut Nodal<S>, node: usize, value: impl Fn(f64) -> f64) {
-    if let Some(entry) = values.get_mut(node) {
-        *entry = value(*entry);
+/// Tables in units of the step length `h` (s) as columns in seconds.
+fn in_seconds<const S: usize>(tables: Pair<Table<S>>, h: f64) -> (TipColumns<S>, ErrorColumn<S>) {
+    let Pair { mut q, mut v } = tables;
+    for (q, v) in q.nodal.iter_mut().zip(&mut v.nodal) {
+        (*q, *v) = (scaled(q, h * h), scaled(v, h));
     }
-}
-
-/// Displacement and velocity of a mode at `x` (in steps) for each of the S + 1 load shapes.
-fn shape_responses<const S: usize>(
-    response: &Response,
-    x: f64,
-    length: f64,
-    collocation: &Collocation<S>,
-) -> ([f64; MAX_SHAPES], [f64; MAX_SHAPES]) {
-    let t = x * length;
-    let mut displacement = [0.0; MAX_SHAPES];
-    let mut velocity = [0.0; MAX_SHAPES];
-    let shapes = collocation.shapes.iter();
-    for ((shape, displacement), velocity) in shapes.zip(&mut displacement).zip(&mut velocity) {
-        let mut power = 1.0;
-        let mut below = response.q_from_v / t;
-        let mut sizes = (0.0, 0.0);
-        for (coefficient, &moment) in shape.iter().zip(&response.moments).take(S + 1) {
-            let terms = (coefficient * power * moment, coefficient * power * below);
-            *displacement += terms.0;
-            *velocity += terms.1;
-            sizes = (sizes.0 + terms.0.abs(), sizes.1 + terms.1.abs());
-            power *= x;
-            below = moment;
-        }
-        // What cancels down to rounding is nothing.
-        let significant = |sum: f64, size: f64| {
-            if sum.abs() > 16.0 * f64::EPSILON * size {
-                sum
-            } else {
-                0.0
-            }
-        };
-        *displacement = t * t * significant(*displacement, sizes.0);
-        *velocity = t * significant(*velocity, sizes.1);
-    }
-    (displacement, velocity)
+    let columns = TipColumns {
+        displacement: q.nodal,
+        velocity: v.nodal,
+    };
+    let error = ErrorColumn {
+        displacement: scaled(&q.error, h * h),
+        velocity: scaled(&v.error, h),
+    };
+    (columns, error)
 }
 
 /// Coefficients by step length. What is in the cache never changes a result, only the time it takes.
@@ -248,16 +233,9 @@ impl<const S: usize> Cache<S> {
         } = self;
         let slot = (length.to_bits().wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 58) as usize;
         let entry = slots.get_mut(slot).filter(|_| recurring).unwrap_or(other);
-        if entry.length.to_bits() != length.to_bits() || !entry.complete {
-            entry.fill(length, true, model, collocation);
+        if entry.length.to_bits() != length.to_bits() {
+            entry.fill(length, model, collocation);
         }
         (entry, collocation)
-    }
-
-    /// The coefficients of a step of free flight that is only to be looked at.
-    pub fn flight(&mut self, length: f64, model: &Model) -> (&StepCoefficients<S>, &Collocation<S>) {
-        let Self { collocation, other, .. } = self;
-        other.fill(length, false, model, collocation);
-        (other, collocation)
     }
 }

@@ -5,6 +5,9 @@
 //! four where a short one is wanted (a communication step of a microsecond, the time just after a blow).
 
 use crate::math::legendre;
+use crate::transient::machine::{Arithmetic, Machine, compiled_for};
+use crate::transient::response::{add, scaled};
+use crate::transient::shapes::Shapes;
 
 /// Nodes of a short step.
 pub const SHORT: usize = 4;
@@ -36,9 +39,9 @@ pub struct Predictions {
 pub struct Collocation<const S: usize> {
     /// Nodes on [0, 1], ascending.
     pub nodes: Nodal<S>,
-    /// Coefficients of `x^m / m!`, m = 0, 1, ..., `x = t / h`, of the S + 1 load shapes: the Lagrange polynomials of the
-    /// nodes, then the polynomial of degree S that vanishes at the nodes and is 1 at the start.
-    pub shapes: Vec<[f64; MAX_SHAPES]>,
+    /// The load shapes: the Lagrange polynomials of the nodes, and the polynomial of degree S that vanishes at the nodes and
+    /// is 1 at the start.
+    pub shapes: Shapes<S>,
     /// Lagrange polynomials at the start of the step.
     pub at_start: Nodal<S>,
     /// Row by row the coefficients of y^0, y^1, ..., `y = x - 1`, of the polynomial that is 1 at the start (the first row) or
@@ -55,23 +58,28 @@ impl<const S: usize> Collocation<S> {
         for (node, x) in nodes.iter_mut().zip(legendre::radau(S)) {
             *node = f64::midpoint(1.0, x);
         }
-        let through_nodes = lagrange::<MAX_SHAPES>(&nodes);
-        let vanishing = nodes.iter().fold(one(), |shape, node| times(shape, -1.0 / node, 1.0));
+        // Expanded about the instant, whose coefficients of `(x - at)^m` times m! are the derivatives.
+        let derivatives_at = |at: f64| -> Vec<_> {
+            let vanishing = nodes
+                .iter()
+                .fold(one(), |shape, node| times(shape, -1.0 / node, (node - at) / node));
+            let through_nodes = lagrange::<MAX_SHAPES>(&nodes.map(|node| node - at));
+            through_nodes
+                .into_iter()
+                .chain([vanishing])
+                .map(by_factorials)
+                .collect()
+        };
         let mut at_start = [0.0; S];
-        for (start, shape) in at_start.iter_mut().zip(&through_nodes) {
+        for (start, shape) in at_start.iter_mut().zip(derivatives_at(0.0)) {
             *start = shape.first().copied().unwrap_or_default();
         }
-        let shapes = through_nodes
-            .into_iter()
-            .chain([vanishing])
-            .map(by_factorials)
-            .collect();
         let about_end: Vec<_> = [-1.0].into_iter().chain(nodes.iter().map(|node| node - 1.0)).collect();
         let steep = lagrange(&about_end);
         let flat = lagrange(about_end.get(S + 1 - FLAT..).unwrap_or_default());
         Self {
             nodes,
-            shapes,
+            shapes: Shapes::new(&nodes, derivatives_at),
             at_start,
             steep,
             flat,
@@ -90,17 +98,34 @@ impl<const S: usize> Collocation<S> {
 
     /// The predictions from the values at the start and at the nodes of a step, after those that led to it, which held for a
     /// step `ratio` times as long as the one before.
-    pub fn predictions(&self, start: f64, values: &Nodal<S>, before: &Predictions, ratio: f64) -> Predictions {
+    pub fn predictions(
+        &self,
+        machine: Machine,
+        start: f64,
+        values: &Nodal<S>,
+        before: &Predictions,
+        ratio: f64,
+    ) -> Predictions {
+        compiled_for!(machine, A => self.compute::<A>(start, values, before, ratio))
+    }
+
+    #[inline(always)]
+    fn compute<A: Arithmetic>(&self, start: f64, values: &Nodal<S>, before: &Predictions, ratio: f64) -> Predictions {
         let wrong = |prediction| {
-            let predicted = self.evaluate(prediction, ratio);
-            predicted
-                .iter()
-                .zip(values)
-                .fold(0.0_f64, |worst, (a, b)| worst.max((a - b).abs()))
+            let predicted = self.evaluate::<A>(prediction, ratio);
+            let errors = predicted.iter().zip(values).map(|(a, b)| (a - b).abs());
+            errors.fold(0.0_f64, |worst, error| if error > worst { error } else { worst })
         };
+        let (mut steep, mut flat) = ([0.0; LONG + 1], [0.0; LONG + 1]);
+        for (value, row) in [start].iter().chain(values).zip(&self.steep) {
+            add::<{ LONG + 1 }, A>(&mut steep, *value, row);
+        }
+        for (value, row) in values.iter().skip(S - FLAT).zip(&self.flat) {
+            add::<{ LONG + 1 }, A>(&mut flat, *value, row);
+        }
         Predictions {
-            steep: self.through(start, values),
-            flat: combine(&self.flat, values.iter().skip(S - FLAT)),
+            steep,
+            flat,
             use_flat: ratio > 0.0 && wrong(&before.flat) < wrong(&before.steep),
         }
     }
@@ -111,8 +136,9 @@ impl<const S: usize> Collocation<S> {
     }
 
     /// Values predicted at the nodes of a step `ratio` times as long as the one the predictions are from.
-    pub fn predict(&self, predictions: &Predictions, ratio: f64) -> Nodal<S> {
-        self.evaluate(
+    #[inline(always)]
+    pub fn predict<A: Arithmetic>(&self, predictions: &Predictions, ratio: f64) -> Nodal<S> {
+        self.evaluate::<A>(
             if predictions.use_flat {
                 &predictions.flat
             } else {
@@ -122,14 +148,16 @@ impl<const S: usize> Collocation<S> {
         )
     }
 
-    fn evaluate(&self, prediction: &Prediction, ratio: f64) -> Nodal<S> {
-        self.nodes.map(|node| {
-            let y = node * ratio;
-            prediction
-                .iter()
-                .rev()
-                .fold(0.0, |sum, coefficient| sum * y + coefficient)
-        })
+    #[inline(always)]
+    fn evaluate<A: Arithmetic>(&self, prediction: &Prediction, ratio: f64) -> Nodal<S> {
+        let at = scaled(&self.nodes, ratio);
+        let mut values = [0.0; S];
+        for coefficient in prediction.iter().rev() {
+            for (value, y) in values.iter_mut().zip(&at) {
+                *value = A::mul_add(*value, *y, *coefficient);
+            }
+        }
+        values
     }
 }
 
@@ -191,6 +219,7 @@ fn by_factorials(mut shape: [f64; MAX_SHAPES]) -> [f64; MAX_SHAPES] {
 }
 
 /// Scalar product of two sets of nodal values.
-pub fn dot<const S: usize>(a: &Nodal<S>, b: &Nodal<S>) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+#[inline(always)]
+pub fn dot<const S: usize, A: Arithmetic>(a: &Nodal<S>, b: &Nodal<S>) -> f64 {
+    a.iter().zip(b).fold(0.0, |sum, (a, b)| A::mul_add(*a, *b, sum))
 }

@@ -131,8 +131,8 @@ impl Model {
                 cause: StepErrorCause::StepSize,
             });
         }
-        // Lengths that differ by the rounding of time are one.
-        let size = if (size - course.size).abs() <= f64::EPSILON * until.abs() {
+        // Lengths that differ by the rounding of time are one, but for exact steps.
+        let size = if self.closed_loop.is_none() && (size - course.size).abs() <= f64::EPSILON * until.abs() {
             course.size
         } else {
             size

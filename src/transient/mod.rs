@@ -2,10 +2,10 @@
 //!
 //! The beam is linear and only its tip is loaded, so the modes are propagated exactly and the whole nonlinearity is one
 //! scalar function of one scalar, the tip. Over a step the contact force is a polynomial through Radau nodes
-//! ([`collocation`]); each mode's exact response to it ([`response`], [`coefficients`]) gives the indentation at the nodes,
+//! ([`collocation`]); each mode's exact response to it ([`shapes`], [`response`], [`coefficients`]) gives the indentation at the nodes,
 //! and Newton's method on the nodal forces alone closes the loop ([`nodal`]). Steps adapt to an estimate of the
 //! force's error ([`advance`], on a grid: [`progress`], in room made once: [`workspace`]) and end where the contact opens
-//! ([`release`]) or closes ([`touchdown`]). Communication points may lie inside a step ([`dense`]), and a contact at rest takes none
+//! ([`release`]) or closes ([`touchdown`]). The kernel is compiled for the processor ([`machine`]). Communication points may lie inside a step ([`dense`]), and a contact at rest takes none
 //! ([`rest`]).
 //!
 //! Where the contact is linear and stays closed, a communication step is one exact step ([`linear`]) in the eigenvectors of beam
@@ -16,6 +16,7 @@ pub mod coefficients;
 pub mod collocation;
 pub mod dense;
 pub mod linear;
+pub mod machine;
 pub mod nodal;
 pub mod oscillator;
 pub mod progress;
@@ -23,6 +24,7 @@ pub mod release;
 pub mod response;
 pub mod rest;
 pub mod secular;
+pub mod shapes;
 pub mod touchdown;
 pub mod workspace;
 pub mod zeros;

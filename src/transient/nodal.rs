@@ -1,8 +1,9 @@
 //! One step: the nodal contact forces and the motion they give.
 
 use crate::model::{ModeStates, Model, State};
-use crate::transient::coefficients::{ErrorColumn, StepCoefficients};
+use crate::transient::coefficients::{ErrorColumn, Modal, StepCoefficients};
 use crate::transient::collocation::{Collocation, Nodal, dot};
+use crate::transient::machine::{Arithmetic, compiled_for};
 
 /// What drives the contact over a communication step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,24 +78,46 @@ impl Model {
         newton: f64,
         end_modes: &mut ModeStates,
     ) -> Option<Trial<S>> {
+        compiled_for!(self.machine, A => self.compute::<S, A>(state, drive, step, collocation, newton, end_modes))
+    }
+
+    /// [`Model::trial`] for a machine.
+    #[inline(always)]
+    fn compute<const S: usize, A: Arithmetic>(
+        &self,
+        state: &State,
+        drive: &Drive,
+        step: &StepCoefficients<S>,
+        collocation: &Collocation<S>,
+        newton: f64,
+        end_modes: &mut ModeStates,
+    ) -> Option<Trial<S>> {
         let h = step.length;
         let generated = self.generator.over_step(state.time, &step.turns);
-        let accelerations = generated.nodes.map(|generated| drive.acceleration + generated);
+        let mut accelerations = generated.nodes;
+        for acceleration in &mut accelerations {
+            *acceleration += drive.acceleration;
+        }
 
         // Indentation at the nodes without contact force.
-        let mut free = collocation
-            .nodes
-            .map(|node| state.support + drive.support_rate * (node * h));
+        let mut free = [state.support; S];
+        add_times::<S, A>(&mut free, &collocation.nodes, drive.support_rate * h);
         let mut free_rate = [drive.support_rate; S];
+        // A sum of its own for q and v each: they do not wait for one another.
+        let [mut from_q, mut from_v, mut rate_from_q, mut rate_from_v] = [[0.0; S]; 4];
         for (mode, row) in state.modes.iter().zip(&step.modes) {
-            subtract(&mut free, &row.tip_from_q, mode.q, &row.tip_from_v, mode.v);
-            subtract(&mut free_rate, &row.rate_from_q, mode.q, &row.rate_from_v, mode.v);
+            add_times::<S, A>(&mut from_q, &row.tip_from_q, mode.q);
+            add_times::<S, A>(&mut from_v, &row.tip_from_v, mode.v);
+            add_times::<S, A>(&mut rate_from_q, &row.rate_from_q, mode.q);
+            add_times::<S, A>(&mut rate_from_v, &row.rate_from_v, mode.v);
         }
-        add_columns(&mut free, &step.acceleration.displacement, &accelerations);
-        add_columns(&mut free_rate, &step.acceleration.velocity, &accelerations);
+        subtract(&mut free, &from_q, &from_v);
+        subtract(&mut free_rate, &rate_from_q, &rate_from_v);
+        add_columns::<S, A>(&mut free, &step.acceleration.displacement, &accelerations);
+        add_columns::<S, A>(&mut free_rate, &step.acceleration.velocity, &accelerations);
 
         let solution = if state.closed {
-            self.closed_forces(state, step, collocation, &free, &free_rate, newton)?
+            self.closed_forces::<S, A>(state, step, collocation, &free, &free_rate, newton)?
         } else {
             Solution {
                 forces: [-self.preload.force; S],
@@ -107,31 +130,22 @@ impl Model {
             }
         };
         let Solution { forces, iterations, .. } = solution;
-        let (indentations, rates) = at_nodes(step, &free, &free_rate, &forces);
+        let (indentations, rates) = at_nodes::<S, A>(step, &free, &free_rate, &forces);
 
         let support = state.support + drive.support_rate * h;
-        let (mut indentation, mut rate) = (support, drive.support_rate);
-        for (((end, start), row), mode) in end_modes.iter_mut().zip(&state.modes).zip(&step.modes).zip(&self.modes) {
-            let mut load = forces;
-            for (load, acceleration) in load.iter_mut().zip(&accelerations) {
-                *load = mode.tip * *load - mode.participation * acceleration;
-            }
-            end.q = row.q_from_q * start.q + row.q_from_v * start.v + dot(&row.q_from_load, &load);
-            end.v = row.v_from_q * start.q + row.v_from_v * start.v + dot(&row.v_from_load, &load);
-            indentation -= mode.tip * end.q;
-            rate -= mode.tip * end.v;
-        }
+        let (tip, tip_rate) = end_of_modes::<S, A>(state, step, self.modes.len(), &forces, &accelerations, end_modes);
+        let (indentation, rate) = (support - tip, drive.support_rate - tip_rate);
 
         let at_start = drive.acceleration + generated.start;
         let largest = forces.iter().fold(self.force_scale, |largest, force| {
             largest.max((self.preload.force + force).abs())
         });
-        let error = self.error(
+        let error = self.error::<S, A>(
             state,
             step,
             collocation,
             &solution,
-            at_start - dot(&accelerations, &collocation.at_start),
+            at_start - dot::<S, A>(&accelerations, &collocation.at_start),
             largest,
         );
         Some(Trial {
@@ -144,7 +158,7 @@ impl Model {
             error,
             rounding: ROUNDING * largest,
             missed: if state.closed {
-                (state.force - self.preload.force - dot(&forces, &collocation.at_start)).abs()
+                (state.force - self.preload.force - dot::<S, A>(&forces, &collocation.at_start)).abs()
             } else {
                 0.0
             },
@@ -158,7 +172,8 @@ impl Model {
     /// nodes they lack. What that does to the nodal forces is known to first order ([`Solution`]). Modes slow against the step
     /// hardly feel it at the end (the shape is orthogonal to polynomials of low degree); they see an error of twice the order,
     /// about three times the square of what is missed (an impact of a free mass on a Hertz contact).
-    fn error<const S: usize>(
+    #[inline(always)]
+    fn error<const S: usize, A: Arithmetic>(
         &self,
         state: &State,
         step: &StepCoefficients<S>,
@@ -168,7 +183,7 @@ impl Model {
         largest: f64,
     ) -> f64 {
         if state.closed {
-            let missed = state.force - self.preload.force - dot(&solution.forces, &collocation.at_start);
+            let missed = state.force - self.preload.force - dot::<S, A>(&solution.forces, &collocation.at_start);
             let (by_force, by_acceleration) = (solution.by_force, solution.by_acceleration);
             let wrong_d = by_acceleration.0 * missed_acceleration - by_force.0 * missed;
             let wrong_r = by_acceleration.1 * missed_acceleration - by_force.1 * missed;
@@ -183,7 +198,8 @@ impl Model {
     }
 
     /// Newton's method for the nodal forces on the closed branch.
-    fn closed_forces<const S: usize>(
+    #[inline(always)]
+    fn closed_forces<const S: usize, A: Arithmetic>(
         &self,
         state: &State,
         step: &StepCoefficients<S>,
@@ -193,7 +209,7 @@ impl Model {
         newton: f64,
     ) -> Option<Solution<S>> {
         let mut forces = if state.last_step > 0.0 {
-            collocation.predict(&state.predictions, step.length / state.last_step)
+            collocation.predict::<A>(&state.predictions, step.length / state.last_step)
         } else {
             [state.force - self.preload.force; S]
         };
@@ -202,7 +218,7 @@ impl Model {
         let (farthest, fastest) = (greatest(free), greatest(free_rate));
         let mut by_errors = None;
         for iterations in 0..=ITERATIONS {
-            let (indentations, rates) = at_nodes(step, free, free_rate, &forces);
+            let (indentations, rates) = at_nodes::<S, A>(step, free, free_rate, &forces);
             let mut residual = forces;
             let (mut stiffness, mut damping) = ([0.0; S], [0.0; S]);
             for ((((residual, stiffness), damping), d), rate) in residual
@@ -237,13 +253,13 @@ impl Model {
                 for (((entry, velocity), stiffness), damping) in
                     column.iter_mut().zip(velocity).zip(&stiffness).zip(&damping)
                 {
-                    *entry = stiffness * *entry + damping * velocity;
+                    *entry = A::mul_add(*stiffness, *entry, damping * velocity);
                 }
             }
-            let force_error = react(&step.force_error, &stiffness, &damping);
-            let acceleration_error = react(&step.acceleration_error, &stiffness, &damping);
+            let force_error = react::<S, A>(&step.force_error, &stiffness, &damping);
+            let acceleration_error = react::<S, A>(&step.acceleration_error, &stiffness, &damping);
             let [correction, force_error, acceleration_error] =
-                solve(jacobian, [residual, force_error, acceleration_error])?;
+                solve::<S, 3, A>(jacobian, [residual, force_error, acceleration_error])?;
             for (force, correction) in forces.iter_mut().zip(&correction) {
                 *force -= correction;
             }
@@ -255,6 +271,7 @@ impl Model {
 
 impl<const S: usize> Solution<S> {
     /// The effects at the end of the nodal forces that the errors cause.
+    #[inline(always)]
     fn new(
         step: &StepCoefficients<S>,
         forces: Nodal<S>,
@@ -288,6 +305,63 @@ impl<const S: usize> Solution<S> {
     }
 }
 
+/// Modes computed at once.
+const LANES: usize = 4;
+
+/// The modes in use at the end of a step, into `ends`. Returns displacement and velocity of the tip.
+#[inline(always)]
+#[expect(
+    clippy::indexing_slicing,
+    reason = "the room for the modes is a whole number of lanes"
+)]
+fn end_of_modes<const S: usize, A: Arithmetic>(
+    state: &State,
+    step: &StepCoefficients<S>,
+    modes: usize,
+    forces: &Nodal<S>,
+    accelerations: &Nodal<S>,
+    ends: &mut ModeStates,
+) -> (f64, f64) {
+    let rows = &step.end;
+    let (mut tip, mut tip_rate) = ([0.0; LANES], [0.0; LANES]);
+    let lanes = |values: &Modal, first: usize| -> [f64; LANES] { std::array::from_fn(|i| values[first + i]) };
+    for first in (0..modes).step_by(LANES) {
+        let starts = &state.modes[first..first + LANES];
+        let (start_q, start_v): ([f64; LANES], [f64; LANES]) = (
+            std::array::from_fn(|i| starts[i].q),
+            std::array::from_fn(|i| starts[i].v),
+        );
+        let (tips, participations) = (lanes(&rows.tip, first), lanes(&rows.participation, first));
+        let (mut q, mut v) = ([0.0; LANES], [0.0; LANES]);
+        add::<LANES, A>(&mut q, &lanes(&rows.q_from_q, first), &start_q);
+        add::<LANES, A>(&mut q, &lanes(&rows.q_from_v, first), &start_v);
+        add::<LANES, A>(&mut v, &lanes(&rows.v_from_q, first), &start_q);
+        add::<LANES, A>(&mut v, &lanes(&rows.v_from_v, first), &start_v);
+        for node in 0..S {
+            let mut load = [0.0; LANES];
+            for i in 0..LANES {
+                load[i] = A::mul_add(tips[i], forces[node], -participations[i] * accelerations[node]);
+            }
+            add::<LANES, A>(&mut q, &lanes(&rows.q_from_load[node], first), &load);
+            add::<LANES, A>(&mut v, &lanes(&rows.v_from_load[node], first), &load);
+        }
+        add::<LANES, A>(&mut tip, &tips, &q);
+        add::<LANES, A>(&mut tip_rate, &tips, &v);
+        for (end, (q, v)) in ends[first..first + LANES].iter_mut().zip(q.iter().zip(&v)) {
+            (end.q, end.v) = (*q, *v);
+        }
+    }
+    (tip.iter().sum(), tip_rate.iter().sum())
+}
+
+/// Adds the products of the values.
+#[inline(always)]
+fn add<const N: usize, A: Arithmetic>(sum: &mut [f64; N], a: &[f64; N], b: &[f64; N]) {
+    for ((sum, a), b) in sum.iter_mut().zip(a).zip(b) {
+        *sum = A::mul_add(*a, *b, *sum);
+    }
+}
+
 /// Solves `(1 + A) x = b` for several `b`, `A` column by column, by Gauss-Jordan elimination, whose inner loops run down
 /// columns; rows are exchanged only where a pivot is small, which happens in violent steps alone. `None` where the matrix
 /// is singular.
@@ -295,7 +369,11 @@ impl<const S: usize> Solution<S> {
     clippy::indexing_slicing,
     reason = "every index runs over the fixed size of the arrays"
 )]
-fn solve<const S: usize, const R: usize>(mut a: [Nodal<S>; S], mut right: [Nodal<S>; R]) -> Option<[Nodal<S>; R]> {
+#[inline(always)]
+fn solve<const S: usize, const R: usize, A: Arithmetic>(
+    mut a: [Nodal<S>; S],
+    mut right: [Nodal<S>; R],
+) -> Option<[Nodal<S>; R]> {
     for (k, column) in a.iter_mut().enumerate() {
         column[k] += 1.0;
     }
@@ -311,7 +389,7 @@ fn solve<const S: usize, const R: usize>(mut a: [Nodal<S>; S], mut right: [Nodal
         let eliminate = |column: &mut Nodal<S>| {
             let share = column[p] * inverse;
             for k in 0..S {
-                column[k] -= pivot[k] * share;
+                column[k] = A::mul_add(-pivot[k], share, column[k]);
             }
             column[p] = share;
         };
@@ -321,38 +399,50 @@ fn solve<const S: usize, const R: usize>(mut a: [Nodal<S>; S], mut right: [Nodal
 }
 
 /// Forces of the law at the nodes that belong to displacements and velocities of the tip.
-fn react<const S: usize>(tip: &ErrorColumn<S>, stiffness: &Nodal<S>, damping: &Nodal<S>) -> Nodal<S> {
+#[inline(always)]
+fn react<const S: usize, A: Arithmetic>(tip: &ErrorColumn<S>, stiffness: &Nodal<S>, damping: &Nodal<S>) -> Nodal<S> {
     let mut forces = tip.displacement;
     for (((force, velocity), stiffness), damping) in forces.iter_mut().zip(&tip.velocity).zip(stiffness).zip(damping) {
-        *force = stiffness * *force + damping * velocity;
+        *force = A::mul_add(*stiffness, *force, damping * velocity);
     }
     forces
 }
 
 /// Indentation and its velocity at the nodes under the nodal forces.
-fn at_nodes<const S: usize>(
+#[inline(always)]
+fn at_nodes<const S: usize, A: Arithmetic>(
     step: &StepCoefficients<S>,
     free: &Nodal<S>,
     free_rate: &Nodal<S>,
     forces: &Nodal<S>,
 ) -> (Nodal<S>, Nodal<S>) {
     let (mut indentations, mut rates) = (*free, *free_rate);
-    let loads = forces.map(|force| -force);
-    add_columns(&mut indentations, &step.force.displacement, &loads);
-    add_columns(&mut rates, &step.force.velocity, &loads);
+    let mut loads = *forces;
+    for load in &mut loads {
+        *load = -*load;
+    }
+    add_columns::<S, A>(&mut indentations, &step.force.displacement, &loads);
+    add_columns::<S, A>(&mut rates, &step.force.velocity, &loads);
     (indentations, rates)
 }
 
-fn add_columns<const S: usize>(values: &mut Nodal<S>, columns: &[Nodal<S>; S], loads: &Nodal<S>) {
+#[inline(always)]
+fn add_columns<const S: usize, A: Arithmetic>(values: &mut Nodal<S>, columns: &[Nodal<S>; S], loads: &Nodal<S>) {
     for (column, load) in columns.iter().zip(loads) {
-        for (value, entry) in values.iter_mut().zip(column) {
-            *value += entry * load;
-        }
+        add_times::<S, A>(values, column, *load);
     }
 }
 
-fn subtract<const S: usize>(values: &mut Nodal<S>, a: &Nodal<S>, x: f64, b: &Nodal<S>, y: f64) {
+#[inline(always)]
+fn add_times<const S: usize, A: Arithmetic>(values: &mut Nodal<S>, a: &Nodal<S>, x: f64) {
+    for (value, a) in values.iter_mut().zip(a) {
+        *value = A::mul_add(*a, x, *value);
+    }
+}
+
+#[inline(always)]
+fn subtract<const S: usize>(values: &mut Nodal<S>, a: &Nodal<S>, b: &Nodal<S>) {
     for ((value, a), b) in values.iter_mut().zip(a).zip(b) {
-        *value -= a * x + b * y;
+        *value -= a + b;
     }
 }

@@ -6,7 +6,7 @@ use nalgebra::Complex;
 
 use crate::excitation::{self, Generator};
 use crate::model::MAX_MODES;
-use crate::transient::response::Response;
+use crate::transient::response::FreeMotion;
 
 /// Displacements of the oscillators, then their velocities; or displacement and velocity of mode after mode.
 pub type Coordinates = [f64; 2 * MAX_MODES];
@@ -69,11 +69,11 @@ impl Propagator {
         let from_x = self.x_from_x.iter_mut().zip(&mut self.v_from_x);
         let from_v = self.x_from_v.iter_mut().zip(&mut self.v_from_v);
         for (n, (oscillator, (from_x, from_v))) in oscillators.iter().zip(from_x.zip(from_v)).enumerate() {
-            let response = Response::new(oscillator.omega_squared, oscillator.damping, length, 1);
-            (*from_x.0, *from_x.1) = (response.q_from_q, response.v_from_q);
-            (*from_v.0, *from_v.1) = (response.q_from_v, response.v_from_v);
+            let free = FreeMotion::new(oscillator.omega_squared, oscillator.damping, length);
+            (*from_x.0, *from_x.1) = (free.q_from_q, free.v_from_q);
+            (*from_v.0, *from_v.1) = (free.q_from_v, free.v_from_v);
             if let Some((frequency, turn)) = generated {
-                let driven = oscillator.loaded(oscillator.driven_from_rest(&response, frequency, turn, length));
+                let driven = oscillator.loaded(oscillator.driven_from_rest(&free, frequency, turn, length));
                 set(&mut self.from_sine, n, count, driven.map(|motion| motion.re));
                 set(&mut self.from_cosine, n, count, driven.map(|motion| motion.im));
             }
@@ -91,7 +91,7 @@ pub(super) fn set(coordinates: &mut Coordinates, oscillator: usize, count: usize
 }
 
 impl Oscillator {
-    /// Displacement and velocity under base acceleration, from those of the response to an acceleration `x''` of its course.
+    /// Displacement and velocity under base acceleration, from those of the free to an acceleration `x''` of its course.
     pub(super) fn loaded(&self, [y, y_rate]: [Complex<f64>; 2]) -> [Complex<f64>; 2] {
         let [kick, push] = self.load;
         [
@@ -132,7 +132,7 @@ impl Oscillator {
     /// Displacement and velocity `length` seconds after rest under the acceleration `e^(i omega t)`, which is `turn` there.
     fn driven_from_rest(
         &self,
-        response: &Response,
+        free: &FreeMotion,
         frequency: f64,
         turn: Complex<f64>,
         length: f64,
@@ -144,8 +144,8 @@ impl Oscillator {
             // Far from any resonance: the steady motion less a free one.
             let [y, y_rate] = self.steady(frequency);
             return [
-                y * turn - (y * response.q_from_q + y_rate * response.q_from_v),
-                y_rate * turn - (y * response.v_from_q + y_rate * response.v_from_v),
+                y * turn - (y * free.q_from_q + y_rate * free.q_from_v),
+                y_rate * turn - (y * free.v_from_q + y_rate * free.v_from_v),
             ];
         }
         // Each of the two roots l apart: the integral of e^(l (length - t)) e^(i omega t).
