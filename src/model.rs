@@ -200,6 +200,21 @@ impl Model {
         }
     }
 
+    /// Energy above that of the preload, J: kinetic and strain energy of the modes and the elastic energy of the contact, about
+    /// the preload, at an indentation given as deviation from it (m).
+    pub fn energy(&self, modes: &ModeStates, indentation: f64) -> f64 {
+        let pairs = self.modes.iter().zip(modes);
+        let beam: f64 = pairs
+            .map(|(mode, at)| at.v * at.v + mode.omega_squared * at.q * at.q)
+            .sum();
+        0.5 * beam + self.law.energy_above_tangent(self.preload.indentation, indentation)
+    }
+
+    /// Velocity of the tip per impulse on it, 1/kg.
+    pub fn mobility(&self) -> f64 {
+        self.modes.iter().map(|mode| mode.tip * mode.tip).sum()
+    }
+
     /// A step short against the motion that may begin, s.
     pub fn first_step(&self) -> f64 {
         (0.02 / self.frequency.max(1.0)).min(0.1 * self.generator.longest_step())

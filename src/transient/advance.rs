@@ -4,7 +4,8 @@ use crate::error::{StepError, StepErrorCause};
 use crate::inputs::Inputs;
 use crate::model::{Model, State};
 use crate::transient::collocation::{Collocation, LONG, SHORT};
-use crate::transient::nodal::{Drive, Trial};
+use crate::transient::fallback::REFUSALS;
+use crate::transient::nodal::{Drive, Source, Trial};
 use crate::transient::progress::{Progress, Target};
 use crate::transient::workspace::{Room, Workspace};
 
@@ -16,9 +17,15 @@ const BUDGET_RATE: f64 = 1e7;
 /// Share of the tolerance that one step may use up, found by comparing errors with tolerances over scenes
 /// (`tests/calibration.rs`): where the errors of earlier steps die out, and where beam or contact have no damping and the
 /// errors add up.
-const SHARE: f64 = 0.05;
+pub(super) const SHARE: f64 = 0.05;
 /// See [`SHARE`].
 const UNDAMPED_SHARE: f64 = 0.004;
+
+/// Error of a step, in errors allowed, that the force of a flat one has to stay below.
+const SMOOTH: f64 = 0.01;
+
+/// Largest last correction of a nodal force by Newton's method, in errors allowed in a step.
+const NEWTON: f64 = 0.2;
 
 /// Growth from step to step that shows the steps are still finding their length.
 const GROWING: f64 = 1.5;
@@ -36,23 +43,25 @@ const LONGER: f64 = 16.0;
 pub(super) struct Integration<'a> {
     pub(super) model: &'a Model,
     pub(super) state: &'a mut State,
-    workspace: &'a mut Workspace,
-    drive: Drive,
-    progress: Progress,
+    pub(super) workspace: &'a mut Workspace,
+    pub(super) drive: Drive,
+    pub(super) progress: Progress,
     /// Error allowed in the contact force, N.
     pub(super) tolerance: f64,
     /// Error allowed in a step, N.
-    allowed: f64,
+    pub(super) allowed: f64,
+    /// Steps given up in succession.
+    pub(super) refusals: u32,
 }
 
 /// What a step says about the next.
-struct Advice {
+pub(super) struct Advice {
     /// Whether it was taken.
-    taken: bool,
+    pub(super) taken: bool,
     /// How many times as long as this one it could have been.
-    growth: f64,
+    pub(super) growth: f64,
     /// Length wanted next, s.
-    length: f64,
+    pub(super) length: f64,
 }
 
 /// A step that ends before it was meant to.
@@ -108,6 +117,7 @@ impl Model {
             progress,
             tolerance,
             allowed,
+            refusals: 0,
         }
         .run();
         match result {
@@ -141,7 +151,7 @@ impl Integration<'_> {
         self.state.steps + self.state.rejected_steps
     }
 
-    fn error(&self, cause: StepErrorCause) -> StepError {
+    pub(super) fn error(&self, cause: StepErrorCause) -> StepError {
         StepError {
             time: self.state.time,
             cause,
@@ -194,15 +204,25 @@ impl Integration<'_> {
 
         let attempt = self.attempt::<S>(&target);
         let allowed = self.allowed;
-        let ratio_of = |trial: &Trial<S>| trial.error / allowed;
-        let ratio = attempt.as_ref().map_or(f64::INFINITY, ratio_of);
+        let mut ratio = attempt.as_ref().map_or(f64::INFINITY, |trial| trial.error / allowed);
         // The error estimate grows with this power of the step length.
         let reach = |ratio: f64| ratio.powf(-1.0 / (S as f64 + 1.0));
-        let Some(mut trial) = attempt.filter(|_| ratio <= 1.0 || target.length <= 2.0 * shortest) else {
-            if target.length <= 2.0 * shortest || ratio.is_nan() {
-                return Err(self.error(StepErrorCause::NotFinite));
+        if attempt
+            .as_ref()
+            .is_some_and(|trial| ratio > 1.0 && self.is_rounding(trial))
+        {
+            ratio = 0.0;
+        }
+        let acceptable = |ratio: f64, length: f64| ratio <= 1.0 || length <= 2.0 * shortest && ratio.is_finite();
+        if ratio > SMOOTH && ratio.is_finite() && attempt.as_ref().is_some_and(|trial| self.is_flat(trial)) {
+            return self.fall_back(&target);
+        }
+        let Some(mut trial) = attempt.filter(|_| acceptable(ratio, target.length)) else {
+            if self.state.closed && (target.length <= 2.0 * shortest || self.refusals >= REFUSALS) {
+                return self.fall_back(&target);
             }
-            return Ok(self.reject(target.length * (0.8 * reach(ratio)).clamp(0.1, 0.5)));
+            let shrink = if ratio.is_nan() { 0.1 } else { 0.8 * reach(ratio) };
+            return Ok(self.reject(target.length * shrink.clamp(0.1, 0.5)));
         };
 
         let mut switches = false;
@@ -225,7 +245,12 @@ impl Integration<'_> {
                 switches = cut.switches;
                 // What the law does close to the event may be too much for one step up to it.
                 match self.attempt::<S>(&target) {
-                    Some(shorter) if ratio_of(&shorter) <= 1.0 || target.length <= 2.0 * shortest => trial = shorter,
+                    Some(shorter)
+                        if acceptable(shorter.error / allowed, target.length) || self.is_rounding(&shorter) =>
+                    {
+                        trial = shorter;
+                    }
+                    _ if target.length <= 2.0 * shortest => return self.fall_back(&target),
                     _ => return Ok(self.reject(0.5 * cut.length)),
                 }
             }
@@ -278,8 +303,14 @@ impl Integration<'_> {
     {
         let (cache, end, _) = self.workspace.parts();
         let (step, collocation) = cache.get(target.length, target.recurring, self.model);
-        self.model
-            .trial(self.state, &self.drive, step, collocation, 1e-2 * self.tolerance, end)
+        self.model.trial(
+            self.state,
+            &self.drive,
+            step,
+            collocation,
+            Source::Law(NEWTON * self.allowed),
+            end,
+        )
     }
 
     /// A step of `length` seconds only to be looked at.
@@ -293,8 +324,14 @@ impl Integration<'_> {
         } else {
             cache.flight(length, self.model)
         };
-        self.model
-            .trial(self.state, &self.drive, step, collocation, 1e-2 * self.tolerance, probe)
+        self.model.trial(
+            self.state,
+            &self.drive,
+            step,
+            collocation,
+            Source::Law(NEWTON * self.allowed),
+            probe,
+        )
     }
 
     /// Difference between instants that cannot be told apart, s.
@@ -313,6 +350,7 @@ impl Integration<'_> {
     /// Gives up a step; the next one is to have the length.
     fn reject(&mut self, length: f64) -> Advice {
         self.state.rejected_steps += 1;
+        self.refusals += 1;
         Advice {
             taken: false,
             growth: 1.0,
@@ -321,7 +359,7 @@ impl Integration<'_> {
     }
 
     /// The trial becomes the state.
-    fn take<const S: usize>(&mut self, trial: &Trial<S>, target: &Target)
+    pub(super) fn take<const S: usize>(&mut self, trial: &Trial<S>, target: &Target)
     where
         Workspace: Room<S>,
     {
@@ -351,10 +389,11 @@ impl Integration<'_> {
         state.steps += 1;
         state.iterations += trial.iterations;
         self.progress.done = target.done;
+        self.refusals = 0;
     }
 
     /// The contact opens or closes at the instant of the state; the step to take next.
-    fn switch(&mut self, closed: bool) -> f64 {
+    pub(super) fn switch(&mut self, closed: bool) -> f64 {
         self.state.closed = closed;
         self.state.force = 0.0;
         self.state.last_step = 0.0;
@@ -393,11 +432,11 @@ impl Integration<'_> {
 
     /// First step after the surfaces meet, s. The dissipative force starts as the square root of time, which no polynomial
     /// follows: the step is chosen so short that what it misses moves the contact by less than a step's share of the error.
-    fn first_closed_step(&self) -> f64 {
+    pub(super) fn first_closed_step(&self) -> f64 {
         let Self { model, state, .. } = self;
         let d = model.preload.indentation + state.indentation;
         let speed = state.indentation_rate.abs();
-        let mobility: f64 = model.modes.iter().map(|mode| mode.tip * mode.tip).sum();
+        let mobility = model.mobility();
         let mut h = model.first_step();
         for _ in 0..40 {
             let law = model.law.closed_branch(d + speed * h, state.indentation_rate);

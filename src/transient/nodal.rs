@@ -13,6 +13,16 @@ pub struct Drive {
     pub support_rate: f64,
 }
 
+/// Where the contact force of a step comes from.
+#[derive(Clone, Copy, Debug)]
+pub enum Source {
+    /// The law at the nodes while the contact is closed, with this as the largest last correction of Newton's method, N;
+    /// nothing while it is open.
+    Law(f64),
+    /// This throughout, as deviation from the preload force, N.
+    Constant(f64),
+}
+
 /// A step computed but not yet taken.
 #[derive(Clone, Copy, Debug)]
 pub struct Trial<const S: usize> {
@@ -32,6 +42,19 @@ pub struct Trial<const S: usize> {
     pub error: f64,
     /// Newton iterations spent.
     pub iterations: u64,
+    /// Of the law.
+    pub slopes: Slopes,
+}
+
+/// How the law answers within a step; nothing where the force does not depend on the motion.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Slopes {
+    /// Greatest stiffness at the nodes, N/m.
+    pub stiffness: f64,
+    /// Greatest damping at the nodes, N s/m.
+    pub damping: f64,
+    /// Change of the law's force at the end, at these, per force on the tip throughout the step.
+    pub gain: f64,
 }
 
 /// The nodal forces of a step on the closed branch.
@@ -43,31 +66,42 @@ struct Solution<const S: usize> {
     by_force: (f64, f64),
     /// The same per base acceleration.
     by_acceleration: (f64, f64),
-    /// Greatest stiffness and damping of the law at the nodes.
-    stiffness: f64,
-    /// See [`Solution::stiffness`].
-    damping: f64,
-    /// Change of the law's force at the end, at these, per force on the tip throughout the step.
-    gain: f64,
+    slopes: Slopes,
+}
+
+impl<const S: usize> Solution<S> {
+    /// A force that does not depend on the motion.
+    fn constant(force: f64) -> Self {
+        Self {
+            forces: [force; S],
+            iterations: 0,
+            by_force: (0.0, 0.0),
+            by_acceleration: (0.0, 0.0),
+            slopes: Slopes::default(),
+        }
+    }
 }
 
 /// Rounding of a contact force, relative to it.
 const ROUNDING: f64 = 1e-13;
+
+/// A pivot this small would multiply the rounding by its inverse in each elimination, and one beside entries larger than its
+/// inverse.
+const SMALL_PIVOT: f64 = 0.1;
 
 /// Newton iterations before a step is judged too long.
 const ITERATIONS: u64 = 12;
 
 impl Model {
     /// The step from `state` with the given coefficients, on the branch the state is on, with the modes at its end in
-    /// `end_modes`; `None` where Newton's method does not converge. `newton` is the largest last correction of a nodal
-    /// force, N.
+    /// `end_modes`; `None` where Newton's method does not converge.
     pub fn trial<const S: usize>(
         &self,
         state: &State,
         drive: &Drive,
         step: &StepCoefficients<S>,
         collocation: &Collocation<S>,
-        newton: f64,
+        source: Source,
         end_modes: &mut ModeStates,
     ) -> Option<Trial<S>> {
         let h = step.length;
@@ -86,18 +120,12 @@ impl Model {
         add_columns(&mut free, &step.acceleration.displacement, &accelerations);
         add_columns(&mut free_rate, &step.acceleration.velocity, &accelerations);
 
-        let solution = if state.closed {
-            self.closed_forces(state, step, collocation, &free, &free_rate, newton)?
-        } else {
-            Solution {
-                forces: [-self.preload.force; S],
-                iterations: 0,
-                by_force: (0.0, 0.0),
-                by_acceleration: (0.0, 0.0),
-                stiffness: 0.0,
-                damping: 0.0,
-                gain: 0.0,
+        let solution = match source {
+            Source::Law(newton) if state.closed => {
+                self.closed_forces(state, step, collocation, &free, &free_rate, newton)?
             }
+            Source::Law(_) => Solution::constant(-self.preload.force),
+            Source::Constant(force) => Solution::constant(force),
         };
         let Solution { forces, iterations, .. } = solution;
         let (indentations, rates) = at_nodes(step, &free, &free_rate, &forces);
@@ -132,6 +160,7 @@ impl Model {
             rate,
             error,
             iterations,
+            slopes: solution.slopes,
         })
     }
 
@@ -158,8 +187,8 @@ impl Model {
             let (by_force, by_acceleration) = (solution.by_force, solution.by_acceleration);
             let wrong_d = by_acceleration.0 * missed_acceleration - by_force.0 * missed;
             let wrong_r = by_acceleration.1 * missed_acceleration - by_force.1 * missed;
-            let fast = (solution.stiffness * wrong_d).abs() + (solution.damping * wrong_r).abs();
-            fast + 3.0 * missed * missed / largest * solution.gain / (1.0 + solution.gain)
+            let fast = (solution.slopes.stiffness * wrong_d).abs() + (solution.slopes.damping * wrong_r).abs();
+            fast + 3.0 * missed * missed / largest * solution.slopes.gain / (1.0 + solution.slopes.gain)
         } else {
             let last = |values: &Nodal<S>| values.last().map_or(0.0, |value| (value * missed_acceleration).abs());
             let rows = &step.acceleration_error;
@@ -221,7 +250,9 @@ impl Model {
                 lowest = lowest.min(self.preload.force + *force);
             }
             // Newton's method leaves about correction^2 / (6 F) where the law is Hertz's, nothing where it is linear.
-            if largest <= newton || largest * largest <= newton * lowest {
+            let done = largest <= newton || largest * largest <= newton * lowest;
+            let rounding = |force: &f64| largest <= ROUNDING * (self.preload.force + force);
+            if done || forces.iter().any(rounding) {
                 let last = |columns: &[Nodal<S>; S], loads: &Nodal<S>| {
                     let entries = columns.iter().filter_map(|column| column.last());
                     entries.zip(loads).map(|(entry, load)| entry * load).sum::<f64>()
@@ -243,9 +274,11 @@ impl Model {
                     iterations: iteration,
                     by_force: tip(&step.force_error, &force_error),
                     by_acceleration: tip(&step.acceleration_error, &acceleration_error),
-                    stiffness,
-                    damping,
-                    gain: gain.max(0.0),
+                    slopes: Slopes {
+                        stiffness,
+                        damping,
+                        gain: gain.max(0.0),
+                    },
                 });
             }
         }
@@ -254,7 +287,7 @@ impl Model {
 }
 
 /// Solves `(1 + A) x = b` for several `b`, `A` column by column, by Gauss-Jordan elimination, whose inner loops run down
-/// columns; rows are exchanged only where a pivot is small, which happens in violent steps alone. `None` where the matrix
+/// columns; rows are exchanged only where a pivot is small or the contact is stiff against the step. `None` where the matrix
 /// is singular.
 #[expect(
     clippy::indexing_slicing,
@@ -264,8 +297,9 @@ fn solve<const S: usize, const R: usize>(mut a: [Nodal<S>; S], mut right: [Nodal
     for (k, column) in a.iter_mut().enumerate() {
         column[k] += 1.0;
     }
+    let stiff = a[S - 1][S - 1].abs() > 1.0 / SMALL_PIVOT;
     for p in 0..S {
-        if a[p][p].abs() < 0.1 {
+        if stiff || a[p][p].abs() < SMALL_PIVOT {
             let largest = (p..S).max_by(|i, j| a[p][*i].abs().total_cmp(&a[p][*j].abs()))?;
             for column in a.iter_mut().chain(&mut right) {
                 column.swap(p, largest);
