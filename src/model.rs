@@ -99,6 +99,8 @@ pub struct State {
     pub predictions: Predictions,
     /// Length of the step they belong to, s; 0: none.
     pub last_step: f64,
+    /// Energy that the steps so far have made and not yet returned, J, where nothing dissipates.
+    pub energy_surplus: f64,
     /// Accepted steps.
     pub steps: u64,
     /// Steps discarded and repeated shorter.
@@ -194,6 +196,7 @@ impl Model {
             long_step: self.first_step(),
             predictions: Predictions::default(),
             last_step: 0.0,
+            energy_surplus: 0.0,
             steps: 0,
             rejected_steps: 0,
             iterations: 0,

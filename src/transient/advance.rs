@@ -4,6 +4,7 @@ use crate::error::{StepError, StepErrorCause};
 use crate::inputs::Inputs;
 use crate::model::{Model, State};
 use crate::transient::collocation::{Collocation, LONG, SHORT};
+use crate::transient::energy::Account;
 use crate::transient::fallback::REFUSALS;
 use crate::transient::nodal::{Drive, Source, Trial};
 use crate::transient::progress::{Progress, Target};
@@ -52,6 +53,8 @@ pub(super) struct Integration<'a> {
     pub(super) allowed: f64,
     /// Steps given up in succession.
     pub(super) refusals: u32,
+    /// What is known of the energy.
+    pub(super) account: Account,
 }
 
 /// What a step says about the next.
@@ -118,6 +121,7 @@ impl Model {
             tolerance,
             allowed,
             refusals: 0,
+            account: Account::of(self),
         }
         .run();
         match result {
@@ -214,8 +218,17 @@ impl Integration<'_> {
             ratio = 0.0;
         }
         let acceptable = |ratio: f64, length: f64| ratio <= 1.0 || length <= 2.0 * shortest && ratio.is_finite();
-        if ratio > SMOOTH && ratio.is_finite() && attempt.as_ref().is_some_and(|trial| self.is_flat(trial)) {
+        if (ratio > SMOOTH || self.account == Account::Falling)
+            && let Some(trial) = attempt.as_ref().filter(|trial| self.is_flat(trial))
+            && (ratio > SMOOTH || self.makes_energy(trial, target.length))
+        {
             return self.fall_back(&target);
+        }
+        if let Some(trial) = attempt.as_ref().filter(|_| ratio <= 1.0)
+            && target.length > 2.0 * shortest
+            && self.breaks_account(trial, target.length)
+        {
+            return Ok(self.reject(0.5 * target.length));
         }
         let Some(mut trial) = attempt.filter(|_| acceptable(ratio, target.length)) else {
             if self.state.closed && (target.length <= 2.0 * shortest || self.refusals >= REFUSALS) {
@@ -363,6 +376,7 @@ impl Integration<'_> {
     where
         Workspace: Room<S>,
     {
+        self.enter(trial, target.length);
         let Self { model, state, .. } = self;
         let (cache, end, _) = Room::<S>::parts(self.workspace);
         for ((mode, end), _) in state.modes.iter_mut().zip(end).zip(&model.modes) {
@@ -390,6 +404,7 @@ impl Integration<'_> {
         state.iterations += trial.iterations;
         self.progress.done = target.done;
         self.refusals = 0;
+        self.settle(target.length);
     }
 
     /// The contact opens or closes at the instant of the state; the step to take next.

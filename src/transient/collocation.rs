@@ -41,6 +41,8 @@ pub struct Collocation<const S: usize> {
     pub shapes: Vec<[f64; MAX_SHAPES]>,
     /// Lagrange polynomials at the start of the step.
     pub at_start: Nodal<S>,
+    /// Mean of the Lagrange polynomials over the step: the weights of the Radau quadrature.
+    weights: Nodal<S>,
     /// Row by row the coefficients of y^0, y^1, ..., `y = x - 1`, of the polynomial that is 1 at the start (the first row) or
     /// at one of the nodes, and 0 at the others.
     steep: Vec<Prediction>,
@@ -57,6 +59,10 @@ impl<const S: usize> Collocation<S> {
         }
         let through_nodes = lagrange::<MAX_SHAPES>(&nodes);
         let vanishing = nodes.iter().fold(one(), |shape, node| times(shape, -1.0 / node, 1.0));
+        let mut weights = [0.0; S];
+        for (weight, shape) in weights.iter_mut().zip(&through_nodes) {
+            *weight = shape.iter().enumerate().map(|(m, c)| c / (m + 1) as f64).sum();
+        }
         let mut at_start = [0.0; S];
         for (start, shape) in at_start.iter_mut().zip(&through_nodes) {
             *start = shape.first().copied().unwrap_or_default();
@@ -73,6 +79,7 @@ impl<const S: usize> Collocation<S> {
             nodes,
             shapes,
             at_start,
+            weights,
             steep,
             flat,
         }
@@ -86,6 +93,11 @@ impl<const S: usize> Collocation<S> {
             sum += value * others.map(|node| (x - node) / (own - node)).product::<f64>();
         }
         sum
+    }
+
+    /// Mean over the step of the nodal polynomial through `values`.
+    pub fn mean(&self, values: &Nodal<S>) -> f64 {
+        dot(values, &self.weights)
     }
 
     /// The predictions from the values at the start and at the nodes of a step, after those that led to it, which held for a

@@ -109,6 +109,7 @@ mod tests {
     use super::*;
     use crate::model::{Model, State};
     use crate::scene::Scene;
+    use crate::transient::energy::Account;
     use crate::transient::nodal::Drive;
     use crate::transient::progress::Progress;
     use crate::transient::workspace::Workspace;
@@ -149,6 +150,7 @@ mod tests {
                 tolerance: 1e-6,
                 allowed: 1e-8,
                 refusals: 0,
+                account: Account::Unknown,
             };
             let target = integration.progress.target(step, integration.state.time, None);
             integration.fall_back(&target).unwrap();

@@ -7,10 +7,12 @@
 //! force's error ([`advance`], on a grid: [`progress`], in room made once: [`workspace`]) and
 //! end where the contact opens ([`release`]) or closes ([`touchdown`]). Where that fails, a step with a constant force goes on
 //! ([`fallback`]).
+//! Where nothing dissipates the energy is kept ([`energy`]).
 
 pub mod advance;
 pub mod coefficients;
 pub mod collocation;
+pub mod energy;
 pub mod fallback;
 pub mod nodal;
 pub mod progress;

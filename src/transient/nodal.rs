@@ -179,7 +179,7 @@ impl Model {
         missed_acceleration: f64,
     ) -> f64 {
         let forces = &solution.forces;
-        let largest = forces.iter().fold(self.force_scale, |largest, force| {
+        let largest = forces.iter().fold(0.0_f64, |largest, force| {
             largest.max((self.preload.force + force).abs())
         });
         let error = if state.closed {
@@ -196,7 +196,11 @@ impl Model {
             self.law.tangent_stiffness(self.force_scale) * wrong
         };
         // Below the rounding of the force the estimate says nothing. (Not `max`, which would hide a NaN.)
-        if error <= ROUNDING * largest { 0.0 } else { error }
+        if error <= ROUNDING * largest.max(self.force_scale) {
+            0.0
+        } else {
+            error
+        }
     }
 
     /// Newton's method for the nodal forces on the closed branch.
