@@ -91,6 +91,8 @@ pub struct State {
     pub last_opening: f64,
     /// Instant at which the force last left zero, s; -1: not yet.
     pub last_closing: f64,
+    /// Instant at which the force last left zero or jumped, s: after it, it moves like a root of time for a while.
+    pub last_kink: f64,
     /// Longest step with few nodes that the error estimate allows, s.
     pub short_step: f64,
     /// Longest step with many nodes that the error estimate allows, s.
@@ -192,6 +194,7 @@ impl Model {
             current: 0.0,
             last_opening: -1.0,
             last_closing: -1.0,
+            last_kink: time,
             short_step: self.first_step(),
             long_step: self.first_step(),
             predictions: Predictions::default(),

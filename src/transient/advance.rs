@@ -413,6 +413,7 @@ impl Integration<'_> {
         self.state.force = 0.0;
         self.state.last_step = 0.0;
         if closed {
+            self.state.last_kink = self.state.time;
             self.state.last_closing = self.state.time;
             self.first_closed_step()
         } else {
@@ -439,6 +440,7 @@ impl Integration<'_> {
             self.switch(closed);
         }
         self.state.force = force;
+        self.state.last_kink = self.state.time;
         self.state.last_step = 0.0;
         let next = self.first_closed_step();
         self.state.short_step = self.state.short_step.min(next);
