@@ -210,7 +210,7 @@ impl Model {
             self.law.tangent_stiffness(self.force_scale) * wrong
         };
         // Below the rounding of the force the estimate says nothing. (Not `max`, which would hide a NaN.)
-        if error <= ROUNDING * largest.max(self.force_scale) {
+        if error <= ROUNDING * largest.max(self.preload.force) {
             0.0
         } else {
             error

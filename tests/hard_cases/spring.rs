@@ -15,7 +15,6 @@ fn a_spring_without_damping() {
 }
 
 #[test]
-#[ignore = "where nothing is damped the errors of the steps add up: 3.4 times the tolerance between communication steps"]
 fn a_system_without_damping() {
     let mut scene = Scene::default();
     scene.beam.stiffness_damping = 0.0;
