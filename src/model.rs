@@ -95,6 +95,8 @@ pub struct State {
     pub last_opening: f64,
     /// Instant at which the force last left zero, s; -1: not yet.
     pub last_closing: f64,
+    /// Instant at which the force last left zero or jumped, s: after it, it moves like a root of time for a while.
+    pub last_kink: f64,
     /// Longest step with few nodes that the error estimate allows, s.
     pub short_step: f64,
     /// Longest step with many nodes that the error estimate allows, s.
@@ -103,6 +105,8 @@ pub struct State {
     pub predictions: Predictions,
     /// Length of the step they belong to, s; 0: none.
     pub last_step: f64,
+    /// Energy that the steps so far have made and not yet returned, J, where nothing dissipates.
+    pub energy_surplus: f64,
     /// Accepted steps.
     pub steps: u64,
     /// Steps discarded and repeated shorter.
@@ -199,14 +203,31 @@ impl Model {
             closed: self.preload.force > 0.0,
             last_opening: -1.0,
             last_closing: -1.0,
+            last_kink: time,
             short_step: self.first_step(),
             long_step: self.first_step(),
             predictions: Predictions::default(),
             last_step: 0.0,
+            energy_surplus: 0.0,
             steps: 0,
             rejected_steps: 0,
             iterations: 0,
         }
+    }
+
+    /// Energy above that of the preload, J: kinetic and strain energy of the modes and the elastic energy of the contact, about
+    /// the preload, at an indentation given as deviation from it (m).
+    pub fn energy(&self, modes: &ModeStates, indentation: f64) -> f64 {
+        let pairs = self.modes.iter().zip(modes);
+        let beam: f64 = pairs
+            .map(|(mode, at)| at.v * at.v + mode.omega_squared * at.q * at.q)
+            .sum();
+        0.5 * beam + self.law.energy_above_tangent(self.preload.indentation, indentation)
+    }
+
+    /// Velocity of the tip per impulse on it, 1/kg.
+    pub fn mobility(&self) -> f64 {
+        self.modes.iter().map(|mode| mode.tip * mode.tip).sum()
     }
 
     /// A step short against the motion that may begin, s.

@@ -48,6 +48,54 @@ impl Hertz {
         (force / self.coefficient).powf(2.0 / 3.0)
     }
 
+    /// Mean elastic force between two indentations (m): the difference of the elastic energies `(2/5) k_H d^(5/2)` over that
+    /// of the indentations, N. In the roots of the indentations that is a polynomial over a sum, so that no digit is lost
+    /// where they are close.
+    pub fn mean_force(&self, a: f64, b: f64) -> f64 {
+        let (low, high) = (a.min(b), a.max(b));
+        if high <= 0.0 {
+            return 0.0;
+        }
+        let y = high.sqrt();
+        if low <= 0.0 {
+            return 0.4 * self.coefficient * high * y * (high / (high - low));
+        }
+        let x = low.sqrt();
+        let sum = (high * high + low * low) + (high + low) * (x * y) + high * low;
+        0.4 * self.coefficient * (sum / (x + y))
+    }
+
+    /// Elastic energy at `d0 + deviation` above its tangent at `d0` (m), J; never negative. In the roots of the indentations it
+    /// is a sum of positive terms, so that no digit is lost where the deviation is small.
+    pub fn energy_above_tangent(&self, d0: f64, deviation: f64) -> f64 {
+        let d = d0 + deviation;
+        let (x, y) = (d0.max(0.0).sqrt(), d.max(0.0).sqrt());
+        self.coefficient
+            * if d0 <= 0.0 {
+                0.4 * y.powi(5)
+            } else if d <= 0.0 {
+                x.powi(3) * (0.6 * d0 - d)
+            } else {
+                let difference = deviation / (x + y);
+                difference * difference * (0.4 * y.powi(3) + 0.8 * y * y * x + 1.2 * y * x * x + 0.6 * x.powi(3))
+            }
+    }
+
+    /// Mean tangent stiffness between two indentations (m): the difference of the elastic forces over that of the
+    /// indentations, N/m.
+    pub fn mean_stiffness(&self, a: f64, b: f64) -> f64 {
+        let (low, high) = (a.min(b), a.max(b));
+        if high <= 0.0 {
+            return 0.0;
+        }
+        let y = high.sqrt();
+        if low <= 0.0 {
+            return self.coefficient * y * (high / (high - low));
+        }
+        let x = low.sqrt();
+        self.coefficient * ((high + low + x * y) / (x + y))
+    }
+
     /// `min(d, g)`, m: positive while the contact is closed.
     pub fn engagement(&self, d: f64, rate: f64) -> f64 {
         d.min(d + 1.5 * self.damping * rate)

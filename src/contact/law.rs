@@ -40,6 +40,27 @@ impl Law {
         }
     }
 
+    /// Force that does over the way from one indentation to another (m) the work of the elastic force, and takes away at least
+    /// nothing by damping, N: the discrete gradient of the elastic energy, and the damping time the mean stiffness times
+    /// `speed` (m/s), the difference over the time it took. It grows with the second indentation, and never pulls unless
+    /// bonded.
+    pub fn mean_force(&self, from: f64, to: f64, speed: f64) -> f64 {
+        let (elastic, stiffness) = match self {
+            Self::Hertz(hertz) => (hertz.mean_force(from, to), hertz.mean_stiffness(from, to)),
+            Self::Linear(linear) => (linear.mean_force(from, to), linear.mean_stiffness(from, to)),
+        };
+        let force = elastic + self.damping() * stiffness * speed;
+        if self.never_opens() { force } else { force.max(0.0) }
+    }
+
+    /// Elastic energy at the indentation `d0 + deviation` above its tangent at `d0` (m), J; never negative.
+    pub fn energy_above_tangent(&self, d0: f64, deviation: f64) -> f64 {
+        match self {
+            Self::Hertz(hertz) => hertz.energy_above_tangent(d0, deviation),
+            Self::Linear(linear) => linear.energy_above_tangent(d0, deviation),
+        }
+    }
+
     /// Whether the contact holds whatever pulls at it.
     pub fn never_opens(&self) -> bool {
         matches!(self, Self::Linear(linear) if linear.bonded)

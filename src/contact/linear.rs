@@ -38,6 +38,42 @@ impl Linear {
         }
     }
 
+    /// Mean elastic force between two indentations (m), N.
+    pub fn mean_force(&self, a: f64, b: f64) -> f64 {
+        let (low, high) = (a.min(b) - self.offset, a.max(b) - self.offset);
+        if self.bonded || low > 0.0 {
+            self.stiffness * f64::midpoint(low, high)
+        } else if high > 0.0 {
+            0.5 * self.stiffness * high * (high / (high - low))
+        } else {
+            0.0
+        }
+    }
+
+    /// Elastic energy at `d0 + deviation` above its tangent at `d0` (m), J; never negative.
+    pub fn energy_above_tangent(&self, d0: f64, deviation: f64) -> f64 {
+        let (start, end) = (d0 - self.offset, d0 - self.offset + deviation);
+        if self.bonded || start > 0.0 && end > 0.0 {
+            0.5 * self.stiffness * deviation * deviation
+        } else if start > 0.0 {
+            self.stiffness * start * (0.5 * start - end)
+        } else {
+            0.5 * self.stiffness * end.max(0.0).powi(2)
+        }
+    }
+
+    /// Mean stiffness between two indentations (m), N/m.
+    pub fn mean_stiffness(&self, a: f64, b: f64) -> f64 {
+        let (low, high) = (a.min(b) - self.offset, a.max(b) - self.offset);
+        if self.bonded || low > 0.0 {
+            self.stiffness
+        } else if high > 0.0 {
+            self.stiffness * (high / (high - low))
+        } else {
+            0.0
+        }
+    }
+
     fn branch_engagement(&self, d: f64, rate: f64) -> f64 {
         d - self.offset + self.damping * rate
     }

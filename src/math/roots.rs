@@ -1,7 +1,7 @@
 //! Roots of scalar functions between two points where the sign differs.
 
 /// Root of `f` between `a` and `b`, to the spacing of floating-point numbers there; `None` unless `f(a)` and `f(b)` are
-/// numbers of different sign.
+/// numbers of different sign, and where `f` gives no number in between.
 pub fn bracketed(mut f: impl FnMut(f64) -> f64, a: f64, b: f64) -> Option<f64> {
     let ends = ((a, f(a)), (b, f(b)));
     between(f, ends.0, ends.1, 0.0)
@@ -28,6 +28,9 @@ pub fn between(mut f: impl FnMut(f64) -> f64, a: (f64, f64), b: (f64, f64), reso
     for _ in 0..1100 {
         let x = x1 + fraction * (x2 - x1);
         let value = f(x);
+        if value.is_nan() {
+            return None;
+        }
         let (x3, f3);
         if (value > 0.0) == (f1 > 0.0) {
             (x3, f3) = (x1, f1);

@@ -4,7 +4,9 @@ use crate::error::{StepError, StepErrorCause};
 use crate::model::{Model, State};
 use crate::transient::collocation::{Collocation, LONG, SHORT};
 use crate::transient::dense::Span;
-use crate::transient::nodal::{Drive, Trial};
+use crate::transient::energy::Account;
+use crate::transient::fallback::REFUSALS;
+use crate::transient::nodal::{Drive, Source, Trial};
 use crate::transient::progress::{Progress, Target};
 use crate::transient::workspace::{Room, Workspace};
 
@@ -16,10 +18,16 @@ const BUDGET_RATE: f64 = 1e7;
 /// Share of the tolerance that one step may use up. Found by comparing errors with tolerances over scenes
 /// (`tests/calibration.rs`): a blow makes the errors of the motion before it a hundred times larger, and without damping errors
 /// add up.
-const SHARE: f64 = 0.004;
+pub(super) const SHARE: f64 = 0.004;
 
 /// Error of the contact force within a step, per force that its polynomial misses at the start.
 const INSIDE: f64 = 0.3;
+
+/// Error of a step, in errors allowed, that the force of a flat one has to stay below.
+const SMOOTH: f64 = 0.01;
+
+/// Largest last correction of a nodal force by Newton's method, in errors allowed in a step.
+const NEWTON: f64 = 0.2;
 
 /// Growth from step to step that shows the steps are still finding their length.
 const GROWING: f64 = 1.5;
@@ -37,25 +45,29 @@ const LONGER: f64 = 16.0;
 pub(super) struct Integration<'a> {
     pub(super) model: &'a Model,
     pub(super) state: &'a mut State,
-    workspace: &'a mut Workspace,
-    drive: Drive,
-    progress: Progress,
+    pub(super) workspace: &'a mut Workspace,
+    pub(super) drive: Drive,
+    pub(super) progress: Progress,
     /// The instant beyond which the step is looked into, s, and what the tip does in it.
-    span: Option<(f64, &'a mut Span)>,
+    pub(super) span: Option<(f64, &'a mut Span)>,
     /// Error allowed in the contact force, N.
     pub(super) tolerance: f64,
     /// Error allowed in a step, N.
-    allowed: f64,
+    pub(super) allowed: f64,
+    /// Steps given up in succession.
+    pub(super) refusals: u32,
+    /// What is known of the energy.
+    pub(super) account: Account,
 }
 
 /// What a step says about the next.
-struct Advice {
+pub(super) struct Advice {
     /// Whether it was taken.
-    taken: bool,
+    pub(super) taken: bool,
     /// How many times as long as this one it could have been.
-    growth: f64,
+    pub(super) growth: f64,
     /// Length wanted next, s.
-    length: f64,
+    pub(super) length: f64,
 }
 
 /// A step that ends before it was meant to.
@@ -123,6 +135,8 @@ impl Model {
             span,
             tolerance,
             allowed: SHARE * tolerance,
+            refusals: 0,
+            account: Account::of(self),
         }
         .run();
         if result.is_err() {
@@ -161,7 +175,7 @@ impl Integration<'_> {
         self.state.steps + self.state.rejected_steps
     }
 
-    fn error(&self, cause: StepErrorCause) -> StepError {
+    pub(super) fn error(&self, cause: StepErrorCause) -> StepError {
         StepError {
             time: self.state.time,
             cause,
@@ -222,14 +236,34 @@ impl Integration<'_> {
             0.0
         };
         let ratio_of = |trial: &Trial<S>| (trial.error / allowed.max(trial.rounding)).max(trial.missed * inside);
-        let ratio = attempt.as_ref().map_or(f64::INFINITY, ratio_of);
+        let mut ratio = attempt.as_ref().map_or(f64::INFINITY, ratio_of);
         // The error estimate grows with this power of the step length.
         let reach = |ratio: f64| ratio.powf(-1.0 / (S as f64 + 1.0));
-        let Some(mut trial) = attempt.filter(|_| ratio <= 1.0 || target.length <= 2.0 * shortest) else {
-            if target.length <= 2.0 * shortest || ratio.is_nan() {
-                return Err(self.error(StepErrorCause::NotFinite));
+        if attempt
+            .as_ref()
+            .is_some_and(|trial| ratio > 1.0 && self.is_rounding(trial))
+        {
+            ratio = 0.0;
+        }
+        let acceptable = |ratio: f64, length: f64| ratio <= 1.0 || length <= 2.0 * shortest && ratio.is_finite();
+        if (ratio > SMOOTH || self.account == Account::Falling)
+            && let Some(trial) = attempt.as_ref().filter(|trial| self.is_flat(trial))
+            && (ratio > SMOOTH || self.makes_energy(trial, target.length))
+        {
+            return self.fall_back(&target);
+        }
+        if let Some(trial) = attempt.as_ref().filter(|_| ratio <= 1.0)
+            && target.length > 2.0 * shortest
+            && self.breaks_account(trial, target.length)
+        {
+            return Ok(self.reject(0.5 * target.length));
+        }
+        let Some(mut trial) = attempt.filter(|_| acceptable(ratio, target.length)) else {
+            if self.state.closed && (target.length <= 2.0 * shortest || self.refusals >= REFUSALS) {
+                return self.fall_back(&target);
             }
-            return Ok(self.reject(target.length * (0.8 * reach(ratio)).clamp(0.1, 0.5)));
+            let shrink = if ratio.is_nan() { 0.1 } else { 0.8 * reach(ratio) };
+            return Ok(self.reject(target.length * shrink.clamp(0.1, 0.5)));
         };
 
         let mut switches = false;
@@ -252,7 +286,12 @@ impl Integration<'_> {
                 switches = cut.switches;
                 // What the law does close to the event may be too much for one step up to it.
                 match self.attempt::<S>(&target) {
-                    Some(shorter) if ratio_of(&shorter) <= 1.0 || target.length <= 2.0 * shortest => trial = shorter,
+                    Some(shorter)
+                        if acceptable(shorter.error / allowed, target.length) || self.is_rounding(&shorter) =>
+                    {
+                        trial = shorter;
+                    }
+                    _ if target.length <= 2.0 * shortest => return self.fall_back(&target),
                     _ => return Ok(self.reject(0.5 * cut.length)),
                 }
             }
@@ -305,8 +344,14 @@ impl Integration<'_> {
     {
         let (cache, end, _) = self.workspace.parts();
         let (step, collocation) = cache.get(target.length, target.recurring, self.model);
-        self.model
-            .trial(self.state, &self.drive, step, collocation, 1e-2 * self.tolerance, end)
+        self.model.trial(
+            self.state,
+            &self.drive,
+            step,
+            collocation,
+            Source::Law(NEWTON * self.allowed),
+            end,
+        )
     }
 
     /// A step of `length` seconds only to be looked at.
@@ -316,8 +361,9 @@ impl Integration<'_> {
     {
         let (cache, _, probe) = self.workspace.parts();
         let (step, collocation) = cache.get(length, false, self.model);
+        let source = Source::Law(NEWTON * self.allowed);
         self.model
-            .trial(self.state, &self.drive, step, collocation, 1e-2 * self.tolerance, probe)
+            .trial(self.state, &self.drive, step, collocation, source, probe)
     }
 
     /// Difference between instants that cannot be told apart, s.
@@ -336,6 +382,7 @@ impl Integration<'_> {
     /// Gives up a step; the next one is to have the length.
     fn reject(&mut self, length: f64) -> Advice {
         self.state.rejected_steps += 1;
+        self.refusals += 1;
         Advice {
             taken: false,
             growth: 1.0,
@@ -344,10 +391,11 @@ impl Integration<'_> {
     }
 
     /// The trial becomes the state.
-    fn take<const S: usize>(&mut self, trial: &Trial<S>, target: &Target)
+    pub(super) fn take<const S: usize>(&mut self, trial: &Trial<S>, target: &Target)
     where
         Workspace: Room<S>,
     {
+        self.enter(trial, target.length);
         let Self { model, state, .. } = self;
         let (cache, end, _) = Room::<S>::parts(self.workspace);
         if let Some((_, span)) = &mut self.span {
@@ -382,14 +430,17 @@ impl Integration<'_> {
         state.steps += 1;
         state.iterations += trial.iterations;
         self.progress.done = target.done;
+        self.refusals = 0;
+        self.settle(target.length);
     }
 
     /// The contact opens or closes at the instant of the state; the step to take next.
-    fn switch(&mut self, closed: bool) -> f64 {
+    pub(super) fn switch(&mut self, closed: bool) -> f64 {
         self.state.closed = closed;
         self.state.force = 0.0;
         self.state.last_step = 0.0;
         if closed {
+            self.state.last_kink = self.state.time;
             self.state.last_closing = self.state.time;
             self.first_closed_step()
         } else {
@@ -416,6 +467,7 @@ impl Integration<'_> {
             self.switch(closed);
         }
         self.state.force = force;
+        self.state.last_kink = self.state.time;
         self.state.last_step = 0.0;
         let next = self.first_closed_step();
         self.state.short_step = self.state.short_step.min(next);
@@ -424,11 +476,11 @@ impl Integration<'_> {
 
     /// First step after the surfaces meet, s. The dissipative force starts as the square root of time, which no polynomial
     /// follows: the step is chosen so short that what it misses moves the contact by less than a step's share of the error.
-    fn first_closed_step(&self) -> f64 {
+    pub(super) fn first_closed_step(&self) -> f64 {
         let Self { model, state, .. } = self;
         let d = model.preload.indentation + state.indentation;
         let speed = state.indentation_rate.abs();
-        let mobility: f64 = model.modes.iter().map(|mode| mode.tip * mode.tip).sum();
+        let mobility = model.mobility();
         let mut h = model.first_step();
         for _ in 0..40 {
             let law = model.law.closed_branch(d + speed * h, state.indentation_rate);

@@ -5,7 +5,7 @@
 //! four where a short one is wanted (a communication step of a microsecond, the time just after a blow).
 
 use crate::math::legendre;
-use crate::transient::machine::{Arithmetic, Machine, compiled_for};
+use crate::transient::machine::{Arithmetic, Machine, Separate, compiled_for};
 use crate::transient::response::{add, scaled};
 use crate::transient::shapes::Shapes;
 
@@ -44,6 +44,8 @@ pub struct Collocation<const S: usize> {
     pub shapes: Shapes<S>,
     /// Lagrange polynomials at the start of the step.
     pub at_start: Nodal<S>,
+    /// Mean of the Lagrange polynomials over the step: the weights of the Radau quadrature.
+    weights: Nodal<S>,
     /// Row by row the coefficients of y^0, y^1, ..., `y = x - 1`, of the polynomial that is 1 at the start (the first row) or
     /// at one of the nodes, and 0 at the others.
     steep: Vec<Prediction>,
@@ -70,6 +72,10 @@ impl<const S: usize> Collocation<S> {
                 .map(by_factorials)
                 .collect()
         };
+        let mut weights = [0.0; S];
+        for (weight, shape) in weights.iter_mut().zip(lagrange::<MAX_SHAPES>(&nodes)) {
+            *weight = shape.iter().enumerate().map(|(m, c)| c / (m + 1) as f64).sum();
+        }
         let mut at_start = [0.0; S];
         for (start, shape) in at_start.iter_mut().zip(derivatives_at(0.0)) {
             *start = shape.first().copied().unwrap_or_default();
@@ -81,6 +87,7 @@ impl<const S: usize> Collocation<S> {
             nodes,
             shapes: Shapes::new(&nodes, derivatives_at),
             at_start,
+            weights,
             steep,
             flat,
         }
@@ -94,6 +101,11 @@ impl<const S: usize> Collocation<S> {
             sum += value * others.map(|node| (x - node) / (own - node)).product::<f64>();
         }
         sum
+    }
+
+    /// Mean over the step of the nodal polynomial through `values`.
+    pub fn mean(&self, values: &Nodal<S>) -> f64 {
+        dot::<S, Separate>(values, &self.weights)
     }
 
     /// The predictions from the values at the start and at the nodes of a step, after those that led to it, which held for a

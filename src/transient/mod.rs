@@ -5,8 +5,9 @@
 //! ([`collocation`]); each mode's exact response to it ([`shapes`], [`response`], [`coefficients`]) gives the indentation at the nodes,
 //! and Newton's method on the nodal forces alone closes the loop ([`nodal`]). Steps adapt to an estimate of the
 //! force's error ([`advance`], on a grid: [`progress`], in room made once: [`workspace`]) and end where the contact opens
-//! ([`release`]) or closes ([`touchdown`]). The kernel is compiled for the processor ([`machine`]). Communication points may lie inside a step ([`dense`]), and a contact at rest takes none
-//! ([`rest`]).
+//! ([`release`]) or closes ([`touchdown`]). The kernel is compiled for the processor ([`machine`]). Where the collocation cannot
+//! go on, a step with a constant force does ([`fallback`]); where nothing dissipates, the energy is kept ([`energy`]).
+//! Communication points may lie inside a step ([`dense`]), and a contact at rest takes none ([`rest`]).
 //!
 //! Where the contact is linear and stays closed, a communication step is one exact step ([`linear`]) in the eigenvectors of beam
 //! and contact ([`oscillator`], [`secular`], [`zeros`]).
@@ -15,6 +16,8 @@ pub mod advance;
 pub mod coefficients;
 pub mod collocation;
 pub mod dense;
+pub mod energy;
+pub mod fallback;
 pub mod linear;
 pub mod machine;
 pub mod nodal;

@@ -14,6 +14,16 @@ pub struct Drive {
     pub support_rate: f64,
 }
 
+/// Where the contact force of a step comes from.
+#[derive(Clone, Copy, Debug)]
+pub enum Source {
+    /// The law at the nodes while the contact is closed, with this as the largest last correction of Newton's method, N;
+    /// nothing while it is open.
+    Law(f64),
+    /// This throughout, as deviation from the preload force, N.
+    Constant(f64),
+}
+
 /// A step computed but not yet taken.
 #[derive(Clone, Copy, Debug)]
 pub struct Trial<const S: usize> {
@@ -37,6 +47,19 @@ pub struct Trial<const S: usize> {
     pub missed: f64,
     /// Newton iterations spent.
     pub iterations: u64,
+    /// Of the law.
+    pub slopes: Slopes,
+}
+
+/// How the law answers within a step; nothing where the force does not depend on the motion.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Slopes {
+    /// Greatest stiffness at the nodes, N/m.
+    pub stiffness: f64,
+    /// Greatest damping at the nodes, N s/m.
+    pub damping: f64,
+    /// Change of the law's force at the end, at these, per force on the tip throughout the step.
+    pub gain: f64,
 }
 
 /// The nodal forces of a step on the closed branch.
@@ -48,12 +71,20 @@ struct Solution<const S: usize> {
     by_force: (f64, f64),
     /// The same per base acceleration.
     by_acceleration: (f64, f64),
-    /// Greatest stiffness and damping of the law at the nodes.
-    stiffness: f64,
-    /// See [`Solution::stiffness`].
-    damping: f64,
-    /// Change of the law's force at the end, at these, per force on the tip throughout the step.
-    gain: f64,
+    slopes: Slopes,
+}
+
+impl<const S: usize> Solution<S> {
+    /// A force that does not depend on the motion.
+    fn constant(force: f64) -> Self {
+        Self {
+            forces: [force; S],
+            iterations: 0,
+            by_force: (0.0, 0.0),
+            by_acceleration: (0.0, 0.0),
+            slopes: Slopes::default(),
+        }
+    }
 }
 
 /// Rounding of a contact force, relative to it.
@@ -62,23 +93,32 @@ const ROUNDING: f64 = 1e-13;
 /// Rounding of the motion at the nodes, relative to what it would be without contact force.
 const MOTION_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
+/// A pivot this small would multiply the rounding by its inverse in each elimination, and one beside entries larger than its
+/// inverse.
+const SMALL_PIVOT: f64 = 0.1;
+
+/// Mean over a step of what the nodal polynomial misses of the square root of time from its start, over what it misses at the start.
+const KINKED: f64 = 0.015;
+
+/// Steps from a kink beyond which it is not felt.
+const FAR: f64 = 20.0;
+
 /// Newton iterations before a step is judged too long.
 const ITERATIONS: u64 = 12;
 
 impl Model {
     /// The step from `state` with the given coefficients, on the branch the state is on, with the modes at its end in
-    /// `end_modes`; `None` where Newton's method does not converge. `newton` is the largest difference
-    /// left between a nodal force and that of the law, N.
+    /// `end_modes`; `None` where Newton's method does not converge.
     pub fn trial<const S: usize>(
         &self,
         state: &State,
         drive: &Drive,
         step: &StepCoefficients<S>,
         collocation: &Collocation<S>,
-        newton: f64,
+        source: Source,
         end_modes: &mut ModeStates,
     ) -> Option<Trial<S>> {
-        compiled_for!(self.machine, A => self.compute::<S, A>(state, drive, step, collocation, newton, end_modes))
+        compiled_for!(self.machine, A => self.compute::<S, A>(state, drive, step, collocation, source, end_modes))
     }
 
     /// [`Model::trial`] for a machine.
@@ -89,7 +129,7 @@ impl Model {
         drive: &Drive,
         step: &StepCoefficients<S>,
         collocation: &Collocation<S>,
-        newton: f64,
+        source: Source,
         end_modes: &mut ModeStates,
     ) -> Option<Trial<S>> {
         let h = step.length;
@@ -116,18 +156,12 @@ impl Model {
         add_columns::<S, A>(&mut free, &step.acceleration.displacement, &accelerations);
         add_columns::<S, A>(&mut free_rate, &step.acceleration.velocity, &accelerations);
 
-        let solution = if state.closed {
-            self.closed_forces::<S, A>(state, step, collocation, &free, &free_rate, newton)?
-        } else {
-            Solution {
-                forces: [-self.preload.force; S],
-                iterations: 0,
-                by_force: (0.0, 0.0),
-                by_acceleration: (0.0, 0.0),
-                stiffness: 0.0,
-                damping: 0.0,
-                gain: 0.0,
+        let solution = match source {
+            Source::Law(newton) if state.closed => {
+                self.closed_forces::<S, A>(state, step, collocation, &free, &free_rate, newton)?
             }
+            Source::Law(_) => Solution::constant(-self.preload.force),
+            Source::Constant(force) => Solution::constant(force),
         };
         let Solution { forces, iterations, .. } = solution;
         let (indentations, rates) = at_nodes::<S, A>(step, &free, &free_rate, &forces);
@@ -137,7 +171,7 @@ impl Model {
         let (indentation, rate) = (support - tip, drive.support_rate - tip_rate);
 
         let at_start = drive.acceleration + generated.start;
-        let largest = forces.iter().fold(self.force_scale, |largest, force| {
+        let largest = forces.iter().fold(0.0_f64, |largest, force| {
             largest.max((self.preload.force + force).abs())
         });
         let error = self.error::<S, A>(
@@ -156,13 +190,14 @@ impl Model {
             indentation,
             rate,
             error,
-            rounding: ROUNDING * largest,
+            rounding: ROUNDING * largest.max(self.preload.force),
             missed: if state.closed {
                 (state.force - self.preload.force - dot::<S, A>(&forces, &collocation.at_start)).abs()
             } else {
                 0.0
             },
             iterations,
+            slopes: solution.slopes,
         })
     }
 
@@ -171,7 +206,8 @@ impl Model {
     /// At the nodes the polynomials are right; what they miss at the start tells how much of the shape that vanishes at the
     /// nodes they lack. What that does to the nodal forces is known to first order ([`Solution`]). Modes slow against the step
     /// hardly feel it at the end (the shape is orthogonal to polynomials of low degree); they see an error of twice the order,
-    /// about three times the square of what is missed (an impact of a free mass on a Hertz contact).
+    /// about three times the square of what is missed (an impact of a free mass on a Hertz contact). Just after a touch or a
+    /// jump the force is no polynomial of any degree, and they see more.
     #[inline(always)]
     fn error<const S: usize, A: Arithmetic>(
         &self,
@@ -187,8 +223,15 @@ impl Model {
             let (by_force, by_acceleration) = (solution.by_force, solution.by_acceleration);
             let wrong_d = by_acceleration.0 * missed_acceleration - by_force.0 * missed;
             let wrong_r = by_acceleration.1 * missed_acceleration - by_force.1 * missed;
-            let fast = (solution.stiffness * wrong_d).abs() + (solution.damping * wrong_r).abs();
-            fast + 3.0 * missed * missed / largest * solution.gain / (1.0 + solution.gain)
+            let fast = (solution.slopes.stiffness * wrong_d).abs() + (solution.slopes.damping * wrong_r).abs();
+            let elapsed = state.time - state.last_kink;
+            let kinked = if elapsed < FAR * step.length {
+                KINKED * missed.abs() * analytic::<S>(elapsed / step.length)
+            } else {
+                0.0
+            };
+            let slow = 3.0 * missed * missed / largest + kinked;
+            fast + slow * solution.slopes.gain / (1.0 + solution.slopes.gain)
         } else {
             let last = |values: &Nodal<S>| values.last().map_or(0.0, |value| (value * missed_acceleration).abs());
             let rows = &step.acceleration_error;
@@ -298,11 +341,22 @@ impl<const S: usize> Solution<S> {
             iterations,
             by_force: tip(&step.force_error, force_error),
             by_acceleration: tip(&step.acceleration_error, acceleration_error),
-            stiffness,
-            damping,
-            gain: gain.max(0.0),
+            slopes: Slopes {
+                stiffness,
+                damping,
+                gain: gain.max(0.0),
+            },
         }
     }
+}
+
+/// How much less of a root of time its quadrature with `S` nodes misses, over what the nodal polynomial misses, where its
+/// branch point lies `distance` steps before the step: the polynomial converges with the power `S` of the size of the ellipse in
+/// which the root is analytic, the quadrature with the power `2 S - 1` (L. N. Trefethen, Approximation Theory and Approximation
+/// Practice, 2013, chapters 8 and 19).
+fn analytic<const S: usize>(distance: f64) -> f64 {
+    let ellipse = 1.0 + 2.0 * distance + 2.0 * (distance * (distance + 1.0)).sqrt();
+    (1..S).fold(1.0, |product, _| product / ellipse)
 }
 
 /// Modes computed at once.
@@ -363,7 +417,7 @@ fn add<const N: usize, A: Arithmetic>(sum: &mut [f64; N], a: &[f64; N], b: &[f64
 }
 
 /// Solves `(1 + A) x = b` for several `b`, `A` column by column, by Gauss-Jordan elimination, whose inner loops run down
-/// columns; rows are exchanged only where a pivot is small, which happens in violent steps alone. `None` where the matrix
+/// columns; rows are exchanged only where a pivot is small or the contact is stiff against the step. `None` where the matrix
 /// is singular.
 #[expect(
     clippy::indexing_slicing,
@@ -377,8 +431,9 @@ fn solve<const S: usize, const R: usize, A: Arithmetic>(
     for (k, column) in a.iter_mut().enumerate() {
         column[k] += 1.0;
     }
+    let stiff = a[S - 1][S - 1].abs() > 1.0 / SMALL_PIVOT;
     for p in 0..S {
-        if a[p][p].abs() < 0.1 {
+        if stiff || a[p][p].abs() < SMALL_PIVOT {
             let largest = (p..S).max_by(|i, j| a[p][*i].abs().total_cmp(&a[p][*j].abs()))?;
             for column in a.iter_mut().chain(&mut right) {
                 column.swap(p, largest);

@@ -8,7 +8,6 @@ use crate::digits;
 use relay_contact::inputs::Inputs;
 
 #[test]
-#[ignore = "at a tolerance of 1e-10 the force misses by 3e-10"]
 fn greatest_force_and_duration() {
     let rest = Inputs::default();
     for tolerance in [1e-2, 1e-4, 1e-6, 1e-8, 1e-10] {

@@ -75,7 +75,6 @@ fn communication_steps_of_a_second() {
 
 /// The tolerance is relative to the preload force, and below the rounding of the force of a blow.
 #[test]
-#[ignore = "steps shrink without end where the tolerance is below the rounding of the force"]
 fn a_tolerance_below_the_rounding_of_a_blow() {
     let mut scene = Scene::default();
     scene.beam.width = 1e-4;

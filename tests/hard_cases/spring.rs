@@ -15,7 +15,6 @@ fn a_spring_without_damping() {
 }
 
 #[test]
-#[ignore = "where nothing is damped the errors of the steps add up: 3.4 times the tolerance between communication steps"]
 fn a_system_without_damping() {
     let mut scene = Scene::default();
     scene.beam.stiffness_damping = 0.0;
@@ -86,7 +85,6 @@ fn an_axial_force_above_buckling_is_an_error_that_says_so() {
 /// A push so weak that the force stays within the tolerance: there is nothing to resolve, whatever rings above a
 /// gigahertz.
 #[test]
-#[ignore = "where the contact is all but a rigid dashpot its velocity at the end of a step is left a thousand times worse than the nodal forces, and the steps shrink after it"]
 fn a_push_below_the_tolerance_on_a_short_light_spring_without_damping() {
     let mut scene = Scene::default();
     scene.beam.length = 1e-3;

@@ -1,0 +1,121 @@
+//! The account of the energy where the beam has no damping and the base acceleration is constant over the step.
+//!
+//! The energy about the preload then changes by the work of the base acceleration, which the modal displacements tell
+//! exactly, and of the moving contact, which is its velocity times the impulse of the force: the polynomial's, exactly. What
+//! else a step makes of it is its error. Without contact damping too, that is returned by a small impulse on the tip in
+//! this step or in later ones, so that nothing adds up over any number of impacts. With contact damping energy may only go: a
+//! step that makes some and has nothing to resolve is left to the constant force ([`super::fallback`]).
+
+use crate::excitation::Generator;
+use crate::model::Model;
+use crate::transient::advance::{Integration, SHARE};
+use crate::transient::nodal::Trial;
+use crate::transient::workspace::{Room, Workspace};
+
+/// What the energy of the model is known to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Account {
+    /// It changes by the work done alone.
+    Kept,
+    /// The contact takes some of it away.
+    Falling,
+    /// Nothing that is worth a look.
+    Unknown,
+}
+
+impl Account {
+    /// Of the model.
+    pub(super) fn of(model: &Model) -> Self {
+        let undamped = model.modes.iter().all(|mode| mode.damping == 0.0);
+        if !(undamped && model.generator == Generator::None) {
+            Self::Unknown
+        } else if model.law.damping() == 0.0 {
+            Self::Kept
+        } else {
+            Self::Falling
+        }
+    }
+}
+
+impl Integration<'_> {
+    /// Energy that the step makes beyond the work done on it, and what rounding may make of it, J. The modes at its end are those
+    /// of the last attempt.
+    fn surplus<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> (f64, f64)
+    where
+        Workspace: Room<S>,
+    {
+        let Self {
+            model, state, drive, ..
+        } = self;
+        let (cache, end, _) = Room::<S>::parts(self.workspace);
+        let start = model.energy(&state.modes, state.indentation);
+        let change = model.energy(end, trial.indentation) - start;
+        let moved = model.modes.iter().zip(state.modes.iter().zip(end.iter()));
+        let loads = moved.map(|(mode, (start, end))| mode.participation * (end.q - start.q));
+        let by_base = -drive.acceleration * loads.sum::<f64>();
+        let by_support = drive.support_rate * length * cache.collocation().mean(&trial.forces);
+        // Displacement and velocity of each mode are rounded, sums of two products and a load.
+        let rounding = 4.0 * f64::EPSILON * model.modes.len() as f64 * start;
+        (change - by_base - by_support, rounding)
+    }
+
+    /// Whether the step makes energy where the contact can only take it away.
+    pub(super) fn makes_energy<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> bool
+    where
+        Workspace: Room<S>,
+    {
+        if self.account != Account::Falling {
+            return false;
+        }
+        let (surplus, rounding) = self.surplus(trial, length);
+        surplus > rounding
+    }
+
+    /// Whether the step makes or loses as much energy as a force wrong by more than the tolerance over the way of the tip
+    /// would. The error estimate, one number, can be small by chance.
+    pub(super) fn breaks_account<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> bool
+    where
+        Workspace: Room<S>,
+    {
+        if self.account != Account::Kept || !self.state.closed {
+            return false;
+        }
+        let (surplus, rounding) = self.surplus(trial, length);
+        let rate = self.state.support_rate;
+        let fastest = (rate - self.state.indentation_rate)
+            .abs()
+            .max((rate - trial.rate).abs());
+        surplus.abs() > rounding + self.tolerance * length * fastest
+    }
+
+    /// Enters a step about to be taken.
+    pub(super) fn enter<const S: usize>(&mut self, trial: &Trial<S>, length: f64)
+    where
+        Workspace: Room<S>,
+    {
+        if self.account == Account::Kept {
+            self.state.energy_surplus += self.surplus(trial, length).0;
+        }
+    }
+
+    /// Returns what was made too much or too little, by an impulse on the tip not larger than that of the error allowed over the
+    /// step just taken. What is left is for later steps.
+    pub(super) fn settle(&mut self, length: f64) {
+        if self.account != Account::Kept || !self.state.closed || self.state.energy_surplus == 0.0 {
+            return;
+        }
+        let Self { model, state, .. } = self;
+        let velocity = state.support_rate - state.indentation_rate;
+        let bound = SHARE * self.tolerance * length;
+        let impulse = (-state.energy_surplus / velocity).clamp(-bound, bound);
+        if !impulse.is_finite() {
+            return;
+        }
+        for (at, mode) in state.modes.iter_mut().zip(&model.modes) {
+            at.v += mode.tip * impulse;
+        }
+        let gained = model.mobility() * impulse;
+        state.indentation_rate -= gained;
+        state.energy_surplus += impulse * (velocity + 0.5 * gained);
+    }
+}
