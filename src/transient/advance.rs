@@ -18,7 +18,7 @@ const BUDGET_RATE: f64 = 1e7;
 /// Share of the tolerance that one step may use up. Found by comparing errors with tolerances over scenes
 /// (`tests/calibration.rs`): a blow makes the errors of the motion before it a hundred times larger, and without damping errors
 /// add up.
-pub(super) const SHARE: f64 = 0.004;
+const SHARE: f64 = 0.004;
 
 /// Error of the contact force within a step, per force that its polynomial misses at the start.
 const INSIDE: f64 = 0.3;

@@ -8,9 +8,12 @@
 
 use crate::excitation::Generator;
 use crate::model::Model;
-use crate::transient::advance::{Integration, SHARE};
+use crate::transient::advance::Integration;
 use crate::transient::nodal::Trial;
 use crate::transient::workspace::{Room, Workspace};
+
+/// Share of the tolerance that the contact force may be wrong by to return energy.
+const RETURNED: f64 = 0.05;
 
 /// What the energy of the model is known to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,15 +101,15 @@ impl Integration<'_> {
         }
     }
 
-    /// Returns what was made too much or too little, by an impulse on the tip not larger than that of the error allowed over the
-    /// step just taken. What is left is for later steps.
+    /// Returns what was made too much or too little, by an impulse on the tip not larger than that of a small error of the force over
+    /// the step just taken. What is left is for later steps.
     pub(super) fn settle(&mut self, length: f64) {
         if self.account != Account::Kept || !self.state.closed || self.state.energy_surplus == 0.0 {
             return;
         }
         let Self { model, state, .. } = self;
         let velocity = state.support_rate - state.indentation_rate;
-        let bound = SHARE * self.tolerance * length;
+        let bound = RETURNED * self.tolerance * length;
         let impulse = (-state.energy_surplus / velocity).clamp(-bound, bound);
         if !impulse.is_finite() {
             return;
