@@ -4,7 +4,6 @@ use crate::error::{StepError, StepErrorCause};
 use crate::model::{Model, State};
 use crate::transient::collocation::{Collocation, LONG, SHORT};
 use crate::transient::dense::Span;
-use crate::transient::energy::Account;
 use crate::transient::fallback::REFUSALS;
 use crate::transient::nodal::{Drive, Source, Trial};
 use crate::transient::progress::{Progress, Target};
@@ -23,10 +22,7 @@ const SHARE: f64 = 0.004;
 /// Error of the contact force within a step, per force that its polynomial misses at the start.
 const INSIDE: f64 = 0.3;
 
-/// Error of a step, in errors allowed, that the force of a flat one has to stay below.
-const SMOOTH: f64 = 0.01;
-
-/// Largest last correction of a nodal force by Newton's method, in errors allowed in a step.
+/// Largest difference that Newton's method leaves between a nodal force and that of the law, in errors allowed in a step.
 const NEWTON: f64 = 0.2;
 
 /// Growth from step to step that shows the steps are still finding their length.
@@ -56,8 +52,8 @@ pub(super) struct Integration<'a> {
     pub(super) allowed: f64,
     /// Steps given up in succession.
     pub(super) refusals: u32,
-    /// What is known of the energy.
-    pub(super) account: Account,
+    /// Whether the energy changes by the work done alone.
+    pub(super) conserves: bool,
 }
 
 /// What a step says about the next.
@@ -136,7 +132,7 @@ impl Model {
             tolerance,
             allowed: SHARE * tolerance,
             refusals: 0,
-            account: Account::of(self),
+            conserves: self.conserves(),
         }
         .run();
         if result.is_err() {
@@ -239,19 +235,10 @@ impl Integration<'_> {
         let mut ratio = attempt.as_ref().map_or(f64::INFINITY, ratio_of);
         // The error estimate grows with this power of the step length.
         let reach = |ratio: f64| ratio.powf(-1.0 / (S as f64 + 1.0));
-        if attempt
-            .as_ref()
-            .is_some_and(|trial| ratio > 1.0 && self.is_rounding(trial))
-        {
+        if ratio > 1.0 && attempt.as_ref().is_some_and(|trial| self.is_rounding(trial)) {
             ratio = 0.0;
         }
         let acceptable = |ratio: f64, length: f64| ratio <= 1.0 || length <= 2.0 * shortest && ratio.is_finite();
-        if (ratio > SMOOTH || self.account == Account::Falling)
-            && let Some(trial) = attempt.as_ref().filter(|trial| self.is_flat(trial))
-            && (ratio > SMOOTH || self.makes_energy(trial, target.length))
-        {
-            return self.fall_back(&target);
-        }
         if let Some(trial) = attempt.as_ref().filter(|_| ratio <= 1.0)
             && target.length > 2.0 * shortest
             && self.breaks_account(trial, target.length)
@@ -286,9 +273,7 @@ impl Integration<'_> {
                 switches = cut.switches;
                 // What the law does close to the event may be too much for one step up to it.
                 match self.attempt::<S>(&target) {
-                    Some(shorter)
-                        if acceptable(shorter.error / allowed, target.length) || self.is_rounding(&shorter) =>
-                    {
+                    Some(shorter) if acceptable(ratio_of(&shorter), target.length) || self.is_rounding(&shorter) => {
                         trial = shorter;
                     }
                     _ if target.length <= 2.0 * shortest => return self.fall_back(&target),

@@ -1,10 +1,9 @@
-//! The account of the energy where the beam has no damping and the base acceleration is constant over the step.
+//! The account of the energy where nothing dissipates and no generator runs.
 //!
 //! The energy about the preload then changes by the work of the base acceleration, which the modal displacements tell
 //! exactly, and of the moving contact, which is its velocity times the impulse of the force: the polynomial's, exactly. What
-//! else a step makes of it is its error. Without contact damping too, that is returned by a small impulse on the tip in
-//! this step or in later ones, so that nothing adds up over any number of impacts. With contact damping energy may only go: a
-//! step that makes some and has nothing to resolve is left to the constant force ([`super::fallback`]).
+//! else a step makes of it is its error, and is returned by a small impulse on the tip in this step or in later ones, so that
+//! nothing adds up over any number of impacts.
 
 use crate::excitation::Generator;
 use crate::model::Model;
@@ -15,28 +14,11 @@ use crate::transient::workspace::{Room, Workspace};
 /// Share of the tolerance that the contact force may be wrong by to return energy.
 const RETURNED: f64 = 0.05;
 
-/// What the energy of the model is known to do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Account {
-    /// It changes by the work done alone.
-    Kept,
-    /// The contact takes some of it away.
-    Falling,
-    /// Nothing that is worth a look.
-    Unknown,
-}
-
-impl Account {
-    /// Of the model.
-    pub(super) fn of(model: &Model) -> Self {
-        let undamped = model.modes.iter().all(|mode| mode.damping == 0.0);
-        if !(undamped && model.generator == Generator::None) {
-            Self::Unknown
-        } else if model.law.damping() == 0.0 {
-            Self::Kept
-        } else {
-            Self::Falling
-        }
+impl Model {
+    /// Whether nothing dissipates, and the work done on the motion is known.
+    pub(super) fn conserves(&self) -> bool {
+        let undamped = self.modes.iter().all(|mode| mode.damping == 0.0);
+        undamped && self.law.damping() == 0.0 && self.generator == Generator::None
     }
 }
 
@@ -62,25 +44,13 @@ impl Integration<'_> {
         (change - by_base - by_support, rounding)
     }
 
-    /// Whether the step makes energy where the contact can only take it away.
-    pub(super) fn makes_energy<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> bool
-    where
-        Workspace: Room<S>,
-    {
-        if self.account != Account::Falling {
-            return false;
-        }
-        let (surplus, rounding) = self.surplus(trial, length);
-        surplus > rounding
-    }
-
     /// Whether the step makes or loses as much energy as a force wrong by more than the tolerance over the way of the tip
     /// would. The error estimate, one number, can be small by chance.
     pub(super) fn breaks_account<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> bool
     where
         Workspace: Room<S>,
     {
-        if self.account != Account::Kept || !self.state.closed {
+        if !self.conserves || !self.state.closed {
             return false;
         }
         let (surplus, rounding) = self.surplus(trial, length);
@@ -96,7 +66,7 @@ impl Integration<'_> {
     where
         Workspace: Room<S>,
     {
-        if self.account == Account::Kept {
+        if self.conserves {
             self.state.energy_surplus += self.surplus(trial, length).0;
         }
     }
@@ -104,7 +74,7 @@ impl Integration<'_> {
     /// Returns what was made too much or too little, by an impulse on the tip not larger than that of a small error of the force over
     /// the step just taken. What is left is for later steps.
     pub(super) fn settle(&mut self, length: f64) {
-        if self.account != Account::Kept || !self.state.closed || self.state.energy_surplus == 0.0 {
+        if !self.conserves || !self.state.closed || self.state.energy_surplus == 0.0 {
             return;
         }
         let Self { model, state, .. } = self;

@@ -36,12 +36,6 @@ impl Integration<'_> {
         trial.error <= ROUNDINGS * f64::EPSILON * (stiffness * displacement + damping * velocity) / reaction
     }
 
-    /// Whether the force of a closed contact stays throughout the step within the error allowed of what it is.
-    pub(super) fn is_flat<const S: usize>(&self, trial: &Trial<S>) -> bool {
-        let start = self.state.force - self.model.preload.force;
-        self.state.closed && trial.forces.iter().all(|force| (force - start).abs() <= self.allowed)
-    }
-
     /// Takes the step to the target with a constant force.
     pub(super) fn fall_back(&mut self, target: &Target) -> Result<Advice, StepError> {
         let trial = self
@@ -109,7 +103,6 @@ mod tests {
     use super::*;
     use crate::model::{Model, State};
     use crate::scene::Scene;
-    use crate::transient::energy::Account;
     use crate::transient::nodal::Drive;
     use crate::transient::progress::Progress;
     use crate::transient::workspace::Workspace;
@@ -147,7 +140,7 @@ mod tests {
                 tolerance: 1e-6,
                 allowed: 1e-8,
                 refusals: 0,
-                account: Account::Unknown,
+                conserves: false,
             };
             let target = integration.progress.target(step, integration.state.time, None);
             integration.fall_back(&target).unwrap();
