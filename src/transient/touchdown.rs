@@ -2,9 +2,11 @@
 //!
 //! Looking at signs alone would miss a grazing touch. Between neighbouring instants at which indentation and velocity are
 //! known, the indentation is a cubic but for an error that the middle one of any three shows. Where the cubic's highest
-//! point clears zero by more than that error there is no touch; elsewhere the interval is halved.
+//! point clears zero by more than that error there is no touch; elsewhere the interval is halved. Modes that swing within
+//! the interval unseen count with their amplitudes.
 
 use crate::math::roots;
+use crate::model::Mode;
 use crate::transient::advance::{Cut, Integration};
 use crate::transient::collocation::LONG;
 use crate::transient::nodal::Trial;
@@ -12,6 +14,12 @@ use crate::transient::workspace::{Room, Workspace};
 
 /// Halvings before an interval counts as an instant.
 const DEPTH: u32 = 40;
+
+/// Part of what the engagement changes by between two samples that may go unseen.
+const UNSEEN: f64 = 1e-2;
+
+/// Part of the flight looked at that a contact stays open at least.
+const SHORTEST: f64 = 1e-3;
 
 /// Indentation and its velocity at an instant of the step.
 #[derive(Clone, Copy, Debug)]
@@ -50,8 +58,7 @@ impl Integration<'_> {
             [a, b] => self.touch_between::<S>(a, b, error, 0),
             _ => None,
         })?;
-        // A flight that begins with the release itself may look closed there by rounding.
-        (length > 0.0 || self.state.last_opening < self.state.time).then_some(Cut { length, switches: true })
+        Some(Cut { length, switches: true })
     }
 
     /// Start and nodes of a step, and by how much the cubics between them are wrong, m.
@@ -92,7 +99,31 @@ impl Integration<'_> {
     fn is_clear(&self, a: &Sample, b: &Sample, error: f64) -> bool {
         // An overlap whose force is lost in the tolerance need not be found.
         let negligible = self.model.law.overlap(1e-3 * self.tolerance);
-        self.model.engagement(highest(a, b), a.rate.max(b.rate)) + error < negligible
+        let (ripple, ripple_rate) = self.ripple(b.at - a.at);
+        let (d, rate) = (highest(a, b) + ripple, a.rate.max(b.rate) + ripple_rate);
+        self.model.engagement(d, rate) + error < negligible
+    }
+
+    /// Whether no mode swings between two samples unseen.
+    fn is_resolved(&self, a: &Sample, b: &Sample) -> bool {
+        let (ripple, ripple_rate) = self.ripple(b.at - a.at);
+        let [from, to] = [a, b].map(|sample| self.model.engagement(sample.d, sample.rate));
+        ripple + self.model.law.damping() * ripple_rate <= UNSEEN * (to - from).abs()
+    }
+
+    /// How far and how fast at most the modes that swing within `interval` seconds or less move the tip, m and m/s.
+    fn ripple(&self, interval: f64) -> (f64, f64) {
+        let Self { model, state, drive, .. } = self;
+        let fast = |mode: &Mode| mode.omega_squared * interval * interval > 1.0;
+        let (mut displacement, mut velocity) = (0.0, 0.0);
+        for (mode, at) in model.modes.iter().zip(&state.modes).filter(|(mode, _)| fast(mode)) {
+            let omega = mode.omega_squared.sqrt();
+            let load = -mode.tip * model.preload.force - mode.participation * drive.acceleration;
+            let swing = mode.tip.abs() * (at.q - load / mode.omega_squared).hypot(at.v / omega);
+            displacement += swing;
+            velocity += omega * swing;
+        }
+        (displacement, velocity)
     }
 
     /// The first instant between two samples (s from the start of the step) at which the contact closes; their cubic is
@@ -105,8 +136,11 @@ impl Integration<'_> {
             if self.is_clear(a, b, error) || depth > DEPTH {
                 return None;
             }
-        } else if a.rate >= 0.0 && highest(a, b) <= b.d || depth > DEPTH {
-            return Some(self.crossing::<S>(a, b));
+        } else if a.rate >= 0.0 && highest(a, b) <= b.d && self.is_resolved(a, b) || depth > DEPTH {
+            let touch = self.crossing::<S>(a, b);
+            // A contact that closes as it opens has been open all the same: the steps have to get on.
+            let released = self.state.last_opening == self.state.time;
+            return Some(if released { touch.max(SHORTEST * b.at) } else { touch });
         }
         let middle = self.sample::<S>(f64::midpoint(a.at, b.at));
         let error = (middle.d - cubic(a, b, middle.at)).abs();
