@@ -113,8 +113,11 @@ impl Integration<'_> {
 
     /// How far and how fast at most the modes that swing within `interval` seconds or less move the tip, m and m/s.
     fn ripple(&self, interval: f64) -> (f64, f64) {
-        let Self { model, state, drive, .. } = self;
-        let fast = |mode: &Mode| mode.omega_squared * interval * interval > 1.0;
+        let Self {
+            model, state, drive, ..
+        } = self;
+        let swings = |mode: &Mode| mode.damping * mode.damping < 4.0 * mode.omega_squared;
+        let fast = |mode: &Mode| mode.omega_squared * interval * interval > 1.0 && swings(mode);
         let (mut displacement, mut velocity) = (0.0, 0.0);
         for (mode, at) in model.modes.iter().zip(&state.modes).filter(|(mode, _)| fast(mode)) {
             let omega = mode.omega_squared.sqrt();

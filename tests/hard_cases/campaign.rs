@@ -160,7 +160,7 @@ proptest! {
 
     // Without damping a bouncing contact is sensitive to its past, so that the errors of two runs grow apart.
     #[test]
-    #[ignore = "some scenes differ by a few times the tolerance"]
+    #[ignore = "one scene in two hundred, with blows some 1e4 times the force scale, differs by up to 30 times the tolerance"]
     fn campaign_damped_scenes_do_not_depend_on_the_communication_step(ride in ride(1e-6)) {
         let damped = ride.scene.beam.stiffness_damping.min(ride.scene.contact.damping) > 1e-6;
         let runs = (ride.run(1), ride.run(4));
