@@ -207,7 +207,7 @@ pub struct Cache<const S: usize> {
 }
 
 /// Slots for step lengths that come again.
-const SLOTS: usize = 64;
+const SLOTS: usize = 32;
 
 impl<const S: usize> Cache<S> {
     /// For a model with this many modes.
@@ -231,7 +231,7 @@ impl<const S: usize> Cache<S> {
             slots,
             other,
         } = self;
-        let slot = (length.to_bits().wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 58) as usize;
+        let slot = (length.to_bits().wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 59) as usize;
         let entry = slots.get_mut(slot).filter(|_| recurring).unwrap_or(other);
         if entry.length.to_bits() != length.to_bits() {
             entry.fill(length, model, collocation);
