@@ -13,6 +13,7 @@ use crate::contact::linear::Linear;
 use crate::excitation::Generator;
 use crate::model::{MAX_MODES, Mode, Model, State};
 use crate::scene::Scene;
+use crate::transient::machine::{Arithmetic, Machine, compiled_for};
 use crate::transient::nodal::Drive;
 use crate::transient::oscillator::{Coordinates, Oscillator, Propagator, set};
 use crate::transient::secular::{EigenPair, Problem};
@@ -59,8 +60,13 @@ impl Columns {
         Self { size, entries }
     }
 
+    fn times(&self, machine: Machine, factors: &Coordinates) -> Coordinates {
+        compiled_for!(machine, A => self.compute::<A>(factors))
+    }
+
     /// Four columns at a time, so that the sums are seldom loaded and stored.
-    fn times(&self, factors: &Coordinates) -> Coordinates {
+    #[inline(always)]
+    fn compute<A: Arithmetic>(&self, factors: &Coordinates) -> Coordinates {
         let mut sums = [0.0; 2 * MAX_MODES];
         for (columns, factors) in self.entries.chunks_exact(4 * self.size).zip(factors.chunks_exact(4)) {
             let (a, columns) = columns.split_at(self.size);
@@ -68,7 +74,7 @@ impl Columns {
             let (c, d) = columns.split_at(self.size);
             if let [p, q, r, s] = factors {
                 for ((((sum, a), b), c), d) in sums.iter_mut().zip(a).zip(b).zip(c).zip(d) {
-                    *sum += (a * p + b * q) + (c * r + d * s);
+                    *sum += A::mul_add(*a, *p, b * q) + A::mul_add(*c, *r, d * s);
                 }
             }
         }
@@ -157,7 +163,10 @@ impl ClosedLoop {
             if let Some(entry) = motion.get_mut(n) {
                 *entry = 1.0 / scale;
             }
-            let again = self.to_modes.times(&self.to_oscillators.times(&motion));
+            let again = self.to_modes.times(
+                Machine::Portable,
+                &self.to_oscillators.times(Machine::Portable, &motion),
+            );
             let motions = again.iter().zip(&motion).zip(&scales);
             motions
                 .map(|((again, motion), scale)| (again - motion) * scale)
@@ -205,7 +214,7 @@ impl ClosedLoop {
                 (*q, *v) = (mode.q, mode.v);
             }
         }
-        let mut free = self.to_oscillators.times(&motion);
+        let mut free = self.to_oscillators.times(model.machine, &motion);
         let growth = stiffness * drive.support_rate;
         let mut steady = Steady {
             acceleration: drive.acceleration,
@@ -235,7 +244,7 @@ impl ClosedLoop {
         {
             *end += sine * from_sine + cosine * from_cosine;
         }
-        let motion = self.to_modes.times(&moved);
+        let motion = self.to_modes.times(model.machine, &moved);
 
         let support = state.support + drive.support_rate * length;
         let (mut indentation, mut rate) = (support, drive.support_rate);
