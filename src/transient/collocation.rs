@@ -6,8 +6,8 @@
 
 use crate::math::legendre;
 use crate::transient::machine::{Arithmetic, Machine, Separate, compiled_for};
-use crate::transient::response::{add, scaled};
 use crate::transient::shapes::Shapes;
+use crate::transient::vector::{add, dot, scaled};
 
 /// Nodes of a short step.
 pub const SHORT: usize = 4;
@@ -128,23 +128,16 @@ impl<const S: usize> Collocation<S> {
             let errors = predicted.iter().zip(values).map(|(a, b)| (a - b).abs());
             errors.fold(0.0_f64, |worst, error| if error > worst { error } else { worst })
         };
-        let (mut steep, mut flat) = ([0.0; LONG + 1], [0.0; LONG + 1]);
-        for (value, row) in [start].iter().chain(values).zip(&self.steep) {
-            add::<{ LONG + 1 }, A>(&mut steep, *value, row);
-        }
-        for (value, row) in values.iter().skip(S - FLAT).zip(&self.flat) {
-            add::<{ LONG + 1 }, A>(&mut flat, *value, row);
-        }
         Predictions {
-            steep,
-            flat,
+            steep: combine::<A>(&self.steep, [start].iter().chain(values)),
+            flat: combine::<A>(&self.flat, values.iter().skip(S - FLAT)),
             use_flat: ratio > 0.0 && wrong(&before.flat) < wrong(&before.steep),
         }
     }
 
     /// The polynomial through the values at the start and at the nodes, about the end.
     pub fn through(&self, start: f64, values: &Nodal<S>) -> Prediction {
-        combine(&self.steep, [&start].into_iter().chain(values))
+        combine::<Separate>(&self.steep, [start].iter().chain(values))
     }
 
     /// Values predicted at the nodes of a step `ratio` times as long as the one the predictions are from.
@@ -192,12 +185,12 @@ fn lagrange<const N: usize>(points: &[f64]) -> Vec<[f64; N]> {
         .collect()
 }
 
-fn combine<'a>(basis: &[Prediction], values: impl Iterator<Item = &'a f64>) -> Prediction {
+/// The polynomial that takes the values, of a basis of those that are 1 at one of their places.
+#[inline(always)]
+fn combine<'a, A: Arithmetic>(basis: &[Prediction], values: impl Iterator<Item = &'a f64>) -> Prediction {
     let mut sum = [0.0; LONG + 1];
-    for (value, row) in values.zip(basis) {
-        for (sum, coefficient) in sum.iter_mut().zip(row) {
-            *sum += value * coefficient;
-        }
+    for (value, polynomial) in values.zip(basis) {
+        add::<{ LONG + 1 }, A>(&mut sum, *value, polynomial);
     }
     sum
 }
@@ -228,10 +221,4 @@ fn by_factorials(mut shape: [f64; MAX_SHAPES]) -> [f64; MAX_SHAPES] {
         factorial *= (m + 1) as f64;
     }
     shape
-}
-
-/// Scalar product of two sets of nodal values.
-#[inline(always)]
-pub fn dot<const S: usize, A: Arithmetic>(a: &Nodal<S>, b: &Nodal<S>) -> f64 {
-    a.iter().zip(b).fold(0.0, |sum, (a, b)| A::mul_add(*a, *b, sum))
 }

@@ -2,8 +2,9 @@
 
 use crate::model::{ModeStates, Model, State};
 use crate::transient::coefficients::{ErrorColumn, Modal, StepCoefficients};
-use crate::transient::collocation::{Collocation, Nodal, dot};
+use crate::transient::collocation::{Collocation, Nodal};
 use crate::transient::machine::{Arithmetic, compiled_for};
+use crate::transient::vector::dot;
 
 /// What drives the contact over a communication step.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,7 +6,7 @@ use nalgebra::Complex;
 
 use crate::excitation::{self, Generator};
 use crate::model::MAX_MODES;
-use crate::transient::response::FreeMotion;
+use crate::transient::free_motion::FreeMotion;
 
 /// Displacements of the oscillators, then their velocities; or displacement and velocity of mode after mode.
 pub type Coordinates = [f64; 2 * MAX_MODES];
