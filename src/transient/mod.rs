@@ -22,6 +22,7 @@ pub mod free_motion;
 pub mod linear;
 pub mod machine;
 pub mod mode_over_step;
+pub mod newton;
 pub mod nodal;
 pub mod oscillator;
 pub mod progress;

@@ -32,3 +32,19 @@ pub fn add<const S: usize, A: Arithmetic>(sum: &mut Nodal<S>, factor: f64, value
 pub fn dot<const S: usize, A: Arithmetic>(a: &Nodal<S>, b: &Nodal<S>) -> f64 {
     a.iter().zip(b).fold(0.0, |sum, (a, b)| A::mul_add(*a, *b, sum))
 }
+
+/// Adds the products of the values.
+#[inline(always)]
+pub fn add_products<const N: usize, A: Arithmetic>(sum: &mut [f64; N], a: &[f64; N], b: &[f64; N]) {
+    for ((sum, a), b) in sum.iter_mut().zip(a).zip(b) {
+        *sum = A::mul_add(*a, *b, *sum);
+    }
+}
+
+/// Adds the columns, each times its load.
+#[inline(always)]
+pub fn add_columns<const S: usize, A: Arithmetic>(values: &mut Nodal<S>, columns: &[Nodal<S>; S], loads: &Nodal<S>) {
+    for (column, load) in columns.iter().zip(loads) {
+        add::<S, A>(values, *load, column);
+    }
+}
