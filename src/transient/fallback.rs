@@ -12,6 +12,7 @@ use crate::transient::advance::{Advice, Integration};
 use crate::transient::collocation::SHORT;
 use crate::transient::nodal::{Slopes, Source, Trial};
 use crate::transient::progress::Target;
+use crate::transient::vector::end;
 use crate::transient::workspace::Room;
 
 /// Steps given up in succession before one has to do.
@@ -40,10 +41,9 @@ impl Integration<'_> {
     pub(super) fn fall_back(&mut self, target: &Target) -> Result<Advice, StepError> {
         let trial = self
             .constant_step(target)
-            .filter(|trial| trial.indentation.is_finite() && trial.rate.is_finite())
             .ok_or_else(|| self.error(StepErrorCause::NotFinite))?;
-        let mean = self.model.preload.force + trial.forces.last().copied().unwrap_or_default();
-        self.take(&trial, target);
+        let mean = self.model.preload.force + end(&trial.forces);
+        self.take(&trial, target)?;
         let d = self.model.preload.indentation + trial.indentation;
         let mut length = target.length;
         let closed = self.model.engagement(trial.indentation, trial.rate) > 0.0;

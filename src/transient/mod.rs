@@ -31,6 +31,7 @@ pub mod response;
 pub mod rest;
 pub mod secular;
 pub mod shapes;
+pub mod switching;
 pub mod touchdown;
 pub mod vector;
 pub mod workspace;

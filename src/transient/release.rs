@@ -1,8 +1,9 @@
 //! The contact opens: the instant within a step at which the force reaches zero.
 
 use crate::math::roots;
-use crate::transient::advance::{Cut, Integration};
+use crate::transient::advance::Integration;
 use crate::transient::nodal::Trial;
+use crate::transient::switching::Cut;
 use crate::transient::workspace::{Room, Workspace};
 
 /// Points at which the force polynomial is looked at where it comes near zero.

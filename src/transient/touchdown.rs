@@ -7,9 +7,10 @@
 
 use crate::math::roots;
 use crate::model::Mode;
-use crate::transient::advance::{Cut, Integration};
+use crate::transient::advance::Integration;
 use crate::transient::collocation::LONG;
 use crate::transient::nodal::Trial;
+use crate::transient::switching::Cut;
 use crate::transient::workspace::{Room, Workspace};
 
 /// Halvings before an interval counts as an instant.
