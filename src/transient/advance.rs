@@ -16,14 +16,15 @@ const BUDGET: u64 = 10_000_000;
 const BUDGET_RATE: f64 = 1e7;
 
 /// Share of the tolerance that one step may use up. Found by comparing errors with tolerances over scenes
-/// (`tests/calibration.rs`): a blow makes the errors of the motion before it a hundred times larger, and without damping errors
-/// add up.
+/// (`tests/calibration.rs`): a blow makes the errors of the motion before it a hundred times larger, and without
+/// damping errors add up.
 const SHARE: f64 = 0.004;
 
 /// Error of the contact force within a step, per force that its polynomial misses at the start.
 const INSIDE: f64 = 0.3;
 
-/// Largest difference that Newton's method leaves between a nodal force and that of the law, in errors allowed in a step.
+/// Largest difference that Newton's method leaves between a nodal force and that of the law, in errors allowed in a
+/// step.
 const NEWTON: f64 = 0.2;
 
 /// Growth from step to step that shows the steps are still finding their length.
@@ -90,8 +91,8 @@ pub(super) enum Steps<'a> {
         /// s.
         size: f64,
     },
-    /// By one step as long as the error allows, also within it where it goes beyond the instant `until` (s); what the tip
-    /// does in it goes to `span`.
+    /// By one step as long as the error allows, also within it where it goes beyond the instant `until` (s); what the
+    /// tip does in it goes to `span`.
     Own {
         /// s.
         until: f64,
@@ -269,7 +270,7 @@ impl Integration<'_> {
             0.0
         };
         let ratio = (trial.error / self.allowed.max(trial.rounding)).max(trial.missed * inside);
-        if ratio > 1.0 && self.is_rounding(trial) {
+        if ratio > 1.0 && self.model.is_rounding(self.state, trial) {
             0.0
         } else {
             ratio
@@ -393,8 +394,8 @@ impl Integration<'_> {
     }
 }
 
-/// How many times as long a step could be that is wrong by `ratio` errors allowed: the error estimate grows with the power
-/// `S + 1` of the length.
+/// How many times as long a step could be that is wrong by `ratio` errors allowed: the error estimate grows with the
+/// power `S + 1` of the length.
 fn reach<const S: usize>(ratio: f64) -> f64 {
     ratio.powf(-1.0 / (S as f64 + 1.0))
 }

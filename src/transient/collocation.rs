@@ -1,8 +1,8 @@
 //! The polynomial in time that stands for contact force and base acceleration within a step.
 //!
-//! A step has `S` Radau nodes, the last at its end, so that the contact force there obeys the contact law exactly, however
-//! stiff its damping is (Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.5): eight for long steps,
-//! four where a short one is wanted (a communication step of a microsecond, the time just after a blow).
+//! A step has `S` Radau nodes, the last at its end, so that the contact force there obeys the contact law exactly,
+//! however stiff its damping is (Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.5): eight for
+//! long steps, four where a short one is wanted (a communication step of a microsecond, the time just after a blow).
 
 use crate::math::legendre;
 use crate::transient::machine::{Arithmetic, Machine, Separate, compiled_for};
@@ -25,8 +25,8 @@ const FLAT: usize = 4;
 /// A polynomial through the nodes of a step, by its coefficients about the end: it predicts the next step.
 pub type Prediction = [f64; LONG + 1];
 
-/// Two predictions of the force over the next step, one through all nodes and one through the last few, and which of the
-/// two was the better one last time.
+/// Two predictions of the force over the next step, one through all nodes and one through the last few, and which of
+/// the two was the better one last time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Predictions {
     steep: Prediction,
@@ -39,15 +39,15 @@ pub struct Predictions {
 pub struct Collocation<const S: usize> {
     /// Nodes on [0, 1], ascending.
     pub nodes: Nodal<S>,
-    /// The load shapes: the Lagrange polynomials of the nodes, and the polynomial of degree S that vanishes at the nodes and
-    /// is 1 at the start.
+    /// The load shapes: the Lagrange polynomials of the nodes, and the polynomial of degree S that vanishes at the
+    /// nodes and is 1 at the start.
     pub shapes: Shapes<S>,
     /// Lagrange polynomials at the start of the step.
     pub at_start: Nodal<S>,
     /// Mean of the Lagrange polynomials over the step: the weights of the Radau quadrature.
     weights: Nodal<S>,
-    /// Row by row the coefficients of y^0, y^1, ..., `y = x - 1`, of the polynomial that is 1 at the start (the first row) or
-    /// at one of the nodes, and 0 at the others.
+    /// Row by row the coefficients of y^0, y^1, ..., `y = x - 1`, of the polynomial that is 1 at the start (the first
+    /// row) or at one of the nodes, and 0 at the others.
     steep: Vec<Prediction>,
     /// The same with the last nodes alone, which long extrapolation suits better.
     flat: Vec<Prediction>,
@@ -108,8 +108,8 @@ impl<const S: usize> Collocation<S> {
         dot::<S, Separate>(values, &self.weights)
     }
 
-    /// The predictions from the values at the start and at the nodes of a step, after those that led to it, which held for a
-    /// step `ratio` times as long as the one before.
+    /// The predictions from the values at the start and at the nodes of a step, after those that led to it, which held
+    /// for a step `ratio` times as long as the one before.
     pub fn predictions(
         &self,
         machine: Machine,

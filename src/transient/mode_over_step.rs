@@ -1,10 +1,10 @@
 //! Exact response of a mode `q'' + c q' + omega^2 q = r(t)` over a step to its initial state and to a load that is a
 //! polynomial in time, at any step length and any damping.
 //!
-//! With times in steps the response to a load shape is a combination of what depends on the shape alone: where the mode is
-//! slow against the step, of the shape's repeated integrals (the power series of the impulse response integrated by parts);
-//! where it is fast, of the shape's derivatives (the motion that follows the load) and a free motion that takes away what
-//! this has at the start. A strongly overdamped mode with one fast and one slow root is one of each.
+//! With times in steps the response to a load shape is a combination of what depends on the shape alone: where the mode
+//! is slow against the step, of the shape's repeated integrals (the power series of the impulse response integrated by
+//! parts); where it is fast, of the shape's derivatives (the motion that follows the load) and a free motion that takes
+//! away what this has at the start. A strongly overdamped mode with one fast and one slow root is one of each.
 
 use crate::transient::collocation::{MAX_SHAPES, Nodal};
 use crate::transient::free_motion::FreeMotion;
@@ -257,7 +257,8 @@ mod tests {
     use crate::transient::response::Sum;
     use crate::transient::shapes::Table;
 
-    /// The response at `x` to a load shape by quadrature of the impulse response over many panels, in units of the step.
+    /// The response at `x` to a load shape by quadrature of the impulse response over many panels, in units of the
+    /// step.
     fn by_quadrature(w: f64, c: f64, h: f64, x: f64, load: impl Fn(f64) -> f64) -> (f64, f64) {
         let scale = w.sqrt().max(c);
         let panels = (1..20_000).find(|panels| f64::from(*panels) >= scale * h * x).unwrap();
@@ -307,9 +308,9 @@ mod tests {
                 let sizes = (size(|pair| pair.0), size(|pair| pair.1));
                 for (i, exact) in exact.iter().enumerate() {
                     for (j, exact) in exact.iter().enumerate() {
-                        // The digits that the sums lose are relative to the largest response of the step: four of sixteen
-                        // where a pair of fast roots begins, 6.7 per step, against the highest derivatives of eight
-                        // nodes, 1e8 and more. Those of the error estimate's shape are ten times as large.
+                        // The digits that the sums lose are relative to the largest response of the step: four of
+                        // sixteen where a pair of fast roots begins, 6.7 per step, against the highest derivatives of
+                        // eight nodes, 1e8 and more. Those of the error estimate's shape are ten times as large.
                         let tolerance = match (S, j < S) {
                             (8, true) => 2e-12,
                             (8, false) => 1e-11,

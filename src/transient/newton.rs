@@ -10,8 +10,8 @@ use crate::transient::vector::{add_columns, end};
 /// Rounding of the motion at the nodes, relative to what it would be without contact force.
 const MOTION_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// A pivot this small would multiply the rounding by its inverse in each elimination, and one beside entries larger than its
-/// inverse.
+/// A pivot this small would multiply the rounding by its inverse in each elimination, and one beside entries larger
+/// than its inverse.
 const SMALL_PIVOT: f64 = 0.1;
 
 /// Newton iterations before a step is judged too long.
@@ -117,8 +117,8 @@ impl Model {
                 *residual -= law.force - self.preload.force;
                 (*stiffness, *damping) = (law.stiffness, law.damping);
             }
-            // The motion has to obey the law, not only the nodal forces to be right: on a stiff contact they hardly depend
-            // on it. What rounding leaves of the motion is all that can be asked.
+            // The motion has to obey the law, not only the nodal forces to be right: on a stiff contact they hardly
+            // depend on it. What rounding leaves of the motion is all that can be asked.
             let rounding = MOTION_ROUNDING * (greatest(&stiffness) * farthest + greatest(&damping) * fastest);
             if let Some((force_error, acceleration_error)) =
                 by_errors.filter(|_| greatest(&residual) <= newton.max(rounding))
@@ -154,9 +154,9 @@ impl Model {
     }
 }
 
-/// Solves `(1 + A) x = b` for several `b`, `A` column by column, by Gauss-Jordan elimination, whose inner loops run down
-/// columns; rows are exchanged only where a pivot is small or the contact is stiff against the step. `None` where the matrix
-/// is singular.
+/// Solves `(1 + A) x = b` for several `b`, `A` column by column, by Gauss-Jordan elimination, whose inner loops run
+/// down columns; rows are exchanged only where a pivot is small or the contact is stiff against the step. `None` where
+/// the matrix is singular.
 #[expect(
     clippy::indexing_slicing,
     reason = "every index runs over the fixed size of the arrays"

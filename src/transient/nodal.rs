@@ -1,4 +1,5 @@
-//! One step on trial: the nodal contact forces ([`super::newton`]), the motion they give, and an estimate of their error.
+//! One step on trial: the nodal contact forces ([`super::newton`]), the motion they give, and an estimate of their
+//! error.
 
 use crate::model::{ModeStates, Model, State};
 use crate::transient::coefficients::{Modal, StepCoefficients};
@@ -19,8 +20,8 @@ pub struct Drive {
 /// Where the contact force of a step comes from.
 #[derive(Clone, Copy, Debug)]
 pub enum Source {
-    /// The law at the nodes while the contact is closed, with this as the largest last correction of Newton's method, N;
-    /// nothing while it is open.
+    /// The law at the nodes while the contact is closed, with this as the largest last correction of Newton's method,
+    /// N; nothing while it is open.
     Law(f64),
     /// This throughout, as deviation from the preload force, N.
     Constant(f64),
@@ -67,7 +68,11 @@ pub struct Slopes {
 /// Rounding of a contact force, relative to it.
 const ROUNDING: f64 = 1e-13;
 
-/// Mean over a step of what the nodal polynomial misses of the square root of time from its start, over what it misses at the start.
+/// Roundings in a sum over the modes.
+const ROUNDINGS: f64 = 4.0;
+
+/// Mean over a step of what the nodal polynomial misses of the square root of time from its start, over what it misses
+/// at the start.
 const KINKED: f64 = 0.015;
 
 /// Steps from a kink beyond which it is not felt.
@@ -165,14 +170,14 @@ impl Model {
 
     /// Estimate of what a step adds to the error of the contact force, N.
     ///
-    /// At the nodes the polynomials are right; what they miss at the start tells how much of the shape that vanishes at the
-    /// nodes they lack. What that does to the nodal forces is known to first order ([`Solution`]). Modes slow against the step
-    /// hardly feel it at the end (the shape is orthogonal to polynomials of low degree); they see an error of twice the order,
-    /// about three times the square of what is missed (an impact of a free mass on a Hertz contact). Just after a touch or a
-    /// jump the force is no polynomial of any degree, and they see more.
+    /// At the nodes the polynomials are right; what they miss at the start tells how much of the shape that vanishes at
+    /// the nodes they lack. What that does to the nodal forces is known to first order ([`Solution`]). Modes slow
+    /// against the step hardly feel it at the end (the shape is orthogonal to polynomials of low degree); they see an
+    /// error of twice the order, about three times the square of what is missed (an impact of a free mass on a Hertz
+    /// contact). Just after a touch or a jump the force is no polynomial of any degree, and they see more.
     ///
-    /// `missed` (N) and `missed_acceleration` (m/s2) are what the polynomials miss at the start, `largest` (N) is the largest
-    /// nodal force.
+    /// `missed` (N) and `missed_acceleration` (m/s2) are what the polynomials miss at the start, `largest` (N) is the
+    /// largest nodal force.
     #[inline(always)]
     fn error<const S: usize>(
         &self,
@@ -203,12 +208,26 @@ impl Model {
             self.law.tangent_stiffness(self.force_scale) * wrong
         }
     }
+
+    /// Whether the error of a step from `state` is what the rounding of the sums over the modes makes of the contact
+    /// force. After a blow the velocities of the modes are large and their sum at the tip is small.
+    pub(super) fn is_rounding<const S: usize>(&self, state: &State, trial: &Trial<S>) -> bool {
+        let (mut displacement, mut velocity) = (0.0, 0.0);
+        for (mode, at) in self.modes.iter().zip(&state.modes) {
+            displacement += (mode.tip * at.q).abs();
+            velocity += (mode.tip * at.v).abs();
+        }
+        // The force at the first node reacts upon itself over the time up to it alone, some 1 / S^2 of the step.
+        let reaction = 1.0 + trial.slopes.gain / (S * S) as f64;
+        let Slopes { stiffness, damping, .. } = trial.slopes;
+        trial.error <= ROUNDINGS * f64::EPSILON * (stiffness * displacement + damping * velocity) / reaction
+    }
 }
 
-/// How much less of a root of time its quadrature with `S` nodes misses, over what the nodal polynomial misses, where its
-/// branch point lies `distance` steps before the step: the polynomial converges with the power `S` of the size of the ellipse in
-/// which the root is analytic, the quadrature with the power `2 S - 1` (L. N. Trefethen, Approximation Theory and Approximation
-/// Practice, 2013, chapters 8 and 19).
+/// How much less of a root of time its quadrature with `S` nodes misses, over what the nodal polynomial misses, where
+/// its branch point lies `distance` steps before the step: the polynomial converges with the power `S` of the size of
+/// the ellipse in which the root is analytic, the quadrature with the power `2 S - 1` (L. N. Trefethen, Approximation
+/// Theory and Approximation Practice, 2013, chapters 8 and 19).
 fn analytic<const S: usize>(distance: f64) -> f64 {
     let ellipse = 1.0 + 2.0 * distance + 2.0 * (distance * (distance + 1.0)).sqrt();
     (1..S).fold(1.0, |product, _| product / ellipse)

@@ -1,6 +1,6 @@
-//! What modes make of a load whose course over a step is a combination of the load shapes: factors of the shapes' integrals
-//! and derivatives, and free motions that fade ([`super::mode_over_step`]). The factors of many modes add up before they meet
-//! the shapes.
+//! What modes make of a load whose course over a step is a combination of the load shapes: factors of the shapes'
+//! integrals and derivatives, and free motions that fade ([`super::mode_over_step`]). The factors of many modes add up
+//! before they meet the shapes.
 
 use crate::transient::collocation::{MAX_SHAPES, Nodal};
 use crate::transient::machine::Arithmetic;

@@ -7,12 +7,13 @@ use crate::transient::nodal::Drive;
 const UNREST: f64 = 1e-2;
 
 impl Model {
-    /// The instant (s), `end` at the latest, until which the contact force stays within a hundredth of `tolerance` (N) of what it
-    /// is, where it does: under a constant base acceleration, and with the fixed contact at rest.
+    /// The instant (s), `end` at the latest, until which the contact force stays within a hundredth of `tolerance` (N)
+    /// of what it is, where it does: under a constant base acceleration, and with the fixed contact at rest.
     ///
     /// The potential energy is convex, and each mode has at least its own stiffness: a net load `r` on it is at most
-    /// `r^2 / (2 omega^2)` above the equilibrium. With the kinetic energy this bounds the energy left, which never grows; and a
-    /// force that differs by `e` from that of the equilibrium takes at least `e^2 / (2 k)` of it, `k` the greatest stiffness on the way.
+    /// `r^2 / (2 omega^2)` above the equilibrium. With the kinetic energy this bounds the energy left, which never
+    /// grows; and a force that differs by `e` from that of the equilibrium takes at least `e^2 / (2 k)` of it, `k` the
+    /// greatest stiffness on the way.
     pub(super) fn rests_until(&self, state: &State, drive: &Drive, tolerance: f64, end: f64) -> Option<f64> {
         if drive.support_rate != 0.0 || self.generator.is_active(state.time) {
             return None;

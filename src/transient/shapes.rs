@@ -1,5 +1,5 @@
-//! Integrals and derivatives of the load shapes of a step: the Lagrange polynomials of its nodes, and the polynomial of one
-//! degree more that vanishes at the nodes and is 1 at the start, which the error estimate uses.
+//! Integrals and derivatives of the load shapes of a step: the Lagrange polynomials of its nodes, and the polynomial of
+//! one degree more that vanishes at the nodes and is 1 at the start, which the error estimate uses.
 
 use crate::math::legendre;
 use crate::transient::collocation::{MAX_SHAPES, Nodal};

@@ -26,8 +26,8 @@ impl Integration<'_> {
         }
     }
 
-    /// Where the step of `length` seconds has to end because the contact switches, which it first looks like after the part
-    /// `suspect` of the step; `None` where it does not switch.
+    /// Where the step of `length` seconds has to end because the contact switches, which it first looks like after the
+    /// part `suspect` of the step; `None` where it does not switch.
     pub(super) fn cut<const S: usize>(&mut self, suspect: f64, trial: &Trial<S>, length: f64) -> Option<Cut>
     where
         Workspace: Room<S>,
@@ -39,8 +39,8 @@ impl Integration<'_> {
         }
     }
 
-    /// The step that ends at the cut, taken or rejected, in place of one whose length wanted was `wanted` (s) and which may
-    /// have grown by `growth`.
+    /// The step that ends at the cut, taken or rejected, in place of one whose length wanted was `wanted` (s) and which
+    /// may have grown by `growth`.
     pub(super) fn end_at<const S: usize>(&mut self, cut: &Cut, growth: f64, wanted: f64) -> Result<Advice, StepError>
     where
         Workspace: Room<S>,
@@ -111,8 +111,9 @@ impl Integration<'_> {
         self.state.long_step = self.state.long_step.min(next);
     }
 
-    /// First step after the surfaces meet, s. The dissipative force starts as the square root of time, which no polynomial
-    /// follows: the step is chosen so short that what it misses moves the contact by less than a step's share of the error.
+    /// First step after the surfaces meet, s. The dissipative force starts as the square root of time, which no
+    /// polynomial follows: the step is chosen so short that what it misses moves the contact by less than a step's
+    /// share of the error.
     fn first_closed_step(&self) -> f64 {
         let Self { model, state, .. } = self;
         let d = model.preload.indentation + state.indentation;

@@ -1,4 +1,5 @@
-//! Arithmetic on the values at the nodes of a step. It is inlined into the kernel of a step ([`super::machine`]).
+//! Arithmetic on the values at the nodes of a step, inlined into whatever is compiled for the processor
+//! ([`super::machine`]).
 
 use crate::transient::collocation::Nodal;
 use crate::transient::machine::Arithmetic;
