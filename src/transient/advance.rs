@@ -188,17 +188,12 @@ impl Integration<'_> {
     /// One integration step, taken or rejected: with few nodes where they reach far enough, else with many.
     fn advance(&mut self) -> Result<(), StepError> {
         let left = self.progress.left();
-        let State {
-            short_step,
-            time,
-            last_closing,
-            ..
-        } = *self.state;
+        let short_step = self.state.short_step;
         // Just after a blow the force is no polynomial of high degree.
-        let smooth = if last_closing < 0.0 {
+        let smooth = if self.state.last_closing < 0.0 {
             f64::INFINITY
         } else {
-            time - last_closing
+            self.state.time - self.state.last_closing
         };
         let long_step = self.state.long_step.min(smooth);
         if self.tolerance <= LONG_FLOOR * self.model.force_scale || left <= short_step || long_step < WORTH * short_step
@@ -230,18 +225,25 @@ impl Integration<'_> {
         let attempt = self.attempt::<S>(&target);
         let ratio = attempt
             .as_ref()
-            .map_or(f64::INFINITY, |trial| self.ratio(trial, &target));
+            .map_or(f64::INFINITY, |trial| self.relative_error(trial, &target));
         let Some(trial) = attempt.filter(|_| self.is_acceptable(ratio, &target)) else {
+            // The law asks for what no polynomial follows: a constant force gets on.
             if self.state.closed && (self.is_shortest(&target) || self.refusals >= REFUSALS) {
                 return self.fall_back(&target);
             }
-            let shrink = if ratio.is_nan() { 0.0 } else { 0.8 * reach::<S>(ratio) };
+            // Without an error estimate by the most, as nothing is known.
+            let shrink = if ratio.is_finite() {
+                0.8 * reach::<S>(ratio)
+            } else {
+                0.0
+            };
             return Ok(self.reject(target.length * shrink.clamp(0.1, 0.5)));
         };
+        // The error estimate may miss what the energy shows.
         if !self.is_shortest(&target) && self.breaks_account(&trial, target.length) {
             return Ok(self.reject(0.5 * target.length));
         }
-        // An event may leave little of the step: the next one is judged by the whole.
+        // By the whole step, also where an event cuts it short.
         let growth = if ratio < 1e-7 {
             64.0
         } else {
@@ -260,8 +262,9 @@ impl Integration<'_> {
         Ok(Advice::after(target.length, wanted, growth))
     }
 
-    /// Error of a trial to the target, in errors allowed; none where it is rounding.
-    pub(super) fn ratio<const S: usize>(&self, trial: &Trial<S>, target: &Target) -> f64 {
+    /// Estimated error of a trial to the target, in errors allowed; none where it is rounding, which no shorter step
+    /// makes smaller.
+    pub(super) fn relative_error<const S: usize>(&self, trial: &Trial<S>, target: &Target) -> f64 {
         let looked_into = self.span.as_ref().is_some_and(|(until, _)| *until < target.time);
         // Short steps may be wrong inside: `Span::good` then keeps them from being looked into.
         let inside = if looked_into && S != SHORT {

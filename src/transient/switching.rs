@@ -26,8 +26,8 @@ impl Integration<'_> {
         }
     }
 
-    /// Where the step of `length` seconds has to end because the contact switches, which it first looks like after the
-    /// part `suspect` of the step; `None` where it does not switch.
+    /// Where the step of `length` seconds has to end, which looks suspect after the part `suspect` of it; `None` where
+    /// it may go on to its end.
     pub(super) fn cut<const S: usize>(&mut self, suspect: f64, trial: &Trial<S>, length: f64) -> Option<Cut>
     where
         Workspace: Room<S>,
@@ -52,7 +52,8 @@ impl Integration<'_> {
         }
         let target = self.progress.cut(cut.length, self.state.time + cut.length);
         let attempt = self.attempt::<S>(&target);
-        let Some(trial) = attempt.filter(|trial| self.is_acceptable(self.ratio(trial, &target), &target)) else {
+        let Some(trial) = attempt.filter(|trial| self.is_acceptable(self.relative_error(trial, &target), &target))
+        else {
             // What the law does close to the event may be too much for one step up to it.
             if self.is_shortest(&target) {
                 return self.fall_back(&target);
