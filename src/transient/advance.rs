@@ -7,6 +7,7 @@ use crate::transient::dense::Span;
 use crate::transient::fallback::REFUSALS;
 use crate::transient::nodal::{Drive, Source, Trial};
 use crate::transient::progress::{Progress, Target};
+use crate::transient::vector;
 use crate::transient::workspace::{Room, Workspace};
 
 /// Integration steps a communication step may take, and further ones per second of it.
@@ -15,14 +16,15 @@ const BUDGET: u64 = 10_000_000;
 const BUDGET_RATE: f64 = 1e7;
 
 /// Share of the tolerance that one step may use up. Found by comparing errors with tolerances over scenes
-/// (`tests/calibration.rs`): a blow makes the errors of the motion before it a hundred times larger, and without damping errors
-/// add up.
+/// (`tests/calibration.rs`): a blow makes the errors of the motion before it a hundred times larger, and without
+/// damping errors add up.
 const SHARE: f64 = 0.004;
 
 /// Error of the contact force within a step, per force that its polynomial misses at the start.
 const INSIDE: f64 = 0.3;
 
-/// Largest difference that Newton's method leaves between a nodal force and that of the law, in errors allowed in a step.
+/// Largest difference that Newton's method leaves between a nodal force and that of the law, in errors allowed in a
+/// step.
 const NEWTON: f64 = 0.2;
 
 /// Growth from step to step that shows the steps are still finding their length.
@@ -66,12 +68,17 @@ pub(super) struct Advice {
     pub(super) length: f64,
 }
 
-/// A step that ends before it was meant to.
-pub(super) struct Cut {
-    /// Its length, s.
-    pub(super) length: f64,
-    /// Whether the contact opens or closes at its end.
-    pub(super) switches: bool,
+impl Advice {
+    /// After a step of `length` seconds taken, where `wanted` seconds were wanted.
+    pub(super) fn after(length: f64, wanted: f64, growth: f64) -> Self {
+        let next = growth.min(4.0) * length;
+        Self {
+            taken: true,
+            growth,
+            // A step cut short by the grid says nothing against the length wanted before.
+            length: if length < 0.9 * wanted { wanted.max(next) } else { next },
+        }
+    }
 }
 
 /// How far to advance.
@@ -84,8 +91,8 @@ pub(super) enum Steps<'a> {
         /// s.
         size: f64,
     },
-    /// By one step as long as the error allows, also within it where it goes beyond the instant `until` (s); what the tip
-    /// does in it goes to `span`.
+    /// By one step as long as the error allows, also within it where it goes beyond the instant `until` (s); what the
+    /// tip does in it goes to `span`.
     Own {
         /// s.
         until: f64,
@@ -98,7 +105,7 @@ impl Model {
     /// Advances the state.
     ///
     /// # Errors
-    /// A [`StepError`]; the state is then unchanged.
+    /// A [`StepError`]; the state is then of no use.
     pub(super) fn advance(
         &self,
         state: &mut State,
@@ -106,7 +113,6 @@ impl Model {
         drive: Drive,
         steps: Steps,
     ) -> Result<(), StepError> {
-        let saved = *state;
         let tolerance = self.scene.solver.effective_tolerance() * self.force_scale;
         let (progress, span) = match steps {
             Steps::Exactly { time, size } => {
@@ -122,7 +128,7 @@ impl Model {
                 (Progress::free(state.time, size), Some((until, span)))
             }
         };
-        let result = Integration {
+        Integration {
             model: self,
             state,
             workspace,
@@ -134,11 +140,7 @@ impl Model {
             refusals: 0,
             conserves: self.conserves(),
         }
-        .run();
-        if result.is_err() {
-            *state = saved;
-        }
-        result
+        .run()
     }
 }
 
@@ -181,17 +183,12 @@ impl Integration<'_> {
     /// One integration step, taken or rejected: with few nodes where they reach far enough, else with many.
     fn advance(&mut self) -> Result<(), StepError> {
         let left = self.progress.left();
-        let State {
-            short_step,
-            time,
-            last_closing,
-            ..
-        } = *self.state;
+        let short_step = self.state.short_step;
         // Just after a blow the force is no polynomial of high degree.
-        let smooth = if last_closing < 0.0 {
+        let smooth = if self.state.last_closing < 0.0 {
             f64::INFINITY
         } else {
-            time - last_closing
+            self.state.time - self.state.last_closing
         };
         let long_step = self.state.long_step.min(smooth);
         if self.tolerance <= LONG_FLOOR * self.model.force_scale || left <= short_step || long_step < WORTH * short_step
@@ -217,113 +214,86 @@ impl Integration<'_> {
     where
         Workspace: Room<S>,
     {
-        let shortest = 8.0 * self.resolution();
-        let wanted = wanted.min(self.model.longest_step).max(shortest);
+        let wanted = wanted.min(self.model.longest_step).max(self.shortest());
         let corner = self.model.generator.next_break(self.state.time);
-        let mut target = self.progress.target(wanted, self.state.time, corner);
-
+        let target = self.progress.target(wanted, self.state.time, corner);
         let attempt = self.attempt::<S>(&target);
-        let allowed = self.allowed;
-        // Short steps may be wrong inside; then they are not looked into.
-        let looked_into = self.span.as_ref().is_some_and(|(until, _)| *until < target.time);
-        let inside = if looked_into && S != SHORT {
-            INSIDE / self.tolerance
-        } else {
-            0.0
-        };
-        let ratio_of = |trial: &Trial<S>| (trial.error / allowed.max(trial.rounding)).max(trial.missed * inside);
-        let mut ratio = attempt.as_ref().map_or(f64::INFINITY, ratio_of);
-        // The error estimate grows with this power of the step length.
-        let reach = |ratio: f64| ratio.powf(-1.0 / (S as f64 + 1.0));
-        if ratio > 1.0 && attempt.as_ref().is_some_and(|trial| self.is_rounding(trial)) {
-            ratio = 0.0;
-        }
-        let acceptable = |ratio: f64, length: f64| ratio <= 1.0 || length <= 2.0 * shortest && ratio.is_finite();
-        if let Some(trial) = attempt.as_ref().filter(|_| ratio <= 1.0)
-            && target.length > 2.0 * shortest
-            && self.breaks_account(trial, target.length)
-        {
-            return Ok(self.reject(0.5 * target.length));
-        }
-        let Some(mut trial) = attempt.filter(|_| acceptable(ratio, target.length)) else {
-            if self.state.closed && (target.length <= 2.0 * shortest || self.refusals >= REFUSALS) {
+        let ratio = attempt
+            .as_ref()
+            .map_or(f64::INFINITY, |trial| self.relative_error(trial, &target));
+        let Some(trial) = attempt.filter(|_| self.is_acceptable(ratio, &target)) else {
+            // The law asks for what no polynomial follows: a constant force gets on.
+            if self.state.closed && (self.is_shortest(&target) || self.refusals >= REFUSALS) {
                 return self.fall_back(&target);
             }
-            let shrink = if ratio.is_nan() { 0.1 } else { 0.8 * reach(ratio) };
+            // Without an error estimate by the most, as nothing is known.
+            let shrink = if ratio.is_finite() {
+                0.8 * reach::<S>(ratio)
+            } else {
+                0.0
+            };
             return Ok(self.reject(target.length * shrink.clamp(0.1, 0.5)));
         };
-
-        let mut switches = false;
+        // The error estimate may miss what the energy shows.
+        if !self.is_shortest(&target) && self.breaks_account(&trial, target.length) {
+            return Ok(self.reject(0.5 * target.length));
+        }
+        // By the whole step, also where an event cuts it short.
+        let growth = if ratio < 1e-7 {
+            64.0
+        } else {
+            (0.9 * reach::<S>(ratio)).clamp(0.5, 64.0)
+        };
         if let Some(part) = self.first_suspect(&trial, target.length) {
             if S != SHORT {
                 // Events are located in short steps; long ones end before.
                 return Ok(self.reject(0.9 * part * target.length));
             }
-            let cut = if self.state.closed {
-                self.release::<S>(part * target.length, target.length)
-            } else {
-                self.touchdown(&trial, target.length)
-            };
-            if let Some(cut) = cut {
-                if cut.length <= 0.0 {
-                    let length = self.switch(!self.state.closed);
-                    return Ok(self.reject(length));
-                }
-                target = self.progress.cut(cut.length, self.state.time + cut.length);
-                switches = cut.switches;
-                // What the law does close to the event may be too much for one step up to it.
-                match self.attempt::<S>(&target) {
-                    Some(shorter) if acceptable(ratio_of(&shorter), target.length) || self.is_rounding(&shorter) => {
-                        trial = shorter;
-                    }
-                    _ if target.length <= 2.0 * shortest => return self.fall_back(&target),
-                    _ => return Ok(self.reject(0.5 * cut.length)),
-                }
+            if let Some(cut) = self.cut(part, &trial, target.length) {
+                return self.end_at::<S>(&cut, growth, wanted);
             }
         }
-        if !(trial.indentation.is_finite() && trial.rate.is_finite()) {
-            return Err(self.error(StepErrorCause::NotFinite));
-        }
-        self.take(&trial, &target);
-        if switches {
-            return Ok(Advice {
-                taken: true,
-                growth: f64::INFINITY,
-                length: self.switch(!self.state.closed),
-            });
-        }
-        let growth = if ratio < 1e-7 {
-            64.0
-        } else {
-            (0.9 * reach(ratio)).clamp(0.5, 64.0)
-        };
-        let length = growth.min(4.0) * target.length;
-        // A step cut short by the grid says nothing against the length wanted before.
-        Ok(Advice {
-            taken: true,
-            growth,
-            length: if target.length < 0.9 * wanted {
-                wanted.max(length)
-            } else {
-                length
-            },
-        })
+        self.take(&trial, &target)?;
+        Ok(Advice::after(target.length, wanted, growth))
     }
 
-    /// Where in the step (in steps) the contact first looks as if it switched.
-    fn first_suspect<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> Option<f64>
-    where
-        Workspace: Room<S>,
-    {
-        if self.state.closed {
-            self.first_open(trial)
+    /// Estimated error of a trial to the target, in errors allowed; none where it is rounding, which no shorter step
+    /// makes smaller.
+    pub(super) fn relative_error<const S: usize>(&self, trial: &Trial<S>, target: &Target) -> f64 {
+        let looked_into = self.span.as_ref().is_some_and(|(until, _)| *until < target.time);
+        // Short steps may be wrong inside: `Span::good` then keeps them from being looked into.
+        let inside = if looked_into && S != SHORT {
+            INSIDE / self.tolerance
         } else {
-            self.first_near(trial, length)
+            0.0
+        };
+        let (ratio, inside) = (trial.error / self.allowed.max(trial.rounding), trial.missed * inside);
+        // Not `max`, which would hide what is not a number.
+        let ratio = if ratio < inside { inside } else { ratio };
+        if ratio > 1.0 && self.model.is_rounding(self.state, trial) {
+            0.0
+        } else {
+            ratio
         }
+    }
+
+    /// Whether a step to the target may have this error: what is allowed, and any where it cannot be shorter.
+    pub(super) fn is_acceptable(&self, ratio: f64, target: &Target) -> bool {
+        ratio <= 1.0 || self.is_shortest(target) && ratio.is_finite()
+    }
+
+    /// Whether the step is as short as steps get: half of it would be too short.
+    pub(super) fn is_shortest(&self, target: &Target) -> bool {
+        target.length <= 2.0 * self.shortest()
+    }
+
+    /// Length below which no step is wanted, s.
+    fn shortest(&self) -> f64 {
+        8.0 * self.resolution()
     }
 
     /// The step to the target, with the modes at its end kept for [`Integration::take`].
-    fn attempt<const S: usize>(&mut self, target: &Target) -> Option<Trial<S>>
+    pub(super) fn attempt<const S: usize>(&mut self, target: &Target) -> Option<Trial<S>>
     where
         Workspace: Room<S>,
     {
@@ -365,7 +335,7 @@ impl Integration<'_> {
     }
 
     /// Gives up a step; the next one is to have the length.
-    fn reject(&mut self, length: f64) -> Advice {
+    pub(super) fn reject(&mut self, length: f64) -> Advice {
         self.state.rejected_steps += 1;
         self.refusals += 1;
         Advice {
@@ -375,11 +345,14 @@ impl Integration<'_> {
         }
     }
 
-    /// The trial becomes the state.
-    pub(super) fn take<const S: usize>(&mut self, trial: &Trial<S>, target: &Target)
+    /// The trial becomes the state, if it is finite.
+    pub(super) fn take<const S: usize>(&mut self, trial: &Trial<S>, target: &Target) -> Result<(), StepError>
     where
         Workspace: Room<S>,
     {
+        if !(trial.indentation.is_finite() && trial.rate.is_finite()) {
+            return Err(self.error(StepErrorCause::NotFinite));
+        }
         self.enter(trial, target.length);
         let Self { model, state, .. } = self;
         let (cache, end, _) = Room::<S>::parts(self.workspace);
@@ -408,7 +381,7 @@ impl Integration<'_> {
                 .collocation()
                 .predictions(model.machine, start, &trial.forces, &state.predictions, ratio);
         if state.closed {
-            let force = model.preload.force + trial.forces.last().copied().unwrap_or_default();
+            let force = model.preload.force + vector::end(&trial.forces);
             state.force = if model.law.never_opens() { force } else { force.max(0.0) };
         }
         state.last_step = target.length;
@@ -417,64 +390,12 @@ impl Integration<'_> {
         self.progress.done = target.done;
         self.refusals = 0;
         self.settle(target.length);
+        Ok(())
     }
+}
 
-    /// The contact opens or closes at the instant of the state; the step to take next.
-    pub(super) fn switch(&mut self, closed: bool) -> f64 {
-        self.state.closed = closed;
-        self.state.force = 0.0;
-        self.state.last_step = 0.0;
-        if closed {
-            self.state.last_kink = self.state.time;
-            self.state.last_closing = self.state.time;
-            self.first_closed_step()
-        } else {
-            self.state.last_opening = self.state.time;
-            0.1 * self.model.first_step()
-        }
-    }
-
-    /// A new velocity of the fixed contact changes the dissipative force at once.
-    fn set_support_rate(&mut self) {
-        let jump = self.drive.support_rate - self.state.support_rate;
-        if jump == 0.0 {
-            return;
-        }
-        self.state.support_rate += jump;
-        self.state.indentation_rate += jump;
-        let d = self.model.preload.indentation + self.state.indentation;
-        let force = self.model.law.force(d, self.state.indentation_rate);
-        let closed = self
-            .model
-            .engagement(self.state.indentation, self.state.indentation_rate)
-            > 0.0;
-        if closed != self.state.closed {
-            self.switch(closed);
-        }
-        self.state.force = force;
-        self.state.last_kink = self.state.time;
-        self.state.last_step = 0.0;
-        let next = self.first_closed_step();
-        self.state.short_step = self.state.short_step.min(next);
-        self.state.long_step = self.state.long_step.min(next);
-    }
-
-    /// First step after the surfaces meet, s. The dissipative force starts as the square root of time, which no polynomial
-    /// follows: the step is chosen so short that what it misses moves the contact by less than a step's share of the error.
-    pub(super) fn first_closed_step(&self) -> f64 {
-        let Self { model, state, .. } = self;
-        let d = model.preload.indentation + state.indentation;
-        let speed = state.indentation_rate.abs();
-        let mobility = model.mobility();
-        let mut h = model.first_step();
-        for _ in 0..40 {
-            let law = model.law.closed_branch(d + speed * h, state.indentation_rate);
-            let gain = mobility * h * (law.damping + 0.5 * h * law.stiffness.abs());
-            if 0.1 * (law.force - state.force).abs() * gain / (1.0 + gain) <= self.allowed {
-                break;
-            }
-            h *= 0.5;
-        }
-        h
-    }
+/// How many times as long a step could be that is wrong by `ratio` errors allowed: the error estimate grows with the
+/// power `S + 1` of the length.
+fn reach<const S: usize>(ratio: f64) -> f64 {
+    ratio.powf(-1.0 / (S as f64 + 1.0))
 }

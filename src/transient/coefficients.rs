@@ -3,20 +3,23 @@
 use crate::excitation::Turns;
 use crate::model::{MAX_MODES, Mode, Model};
 use crate::transient::collocation::{Collocation, Nodal};
+use crate::transient::free_motion::FreeMotion;
 use crate::transient::machine::{Arithmetic, compiled_for};
-use crate::transient::response::{FreeMotion, Oscillator, Pair, Sum, add, scaled};
+use crate::transient::mode_over_step::ModeOverStep;
+use crate::transient::response::{Pair, Sum};
 use crate::transient::shapes::Table;
+use crate::transient::vector::{add, scaled};
 
-/// How a mode moves over a step, at the nodes. Its tip displacement counts, so the rows for the nodes carry the factor of the mode's tip.
+/// How a mode moves the tip over a step, at the nodes: the rows carry the factor of the mode's tip displacement.
 #[derive(Clone, Copy, Debug)]
-pub struct ModeStep<const S: usize> {
+pub struct NodeRows<const S: usize> {
     /// Tip displacement at the nodes per initial q, and per initial v.
     pub tip_from_q: Nodal<S>,
-    /// See [`ModeStep::tip_from_q`].
+    /// See [`NodeRows::tip_from_q`].
     pub tip_from_v: Nodal<S>,
     /// Tip velocity at the nodes per initial q, and per initial v.
     pub rate_from_q: Nodal<S>,
-    /// See [`ModeStep::rate_from_q`].
+    /// See [`NodeRows::rate_from_q`].
     pub rate_from_v: Nodal<S>,
 }
 
@@ -96,9 +99,9 @@ pub struct ErrorColumn<const S: usize> {
 pub struct StepCoefficients<const S: usize> {
     /// The length, s.
     pub length: f64,
-    /// Mode by mode.
-    pub modes: Vec<ModeStep<S>>,
-    /// The same at the end.
+    /// How the modes move the tip, mode by mode.
+    pub modes: Vec<NodeRows<S>>,
+    /// How the modes end.
     pub end: EndRows<S>,
     /// Per force on the tip.
     pub force: TipColumns<S>,
@@ -129,7 +132,7 @@ impl<const S: usize> ErrorColumn<S> {
 impl<const S: usize> StepCoefficients<S> {
     /// Room for the modes, no length yet.
     fn empty(modes: usize) -> Self {
-        let mode = ModeStep {
+        let mode = NodeRows {
             tip_from_q: [0.0; S],
             tip_from_v: [0.0; S],
             rate_from_q: [0.0; S],
@@ -160,8 +163,8 @@ impl<const S: usize> StepCoefficients<S> {
         let (mut force, mut acceleration) = (Sum::<S>::ZERO, Sum::<S>::ZERO);
         for (i, (mode, step)) in model.modes.iter().zip(&mut self.modes).enumerate() {
             let tip = mode.tip;
-            let oscillator = Oscillator::new(mode.omega_squared, mode.damping, h);
-            let response = oscillator.response::<S, A>(&collocation.nodes, shapes);
+            let mode_over_step = ModeOverStep::new(mode.omega_squared, mode.damping, h);
+            let response = mode_over_step.response::<S, A>(&collocation.nodes, shapes);
             force.add::<A>(tip * tip, &response);
             acceleration.add::<A>(tip * mode.participation, &response);
 
@@ -181,6 +184,7 @@ impl<const S: usize> StepCoefficients<S> {
         (self.acceleration, self.acceleration_error) = in_seconds(acceleration.at_nodes::<A>(shapes), h);
     }
 }
+
 /// Tables in units of the step length `h` (s) as columns in seconds.
 fn in_seconds<const S: usize>(tables: Pair<Table<S>>, h: f64) -> (TipColumns<S>, ErrorColumn<S>) {
     let Pair { mut q, mut v } = tables;
@@ -202,11 +206,13 @@ fn in_seconds<const S: usize>(tables: Pair<Table<S>>, h: f64) -> (TipColumns<S>,
 #[derive(Clone, Debug)]
 pub struct Cache<const S: usize> {
     collocation: Collocation<S>,
+    /// For lengths that come again, each in the slot that its bits tell.
     slots: Vec<StepCoefficients<S>>,
+    /// For the last of the others.
     other: StepCoefficients<S>,
 }
 
-/// Slots for step lengths that come again.
+/// Slots for step lengths that come again: as many as [`Cache::get`] tells apart.
 const SLOTS: usize = 32;
 
 impl<const S: usize> Cache<S> {
@@ -231,6 +237,7 @@ impl<const S: usize> Cache<S> {
             slots,
             other,
         } = self;
+        // Fibonacci hashing: the five upper bits of the product choose the slot.
         let slot = (length.to_bits().wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 59) as usize;
         let entry = slots.get_mut(slot).filter(|_| recurring).unwrap_or(other);
         if entry.length.to_bits() != length.to_bits() {

@@ -1,13 +1,13 @@
 //! The polynomial in time that stands for contact force and base acceleration within a step.
 //!
-//! A step has `S` Radau nodes, the last at its end, so that the contact force there obeys the contact law exactly, however
-//! stiff its damping is (Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.5): eight for long steps,
-//! four where a short one is wanted (a communication step of a microsecond, the time just after a blow).
+//! A step has `S` Radau nodes, the last at its end, so that the contact force there obeys the contact law exactly,
+//! however stiff its damping is (Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.5): eight for
+//! long steps, four where a short one is wanted (a communication step of a microsecond, the time just after a blow).
 
 use crate::math::legendre;
 use crate::transient::machine::{Arithmetic, Machine, Separate, compiled_for};
-use crate::transient::response::{add, scaled};
 use crate::transient::shapes::Shapes;
+use crate::transient::vector::{add, dot, scaled};
 
 /// Nodes of a short step.
 pub const SHORT: usize = 4;
@@ -25,8 +25,8 @@ const FLAT: usize = 4;
 /// A polynomial through the nodes of a step, by its coefficients about the end: it predicts the next step.
 pub type Prediction = [f64; LONG + 1];
 
-/// Two predictions of the force over the next step, one through all nodes and one through the last few, and which of the
-/// two was the better one last time.
+/// Two predictions of the force over the next step, one through all nodes and one through the last few, and which of
+/// the two was the better one last time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Predictions {
     steep: Prediction,
@@ -39,15 +39,15 @@ pub struct Predictions {
 pub struct Collocation<const S: usize> {
     /// Nodes on [0, 1], ascending.
     pub nodes: Nodal<S>,
-    /// The load shapes: the Lagrange polynomials of the nodes, and the polynomial of degree S that vanishes at the nodes and
-    /// is 1 at the start.
+    /// The load shapes: the Lagrange polynomials of the nodes, and the polynomial of degree S that vanishes at the
+    /// nodes and is 1 at the start.
     pub shapes: Shapes<S>,
     /// Lagrange polynomials at the start of the step.
     pub at_start: Nodal<S>,
     /// Mean of the Lagrange polynomials over the step: the weights of the Radau quadrature.
     weights: Nodal<S>,
-    /// Row by row the coefficients of y^0, y^1, ..., `y = x - 1`, of the polynomial that is 1 at the start (the first row) or
-    /// at one of the nodes, and 0 at the others.
+    /// Row by row the coefficients of y^0, y^1, ..., `y = x - 1`, of the polynomial that is 1 at the start (the first
+    /// row) or at one of the nodes, and 0 at the others.
     steep: Vec<Prediction>,
     /// The same with the last nodes alone, which long extrapolation suits better.
     flat: Vec<Prediction>,
@@ -108,8 +108,8 @@ impl<const S: usize> Collocation<S> {
         dot::<S, Separate>(values, &self.weights)
     }
 
-    /// The predictions from the values at the start and at the nodes of a step, after those that led to it, which held for a
-    /// step `ratio` times as long as the one before.
+    /// The predictions from the values at the start and at the nodes of a step, after those that led to it, which held
+    /// for a step `ratio` times as long as the one before.
     pub fn predictions(
         &self,
         machine: Machine,
@@ -128,23 +128,16 @@ impl<const S: usize> Collocation<S> {
             let errors = predicted.iter().zip(values).map(|(a, b)| (a - b).abs());
             errors.fold(0.0_f64, |worst, error| if error > worst { error } else { worst })
         };
-        let (mut steep, mut flat) = ([0.0; LONG + 1], [0.0; LONG + 1]);
-        for (value, row) in [start].iter().chain(values).zip(&self.steep) {
-            add::<{ LONG + 1 }, A>(&mut steep, *value, row);
-        }
-        for (value, row) in values.iter().skip(S - FLAT).zip(&self.flat) {
-            add::<{ LONG + 1 }, A>(&mut flat, *value, row);
-        }
         Predictions {
-            steep,
-            flat,
+            steep: combine::<A>(&self.steep, [start].iter().chain(values)),
+            flat: combine::<A>(&self.flat, values.iter().skip(S - FLAT)),
             use_flat: ratio > 0.0 && wrong(&before.flat) < wrong(&before.steep),
         }
     }
 
     /// The polynomial through the values at the start and at the nodes, about the end.
     pub fn through(&self, start: f64, values: &Nodal<S>) -> Prediction {
-        combine(&self.steep, [&start].into_iter().chain(values))
+        combine::<Separate>(&self.steep, [start].iter().chain(values))
     }
 
     /// Values predicted at the nodes of a step `ratio` times as long as the one the predictions are from.
@@ -192,12 +185,12 @@ fn lagrange<const N: usize>(points: &[f64]) -> Vec<[f64; N]> {
         .collect()
 }
 
-fn combine<'a>(basis: &[Prediction], values: impl Iterator<Item = &'a f64>) -> Prediction {
+/// The polynomial that takes the values, of a basis of those that are 1 at one of their places.
+#[inline(always)]
+fn combine<'a, A: Arithmetic>(basis: &[Prediction], values: impl Iterator<Item = &'a f64>) -> Prediction {
     let mut sum = [0.0; LONG + 1];
-    for (value, row) in values.zip(basis) {
-        for (sum, coefficient) in sum.iter_mut().zip(row) {
-            *sum += value * coefficient;
-        }
+    for (value, polynomial) in values.zip(basis) {
+        add::<{ LONG + 1 }, A>(&mut sum, *value, polynomial);
     }
     sum
 }
@@ -228,10 +221,4 @@ fn by_factorials(mut shape: [f64; MAX_SHAPES]) -> [f64; MAX_SHAPES] {
         factorial *= (m + 1) as f64;
     }
     shape
-}
-
-/// Scalar product of two sets of nodal values.
-#[inline(always)]
-pub fn dot<const S: usize, A: Arithmetic>(a: &Nodal<S>, b: &Nodal<S>) -> f64 {
-    a.iter().zip(b).fold(0.0, |sum, (a, b)| A::mul_add(*a, *b, sum))
 }

@@ -1,10 +1,10 @@
 //! Communication steps, and output between the integrator's own steps.
 //!
-//! Where communication steps are long, the integrator steps exactly to their ends. Where they are short (a circuit's) or of
-//! ever new lengths, and what drives the contact goes on as before, the integrator goes its own way ahead of them, in steps
-//! as long as the error allows, and the communication points lie inside a step: there the contact force is read from the
-//! step's polynomial. An input that changes meanwhile takes the motion back to the communication point, exactly, from the start
-//! of the step.
+//! Where communication steps are long, the integrator steps exactly to their ends. Where they are short (a circuit's)
+//! or of ever new lengths, and what drives the contact goes on as before, the integrator goes its own way ahead of
+//! them, in steps as long as the error allows, and the communication points lie inside a step: there the contact force
+//! is read from the step's polynomial. An input that changes meanwhile takes the motion back to the communication
+//! point, exactly, from the start of the step.
 
 use crate::error::{StepError, StepErrorCause};
 use crate::inputs::Inputs;
@@ -15,7 +15,7 @@ use crate::transient::nodal::Drive;
 use crate::transient::workspace::Workspace;
 
 /// How many of the integrator's steps a communication step has to be long for the integrator to end one with it.
-const LONG: f64 = 4.0;
+const MANY_STEPS: f64 = 4.0;
 
 /// Everything that moves: the motion around a communication point. Plain numbers: saving it is a copy.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,7 +115,7 @@ impl Model {
     /// Advances over the communication step from `time` to `time + size` (s) with the inputs held.
     ///
     /// # Errors
-    /// A [`StepError`]; the course is then unchanged.
+    /// A [`StepError`]; the course then stands where it did.
     pub fn step(
         &self,
         course: &mut Course,
@@ -147,16 +147,22 @@ impl Model {
         let steady = drive == course.drive && drive.support_rate == 0.0 && self.closed_loop.is_none();
         let ahead = course.time < course.end.time;
         let reach = course.end.short_step.max(course.end.long_step);
-        if steady && (ahead || size < reach || size < LONG * reach && size != course.size) {
+        if steady && (ahead || size < reach || size < MANY_STEPS * reach && size != course.size) {
             if until > course.end.time {
                 self.go_ahead(course, workspace, until)?;
             }
         } else {
-            let mut state = self.state(course, workspace)?;
-            self.advance(&mut state, workspace, drive, Steps::Exactly { time, size })?;
-            state.support = support;
-            state.time = until;
-            (course.start, course.end) = (state, state);
+            if ahead {
+                course.end = self.state(course, workspace)?;
+                course.start = course.end;
+            }
+            if let Err(error) = self.advance(&mut course.end, workspace, drive, Steps::Exactly { time, size }) {
+                course.end = course.start;
+                return Err(error);
+            }
+            course.end.support = support;
+            course.end.time = until;
+            course.start = course.end;
             course.drive = drive;
         }
         course.size = size;

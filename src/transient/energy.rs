@@ -1,9 +1,9 @@
 //! The account of the energy where nothing dissipates and no generator runs.
 //!
 //! The energy about the preload then changes by the work of the base acceleration, which the modal displacements tell
-//! exactly, and of the moving contact, which is its velocity times the impulse of the force: the polynomial's, exactly. What
-//! else a step makes of it is its error, and is returned by a small impulse on the tip in this step or in later ones, so that
-//! nothing adds up over any number of impacts.
+//! exactly, and of the moving contact, which is its velocity times the impulse of the force: the polynomial's, exactly.
+//! What else a step makes of it is its error, and is returned by a small impulse on the tip in this step or in later
+//! ones, so that nothing adds up over any number of impacts.
 
 use crate::excitation::Generator;
 use crate::model::Model;
@@ -23,8 +23,8 @@ impl Model {
 }
 
 impl Integration<'_> {
-    /// Energy that the step makes beyond the work done on it, and what rounding may make of it, J. The modes at its end are those
-    /// of the last attempt.
+    /// Energy that the step makes beyond the work done on it, and what rounding may make of it, J. The modes at its end
+    /// are those of the last attempt.
     fn surplus<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> (f64, f64)
     where
         Workspace: Room<S>,
@@ -34,18 +34,20 @@ impl Integration<'_> {
         } = self;
         let (cache, end, _) = Room::<S>::parts(self.workspace);
         let start = model.energy(&state.modes, state.indentation);
-        let change = model.energy(end, trial.indentation) - start;
+        let finish = model.energy(end, trial.indentation);
         let moved = model.modes.iter().zip(state.modes.iter().zip(end.iter()));
         let loads = moved.map(|(mode, (start, end))| mode.participation * (end.q - start.q));
         let by_base = -drive.acceleration * loads.sum::<f64>();
         let by_support = drive.support_rate * length * cache.collocation().mean(&trial.forces);
-        // Displacement and velocity of each mode are rounded, sums of two products and a load.
-        let rounding = 4.0 * f64::EPSILON * model.modes.len() as f64 * start;
-        (change - by_base - by_support, rounding)
+        // Displacement and velocity of each mode are rounded, sums of two products and a load; so are the forces on the way.
+        let way = (trial.indentation - state.indentation).abs() + (drive.support_rate * length).abs();
+        let size = start.max(finish) + (state.force + model.preload.force) * way;
+        let rounding = 4.0 * f64::EPSILON * model.modes.len() as f64 * size;
+        (finish - start - by_base - by_support, rounding)
     }
 
-    /// Whether the step makes or loses as much energy as a force wrong by more than the tolerance over the way of the tip
-    /// would. The error estimate, one number, can be small by chance.
+    /// Whether the step makes or loses as much energy as a force wrong by more than the tolerance over the way of the
+    /// tip would. The error estimate, one number, can be small by chance.
     pub(super) fn breaks_account<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> bool
     where
         Workspace: Room<S>,
@@ -61,7 +63,7 @@ impl Integration<'_> {
         surplus.abs() > rounding + self.tolerance * length * fastest
     }
 
-    /// Enters a step about to be taken.
+    /// Enters a step about to be taken in the account.
     pub(super) fn enter<const S: usize>(&mut self, trial: &Trial<S>, length: f64)
     where
         Workspace: Room<S>,
@@ -71,8 +73,8 @@ impl Integration<'_> {
         }
     }
 
-    /// Returns what was made too much or too little, by an impulse on the tip not larger than that of a small error of the force over
-    /// the step just taken. What is left is for later steps.
+    /// Returns what was made too much or too little, by an impulse on the tip not larger than that of a small error of
+    /// the force over the step just taken. What is left is for later steps.
     pub(super) fn settle(&mut self, length: f64) {
         if !self.conserves || !self.state.closed || self.state.energy_surplus == 0.0 {
             return;

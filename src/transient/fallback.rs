@@ -1,49 +1,31 @@
 //! The step that cannot fail, for where the collocation cannot go on.
 //!
-//! The contact force is constant over the step: the discrete gradient of the elastic energy between its ends, and a damping
-//! force that opposes the way between them (O. Gonzalez, J. Nonlinear Sci. 6 (1996) 449). With exact modes the energy is kept
-//! exactly without damping and never made with damping, however long the step, and the contact opens and closes within it
-//! by itself. The indentation at the end falls linearly with the constant force, and the force grows with it: one monotone
-//! scalar equation between brackets.
+//! The contact force is constant over the step: the discrete gradient of the elastic energy between its ends, and a
+//! damping force that opposes the way between them (O. Gonzalez, J. Nonlinear Sci. 6 (1996) 449). With exact modes the
+//! energy is kept exactly without damping and never made with damping, however long the step, and the contact opens and
+//! closes within it by itself. The indentation at the end falls linearly with the constant force, and the force grows
+//! with it: one monotone scalar equation between brackets.
 
 use crate::error::{StepError, StepErrorCause};
 use crate::math::roots;
 use crate::transient::advance::{Advice, Integration};
 use crate::transient::collocation::SHORT;
-use crate::transient::nodal::{Slopes, Source, Trial};
+use crate::transient::nodal::{Source, Trial};
 use crate::transient::progress::Target;
+use crate::transient::vector::end;
 use crate::transient::workspace::Room;
 
 /// Steps given up in succession before one has to do.
 pub(super) const REFUSALS: u32 = 40;
 
-/// Roundings in a sum over the modes.
-const ROUNDINGS: f64 = 4.0;
-
 impl Integration<'_> {
-    /// Whether the error of the step is what the rounding of the sums over the modes makes of the contact force. After a
-    /// blow the velocities of the modes are large and their sum at the tip is small.
-    pub(super) fn is_rounding<const S: usize>(&self, trial: &Trial<S>) -> bool {
-        let pairs = self.model.modes.iter().zip(&self.state.modes);
-        let (mut displacement, mut velocity) = (0.0, 0.0);
-        for (mode, at) in pairs {
-            displacement += (mode.tip * at.q).abs();
-            velocity += (mode.tip * at.v).abs();
-        }
-        // The force at the first node reacts upon itself over the time up to it alone, some 1 / S^2 of the step.
-        let reaction = 1.0 + trial.slopes.gain / (S * S) as f64;
-        let Slopes { stiffness, damping, .. } = trial.slopes;
-        trial.error <= ROUNDINGS * f64::EPSILON * (stiffness * displacement + damping * velocity) / reaction
-    }
-
     /// Takes the step to the target with a constant force.
     pub(super) fn fall_back(&mut self, target: &Target) -> Result<Advice, StepError> {
         let trial = self
             .constant_step(target)
-            .filter(|trial| trial.indentation.is_finite() && trial.rate.is_finite())
             .ok_or_else(|| self.error(StepErrorCause::NotFinite))?;
-        let mean = self.model.preload.force + trial.forces.last().copied().unwrap_or_default();
-        self.take(&trial, target);
+        let mean = self.model.preload.force + end(&trial.forces);
+        self.take(&trial, target)?;
         let d = self.model.preload.indentation + trial.indentation;
         let mut length = target.length;
         let closed = self.model.engagement(trial.indentation, trial.rate) > 0.0;
@@ -51,8 +33,8 @@ impl Integration<'_> {
             length = self.switch(closed);
         }
         if closed {
-            // The velocity at the end is that of a tip under a constant force: where the contact is nearly a rigid dashpot the
-            // law makes too much of it.
+            // The velocity at the end is that of a tip under a constant force: where the contact is nearly a rigid
+            // dashpot the law makes too much of it.
             let law = self.model.law.closed_branch(d, trial.rate);
             let rigid = law.damping * self.model.mobility() * target.length > 1.0;
             self.state.force = if rigid { mean } else { law.force };

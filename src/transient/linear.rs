@@ -1,12 +1,12 @@
 //! Exact steps of any length where beam and contact are linear.
 //!
-//! With the contact as a spring and damper at the tip, the eigenvalues of the motion come in pairs ([`super::secular`]), each a damped
-//! oscillator of its own that is propagated exactly ([`super::oscillator`]). A step goes from the cantilever's modes to these
-//! oscillators, moves them, and comes back.
+//! With the contact as a spring and damper at the tip, the eigenvalues of the motion come in pairs
+//! ([`super::secular`]), each a damped oscillator of its own that is propagated exactly ([`super::oscillator`]). A step
+//! goes from the cantilever's modes to these oscillators, moves them, and comes back.
 //!
-//! Constant and linear loads (base acceleration held, fixed contact moving linearly) are taken out by a particular solution,
-//! which cannot be large as every oscillator has a stiffness. The generator's sine is taken as response from rest, which stays
-//! right at a resonance without damping.
+//! Constant and linear loads (base acceleration held, fixed contact moving linearly) are taken out by a particular
+//! solution, which cannot be large as every oscillator has a stiffness. The generator's sine is taken as response from
+//! rest, which stays right at a resonance without damping.
 
 use crate::contact::law::Law;
 use crate::contact::linear::Linear;
@@ -18,8 +18,8 @@ use crate::transient::nodal::Drive;
 use crate::transient::oscillator::{Coordinates, Oscillator, Propagator, set};
 use crate::transient::secular::{EigenPair, Problem};
 
-/// Largest error of taking the motion of a single mode apart and putting it together again, relative to its amplitude. High
-/// modes lose most, and move least: the contact force is then right to some 1e-13 of its scale.
+/// Largest error of taking the motion of a single mode apart and putting it together again, relative to its amplitude.
+/// High modes lose most, and move least: the contact force is then right to some 1e-13 of its scale.
 const ROUNDING: f64 = 1e-10;
 
 /// Beam and linear contact as uncoupled oscillators.
@@ -31,7 +31,8 @@ pub struct ClosedLoop {
     to_modes: Columns,
     /// What each mode's displacement and velocity is in the oscillators.
     to_oscillators: Columns,
-    /// Motion under unit base acceleration, under unit force on the tip, and under one that grows with time, at its start.
+    /// Motion under unit base acceleration, under unit force on the tip, and under one that grows with time, at its
+    /// start.
     acceleration: Coordinates,
     force: Coordinates,
     ramp: Coordinates,
@@ -154,8 +155,8 @@ impl ClosedLoop {
         closed_loop.is_exact(modes).then_some(closed_loop)
     }
 
-    /// Whether the motion of each mode alone survives being taken apart and put together again, and the oscillators move with
-    /// the contact force they stand for.
+    /// Whether the motion of each mode alone survives being taken apart and put together again, and the oscillators
+    /// move with the contact force they stand for.
     fn is_exact(&self, modes: &[Mode]) -> bool {
         let scales: Vec<f64> = modes.iter().flat_map(|mode| [mode.omega_squared.sqrt(), 1.0]).collect();
         let survives = scales.iter().enumerate().all(|(n, scale)| {
@@ -197,7 +198,8 @@ impl ClosedLoop {
             })
     }
 
-    /// Takes the state over `length` seconds in one step; `false`, with the state unchanged, where the contact may open.
+    /// Takes the state over `length` seconds in one step; `false`, with the state unchanged, where the contact may
+    /// open.
     fn advance(
         &self,
         model: &Model,
@@ -331,9 +333,9 @@ struct Steady {
 }
 
 impl Model {
-    /// Takes the communication step from the state's time over `size` seconds in one exact step, or two where the generator
-    /// starts in it; `false`, with the state unchanged, where that cannot be done: the motion is not linear, or the contact may
-    /// open.
+    /// Takes the communication step from the state's time over `size` seconds in one exact step, or two where the
+    /// generator starts in it; `false`, with the state unchanged, where that cannot be done: the motion is not linear,
+    /// or the contact may open.
     pub(super) fn step_exactly(
         &self,
         state: &mut State,

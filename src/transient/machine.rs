@@ -54,8 +54,8 @@ impl Arithmetic for Fused {
     }
 }
 
-/// `compiled_for!(machine, A => body)`: the body in the compilation for the machine, whose [`Arithmetic`] it knows as `A`.
-/// Only what is inlined into the body is compiled for the machine.
+/// `compiled_for!(machine, A => body)`: the body in the compilation for the machine, whose [`Arithmetic`] it knows as
+/// `A`. Only what is inlined into the body is compiled for the machine.
 macro_rules! compiled_for {
     ($machine:expr, $arithmetic:ident => $body:expr) => {
         match $machine {

@@ -1,16 +1,31 @@
 //! The transient integrator.
 //!
 //! The beam is linear and only its tip is loaded, so the modes are propagated exactly and the whole nonlinearity is one
-//! scalar function of one scalar, the tip. Over a step the contact force is a polynomial through Radau nodes
-//! ([`collocation`]); each mode's exact response to it ([`shapes`], [`response`], [`coefficients`]) gives the indentation at the nodes,
-//! and Newton's method on the nodal forces alone closes the loop ([`nodal`]). Steps adapt to an estimate of the
-//! force's error ([`advance`], on a grid: [`progress`], in room made once: [`workspace`]) and end where the contact opens
-//! ([`release`]) or closes ([`touchdown`]). The kernel is compiled for the processor ([`machine`]). Where the collocation cannot
-//! go on, a step with a constant force does ([`fallback`]); where nothing dissipates, the energy is kept ([`energy`]).
-//! Communication points may lie inside a step ([`dense`]), and a contact at rest takes none ([`rest`]).
+//! scalar function of one scalar, the tip. A communication step goes down through these files:
 //!
-//! Where the contact is linear and stays closed, a communication step is one exact step ([`linear`]) in the eigenvectors of beam
-//! and contact ([`oscillator`], [`secular`], [`zeros`]).
+//! - [`dense`]: a communication step, also where its end lies inside a step of the integrator; [`workspace`]: the room
+//!   for it, made once.
+//! - [`advance`]: integration steps one after the other, taken or rejected by an estimate of the error of the force;
+//!   [`progress`]: the grid they end on; [`rest`]: a contact at rest takes none.
+//! - [`switching`]: steps end where the contact opens ([`release`]) or closes ([`touchdown`]), and begin anew.
+//! - [`fallback`]: a step with a constant force, where the collocation cannot go on.
+//! - [`energy`]: where nothing dissipates, the energy is kept.
+//!
+//! One step, in which the contact force is a polynomial through Radau nodes ([`collocation`]):
+//!
+//! - [`nodal`]: the forces at the nodes, the motion they give, the estimate of the error; [`newton`]: Newton's method
+//!   on the nodal forces alone.
+//! - [`coefficients`]: everything of it that depends on its length alone, kept for lengths that come again.
+//! - [`mode_over_step`]: a mode's exact response to the polynomial ([`free_motion`] without load); [`shapes`]:
+//!   integrals and derivatives of the polynomials; [`response`]: the responses of many modes added up.
+//! - [`machine`]: the kernel is compiled for the processor; [`vector`]: the arithmetic in it.
+//!
+//! Where the contact is linear and stays closed, a communication step is one exact step:
+//!
+//! - [`linear`]: the step, in the eigenvectors of beam and contact; [`oscillator`]: each pair of eigenvalues on its
+//!   own.
+//! - [`secular`]: eigenvalues and eigenvectors; [`zeros`]: the eigenvalues where beam and contact are damped
+//!   differently.
 
 pub mod advance;
 pub mod coefficients;
@@ -18,8 +33,11 @@ pub mod collocation;
 pub mod dense;
 pub mod energy;
 pub mod fallback;
+pub mod free_motion;
 pub mod linear;
 pub mod machine;
+pub mod mode_over_step;
+pub mod newton;
 pub mod nodal;
 pub mod oscillator;
 pub mod progress;
@@ -28,6 +46,8 @@ pub mod response;
 pub mod rest;
 pub mod secular;
 pub mod shapes;
+pub mod switching;
 pub mod touchdown;
+pub mod vector;
 pub mod workspace;
 pub mod zeros;

@@ -1,9 +1,12 @@
-//! One step: the nodal contact forces and the motion they give.
+//! One step on trial: the nodal contact forces ([`super::newton`]), the motion they give, and an estimate of their
+//! error.
 
 use crate::model::{ModeStates, Model, State};
-use crate::transient::coefficients::{ErrorColumn, Modal, StepCoefficients};
-use crate::transient::collocation::{Collocation, Nodal, dot};
+use crate::transient::coefficients::{Modal, StepCoefficients};
+use crate::transient::collocation::{Collocation, Nodal};
 use crate::transient::machine::{Arithmetic, compiled_for};
+use crate::transient::newton::{Solution, at_nodes};
+use crate::transient::vector::{add, add_columns, add_products, dot, end};
 
 /// What drives the contact over a communication step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,8 +20,8 @@ pub struct Drive {
 /// Where the contact force of a step comes from.
 #[derive(Clone, Copy, Debug)]
 pub enum Source {
-    /// The law at the nodes while the contact is closed, with this as the largest last correction of Newton's method, N;
-    /// nothing while it is open.
+    /// The law at the nodes while the contact is closed, with this as the largest last correction of Newton's method,
+    /// N; nothing while it is open.
     Law(f64),
     /// This throughout, as deviation from the preload force, N.
     Constant(f64),
@@ -62,49 +65,18 @@ pub struct Slopes {
     pub gain: f64,
 }
 
-/// The nodal forces of a step on the closed branch.
-struct Solution<const S: usize> {
-    /// Deviation from the preload force, N.
-    forces: Nodal<S>,
-    iterations: u64,
-    /// Displacement and velocity of the tip at the end per force that the polynomial misses at the start.
-    by_force: (f64, f64),
-    /// The same per base acceleration.
-    by_acceleration: (f64, f64),
-    slopes: Slopes,
-}
-
-impl<const S: usize> Solution<S> {
-    /// A force that does not depend on the motion.
-    fn constant(force: f64) -> Self {
-        Self {
-            forces: [force; S],
-            iterations: 0,
-            by_force: (0.0, 0.0),
-            by_acceleration: (0.0, 0.0),
-            slopes: Slopes::default(),
-        }
-    }
-}
-
 /// Rounding of a contact force, relative to it.
 const ROUNDING: f64 = 1e-13;
 
-/// Rounding of the motion at the nodes, relative to what it would be without contact force.
-const MOTION_ROUNDING: f64 = 4.0 * f64::EPSILON;
+/// Roundings in a sum over the modes.
+const ROUNDINGS: f64 = 4.0;
 
-/// A pivot this small would multiply the rounding by its inverse in each elimination, and one beside entries larger than its
-/// inverse.
-const SMALL_PIVOT: f64 = 0.1;
-
-/// Mean over a step of what the nodal polynomial misses of the square root of time from its start, over what it misses at the start.
+/// Mean over a step of what the nodal polynomial misses of the square root of time from its start, over what it misses
+/// at the start.
 const KINKED: f64 = 0.015;
 
 /// Steps from a kink beyond which it is not felt.
 const FAR: f64 = 20.0;
-
-/// Newton iterations before a step is judged too long.
-const ITERATIONS: u64 = 12;
 
 impl Model {
     /// The step from `state` with the given coefficients, on the branch the state is on, with the modes at its end in
@@ -141,15 +113,15 @@ impl Model {
 
         // Indentation at the nodes without contact force.
         let mut free = [state.support; S];
-        add_times::<S, A>(&mut free, &collocation.nodes, drive.support_rate * h);
+        add::<S, A>(&mut free, drive.support_rate * h, &collocation.nodes);
         let mut free_rate = [drive.support_rate; S];
         // A sum of its own for q and v each: they do not wait for one another.
         let [mut from_q, mut from_v, mut rate_from_q, mut rate_from_v] = [[0.0; S]; 4];
         for (mode, row) in state.modes.iter().zip(&step.modes) {
-            add_times::<S, A>(&mut from_q, &row.tip_from_q, mode.q);
-            add_times::<S, A>(&mut from_v, &row.tip_from_v, mode.v);
-            add_times::<S, A>(&mut rate_from_q, &row.rate_from_q, mode.q);
-            add_times::<S, A>(&mut rate_from_v, &row.rate_from_v, mode.v);
+            add::<S, A>(&mut from_q, mode.q, &row.tip_from_q);
+            add::<S, A>(&mut from_v, mode.v, &row.tip_from_v);
+            add::<S, A>(&mut rate_from_q, mode.q, &row.rate_from_q);
+            add::<S, A>(&mut rate_from_v, mode.v, &row.rate_from_v);
         }
         subtract(&mut free, &from_q, &from_v);
         subtract(&mut free_rate, &rate_from_q, &rate_from_v);
@@ -171,17 +143,16 @@ impl Model {
         let (indentation, rate) = (support - tip, drive.support_rate - tip_rate);
 
         let at_start = drive.acceleration + generated.start;
-        let largest = forces.iter().fold(0.0_f64, |largest, force| {
+        let largest = forces.iter().fold(f64::MIN_POSITIVE, |largest, force| {
             largest.max((self.preload.force + force).abs())
         });
-        let error = self.error::<S, A>(
-            state,
-            step,
-            collocation,
-            &solution,
-            at_start - dot::<S, A>(&accelerations, &collocation.at_start),
-            largest,
-        );
+        let missed_acceleration = at_start - dot::<S, A>(&accelerations, &collocation.at_start);
+        let missed = if state.closed {
+            state.force - self.preload.force - dot::<S, A>(&forces, &collocation.at_start)
+        } else {
+            0.0
+        };
+        let error = self.error(state, step, &solution, missed, missed_acceleration, largest);
         Some(Trial {
             forces,
             indentations,
@@ -191,11 +162,7 @@ impl Model {
             rate,
             error,
             rounding: ROUNDING * largest.max(self.preload.force),
-            missed: if state.closed {
-                (state.force - self.preload.force - dot::<S, A>(&forces, &collocation.at_start)).abs()
-            } else {
-                0.0
-            },
+            missed: missed.abs(),
             iterations,
             slopes: solution.slopes,
         })
@@ -203,23 +170,25 @@ impl Model {
 
     /// Estimate of what a step adds to the error of the contact force, N.
     ///
-    /// At the nodes the polynomials are right; what they miss at the start tells how much of the shape that vanishes at the
-    /// nodes they lack. What that does to the nodal forces is known to first order ([`Solution`]). Modes slow against the step
-    /// hardly feel it at the end (the shape is orthogonal to polynomials of low degree); they see an error of twice the order,
-    /// about three times the square of what is missed (an impact of a free mass on a Hertz contact). Just after a touch or a
-    /// jump the force is no polynomial of any degree, and they see more.
+    /// At the nodes the polynomials are right; what they miss at the start tells how much of the shape that vanishes at
+    /// the nodes they lack. What that does to the nodal forces is known to first order ([`Solution`]). Modes slow
+    /// against the step hardly feel it at the end (the shape is orthogonal to polynomials of low degree); they see an
+    /// error of twice the order, about three times the square of what is missed (an impact of a free mass on a Hertz
+    /// contact). Just after a touch or a jump the force is no polynomial of any degree, and they see more.
+    ///
+    /// `missed` (N) and `missed_acceleration` (m/s2) are what the polynomials miss at the start, `largest` (N) is the
+    /// largest nodal force.
     #[inline(always)]
-    fn error<const S: usize, A: Arithmetic>(
+    fn error<const S: usize>(
         &self,
         state: &State,
         step: &StepCoefficients<S>,
-        collocation: &Collocation<S>,
         solution: &Solution<S>,
+        missed: f64,
         missed_acceleration: f64,
         largest: f64,
     ) -> f64 {
         if state.closed {
-            let missed = state.force - self.preload.force - dot::<S, A>(&solution.forces, &collocation.at_start);
             let (by_force, by_acceleration) = (solution.by_force, solution.by_acceleration);
             let wrong_d = by_acceleration.0 * missed_acceleration - by_force.0 * missed;
             let wrong_r = by_acceleration.1 * missed_acceleration - by_force.1 * missed;
@@ -233,127 +202,32 @@ impl Model {
             let slow = 3.0 * missed * missed / largest + kinked;
             fast + slow * solution.slopes.gain / (1.0 + solution.slopes.gain)
         } else {
-            let last = |values: &Nodal<S>| values.last().map_or(0.0, |value| (value * missed_acceleration).abs());
+            let last = |values: &Nodal<S>| (end(values) * missed_acceleration).abs();
             let rows = &step.acceleration_error;
             let wrong = last(&rows.displacement) + self.law.damping() * last(&rows.velocity);
             self.law.tangent_stiffness(self.force_scale) * wrong
         }
     }
 
-    /// Newton's method for the nodal forces on the closed branch.
-    #[inline(always)]
-    fn closed_forces<const S: usize, A: Arithmetic>(
-        &self,
-        state: &State,
-        step: &StepCoefficients<S>,
-        collocation: &Collocation<S>,
-        free: &Nodal<S>,
-        free_rate: &Nodal<S>,
-        newton: f64,
-    ) -> Option<Solution<S>> {
-        let mut forces = if state.last_step > 0.0 {
-            collocation.predict::<A>(&state.predictions, step.length / state.last_step)
-        } else {
-            [state.force - self.preload.force; S]
-        };
-        let d0 = self.preload.indentation;
-        let greatest = |values: &Nodal<S>| values.iter().fold(0.0_f64, |greatest, value| greatest.max(value.abs()));
-        let (farthest, fastest) = (greatest(free), greatest(free_rate));
-        let mut by_errors = None;
-        for iterations in 0..=ITERATIONS {
-            let (indentations, rates) = at_nodes::<S, A>(step, free, free_rate, &forces);
-            let mut residual = forces;
-            let (mut stiffness, mut damping) = ([0.0; S], [0.0; S]);
-            for ((((residual, stiffness), damping), d), rate) in residual
-                .iter_mut()
-                .zip(&mut stiffness)
-                .zip(&mut damping)
-                .zip(&indentations)
-                .zip(&rates)
-            {
-                let law = self.law.closed_branch(d0 + d, *rate);
-                *residual -= law.force - self.preload.force;
-                (*stiffness, *damping) = (law.stiffness, law.damping);
-            }
-            // The motion has to obey the law, not only the nodal forces to be right: on a stiff contact they hardly depend
-            // on it. What rounding leaves of the motion is all that can be asked.
-            let rounding = MOTION_ROUNDING * (greatest(&stiffness) * farthest + greatest(&damping) * fastest);
-            if let Some((force_error, acceleration_error)) =
-                by_errors.filter(|_| greatest(&residual) <= newton.max(rounding))
-            {
-                return Some(Solution::new(
-                    step,
-                    forces,
-                    iterations,
-                    (greatest(&stiffness), greatest(&damping)),
-                    &force_error,
-                    &acceleration_error,
-                ));
-            }
-            // The derivative of the residuals by each nodal force.
-            let mut jacobian = step.force.displacement;
-            for (column, velocity) in jacobian.iter_mut().zip(&step.force.velocity) {
-                for (((entry, velocity), stiffness), damping) in
-                    column.iter_mut().zip(velocity).zip(&stiffness).zip(&damping)
-                {
-                    *entry = A::mul_add(*stiffness, *entry, damping * velocity);
-                }
-            }
-            let force_error = react::<S, A>(&step.force_error, &stiffness, &damping);
-            let acceleration_error = react::<S, A>(&step.acceleration_error, &stiffness, &damping);
-            let [correction, force_error, acceleration_error] =
-                solve::<S, 3, A>(jacobian, [residual, force_error, acceleration_error])?;
-            for (force, correction) in forces.iter_mut().zip(&correction) {
-                *force -= correction;
-            }
-            by_errors = Some((force_error, acceleration_error));
+    /// Whether the error of a step from `state` is what the rounding of the sums over the modes makes of the contact
+    /// force. After a blow the velocities of the modes are large and their sum at the tip is small.
+    pub(super) fn is_rounding<const S: usize>(&self, state: &State, trial: &Trial<S>) -> bool {
+        let (mut displacement, mut velocity) = (0.0, 0.0);
+        for (mode, at) in self.modes.iter().zip(&state.modes) {
+            displacement += (mode.tip * at.q).abs();
+            velocity += (mode.tip * at.v).abs();
         }
-        None
+        // The force at the first node reacts upon itself over the time up to it alone, some 1 / S^2 of the step.
+        let reaction = 1.0 + trial.slopes.gain / (S * S) as f64;
+        let Slopes { stiffness, damping, .. } = trial.slopes;
+        trial.error <= ROUNDINGS * f64::EPSILON * (stiffness * displacement + damping * velocity) / reaction
     }
 }
 
-impl<const S: usize> Solution<S> {
-    /// The effects at the end of the nodal forces that the errors cause.
-    #[inline(always)]
-    fn new(
-        step: &StepCoefficients<S>,
-        forces: Nodal<S>,
-        iterations: u64,
-        (stiffness, damping): (f64, f64),
-        force_error: &Nodal<S>,
-        acceleration_error: &Nodal<S>,
-    ) -> Self {
-        let last = |columns: &[Nodal<S>; S], loads: &Nodal<S>| {
-            let entries = columns.iter().filter_map(|column| column.last());
-            entries.zip(loads).map(|(entry, load)| entry * load).sum::<f64>()
-        };
-        let tip = |error: &ErrorColumn<S>, loads: &Nodal<S>| {
-            let end = |values: &Nodal<S>| values.last().copied().unwrap_or_default();
-            (
-                end(&error.displacement) - last(&step.force.displacement, loads),
-                end(&error.velocity) - last(&step.force.velocity, loads),
-            )
-        };
-        let steady = [1.0; S];
-        let gain = stiffness * last(&step.force.displacement, &steady) + damping * last(&step.force.velocity, &steady);
-        Self {
-            forces,
-            iterations,
-            by_force: tip(&step.force_error, force_error),
-            by_acceleration: tip(&step.acceleration_error, acceleration_error),
-            slopes: Slopes {
-                stiffness,
-                damping,
-                gain: gain.max(0.0),
-            },
-        }
-    }
-}
-
-/// How much less of a root of time its quadrature with `S` nodes misses, over what the nodal polynomial misses, where its
-/// branch point lies `distance` steps before the step: the polynomial converges with the power `S` of the size of the ellipse in
-/// which the root is analytic, the quadrature with the power `2 S - 1` (L. N. Trefethen, Approximation Theory and Approximation
-/// Practice, 2013, chapters 8 and 19).
+/// How much less of a root of time its quadrature with `S` nodes misses, over what the nodal polynomial misses, where
+/// its branch point lies `distance` steps before the step: the polynomial converges with the power `S` of the size of
+/// the ellipse in which the root is analytic, the quadrature with the power `2 S - 1` (L. N. Trefethen, Approximation
+/// Theory and Approximation Practice, 2013, chapters 8 and 19).
 fn analytic<const S: usize>(distance: f64) -> f64 {
     let ellipse = 1.0 + 2.0 * distance + 2.0 * (distance * (distance + 1.0)).sqrt();
     (1..S).fold(1.0, |product, _| product / ellipse)
@@ -387,20 +261,20 @@ fn end_of_modes<const S: usize, A: Arithmetic>(
         );
         let (tips, participations) = (lanes(&rows.tip, first), lanes(&rows.participation, first));
         let (mut q, mut v) = ([0.0; LANES], [0.0; LANES]);
-        add::<LANES, A>(&mut q, &lanes(&rows.q_from_q, first), &start_q);
-        add::<LANES, A>(&mut q, &lanes(&rows.q_from_v, first), &start_v);
-        add::<LANES, A>(&mut v, &lanes(&rows.v_from_q, first), &start_q);
-        add::<LANES, A>(&mut v, &lanes(&rows.v_from_v, first), &start_v);
+        add_products::<LANES, A>(&mut q, &lanes(&rows.q_from_q, first), &start_q);
+        add_products::<LANES, A>(&mut q, &lanes(&rows.q_from_v, first), &start_v);
+        add_products::<LANES, A>(&mut v, &lanes(&rows.v_from_q, first), &start_q);
+        add_products::<LANES, A>(&mut v, &lanes(&rows.v_from_v, first), &start_v);
         for node in 0..S {
             let mut load = [0.0; LANES];
             for i in 0..LANES {
                 load[i] = A::mul_add(tips[i], forces[node], -participations[i] * accelerations[node]);
             }
-            add::<LANES, A>(&mut q, &lanes(&rows.q_from_load[node], first), &load);
-            add::<LANES, A>(&mut v, &lanes(&rows.v_from_load[node], first), &load);
+            add_products::<LANES, A>(&mut q, &lanes(&rows.q_from_load[node], first), &load);
+            add_products::<LANES, A>(&mut v, &lanes(&rows.v_from_load[node], first), &load);
         }
-        add::<LANES, A>(&mut tip, &tips, &q);
-        add::<LANES, A>(&mut tip_rate, &tips, &v);
+        add_products::<LANES, A>(&mut tip, &tips, &q);
+        add_products::<LANES, A>(&mut tip_rate, &tips, &v);
         for (end, (q, v)) in ends[first..first + LANES].iter_mut().zip(q.iter().zip(&v)) {
             (end.q, end.v) = (*q, *v);
         }
@@ -408,93 +282,7 @@ fn end_of_modes<const S: usize, A: Arithmetic>(
     (tip.iter().sum(), tip_rate.iter().sum())
 }
 
-/// Adds the products of the values.
-#[inline(always)]
-fn add<const N: usize, A: Arithmetic>(sum: &mut [f64; N], a: &[f64; N], b: &[f64; N]) {
-    for ((sum, a), b) in sum.iter_mut().zip(a).zip(b) {
-        *sum = A::mul_add(*a, *b, *sum);
-    }
-}
-
-/// Solves `(1 + A) x = b` for several `b`, `A` column by column, by Gauss-Jordan elimination, whose inner loops run down
-/// columns; rows are exchanged only where a pivot is small or the contact is stiff against the step. `None` where the matrix
-/// is singular.
-#[expect(
-    clippy::indexing_slicing,
-    reason = "every index runs over the fixed size of the arrays"
-)]
-#[inline(always)]
-fn solve<const S: usize, const R: usize, A: Arithmetic>(
-    mut a: [Nodal<S>; S],
-    mut right: [Nodal<S>; R],
-) -> Option<[Nodal<S>; R]> {
-    for (k, column) in a.iter_mut().enumerate() {
-        column[k] += 1.0;
-    }
-    let stiff = a[S - 1][S - 1].abs() > 1.0 / SMALL_PIVOT;
-    for p in 0..S {
-        if stiff || a[p][p].abs() < SMALL_PIVOT {
-            let largest = (p..S).max_by(|i, j| a[p][*i].abs().total_cmp(&a[p][*j].abs()))?;
-            for column in a.iter_mut().chain(&mut right) {
-                column.swap(p, largest);
-            }
-        }
-        let pivot = a[p];
-        let inverse = 1.0 / pivot[p];
-        let eliminate = |column: &mut Nodal<S>| {
-            let share = column[p] * inverse;
-            for k in 0..S {
-                column[k] = A::mul_add(-pivot[k], share, column[k]);
-            }
-            column[p] = share;
-        };
-        a.iter_mut().skip(p + 1).chain(&mut right).for_each(eliminate);
-    }
-    right.iter().flatten().all(|x| x.is_finite()).then_some(right)
-}
-
-/// Forces of the law at the nodes that belong to displacements and velocities of the tip.
-#[inline(always)]
-fn react<const S: usize, A: Arithmetic>(tip: &ErrorColumn<S>, stiffness: &Nodal<S>, damping: &Nodal<S>) -> Nodal<S> {
-    let mut forces = tip.displacement;
-    for (((force, velocity), stiffness), damping) in forces.iter_mut().zip(&tip.velocity).zip(stiffness).zip(damping) {
-        *force = A::mul_add(*stiffness, *force, damping * velocity);
-    }
-    forces
-}
-
-/// Indentation and its velocity at the nodes under the nodal forces.
-#[inline(always)]
-fn at_nodes<const S: usize, A: Arithmetic>(
-    step: &StepCoefficients<S>,
-    free: &Nodal<S>,
-    free_rate: &Nodal<S>,
-    forces: &Nodal<S>,
-) -> (Nodal<S>, Nodal<S>) {
-    let (mut indentations, mut rates) = (*free, *free_rate);
-    let mut loads = *forces;
-    for load in &mut loads {
-        *load = -*load;
-    }
-    add_columns::<S, A>(&mut indentations, &step.force.displacement, &loads);
-    add_columns::<S, A>(&mut rates, &step.force.velocity, &loads);
-    (indentations, rates)
-}
-
-#[inline(always)]
-fn add_columns<const S: usize, A: Arithmetic>(values: &mut Nodal<S>, columns: &[Nodal<S>; S], loads: &Nodal<S>) {
-    for (column, load) in columns.iter().zip(loads) {
-        add_times::<S, A>(values, column, *load);
-    }
-}
-
-#[inline(always)]
-fn add_times<const S: usize, A: Arithmetic>(values: &mut Nodal<S>, a: &Nodal<S>, x: f64) {
-    for (value, a) in values.iter_mut().zip(a) {
-        *value = A::mul_add(*a, x, *value);
-    }
-}
-
+/// Takes away both.
 #[inline(always)]
 fn subtract<const S: usize>(values: &mut Nodal<S>, a: &Nodal<S>, b: &Nodal<S>) {
     for ((value, a), b) in values.iter_mut().zip(a).zip(b) {

@@ -6,15 +6,17 @@ use nalgebra::Complex;
 
 use crate::excitation::{self, Generator};
 use crate::model::MAX_MODES;
-use crate::transient::response::FreeMotion;
+use crate::transient::free_motion::FreeMotion;
 
 /// Displacements of the oscillators, then their velocities; or displacement and velocity of mode after mode.
 pub type Coordinates = [f64; 2 * MAX_MODES];
 
-/// `x'' + c x' + nu x`.
+/// A pair of eigenvalues as the oscillator `x'' + c x' + nu x = 0`.
 #[derive(Clone, Copy, Debug)]
 pub struct Oscillator {
+    /// nu, 1/s2.
     pub(super) omega_squared: f64,
+    /// c, 1/s.
     pub(super) damping: f64,
     /// Unit base acceleration as a velocity that adds to x', and as an acceleration.
     pub(super) load: [f64; 2],
@@ -29,7 +31,9 @@ pub struct Oscillator {
 /// Everything of a step that depends on its length alone, for the last length.
 #[derive(Clone, Debug)]
 pub struct Propagator {
+    /// The length, s; 0 before the first.
     length: f64,
+    /// Free motion of each oscillator: displacement and velocity at the end per displacement and velocity at the start.
     pub(super) x_from_x: [f64; MAX_MODES],
     pub(super) x_from_v: [f64; MAX_MODES],
     pub(super) v_from_x: [f64; MAX_MODES],
@@ -91,7 +95,8 @@ pub(super) fn set(coordinates: &mut Coordinates, oscillator: usize, count: usize
 }
 
 impl Oscillator {
-    /// Displacement and velocity under base acceleration, from those of the free to an acceleration `x''` of its course.
+    /// Displacement and velocity under base acceleration, from those of the free to an acceleration `x''` of its
+    /// course.
     pub(super) fn loaded(&self, [y, y_rate]: [Complex<f64>; 2]) -> [Complex<f64>; 2] {
         let [kick, push] = self.load;
         [
@@ -129,7 +134,8 @@ impl Oscillator {
         [y, y * Complex::new(0.0, omega)]
     }
 
-    /// Displacement and velocity `length` seconds after rest under the acceleration `e^(i omega t)`, which is `turn` there.
+    /// Displacement and velocity `length` seconds after rest under the acceleration `e^(i omega t)`, which is `turn`
+    /// there.
     fn driven_from_rest(
         &self,
         free: &FreeMotion,

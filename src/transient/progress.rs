@@ -1,5 +1,5 @@
-//! Where a communication step stands. Integration steps end on halvings of it, or are free to be longer than it; either way their lengths, and with them their
-//! coefficients, come again.
+//! Where a communication step stands. Integration steps end on halvings of it, or are free to be longer than it; either
+//! way their lengths, and with them their coefficients, come again.
 
 /// A communication step in progress.
 #[derive(Clone, Copy, Debug)]
@@ -115,11 +115,13 @@ impl Progress {
         }
     }
 
-    /// The next point of the grid whose cells are at most `wanted` seconds long, unless it is too near to be worth a step.
+    /// The next point of the grid whose cells are at most `wanted` seconds long, unless it is too near to be worth a
+    /// step.
     fn grid_point(&self, wanted: f64) -> f64 {
         let level = (self.size / wanted).log2().ceil().clamp(0.0, 52.0);
         let cell = (-level).exp2();
-        // From a point of the grid the step is a halving: as long as wanted, or shorter where only finer cells begin here.
+        // From a point of the grid the step is a halving: as long as wanted, or shorter where only finer cells begin
+        // here.
         let aligned = (0..6)
             .map(|finer| cell * 0.5_f64.powi(finer))
             .find(|cell| (self.done / cell).fract() == 0.0);

@@ -1,8 +1,9 @@
 //! The contact opens: the instant within a step at which the force reaches zero.
 
 use crate::math::roots;
-use crate::transient::advance::{Cut, Integration};
+use crate::transient::advance::Integration;
 use crate::transient::nodal::Trial;
+use crate::transient::switching::Cut;
 use crate::transient::workspace::{Room, Workspace};
 
 /// Points at which the force polynomial is looked at where it comes near zero.
@@ -12,8 +13,8 @@ const LOOKS: u32 = 32;
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 impl Integration<'_> {
-    /// Where the step of `length` seconds has to end because the contact opens, which it has done after `latest` seconds
-    /// if it does at all.
+    /// Where the step of `length` seconds has to end because the contact opens, which it has done after `latest`
+    /// seconds if it does at all.
     pub(super) fn release<const S: usize>(&mut self, latest: f64, length: f64) -> Option<Cut>
     where
         Workspace: Room<S>,
@@ -41,8 +42,8 @@ impl Integration<'_> {
         })
     }
 
-    /// Where in the step (in steps) the contact first looks open: a node or the end with no force left, or a place where
-    /// the polynomial through the nodes dips below zero between them.
+    /// Where in the step (in steps) the contact first looks open: a node or the end with no force left, or a place
+    /// where the polynomial through the nodes dips below zero between them.
     pub(super) fn first_open<const S: usize>(&mut self, trial: &Trial<S>) -> Option<f64>
     where
         Workspace: Room<S>,

@@ -7,18 +7,21 @@ use crate::transient::nodal::Drive;
 const UNREST: f64 = 1e-2;
 
 impl Model {
-    /// The instant (s), `end` at the latest, until which the contact force stays within a hundredth of `tolerance` (N) of what it
-    /// is, where it does: under a constant base acceleration, and with the fixed contact at rest.
+    /// The instant (s), `end` at the latest, until which the contact force stays within a hundredth of `tolerance` (N)
+    /// of what it is, where it does: under a constant base acceleration, and with the fixed contact at rest.
     ///
     /// The potential energy is convex, and each mode has at least its own stiffness: a net load `r` on it is at most
-    /// `r^2 / (2 omega^2)` above the equilibrium. With the kinetic energy this bounds the energy left, which never grows; and a
-    /// force that differs by `e` from that of the equilibrium takes at least `e^2 / (2 k)` of it, `k` the greatest stiffness on the way.
+    /// `r^2 / (2 omega^2)` above the equilibrium. With the kinetic energy this bounds the energy left, which never
+    /// grows; and a force that differs by `e` from that of the equilibrium takes at least `e^2 / (2 k)` of it, `k` the
+    /// greatest stiffness on the way.
     pub(super) fn rests_until(&self, state: &State, drive: &Drive, tolerance: f64, end: f64) -> Option<f64> {
         if drive.support_rate != 0.0 || self.generator.is_active(state.time) {
             return None;
         }
         let d = self.preload.indentation + state.indentation;
         let force = self.law.force(d, 0.0);
+        let change = UNREST * tolerance;
+        let least = change * change / (2.0 * self.law.tangent_stiffness(force + change));
         let mut energy = 0.0;
         for (mode, at) in self.modes.iter().zip(&state.modes) {
             let load = mode.tip * (force - self.preload.force)
@@ -30,10 +33,12 @@ impl Model {
                 load * load / mode.omega_squared
             };
             energy += 0.5 * (strain + at.v * at.v);
+            // The first modes tell of most motions. (What is not a number is no rest either.)
+            if !(energy <= least) {
+                return None;
+            }
         }
-        let change = UNREST * tolerance;
-        let least = change * change / (2.0 * self.law.tangent_stiffness(force + change));
         let start = self.generator.next_break(state.time).unwrap_or(end);
-        (energy <= least).then_some(start.min(end))
+        Some(start.min(end))
     }
 }

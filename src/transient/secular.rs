@@ -1,14 +1,14 @@
 //! Eigenvalues and eigenvectors of the beam with a linear contact, from the secular equation.
 //!
-//! A force `F` on the tip moves the modes of the cantilever as `q_i = T_i F / p_i(l)`, `p_i = l^2 + c_i l + omega_i^2`, and
-//! the contact answers with `F = -k (1 + beta_c l) sum T_i q_i`. Both hold at the zeros of
+//! A force `F` on the tip moves the modes of the cantilever as `q_i = T_i F / p_i(l)`, `p_i = l^2 + c_i l + omega_i^2`,
+//! and the contact answers with `F = -k (1 + beta_c l) sum T_i q_i`. Both hold at the zeros of
 //!
 //! `1 + k (1 + beta_c l) sum T_i^2 / p_i(l)`
 //!
-//! (G. H. Golub, SIAM Review 15 (1973) 318, for a change of rank one; here of stiffness and damping together). The zeros
-//! are twice as many as modes, and taken in pairs: complex conjugates, or two real ones. With `c_i = alpha + beta omega_i^2`,
-//! `p_i = l (l + alpha) + omega_i^2 h` with `h = 1 + beta l`. Many slow zeros crowd at `l = -1 / beta`, where only `h` tells them
-//! apart, so `h` is found along with `l` and not formed from it.
+//! (G. H. Golub, SIAM Review 15 (1973) 318, for a change of rank one; here of stiffness and damping together). The
+//! zeros are twice as many as modes, and taken in pairs: complex conjugates, or two real ones. With `c_i = alpha + beta
+//! omega_i^2`, `p_i = l (l + alpha) + omega_i^2 h` with `h = 1 + beta l`. Many slow zeros crowd at `l = -1 / beta`,
+//! where only `h` tells them apart, so `h` is found along with `l` and not formed from it.
 
 use std::ops::{Add, Div, Mul, Sub};
 
@@ -50,8 +50,8 @@ pub enum Pair {
     Apart(Root<f64>, Root<f64>),
 }
 
-/// Values of a function at the two zeros `m +- w` of a pair, `mean +- slope w`: real whether the zeros are real, equal or
-/// complex, and smooth from one to the other.
+/// Values of a function at the two zeros `m +- w` of a pair, `mean +- slope w`: real whether the zeros are real, equal
+/// or complex, and smooth from one to the other.
 #[derive(Clone, Copy, Debug)]
 pub struct Number {
     /// Mean of the two values.
@@ -138,7 +138,7 @@ pub struct Component {
     pub x_rate: [f64; 2],
 }
 
-/// A pair as a damped oscillator `x'' + c x' + nu x` with its eigenvectors.
+/// A pair as a damped oscillator `x'' + c x' + nu x = 0` with its eigenvectors.
 #[derive(Clone, Debug)]
 pub struct EigenPair {
     /// nu, the product of the zeros, 1/s2.
@@ -153,7 +153,7 @@ pub struct EigenPair {
     pub components: Vec<Component>,
 }
 
-/// Relative distance within which two real zeros are treated as close.
+/// Half the distance of two real zeros over their mean, up to which they are treated as close.
 const CLOSE: f64 = 1e-1;
 
 impl Problem {
@@ -170,7 +170,8 @@ impl Problem {
 
     /// The zeros without damping, each `-l^2` with the square of its mode's tip displacement (modal mass 1 kg).
     ///
-    /// They interlace with the omega_i^2. Each is sought as distance from the nearest of these, which keeps all digits of it.
+    /// They interlace with the omega_i^2. Each is sought as distance from the nearest of these, which keeps all digits
+    /// of it.
     fn undamped(&self) -> Option<Vec<(f64, f64)>> {
         let softness = 1.0 / self.contact_stiffness;
         let total: f64 = self.modes.iter().map(|(_, tip)| tip * tip).sum();

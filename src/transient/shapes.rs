@@ -1,12 +1,12 @@
-//! Integrals and derivatives of the load shapes of a step: the Lagrange polynomials of its nodes, and the polynomial of one
-//! degree more that vanishes at the nodes and is 1 at the start, which the error estimate uses.
+//! Integrals and derivatives of the load shapes of a step: the Lagrange polynomials of its nodes, and the polynomial of
+//! one degree more that vanishes at the nodes and is 1 at the start, which the error estimate uses.
 
 use crate::math::legendre;
 use crate::transient::collocation::{MAX_SHAPES, Nodal};
 use crate::transient::machine::Arithmetic;
-use crate::transient::response::add;
+use crate::transient::vector::{add, end};
 
-/// Most terms of a power series: `7^n / n!` is below rounding from there on ([`super::response`]).
+/// Most terms of a power series: `7^n / n!` is below rounding from there on ([`super::mode_over_step`]).
 pub const TERMS: usize = 48;
 
 /// Points of the quadrature for the integrals; later ones than it is exact for are small.
@@ -69,7 +69,7 @@ impl<const S: usize> Table<S> {
 
     /// The Lagrange polynomials at the last node.
     fn end(&self) -> Nodal<S> {
-        self.nodal.map(|column| column.last().copied().unwrap_or_default())
+        self.nodal.map(|column| end(&column))
     }
 }
 

@@ -1,15 +1,16 @@
 //! The contact closes: the first instant within a step of free flight at which the force leaves zero.
 //!
-//! Looking at signs alone would miss a grazing touch. Between neighbouring instants at which indentation and velocity are
-//! known, the indentation is a cubic but for an error that the middle one of any three shows. Where the cubic's highest
-//! point clears zero by more than that error there is no touch; elsewhere the interval is halved. Modes that swing within
-//! the interval unseen count with their amplitudes.
+//! Looking at signs alone would miss a grazing touch. Between neighbouring instants at which indentation and velocity
+//! are known, the indentation is a cubic but for an error that the middle one of any three shows. Where the cubic's
+//! highest point clears zero by more than that error there is no touch; elsewhere the interval is halved. Modes that
+//! swing within the interval unseen count with their amplitudes.
 
 use crate::math::roots;
 use crate::model::Mode;
-use crate::transient::advance::{Cut, Integration};
+use crate::transient::advance::Integration;
 use crate::transient::collocation::LONG;
 use crate::transient::nodal::Trial;
+use crate::transient::switching::Cut;
 use crate::transient::workspace::{Room, Workspace};
 
 /// Halvings before an interval counts as an instant.
@@ -19,7 +20,7 @@ const DEPTH: u32 = 40;
 const UNSEEN: f64 = 1e-2;
 
 /// Part of the flight looked at that a contact stays open at least.
-const SHORTEST: f64 = 1e-3;
+const SHORTEST_FLIGHT: f64 = 1e-3;
 
 /// Indentation and its velocity at an instant of the step.
 #[derive(Clone, Copy, Debug)]
@@ -33,8 +34,8 @@ struct Sample {
 }
 
 impl Integration<'_> {
-    /// Where in the step of free flight of `length` seconds (in steps) the contact may first close: the start of the first
-    /// interval between samples in which it is not clear of it.
+    /// Where in the step of free flight of `length` seconds (in steps) the contact may first close: the start of the
+    /// first interval between samples in which it is not clear of it.
     pub(super) fn first_near<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> Option<f64>
     where
         Workspace: Room<S>,
@@ -143,7 +144,11 @@ impl Integration<'_> {
             let touch = self.crossing::<S>(a, b);
             // A contact that closes as it opens has been open all the same: the steps have to get on.
             let released = self.state.last_opening == self.state.time;
-            return Some(if released { touch.max(SHORTEST * b.at) } else { touch });
+            return Some(if released {
+                touch.max(SHORTEST_FLIGHT * b.at)
+            } else {
+                touch
+            });
         }
         let middle = self.sample::<S>(f64::midpoint(a.at, b.at));
         let error = (middle.d - cubic(a, b, middle.at)).abs();

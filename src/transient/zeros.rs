@@ -63,7 +63,8 @@ fn first_guess(problem: &Problem, (nu, tip): (f64, f64)) -> [Zero; 2] {
         let contact = value * problem.contact_damping + 1.0;
         let beam = -value * (value + (damping.max(0.0) - problem.stiffness_damping * nu)) / nu;
         let zero = at(problem, value, beam, contact);
-        // Off the real axis, or two real zeros could never become complex ones; to either side, or equal ones could not part.
+        // Off the real axis, or two real zeros could never become complex ones; to either side, or equal ones could not
+        // part.
         let aside = Complex::new(0.0, part * resolution(problem, &zero));
         let beam = zero.beam + aside * problem.stiffness_damping;
         at(problem, value + aside, beam, contact + aside * problem.contact_damping)
@@ -86,7 +87,8 @@ fn at(problem: &Problem, value: Complex<f64>, beam: Complex<f64>, contact: Compl
     Zero { value, beam, contact }
 }
 
-/// The distance that counts as large at the zero: its own size, or less where it is close to `-1 / beta` or `-1 / beta_c`.
+/// The distance that counts as large at the zero: its own size, or less where it is close to `-1 / beta` or `-1 /
+/// beta_c`.
 fn resolution(problem: &Problem, zero: &Zero) -> f64 {
     let size = zero.value.norm();
     let size = size.min(zero.beam.norm() / problem.stiffness_damping);
@@ -174,8 +176,8 @@ fn paired(problem: &Problem, zeros: Vec<Zero>) -> Option<Vec<Pair>> {
     Some(pairs)
 }
 
-/// Two zeros so close that each alone is known to half the digits: what is known to all digits is the quadratic that has both
-/// as zeros, a factor of the secular function's power series about their middle.
+/// Two zeros so close that each alone is known to half the digits: what is known to all digits is the quadratic that
+/// has both as zeros, a factor of the secular function's power series about their middle.
 fn close_pair(problem: &Problem, a: &Zero, b: &Zero) -> Pair {
     let centre = Zero {
         value: Complex::from(f64::midpoint(a.value.re, b.value.re)),

@@ -42,6 +42,27 @@ fn a_system_without_damping_thrown_at_the_contact() {
     assert!(outcome.balances(&scene), "{}", outcome.account(&scene));
 }
 
+/// From rest the energy of the motion itself gives no measure for its rounding.
+#[test]
+fn a_system_without_damping_pushed_slowly() {
+    let mut scene = Scene::default();
+    scene.beam.stiffness_damping = 0.0;
+    scene.contact.damping = 0.0;
+    scene.solver.tolerance = 1e-10;
+    let segment = |support| Segment {
+        duration: 1e-5,
+        acceleration: 0.0,
+        support,
+    };
+    let ride = Ride {
+        scene,
+        speed: 0.0,
+        segments: vec![segment(3e-8), segment(6e-8), segment(4e-8)],
+        steps: 10_000,
+    };
+    ride.keeps_its_properties();
+}
+
 #[test]
 fn a_spring_of_strong_damping() {
     let mut scene = Scene::default();

@@ -1,0 +1,218 @@
+//! Newton's method for the nodal forces on the closed branch: the forces of the law at the motion that they give.
+
+use crate::model::{Model, State};
+use crate::transient::coefficients::{ErrorColumn, StepCoefficients};
+use crate::transient::collocation::{Collocation, Nodal};
+use crate::transient::machine::Arithmetic;
+use crate::transient::nodal::Slopes;
+use crate::transient::vector::{add_columns, end};
+
+/// Rounding of the motion at the nodes, relative to what it would be without contact force.
+const MOTION_ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// A pivot this small would multiply the rounding by its inverse in each elimination.
+const SMALL_PIVOT: f64 = 0.1;
+
+/// Newton iterations before a step is judged too long.
+const ITERATIONS: u64 = 12;
+
+/// The nodal forces of a step.
+pub(super) struct Solution<const S: usize> {
+    /// Deviation from the preload force, N.
+    pub(super) forces: Nodal<S>,
+    /// Spent on them.
+    pub(super) iterations: u64,
+    /// Displacement and velocity of the tip at the end per force that the polynomial misses at the start.
+    pub(super) by_force: (f64, f64),
+    /// The same per base acceleration.
+    pub(super) by_acceleration: (f64, f64),
+    /// Of the law.
+    pub(super) slopes: Slopes,
+}
+
+impl<const S: usize> Solution<S> {
+    /// A force that does not depend on the motion.
+    pub(super) fn constant(force: f64) -> Self {
+        Self {
+            forces: [force; S],
+            iterations: 0,
+            by_force: (0.0, 0.0),
+            by_acceleration: (0.0, 0.0),
+            slopes: Slopes::default(),
+        }
+    }
+
+    /// Of the law at the last iterate, whose greatest stiffness and damping are given; `force_error` and
+    /// `acceleration_error` are the nodal forces that the respective errors cause, whose effects at the end are formed.
+    #[inline(always)]
+    fn new(
+        step: &StepCoefficients<S>,
+        forces: Nodal<S>,
+        iterations: u64,
+        (stiffness, damping): (f64, f64),
+        force_error: &Nodal<S>,
+        acceleration_error: &Nodal<S>,
+    ) -> Self {
+        let last = |columns: &[Nodal<S>; S], loads: &Nodal<S>| {
+            let entries = columns.iter().filter_map(|column| column.last());
+            entries.zip(loads).map(|(entry, load)| entry * load).sum::<f64>()
+        };
+        let tip = |error: &ErrorColumn<S>, loads: &Nodal<S>| {
+            (
+                end(&error.displacement) - last(&step.force.displacement, loads),
+                end(&error.velocity) - last(&step.force.velocity, loads),
+            )
+        };
+        let steady = [1.0; S];
+        let gain = stiffness * last(&step.force.displacement, &steady) + damping * last(&step.force.velocity, &steady);
+        Self {
+            forces,
+            iterations,
+            by_force: tip(&step.force_error, force_error),
+            by_acceleration: tip(&step.acceleration_error, acceleration_error),
+            slopes: Slopes {
+                stiffness,
+                damping,
+                gain: gain.max(0.0),
+            },
+        }
+    }
+}
+
+impl Model {
+    /// The nodal forces from the tip's motion without contact force, which differ from the law's by at most `newton` (N)
+    /// or rounding; `None` where the iteration does not converge.
+    #[inline(always)]
+    pub(super) fn closed_forces<const S: usize, A: Arithmetic>(
+        &self,
+        state: &State,
+        step: &StepCoefficients<S>,
+        collocation: &Collocation<S>,
+        free: &Nodal<S>,
+        free_rate: &Nodal<S>,
+        newton: f64,
+    ) -> Option<Solution<S>> {
+        let mut forces = if state.last_step > 0.0 {
+            collocation.predict::<A>(&state.predictions, step.length / state.last_step)
+        } else {
+            [state.force - self.preload.force; S]
+        };
+        let d0 = self.preload.indentation;
+        let greatest = |values: &Nodal<S>| values.iter().fold(0.0_f64, |greatest, value| greatest.max(value.abs()));
+        let (farthest, fastest) = (greatest(free), greatest(free_rate));
+        let mut by_errors = None;
+        for iterations in 0..=ITERATIONS {
+            let (indentations, rates) = at_nodes::<S, A>(step, free, free_rate, &forces);
+            let mut residual = forces;
+            let (mut stiffness, mut damping) = ([0.0; S], [0.0; S]);
+            for ((((residual, stiffness), damping), d), rate) in residual
+                .iter_mut()
+                .zip(&mut stiffness)
+                .zip(&mut damping)
+                .zip(&indentations)
+                .zip(&rates)
+            {
+                let law = self.law.closed_branch(d0 + d, *rate);
+                *residual -= law.force - self.preload.force;
+                (*stiffness, *damping) = (law.stiffness, law.damping);
+            }
+            // The motion has to obey the law, not only the nodal forces to be right: on a stiff contact they hardly
+            // depend on it. What rounding leaves of the motion is all that can be asked.
+            let rounding = MOTION_ROUNDING * (greatest(&stiffness) * farthest + greatest(&damping) * fastest);
+            if let Some((force_error, acceleration_error)) =
+                by_errors.filter(|_| greatest(&residual) <= newton.max(rounding))
+            {
+                return Some(Solution::new(
+                    step,
+                    forces,
+                    iterations,
+                    (greatest(&stiffness), greatest(&damping)),
+                    &force_error,
+                    &acceleration_error,
+                ));
+            }
+            // The derivative of the residuals by each nodal force.
+            let mut jacobian = step.force.displacement;
+            for (column, velocity) in jacobian.iter_mut().zip(&step.force.velocity) {
+                for (((entry, velocity), stiffness), damping) in
+                    column.iter_mut().zip(velocity).zip(&stiffness).zip(&damping)
+                {
+                    *entry = A::mul_add(*stiffness, *entry, damping * velocity);
+                }
+            }
+            let force_error = react::<S, A>(&step.force_error, &stiffness, &damping);
+            let acceleration_error = react::<S, A>(&step.acceleration_error, &stiffness, &damping);
+            let [correction, force_error, acceleration_error] =
+                solve::<S, 3, A>(jacobian, [residual, force_error, acceleration_error])?;
+            for (force, correction) in forces.iter_mut().zip(&correction) {
+                *force -= correction;
+            }
+            by_errors = Some((force_error, acceleration_error));
+        }
+        None
+    }
+}
+
+/// Solves `(1 + A) x = b` for several `b`, `A` column by column, by Gauss-Jordan elimination, whose inner loops run
+/// down columns; rows are exchanged only where a pivot is small, which happens in violent steps alone. `None` where the
+/// matrix is singular.
+#[expect(
+    clippy::indexing_slicing,
+    reason = "every index runs over the fixed size of the arrays"
+)]
+#[inline(always)]
+fn solve<const S: usize, const R: usize, A: Arithmetic>(
+    mut a: [Nodal<S>; S],
+    mut right: [Nodal<S>; R],
+) -> Option<[Nodal<S>; R]> {
+    for (k, column) in a.iter_mut().enumerate() {
+        column[k] += 1.0;
+    }
+    for p in 0..S {
+        if a[p][p].abs() < SMALL_PIVOT {
+            let largest = (p..S).max_by(|i, j| a[p][*i].abs().total_cmp(&a[p][*j].abs()))?;
+            for column in a.iter_mut().chain(&mut right) {
+                column.swap(p, largest);
+            }
+        }
+        let pivot = a[p];
+        let inverse = 1.0 / pivot[p];
+        let eliminate = |column: &mut Nodal<S>| {
+            let share = column[p] * inverse;
+            for k in 0..S {
+                column[k] = A::mul_add(-pivot[k], share, column[k]);
+            }
+            column[p] = share;
+        };
+        a.iter_mut().skip(p + 1).chain(&mut right).for_each(eliminate);
+    }
+    right.iter().flatten().all(|x| x.is_finite()).then_some(right)
+}
+
+/// Forces of the law at the nodes that belong to displacements and velocities of the tip.
+#[inline(always)]
+fn react<const S: usize, A: Arithmetic>(tip: &ErrorColumn<S>, stiffness: &Nodal<S>, damping: &Nodal<S>) -> Nodal<S> {
+    let mut forces = tip.displacement;
+    for (((force, velocity), stiffness), damping) in forces.iter_mut().zip(&tip.velocity).zip(stiffness).zip(damping) {
+        *force = A::mul_add(*stiffness, *force, damping * velocity);
+    }
+    forces
+}
+
+/// Indentation and its velocity at the nodes under the nodal forces.
+#[inline(always)]
+pub(super) fn at_nodes<const S: usize, A: Arithmetic>(
+    step: &StepCoefficients<S>,
+    free: &Nodal<S>,
+    free_rate: &Nodal<S>,
+    forces: &Nodal<S>,
+) -> (Nodal<S>, Nodal<S>) {
+    let (mut indentations, mut rates) = (*free, *free_rate);
+    let mut loads = *forces;
+    for load in &mut loads {
+        *load = -*load;
+    }
+    add_columns::<S, A>(&mut indentations, &step.force.displacement, &loads);
+    add_columns::<S, A>(&mut rates, &step.force.velocity, &loads);
+    (indentations, rates)
+}
