@@ -33,8 +33,8 @@ impl Model {
                 load * load / mode.omega_squared
             };
             energy += 0.5 * (strain + at.v * at.v);
-            // The first modes tell of most motions. (What is not a number is no rest either.)
-            if !(energy <= least) {
+            // The first modes tell of most motions.
+            if energy.is_nan() || energy > least {
                 return None;
             }
         }
