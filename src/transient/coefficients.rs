@@ -212,7 +212,7 @@ pub struct Cache<const S: usize> {
     other: StepCoefficients<S>,
 }
 
-/// Slots for step lengths that come again: as many as [`Cache::get`] tells apart.
+/// Slots for step lengths that come again, a power of two.
 const SLOTS: usize = 32;
 
 impl<const S: usize> Cache<S> {
@@ -237,8 +237,11 @@ impl<const S: usize> Cache<S> {
             slots,
             other,
         } = self;
-        // Fibonacci hashing: the five upper bits of the product choose the slot.
-        let slot = (length.to_bits().wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 59) as usize;
+        // Halvings of a length come to lie beside each other, those of another length (Fibonacci hashing) elsewhere.
+        let bits = length.to_bits();
+        let (exponent, mantissa) = (bits >> 52, bits << 12);
+        let elsewhere = mantissa.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> (64 - SLOTS.ilog2());
+        let slot = usize::try_from(exponent + elsewhere).unwrap_or_default() % SLOTS;
         let entry = slots.get_mut(slot).filter(|_| recurring).unwrap_or(other);
         if entry.length.to_bits() != length.to_bits() {
             entry.fill(length, model, collocation);
