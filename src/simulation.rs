@@ -45,6 +45,31 @@ impl Simulation {
             .step(&mut self.course, &mut self.workspace, inputs, time, step_size)
     }
 
+    /// As it stood in another simulation of the same scene, which began with the fixed contact displaced by
+    /// `initial_support` (m).
+    ///
+    /// # Errors
+    /// A [`SceneError`] where the scene cannot be simulated.
+    pub fn resume(scene: &Scene, initial_support: f64, course: &Course) -> Result<Self, SceneError> {
+        let model = Model::new(scene, initial_support)?;
+        let workspace = Workspace::new(&model);
+        Ok(Self {
+            model,
+            course: *course,
+            workspace,
+        })
+    }
+
+    /// All that moves: with the scene and the initial displacement of the fixed contact, all there is to save.
+    pub fn course(&self) -> &Course {
+        &self.course
+    }
+
+    /// Goes on from where a simulation of the same model stood.
+    pub fn go_on_from(&mut self, course: &Course) {
+        self.course = *course;
+    }
+
     /// The instant reached, s.
     pub fn time(&self) -> f64 {
         self.course.time

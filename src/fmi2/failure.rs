@@ -58,6 +58,9 @@ pub(super) enum Failure {
     /// A status that this component does not have.
     #[error("status kind {0}: this component has no such status of this type")]
     StatusKind(u32),
+    /// A state that is none of this component, or has been freed.
+    #[error("argument {0} is no saved state of this component, or one that has been freed")]
+    ForeignState(&'static str),
     /// A capability that the description declares absent.
     #[error("not supported, as modelDescription.xml says by {0}")]
     Unsupported(&'static str),
@@ -82,6 +85,7 @@ impl Failure {
             | Self::Step(_)
             | Self::Argument { .. }
             | Self::Unsupported(_)
+            | Self::ForeignState(_)
             // Not fmi2Fatal: instances share nothing, and a reset builds this one anew.
             | Self::Panic(_) => fmi2Error,
         }

@@ -1,12 +1,15 @@
-//! Saved states and directional derivatives. Not supported: each call is an error that leaves the instance as it was.
+//! Saved states: a copy of all that an instance is, many at once if wanted. As bytes they are not supported, nor are
+//! directional derivatives: each such call is an error that leaves the instance as it was.
 // Arguments that are not looked at keep their names for the header.
 #![allow(unused_variables)]
 
+use std::ptr;
+
 use libc::size_t;
 
-use super::entry::{array, call};
+use super::entry::{array, array_mut, call};
 use super::failure::Failure;
-use super::instance::Instance;
+use super::instance::{Instance, Snapshot};
 use super::states::{self, Function};
 use super::types::{fmi2Byte, fmi2Component, fmi2FMUstate, fmi2Real, fmi2Status, fmi2ValueReference};
 
@@ -19,27 +22,84 @@ unsafe fn unsupported(c: fmi2Component, function: Function, flag: &'static str) 
     unsafe { call(c, function, |_: &mut Instance| Err(Failure::Unsupported(flag))) }
 }
 
-/// Not supported.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetFMUstate(c: fmi2Component, FMUstate: *mut fmi2FMUstate) -> fmi2Status {
-    // SAFETY: the contract of the module.
-    unsafe { unsupported(c, states::GET_FMU_STATE, "canGetAndSetFMUstate") }
+/// What a saved state points to. The guard comes first: it tells one from other memory.
+#[repr(C)]
+struct Saved {
+    guard: u64,
+    snapshot: Snapshot,
 }
 
-/// Not supported.
+const SAVED: u64 = u64::from_be_bytes(*b"relay\0st");
+const FREED: u64 = u64::from_be_bytes(*b"relay\0fs");
+
+/// The saved state behind a pointer.
+///
+/// # Safety
+/// `state` is null or points to readable memory.
+unsafe fn saved<'a>(state: fmi2FMUstate) -> Result<&'a mut Saved, Failure> {
+    let foreign = Failure::ForeignState("FMUstate");
+    let state = state.cast::<Saved>();
+    if state.is_null() || !state.is_aligned() {
+        return Err(foreign);
+    }
+    // SAFETY: not null and aligned; the caller promises readable memory.
+    if unsafe { (&raw const (*state).guard).read() } != SAVED {
+        return Err(foreign);
+    }
+    // SAFETY: the guard says that the memory came from `fmi2GetFMUstate`; the caller promises that nobody else uses it.
+    Ok(unsafe { &mut *state })
+}
+
+/// Saves the instance, in the state that `FMUstate` points to or, where that is null, in a new one.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetFMUstate(c: fmi2Component, FMUstate: *mut fmi2FMUstate) -> fmi2Status {
+    let body = |instance: &mut Instance| {
+        // SAFETY: the contract of the module: null or initialised.
+        let place = unsafe { array_mut(FMUstate, 1, "FMUstate") }?;
+        let [place] = place else {
+            return Err(Failure::Pointer("FMUstate"));
+        };
+        // SAFETY: the standard has the importer set it to null or to a saved state.
+        let state = unsafe { place.assume_init_mut() };
+        let snapshot = instance.snapshot();
+        if state.is_null() {
+            *state = Box::into_raw(Box::new(Saved { guard: SAVED, snapshot })).cast();
+        } else {
+            // SAFETY: the contract of the module.
+            unsafe { saved(*state) }?.snapshot = snapshot;
+        }
+        Ok(())
+    };
+    // SAFETY: the contract of the module.
+    unsafe { call(c, states::GET_FMU_STATE, body) }
+}
+
+/// Takes the instance back to a saved state. The state stays and can be used again.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetFMUstate(c: fmi2Component, FMUstate: fmi2FMUstate) -> fmi2Status {
     // SAFETY: the contract of the module.
-    unsafe { unsupported(c, states::SET_FMU_STATE, "canGetAndSetFMUstate") }
+    let body = |instance: &mut Instance| instance.restore(&unsafe { saved(FMUstate) }?.snapshot);
+    // SAFETY: the contract of the module.
+    unsafe { call(c, states::SET_FMU_STATE, body) }
 }
 
-/// Not supported, but null, which the standard has ignored, is.
+/// Frees a saved state and sets the pointer to null. Null is ignored.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2FreeFMUstate(c: fmi2Component, FMUstate: *mut fmi2FMUstate) -> fmi2Status {
-    // SAFETY: the contract of the module.
-    let body = |_: &mut Instance| match unsafe { array(FMUstate, 1, "FMUstate") } {
-        Ok([state]) if !state.is_null() => Err(Failure::Unsupported("canGetAndSetFMUstate")),
-        _ => Ok(()),
+    let body = |_: &mut Instance| {
+        // SAFETY: the contract of the module: null or initialised.
+        let state = match unsafe { array(FMUstate, 1, "FMUstate") } {
+            Ok([state]) if !state.is_null() => *state,
+            _ => return Ok(()),
+        };
+        // SAFETY: the contract of the module.
+        let saved = unsafe { saved(state) }?;
+        saved.guard = FREED;
+        // SAFETY: the guard held SAVED, so the memory came from `fmi2GetFMUstate`, and it does not any more.
+        drop(unsafe { Box::from_raw(ptr::from_mut(saved)) });
+        // SAFETY: not null, as it was read from; the importer's to write to.
+        unsafe { FMUstate.write(ptr::null_mut()) };
+        Ok(())
     };
     // SAFETY: the contract of the module.
     unsafe { call(c, states::FREE_FMU_STATE, body) }

@@ -10,6 +10,7 @@ use crate::error::SceneError;
 use crate::inputs::Inputs;
 use crate::scene::Scene;
 use crate::simulation::Simulation;
+use crate::transient::dense::Course;
 use crate::variables::{Group, Variable};
 
 /// Tolerances of the experiment above are lowered to this one, the largest that `solver.tolerance` allows.
@@ -21,6 +22,29 @@ struct Experiment {
     tolerance: Option<f64>,
     start_time: f64,
     stop_time: Option<f64>,
+}
+
+impl Experiment {
+    /// The scene with the tolerance of the experiment where it has none of its own.
+    fn scene(&self, scene: &Scene) -> Scene {
+        let mut scene = *scene;
+        if let Some(tolerance) = self.tolerance.filter(|_| scene.solver.tolerance == 0.0) {
+            scene.solver.tolerance = tolerance;
+        }
+        scene
+    }
+}
+
+/// An instance at one moment, but for what is logged, which is the importer's choice and not the simulation's.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Snapshot {
+    state: State,
+    scene: Scene,
+    inputs: Inputs,
+    experiment: Experiment,
+    /// Where the simulation stands, and the displacement of the fixed contact that it began with, m.
+    simulation: Option<(Course, f64)>,
+    time: f64,
 }
 
 #[derive(Debug)]
@@ -135,22 +159,58 @@ impl Instance {
         self.time = 0.0;
     }
 
+    /// The instance as it is now.
+    pub(super) fn snapshot(&self) -> Snapshot {
+        let simulation = self.simulation.as_ref();
+        Snapshot {
+            state: self.state,
+            scene: self.scene,
+            inputs: self.inputs,
+            experiment: self.experiment,
+            simulation: simulation.map(|simulation| (*simulation.course(), simulation.model().initial_support)),
+            time: self.time,
+        }
+    }
+
+    /// The instance as it was. A simulation of the same model only changes where it stands.
+    pub(super) fn restore(&mut self, snapshot: &Snapshot) -> Result<(), Failure> {
+        let Snapshot {
+            state,
+            scene,
+            inputs,
+            experiment,
+            simulation,
+            time,
+        } = *snapshot;
+        let wanted = experiment.scene(&scene);
+        match (&mut self.simulation, simulation) {
+            (Some(present), Some((course, initial_support)))
+                if present.model().scene == wanted && present.model().initial_support == initial_support =>
+            {
+                present.go_on_from(&course);
+            }
+            (present, Some((course, initial_support))) => {
+                let resumed = Simulation::resume(&wanted, initial_support, &course);
+                *present = Some(resumed.map_err(Failure::Initialisation)?);
+            }
+            (present, None) => *present = None,
+        }
+        (self.state, self.scene, self.inputs) = (state, scene, inputs);
+        (self.experiment, self.time) = (experiment, time);
+        Ok(())
+    }
+
     /// The simulation of what is set now.
     fn prepare(&mut self) -> Result<&Simulation, SceneError> {
         let simulation = match self.simulation.take() {
             Some(simulation) => simulation,
-            None => Simulation::new(&self.experiment_scene(), &self.inputs, self.experiment.start_time)?,
+            None => Simulation::new(
+                &self.experiment.scene(&self.scene),
+                &self.inputs,
+                self.experiment.start_time,
+            )?,
         };
         Ok(self.simulation.insert(simulation))
-    }
-
-    /// The scene with the tolerance of the experiment where it has none of its own.
-    fn experiment_scene(&self) -> Scene {
-        let mut scene = self.scene;
-        if let Some(tolerance) = self.experiment.tolerance.filter(|_| scene.solver.tolerance == 0.0) {
-            scene.solver.tolerance = tolerance;
-        }
-        scene
     }
 
     /// The simulation to read the output `variable` from.
