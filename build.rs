@@ -172,7 +172,7 @@ fn enumeration(code: &mut String, definition: Node, list: Node) -> Result<(), Bo
     let items: Vec<_> = list.children().filter(Node::is_element).collect();
     writeln!(
         code,
-        "/// {}.\n#[derive(Clone, Copy, Debug, PartialEq, Eq)]\npub enum {name} {{",
+        "/// {}.\n#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]\npub enum {name} {{",
         attribute(definition, "description")?
     )?;
     let (mut from, mut table) = (String::new(), String::new());

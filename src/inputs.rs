@@ -3,9 +3,10 @@
 use crate::error::SceneError;
 use crate::scene::check_range;
 use crate::variables::RealInput;
+use serde::{Deserialize, Serialize};
 
 /// Values of the inputs. SI units.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Inputs {
     /// Acceleration of the frame, positive presses the contact, m/s2.
     pub base_acceleration: f64,

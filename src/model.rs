@@ -14,6 +14,8 @@ use crate::transient::collocation::Predictions;
 use crate::transient::linear::ClosedLoop;
 use crate::transient::machine::Machine;
 use crate::variables::{ContactLawKind, RealParameter};
+use serde::{Deserialize, Serialize};
+use serde_big_array::BigArray;
 
 /// Largest number of modes: a multiple of four, the modes a step computes at once.
 pub const MAX_MODES: usize = 40;
@@ -61,7 +63,7 @@ pub struct Model {
 }
 
 /// Displacement and velocity of a mode, as deviation from the preload.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ModeState {
     /// m sqrt(kg).
     pub q: f64,
@@ -73,11 +75,12 @@ pub struct ModeState {
 pub type ModeStates = [ModeState; MAX_MODES];
 
 /// The motion at an instant.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// Time, s.
     pub time: f64,
     /// The modes.
+    #[serde(with = "BigArray")]
     pub modes: ModeStates,
     /// Displacement of the fixed contact since the preload, m.
     pub support: f64,

@@ -8,9 +8,10 @@ use crate::variables::{
     AxialForceKind, ContactLawKind, EnumerationParameter, ExcitationKind, Group, IntegerParameter, RealParameter,
     VARIABLES, Variable,
 };
+use serde::{Deserialize, Serialize};
 
 /// Parameters and effects of a simulation. SI units.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scene {
     /// The spring.
     pub beam: Beam,
@@ -31,7 +32,7 @@ pub struct Scene {
 }
 
 /// Cantilever spring, as an equivalent uniform section.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Beam {
     /// Free length, m.
     pub length: f64,
@@ -52,7 +53,7 @@ pub struct Beam {
 }
 
 /// Rivet at the tip.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Tip {
     /// Mass, kg.
     pub mass: f64,
@@ -61,7 +62,7 @@ pub struct Tip {
 }
 
 /// Contact geometry and law.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Contact {
     /// Overtravel s, m.
     pub overtravel: f64,
@@ -76,7 +77,7 @@ pub struct Contact {
 }
 
 /// Elastic material of a contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Material {
     /// Young's modulus, Pa.
     pub youngs_modulus: f64,
@@ -85,7 +86,7 @@ pub struct Material {
 }
 
 /// Contact resistance `H F^-n` in series with a film, both beside the open resistance.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Resistance {
     /// H, Ohm at 1 N.
     pub coefficient: f64,
@@ -98,7 +99,7 @@ pub struct Resistance {
 }
 
 /// Generated base acceleration.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Excitation {
     /// Amplitude, m/s2.
     pub amplitude: f64,
@@ -111,14 +112,14 @@ pub struct Excitation {
 }
 
 /// Surroundings.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Environment {
     /// Constant acceleration, m/s2.
     pub gravity: f64,
 }
 
 /// Accuracy.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Solver {
     /// Error allowed in the contact force, relative to its scale; 0: [`Solver::DEFAULT_TOLERANCE`].
     pub tolerance: f64,
@@ -145,7 +146,7 @@ impl Solver {
 }
 
 /// Effects asked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Effects {
     /// Generated base acceleration.
     pub excitation: ExcitationKind,

@@ -61,6 +61,12 @@ pub(super) enum Failure {
     /// A state that is none of this component, or has been freed.
     #[error("argument {0} is no saved state of this component, or one that has been freed")]
     ForeignState(&'static str),
+    /// Bytes that are no saved state of this component.
+    #[error("argument serializedState is no saved state: {0}")]
+    Serialized(String),
+    /// Room of another size than the saved state has as bytes.
+    #[error("size = {size}: not allowed, the saved state has {needed} bytes")]
+    Size { size: usize, needed: usize },
     /// A capability that the description declares absent.
     #[error("not supported, as modelDescription.xml says by {0}")]
     Unsupported(&'static str),
@@ -86,6 +92,8 @@ impl Failure {
             | Self::Argument { .. }
             | Self::Unsupported(_)
             | Self::ForeignState(_)
+            | Self::Serialized(_)
+            | Self::Size { .. }
             // Not fmi2Fatal: instances share nothing, and a reset builds this one anew.
             | Self::Panic(_) => fmi2Error,
         }

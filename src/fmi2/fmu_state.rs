@@ -1,5 +1,5 @@
-//! Saved states: a copy of all that an instance is, many at once if wanted. As bytes they are not supported, nor are
-//! directional derivatives: each such call is an error that leaves the instance as it was.
+//! Saved states: a copy of all that an instance is, many at once if wanted, also as bytes. Directional derivatives are not
+//! supported: the call is an error that leaves the instance as it was.
 // Arguments that are not looked at keep their names for the header.
 #![allow(unused_variables)]
 
@@ -7,9 +7,10 @@ use std::ptr;
 
 use libc::size_t;
 
-use super::entry::{array, array_mut, call};
+use super::entry::{array, array_mut, call, place};
 use super::failure::Failure;
 use super::instance::{Instance, Snapshot};
+use super::serial;
 use super::states::{self, Function};
 use super::types::{fmi2Byte, fmi2Component, fmi2FMUstate, fmi2Real, fmi2Status, fmi2ValueReference};
 
@@ -50,26 +51,36 @@ unsafe fn saved<'a>(state: fmi2FMUstate) -> Result<&'a mut Saved, Failure> {
     Ok(unsafe { &mut *state })
 }
 
+/// Keeps a snapshot in the state that `FMUstate` points to or, where that is null, in a new one.
+///
+/// # Safety
+/// Unless null, `FMUstate` leads to null or to a saved state.
+unsafe fn keep(FMUstate: *mut fmi2FMUstate, snapshot: &Snapshot) -> Result<(), Failure> {
+    // SAFETY: passed on to the caller.
+    let place = unsafe { array_mut(FMUstate, 1, "FMUstate") }?;
+    let [place] = place else {
+        return Err(Failure::Pointer("FMUstate"));
+    };
+    // SAFETY: the standard has the importer set it to null or to a saved state.
+    let state = unsafe { place.assume_init_mut() };
+    if state.is_null() {
+        *state = Box::into_raw(Box::new(Saved {
+            guard: SAVED,
+            snapshot: *snapshot,
+        }))
+        .cast();
+    } else {
+        // SAFETY: passed on to the caller.
+        unsafe { saved(*state) }?.snapshot = *snapshot;
+    }
+    Ok(())
+}
+
 /// Saves the instance, in the state that `FMUstate` points to or, where that is null, in a new one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetFMUstate(c: fmi2Component, FMUstate: *mut fmi2FMUstate) -> fmi2Status {
-    let body = |instance: &mut Instance| {
-        // SAFETY: the contract of the module: null or initialised.
-        let place = unsafe { array_mut(FMUstate, 1, "FMUstate") }?;
-        let [place] = place else {
-            return Err(Failure::Pointer("FMUstate"));
-        };
-        // SAFETY: the standard has the importer set it to null or to a saved state.
-        let state = unsafe { place.assume_init_mut() };
-        let snapshot = instance.snapshot();
-        if state.is_null() {
-            *state = Box::into_raw(Box::new(Saved { guard: SAVED, snapshot })).cast();
-        } else {
-            // SAFETY: the contract of the module.
-            unsafe { saved(*state) }?.snapshot = snapshot;
-        }
-        Ok(())
-    };
+    // SAFETY: the contract of the module.
+    let body = |instance: &mut Instance| unsafe { keep(FMUstate, &instance.snapshot()) };
     // SAFETY: the contract of the module.
     unsafe { call(c, states::GET_FMU_STATE, body) }
 }
@@ -105,18 +116,24 @@ pub unsafe extern "C" fn fmi2FreeFMUstate(c: fmi2Component, FMUstate: *mut fmi2F
     unsafe { call(c, states::FREE_FMU_STATE, body) }
 }
 
-/// Not supported.
+/// How many bytes the saved state has.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SerializedFMUstateSize(
     c: fmi2Component,
     FMUstate: fmi2FMUstate,
     size: *mut size_t,
 ) -> fmi2Status {
+    let body = |_: &mut Instance| {
+        // SAFETY: the contract of the module.
+        let (saved, size) = unsafe { (saved(FMUstate)?, place(size, "size")?) };
+        size.write(serial::to_bytes(&saved.snapshot)?.len());
+        Ok(())
+    };
     // SAFETY: the contract of the module.
-    unsafe { unsupported(c, states::SERIALIZED_FMU_STATE_SIZE, "canSerializeFMUstate") }
+    unsafe { call(c, states::SERIALIZED_FMU_STATE_SIZE, body) }
 }
 
-/// Not supported.
+/// Writes the saved state as bytes to `serializedState`, whose size has to be that of `fmi2SerializedFMUstateSize`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SerializeFMUstate(
     c: fmi2Component,
@@ -124,11 +141,24 @@ pub unsafe extern "C" fn fmi2SerializeFMUstate(
     serializedState: *mut fmi2Byte,
     size: size_t,
 ) -> fmi2Status {
+    let body = |_: &mut Instance| {
+        // SAFETY: the contract of the module.
+        let (saved, room) = unsafe { (saved(FMUstate)?, array_mut(serializedState, size, "serializedState")?) };
+        let bytes = serial::to_bytes(&saved.snapshot)?;
+        if bytes.len() != size {
+            let needed = bytes.len();
+            return Err(Failure::Size { size, needed });
+        }
+        for (place, byte) in room.iter_mut().zip(bytes) {
+            place.write(fmi2Byte::from_ne_bytes([byte]));
+        }
+        Ok(())
+    };
     // SAFETY: the contract of the module.
-    unsafe { unsupported(c, states::SERIALIZE_FMU_STATE, "canSerializeFMUstate") }
+    unsafe { call(c, states::SERIALIZE_FMU_STATE, body) }
 }
 
-/// Not supported.
+/// Makes a saved state of bytes, in the state that `FMUstate` points to or, where that is null, a new one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
     c: fmi2Component,
@@ -136,8 +166,16 @@ pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
     size: size_t,
     FMUstate: *mut fmi2FMUstate,
 ) -> fmi2Status {
+    let body = |_: &mut Instance| {
+        // SAFETY: the contract of the module.
+        let bytes = unsafe { array(serializedState, size, "serializedState") }?;
+        let bytes: Vec<u8> = bytes.iter().flat_map(|byte| byte.to_ne_bytes()).collect();
+        let snapshot = serial::from_bytes(&bytes)?;
+        // SAFETY: the contract of the module.
+        unsafe { keep(FMUstate, &snapshot) }
+    };
     // SAFETY: the contract of the module.
-    unsafe { unsupported(c, states::DE_SERIALIZE_FMU_STATE, "canSerializeFMUstate") }
+    unsafe { call(c, states::DE_SERIALIZE_FMU_STATE, body) }
 }
 
 /// Not supported.

@@ -1,5 +1,6 @@
 //! One instance of the component: what was set, the simulation once there is one, and where in its life it is.
 
+use serde::{Deserialize, Serialize};
 use std::ffi::CStr;
 
 use super::failure::Failure;
@@ -17,7 +18,7 @@ use crate::variables::{Group, Variable};
 const LARGEST_TOLERANCE: f64 = 0.1;
 
 /// What `fmi2SetupExperiment` says. Start at zero, no tolerance and no end where it is not called.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Experiment {
     tolerance: Option<f64>,
     start_time: f64,
@@ -36,7 +37,7 @@ impl Experiment {
 }
 
 /// An instance at one moment, but for what is logged, which is the importer's choice and not the simulation's.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Snapshot {
     state: State,
     scene: Scene,

@@ -21,6 +21,7 @@ mod failure;
 mod fmu_state;
 mod instance;
 mod logger;
+mod serial;
 pub mod states;
 mod types;
 mod values;

@@ -4,11 +4,11 @@
 //! never in progress or cancelled, and a step that fails is an error, so those columns are missing. Three rows are
 //! wider: inputs and parameters can also be read in the state instantiated, where they have their start values (the
 //! outputs have none there and are refused); the status functions answer in the state error too, so that the last
-//! successful time can be asked for after a step that failed; the functions of states and derivatives that the
-//! description declares unsupported give that reason in every state.
+//! successful time can be asked for after a step that failed; the functions of derivatives that the description
+//! declares unsupported give that reason in every state.
 
 /// Where an instance is in its life.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum State {
     /// Made or reset; the experiment can be set up.
     Instantiated,
@@ -23,6 +23,7 @@ pub enum State {
 }
 
 use State::{Error, InitializationMode, Instantiated, StepComplete, Terminated};
+use serde::{Deserialize, Serialize};
 
 impl State {
     /// Every state.

@@ -8,6 +8,7 @@ use crate::math::legendre;
 use crate::transient::machine::{Arithmetic, Machine, Separate, compiled_for};
 use crate::transient::shapes::Shapes;
 use crate::transient::vector::{add, dot, scaled};
+use serde::{Deserialize, Serialize};
 
 /// Nodes of a short step.
 pub const SHORT: usize = 4;
@@ -27,7 +28,7 @@ pub type Prediction = [f64; LONG + 1];
 
 /// Two predictions of the force over the next step, one through all nodes and one through the last few, and which of
 /// the two was the better one last time.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Predictions {
     steep: Prediction,
     flat: Prediction,

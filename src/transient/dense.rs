@@ -13,12 +13,13 @@ use crate::transient::advance::Steps;
 use crate::transient::collocation::Prediction;
 use crate::transient::nodal::Drive;
 use crate::transient::workspace::Workspace;
+use serde::{Deserialize, Serialize};
 
 /// How many of the integrator's steps a communication step has to be long for the integrator to end one with it.
 const MANY_STEPS: f64 = 4.0;
 
 /// Everything that moves: the motion around a communication point. Plain numbers: saving it is a copy.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Course {
     /// The communication point, s.
     pub time: f64,
@@ -37,7 +38,7 @@ pub struct Course {
 }
 
 /// The tip over a step: polynomials about its end, in steps. Deviations from the preload.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Span {
     /// Whether they are within the tolerance; just after a blow no polynomial is.
     pub good: bool,

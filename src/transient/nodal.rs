@@ -7,9 +7,10 @@ use crate::transient::collocation::{Collocation, Nodal};
 use crate::transient::machine::{Arithmetic, compiled_for};
 use crate::transient::newton::{Solution, at_nodes};
 use crate::transient::vector::{add, add_columns, add_products, dot, end};
+use serde::{Deserialize, Serialize};
 
 /// What drives the contact over a communication step.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Drive {
     /// Base acceleration from the input, m/s2.
     pub acceleration: f64,

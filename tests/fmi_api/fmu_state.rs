@@ -169,3 +169,77 @@ fn what_is_no_state_is_an_error_and_freeing_nothing_is_fine() {
         assert_eq!(fmu.step(0.0, 1e-5), fmi2OK);
     }
 }
+
+/// The state as bytes.
+fn to_bytes(fmu: &Fmu, state: fmi2FMUstate) -> Vec<fmi2Byte> {
+    let mut size = 0;
+    unsafe {
+        assert_eq!(fmi2SerializedFMUstateSize(fmu.component, state, &raw mut size), fmi2OK);
+        let mut bytes = vec![0; size];
+        assert_eq!(
+            fmi2SerializeFMUstate(fmu.component, state, bytes.as_mut_ptr(), size),
+            fmi2OK
+        );
+        bytes
+    }
+}
+
+fn from_bytes(fmu: &Fmu, bytes: &[fmi2Byte], state: &mut fmi2FMUstate) -> fmi2Status {
+    unsafe { fmi2DeSerializeFMUstate(fmu.component, bytes.as_ptr(), bytes.len(), &raw mut *state) }
+}
+
+#[test]
+fn a_state_goes_through_bytes_bit_by_bit() {
+    for steps in [0, 1, 700, 1200] {
+        let fmu = shaken();
+        trace(&fmu, 0, steps, 1e-6);
+        let state = save(&fmu);
+        let bytes = to_bytes(&fmu, state);
+        let first = trace(&fmu, steps, 600, 1e-6);
+        let other = Fmu::new();
+        let mut made = ptr::null_mut();
+        assert_eq!(from_bytes(&other, &bytes, &mut made), fmi2OK);
+        assert_eq!(to_bytes(&other, made), bytes);
+        assert_eq!(restore(&other, made), fmi2OK);
+        assert_eq!(trace(&other, steps, 600, 1e-6), first, "after {steps} steps");
+        free(&fmu, state);
+        free(&other, made);
+    }
+}
+
+#[test]
+fn bytes_that_are_no_state_are_an_error_that_says_which() {
+    let fmu = shaken();
+    trace(&fmu, 0, 10, 1e-5);
+    let state = save(&fmu);
+    let bytes = to_bytes(&fmu, state);
+    let expect = |bytes: &[fmi2Byte], reason: &str| {
+        let fmu = Fmu::initialized();
+        let mut made = ptr::null_mut();
+        assert_eq!(from_bytes(&fmu, bytes, &mut made), fmi2Error, "{reason}");
+        assert!(made.is_null());
+        fmu.expect_message(fmi2Error, &["fmi2DeSerializeFMUstate", "serializedState", reason]);
+    };
+    for length in 0..bytes.len() {
+        expect(&bytes[..length], "before it is complete");
+    }
+    let longer = [&bytes[..], &[0; 3]].concat();
+    expect(&longer, "3 bytes follow its end");
+    let with = |at: usize, change: i8| {
+        let mut bytes = bytes.clone();
+        bytes[at] ^= fmi2Byte::from_ne_bytes(change.to_ne_bytes());
+        bytes
+    };
+    expect(&with(2, 1), "not made by this component");
+    expect(&with(8, 3), "its format is version 2, allowed is 1");
+    expect(&with(20, 1), "belongs to the component");
+    for at in 58..bytes.len() {
+        expect(&with(at, 1), "checksum");
+    }
+    // The room has to be that of the state.
+    let mut room = vec![0; bytes.len() + 1];
+    let status = unsafe { fmi2SerializeFMUstate(fmu.component, state, room.as_mut_ptr(), room.len()) };
+    assert_eq!(status, fmi2Error);
+    fmu.expect_message(fmi2Error, &["fmi2SerializeFMUstate", "size", "not allowed"]);
+    free(&Fmu::new(), state);
+}

@@ -259,12 +259,17 @@ fn instances_do_not_share_anything() {
 #[test]
 fn an_unsupported_capability_is_an_error_that_leaves_the_instance_alive() {
     let fmu = Fmu::initialized();
-    let mut size = 0;
-    let status = unsafe { fmi2SerializedFMUstateSize(fmu.component, ptr::null_mut(), &raw mut size) };
+    let (none, mut nothing) = (ptr::null(), 0.0);
+    let status =
+        unsafe { fmi2GetDirectionalDerivative(fmu.component, none, 0, none, 0, ptr::null(), &raw mut nothing) };
     assert_eq!(status, fmi2Error);
     fmu.expect_message(
         fmi2Error,
-        &["fmi2SerializedFMUstateSize", "not supported", "canSerializeFMUstate"],
+        &[
+            "fmi2GetDirectionalDerivative",
+            "not supported",
+            "providesDirectionalDerivative",
+        ],
     );
     assert_eq!(fmu.step(0.0, 1e-5), fmi2OK);
 }
