@@ -159,9 +159,12 @@ impl Integration<'_> {
                 return Err(self.error(StepErrorCause::Budget(budget)));
             }
             self.advance()?;
-            let Progress { free, .. } = self.progress;
+            let Progress { free, done, .. } = self.progress;
             let end = self.progress.end();
-            if !free && let Some(until) = self.model.rests_until(self.state, &self.drive, self.tolerance, end) {
+            if !free
+                && done < 1.0
+                && let Some(until) = self.model.rests_until(self.state, &self.drive, self.tolerance, end)
+            {
                 let target = self.progress.cut(until - self.state.time, until);
                 (self.state.time, self.progress.done) = (target.time, target.done);
             }
@@ -297,16 +300,7 @@ impl Integration<'_> {
     where
         Workspace: Room<S>,
     {
-        let (cache, end, _) = self.workspace.parts();
-        let (step, collocation) = cache.get(target.length, target.recurring, self.model);
-        self.model.trial(
-            self.state,
-            &self.drive,
-            step,
-            collocation,
-            Source::Law(NEWTON * self.allowed),
-            end,
-        )
+        self.trial(target.length, target.recurring, true)
     }
 
     /// A step of `length` seconds only to be looked at.
@@ -314,11 +308,21 @@ impl Integration<'_> {
     where
         Workspace: Room<S>,
     {
-        let (cache, _, probe) = self.workspace.parts();
-        let (step, collocation) = cache.get(length, false, self.model);
+        self.trial(length, false, false)
+    }
+
+    /// A step of `length` seconds, whose coefficients may be wanted again (`recurring`), and the modes at its end
+    /// (`kept`).
+    fn trial<const S: usize>(&mut self, length: f64, recurring: bool, kept: bool) -> Option<Trial<S>>
+    where
+        Workspace: Room<S>,
+    {
+        let (cache, end, probe) = self.workspace.parts();
+        let (step, collocation) = cache.get(length, recurring, self.model);
         let source = Source::Law(NEWTON * self.allowed);
+        let modes = if kept { end } else { probe };
         self.model
-            .trial(self.state, &self.drive, step, collocation, source, probe)
+            .trial(self.state, &self.drive, step, collocation, source, modes)
     }
 
     /// Difference between instants that cannot be told apart, s.
@@ -356,12 +360,19 @@ impl Integration<'_> {
         self.enter(trial, target.length);
         let Self { model, state, .. } = self;
         let (cache, end, _) = Room::<S>::parts(self.workspace);
+        let collocation = cache.collocation();
+        let ratio = if state.last_step > 0.0 {
+            target.length / state.last_step
+        } else {
+            0.0
+        };
+        let start = state.force - model.preload.force;
+        state.predictions = collocation.predictions(model.machine, start, &trial.forces, &state.predictions, ratio);
         if let Some((_, span)) = &mut self.span {
-            let collocation = cache.collocation();
             span.good = INSIDE * trial.missed <= self.tolerance;
             span.indentation = collocation.through(state.indentation, &trial.indentations);
             span.rate = collocation.through(state.indentation_rate, &trial.rates);
-            span.force = collocation.through(state.force - model.preload.force, &trial.forces);
+            span.force = *state.predictions.through_all();
         }
         for ((mode, end), _) in state.modes.iter_mut().zip(end).zip(&model.modes) {
             *mode = *end;
@@ -370,16 +381,6 @@ impl Integration<'_> {
         state.support = trial.support;
         state.indentation = trial.indentation;
         state.indentation_rate = trial.rate;
-        let ratio = if state.last_step > 0.0 {
-            target.length / state.last_step
-        } else {
-            0.0
-        };
-        let start = state.force - model.preload.force;
-        state.predictions =
-            cache
-                .collocation()
-                .predictions(model.machine, start, &trial.forces, &state.predictions, ratio);
         if state.closed {
             let force = model.preload.force + vector::end(&trial.forces);
             state.force = if model.law.never_opens() { force } else { force.max(0.0) };

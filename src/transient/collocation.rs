@@ -35,6 +35,13 @@ pub struct Predictions {
     use_flat: bool,
 }
 
+impl Predictions {
+    /// The polynomial through the start and all nodes of the step they are from.
+    pub fn through_all(&self) -> &Prediction {
+        &self.steep
+    }
+}
+
 /// The polynomials of a step with `S` nodes.
 #[derive(Clone, Debug)]
 pub struct Collocation<const S: usize> {

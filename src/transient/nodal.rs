@@ -21,8 +21,7 @@ pub struct Drive {
 /// Where the contact force of a step comes from.
 #[derive(Clone, Copy, Debug)]
 pub enum Source {
-    /// The law at the nodes while the contact is closed, with this as the largest last correction of Newton's method,
-    /// N; nothing while it is open.
+    /// The law at the nodes while the contact is closed, met by Newton's method to this, N; nothing while it is open.
     Law(f64),
     /// This throughout, as deviation from the preload force, N.
     Constant(f64),

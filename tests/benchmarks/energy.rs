@@ -2,10 +2,9 @@
 //!
 //! A contact force wrong by at most `e` along a path of length `s` of the tip changes the energy by at most `e s`.
 
-use crate::common::Rig;
+use crate::common::{Rig, undamped};
 use relay_contact::inputs::Inputs;
 use relay_contact::model::Model;
-use relay_contact::scene::Scene;
 use relay_contact::variables::ContactLawKind;
 
 #[test]
@@ -18,9 +17,7 @@ fn energy_stays_without_damping() {
                 ContactLawKind::Linearised,
                 ContactLawKind::Bonded,
             ] {
-                let mut scene = Scene::default();
-                scene.beam.stiffness_damping = 0.0;
-                scene.contact.damping = 0.0;
+                let mut scene = undamped();
                 scene.effects.contact_law = law;
                 scene.solver.tolerance = tolerance;
                 scene.solver.modes = 6;

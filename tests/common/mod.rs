@@ -88,6 +88,14 @@ impl Rig {
     }
 }
 
+/// The start values, but without damping of beam or contact.
+pub fn undamped() -> Scene {
+    let mut scene = Scene::default();
+    scene.beam.stiffness_damping = 0.0;
+    scene.contact.damping = 0.0;
+    scene
+}
+
 /// A model put together from modes: `gap` (m) in front of the contact, tolerance relative to `force_scale` (N).
 pub fn compose(modes: &[Mode], law: Law, gap: f64, tolerance: f64, force_scale: f64) -> Model {
     let mut scene = Scene::default();

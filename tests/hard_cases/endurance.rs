@@ -1,6 +1,6 @@
 //! Long runs: what is small in a step must not add up.
 
-use crate::common::Rig;
+use crate::common::{Rig, undamped};
 use relay_contact::inputs::Inputs;
 use relay_contact::model::Model;
 use relay_contact::scene::Scene;
@@ -47,9 +47,7 @@ fn endurance_no_drift_over_1e7_steps() {
 /// The specimen without damping, thrown so that it bounces: energy over `cycles` closings, as mean over the first and the
 /// last tenth and as largest deviation, relative to the energy thrown in.
 fn bounce(cycles: u64, tolerance: f64) {
-    let mut scene = Scene::default();
-    scene.beam.stiffness_damping = 0.0;
-    scene.contact.damping = 0.0;
+    let mut scene = undamped();
     scene.solver.tolerance = tolerance;
     scene.solver.modes = 6;
     let mut rig = Rig::new(Model::new(&scene, 0.0).unwrap());

@@ -1,5 +1,6 @@
 //! Extreme springs.
 
+use crate::common::undamped;
 use crate::ride::{Ride, Segment};
 use relay_contact::beam::section::Section;
 use relay_contact::error::SceneError;
@@ -16,17 +17,12 @@ fn a_spring_without_damping() {
 
 #[test]
 fn a_system_without_damping() {
-    let mut scene = Scene::default();
-    scene.beam.stiffness_damping = 0.0;
-    scene.contact.damping = 0.0;
-    Ride::shaken(scene).keeps_its_properties();
+    Ride::shaken(undamped()).keeps_its_properties();
 }
 
 #[test]
 fn a_system_without_damping_thrown_at_the_contact() {
-    let mut scene = Scene::default();
-    scene.beam.stiffness_damping = 0.0;
-    scene.contact.damping = 0.0;
+    let scene = undamped();
     let segment = Segment {
         duration: 7.8e-5,
         acceleration: 0.0,
@@ -45,9 +41,7 @@ fn a_system_without_damping_thrown_at_the_contact() {
 /// From rest the energy of the motion itself gives no measure for its rounding.
 #[test]
 fn a_system_without_damping_pushed_slowly() {
-    let mut scene = Scene::default();
-    scene.beam.stiffness_damping = 0.0;
-    scene.contact.damping = 0.0;
+    let mut scene = undamped();
     scene.solver.tolerance = 1e-10;
     let segment = |support| Segment {
         duration: 1e-5,
