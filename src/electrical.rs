@@ -14,3 +14,13 @@ pub fn conductance(resistance: &Resistance, force: f64) -> f64 {
     };
     closed + 1.0 / resistance.open
 }
+
+/// Its derivative, S/N.
+pub fn conductance_slope(resistance: &Resistance, force: f64) -> f64 {
+    if force <= 0.0 {
+        return 0.0;
+    }
+    let constriction = resistance.coefficient * force.powf(-resistance.exponent);
+    let closed = 1.0 / (constriction + resistance.film);
+    resistance.exponent * (constriction * closed) * (closed / force)
+}

@@ -1,19 +1,26 @@
-//! The continuous inputs, as they stand at the start of a communication step.
+//! The continuous inputs, as they stand at the start of a communication step, and how they change over it.
 
 use crate::error::SceneError;
 use crate::scene::check_range;
 use crate::variables::RealInput;
 use serde::{Deserialize, Serialize};
 
-/// Values of the inputs. SI units.
+/// Values of the inputs and their rates. SI units. With rates of 0 the inputs are held.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Inputs {
     /// Acceleration of the frame, positive presses the contact, m/s2.
     pub base_acceleration: f64,
-    /// Displacement of the fixed contact, positive closes, m. Reached linearly at the end of the step.
+    /// Displacement of the fixed contact, positive closes, m. From where it is the contact moves linearly to where this
+    /// and its rate lead to at the end of the step: without a rate it lags one step behind.
     pub support_displacement: f64,
     /// Current through the contact, A.
     pub contact_current: f64,
+    /// Rate of the acceleration, m/s3.
+    pub base_acceleration_rate: f64,
+    /// Rate of the displacement, m/s.
+    pub support_displacement_rate: f64,
+    /// Rate of the current, A/s.
+    pub contact_current_rate: f64,
 }
 
 impl Inputs {
@@ -39,5 +46,34 @@ impl Inputs {
             RealInput::SupportDisplacement => &mut self.support_displacement,
             RealInput::ContactCurrent => &mut self.contact_current,
         }
+    }
+
+    /// The rate of an input, in its unit per second.
+    pub fn rate_mut(&mut self, input: RealInput) -> &mut f64 {
+        match input {
+            RealInput::BaseAcceleration => &mut self.base_acceleration_rate,
+            RealInput::SupportDisplacement => &mut self.support_displacement_rate,
+            RealInput::ContactCurrent => &mut self.contact_current_rate,
+        }
+    }
+
+    /// The inputs held at their values.
+    pub fn held(&self) -> Self {
+        Self {
+            base_acceleration_rate: 0.0,
+            support_displacement_rate: 0.0,
+            contact_current_rate: 0.0,
+            ..*self
+        }
+    }
+
+    /// Displacement of the fixed contact after `size` seconds, m.
+    pub fn support_displacement_after(&self, size: f64) -> f64 {
+        self.support_displacement + self.support_displacement_rate * size
+    }
+
+    /// Current after `size` seconds, A.
+    pub fn contact_current_after(&self, size: f64) -> f64 {
+        self.contact_current + self.contact_current_rate * size
     }
 }

@@ -34,7 +34,7 @@ impl Simulation {
         })
     }
 
-    /// Advances over the communication step from `time` to `time + step_size`, s, with inputs held.
+    /// Advances over the communication step from `time` to `time + step_size`, s, with inputs that are held or change linearly.
     ///
     /// `time` may differ from [`Simulation::time`] by rounding.
     ///
@@ -106,6 +106,35 @@ impl Simulation {
             RealOutput::PreloadAxialForce => model.preload.axial_force,
             RealOutput::PreloadFrequency => model.frequency,
         }
+    }
+
+    /// Rate of a continuous output at the communication point, as it has been reached, in its SI unit per second; `None`
+    /// for outputs that are not continuous. At the start nothing moves.
+    pub fn rate(&self, output: RealOutput) -> Option<f64> {
+        let Self { model, course, .. } = self;
+        let resistance = &model.scene.resistance;
+        let conductance = || electrical::conductance(resistance, course.tip(model).force);
+        let rates = || course.tip_rates(model);
+        let conductance_rate = || electrical::conductance_slope(resistance, course.tip(model).force) * rates().force;
+        Some(match output {
+            RealOutput::ContactForce => rates().force,
+            RealOutput::ContactConductance => conductance_rate(),
+            RealOutput::ContactResistance => -conductance_rate() / conductance().powi(2),
+            RealOutput::ContactVoltage => {
+                let voltage = course.current / conductance();
+                (course.current_rate - voltage * conductance_rate()) / conductance()
+            }
+            RealOutput::ContactIndentation => course.tip(model).rate,
+            RealOutput::TipDisplacement => self.real(RealOutput::TipVelocity),
+            RealOutput::TipVelocity => -rates().acceleration,
+            RealOutput::ContactLastOpening
+            | RealOutput::ContactLastClosing
+            | RealOutput::PreloadForce
+            | RealOutput::PreloadIndentation
+            | RealOutput::PreloadContactStiffness
+            | RealOutput::PreloadAxialForce
+            | RealOutput::PreloadFrequency => return None,
+        })
     }
 
     /// An integer output or calculated parameter; counts beyond the range of an integer stay at its end.

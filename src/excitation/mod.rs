@@ -1,4 +1,6 @@
-//! Base acceleration generated inside the component.
+//! Base acceleration generated inside the component, and [`drive`]: what comes from the inputs.
+
+pub mod drive;
 
 use std::f64::consts::TAU;
 

@@ -1,11 +1,12 @@
 //! A communication step as a sequence of integration steps.
 
 use crate::error::{StepError, StepErrorCause};
+use crate::excitation::drive::Drive;
 use crate::model::{Model, State};
 use crate::transient::collocation::{Collocation, LONG, SHORT};
 use crate::transient::dense::Span;
 use crate::transient::fallback::REFUSALS;
-use crate::transient::nodal::{Drive, Source, Trial};
+use crate::transient::nodal::{Source, Trial};
 use crate::transient::progress::{Progress, Target};
 use crate::transient::vector;
 use crate::transient::workspace::{Room, Workspace};
@@ -138,7 +139,7 @@ impl Model {
             tolerance,
             allowed: SHARE * tolerance,
             refusals: 0,
-            conserves: self.conserves(),
+            conserves: self.conserves(&drive),
         }
         .run()
     }

@@ -7,11 +7,11 @@
 //! point, exactly, from the start of the step.
 
 use crate::error::{StepError, StepErrorCause};
+use crate::excitation::drive::Drive;
 use crate::inputs::Inputs;
 use crate::model::{Model, State};
 use crate::transient::advance::Steps;
 use crate::transient::collocation::Prediction;
-use crate::transient::nodal::Drive;
 use crate::transient::workspace::Workspace;
 use serde::{Deserialize, Serialize};
 
@@ -23,8 +23,10 @@ const MANY_STEPS: f64 = 4.0;
 pub struct Course {
     /// The communication point, s.
     pub time: f64,
-    /// Current through the contact over the last communication step, A.
+    /// Current through the contact, A, and its rate over the last communication step, A/s.
     pub current: f64,
+    /// See [`Course::current`].
+    pub current_rate: f64,
     /// Length of the last communication step, s.
     size: f64,
     /// What drove the contact over it.
@@ -61,17 +63,24 @@ pub struct Tip {
     pub rate: f64,
 }
 
+/// How the tip changes at a communication point.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TipRates {
+    /// Rate of the contact force, N/s.
+    pub force: f64,
+    /// Second derivative of the indentation, m/s2.
+    pub acceleration: f64,
+}
+
 impl Course {
     /// From a state on.
     pub fn new(state: State) -> Self {
         Self {
             time: state.time,
             current: 0.0,
+            current_rate: 0.0,
             size: 0.0,
-            drive: Drive {
-                acceleration: 0.0,
-                support_rate: 0.0,
-            },
+            drive: Drive::default(),
             start: state,
             end: state,
             span: Span::default(),
@@ -87,18 +96,28 @@ impl Course {
         }
     }
 
+    /// Whether the communication point lies inside a step of the integrator: how far before its end, in steps.
+    fn inside(&self) -> Option<f64> {
+        let from_end = self.time - self.end.time;
+        (from_end < 0.0).then(|| from_end / self.length())
+    }
+
+    /// Length of the step that [`Course::span`] tells of, s.
+    fn length(&self) -> f64 {
+        self.end.time - self.start.time
+    }
+
     /// The tip at the communication point.
     pub fn tip(&self, model: &Model) -> Tip {
         let state = self.state();
-        if state.time == self.end.time {
+        let Some(y) = self.inside() else {
             return Tip {
                 force: state.force,
                 indentation: state.indentation,
                 rate: state.indentation_rate,
             };
-        }
-        let y = (self.time - self.end.time) / (self.end.time - self.start.time);
-        let at = |values: &Prediction| values.iter().rev().fold(0.0, |sum, value| sum * y + value);
+        };
+        let at = |values| value_and_slope(values, y).0;
         let force = model.preload.force + at(&self.span.force);
         Tip {
             force: match state.closed {
@@ -110,10 +129,52 @@ impl Course {
             rate: at(&self.span.rate),
         }
     }
+
+    /// How the tip changes at the communication point, as it has been reached: what changes there at once comes after.
+    pub fn tip_rates(&self, model: &Model) -> TipRates {
+        let state = self.state();
+        if self.size == 0.0 {
+            return TipRates::default();
+        }
+        if let Some(y) = self.inside() {
+            let slope = |values| value_and_slope(values, y).1 / self.length();
+            return TipRates {
+                force: if state.closed { slope(&self.span.force) } else { 0.0 },
+                acceleration: slope(&self.span.rate),
+            };
+        }
+        let base = self.drive.acceleration(self.time) + model.generator.phasor(self.time).0;
+        let force = state.force - model.preload.force;
+        let modes = model.modes.iter().zip(&state.modes);
+        let acceleration = modes.fold(0.0, |sum, (mode, at)| {
+            let load = mode.tip * force - mode.participation * base;
+            sum - mode.tip * (load - mode.omega_squared * at.q - mode.damping * at.v)
+        });
+        let rate = state.indentation_rate;
+        let law = model
+            .law
+            .closed_branch(model.preload.indentation + state.indentation, rate);
+        TipRates {
+            force: if state.closed {
+                law.stiffness * rate + law.damping * acceleration
+            } else {
+                0.0
+            },
+            acceleration,
+        }
+    }
+}
+
+/// A polynomial and its derivative (Horner's rule).
+fn value_and_slope(coefficients: &Prediction, y: f64) -> (f64, f64) {
+    let terms = coefficients.iter().rev();
+    terms.fold((0.0, 0.0), |(value, slope), coefficient| {
+        (value * y + coefficient, slope * y + value)
+    })
 }
 
 impl Model {
-    /// Advances over the communication step from `time` to `time + size` (s) with the inputs held.
+    /// Advances over the communication step from `time` to `time + size` (s) with inputs that are held or change linearly.
     ///
     /// # Errors
     /// A [`StepError`]; the course then stands where it did.
@@ -138,14 +199,10 @@ impl Model {
         } else {
             size
         };
-        // The fixed contact moves linearly to the input.
-        let support = inputs.support_displacement - self.initial_support;
-        let from = course.state().support;
-        let drive = Drive {
-            acceleration: inputs.base_acceleration,
-            support_rate: (support - from) / size,
-        };
-        let steady = drive == course.drive && drive.support_rate == 0.0 && self.closed_loop.is_none();
+        // The fixed contact moves linearly to where the input leads.
+        let support = inputs.support_displacement_after(size) - self.initial_support;
+        let drive = Drive::new(inputs, time, size, support - course.state().support);
+        let steady = drive.continues(&course.drive) && self.closed_loop.is_none();
         let ahead = course.time < course.end.time;
         let reach = course.end.short_step.max(course.end.long_step);
         if steady && (ahead || size < reach || size < MANY_STEPS * reach && size != course.size) {
@@ -168,7 +225,8 @@ impl Model {
         }
         course.size = size;
         course.time = until;
-        course.current = inputs.contact_current;
+        course.current = inputs.contact_current_after(size);
+        course.current_rate = inputs.contact_current_rate;
         Ok(())
     }
 

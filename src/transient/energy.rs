@@ -6,6 +6,7 @@
 //! ones, so that nothing adds up over any number of impacts.
 
 use crate::excitation::Generator;
+use crate::excitation::drive::Drive;
 use crate::model::Model;
 use crate::transient::advance::Integration;
 use crate::transient::nodal::Trial;
@@ -16,9 +17,9 @@ const RETURNED: f64 = 0.05;
 
 impl Model {
     /// Whether nothing dissipates, and the work done on the motion is known.
-    pub(super) fn conserves(&self) -> bool {
+    pub(super) fn conserves(&self, drive: &Drive) -> bool {
         let undamped = self.modes.iter().all(|mode| mode.damping == 0.0);
-        undamped && self.law.damping() == 0.0 && self.generator == Generator::None
+        undamped && self.law.damping() == 0.0 && self.generator == Generator::None && drive.jerk == 0.0
     }
 }
 
@@ -37,7 +38,7 @@ impl Integration<'_> {
         let finish = model.energy(end, trial.indentation);
         let moved = model.modes.iter().zip(state.modes.iter().zip(end.iter()));
         let loads = moved.map(|(mode, (start, end))| mode.participation * (end.q - start.q));
-        let by_base = -drive.acceleration * loads.sum::<f64>();
+        let by_base = -drive.acceleration(state.time) * loads.sum::<f64>();
         let by_support = drive.support_rate * length * cache.collocation().mean(&trial.forces);
         // Displacement and velocity of each mode are rounded, sums of two products and a load; so are the forces on the way.
         let way = (trial.indentation - state.indentation).abs() + (drive.support_rate * length).abs();

@@ -83,9 +83,9 @@ impl Integration<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::excitation::drive::Drive;
     use crate::model::{Model, State};
     use crate::scene::Scene;
-    use crate::transient::nodal::Drive;
     use crate::transient::progress::Progress;
     use crate::transient::workspace::Workspace;
 
@@ -113,10 +113,7 @@ mod tests {
                 model,
                 state,
                 workspace: &mut workspace,
-                drive: Drive {
-                    acceleration: 0.0,
-                    support_rate: 0.0,
-                },
+                drive: Drive::default(),
                 progress: Progress::over(step * f64::from(k), step),
                 span: None,
                 tolerance: 1e-6,

@@ -4,17 +4,17 @@
 //! ([`super::secular`]), each a damped oscillator of its own that is propagated exactly ([`super::oscillator`]). A step
 //! goes from the cantilever's modes to these oscillators, moves them, and comes back.
 //!
-//! Constant and linear loads (base acceleration held, fixed contact moving linearly) are taken out by a particular
+//! Constant and linear loads (base acceleration held or linear, fixed contact moving linearly) are taken out by a particular
 //! solution, which cannot be large as every oscillator has a stiffness. The generator's sine is taken as response from
 //! rest, which stays right at a resonance without damping.
 
 use crate::contact::law::Law;
 use crate::contact::linear::Linear;
 use crate::excitation::Generator;
+use crate::excitation::drive::Drive;
 use crate::model::{MAX_MODES, Mode, Model, State};
 use crate::scene::Scene;
 use crate::transient::machine::{Arithmetic, Machine, compiled_for};
-use crate::transient::nodal::Drive;
 use crate::transient::oscillator::{Coordinates, Oscillator, Propagator, set};
 use crate::transient::secular::{EigenPair, Problem};
 
@@ -31,11 +31,12 @@ pub struct ClosedLoop {
     to_modes: Columns,
     /// What each mode's displacement and velocity is in the oscillators.
     to_oscillators: Columns,
-    /// Motion under unit base acceleration, under unit force on the tip, and under one that grows with time, at its
-    /// start.
+    /// Motion under unit base acceleration and under one that grows with time, at its start.
     acceleration: Coordinates,
+    jerk: Coordinates,
+    /// The same under force on the tip.
     force: Coordinates,
-    ramp: Coordinates,
+    growth: Coordinates,
     /// Steady motion under the generator with unit amplitude, per sine and per cosine of its phase.
     steady: [Coordinates; 2],
 }
@@ -132,19 +133,17 @@ impl ClosedLoop {
             to_oscillators: Columns::new(2 * count, left),
             oscillators,
             acceleration: [0.0; 2 * MAX_MODES],
+            jerk: [0.0; 2 * MAX_MODES],
             force: [0.0; 2 * MAX_MODES],
-            ramp: [0.0; 2 * MAX_MODES],
+            growth: [0.0; 2 * MAX_MODES],
             steady: [[0.0; 2 * MAX_MODES]; 2],
         };
         for (n, oscillator) in closed_loop.oscillators.iter().enumerate() {
-            set(
-                &mut closed_loop.acceleration,
-                n,
-                count,
-                oscillator.at_rest(oscillator.load),
-            );
-            set(&mut closed_loop.force, n, count, oscillator.at_rest(oscillator.push));
-            set(&mut closed_loop.ramp, n, count, oscillator.at_ramp(oscillator.push));
+            let Oscillator { load, push, .. } = *oscillator;
+            set(&mut closed_loop.acceleration, n, count, oscillator.at_rest(load));
+            set(&mut closed_loop.jerk, n, count, oscillator.at_ramp(load));
+            set(&mut closed_loop.force, n, count, oscillator.at_rest(push));
+            set(&mut closed_loop.growth, n, count, oscillator.at_ramp(push));
             if let Some(frequency) = generator.frequency() {
                 let steady = oscillator.loaded(oscillator.steady(frequency));
                 let [per_sine, per_cosine] = &mut closed_loop.steady;
@@ -219,7 +218,8 @@ impl ClosedLoop {
         let mut free = self.to_oscillators.times(model.machine, &motion);
         let growth = stiffness * drive.support_rate;
         let mut steady = Steady {
-            acceleration: drive.acceleration,
+            acceleration: drive.acceleration(state.time),
+            jerk: drive.jerk,
             force: stiffness * state.support + damping * growth,
             growth,
         };
@@ -240,6 +240,7 @@ impl ClosedLoop {
         for (((end, x), v), (from_x, from_v)) in v_end.iter_mut().zip(x).zip(v).zip(steps) {
             *end = from_x * x + from_v * v;
         }
+        steady.acceleration += drive.jerk * length;
         steady.force += growth * length;
         self.add_particular(&mut moved, &steady, 1.0);
         for ((end, from_sine), from_cosine) in moved.iter_mut().zip(&propagator.from_sine).zip(&propagator.from_cosine)
@@ -275,11 +276,14 @@ impl ClosedLoop {
     }
 
     fn add_particular(&self, motion: &mut Coordinates, steady: &Steady, sign: f64) {
-        let (a, f, g) = (sign * steady.acceleration, sign * steady.force, sign * steady.growth);
+        let (a, j) = (sign * steady.acceleration, sign * steady.jerk);
+        let (f, g) = (sign * steady.force, sign * steady.growth);
         let count = 2 * self.oscillators.len();
-        let columns = self.acceleration.iter().zip(&self.force).zip(&self.ramp);
-        for (motion, ((acceleration, force), ramp)) in motion.iter_mut().zip(columns).take(count) {
-            *motion += a * acceleration + f * force + g * ramp;
+        let by_base = self.acceleration.iter().zip(&self.jerk);
+        let by_tip = self.force.iter().zip(&self.growth);
+        let columns = by_base.zip(by_tip);
+        for (motion, ((acceleration, jerk), (force, growth))) in motion.iter_mut().zip(columns).take(count) {
+            *motion += a * acceleration + j * jerk + f * force + g * growth;
         }
     }
 
@@ -314,9 +318,11 @@ impl ClosedLoop {
         let swing = swing + sine.hypot(cosine) * per_sine.hypot(per_cosine);
         let start = steady.force
             + steady.acceleration * force(&self.acceleration)
+            + steady.jerk * force(&self.jerk)
             + steady.force * force(&self.force)
-            + steady.growth * force(&self.ramp);
-        let end = start + steady.growth * length * (1.0 + force(&self.force));
+            + steady.growth * force(&self.growth);
+        let grown = steady.growth * (1.0 + force(&self.force)) + steady.jerk * force(&self.acceleration);
+        let end = start + grown * length;
         model.preload.force + start.min(end) - swing > 0.0
     }
 }
@@ -324,8 +330,10 @@ impl ClosedLoop {
 /// What the motion would settle to without the generator.
 #[derive(Clone, Copy, Debug)]
 struct Steady {
-    /// Base acceleration, m/s2.
+    /// Base acceleration at the start of the step, m/s2.
     acceleration: f64,
+    /// Its rate, m/s3.
+    jerk: f64,
     /// Force on the tip at rest at the start of the step, N.
     force: f64,
     /// Its rate, N/s.

@@ -1,22 +1,13 @@
 //! One step on trial: the nodal contact forces ([`super::newton`]), the motion they give, and an estimate of their
 //! error.
 
+use crate::excitation::drive::Drive;
 use crate::model::{ModeStates, Model, State};
 use crate::transient::coefficients::{Modal, StepCoefficients};
 use crate::transient::collocation::{Collocation, Nodal};
 use crate::transient::machine::{Arithmetic, compiled_for};
 use crate::transient::newton::{Solution, at_nodes};
 use crate::transient::vector::{add, add_columns, add_products, dot, end};
-use serde::{Deserialize, Serialize};
-
-/// What drives the contact over a communication step.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Drive {
-    /// Base acceleration from the input, m/s2.
-    pub acceleration: f64,
-    /// Velocity of the fixed contact, m/s.
-    pub support_rate: f64,
-}
 
 /// Where the contact force of a step comes from.
 #[derive(Clone, Copy, Debug)]
@@ -106,9 +97,11 @@ impl Model {
     ) -> Option<Trial<S>> {
         let h = step.length;
         let generated = self.generator.over_step(state.time, &step.turns);
+        let driven = drive.acceleration(state.time);
         let mut accelerations = generated.nodes;
+        add::<S, A>(&mut accelerations, drive.jerk * h, &collocation.nodes);
         for acceleration in &mut accelerations {
-            *acceleration += drive.acceleration;
+            *acceleration += driven;
         }
 
         // Indentation at the nodes without contact force.
@@ -142,7 +135,7 @@ impl Model {
         let (tip, tip_rate) = end_of_modes::<S, A>(state, step, self.modes.len(), &forces, &accelerations, end_modes);
         let (indentation, rate) = (support - tip, drive.support_rate - tip_rate);
 
-        let at_start = drive.acceleration + generated.start;
+        let at_start = driven + generated.start;
         let largest = forces.iter().fold(f64::MIN_POSITIVE, |largest, force| {
             largest.max((self.preload.force + force).abs())
         });

@@ -1,7 +1,7 @@
 //! A contact at rest stays at rest until what drives it changes: nothing is integrated meanwhile.
 
+use crate::excitation::drive::Drive;
 use crate::model::{Model, State};
-use crate::transient::nodal::Drive;
 
 /// Change of the contact force, in tolerances, that a contact at rest may still have before it.
 const UNREST: f64 = 1e-2;
@@ -15,18 +15,18 @@ impl Model {
     /// grows; and a force that differs by `e` from that of the equilibrium takes at least `e^2 / (2 k)` of it, `k` the
     /// greatest stiffness on the way.
     pub(super) fn rests_until(&self, state: &State, drive: &Drive, tolerance: f64, end: f64) -> Option<f64> {
-        if drive.support_rate != 0.0 || self.generator.is_active(state.time) {
+        if !drive.is_constant() || self.generator.is_active(state.time) {
             return None;
         }
         let d = self.preload.indentation + state.indentation;
         let force = self.law.force(d, 0.0);
         let change = UNREST * tolerance;
         let least = change * change / (2.0 * self.law.tangent_stiffness(force + change));
+        let acceleration = drive.acceleration(state.time);
         let mut energy = 0.0;
         for (mode, at) in self.modes.iter().zip(&state.modes) {
-            let load = mode.tip * (force - self.preload.force)
-                - mode.participation * drive.acceleration
-                - mode.omega_squared * at.q;
+            let load =
+                mode.tip * (force - self.preload.force) - mode.participation * acceleration - mode.omega_squared * at.q;
             let strain = if load == 0.0 {
                 0.0
             } else {

@@ -119,10 +119,11 @@ impl Integration<'_> {
         } = self;
         let swings = |mode: &Mode| mode.damping * mode.damping < 4.0 * mode.omega_squared;
         let fast = |mode: &Mode| mode.omega_squared * interval * interval > 1.0 && swings(mode);
+        let acceleration = drive.acceleration(state.time);
         let (mut displacement, mut velocity) = (0.0, 0.0);
         for (mode, at) in model.modes.iter().zip(&state.modes).filter(|(mode, _)| fast(mode)) {
             let omega = mode.omega_squared.sqrt();
-            let load = -mode.tip * model.preload.force - mode.participation * drive.acceleration;
+            let load = -mode.tip * model.preload.force - mode.participation * acceleration;
             let swing = mode.tip.abs() * (at.q - load / mode.omega_squared).hypot(at.v / omega);
             displacement += swing;
             velocity += omega * swing;

@@ -132,7 +132,7 @@ fn stiffen(scene: &mut Scene, factor: f64) {
     scene.contact.fixed.youngs_modulus *= root.powi(2).min(100.0);
 }
 
-/// Largest error of the contact force, relative to its scale, under held acceleration, moving support and the generator,
+/// Largest error of the contact force, relative to its scale, under acceleration held or growing, moving support and the generator,
 /// against the exponential of the matrix of all of it.
 ///
 /// Both round each mode to the last place in every step, and the force is the sum of what spring and damper make of the modes,
@@ -144,9 +144,9 @@ fn error_against_the_exponential(scene: &Scene) -> f64 {
     let Law::Linear(contact) = model.law else { panic!() };
     let (k, beta_c) = (contact.stiffness, contact.damping);
     let (n, omega) = (model.modes.len(), TAU * scene.excitation.frequency);
-    // q_i w, v_i, then u, u', held acceleration, sine, cosine: w makes displacements as large as velocities.
+    // q_i w, v_i, then u, u', acceleration of the input, sine, cosine, jerk: w makes displacements as large as velocities.
     let w = model.modes.last().unwrap().omega_squared.sqrt();
-    let mut matrix = DMatrix::zeros(2 * n + 5, 2 * n + 5);
+    let mut matrix = DMatrix::zeros(2 * n + 6, 2 * n + 6);
     for (i, mode) in model.modes.iter().enumerate() {
         matrix[(i, n + i)] = w;
         matrix[(n + i, i)] = -mode.omega_squared / w;
@@ -161,17 +161,19 @@ fn error_against_the_exponential(scene: &Scene) -> f64 {
         matrix[(n + i, 2 * n + 3)] = -mode.participation;
     }
     matrix[(2 * n, 2 * n + 1)] = 1.0;
+    matrix[(2 * n + 2, 2 * n + 5)] = 1.0;
     matrix[(2 * n + 3, 2 * n + 4)] = omega;
     matrix[(2 * n + 4, 2 * n + 3)] = -omega;
     let matrix = matrix * length;
     let step = matrix.exp();
 
-    let mut motion = DVector::zeros(2 * n + 5);
+    let mut motion = DVector::zeros(2 * n + 6);
     let (mut support, mut worst) = (0.0, 0.0_f64);
     for count in 0..40 {
         let start = rig.state.time;
         let inputs = Inputs {
             base_acceleration: if count < 20 { 30.0 } else { -50.0 },
+            base_acceleration_rate: f64::from(count % 3) * 20.0 / length,
             support_displacement: 1e-9 * f64::from(count % 7),
             ..Inputs::default()
         };
@@ -183,8 +185,9 @@ fn error_against_the_exponential(scene: &Scene) -> f64 {
             inputs.base_acceleration,
             AMPLITUDE * phase.sin(),
             AMPLITUDE * phase.cos(),
+            inputs.base_acceleration_rate,
         ];
-        motion.rows_mut(2 * n, 5).copy_from_slice(&loads);
+        motion.rows_mut(2 * n, 6).copy_from_slice(&loads);
         motion = &step * motion;
         support = inputs.support_displacement;
         rig.run_to(&inputs, f64::from(count + 1) * length).unwrap();

@@ -1,0 +1,237 @@
+//! Derivatives of inputs and outputs over communication steps.
+
+#![allow(clippy::unwrap_used)]
+
+use std::f64::consts::TAU;
+
+use relay_contact::inputs::Inputs;
+use relay_contact::scene::Scene;
+use relay_contact::simulation::Simulation;
+use relay_contact::variables::{ContactLawKind, ExcitationKind, RealOutput};
+
+const FREQUENCY: f64 = 1000.0;
+
+/// Forces every 100 us of a run driven at `FREQUENCY` with `amplitude` (m/s2).
+fn forces(scene: &Scene, step: f64, inputs: impl Fn(f64) -> Inputs) -> Vec<f64> {
+    let every = (1e-4 / step).round() as usize;
+    let mut simulation = Simulation::new(scene, &inputs(0.0).held(), 0.0).unwrap();
+    let steps = 20 * every;
+    let mut forces = Vec::new();
+    for k in 0..steps {
+        let time = k as f64 * step;
+        simulation.step(&inputs(time), time, step).unwrap();
+        if (k + 1) % every == 0 {
+            forces.push(simulation.real(RealOutput::ContactForce));
+        }
+    }
+    forces
+}
+
+fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+/// The sine from outside is that of the generator, wrong by the square of the step where its derivative comes with it and by
+/// the step where it does not. At 98 m/s2 the contact stays closed, at 400 it opens twice in the run.
+#[test]
+fn a_sine_from_outside_converges_to_the_generators() {
+    for amplitude in [98.0, 400.0] {
+        let mut scene = Scene::default();
+        scene.solver.tolerance = 1e-9;
+        let held = |time: f64| Inputs {
+            base_acceleration: amplitude * (TAU * FREQUENCY * time).sin(),
+            ..Inputs::default()
+        };
+        let linear = |time: f64| Inputs {
+            base_acceleration_rate: amplitude * TAU * FREQUENCY * (TAU * FREQUENCY * time).cos(),
+            ..held(time)
+        };
+        let mut generated = scene;
+        generated.effects.excitation = ExcitationKind::Sine;
+        generated.excitation.amplitude = amplitude;
+        generated.excitation.frequency = FREQUENCY;
+        let exact = forces(&generated, 1e-4, |_| Inputs::default());
+        for (inputs, order) in [(&held as &dyn Fn(f64) -> Inputs, 1), (&linear, 2)] {
+            let errors = [2e-6, 1e-6].map(|step| largest_difference(&forces(&scene, step, inputs), &exact));
+            let reached = (errors[0] / errors[1]).log2();
+            println!("{amplitude} m/s2, order {order}: {errors:?} N, {reached:.2}");
+            assert!((reached - f64::from(order)).abs() < 0.15, "{errors:?}");
+        }
+    }
+}
+
+/// However a ramp is cut into communication steps, it is the same ramp.
+#[test]
+fn a_ramp_does_not_depend_on_where_it_is_cut() {
+    for law in [
+        ContactLawKind::Hertz,
+        ContactLawKind::Linearised,
+        ContactLawKind::Bonded,
+    ] {
+        for damping in [8.063e-5, 0.0] {
+            let mut scene = Scene::default();
+            scene.effects.contact_law = law;
+            scene.beam.stiffness_damping = damping;
+            scene.contact.damping = damping;
+            scene.solver.tolerance = 1e-8;
+            let rate = 2e5;
+            let ramp = |time: f64| Inputs {
+                base_acceleration: rate * time,
+                base_acceleration_rate: rate,
+                ..Inputs::default()
+            };
+            let [whole, parts] = [1e-4_f64, 7e-6].map(|step| {
+                let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
+                let mut time = 0.0;
+                while time < 1e-3 - 1e-12 {
+                    let size = step.min(1e-3 - time);
+                    simulation.step(&ramp(time), time, size).unwrap();
+                    time = simulation.time();
+                }
+                simulation
+            });
+            let scale = whole.model().force_scale;
+            let difference = whole.real(RealOutput::ContactForce) - parts.real(RealOutput::ContactForce);
+            // Each is right to the tolerance.
+            assert!(
+                difference.abs() <= 2.0 * scene.solver.tolerance * scale,
+                "{law:?} {damping}: {difference}"
+            );
+            // Quasi-static growth of the force, the inertia of a propped cantilever with a mass at the prop; the lowest
+            // mode swings about it with an amplitude of rate / omega.
+            let section = &whole.model().section;
+            let mass = 0.375 * section.mass_per_length * section.length + section.tip_mass;
+            let omega = TAU * whole.model().frequency;
+            let grown = whole.real(RealOutput::ContactForce) - whole.model().preload.force;
+            let swing = mass * rate / omega;
+            assert!(
+                (grown - mass * rate * 1e-3).abs() < 2.0 * swing,
+                "{law:?} {damping}: {grown}"
+            );
+        }
+    }
+}
+
+/// The fixed contact moves with the derivative, without the lag of one step.
+#[test]
+fn a_support_with_its_derivative_does_not_lag() {
+    let scene = Scene::default();
+    let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
+    let rate = 1e-3;
+    for k in 0..10 {
+        let time = 1e-5 * f64::from(k);
+        let inputs = Inputs {
+            support_displacement: rate * time,
+            support_displacement_rate: rate,
+            ..Inputs::default()
+        };
+        simulation.step(&inputs, time, 1e-5).unwrap();
+        let reached = simulation.state().support;
+        assert!((reached - rate * simulation.time()).abs() < 1e-18, "{reached}");
+    }
+}
+
+#[test]
+fn the_voltage_follows_the_current() {
+    let mut simulation = Simulation::new(&Scene::default(), &Inputs::default(), 0.0).unwrap();
+    let inputs = Inputs {
+        contact_current: 0.1,
+        contact_current_rate: 50.0,
+        ..Inputs::default()
+    };
+    simulation.step(&inputs, 0.0, 1e-3).unwrap();
+    let resistance = simulation.real(RealOutput::ContactResistance);
+    assert_eq!(
+        simulation.real(RealOutput::ContactVoltage),
+        0.15000000000000002 / (1.0 / resistance)
+    );
+    let rate = simulation.rate(RealOutput::ContactVoltage).unwrap();
+    assert!((rate / (50.0 * resistance) - 1.0).abs() < 1e-12, "{rate}");
+    // Without a derivative it is held.
+    simulation.step(&inputs.held(), 1e-3, 1e-3).unwrap();
+    assert_eq!(simulation.real(RealOutput::ContactVoltage), 0.1 / (1.0 / resistance));
+    assert_eq!(simulation.rate(RealOutput::ContactVoltage), Some(0.0));
+}
+
+const CONTINUOUS: [RealOutput; 7] = [
+    RealOutput::ContactForce,
+    RealOutput::ContactResistance,
+    RealOutput::ContactConductance,
+    RealOutput::ContactVoltage,
+    RealOutput::ContactIndentation,
+    RealOutput::TipDisplacement,
+    RealOutput::TipVelocity,
+];
+
+/// A derivative lies between the slopes just before and just after it, at ends of the integrator's steps and inside them,
+/// also where the contact opens and closes. Values are wrong by the tolerance, so slopes by that over the time between two.
+#[test]
+fn derivatives_of_outputs_are_the_slopes_of_their_courses() {
+    const TOLERANCE: f64 = 1e-9;
+    const NEAR: f64 = 1e-7;
+    for law in [
+        ContactLawKind::Hertz,
+        ContactLawKind::Linearised,
+        ContactLawKind::Bonded,
+    ] {
+        for (amplitude, size) in [(98.0, 1e-6), (98.0, 1e-5), (400.0, 1e-6), (400.0, 1e-5)] {
+            let mut scene = Scene::default();
+            scene.effects.contact_law = law;
+            scene.effects.excitation = ExcitationKind::Sine;
+            scene.excitation.amplitude = amplitude;
+            scene.solver.tolerance = TOLERANCE;
+            let inputs = Inputs {
+                contact_current: 0.1,
+                ..Inputs::default()
+            };
+            let mut simulation = Simulation::new(&scene, &inputs, 0.0).unwrap();
+            let mut rows = Vec::new();
+            while simulation.time() < 2e-3 {
+                let [before, now, after] = [size - 2.0 * NEAR, NEAR, NEAR].map(|step| {
+                    simulation.step(&inputs, simulation.time(), step).unwrap();
+                    CONTINUOUS.map(|output| (simulation.real(output), simulation.rate(output).unwrap()))
+                });
+                rows.push([before, now, after]);
+            }
+            for (n, output) in CONTINUOUS.into_iter().enumerate() {
+                // Where the contact opens these jump to what `resistance.open` says; the conductance tells the same.
+                let jumps = matches!(output, RealOutput::ContactResistance | RealOutput::ContactVoltage);
+                if jumps && amplitude > 98.0 {
+                    continue;
+                }
+                let values = || rows.iter().map(|[_, now, _]| now[n].0);
+                let range = values().fold(f64::MIN, f64::max) - values().fold(f64::MAX, f64::min);
+                let noise = 2.0 * TOLERANCE * range / NEAR;
+                let steepest = rows.iter().map(|[_, now, _]| now[n].1.abs()).fold(0.0, f64::max);
+                assert!(
+                    steepest > 100.0 * noise,
+                    "{output:?}: nothing to be seen above {noise:e}"
+                );
+                for [before, now, after] in &rows {
+                    // Steepest at no force, where the contact opens or closes between the three.
+                    if output == RealOutput::ContactConductance && before[0].0.min(after[0].0) <= 0.0 {
+                        continue;
+                    }
+                    let slopes = [now[n].0 - before[n].0, after[n].0 - now[n].0].map(|change| change / NEAR);
+                    let (low, high) = (slopes[0].min(slopes[1]), slopes[0].max(slopes[1]));
+                    assert!(
+                        (low - noise..=high + noise).contains(&now[n].1),
+                        "{law:?}, {amplitude} m/s2, {size} s, {output:?}: {} not in {slopes:?}",
+                        now[n].1
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn what_does_not_change_continuously_has_no_derivative() {
+    let simulation = Simulation::new(&Scene::default(), &Inputs::default(), 0.0).unwrap();
+    for output in [RealOutput::ContactLastOpening, RealOutput::PreloadForce] {
+        assert_eq!(simulation.rate(output), None);
+    }
+    for output in CONTINUOUS {
+        assert_eq!(simulation.rate(output), Some(0.0), "{output:?} at the start");
+    }
+}
