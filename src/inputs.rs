@@ -48,23 +48,28 @@ impl Inputs {
         }
     }
 
-    /// The rate of an input, in its unit per second.
-    pub fn rate_mut(&mut self, input: RealInput) -> &mut f64 {
-        match input {
+    /// Sets the rate of an input, in its unit per second.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] for what is no finite number; the inputs are then unchanged.
+    pub fn set_rate(&mut self, input: RealInput, rate: f64) -> Result<(), SceneError> {
+        if !rate.is_finite() {
+            let allowed = "allowed as derivative is any finite number";
+            return Err(SceneError::out_of_range(input.variable(), rate, allowed.to_owned()));
+        }
+        *match input {
             RealInput::BaseAcceleration => &mut self.base_acceleration_rate,
             RealInput::SupportDisplacement => &mut self.support_displacement_rate,
             RealInput::ContactCurrent => &mut self.contact_current_rate,
-        }
+        } = rate;
+        Ok(())
     }
 
-    /// The inputs held at their values.
-    pub fn held(&self) -> Self {
-        Self {
-            base_acceleration_rate: 0.0,
-            support_displacement_rate: 0.0,
-            contact_current_rate: 0.0,
-            ..*self
-        }
+    /// Holds the inputs at their values.
+    pub fn hold(&mut self) {
+        self.base_acceleration_rate = 0.0;
+        self.support_displacement_rate = 0.0;
+        self.contact_current_rate = 0.0;
     }
 
     /// Displacement of the fixed contact after `size` seconds, m.

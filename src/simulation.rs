@@ -6,6 +6,7 @@ use crate::inputs::Inputs;
 use crate::model::{Model, State};
 use crate::scene::Scene;
 use crate::transient::dense::Course;
+use crate::transient::events::Event;
 use crate::transient::workspace::Workspace;
 use crate::variables::{BooleanOutput, IntegerOutput, RealOutput};
 
@@ -53,11 +54,13 @@ impl Simulation {
     pub fn resume(scene: &Scene, initial_support: f64, course: &Course) -> Result<Self, SceneError> {
         let model = Model::new(scene, initial_support)?;
         let workspace = Workspace::new(&model);
-        Ok(Self {
+        let mut simulation = Self {
             model,
             course: *course,
             workspace,
-        })
+        };
+        simulation.go_on_from(course);
+        Ok(simulation)
     }
 
     /// All that moves: with the scene and the initial displacement of the fixed contact, all there is to save.
@@ -68,6 +71,17 @@ impl Simulation {
     /// Goes on from where a simulation of the same model stood.
     pub fn go_on_from(&mut self, course: &Course) {
         self.course = *course;
+        self.workspace.events.forget_after(f64::NEG_INFINITY);
+        if let Some(event) = course.event_ahead() {
+            self.workspace.events.record(event);
+        }
+    }
+
+    /// Openings and closings within the last communication step, or the first thousand of them, and how many more there
+    /// were. None after the motion was taken from elsewhere.
+    pub fn events(&self) -> (impl Iterator<Item = &Event>, u64) {
+        let events = &self.workspace.events;
+        (events.until(self.course.time), events.left_out)
     }
 
     /// The instant reached, s.

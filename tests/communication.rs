@@ -5,6 +5,7 @@
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
+use relay_contact::transient::events::Event;
 use relay_contact::variables::{BooleanOutput, ExcitationKind, IntegerOutput, RealOutput};
 
 fn shaken(amplitude: f64, tolerance: f64) -> Scene {
@@ -154,5 +155,60 @@ fn a_generator_that_starts_late_wakes_the_contact_in_time() {
         let [late, prompt] = [&late, &prompt].map(|simulation| simulation.real(RealOutput::ContactForce));
         // At 1234 s time has a spacing of 2e-13 s, and the force changes by some 1e3 N/s.
         assert!((late - prompt).abs() < 1e-6 * prompt, "{late} {prompt}");
+    }
+}
+
+/// Openings and closings over 3 ms, with communication steps of `size` quarters of a microsecond; at every eleventh of them the motion is restored
+/// from a copy.
+fn events(size: u32, inputs: impl Fn(f64) -> Inputs) -> Vec<Event> {
+    let mut simulation = Simulation::new(&shaken(400.0, 1e-6), &Inputs::default(), 0.0).unwrap();
+    let mut events = Vec::new();
+    for k in 0..12_000 / size {
+        let time = 2.5e-7 * f64::from(k * size);
+        simulation.step(&inputs(time), time, 2.5e-7 * f64::from(size)).unwrap();
+        let (list, left_out) = simulation.events();
+        assert_eq!(left_out, 0);
+        events.extend(list);
+        if k % 11 == 0 {
+            let course = *simulation.course();
+            simulation.go_on_from(&course);
+            assert_eq!(simulation.events().0.count(), 0);
+        }
+    }
+    events
+}
+
+#[test]
+fn every_event_is_told_once() {
+    // A push that comes and goes takes back what the integrator has done ahead.
+    let pulsed = |time: f64| Inputs {
+        base_acceleration: if (time / 5e-4 + 1e-6) % 2.0 < 1.0 { 1.0 } else { 0.0 },
+        ..Inputs::default()
+    };
+    for pulse in [false, true] {
+        let inputs = |time: f64| if pulse { pulsed(time) } else { Inputs::default() };
+        let expected = events(2000, inputs);
+        assert!(expected.len() >= 5, "{expected:?}");
+        for pair in expected.windows(2) {
+            assert!(
+                pair[0].time < pair[1].time && pair[0].closes != pair[1].closes,
+                "{pair:?}"
+            );
+        }
+        for size in [12_000, 400, 40, 4, 1] {
+            if pulse && size > 2000 {
+                continue;
+            }
+            let found = events(size, inputs);
+            assert_eq!(found.len(), expected.len(), "{size}: {found:?} {expected:?}");
+            for (found, expected) in found.iter().zip(&expected) {
+                assert_eq!(found.closes, expected.closes);
+                // A force wrong by the tolerance reaches zero at another time.
+                assert!(
+                    (found.time - expected.time).abs() < 1e-8,
+                    "{size}: {found:?} {expected:?}"
+                );
+            }
+        }
     }
 }

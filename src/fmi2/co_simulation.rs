@@ -1,10 +1,10 @@
-//! Communication steps and their status; derivatives of inputs and outputs, which are not supported.
+//! Communication steps and their status; derivatives of inputs and outputs.
 // Arguments that are not looked at keep their names for the header.
 #![allow(unused_variables)]
 
 use libc::size_t;
 
-use super::entry::{call, place};
+use super::entry::{array, array_mut, call, place};
 use super::failure::Failure;
 use super::instance::Instance;
 use super::states::{self, Function};
@@ -13,7 +13,8 @@ use super::types::{
     fmi2String, fmi2Terminated, fmi2ValueReference,
 };
 
-/// Not supported: an error that leaves the instance as it was.
+/// Sets first derivatives of continuous inputs, all or none; they count for the next communication step only, over which
+/// the inputs then change linearly. `fmi2Discard`, and none of them set, for a value that is not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
     c: fmi2Component,
@@ -22,12 +23,19 @@ pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
     order: *const fmi2Integer,
     value: *const fmi2Real,
 ) -> fmi2Status {
-    let body = |_: &mut Instance| Err(Failure::Unsupported("canInterpolateInputs"));
+    let body = |instance: &mut Instance| {
+        // SAFETY: the contract of the module.
+        let (references, orders) = unsafe { (array(vr, nvr, "vr")?, array(order, nvr, "order")?) };
+        // SAFETY: the contract of the module.
+        let values = unsafe { array(value, nvr, "value") }?;
+        instance.set_input_derivatives(references, orders, values)
+    };
     // SAFETY: the contract of the module.
     unsafe { call(c, states::SET_REAL_INPUT_DERIVATIVES, body) }
 }
 
-/// Not supported: an error that leaves the instance as it was.
+/// Reads first derivatives of continuous outputs at the communication point, as it has been reached; 0 before the first
+/// step.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
     c: fmi2Component,
@@ -36,7 +44,16 @@ pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
     order: *const fmi2Integer,
     value: *mut fmi2Real,
 ) -> fmi2Status {
-    let body = |_: &mut Instance| Err(Failure::Unsupported("maxOutputDerivativeOrder"));
+    let body = |instance: &mut Instance| {
+        // SAFETY: the contract of the module.
+        let (references, orders) = unsafe { (array(vr, nvr, "vr")?, array(order, nvr, "order")?) };
+        // SAFETY: the contract of the module.
+        let values = unsafe { array_mut(value, nvr, "value") }?;
+        for ((&reference, &order), value) in references.iter().zip(orders).zip(values) {
+            value.write(instance.output_derivative(reference, order)?);
+        }
+        Ok(())
+    };
     // SAFETY: the contract of the module.
     unsafe { call(c, states::GET_REAL_OUTPUT_DERIVATIVES, body) }
 }

@@ -31,8 +31,9 @@ pub unsafe extern "C" fn fmi2GetVersion() -> *const c_char {
     c"2.0".as_ptr()
 }
 
-/// Chooses what is logged. Without a call all errors and warnings are. With categories, true shows these only, and
-/// false hides these; without, true shows all, and false, which is about debug messages, changes nothing.
+/// Chooses what is logged. Without a call all errors and warnings are, and with `loggingOn` of [`fmi2Instantiate`]
+/// events too. With categories, true shows these only, and false hides these; without, true shows all, and
+/// false hides events and the solver.
 /// An unknown category is a warning and changes nothing: what a user sees of the log is no reason to stop a simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetDebugLogging(
@@ -76,19 +77,19 @@ pub unsafe extern "C" fn fmi2Instantiate(
     let (name, guid) = unsafe { (text(instanceName, "instanceName"), text(fmuGUID, "fmuGUID")) };
     let name = name.ok().filter(|name| !name.is_empty());
     let made = catch_unwind(AssertUnwindSafe(|| {
-        let logger = Logger::new(functions, name.unwrap_or(c"RelayContact"));
+        let logger = Logger::new(functions, name.unwrap_or(c"RelayContact"), loggingOn != fmi2False);
         match refusal(name, fmuType, guid) {
             None => hand_out(Instance::new(logger)),
             Some(reason) => {
-                logger.log(fmi2Error, &format!("fmi2Instantiate: {reason}"));
+                logger.log_status(fmi2Error, &format!("fmi2Instantiate: {reason}"));
                 ptr::null_mut()
             }
         }
     }));
     made.unwrap_or_else(|panic| {
         let reason = panic_text(panic.as_ref());
-        let logger = Logger::new(functions, c"RelayContact");
-        logger.log(fmi2Error, &format!("fmi2Instantiate: {}", Failure::Panic(reason)));
+        let logger = Logger::new(functions, c"RelayContact", false);
+        logger.log_status(fmi2Error, &format!("fmi2Instantiate: {}", Failure::Panic(reason)));
         ptr::null_mut()
     })
 }

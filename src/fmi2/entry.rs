@@ -184,7 +184,7 @@ mod tests {
             stepFinished: None,
             componentEnvironment: ptr::null_mut(),
         };
-        let component = hand_out(Instance::new(Logger::new(&silent, c"relay")));
+        let component = hand_out(Instance::new(Logger::new(&silent, c"relay", false)));
         let state = |instance: &mut Instance, expected| {
             assert_eq!(instance.state(), expected);
             Ok(())

@@ -53,8 +53,16 @@ pub(super) enum Failure {
     #[error("tolerance = {0}: not used, as it is no positive finite number")]
     Tolerance(f64),
     /// A log category that is not declared.
-    #[error("category {0}: no such log category, allowed are logStatusError and logStatusWarning; nothing changed")]
+    #[error(
+        "category {0}: no such log category, allowed are logStatusError, logStatusWarning, logEvents and logSolver; nothing changed"
+    )]
     Category(String),
+    /// A derivative of an order there is not.
+    #[error("{name}: no derivative of order {order}, allowed is 1")]
+    Order { name: &'static str, order: i32 },
+    /// A variable whose derivative cannot be set or read.
+    #[error("{name}: not allowed, derivatives are those of continuous {role}")]
+    NoDerivative { name: &'static str, role: &'static str },
     /// A status that this component does not have.
     #[error("status kind {0}: this component has no such status of this type")]
     StatusKind(u32),
@@ -90,6 +98,8 @@ impl Failure {
             | Self::Initialisation(_)
             | Self::Step(_)
             | Self::Argument { .. }
+            | Self::Order { .. }
+            | Self::NoDerivative { .. }
             | Self::Unsupported(_)
             | Self::ForeignState(_)
             | Self::Serialized(_)

@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 use std::ffi::CStr;
 
 use super::failure::Failure;
-use super::logger::Logger;
+use super::logger::{Category, Logger};
+use super::report::{self, Effort};
 use super::states::{Function, State};
 use super::types::fmi2Status;
 use crate::error::SceneError;
@@ -88,7 +89,7 @@ impl Instance {
             self.state = State::Error;
         }
         let status = failure.status();
-        self.logger.log(status, &format!("{}: {failure}", function.name));
+        self.logger.log_status(status, &format!("{}: {failure}", function.name));
         status
     }
 
@@ -143,6 +144,9 @@ impl Instance {
     pub(super) fn exit_initialization_mode(&mut self) -> Result<(), Failure> {
         self.prepare().map_err(Failure::Initialisation)?;
         self.state = State::StepComplete;
+        if let Some(simulation) = self.simulation.as_ref().filter(|_| self.logger.shows(Category::Solver)) {
+            report::model(&self.logger, simulation.model());
+        }
         Ok(())
     }
 
@@ -308,6 +312,38 @@ impl Instance {
         }
     }
 
+    /// Sets first derivatives of continuous inputs; all of them or, on an error, none.
+    pub(super) fn set_input_derivatives(
+        &mut self,
+        references: &[u32],
+        orders: &[i32],
+        values: &[f64],
+    ) -> Result<(), Failure> {
+        let mut inputs = self.inputs;
+        for ((&reference, &order), &value) in references.iter().zip(orders).zip(values) {
+            let variable = find("Real", reference)?;
+            let Group::RealInput(input) = variable.group else {
+                return Err(no_derivative(variable, "inputs"));
+            };
+            first_order(variable, order)?;
+            inputs.set_rate(input, value).map_err(Failure::Value)?;
+        }
+        self.inputs = inputs;
+        Ok(())
+    }
+
+    /// The first derivative of a continuous output.
+    pub(super) fn output_derivative(&mut self, reference: u32, order: i32) -> Result<f64, Failure> {
+        let variable = find("Real", reference)?;
+        let rate = match variable.group {
+            Group::RealOutput(output) => self.computed(variable)?.rate(output),
+            _ => None,
+        };
+        let rate = rate.ok_or(no_derivative(variable, "outputs"))?;
+        first_order(variable, order)?;
+        Ok(rate)
+    }
+
     fn take_over(&mut self, scene: Scene, inputs: Inputs) {
         (self.scene, self.inputs) = (scene, inputs);
         if self.state == State::InitializationMode {
@@ -363,8 +399,16 @@ impl Instance {
         let Some(simulation) = &mut self.simulation else {
             return Err(Failure::Panic("no simulation after initialisation".to_owned()));
         };
+        let before = self.logger.shows(Category::Solver).then(|| Effort::of(simulation));
         simulation.step(&self.inputs, point, size).map_err(Failure::Step)?;
         self.time = simulation.time();
+        self.inputs.hold();
+        if self.logger.shows(Category::Events) {
+            report::events(&self.logger, simulation);
+        }
+        if let Some(before) = before {
+            before.report(&self.logger, simulation);
+        }
         Ok(())
     }
 }
@@ -384,6 +428,19 @@ fn find(kind: &'static str, reference: u32) -> Result<&'static Variable, Failure
         reference,
         owner: None,
     })
+}
+
+/// Derivatives of order 1 are all there are.
+fn first_order(variable: &Variable, order: i32) -> Result<(), Failure> {
+    let name = variable.name;
+    (order == 1).then_some(()).ok_or(Failure::Order { name, order })
+}
+
+fn no_derivative(variable: &Variable, role: &'static str) -> Failure {
+    Failure::NoDerivative {
+        name: variable.name,
+        role,
+    }
 }
 
 fn wrong_type(kind: &'static str, variable: &Variable) -> Failure {

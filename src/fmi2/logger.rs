@@ -4,35 +4,69 @@ use std::ffi::{CStr, CString};
 
 use super::types::{fmi2CallbackFunctions, fmi2CallbackLogger, fmi2ComponentEnvironment, fmi2Error, fmi2Status};
 
-/// Category of messages about calls that failed.
-pub const LOG_STATUS_ERROR: &CStr = c"logStatusError";
-/// Category of messages about calls that were refused and changed nothing.
-pub const LOG_STATUS_WARNING: &CStr = c"logStatusWarning";
+/// Kinds of messages.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Category {
+    /// Calls that failed.
+    StatusError,
+    /// Calls that were refused and changed nothing.
+    StatusWarning,
+    /// Openings and closings of the contact.
+    Events,
+    /// What the integrator does.
+    Solver,
+}
+
+use Category::{Events, Solver, StatusError, StatusWarning};
+
+impl Category {
+    /// All of them.
+    pub const ALL: [Self; 4] = [StatusError, StatusWarning, Events, Solver];
+
+    /// As the description declares it.
+    pub fn name(self) -> &'static CStr {
+        match self {
+            StatusError => c"logStatusError",
+            StatusWarning => c"logStatusWarning",
+            Events => c"logEvents",
+            Solver => c"logSolver",
+        }
+    }
+
+    /// Messages of a status, for which there need not be any debug logging.
+    fn of_status(status: fmi2Status) -> Self {
+        if status >= fmi2Error {
+            StatusError
+        } else {
+            StatusWarning
+        }
+    }
+}
 
 /// The importer's log callback, and the categories it wants to see.
 ///
-/// Both categories are shown from the start, whatever `loggingOn` says: that flag is about debug messages, of which
-/// there are none, while a call that fails without a word leaves the user nothing to go by (the standard would have
-/// the reason for fmi2Discard told with `loggingOn` only; importers leave that off by default). `fmi2SetDebugLogging` with named
+/// Errors and warnings are shown from the start, whatever `loggingOn` says: that flag is about debug messages, while a
+/// call that fails without a word leaves the user nothing to go by (the standard would have the reason for fmi2Discard
+/// told with `loggingOn` only; importers leave that off by default). With `loggingOn` events are shown too, but not the
+/// solver, which has something to say in every step: some importers set the flag always. `fmi2SetDebugLogging` with named
 /// categories shows these and no others (`loggingOn` true), or hides these (false); without categories, true shows all
-/// and false, which could only hide debug messages, changes nothing.
+/// and false hides the debug messages.
 #[derive(Debug)]
 pub(super) struct Logger {
     callback: fmi2CallbackLogger,
     environment: fmi2ComponentEnvironment,
     instance_name: CString,
-    errors: bool,
-    warnings: bool,
+    /// In the order of [`Category::ALL`].
+    shown: [bool; 4],
 }
 
 impl Logger {
-    pub(super) fn new(functions: &fmi2CallbackFunctions, instance_name: &CStr) -> Self {
+    pub(super) fn new(functions: &fmi2CallbackFunctions, instance_name: &CStr, logging_on: bool) -> Self {
         Self {
             callback: functions.logger,
             environment: functions.componentEnvironment,
             instance_name: instance_name.to_owned(),
-            errors: true,
-            warnings: true,
+            shown: [true, true, logging_on, false],
         }
     }
 
@@ -41,28 +75,41 @@ impl Logger {
     /// # Errors
     /// The first category that is not declared.
     pub(super) fn choose<'a>(&mut self, on: bool, categories: &[&'a CStr]) -> Result<(), &'a CStr> {
-        let known = [LOG_STATUS_ERROR, LOG_STATUS_WARNING];
+        let known = Category::ALL.map(Category::name);
         if let Some(unknown) = categories.iter().find(|category| !known.contains(category)) {
             return Err(unknown);
         }
-        let named = |category| categories.contains(&category);
-        let (errors, warnings) = (named(LOG_STATUS_ERROR), named(LOG_STATUS_WARNING));
-        (self.errors, self.warnings) = match (on, categories.is_empty()) {
-            (true, true) => (true, true),
-            (true, false) => (errors, warnings),
-            (false, _) => (self.errors && !errors, self.warnings && !warnings),
-        };
+        for (shown, category) in self.shown.iter_mut().zip(Category::ALL) {
+            let named = categories.contains(&category.name());
+            *shown = match (on, categories.is_empty()) {
+                (true, all) => all || named,
+                (false, true) => *shown && matches!(category, StatusError | StatusWarning),
+                (false, false) => *shown && !named,
+            };
+        }
         Ok(())
     }
 
-    /// Hands a message to the importer.
-    pub(super) fn log(&self, status: fmi2Status, message: &str) {
-        let (shown, category) = if status >= fmi2Error {
-            (self.errors, LOG_STATUS_ERROR)
-        } else {
-            (self.warnings, LOG_STATUS_WARNING)
+    /// Whether messages of a category reach anybody.
+    pub(super) fn shows(&self, category: Category) -> bool {
+        let [errors, warnings, events, solver] = self.shown;
+        let shown = match category {
+            StatusError => errors,
+            StatusWarning => warnings,
+            Events => events,
+            Solver => solver,
         };
-        let Some(callback) = self.callback.filter(|_| shown) else {
+        shown && self.callback.is_some()
+    }
+
+    /// Hands the importer the message of a call that did not do what was asked.
+    pub(super) fn log_status(&self, status: fmi2Status, message: &str) {
+        self.log(Category::of_status(status), status, message);
+    }
+
+    /// Hands a message to the importer.
+    pub(super) fn log(&self, category: Category, status: fmi2Status, message: &str) {
+        let Some(callback) = self.callback.filter(|_| self.shows(category)) else {
             return;
         };
         let Ok(format) = CString::new(printf_safe(message)) else {
@@ -75,7 +122,7 @@ impl Logger {
                 self.environment,
                 self.instance_name.as_ptr(),
                 status,
-                category.as_ptr(),
+                category.name().as_ptr(),
                 format.as_ptr(),
             );
         }

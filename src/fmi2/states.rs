@@ -4,8 +4,8 @@
 //! never in progress or cancelled, and a step that fails is an error, so those columns are missing. Three rows are
 //! wider: inputs and parameters can also be read in the state instantiated, where they have their start values (the
 //! outputs have none there and are refused); the status functions answer in the state error too, so that the last
-//! successful time can be asked for after a step that failed; the functions of derivatives that the description
-//! declares unsupported give that reason in every state.
+//! successful time can be asked for after a step that failed; the directional derivatives, which the description
+//! declares unsupported, give that reason in every state.
 
 /// Where an instance is in its life.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -80,8 +80,8 @@ pub(super) const SERIALIZED_FMU_STATE_SIZE: Function = function("fmi2SerializedF
 pub(super) const SERIALIZE_FMU_STATE: Function = function("fmi2SerializeFMUstate", ANY);
 pub(super) const DE_SERIALIZE_FMU_STATE: Function = function("fmi2DeSerializeFMUstate", ANY);
 pub(super) const GET_DIRECTIONAL_DERIVATIVE: Function = function("fmi2GetDirectionalDerivative", ANY);
-pub(super) const SET_REAL_INPUT_DERIVATIVES: Function = function("fmi2SetRealInputDerivatives", ANY);
-pub(super) const GET_REAL_OUTPUT_DERIVATIVES: Function = function("fmi2GetRealOutputDerivatives", ANY);
+pub(super) const SET_REAL_INPUT_DERIVATIVES: Function = function("fmi2SetRealInputDerivatives", SETTABLE);
+pub(super) const GET_REAL_OUTPUT_DERIVATIVES: Function = function("fmi2GetRealOutputDerivatives", STATUS);
 pub(super) const DO_STEP: Function = function("fmi2DoStep", &[StepComplete]);
 pub(super) const CANCEL_STEP: Function = function("fmi2CancelStep", &[]);
 pub(super) const GET_STATUS: Function = function("fmi2GetStatus", STATUS);

@@ -12,6 +12,7 @@ use crate::inputs::Inputs;
 use crate::model::{Model, State};
 use crate::transient::advance::Steps;
 use crate::transient::collocation::Prediction;
+use crate::transient::events::Event;
 use crate::transient::workspace::Workspace;
 use serde::{Deserialize, Serialize};
 
@@ -94,6 +95,15 @@ impl Course {
         } else {
             &self.start
         }
+    }
+
+    /// The event that the integrator has met beyond the communication point.
+    pub fn event_ahead(&self) -> Option<Event> {
+        let ahead = self.end.time > self.time && self.end.closed != self.start.closed;
+        ahead.then_some(Event {
+            time: self.end.time,
+            closes: self.end.closed,
+        })
     }
 
     /// Whether the communication point lies inside a step of the integrator: how far before its end, in steps.
@@ -199,6 +209,8 @@ impl Model {
         } else {
             size
         };
+        let since = course.time;
+        workspace.events.forget_until(since);
         // The fixed contact moves linearly to where the input leads.
         let support = inputs.support_displacement_after(size) - self.initial_support;
         let drive = Drive::new(inputs, time, size, support - course.state().support);
@@ -213,6 +225,7 @@ impl Model {
             if ahead {
                 course.end = self.state(course, workspace)?;
                 course.start = course.end;
+                workspace.events.forget_after(since);
             }
             if let Err(error) = self.advance(&mut course.end, workspace, drive, Steps::Exactly { time, size }) {
                 course.end = course.start;
@@ -261,6 +274,7 @@ impl Model {
         }
         if end.time > time && !span.good {
             end = start;
+            workspace.events.forget_after(end.time);
             let (start, size) = (end.time, time - end.time);
             self.advance(&mut end, workspace, course.drive, Steps::Exactly { time: start, size })?;
         }

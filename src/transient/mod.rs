@@ -7,7 +7,8 @@
 //!   for it, made once.
 //! - [`advance`]: integration steps one after the other, taken or rejected by an estimate of the error of the force;
 //!   [`progress`]: the grid they end on; [`rest`]: a contact at rest takes none.
-//! - [`switching`]: steps end where the contact opens ([`release`]) or closes ([`touchdown`]), and begin anew.
+//! - [`switching`]: steps end where the contact opens ([`release`]) or closes ([`touchdown`]), and begin anew;
+//!   [`events`] keeps a list.
 //! - [`fallback`]: a step with a constant force, where the collocation cannot go on.
 //! - [`energy`]: where nothing dissipates, the energy is kept.
 //!
@@ -32,6 +33,7 @@ pub mod coefficients;
 pub mod collocation;
 pub mod dense;
 pub mod energy;
+pub mod events;
 pub mod fallback;
 pub mod free_motion;
 pub mod linear;

@@ -2,6 +2,7 @@
 
 use crate::error::StepError;
 use crate::transient::advance::{Advice, Integration};
+use crate::transient::events::Event;
 use crate::transient::nodal::Trial;
 use crate::transient::workspace::{Room, Workspace};
 
@@ -75,6 +76,10 @@ impl Integration<'_> {
     /// The contact opens or closes at the instant of the state; the step to take next.
     pub(super) fn switch(&mut self, closed: bool) -> f64 {
         self.state.closed = closed;
+        self.workspace.events.record(Event {
+            time: self.state.time,
+            closes: closed,
+        });
         self.state.force = 0.0;
         self.state.last_step = 0.0;
         if closed {

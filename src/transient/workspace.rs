@@ -3,6 +3,7 @@
 use crate::model::{MAX_MODES, ModeState, ModeStates, Model};
 use crate::transient::coefficients::Cache;
 use crate::transient::collocation::{LONG, SHORT};
+use crate::transient::events::Events;
 use crate::transient::oscillator::Propagator;
 
 /// Scratch of the steps. Nothing in it changes a result, only the time it takes.
@@ -16,6 +17,8 @@ pub struct Workspace {
     probe: ModeStates,
     /// Of exact steps.
     pub(super) propagator: Propagator,
+    /// Of the last communication step.
+    pub events: Events,
 }
 
 impl Workspace {
@@ -27,6 +30,7 @@ impl Workspace {
             end: [ModeState::default(); MAX_MODES],
             probe: [ModeState::default(); MAX_MODES],
             propagator: Propagator::default(),
+            events: Events::new(),
         }
     }
 }

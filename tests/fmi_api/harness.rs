@@ -59,7 +59,13 @@ pub fn callbacks(log: &Log) -> fmi2CallbackFunctions {
 }
 
 /// `fmi2Instantiate` with what can go wrong left open.
-pub fn instantiate(name: Option<&str>, kind: fmi2Type, guid: Option<&str>, log: &Log) -> fmi2Component {
+pub fn instantiate(
+    name: Option<&str>,
+    kind: fmi2Type,
+    guid: Option<&str>,
+    log: &Log,
+    logging_on: fmi2Boolean,
+) -> fmi2Component {
     let (name, guid) = (
         name.map(|name| CString::new(name).unwrap()),
         guid.map(|guid| CString::new(guid).unwrap()),
@@ -73,8 +79,8 @@ pub fn instantiate(name: Option<&str>, kind: fmi2Type, guid: Option<&str>, log: 
             pointer(&guid),
             ptr::null(),
             &raw const callbacks,
-            0,
-            0,
+            fmi2False,
+            logging_on,
         )
     }
 }
@@ -87,8 +93,13 @@ pub fn vr(name: &str) -> fmi2ValueReference {
 impl Fmu {
     /// In the state instantiated.
     pub fn new() -> Self {
+        Self::with_logging(fmi2False)
+    }
+
+    /// The same, with debug messages or without.
+    pub fn with_logging(on: fmi2Boolean) -> Self {
         let log = Box::new(Log::default());
-        let component = instantiate(Some("relay 1"), fmi2CoSimulation, Some(GUID), &log);
+        let component = instantiate(Some("relay 1"), fmi2CoSimulation, Some(GUID), &log, on);
         assert!(!component.is_null(), "{log:?}");
         Self { component, log }
     }

@@ -30,15 +30,15 @@ fn heard(fmu: &Fmu) -> [usize; 2] {
 
 #[test]
 fn the_categories_are_those_of_the_description() {
-    for category in [LOG_STATUS_ERROR, LOG_STATUS_WARNING] {
+    for category in Category::ALL.map(Category::name) {
         assert!(MODEL_DESCRIPTION.contains(&format!("<Category name=\"{}\"", category.to_str().unwrap())));
     }
-    assert_eq!(MODEL_DESCRIPTION.matches("<Category ").count(), 2);
+    assert_eq!(MODEL_DESCRIPTION.matches("<Category ").count(), Category::ALL.len());
 }
 
 #[test]
 fn errors_and_warnings_are_logged_unless_their_category_is_switched_off() {
-    let (error, warning) = (LOG_STATUS_ERROR, LOG_STATUS_WARNING);
+    let [error, warning, ..] = Category::ALL.map(Category::name);
     let cases: [(fmi2Boolean, &[&CStr], [usize; 2]); 7] = [
         (fmi2True, &[], [1, 1]),
         (fmi2False, &[], [1, 1]),
@@ -59,14 +59,14 @@ fn errors_and_warnings_are_logged_unless_their_category_is_switched_off() {
 #[test]
 fn an_unknown_category_is_a_warning_that_changes_nothing() {
     let fmu = Fmu::new();
-    assert_eq!(choose(&fmu, fmi2False, &[LOG_STATUS_ERROR, c"log%sAll"]), fmi2Warning);
+    assert_eq!(choose(&fmu, fmi2False, &[c"logStatusError", c"log%sAll"]), fmi2Warning);
     // As a printf format this reads "log%sAll".
     fmu.expect_message(
         fmi2Warning,
         &[
             "fmi2SetDebugLogging",
             "log%%sAll",
-            "logStatusError and logStatusWarning",
+            "logStatusError, logStatusWarning, logEvents and logSolver",
         ],
     );
     assert_eq!(heard(&fmu), [1, 1]);
@@ -80,6 +80,70 @@ fn messages_carry_the_name_of_the_instance_and_the_function() {
     assert_eq!(messages[0].instance, "relay 1");
     assert_eq!(messages[0].status, fmi2Error);
     assert!(messages[0].text.starts_with("fmi2DoStep: "), "{messages:?}");
+}
+
+/// Arguments of `fmi2SetDebugLogging`.
+type Choice<'a> = (fmi2Boolean, &'a [&'a CStr]);
+
+/// Messages of events and of the solver in a run in which the contact opens at 0.7088 ms, as `choices` have it.
+fn debug_messages(logging_on: fmi2Boolean, choices: &[Choice]) -> [Vec<String>; 2] {
+    let fmu = Fmu::with_logging(logging_on);
+    for (on, categories) in choices {
+        assert_eq!(choose(&fmu, *on, categories), fmi2OK);
+    }
+    assert_eq!(fmu.set_integer("effects.excitation", 2), fmi2OK);
+    assert_eq!(fmu.set_integer("effects.axialForce", 2), fmi2OK);
+    assert_eq!(fmu.set_real("excitation.amplitude", 400.0), fmi2OK);
+    unsafe {
+        assert_eq!(fmi2EnterInitializationMode(fmu.component), fmi2OK);
+        assert_eq!(fmi2ExitInitializationMode(fmu.component), fmi2OK);
+    }
+    for k in 0..3 {
+        assert_eq!(fmu.step(f64::from(k) * 5e-4, 5e-4), fmi2OK);
+    }
+    let messages = fmu.messages();
+    assert!(messages.iter().all(|message| message.status == fmi2OK), "{messages:?}");
+    ["logEvents", "logSolver"].map(|category| {
+        let told = messages.iter().filter(|message| message.category == category);
+        told.map(|message| message.text.clone()).collect()
+    })
+}
+
+#[test]
+fn openings_and_closings_are_logged_with_their_instants() {
+    let [events, solver] = debug_messages(fmi2False, &[(fmi2True, &[])]);
+    // Instants of the specimen at 400 m/s2 and 1 kHz without axial force, converged by two methods.
+    let expected = [("opens", 708.827_593e-6), ("closes", 1_089.427_605e-6)];
+    assert_eq!(events.len(), expected.len(), "{events:?}");
+    for (text, (verb, instant)) in events.iter().zip(expected) {
+        assert!(
+            text.starts_with(&format!("fmi2DoStep: the contact {verb} at ")),
+            "{text}"
+        );
+        let told: f64 = text.split(' ').rev().nth(1).unwrap().parse().unwrap();
+        assert!((told - instant).abs() < 1e-9, "{text}");
+    }
+    assert!(solver[0].contains("modes"), "{solver:?}");
+    assert_eq!(solver.len(), 1 + 3, "{solver:?}");
+}
+
+#[test]
+fn debug_messages_are_off_unless_asked_for() {
+    let [both, none] = [[true, true], [false, false]];
+    let (events, solver) = (c"logEvents", c"logSolver");
+    let cases: [(fmi2Boolean, &[Choice], [bool; 2]); 7] = [
+        (fmi2False, &[], none),
+        (fmi2True, &[], [true, false]),
+        (fmi2False, &[(fmi2True, &[])], both),
+        (fmi2True, &[(fmi2False, &[])], none),
+        (fmi2False, &[(fmi2True, &[events])], [true, false]),
+        (fmi2False, &[(fmi2True, &[]), (fmi2False, &[events])], [false, true]),
+        (fmi2True, &[(fmi2True, &[solver])], [false, true]),
+    ];
+    for (on, choices, expected) in cases {
+        let heard = debug_messages(on, choices).map(|messages| !messages.is_empty());
+        assert_eq!(heard, expected, "{on} {choices:?}");
+    }
 }
 
 static STATUS_INSIDE: AtomicU32 = AtomicU32::new(fmi2OK);

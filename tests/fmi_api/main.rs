@@ -2,6 +2,7 @@
 #![allow(clippy::undocumented_unsafe_blocks)] // every block calls a C function with what it needs, or, as the test says, without
 
 mod arguments;
+mod derivatives;
 mod fmu_state;
 mod harness;
 mod life_cycle;

@@ -116,7 +116,7 @@ impl Ride {
                     } else {
                         support + rate * size * f64::from(part)
                     },
-                    contact_current: 0.0,
+                    ..Inputs::default()
                 };
                 rig.run_to(&inputs, time + size * f64::from(part))
                     .map_err(|error| format!("{error}, {} steps", rig.state.steps))?;

@@ -1,0 +1,73 @@
+//! What the debug messages say.
+
+use super::logger::{Category, Logger};
+use super::types::fmi2OK;
+use crate::model::Model;
+use crate::simulation::Simulation;
+use crate::transient::machine::Machine;
+
+/// How a scene is simulated.
+pub(super) fn model(logger: &Logger, model: &Model) {
+    let modes = model.modes.len();
+    let steps = match model.closed_loop {
+        Some(_) => "exact steps while the contact is closed",
+        None => "steps by collocation",
+    };
+    let tolerance = model.scene.solver.effective_tolerance();
+    let error = tolerance * model.force_scale;
+    let machine = match model.machine {
+        Machine::Portable => "for any processor",
+        #[cfg(target_arch = "x86_64")]
+        Machine::Avx2(_) => "for AVX2 and FMA",
+    };
+    let text = format!(
+        "fmi2ExitInitializationMode: {modes} modes, {steps}, compiled {machine}, tolerance {tolerance:e}, which is {error:e} N"
+    );
+    logger.log(Category::Solver, fmi2OK, &text);
+}
+
+/// The openings and closings of a communication step.
+pub(super) fn events(logger: &Logger, simulation: &Simulation) {
+    let (events, left_out) = simulation.events();
+    for event in events {
+        let verb = if event.closes { "closes" } else { "opens" };
+        let text = format!("fmi2DoStep: the contact {verb} at {} s", event.time);
+        logger.log(Category::Events, fmi2OK, &text);
+    }
+    if left_out > 0 {
+        let text = format!("fmi2DoStep: {left_out} more openings and closings in this step");
+        logger.log(Category::Events, fmi2OK, &text);
+    }
+}
+
+/// What the integration has cost so far.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Effort {
+    steps: u64,
+    rejected: u64,
+    iterations: u64,
+}
+
+impl Effort {
+    pub(super) fn of(simulation: &Simulation) -> Self {
+        let state = simulation.state();
+        Self {
+            steps: state.steps,
+            rejected: state.rejected_steps,
+            iterations: state.iterations,
+        }
+    }
+
+    /// What it has cost since then.
+    pub(super) fn report(self, logger: &Logger, simulation: &Simulation) {
+        let now = Self::of(simulation);
+        let text = format!(
+            "fmi2DoStep: to {} s: {} steps, {} rejected, {} iterations",
+            simulation.time(),
+            now.steps.saturating_sub(self.steps),
+            now.rejected.saturating_sub(self.rejected),
+            now.iterations.saturating_sub(self.iterations)
+        );
+        logger.log(Category::Solver, fmi2OK, &text);
+    }
+}
