@@ -178,7 +178,8 @@ pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
     unsafe { call(c, states::DE_SERIALIZE_FMU_STATE, body) }
 }
 
-/// Not supported.
+/// Not supported: an error that leaves the instance as it was. In co-simulation these are the derivatives of outputs by
+/// inputs of the same communication point, and no output depends on any: the description says so for each output.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
     c: fmi2Component,
