@@ -28,7 +28,7 @@ def derivative(instance: Instance, name: str) -> float:
 
 
 def test_derivatives_make_a_sampled_sine_right_to_the_second_order(tmp_path: Path) -> None:
-    """With steps of a hundredth of a period the error falls from some (pi / 100) to some (pi / 100)^2 of the amplitude."""
+    """With a hundred steps a period the error falls from some pi / 100 to some (pi / 100)^2 of the amplitude."""
     with Instance(tmp_path / "generated") as instance:
         instance.choose("effects.excitation", SINE)
         instance.set("excitation.amplitude", AMPLITUDE)
