@@ -35,10 +35,11 @@ fn guid(xml: &str) -> String {
 }
 
 /// The groups of variables; each becomes an enum of its own, so that a `match` over it must serve every variable.
-const GROUPS: [(&str, &str); 7] = [
+const GROUPS: [(&str, &str); 8] = [
     ("RealInput", "Continuous inputs."),
     ("RealParameter", "Real parameters."),
     ("IntegerParameter", "Integer parameters."),
+    ("BooleanParameter", "Parameters that are true or false."),
     ("EnumerationParameter", "Parameters that choose from a list."),
     ("RealOutput", "Real outputs and calculated parameters."),
     ("IntegerOutput", "Integer outputs and calculated parameters."),
@@ -108,9 +109,11 @@ fn variables(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> 
         writeln!(arms[position], "            Self::{variant} => &VARIABLES[{index}],")?;
         write!(all[position], "Self::{variant}, ")?;
         let number = |name: &str, default: &str| {
-            value
-                .attribute(name)
-                .map_or(default.to_owned(), |text| format!("{text}_f64"))
+            value.attribute(name).map_or(default.to_owned(), |text| match text {
+                "true" => "1.0".to_owned(),
+                "false" => "0.0".to_owned(),
+                number => format!("{number}_f64"),
+            })
         };
         writeln!(
             table,

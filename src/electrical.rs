@@ -1,26 +1,175 @@
-//! Contact resistance as a function of contact force.
+//! Contact resistance and temperature as functions of contact force and current.
 //!
-//! Machines 2025, 13(1), 52, eqs. (28), (29): `R_c = H F^(-n)`. The film lies in series, the open resistance beside both:
+//! The constriction is a power law of the force: Machines 2025, 13(1), 52, eqs. (28), (29), `R_c = H F^(-n)`, or
+//! Holm's `R_c = (rho / 2) sqrt(pi H_B / F)`. The film lies in series, the open resistance beside both:
 //! `G = 1 / (R_c + R_film) + 1 / R_open`, the first term 0 where the force is. Arcs are outside the model.
 
-use crate::scene::Resistance;
+use std::f64::consts::PI;
 
-/// Conductance of the contact at the force (N), S; never 0.
-pub fn conductance(resistance: &Resistance, force: f64) -> f64 {
-    let closed = if force > 0.0 {
-        1.0 / (resistance.coefficient * force.powf(-resistance.exponent) + resistance.film)
-    } else {
-        0.0
-    };
-    closed + 1.0 / resistance.open
+use crate::scene::Scene;
+use crate::variables::ResistanceKind;
+
+/// Lorenz number: of thermal conductivity over electrical conductivity and temperature, V2/K2.
+const LORENZ: f64 = 2.45e-8;
+
+/// How current finds its way through the contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Path {
+    /// Resistance of the constriction at 1 N, Ohm.
+    coefficient: f64,
+    /// It falls with this power of the force.
+    exponent: f64,
+    /// Film, Ohm.
+    film: f64,
+    /// Open contact, Ohm.
+    open: f64,
 }
 
-/// Its derivative, S/N.
-pub fn conductance_slope(resistance: &Resistance, force: f64) -> f64 {
-    if force <= 0.0 {
-        return 0.0;
+impl Path {
+    /// Of the scene, if it asks for a resistance.
+    pub fn new(scene: &Scene) -> Option<Self> {
+        let resistance = &scene.resistance;
+        let (coefficient, exponent) = match scene.effects.resistance {
+            ResistanceKind::PowerLaw => (resistance.coefficient, resistance.exponent),
+            ResistanceKind::Holm => (0.5 * resistance.resistivity * (PI * resistance.hardness).sqrt(), 0.5),
+            ResistanceKind::None => return None,
+        };
+        Some(Self {
+            coefficient,
+            exponent,
+            film: resistance.film,
+            open: resistance.open,
+        })
     }
-    let constriction = resistance.coefficient * force.powf(-resistance.exponent);
-    let closed = 1.0 / (constriction + resistance.film);
-    resistance.exponent * (constriction * closed) * (closed / force)
+
+    /// Resistance of the constriction at a force (N) above 0, Ohm.
+    fn constriction(&self, force: f64) -> f64 {
+        self.coefficient * force.powf(-self.exponent)
+    }
+
+    /// Conductance of the contact at a force (N), S; never 0.
+    pub fn conductance(&self, force: f64) -> f64 {
+        let closed = if force > 0.0 {
+            1.0 / (self.constriction(force) + self.film)
+        } else {
+            0.0
+        };
+        closed + 1.0 / self.open
+    }
+
+    /// Its derivative, S/N.
+    pub fn conductance_slope(&self, force: f64) -> f64 {
+        if force <= 0.0 {
+            return 0.0;
+        }
+        let constriction = self.constriction(force);
+        let closed = 1.0 / (constriction + self.film);
+        self.exponent * (constriction * closed) * (closed / force)
+    }
+
+    /// Force below which the resistance is above a threshold (Ohm), N: 0 where it is not even open, infinite where it is
+    /// at any force.
+    pub fn force_at(&self, threshold: f64) -> f64 {
+        let closed = 1.0 / threshold - 1.0 / self.open;
+        if closed <= 0.0 {
+            return 0.0;
+        }
+        let constriction = 1.0 / closed - self.film;
+        if constriction <= 0.0 {
+            return f64::INFINITY;
+        }
+        (self.coefficient / constriction).powf(1.0 / self.exponent)
+    }
+
+    /// Temperature of the contact spot at a force (N) and a current (A), K: `T^2 = T_0^2 + V^2 / (4 L)` with the voltage
+    /// across constriction and film, at most the melting voltage (R. Holm, Electric Contacts, 1967, section 15; L the
+    /// Lorenz number).
+    pub fn temperature(&self, scene: &Scene, force: f64, current: f64) -> f64 {
+        let surroundings = scene.environment.temperature;
+        if force <= 0.0 {
+            return surroundings;
+        }
+        let voltage = current.abs() * (self.constriction(force) + self.film);
+        let voltage = voltage.min(scene.contact.melting_voltage);
+        surroundings.hypot(voltage / (2.0 * LORENZ.sqrt()))
+    }
+
+    /// Its derivatives by force and by the size of the current, K/N and K/A.
+    pub fn temperature_slopes(&self, scene: &Scene, force: f64, current: f64) -> (f64, f64) {
+        if force <= 0.0 {
+            return (0.0, 0.0);
+        }
+        let constriction = self.constriction(force);
+        let resistance = constriction + self.film;
+        let voltage = current.abs() * resistance;
+        if voltage >= scene.contact.melting_voltage {
+            return (0.0, 0.0);
+        }
+        let by_voltage = voltage / (4.0 * LORENZ * self.temperature(scene, force, current));
+        (
+            -by_voltage * current.abs() * self.exponent * constriction / force,
+            by_voltage * resistance,
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scene(kind: ResistanceKind) -> Scene {
+        let mut scene = Scene::default();
+        scene.effects.resistance = kind;
+        scene
+    }
+
+    #[test]
+    fn published_values() {
+        let path = Path::new(&scene(ResistanceKind::PowerLaw)).unwrap();
+        // The power law at the ends of the published waveform, 34.25 and 63.9 mOhm.
+        assert!((1.0 / path.conductance(0.200_149) - 34.252e-3).abs() < 1e-6);
+        assert!((1.0 / path.conductance(0.103_905) - 63.90e-3).abs() < 1e-4);
+        let holm = Path::new(&scene(ResistanceKind::Holm)).unwrap();
+        // (2.2e-8 / 2) sqrt(pi 0.785e9 / 0.152) by hand.
+        assert!((1.0 / holm.conductance(0.152) - 1.401e-3).abs() < 1e-6);
+        assert!(Path::new(&scene(ResistanceKind::None)).is_none());
+    }
+
+    #[test]
+    fn the_force_at_a_threshold_is_where_the_resistance_passes_it() {
+        for kind in [ResistanceKind::PowerLaw, ResistanceKind::Holm] {
+            for film in [0.0, 0.5] {
+                let mut scene = scene(kind);
+                scene.resistance.film = film;
+                let path = Path::new(&scene).unwrap();
+                for threshold in [1.0, 60.0, 1e6, 9e8] {
+                    let force = path.force_at(threshold);
+                    let found = 1.0 / path.conductance(force);
+                    assert!((found / threshold - 1.0).abs() < 1e-9, "{kind:?} {film} {threshold}: {found}");
+                }
+                assert_eq!(path.force_at(1e9), 0.0);
+                assert_eq!(path.force_at(2e9), 0.0);
+            }
+        }
+        let mut filmed = scene(ResistanceKind::PowerLaw);
+        filmed.resistance.film = 100.0;
+        assert_eq!(Path::new(&filmed).unwrap().force_at(60.0), f64::INFINITY);
+    }
+
+    #[test]
+    fn the_melting_voltage_gives_the_melting_temperature() {
+        let scene = scene(ResistanceKind::PowerLaw);
+        let path = Path::new(&scene).unwrap();
+        // 0.37 V: sqrt(298.15^2 + 0.37^2 / (4 2.45e-8)) = 1218.9 K, near the melting point of silver (1235 K).
+        assert!((path.temperature(&scene, 0.15, 1e3) - 1218.9).abs() < 0.1);
+        assert_eq!(path.temperature(&scene, 0.15, 0.0), 298.15);
+        assert_eq!(path.temperature(&scene, 0.0, 1e3), 298.15);
+        // Below it the derivatives are the slopes.
+        let (force, current, step) = (0.15, -3.0, 1e-6);
+        let slopes = path.temperature_slopes(&scene, force, current);
+        let by_force = path.temperature(&scene, force + step, current) - path.temperature(&scene, force - step, current);
+        let by_current = path.temperature(&scene, force, current - step) - path.temperature(&scene, force, current + step);
+        assert!((by_force / (2.0 * step) / slopes.0 - 1.0).abs() < 1e-6, "{slopes:?}");
+        assert!((by_current / (2.0 * step) / slopes.1 - 1.0).abs() < 1e-6, "{slopes:?}");
+    }
 }

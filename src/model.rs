@@ -6,6 +6,7 @@ use crate::beam::section::Section;
 use crate::contact::hertz::Hertz;
 use crate::contact::law::Law;
 use crate::contact::linear::Linear;
+use crate::electrical::Path;
 use crate::error::SceneError;
 use crate::excitation::Generator;
 use crate::preload::Preload;
@@ -58,6 +59,8 @@ pub struct Model {
     pub force_scale: f64,
     /// Lowest natural frequency with the contact as a spring, from the exact characteristic equation, Hz.
     pub frequency: f64,
+    /// What current sees of it.
+    pub path: Option<Path>,
     /// What the steps are computed with.
     pub machine: Machine,
 }
@@ -126,7 +129,10 @@ impl Model {
     pub fn new(scene: &Scene, support: f64) -> Result<Self, SceneError> {
         scene.validate()?;
         let section = Section::new(scene);
-        let hertz = Hertz::new(&scene.contact);
+        let mut hertz = Hertz::new(&scene.contact);
+        if !scene.effects.contact_damping {
+            hertz.damping = 0.0;
+        }
         let preload = Preload::new(scene, &section, &hertz, support)?;
         let law = match scene.effects.contact_law {
             ContactLawKind::Hertz => Law::Hertz(hertz),
@@ -183,6 +189,7 @@ impl Model {
             },
             force_scale: preload.force.max(reference),
             frequency,
+            path: Path::new(scene),
             machine: Machine::detect(),
         })
     }

@@ -39,7 +39,7 @@ impl Preload {
         let gravity = scene.environment.gravity;
         let axial = |y: f64| match scene.effects.axial_force {
             AxialForceKind::None => 0.0,
-            AxialForceKind::FromPreload => axial::from_deflection(section, y),
+            AxialForceKind::FromPreload | AxialForceKind::FromDeflection => axial::from_deflection(section, y),
             AxialForceKind::Prescribed => scene.beam.axial_force,
         };
         let limit = section.buckling_load();

@@ -5,8 +5,8 @@
 
 use crate::error::SceneError;
 use crate::variables::{
-    AxialForceKind, ContactLawKind, EnumerationParameter, ExcitationKind, Group, IntegerParameter, RealParameter,
-    VARIABLES, Variable,
+    AxialForceKind, BooleanParameter, ContactLawKind, EnumerationParameter, ExcitationKind, Group, IntegerParameter,
+    RealParameter, ResistanceKind, VARIABLES, Variable,
 };
 use serde::{Deserialize, Serialize};
 
@@ -25,6 +25,8 @@ pub struct Scene {
     pub excitation: Excitation,
     /// What surrounds the contact.
     pub environment: Environment,
+    /// What counts as an interruption.
+    pub chatter: Chatter,
     /// What accuracy is bought.
     pub solver: Solver,
     /// What is simulated at all.
@@ -70,6 +72,8 @@ pub struct Contact {
     pub curvature_radius: f64,
     /// Viscoelastic damping time, s.
     pub damping: f64,
+    /// Voltage at which the constriction melts, V.
+    pub melting_voltage: f64,
     /// The contact at the tip of the spring.
     pub moving: Material,
     /// The fixed contact.
@@ -85,7 +89,7 @@ pub struct Material {
     pub poisson_ratio: f64,
 }
 
-/// Contact resistance `H F^-n` in series with a film, both beside the open resistance.
+/// Contact resistance, by power law or by Holm, in series with a film, both beside the open resistance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Resistance {
     /// H, Ohm at 1 N.
@@ -96,6 +100,10 @@ pub struct Resistance {
     pub film: f64,
     /// Open contact, Ohm.
     pub open: f64,
+    /// Resistivity of the metal, Ohm m.
+    pub resistivity: f64,
+    /// Hardness of the softer metal, Pa.
+    pub hardness: f64,
 }
 
 /// Generated base acceleration.
@@ -109,6 +117,16 @@ pub struct Excitation {
     pub phase: f64,
     /// Start, s.
     pub start_time: f64,
+    /// Frequency at the end of the sweep, or upper end of the band, Hz.
+    pub end_frequency: f64,
+    /// Of the sweep or the half sine, s.
+    pub duration: f64,
+    /// Largest displacement amplitude, m; 0: no limit.
+    pub displacement_limit: f64,
+    /// Of the random acceleration, one-sided, (m/s2)^2/Hz.
+    pub spectral_density: f64,
+    /// Of the random phases.
+    pub seed: i32,
 }
 
 /// Surroundings.
@@ -116,6 +134,17 @@ pub struct Excitation {
 pub struct Environment {
     /// Constant acceleration, m/s2.
     pub gravity: f64,
+    /// Temperature, K.
+    pub temperature: f64,
+}
+
+/// What counts as an interruption.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Chatter {
+    /// Resistance above which the contact is interrupted, Ohm.
+    pub resistance_threshold: f64,
+    /// Shortest interruption that counts, s.
+    pub minimum_duration: f64,
 }
 
 /// Accuracy.
@@ -147,6 +176,7 @@ impl Solver {
 
 /// Effects asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a parameter of its own")]
 pub struct Effects {
     /// Generated base acceleration.
     pub excitation: ExcitationKind,
@@ -154,6 +184,18 @@ pub struct Effects {
     pub contact_law: ContactLawKind,
     /// Axial force.
     pub axial_force: AxialForceKind,
+    /// Whether the contact dissipates.
+    pub contact_damping: bool,
+    /// Contact resistance.
+    pub resistance: ResistanceKind,
+    /// Whether the current heats the contact.
+    pub heating: bool,
+    /// Whether interruptions are counted.
+    pub chatter: bool,
+    /// Whether extremes within communication steps are found.
+    pub extremes: bool,
+    /// Whether the balance of energy is kept.
+    pub energy: bool,
 }
 
 impl Default for Scene {
@@ -179,6 +221,7 @@ impl Default for Scene {
                 overtravel: start(P::ContactOvertravel),
                 curvature_radius: start(P::ContactCurvatureRadius),
                 damping: start(P::ContactDamping),
+                melting_voltage: start(P::ContactMeltingVoltage),
                 moving: Material {
                     youngs_modulus: start(P::ContactMovingYoungsModulus),
                     poisson_ratio: start(P::ContactMovingPoissonRatio),
@@ -193,15 +236,27 @@ impl Default for Scene {
                 exponent: start(P::ResistanceExponent),
                 film: start(P::ResistanceFilm),
                 open: start(P::ResistanceOpen),
+                resistivity: start(P::ResistanceResistivity),
+                hardness: start(P::ResistanceHardness),
             },
             excitation: Excitation {
                 amplitude: start(P::ExcitationAmplitude),
                 frequency: start(P::ExcitationFrequency),
                 phase: start(P::ExcitationPhase),
                 start_time: start(P::ExcitationStartTime),
+                end_frequency: start(P::ExcitationEndFrequency),
+                duration: start(P::ExcitationDuration),
+                displacement_limit: start(P::ExcitationDisplacementLimit),
+                spectral_density: start(P::ExcitationSpectralDensity),
+                seed: 1,
             },
             environment: Environment {
                 gravity: start(P::EnvironmentGravity),
+                temperature: start(P::EnvironmentTemperature),
+            },
+            chatter: Chatter {
+                resistance_threshold: start(P::ChatterResistanceThreshold),
+                minimum_duration: start(P::ChatterMinimumDuration),
             },
             solver: Solver {
                 tolerance: start(P::SolverTolerance),
@@ -212,6 +267,12 @@ impl Default for Scene {
                 excitation: ExcitationKind::None,
                 contact_law: ContactLawKind::Hertz,
                 axial_force: AxialForceKind::FromPreload,
+                contact_damping: true,
+                resistance: ResistanceKind::PowerLaw,
+                heating: false,
+                chatter: true,
+                extremes: true,
+                energy: false,
             },
         }
     }
@@ -224,6 +285,8 @@ pub enum Value {
     Real(f64),
     /// Of an [`IntegerParameter`], or of an [`EnumerationParameter`] by its number.
     Integer(i32),
+    /// Of a [`BooleanParameter`].
+    Boolean(bool),
 }
 
 impl Scene {
@@ -237,6 +300,29 @@ impl Scene {
     pub fn integer(&self, parameter: IntegerParameter) -> i32 {
         match parameter {
             IntegerParameter::SolverModes => self.solver.modes,
+            IntegerParameter::ExcitationSeed => self.excitation.seed,
+        }
+    }
+
+    /// Value of a Boolean parameter.
+    pub fn boolean(&self, parameter: BooleanParameter) -> bool {
+        let mut scene = *self;
+        *scene.boolean_mut(parameter)
+    }
+
+    /// Sets a Boolean parameter.
+    pub fn set_boolean(&mut self, parameter: BooleanParameter, value: bool) {
+        *self.boolean_mut(parameter) = value;
+    }
+
+    fn boolean_mut(&mut self, parameter: BooleanParameter) -> &mut bool {
+        use BooleanParameter as P;
+        match parameter {
+            P::EffectsContactDamping => &mut self.effects.contact_damping,
+            P::EffectsHeating => &mut self.effects.heating,
+            P::EffectsChatter => &mut self.effects.chatter,
+            P::EffectsExtremes => &mut self.effects.extremes,
+            P::EffectsEnergy => &mut self.effects.energy,
         }
     }
 
@@ -246,6 +332,7 @@ impl Scene {
             EnumerationParameter::EffectsExcitation => self.effects.excitation as i32,
             EnumerationParameter::EffectsContactLaw => self.effects.contact_law as i32,
             EnumerationParameter::EffectsAxialForce => self.effects.axial_force as i32,
+            EnumerationParameter::EffectsResistance => self.effects.resistance as i32,
         }
     }
 
@@ -267,6 +354,7 @@ impl Scene {
         check_range(parameter.variable(), f64::from(value), false)?;
         match parameter {
             IntegerParameter::SolverModes => self.solver.modes = value,
+            IntegerParameter::ExcitationSeed => self.excitation.seed = value,
         }
         Ok(())
     }
@@ -294,6 +382,9 @@ impl Scene {
             }
             EnumerationParameter::EffectsAxialForce => {
                 self.effects.axial_force = AxialForceKind::from_value(value).ok_or_else(unknown)?;
+            }
+            EnumerationParameter::EffectsResistance => {
+                self.effects.resistance = ResistanceKind::from_value(value).ok_or_else(unknown)?;
             }
         }
         Ok(())
@@ -328,6 +419,7 @@ impl Scene {
             P::ContactOvertravel => &mut self.contact.overtravel,
             P::ContactCurvatureRadius => &mut self.contact.curvature_radius,
             P::ContactDamping => &mut self.contact.damping,
+            P::ContactMeltingVoltage => &mut self.contact.melting_voltage,
             P::ContactMovingYoungsModulus => &mut self.contact.moving.youngs_modulus,
             P::ContactMovingPoissonRatio => &mut self.contact.moving.poisson_ratio,
             P::ContactFixedYoungsModulus => &mut self.contact.fixed.youngs_modulus,
@@ -336,11 +428,20 @@ impl Scene {
             P::ResistanceExponent => &mut self.resistance.exponent,
             P::ResistanceFilm => &mut self.resistance.film,
             P::ResistanceOpen => &mut self.resistance.open,
+            P::ResistanceResistivity => &mut self.resistance.resistivity,
+            P::ResistanceHardness => &mut self.resistance.hardness,
             P::ExcitationAmplitude => &mut self.excitation.amplitude,
             P::ExcitationFrequency => &mut self.excitation.frequency,
             P::ExcitationPhase => &mut self.excitation.phase,
             P::ExcitationStartTime => &mut self.excitation.start_time,
+            P::ExcitationEndFrequency => &mut self.excitation.end_frequency,
+            P::ExcitationDuration => &mut self.excitation.duration,
+            P::ExcitationDisplacementLimit => &mut self.excitation.displacement_limit,
+            P::ExcitationSpectralDensity => &mut self.excitation.spectral_density,
             P::EnvironmentGravity => &mut self.environment.gravity,
+            P::EnvironmentTemperature => &mut self.environment.temperature,
+            P::ChatterResistanceThreshold => &mut self.chatter.resistance_threshold,
+            P::ChatterMinimumDuration => &mut self.chatter.minimum_duration,
             P::SolverTolerance => &mut self.solver.tolerance,
             P::SolverMaximumStep => &mut self.solver.maximum_step,
         }
@@ -353,6 +454,7 @@ pub fn choices(parameter: EnumerationParameter) -> &'static [(&'static str, i32)
         EnumerationParameter::EffectsExcitation => ExcitationKind::CHOICES,
         EnumerationParameter::EffectsContactLaw => ContactLawKind::CHOICES,
         EnumerationParameter::EffectsAxialForce => AxialForceKind::CHOICES,
+        EnumerationParameter::EffectsResistance => ResistanceKind::CHOICES,
     }
 }
 

@@ -65,6 +65,7 @@ type Table = BTreeMap<Spanned<String>, Value>;
 enum Value {
     Integer(i64),
     Real(f64),
+    Boolean(bool),
     Text(String),
     Table(Table),
 }
@@ -76,7 +77,7 @@ impl<'de> Deserialize<'de> for Value {
             type Value = Value;
 
             fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-                formatter.write_str("a number, a text or a table")
+                formatter.write_str("a number, true or false, a text or a table")
             }
 
             fn visit_i64<E>(self, value: i64) -> Result<Value, E> {
@@ -85,6 +86,10 @@ impl<'de> Deserialize<'de> for Value {
 
             fn visit_f64<E>(self, value: f64) -> Result<Value, E> {
                 Ok(Value::Real(value))
+            }
+
+            fn visit_bool<E>(self, value: bool) -> Result<Value, E> {
+                Ok(Value::Boolean(value))
             }
 
             fn visit_str<E>(self, value: &str) -> Result<Value, E> {
@@ -175,6 +180,13 @@ impl SceneFile {
                 let number = number.ok_or_else(|| wrong_type(name, value, "a whole number"))?;
                 self.scene.set_integer(parameter, number)
             }
+            Group::BooleanParameter(parameter) => {
+                let Value::Boolean(value) = value else {
+                    return Err(wrong_type(name, value, "true or false"));
+                };
+                self.scene.set_boolean(parameter, *value);
+                Ok(())
+            }
             Group::EnumerationParameter(parameter) => {
                 let Value::Text(choice) = value else {
                     return Err(wrong_type(name, value, "the name of a choice, as a text"));
@@ -205,9 +217,10 @@ enum Role {
 impl Role {
     fn covers(self, variable: &Variable) -> bool {
         match variable.group {
-            Group::RealParameter(_) | Group::IntegerParameter(_) | Group::EnumerationParameter(_) => {
-                matches!(self, Self::Parameter | Self::Settable)
-            }
+            Group::RealParameter(_)
+            | Group::IntegerParameter(_)
+            | Group::BooleanParameter(_)
+            | Group::EnumerationParameter(_) => matches!(self, Self::Parameter | Self::Settable),
             Group::RealInput(_) => matches!(self, Self::Input | Self::Settable),
             Group::RealOutput(_) | Group::IntegerOutput(_) | Group::BooleanOutput(_) => matches!(self, Self::Output),
         }
@@ -247,7 +260,7 @@ fn number(name: &str, value: &Value) -> Result<f64, SceneError> {
     match value {
         Value::Integer(value) => Ok(*value as f64),
         Value::Real(value) => Ok(*value),
-        Value::Text(_) | Value::Table(_) => Err(wrong_type(name, value, "a number")),
+        Value::Boolean(_) | Value::Text(_) | Value::Table(_) => Err(wrong_type(name, value, "a number")),
     }
 }
 
@@ -269,6 +282,7 @@ fn wrong_type(name: &str, value: &Value, allowed: &'static str) -> SceneError {
     let value = match value {
         Value::Integer(value) => value.to_string(),
         Value::Real(value) => format!("{value:?}"),
+        Value::Boolean(value) => value.to_string(),
         Value::Text(value) => format!("{value:?}"),
         Value::Table(_) => "{...}".to_owned(),
     };

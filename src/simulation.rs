@@ -1,6 +1,5 @@
 //! A scene under way: the model, its state, and the scratch the steps need.
 
-use crate::electrical;
 use crate::error::{SceneError, StepError};
 use crate::inputs::Inputs;
 use crate::model::{Model, State};
@@ -103,12 +102,22 @@ impl Simulation {
     pub fn real(&self, output: RealOutput) -> f64 {
         let Self { model, course, .. } = self;
         let (state, tip) = (course.state(), || course.tip(model));
-        let conductance = || electrical::conductance(&model.scene.resistance, tip().force);
+        let conductance = || model.path.map(|path| path.conductance(tip().force));
         match output {
             RealOutput::ContactForce => tip().force,
-            RealOutput::ContactConductance => conductance(),
-            RealOutput::ContactResistance => 1.0 / conductance(),
-            RealOutput::ContactVoltage => course.current / conductance(),
+            RealOutput::ContactConductance => conductance().unwrap_or_default(),
+            RealOutput::ContactResistance => conductance().map_or(0.0, |conductance| 1.0 / conductance),
+            RealOutput::ContactVoltage => conductance().map_or(0.0, |conductance| course.current / conductance),
+            RealOutput::ContactTemperature => match model.path.filter(|_| model.scene.effects.heating) {
+                Some(path) => path.temperature(&model.scene, tip().force, course.current),
+                None => model.scene.environment.temperature,
+            },
+            RealOutput::StepMinimumForce
+            | RealOutput::StepMaximumForce
+            | RealOutput::StepMaximumResistance
+            | RealOutput::ChatterLongestInterruption
+            | RealOutput::ChatterTotalInterruption
+            | RealOutput::EnergyBalance => 0.0,
             RealOutput::ContactIndentation => model.preload.indentation + tip().indentation,
             RealOutput::TipDisplacement => model.preload.deflection + state.support - tip().indentation,
             RealOutput::TipVelocity => state.support_rate - tip().rate,
@@ -126,23 +135,40 @@ impl Simulation {
     /// for outputs that are not continuous. At the start nothing moves.
     pub fn rate(&self, output: RealOutput) -> Option<f64> {
         let Self { model, course, .. } = self;
-        let resistance = &model.scene.resistance;
-        let conductance = || electrical::conductance(resistance, course.tip(model).force);
         let rates = || course.tip_rates(model);
-        let conductance_rate = || electrical::conductance_slope(resistance, course.tip(model).force) * rates().force;
+        // Conductance and its rate.
+        let conducting = || {
+            let force = course.tip(model).force;
+            model
+                .path
+                .map(|path| (path.conductance(force), path.conductance_slope(force) * rates().force))
+        };
         Some(match output {
             RealOutput::ContactForce => rates().force,
-            RealOutput::ContactConductance => conductance_rate(),
-            RealOutput::ContactResistance => -conductance_rate() / conductance().powi(2),
-            RealOutput::ContactVoltage => {
-                let voltage = course.current / conductance();
-                (course.current_rate - voltage * conductance_rate()) / conductance()
-            }
+            RealOutput::ContactConductance => conducting().map_or(0.0, |(_, rate)| rate),
+            RealOutput::ContactResistance => conducting().map_or(0.0, |(conductance, rate)| -rate / conductance.powi(2)),
+            RealOutput::ContactVoltage => conducting().map_or(0.0, |(conductance, rate)| {
+                (course.current_rate - course.current / conductance * rate) / conductance
+            }),
+            RealOutput::ContactTemperature => match model.path.filter(|_| model.scene.effects.heating) {
+                Some(path) => {
+                    let force = course.tip(model).force;
+                    let (by_force, by_current) = path.temperature_slopes(&model.scene, force, course.current);
+                    by_force * rates().force + by_current * course.current.signum() * course.current_rate
+                }
+                None => 0.0,
+            },
             RealOutput::ContactIndentation => course.tip(model).rate,
             RealOutput::TipDisplacement => self.real(RealOutput::TipVelocity),
             RealOutput::TipVelocity => -rates().acceleration,
             RealOutput::ContactLastOpening
             | RealOutput::ContactLastClosing
+            | RealOutput::StepMinimumForce
+            | RealOutput::StepMaximumForce
+            | RealOutput::StepMaximumResistance
+            | RealOutput::ChatterLongestInterruption
+            | RealOutput::ChatterTotalInterruption
+            | RealOutput::EnergyBalance
             | RealOutput::PreloadForce
             | RealOutput::PreloadIndentation
             | RealOutput::PreloadContactStiffness
@@ -158,6 +184,7 @@ impl Simulation {
             IntegerOutput::SolverSteps => count(self.state().steps),
             IntegerOutput::SolverRejectedSteps => count(self.state().rejected_steps),
             IntegerOutput::SolverIterations => count(self.state().iterations),
+            IntegerOutput::ChatterCount => 0,
             IntegerOutput::SolverModesUsed => count(self.model.modes.len() as u64),
         }
     }

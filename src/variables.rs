@@ -14,7 +14,7 @@ pub struct Variable {
     pub group: Group,
     /// SI unit; empty for numbers that have none to declare.
     pub unit: &'static str,
-    /// Start value (for enumerations: the value of the choice).
+    /// Start value (of enumerations the value of the choice, of Booleans 1 or 0).
     pub start: f64,
     /// Smallest value allowed.
     pub min: f64,

@@ -7,7 +7,7 @@ use super::failure::Failure;
 use super::logger::{Category, Logger};
 use super::report::{self, Effort};
 use super::states::{Function, State};
-use super::types::fmi2Status;
+use super::types::{fmi2Boolean, fmi2False, fmi2Status};
 use crate::error::SceneError;
 use crate::inputs::Inputs;
 use crate::scene::Scene;
@@ -253,6 +253,7 @@ impl Instance {
         let variable = find("Boolean", reference)?;
         match variable.group {
             Group::BooleanOutput(output) => Ok(self.computed(variable)?.boolean(output)),
+            Group::BooleanParameter(parameter) => Ok(self.scene.boolean(parameter)),
             _ => Err(wrong_type("Boolean", variable)),
         }
     }
@@ -298,18 +299,22 @@ impl Instance {
         Ok(())
     }
 
-    /// Refuses to set Booleans: there are only outputs.
-    pub(super) fn set_booleans(&mut self, references: &[u32]) -> Result<(), Failure> {
-        match references.first() {
-            None => Ok(()),
-            Some(&reference) => {
-                let variable = find("Boolean", reference)?;
-                Err(match variable.group {
-                    Group::BooleanOutput(_) => self.output_set(variable),
-                    _ => wrong_type("Boolean", variable),
-                })
+    /// Sets Boolean parameters; all of them or, on an error, none.
+    pub(super) fn set_booleans(&mut self, references: &[u32], values: &[fmi2Boolean]) -> Result<(), Failure> {
+        let mut scene = self.scene;
+        for (&reference, &value) in references.iter().zip(values) {
+            let variable = find("Boolean", reference)?;
+            match variable.group {
+                Group::BooleanParameter(parameter) => {
+                    self.check_fixed(variable)?;
+                    scene.set_boolean(parameter, value != fmi2False);
+                }
+                Group::BooleanOutput(_) => return Err(self.output_set(variable)),
+                _ => return Err(wrong_type("Boolean", variable)),
             }
         }
+        self.take_over(scene, self.inputs);
+        Ok(())
     }
 
     /// Sets first derivatives of continuous inputs; all of them or, on an error, none.

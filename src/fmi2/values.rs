@@ -134,7 +134,7 @@ pub unsafe extern "C" fn fmi2SetInteger(
     unsafe { set(c, states::SET_INTEGER, vr, nvr, value, Instance::set_integers) }
 }
 
-/// Sets Boolean inputs and parameters, of which there are none.
+/// Sets Boolean parameters. Every value but `fmi2False` is true.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetBoolean(
     c: fmi2Component,
@@ -142,9 +142,8 @@ pub unsafe extern "C" fn fmi2SetBoolean(
     nvr: size_t,
     value: *const fmi2Boolean,
 ) -> fmi2Status {
-    let write = |instance: &mut Instance, references: &[u32], _: &[fmi2Boolean]| instance.set_booleans(references);
     // SAFETY: the contract of the module.
-    unsafe { set(c, states::SET_BOOLEAN, vr, nvr, value, write) }
+    unsafe { set(c, states::SET_BOOLEAN, vr, nvr, value, Instance::set_booleans) }
 }
 
 /// Sets text inputs and parameters, of which there are none.

@@ -24,7 +24,7 @@ fn every_variable_is_read_by_the_function_of_its_type_and_by_no_other() {
             Group::IntegerParameter(_) | Group::EnumerationParameter(_) | Group::IntegerOutput(_) => {
                 [fmi2Error, fmi2OK, fmi2Error]
             }
-            Group::BooleanOutput(_) => [fmi2Error, fmi2Error, fmi2OK],
+            Group::BooleanParameter(_) | Group::BooleanOutput(_) => [fmi2Error, fmi2Error, fmi2OK],
         };
         assert_eq!(statuses, expected, "{}", variable.name);
         assert!(expected[0] != fmi2OK || real.is_finite(), "{} = {real}", variable.name);
