@@ -4,6 +4,7 @@
 mod arguments;
 mod fmu_state;
 mod harness;
+mod importers;
 mod life_cycle;
 mod logging;
 mod steps;
