@@ -17,9 +17,9 @@ TOLERANCE = 1e-7
 # Acceleration of the frame of the two contacts, m/s2.
 JUMP = 50.0
 # In the first run the importer hands over the numbers that our own run took, so nothing is allowed for. The second of
-# the two contacts gets what the first reached at an instant that importers reckon differently: a sum of 500 steps is off
-# by at most 500 * 2^-53 * 5 ms = 3e-16 s, in which a spring that moves at less than 10 mm/s moves 3e-18 m, which a
-# contact of less than 1e7 N/m feels as less than
+# the two contacts gets what the first reached at an instant that importers reckon differently: a sum of 500 steps is
+# off by at most 500 * 2^-53 * 5 ms = 3e-16 s, in which a spring that moves at less than 10 mm/s moves 3e-18 m, which
+# a contact of less than 1e7 N/m feels as less than
 ROUNDING = 3e-11  # N
 
 

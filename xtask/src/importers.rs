@@ -39,7 +39,7 @@ struct Row {
     importer: String,
     version: String,
     task: String,
-    /// `passed`, or why it was not run; what failed has failed its test before.
+    /// `passed`, or `not run: ` and why; what failed has failed its test before.
     result: String,
     /// Largest difference in the contact force from our own run, N, where forces were compared.
     difference: Option<f64>,
@@ -162,10 +162,8 @@ pub fn table() -> Result<()> {
             Some(force) => format!("{force:.1e} N"),
             None => "-".to_owned(),
         };
-        println!(
-            "{importer:<12} {:<9} {task:<17} {:<10} {difference}",
-            row.version, row.result
-        );
+        let (result, _) = row.result.split_once(':').unwrap_or((&row.result, ""));
+        println!("{importer:<12} {:<9} {task:<17} {result:<10} {difference}", row.version);
         if row.result != "passed" {
             warnings.push(format!("WARNING: {importer}, {task}: {}", row.result));
         }
