@@ -2,6 +2,7 @@
 
 import ctypes
 from importlib.metadata import PackageNotFoundError, files, version
+from pathlib import Path
 
 import pytest
 from component import FMU
@@ -65,6 +66,8 @@ def test_two_instances_wired_together() -> None:
             coupled(simulation, "jump", "two coupled")
 
 
-def test_a_system_of_two_instances() -> None:
+def test_a_system_of_two_instances(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    # Ecos leaves what it unpacks from a system.
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
     with EcosSimulation(ssp_path=str(SYSTEM), step_size=STEP) as simulation:
         coupled(simulation, "jump", "SSP")
