@@ -1,5 +1,7 @@
 //! The packaged component, loaded and run by the importer of the crate `fmi`.
 
+use std::path::Path;
+
 use fmi::fmi2::Fmi2Error;
 use fmi::fmi2::import::Fmi2Import;
 use fmi::fmi2::instance::{CoSimulation, Common, InstanceCS};
@@ -90,6 +92,58 @@ fn the_sine_run_gives_the_bits_of_the_simulation_in_rust() {
         "the excitation moves nothing: {smallest} N to {largest} N"
     );
     Common::terminate(&mut instance).expect("the end");
+}
+
+#[test]
+fn a_sine_given_at_the_communication_points_gives_the_forces_of_our_own_run() {
+    const STEP: f64 = 1e-5;
+    const TOLERANCE: f64 = 1e-7;
+
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../out/conformance");
+    let table = std::fs::read_to_string(folder.join("reference.csv"))
+        .expect("our own runs: `cargo xtask importers` writes them and runs this test");
+    let mut lines = table.lines();
+    let header: Vec<_> = lines.next().expect("names").split(',').collect();
+    let place = |name| header.iter().position(|column| *column == name).expect("a column");
+    let columns = [place("base.acceleration"), place("run")];
+    let mut rows = lines.map(|line| {
+        let cells: Vec<_> = line.split(',').collect();
+        columns.map(|column| cells[column].parse::<f64>().expect("a number"))
+    });
+
+    let import = import();
+    let mut instance = instantiate(&import);
+    instance.setup_experiment(None, 0.0, None).expect("the experiment");
+    instance
+        .set_real(&[reference(&import, "solver.tolerance")], &[TOLERANCE])
+        .expect("the tolerance");
+    Common::enter_initialization_mode(&mut instance).expect("Initialization Mode");
+    Common::exit_initialization_mode(&mut instance).expect("initialised");
+    let input = [reference(&import, "base.acceleration")];
+    let output = [reference(&import, "contact.force")];
+    let force = |instance: &mut InstanceCS| {
+        let mut value = [f64::NAN];
+        instance.get_real(&output, &mut value).expect("the force");
+        value[0]
+    };
+
+    let [mut held, first] = rows.next().expect("the start");
+    let mut difference = (force(&mut instance) - first).abs();
+    let mut steps = 0;
+    for (n, [next, expected]) in (0_u32..).zip(rows) {
+        instance.set_real(&input, &[held]).expect("the acceleration");
+        instance.do_step(f64::from(n) * STEP, STEP, true).expect("a step");
+        difference = difference.max((force(&mut instance) - expected).abs());
+        (held, steps) = (next, steps + 1);
+    }
+    assert_eq!(steps, 500);
+    // The same library, handed the same numbers, gives the same numbers.
+    assert_eq!(difference, 0.0);
+    let row = serde_json::json!({
+        "importer": "fmi (Rust)", "version": fmi::built_info::PKG_VERSION, "task": "run",
+        "result": "passed", "difference": difference,
+    });
+    std::fs::write(folder.join("fmi, run.json"), row.to_string()).expect("a row of the table");
 }
 
 #[test]

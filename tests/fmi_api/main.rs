@@ -5,6 +5,7 @@ mod arguments;
 mod derivatives;
 mod fmu_state;
 mod harness;
+mod importers;
 mod life_cycle;
 mod logging;
 mod steps;

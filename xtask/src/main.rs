@@ -5,6 +5,7 @@ mod commands;
 mod demo;
 mod documentation;
 mod fmu;
+mod importers;
 mod licences;
 mod package;
 mod python;
@@ -36,6 +37,8 @@ enum Task {
     Demo,
     /// Measure what accuracy costs, beside other integrators; rewrite docs/accuracy.csv, its figures and its tables
     Accuracy(accuracy::Arguments),
+    /// Test the component under other people's importers and print the table of what they did
+    Importers,
     /// Run every check and test
     Test,
 }
@@ -46,6 +49,7 @@ fn main() -> ExitCode {
         Task::Scene(arguments) => scene::run(&arguments),
         Task::Demo => demo::run(),
         Task::Accuracy(arguments) => accuracy::run(&arguments),
+        Task::Importers => test::importers_alone(),
         Task::Test => test::run(),
     };
     match outcome {

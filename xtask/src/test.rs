@@ -1,17 +1,17 @@
 //! Every check and test, in the order in which they fail fastest.
 
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
 use anyhow::Result;
 
 use crate::commands::{self, cargo};
-use crate::{fmu, python};
+use crate::{fmu, importers, python};
 
 /// Folders and files with Python in them.
-const PYTHON: [&str; 3] = ["examples/python", "conformance/fmpy", "docs"];
+const PYTHON: [&str; 3] = ["examples/python", "conformance/python", "docs"];
 
 /// Runs all stages; the first that fails ends it.
 pub fn run() -> Result<()> {
@@ -33,25 +33,38 @@ pub fn run() -> Result<()> {
     stage("Python types", || {
         commands::run(python::python().args(["-m", "mypy"]).args(PYTHON))
     })?;
-    stage("FMPy", || {
+    stage("conformance lint", || {
+        commands::run(clippy(&["--package=conformance"]).envs(bindings()?))
+    })?;
+    importers(&component)
+}
+
+/// Builds the component and tests it under other people's importers alone.
+pub fn importers_alone() -> Result<()> {
+    let component = fmu::build()?;
+    python::prepare()?;
+    importers(&component)
+}
+
+/// The component under other people's importers, and the table of what they did.
+fn importers(component: &Path) -> Result<()> {
+    stage("reference runs", || importers::prepare(component))?;
+    stage("Python importers", || {
         commands::run(
             python::python()
-                .args(["-m", "pytest", "--quiet", "conformance/fmpy"])
-                .env("RELAY_CONTACT_FMU", &component),
+                .args(["-m", "pytest", "--quiet", "conformance/python"])
+                .env("RELAY_CONTACT_FMU", component),
         )
-    })?;
-    let bindings = bindings()?;
-    stage("conformance lint", || {
-        commands::run(clippy(&["--package=conformance"]).envs(bindings.clone()))
     })?;
     stage("conformance", || {
         commands::run(
             cargo()
                 .args(["test", "--package=conformance"])
-                .envs(bindings.clone())
-                .env("RELAY_CONTACT_FMU", &component),
+                .envs(bindings()?)
+                .env("RELAY_CONTACT_FMU", component),
         )
-    })
+    })?;
+    stage("importers", importers::table)
 }
 
 /// What the build of the conformance crate's FMI bindings needs in its environment: libclang, and the C compiler's

@@ -3,7 +3,9 @@
 import multiprocessing
 from pathlib import Path
 
+import fmpy
 from component import SINE, Instance
+from results import record
 
 STEP = 1e-6
 HALF = 900  # the contact opens in the first half and closes in the second
@@ -50,3 +52,4 @@ def test_a_restored_state_goes_on_bit_by_bit(tmp_path: Path) -> None:
     assert go_on(tmp_path / "second", serialised) == after
     with multiprocessing.get_context("spawn").Pool(1) as pool:
         assert pool.apply(go_on, (tmp_path / "third", serialised)) == after
+    record("FMPy", fmpy.__version__, "saved states")

@@ -2,13 +2,16 @@
 
 import zipfile
 
+import fmpy
 from component import FMU, ROOT
 from fmpy import read_model_description
 from fmpy.validation import validate_fmu
+from results import record
 
 
 def test_fmpy_finds_no_problem() -> None:
     assert validate_fmu(str(FMU)) == []
+    record("FMPy", fmpy.__version__, "validation")
 
 
 def test_package_holds_documentation_licences_and_icon() -> None:

@@ -1,0 +1,73 @@
+"""The component in FMPy, beside what the other files test: the run common to all importers, and habits of importers."""
+
+import math
+from pathlib import Path
+
+import fmpy
+import numpy as np
+from component import FMU, SINE, Instance, run
+from fmpy import read_model_description, simulate_fmu
+from fmpy.ssp.ssd import read_ssd
+from results import STEP, SYSTEM, TOLERANCE, column, compare, record
+
+
+def test_a_sine_given_at_the_communication_points() -> None:
+    held = column("base.acceleration")
+    time = np.arange(len(held)) * STEP
+    # Two rows at every point, so that FMPy jumps there and does not interpolate.
+    names = ["base.acceleration", "support.displacement", "contact.current"]
+    signals = np.zeros(2 * len(held), dtype=[(name, np.float64) for name in ["time", *names]])
+    signals["time"] = np.repeat(time, 2)
+    signals["base.acceleration"] = np.concatenate(([0.0], np.repeat(held, 2)[:-1]))
+    stop = float(time[-1])
+    result = run({"solver.tolerance": TOLERANCE}, stop, STEP, ["contact.force"], signals)
+    compare("FMPy", fmpy.__version__, "run", result["contact.force"].tolist())
+
+
+def test_the_system_of_two_instances_follows_the_schema_of_ssp() -> None:
+    system = read_ssd(str(SYSTEM), validate=True).system
+    assert [element.name for element in system.elements] == ["first", "second"]
+    record("FMPy", fmpy.__version__, "SSP description")
+
+
+def values(instance: Instance) -> dict[str, float]:
+    """Give the values of all variables."""
+    getters = {
+        "Real": instance.slave.getReal,
+        "Integer": instance.slave.getInteger,
+        "Enumeration": instance.slave.getInteger,
+        "Boolean": instance.slave.getBoolean,
+    }
+    variables = read_model_description(str(FMU)).modelVariables
+    return {each.name: float(getters[each.type]([each.valueReference])[0]) for each in variables}
+
+
+def test_all_variables_can_be_read_in_initialization_mode(tmp_path: Path) -> None:
+    with Instance(tmp_path) as instance:
+        instance.choose("effects.excitation", SINE)
+        instance.slave.setupExperiment(startTime=0.0)
+        instance.slave.enterInitializationMode()
+        before = values(instance)
+        # An input set after the look counts.
+        instance.set("support.displacement", 1e-5)
+        closer = values(instance)
+        instance.slave.exitInitializationMode()
+        after = values(instance)
+    assert all(math.isfinite(value) for value in before.values())
+    assert closer == after
+    assert closer["contact.force"] > before["contact.force"] > 0.1
+    assert instance.messages == []
+
+
+def test_a_folder_with_spaces_and_letters_beyond_ascii(tmp_path: Path) -> None:
+    with Instance(tmp_path / "ein schöner Ordner #1 100%") as instance:
+        instance.initialise()
+        instance.step(0.0, STEP)
+        assert instance.messages == []
+
+
+def test_no_stop_time() -> None:
+    settings = {"stop_time": 0.02, "output_interval": 1e-3, "output": ["contact.force"]}
+    with_stop = simulate_fmu(str(FMU), **settings)
+    without = simulate_fmu(str(FMU), set_stop_time=False, **settings)
+    assert np.array_equal(with_stop, without)

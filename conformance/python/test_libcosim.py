@@ -1,0 +1,97 @@
+"""The component in libcosim, which reckons time in whole nanoseconds and knows no enumerations."""
+
+from importlib.metadata import PackageNotFoundError, version
+
+import pytest
+from component import FMU
+from results import JUMP, STEP, SYSTEM, TOLERANCE, column, compare, record
+
+TASKS = ["run", "two coupled", "SSP"]
+try:
+    from libcosimpy.CosimExecution import CosimExecution
+    from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
+    from libcosimpy.CosimManipulator import CosimManipulator
+    from libcosimpy.CosimObserver import CosimObserver
+    from libcosimpy.CosimSlave import CosimLocalSlave
+
+    VERSION = version("libcosimpy")
+except (ImportError, OSError, PackageNotFoundError) as error:
+    for task in TASKS:
+        record("libcosim", "-", task, result=f"not run: {error}")
+    pytest.skip(str(error), allow_module_level=True)
+
+NANOSECONDS = round(1e9 * STEP)
+# It warns of every variable that is an enumeration.
+log_output_level(CosimLogLevel.ERROR)
+
+
+class Execution:
+    """An execution, its instances known by name."""
+
+    def __init__(self, execution: CosimExecution) -> None:
+        """Take over an execution."""
+        self.execution = execution
+        self.observer = CosimObserver.create_last_value()
+        assert execution.add_observer(self.observer)
+
+    def add(self, name: str) -> None:
+        """Add an instance of the component."""
+        assert self.execution.add_local_slave(CosimLocalSlave(str(FMU), name)) >= 0
+
+    def find(self, name: str, variable: str) -> tuple[int, int]:
+        """Give the index of an instance and the value reference of its variable."""
+        index = self.execution.slave_index_from_instance_name(name)
+        variables = self.execution.slave_variables(index)
+        return index, next(each.reference for each in variables if each.name == variable.encode())
+
+    def start(self, name: str, variable: str, value: float) -> None:
+        """Set the start value of a real variable."""
+        assert self.execution.real_initial_value(*self.find(name, variable), value)
+
+    def force(self, name: str) -> float:
+        """Give the contact force of an instance."""
+        index, reference = self.find(name, "contact.force")
+        return float(self.observer.last_real_values(index, [reference])[0])
+
+    def forces(self, name: str, steps: int) -> list[float]:
+        """Step; give the contact force of an instance after each step, before which it cannot be read."""
+        result = []
+        for _ in range(steps):
+            assert self.execution.step()
+            result.append(self.force(name))
+        return result
+
+
+def test_a_sine_given_at_the_communication_points() -> None:
+    run = Execution(CosimExecution.from_step_size(NANOSECONDS))
+    run.add("contact")
+    run.start("contact", "solver.tolerance", TOLERANCE)
+    sine = CosimManipulator.create_override()
+    assert run.execution.add_manipulator(sine)
+    index, reference = run.find("contact", "base.acceleration")
+    forces = []
+    for acceleration in column("base.acceleration")[:-1]:
+        assert sine.slave_real_values(index, [reference], [acceleration])
+        forces += run.forces("contact", 1)
+    compare("libcosim", VERSION, "run", forces, start=1)
+
+
+def coupled(run: Execution, task: str) -> None:
+    """Step two contacts that are wired together and compare the second."""
+    steps = len(column("coupled")) - 1
+    compare("libcosim", VERSION, task, run.forces("second", steps), start=1)
+
+
+def test_two_instances_wired_together() -> None:
+    run = Execution(CosimExecution.from_step_size(NANOSECONDS))
+    for name in ["first", "second"]:
+        run.add(name)
+        run.start(name, "solver.tolerance", TOLERANCE)
+        run.start(name, "base.acceleration", JUMP)
+    carried = *run.find("first", "tip.displacement"), *run.find("second", "support.displacement")
+    assert run.execution.connect_real_variables(*carried) == 0
+    coupled(run, "two coupled")
+
+
+def test_a_system_of_two_instances() -> None:
+    coupled(Execution(CosimExecution.from_ssp_file(str(SYSTEM), NANOSECONDS)), "SSP")

@@ -1,0 +1,167 @@
+//! Habits of importers: how they reckon time, where they say the resources are, what they ask for at initialisation.
+
+use std::ffi::CString;
+use std::ptr;
+
+use relay_contact::fmi2::*;
+use relay_contact::variables::{GUID, Group, VARIABLES};
+
+use crate::harness::{Fmu, Log, callbacks, vr};
+
+const STEP: f64 = 1e-5;
+
+/// The communication points of an importer: number, and sum of the steps so far, to time.
+type Clock = fn(f64, f64) -> f64;
+
+/// `n h`, a sum, and grids in other units.
+const CLOCKS: [(&str, Clock); 6] = [
+    ("product", |n, _| n * STEP),
+    ("sum", |_, sum| sum),
+    ("quotient", |n, _| n / 1e5),
+    ("nanoseconds", |n, _| n * 1e4 / 1e9),
+    ("milliseconds", |n, _| n * 0.01 * 1e-3),
+    ("hours", |n, _| n * (STEP / 3600.0) * 3600.0),
+];
+
+/// Forces at some of the communication points, with steps that are `STEP` or the difference of the points.
+fn forces(clock: Clock, differences: bool, steps: u32, stop: Option<f64>, amplitude: f64) -> Vec<f64> {
+    let fmu = Fmu::new();
+    let (defined, stop) = (stop.is_some().into(), stop.unwrap_or(0.0));
+    let status = unsafe { fmi2SetupExperiment(fmu.component, 0, 0.0, 0.0, defined, stop) };
+    assert_eq!(status, fmi2OK);
+    assert_eq!(unsafe { fmi2EnterInitializationMode(fmu.component) }, fmi2OK);
+    assert_eq!(unsafe { fmi2ExitInitializationMode(fmu.component) }, fmi2OK);
+    let (mut forces, mut sum) = (Vec::new(), 0.0);
+    for n in 0..steps {
+        let time = clock(f64::from(n), sum);
+        sum += STEP;
+        let length = if differences {
+            clock(f64::from(n + 1), sum) - time
+        } else {
+            STEP
+        };
+        if amplitude != 0.0 {
+            // Any numbers that do not repeat.
+            let acceleration = amplitude * (0.06 * f64::from(n)).sin();
+            assert_eq!(fmu.set_real("base.acceleration", acceleration), fmi2OK);
+        }
+        assert_eq!(fmu.step(time, length), fmi2OK, "step {n}: {:?}", fmu.messages());
+        if n % 10 == 0 {
+            forces.push(fmu.real("contact.force"));
+        }
+    }
+    assert!(fmu.messages().is_empty());
+    forces
+}
+
+#[test]
+fn how_an_importer_reckons_time_makes_no_difference() {
+    let expected = forces(CLOCKS[0].1, false, 500, None, 400.0);
+    assert!(expected.contains(&0.0));
+    for (name, clock) in CLOCKS {
+        assert_eq!(forces(clock, false, 500, None, 400.0), expected, "{name}");
+        // Steps that are differences of points are off by the rounding of two points. Where each point is rounded once
+        // the length counts as the one before; where it is rounded more often it is another length, and each of two runs
+        // may be wrong by the tolerance, 1e-6 of the preload.
+        let allowed = match name {
+            "milliseconds" | "hours" => 2.0 * 1e-6 * 0.152,
+            _ => 0.0,
+        };
+        for (force, expected) in forces(clock, true, 500, None, 400.0).iter().zip(&expected) {
+            assert!(
+                (force - expected).abs() <= allowed,
+                "{name}: {force} N and {expected} N"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_million_steps_reach_the_stop_time_however_they_are_counted() {
+    let steps = 1_000_000;
+    let stop = f64::from(steps) * STEP;
+    for (_, clock) in CLOCKS {
+        assert_eq!(forces(clock, false, steps, Some(stop), 0.0).len(), 100_000);
+    }
+}
+
+#[test]
+fn an_undefined_stop_time_is_not_looked_at() {
+    for stop in [0.0, -1.0, f64::NAN] {
+        let fmu = Fmu::new();
+        let status = unsafe { fmi2SetupExperiment(fmu.component, 0, f64::NAN, 1.0, 0, stop) };
+        assert_eq!(status, fmi2OK);
+        assert_eq!(unsafe { fmi2EnterInitializationMode(fmu.component) }, fmi2OK);
+        assert_eq!(unsafe { fmi2ExitInitializationMode(fmu.component) }, fmi2OK);
+        assert_eq!(fmu.step(1.0, STEP), fmi2OK);
+        assert!(fmu.messages().is_empty());
+    }
+}
+
+#[test]
+fn any_place_of_the_resources_will_do() {
+    let places: [Option<&[u8]>; 12] = [
+        None,
+        Some(b""),
+        Some(b"file:///tmp/fmu/resources"),
+        Some(b"file:/tmp/fmu/resources"),
+        Some(b"file://localhost/tmp/fmu/resources/"),
+        Some(b"file:///tmp/a%20folder/resources"),
+        Some(b"file:///tmp/a folder/resources"),
+        Some(b"/tmp/fmu/resources"),
+        Some(b"../resources"),
+        Some(b"file:///C:/fmu/resources"),
+        Some(b"C:\\fmu\\resources"),
+        Some(b"file:///tmp/\xff\xfe/%zz/%s%n"),
+    ];
+    let guid = CString::new(GUID).unwrap();
+    for place in places {
+        let log = Log::default();
+        let callbacks = callbacks(&log);
+        let place = place.map(|place| CString::new(place).unwrap());
+        let pointer = place.as_ref().map_or(ptr::null(), |place| place.as_ptr());
+        unsafe {
+            let component = fmi2Instantiate(
+                c"relay".as_ptr(),
+                fmi2CoSimulation,
+                guid.as_ptr(),
+                pointer,
+                &raw const callbacks,
+                0,
+                1,
+            );
+            assert!(!component.is_null(), "{place:?}: {log:?}");
+            assert_eq!(fmi2EnterInitializationMode(component), fmi2OK);
+            assert_eq!(fmi2ExitInitializationMode(component), fmi2OK);
+            assert_eq!(fmi2DoStep(component, 0.0, STEP, 1), fmi2OK);
+            fmi2FreeInstance(component);
+        }
+        assert!(log.into_inner().unwrap().is_empty());
+    }
+}
+
+#[test]
+fn every_variable_can_be_read_while_initialising_and_after() {
+    let fmu = Fmu::initializing();
+    let read = || {
+        for variable in VARIABLES {
+            let reference = vr(variable.name);
+            let (mut real, mut integer) = (f64::NAN, i32::MIN);
+            let status = match variable.group {
+                Group::RealInput(_) | Group::RealOutput(_) | Group::RealParameter(_) => unsafe {
+                    fmi2GetReal(fmu.component, &raw const reference, 1, &raw mut real)
+                },
+                Group::BooleanOutput(_) => unsafe {
+                    fmi2GetBoolean(fmu.component, &raw const reference, 1, &raw mut integer)
+                },
+                _ => unsafe { fmi2GetInteger(fmu.component, &raw const reference, 1, &raw mut integer) },
+            };
+            assert_eq!(status, fmi2OK, "{}", variable.name);
+            assert!(real.is_finite() || integer > i32::MIN, "{}", variable.name);
+        }
+    };
+    read();
+    assert_eq!(unsafe { fmi2ExitInitializationMode(fmu.component) }, fmi2OK);
+    read();
+    assert!(fmu.messages().is_empty());
+}
