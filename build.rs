@@ -127,7 +127,7 @@ fn variables(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> 
     }
     writeln!(
         code,
-        "/// Every variable of the component, in the order of `modelDescription.xml`.\npub static VARIABLES: [Variable; {count}] = [\n{table}];"
+        "/// Every variable of the component, in the order of `modelDescription.xml`.\n#[allow(clippy::unreadable_literal)]\npub static VARIABLES: [Variable; {count}] = [\n{table}];"
     )?;
     writeln!(code, "{}", by_reference(&list)?)?;
     writeln!(

@@ -145,7 +145,10 @@ mod tests {
                 for threshold in [1.0, 60.0, 1e6, 9e8] {
                     let force = path.force_at(threshold);
                     let found = 1.0 / path.conductance(force);
-                    assert!((found / threshold - 1.0).abs() < 1e-9, "{kind:?} {film} {threshold}: {found}");
+                    assert!(
+                        (found / threshold - 1.0).abs() < 1e-9,
+                        "{kind:?} {film} {threshold}: {found}"
+                    );
                 }
                 assert_eq!(path.force_at(1e9), 0.0);
                 assert_eq!(path.force_at(2e9), 0.0);
@@ -167,8 +170,10 @@ mod tests {
         // Below it the derivatives are the slopes.
         let (force, current, step) = (0.15, -3.0, 1e-6);
         let slopes = path.temperature_slopes(&scene, force, current);
-        let by_force = path.temperature(&scene, force + step, current) - path.temperature(&scene, force - step, current);
-        let by_current = path.temperature(&scene, force, current - step) - path.temperature(&scene, force, current + step);
+        let by_force =
+            path.temperature(&scene, force + step, current) - path.temperature(&scene, force - step, current);
+        let by_current =
+            path.temperature(&scene, force, current - step) - path.temperature(&scene, force, current + step);
         assert!((by_force / (2.0 * step) / slopes.0 - 1.0).abs() < 1e-6, "{slopes:?}");
         assert!((by_current / (2.0 * step) / slopes.1 - 1.0).abs() < 1e-6, "{slopes:?}");
     }

@@ -146,7 +146,9 @@ impl Simulation {
         Some(match output {
             RealOutput::ContactForce => rates().force,
             RealOutput::ContactConductance => conducting().map_or(0.0, |(_, rate)| rate),
-            RealOutput::ContactResistance => conducting().map_or(0.0, |(conductance, rate)| -rate / conductance.powi(2)),
+            RealOutput::ContactResistance => {
+                conducting().map_or(0.0, |(conductance, rate)| -rate / conductance.powi(2))
+            }
             RealOutput::ContactVoltage => conducting().map_or(0.0, |(conductance, rate)| {
                 (course.current_rate - course.current / conductance * rate) / conductance
             }),

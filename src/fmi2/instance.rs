@@ -273,7 +273,7 @@ impl Instance {
                 _ => return Err(wrong_type("Real", variable)),
             }
         }
-        self.take_over(scene, inputs);
+        self.take_over(&scene, &inputs);
         Ok(())
     }
 
@@ -295,7 +295,8 @@ impl Instance {
                 _ => return Err(wrong_type("Integer", variable)),
             }
         }
-        self.take_over(scene, self.inputs);
+        let inputs = self.inputs;
+        self.take_over(&scene, &inputs);
         Ok(())
     }
 
@@ -313,7 +314,8 @@ impl Instance {
                 _ => return Err(wrong_type("Boolean", variable)),
             }
         }
-        self.take_over(scene, self.inputs);
+        let inputs = self.inputs;
+        self.take_over(&scene, &inputs);
         Ok(())
     }
 
@@ -349,8 +351,8 @@ impl Instance {
         Ok(rate)
     }
 
-    fn take_over(&mut self, scene: Scene, inputs: Inputs) {
-        (self.scene, self.inputs) = (scene, inputs);
+    fn take_over(&mut self, scene: &Scene, inputs: &Inputs) {
+        (self.scene, self.inputs) = (*scene, *inputs);
         if self.state == State::InitializationMode {
             self.simulation = None;
         }

@@ -151,7 +151,7 @@ fn every_variable_can_be_read_while_initialising_and_after() {
                 Group::RealInput(_) | Group::RealOutput(_) | Group::RealParameter(_) => unsafe {
                     fmi2GetReal(fmu.component, &raw const reference, 1, &raw mut real)
                 },
-                Group::BooleanOutput(_) => unsafe {
+                Group::BooleanOutput(_) | Group::BooleanParameter(_) => unsafe {
                     fmi2GetBoolean(fmu.component, &raw const reference, 1, &raw mut integer)
                 },
                 _ => unsafe { fmi2GetInteger(fmu.component, &raw const reference, 1, &raw mut integer) },
