@@ -1,0 +1,140 @@
+//! What is watched inside steps: extremes of the contact force, and where it passes the force of an interruption.
+
+use serde::{Deserialize, Serialize};
+
+use crate::chatter::Criterion;
+use crate::math::roots;
+use crate::transient::advance::Integration;
+use crate::transient::collocation::Prediction;
+use crate::transient::nodal::Trial;
+use crate::transient::vector;
+use crate::transient::workspace::{Room, Workspace};
+
+/// Least and greatest contact force over some time, N.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Extremes {
+    /// N.
+    pub least: f64,
+    /// N.
+    pub greatest: f64,
+}
+
+/// Pieces of a step in which a polynomial is looked at for an extreme.
+const PIECES: u32 = 8;
+
+impl Extremes {
+    /// Of one force, N.
+    pub fn at(force: f64) -> Self {
+        Self {
+            least: force,
+            greatest: force,
+        }
+    }
+
+    /// A force (N) more.
+    pub fn add(&mut self, force: f64) {
+        self.least = self.least.min(force);
+        self.greatest = self.greatest.max(force);
+    }
+
+    /// The forces that a polynomial takes from `from` to `to`, added to `offset` (N) and not less than `floor` (N).
+    pub(super) fn add_course(&mut self, polynomial: &Prediction, from: f64, to: f64, offset: f64, floor: f64) {
+        let value = |y: f64| (offset + value_and_slope(polynomial, y).0).max(floor);
+        let slope = |y: f64| value_and_slope(polynomial, y).1;
+        let at = |k: u32| from + (to - from) * f64::from(k) / f64::from(PIECES);
+        self.add(value(from));
+        let mut before = (from, slope(from));
+        for k in 1..=PIECES {
+            let now = (at(k), slope(at(k)));
+            // Looked for only where the slope changes sign.
+            if (before.1 > 0.0) != (now.1 > 0.0)
+                && let Some(y) = roots::between(slope, before, now, 1e-9)
+            {
+                self.add(value(y));
+            }
+            before = now;
+        }
+        self.add(value(to));
+    }
+}
+
+/// A polynomial and its derivative (Horner's rule).
+pub(super) fn value_and_slope(coefficients: &Prediction, y: f64) -> (f64, f64) {
+    let terms = coefficients.iter().rev();
+    terms.fold((0.0, 0.0), |(value, slope), coefficient| {
+        (value * y + coefficient, slope * y + value)
+    })
+}
+
+/// Points at which the force polynomial is looked at where it comes near the threshold.
+const LOOKS: u32 = 32;
+
+impl Integration<'_> {
+    /// Where in a step of the closed contact (in steps) the force first passes that of an interruption, where it does.
+    pub(super) fn first_passage<const S: usize>(&mut self, trial: &Trial<S>) -> Option<f64>
+    where
+        Workspace: Room<S>,
+    {
+        let criterion = self.model.criterion?;
+        if !self.state.closed {
+            return None;
+        }
+        let excess = trial.forces.map(|force| self.excess(&criterion, force));
+        let lowest = excess.iter().copied().fold(f64::INFINITY, f64::min);
+        let highest = excess.iter().copied().fold(0.0, f64::max);
+        // As far from the threshold as this, a polynomial does not reach it between its nodes.
+        if lowest > 0.25 * highest {
+            return None;
+        }
+        let collocation = self.collocation::<S>();
+        let passed = |x: &f64| collocation.interpolate(&excess, *x) < 0.0;
+        // Before the first node the polynomial extrapolates: there it is no evidence.
+        let first = collocation.nodes.first().copied().unwrap_or_default();
+        let looks = (1..=LOOKS).map(|k| f64::from(k) / f64::from(LOOKS));
+        [first].into_iter().chain(looks.filter(|x| *x > first)).find(passed)
+    }
+
+    /// How far a force, as deviation from the preload force, is on the side of the threshold on which it was, N.
+    fn excess(&self, criterion: &Criterion, force: f64) -> f64 {
+        let above = self.model.preload.force + force - criterion.force;
+        if self.state.interruptions.in_progress() { -above } else { above }
+    }
+
+    /// The length (s) of the step that ends with the passage, which a step of `length` seconds shows to have happened after
+    /// the part `passed` of it.
+    pub(super) fn passage<const S: usize>(&mut self, passed: f64, length: f64) -> Option<f64>
+    where
+        Workspace: Room<S>,
+    {
+        let criterion = self.model.criterion?;
+        let start = self.state.force - self.model.preload.force;
+        let start = self.excess(&criterion, start).max(f64::MIN_POSITIVE);
+        let latest = passed * length;
+        let mut excess = |at: f64| {
+            let trial = self.probe::<S>(at);
+            trial.map_or(f64::NAN, |trial| self.excess(&criterion, vector::end(&trial.forces)))
+        };
+        let end = excess(latest);
+        // The polynomial passes, the force does not.
+        if end > 0.0 {
+            return None;
+        }
+        let resolution = self.resolution();
+        let mut excess = |at: f64| {
+            let trial = self.probe::<S>(at);
+            trial.map_or(f64::NAN, |trial| self.excess(&criterion, vector::end(&trial.forces)))
+        };
+        roots::between(&mut excess, (0.0, start), (latest, end), resolution)
+    }
+
+    /// Notes an interruption that begins or ends with the contact force as it is now.
+    pub(super) fn note_interruption(&mut self) {
+        let Some(criterion) = &self.model.criterion else {
+            return;
+        };
+        let state = &mut *self.state;
+        if (state.force < criterion.force) != state.interruptions.in_progress() {
+            state.interruptions.turn(criterion, state.time);
+        }
+    }
+}
