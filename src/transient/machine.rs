@@ -15,9 +15,9 @@ pub enum Machine {
 }
 
 impl Machine {
-    /// The best for this processor.
+    /// The best for this processor; any processor's where the feature `portable` is on.
     pub fn detect() -> Self {
-        #[cfg(target_arch = "x86_64")]
+        #[cfg(all(target_arch = "x86_64", not(feature = "portable")))]
         if let Some(token) = Level::new().as_avx2() {
             return Self::Avx2(token);
         }

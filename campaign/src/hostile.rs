@@ -1,0 +1,1 @@
+//! Saved states with damaged contents and a right checksum.
