@@ -237,7 +237,11 @@ fn value(choices: &mut Choices, reference: u32) -> f64 {
         20..30 => nominal * 10_f64.powf(2.0 * choices.unit() - 1.0),
         _ => nominal * (0.8 + 0.4 * choices.unit()),
     };
-    if variable.kind == Kind::Real { value } else { value.round() }
+    if variable.kind == Kind::Real {
+        value
+    } else {
+        value.round()
+    }
 }
 
 fn step(choices: &mut Choices) -> Call {

@@ -30,7 +30,13 @@ impl<'a> Importer<'a> {
     /// A new instance.
     pub fn new(api: &'a Api) -> Self {
         let log = Box::new(Log::default());
-        let component = instantiate(api, Some("relay"), fmi2CoSimulation, Some(&DESCRIPTION.guid), Some(&log));
+        let component = instantiate(
+            api,
+            Some("relay"),
+            fmi2CoSimulation,
+            Some(&DESCRIPTION.guid),
+            Some(&log),
+        );
         assert!(
             !component.is_null(),
             "no instance: is this the library that belongs to the tests? {log:?}"
@@ -68,7 +74,10 @@ impl<'a> Importer<'a> {
                 Call::SetDebugLogging { on, categories, fault } => {
                     let texts: Vec<_> = categories
                         .iter()
-                        .map(|text| text.as_ref().map(|text| CString::new(text.as_str()).unwrap_or_default()))
+                        .map(|text| {
+                            text.as_ref()
+                                .map(|text| CString::new(text.as_str()).unwrap_or_default())
+                        })
                         .collect();
                     let pointers: Vec<_> = texts
                         .iter()
@@ -108,10 +117,7 @@ impl<'a> Importer<'a> {
                 | Call::Serialize { .. }
                 | Call::Deserialize { .. } => return self.state_call(call),
                 Call::DirectionalDerivative => {
-                    let (known, unknown) = (
-                        DESCRIPTION.variables[0].reference,
-                        DESCRIPTION.outputs(Kind::Real)[0],
-                    );
+                    let (known, unknown) = (DESCRIPTION.variables[0].reference, DESCRIPTION.outputs(Kind::Real)[0]);
                     let (change, mut result) = (1.0, 0.0);
                     (api.fmi2GetDirectionalDerivative)(
                         c,

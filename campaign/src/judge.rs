@@ -154,7 +154,13 @@ impl<'a> Judge<'a> {
         if moves && readable {
             let outputs = self.outputs()?;
             let anew = matches!(call, Call::DoStep { .. } | Call::ExitInitializationMode) && status == fmi2OK;
-            if let Some(before) = self.life.now.outputs.as_ref().filter(|before| !anew && **before != outputs) {
+            if let Some(before) = self
+                .life
+                .now
+                .outputs
+                .as_ref()
+                .filter(|before| !anew && **before != outputs)
+            {
                 return Err(format!("{call:?}: outputs were {before:x?}, are {outputs:x?}"));
             }
             self.life.now.outputs = Some(outputs);
@@ -169,11 +175,13 @@ impl<'a> Judge<'a> {
         }
         if matches!(call, Call::SetState { .. }) && status == fmi2OK {
             for kind in [Kind::Real, Kind::Integer, Kind::Boolean] {
-                let settable = |variable: &&crate::description::Variable| {
-                    variable.role != Role::Output && variable.kind == kind
-                };
+                let settable =
+                    |variable: &&crate::description::Variable| variable.role != Role::Output && variable.kind == kind;
                 let references = DESCRIPTION.variables.iter().filter(settable);
-                self.call(&Call::get(kind, references.map(|variable| variable.reference).collect()))?;
+                self.call(&Call::get(
+                    kind,
+                    references.map(|variable| variable.reference).collect(),
+                ))?;
             }
         }
         Ok(())

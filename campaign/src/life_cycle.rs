@@ -268,19 +268,15 @@ impl LifeCycle {
     }
 
     fn set(&self, kind: Kind, values: &[(u32, f64)]) -> Verdict {
-        first_wrong(
-            values
-                .iter()
-                .map(|&(reference, value)| match of_kind(kind, reference) {
-                    None => Fail,
-                    Some(variable) => match variable.role {
-                        Role::Output => Fail,
-                        Role::Parameter if self.now.phase == StepComplete => Fail,
-                        _ if variable.allows(as_held(kind, value)) => Accept,
-                        _ => Discard,
-                    },
-                }),
-        )
+        first_wrong(values.iter().map(|&(reference, value)| match of_kind(kind, reference) {
+            None => Fail,
+            Some(variable) => match variable.role {
+                Role::Output => Fail,
+                Role::Parameter if self.now.phase == StepComplete => Fail,
+                _ if variable.allows(as_held(kind, value)) => Accept,
+                _ => Discard,
+            },
+        }))
     }
 
     fn step(&self, point: Point, size: f64) -> Verdict {
@@ -382,9 +378,7 @@ impl LifeCycle {
 
 /// The variable of the reference, if it has the type.
 pub fn of_kind(kind: Kind, reference: u32) -> Option<&'static Variable> {
-    DESCRIPTION
-        .variable(reference)
-        .filter(|variable| variable.kind == kind)
+    DESCRIPTION.variable(reference).filter(|variable| variable.kind == kind)
 }
 
 fn continuous(reference: u32, role: Role) -> bool {
