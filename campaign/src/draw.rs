@@ -246,7 +246,7 @@ fn value(choices: &mut Choices, reference: u32) -> f64 {
 
 fn step(choices: &mut Choices) -> Call {
     let size = if choices.percent(2) {
-        choices.one(&[0.0, -1e-5, f64::NAN, f64::INFINITY, 1e-300])
+        choices.one(&[0.0, -1e-5, f64::NAN, f64::INFINITY])
     } else {
         step_size(choices)
     };

@@ -176,7 +176,13 @@ fn wrong_numbers() -> Vec<Call> {
         for kind in [Kind::Real, Kind::Integer, Kind::Boolean, Kind::String] {
             calls.push(Call::get(kind, vec![variable.reference]));
             let near = [variable.min, variable.max, variable.min - 1.0, variable.max + 1.0];
-            for value in strange.iter().chain(&near) {
+            // The value matters where the function suits the variable.
+            let count = if kind == variable.kind {
+                strange.len() + near.len()
+            } else {
+                1
+            };
+            for value in strange.iter().chain(&near).take(count) {
                 calls.push(Call::Set {
                     kind,
                     values: vec![(variable.reference, *value)],

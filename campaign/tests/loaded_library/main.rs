@@ -2,6 +2,7 @@
 #![allow(clippy::undocumented_unsafe_blocks)] // every block calls a C function with what it needs, or, as the test says, without
 
 mod every_call;
+mod hostile_states;
 mod instances;
 mod library;
 mod random_calls;
