@@ -102,9 +102,7 @@ impl Description {
         };
         Self {
             guid: document.root_element().attribute("guid").unwrap_or_default().to_owned(),
-            variables: children("ModelVariables")
-                .map(|node| variable(node, &choices))
-                .collect(),
+            variables: children("ModelVariables").map(|node| variable(node, choices)).collect(),
             categories: children("LogCategories")
                 .filter_map(|node| Some(node.attribute("name")?.to_owned()))
                 .collect(),

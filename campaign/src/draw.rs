@@ -323,7 +323,7 @@ fn output_derivatives(choices: &mut Choices) -> Call {
         let reference = reference(choices, |variable| {
             variable.role == Role::Output && variable.continuous && variable.kind == Kind::Real
         });
-        (reference, if choices.percent(3) { 0 } else { 1 })
+        (reference, i32::from(!choices.percent(3)))
     });
     Call::GetOutputDerivatives {
         values: values.collect(),

@@ -13,6 +13,7 @@
 //! ```
 #![allow(clippy::undocumented_unsafe_blocks)] // every block calls a C function with what it needs, or, as the call says, without
 #![allow(clippy::missing_panics_doc)] // tests are made of this
+#![allow(clippy::wildcard_imports)] // of the standard's types and statuses
 #![allow(non_upper_case_globals)] // the statuses in patterns are named as in the standard
 
 pub mod api;

@@ -211,9 +211,12 @@ impl LifeCycle {
                 if !DESCRIPTION.output_derivatives {
                     return Refuse;
                 }
-                let judge = |&(reference, order): &(u32, i32)| match continuous(reference, Role::Output) {
-                    true if order == 1 && self.now.computed => Accept,
-                    _ => Fail,
+                let judge = |&(reference, order): &(u32, i32)| {
+                    if continuous(reference, Role::Output) && order == 1 && self.now.computed {
+                        Accept
+                    } else {
+                        Fail
+                    }
                 };
                 arrays(*fault, values.len()).unwrap_or_else(|| first_wrong(values.iter().map(judge)))
             }
@@ -257,12 +260,11 @@ impl LifeCycle {
             None => Fail,
             Some(variable) if variable.role != Role::Output => Accept,
             Some(_) => match (self.now.phase, self.now.fits) {
-                (Instantiated, _) => Fail,
                 (InitializationMode, Some(true)) | (StepComplete | Terminated, _) => Accept,
                 (InitializationMode, Some(false)) => Refuse,
                 (InitializationMode, None) => AcceptOrRefuse,
                 (Error, _) if self.now.computed => Accept,
-                (Error, _) => Fail,
+                (Instantiated | Error, _) => Fail,
             },
         }))
     }

@@ -10,6 +10,7 @@ mod package;
 mod python;
 mod scene;
 mod test;
+mod valgrind;
 
 use std::process::ExitCode;
 
@@ -36,6 +37,10 @@ enum Task {
     Demo,
     /// Measure what accuracy costs, beside other integrators; rewrite docs/accuracy.csv, its figures and its tables
     Accuracy(accuracy::Arguments),
+    /// Run calls of importers under valgrind: no error, no leak
+    Valgrind,
+    /// Count the instructions of a communication step, through C and in the library alone (needs valgrind)
+    Instructions,
     /// Run every check and test
     Test,
 }
@@ -46,6 +51,8 @@ fn main() -> ExitCode {
         Task::Scene(arguments) => scene::run(&arguments),
         Task::Demo => demo::run(),
         Task::Accuracy(arguments) => accuracy::run(&arguments),
+        Task::Valgrind => valgrind::run(),
+        Task::Instructions => valgrind::instructions(),
         Task::Test => test::run(),
     };
     match outcome {
