@@ -3,7 +3,8 @@
 use crate::call::{Call, Damage, Fault, Point, SLOTS, StatusFunction};
 use crate::choices::Choices;
 use crate::description::{DESCRIPTION, Kind, Role, Variable};
-use crate::life_cycle::{Moment, Phase};
+use crate::life_cycle::Moment;
+use crate::phase::Phase;
 
 /// Steps are drawn up to this length, s, so that stiff scenes do not take minutes.
 const LONGEST_STEP: f64 = 1e-4;

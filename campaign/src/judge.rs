@@ -8,7 +8,8 @@ use crate::api::Api;
 use crate::call::{Call, Fault, StatusFunction};
 use crate::description::{DESCRIPTION, Kind, Role};
 use crate::importer::{Answer, Importer};
-use crate::life_cycle::{LifeCycle, Phase, of_kind};
+use crate::life_cycle::{LifeCycle, of_kind};
+use crate::phase::Phase;
 
 /// An instance under judgement.
 #[derive(Debug)]

@@ -6,6 +6,7 @@
 //! api          the 34 functions, of a loaded library or of the one linked here
 //! call         one call as plain data; choices makes random ones
 //! importer     makes a call on an instance and gives what came back
+//! phase        the states, and which function is allowed in which
 //! life_cycle   the standard's state machine in our own words: which status a call must have, and what is true after it
 //! judge        a call made, and compared with what the life cycle says
 //! random       sequences of random calls; the shortest that still fails
@@ -26,5 +27,6 @@ pub mod importer;
 pub mod judge;
 pub mod life_cycle;
 pub mod log;
+pub mod phase;
 pub mod pointers;
 pub mod random;

@@ -13,17 +13,7 @@ use relay_contact::fmi2::*;
 
 use crate::call::{Call, Damage, Fault, Point, SLOTS, StatusFunction};
 use crate::description::{DESCRIPTION, Kind, Role, Variable};
-
-/// Where an instance is in its life.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)] // the states of the standard
-pub enum Phase {
-    Instantiated,
-    InitializationMode,
-    StepComplete,
-    Terminated,
-    Error,
-}
+use crate::phase::{Phase, allowed};
 
 use Phase::{Error, InitializationMode, Instantiated, StepComplete, Terminated};
 
@@ -117,33 +107,6 @@ pub struct LifeCycle {
     pub errors: bool,
     /// Whether warnings are logged.
     pub warnings: bool,
-}
-
-/// Whether the standard (or, where it is wider, the component) allows the function in the phase.
-pub fn allowed(function: &str, phase: Phase) -> bool {
-    match function {
-        "fmi2SetupExperiment" | "fmi2EnterInitializationMode" => phase == Instantiated,
-        "fmi2ExitInitializationMode" => phase == InitializationMode,
-        "fmi2DoStep" | "fmi2Terminate" => phase == StepComplete,
-        "fmi2CancelStep" => false,
-        "fmi2SetReal" | "fmi2SetInteger" | "fmi2SetBoolean" | "fmi2SetString" => {
-            matches!(phase, Instantiated | InitializationMode | StepComplete)
-        }
-        "fmi2GetStatus"
-        | "fmi2GetRealStatus"
-        | "fmi2GetIntegerStatus"
-        | "fmi2GetBooleanStatus"
-        | "fmi2GetStringStatus" => {
-            matches!(phase, StepComplete | Terminated | Error)
-        }
-        "fmi2SetRealInputDerivatives" if DESCRIPTION.input_derivatives => {
-            matches!(phase, Instantiated | InitializationMode | StepComplete)
-        }
-        "fmi2GetRealOutputDerivatives" if DESCRIPTION.output_derivatives => {
-            matches!(phase, StepComplete | Terminated | Error)
-        }
-        _ => true,
-    }
 }
 
 impl Default for LifeCycle {

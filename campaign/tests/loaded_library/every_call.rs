@@ -7,7 +7,7 @@ use campaign::call::{Call, Damage, Fault, Point, StatusFunction};
 use campaign::description::{DESCRIPTION, Kind, Role};
 use campaign::importer::Importer;
 use campaign::judge::Judge;
-use campaign::life_cycle::{Phase, allowed};
+use campaign::phase::{Phase, allowed};
 use relay_contact::fmi2::states::{State, TABLE};
 use relay_contact::fmi2::*;
 
