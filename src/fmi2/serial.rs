@@ -3,7 +3,7 @@
 //! ```text
 //! 8 bytes   "relay\0st"
 //! 4 bytes   version of the format, little-endian like all that follows
-//! 38 bytes  GUID of the description the state belongs to
+//! 34 bytes  GUID of the description the state belongs to
 //! 8 bytes   length of the contents
 //! ...       contents, in postcard's format
 //! 4 bytes   CRC-32 of all before
