@@ -106,8 +106,7 @@ pub enum Outcome {
     WentOn,
 }
 
-/// Reads the bytes, takes an instance there, and goes on for `steps` communication steps. A step from where no motion leads may
-/// take its whole budget of integration steps, which is seconds.
+/// Reads the bytes, takes an instance there, and goes on for `steps` communication steps.
 ///
 /// # Errors
 /// A panic in the component, told by its message, or a status that FMI does not allow.

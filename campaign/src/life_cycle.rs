@@ -58,6 +58,8 @@ pub struct Moment {
     pub phase: Phase,
     /// Values of the inputs and parameters, in the order of the description.
     pub values: Vec<f64>,
+    /// Derivatives of the inputs over the next step, in the same order.
+    rates: Vec<f64>,
     /// Where it stands, s.
     pub time: f64,
     /// End of the experiment, s.
@@ -77,6 +79,7 @@ impl Moment {
         Self {
             phase: Instantiated,
             values: DESCRIPTION.variables.iter().map(|variable| variable.start).collect(),
+            rates: vec![0.0; DESCRIPTION.variables.len()],
             time: 0.0,
             stop: f64::INFINITY,
             computed: false,
@@ -168,7 +171,7 @@ impl LifeCycle {
                     true if order == 1 => Discard,
                     _ => Fail,
                 };
-                arrays(*fault, values.len()).unwrap_or_else(|| first_wrong(values.iter().map(judge)))
+                three_arrays(*fault, values.len()).unwrap_or_else(|| first_wrong(values.iter().map(judge)))
             }
             Call::GetOutputDerivatives { values, fault } => {
                 if !DESCRIPTION.output_derivatives {
@@ -181,7 +184,7 @@ impl LifeCycle {
                         Fail
                     }
                 };
-                arrays(*fault, values.len()).unwrap_or_else(|| first_wrong(values.iter().map(judge)))
+                three_arrays(*fault, values.len()).unwrap_or_else(|| first_wrong(values.iter().map(judge)))
             }
             Call::CancelStep => Fail,
             Call::GetState { fault, .. } => no_fault(*fault, &[Fault::FirstNull, Fault::Foreign]),
@@ -261,7 +264,16 @@ impl LifeCycle {
         if late > 1e2 * rounding + 1e-2 * size {
             return Fail;
         }
-        if off > 4.0 * rounding || late > 0.0 || self.now.extreme || self.pushed_hard() {
+        let mut courses = DESCRIPTION.variables.iter().zip(&self.now.values).zip(&self.now.rates);
+        if courses.any(|((variable, value), rate)| *rate != 0.0 && !variable.allows(value + rate * size)) {
+            return Fail;
+        }
+        if !ORDINARY_STEPS.contains(&size)
+            || off > 4.0 * rounding
+            || late > 0.0
+            || self.now.extreme
+            || self.pushed_hard()
+        {
             return AcceptOrFail;
         }
         Accept
@@ -269,7 +281,11 @@ impl LifeCycle {
 
     /// Whether the inputs are beyond what the ranges of the generated excitation allow, which are meant to be wide.
     fn pushed_hard(&self) -> bool {
-        self.now.value(DESCRIPTION.reference("base.acceleration")).abs() > 1e6
+        let acceleration = DESCRIPTION.reference("base.acceleration");
+        let rate = DESCRIPTION
+            .position(acceleration)
+            .map_or(0.0, |position| self.now.rates[position]);
+        self.now.value(acceleration).abs() > 1e6 || rate.abs() > 1e12
     }
 
     /// What is true after the call came to `status`, which the verdict allows.
@@ -322,10 +338,17 @@ impl LifeCycle {
                     (now.fits, now.computed) = (None, false);
                 }
             }
-            Call::SetInputDerivatives { values, .. } => now.extreme |= values.iter().any(|value| value.2.abs() > 1e9),
+            Call::SetInputDerivatives { values, .. } => {
+                for &(reference, _, rate) in values {
+                    if let Some(position) = DESCRIPTION.position(reference) {
+                        now.rates[position] = rate;
+                    }
+                }
+            }
             Call::DoStep { point, size } => {
                 now.time = point.instant(now.time, *size) + size;
                 self.now.extreme |= self.pushed_hard();
+                self.now.rates.fill(0.0);
             }
             Call::GetState { slot, .. } => self.saved[*slot] = Some(now.clone()),
             Call::SetState { slot, .. } => {
@@ -340,6 +363,9 @@ impl LifeCycle {
         }
     }
 }
+
+/// Communication steps (s) in which no input can change faster, and no time get coarser, than numbers can follow.
+const ORDINARY_STEPS: std::ops::RangeInclusive<f64> = 1e-9..=1e3;
 
 /// The variable of the reference, if it has the type.
 pub fn of_kind(kind: Kind, reference: u32) -> Option<&'static Variable> {
@@ -373,6 +399,12 @@ fn arrays(fault: Fault, length: usize) -> Option<Verdict> {
         Fault::NullAndEndless | Fault::Endless => true,
     };
     wrong.then_some(Fail)
+}
+
+/// The same with a third array between the two.
+fn three_arrays(fault: Fault, length: usize) -> Option<Verdict> {
+    let missing = fault == Fault::MiddleNull && length > 0;
+    missing.then_some(Fail).or_else(|| arrays(fault, length))
 }
 
 fn no_fault(fault: Fault, wrong: &[Fault]) -> Verdict {

@@ -60,5 +60,10 @@ pub(super) fn from_bytes(bytes: &[u8]) -> Result<Snapshot, Failure> {
     if u32::from_le_bytes(*checksum) != crc32fast::hash(body) {
         return Err(wrong("its checksum is wrong: bytes have changed".to_owned()));
     }
-    postcard::from_bytes(contents).map_err(|error| wrong(error.to_string()))
+    let snapshot: Snapshot = postcard::from_bytes(contents).map_err(|error| wrong(error.to_string()))?;
+    if snapshot.is_sound() {
+        Ok(snapshot)
+    } else {
+        Err(wrong("no simulation comes to such a state".to_owned()))
+    }
 }
