@@ -110,7 +110,7 @@ fn spaced(unit: &str) -> String {
 
 /// A communication step that could not be integrated. The state stays what it was before.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("integration stopped at t = {time} s: {cause}")]
+#[error("integration stopped at t = {time:?} s: {cause}")]
 pub struct StepError {
     /// The instant reached, s.
     pub time: f64,
@@ -119,14 +119,25 @@ pub struct StepError {
 }
 
 /// Why a communication step could not be integrated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum StepErrorCause {
     /// A length that is not a positive finite number.
     #[error("the communication step size must be positive and finite")]
     StepSize,
     /// More integration steps than a communication step may take.
-    #[error("more than {0} integration steps within one communication step")]
+    #[error("more than {0} integration steps, taken or tried, within one communication step")]
     Budget(u64),
+    /// An instant so late that floating-point numbers there are too far apart for the motion.
+    #[error("time is known to {spacing:e} s only, allowed is {allowed:e} s")]
+    Resolution {
+        /// Spacing of floating-point numbers at the end of the communication step, s.
+        spacing: f64,
+        /// What the motion needs, s.
+        allowed: f64,
+    },
+    /// A fixed contact that is to move faster than light.
+    #[error("support.displacement would move at {0:e} m/s, allowed is the speed of light")]
+    Speed(f64),
     /// A number in the state stopped being finite.
     #[error("the motion is no longer a finite number")]
     NotFinite,

@@ -57,12 +57,40 @@ impl Inputs {
             let allowed = "allowed as derivative is any finite number";
             return Err(SceneError::out_of_range(input.variable(), rate, allowed.to_owned()));
         }
-        *match input {
+        *self.rate_mut(input) = rate;
+        Ok(())
+    }
+
+    fn rate(&self, input: RealInput) -> f64 {
+        let mut inputs = *self;
+        *inputs.rate_mut(input)
+    }
+
+    fn rate_mut(&mut self, input: RealInput) -> &mut f64 {
+        match input {
             RealInput::BaseAcceleration => &mut self.base_acceleration_rate,
             RealInput::SupportDisplacement => &mut self.support_displacement_rate,
             RealInput::ContactCurrent => &mut self.contact_current_rate,
-        } = rate;
-        Ok(())
+        }
+    }
+
+    /// Whether the rates lead to values within the ranges after `size` seconds.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] for the first that does not.
+    pub fn check_after(&self, size: f64) -> Result<(), SceneError> {
+        let mut changing = RealInput::ALL.iter().filter(|input| self.rate(**input) != 0.0);
+        changing.try_for_each(|input| {
+            let value = self.real(*input) + self.rate(*input) * size;
+            check_range(input.variable(), value, false)
+        })
+    }
+
+    /// Whether every value is in its range and every rate finite.
+    pub fn are_sound(&self) -> bool {
+        RealInput::ALL.iter().all(|input| {
+            check_range(input.variable(), self.real(*input), false).is_ok() && self.rate(*input).is_finite()
+        })
     }
 
     /// Holds the inputs at their values.

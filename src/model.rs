@@ -121,6 +121,55 @@ pub struct State {
     pub iterations: u64,
 }
 
+impl State {
+    /// Whether every number is one that a simulation can have come to.
+    pub fn is_sound(&self) -> bool {
+        let Self {
+            time,
+            modes,
+            support,
+            support_rate,
+            indentation,
+            indentation_rate,
+            force,
+            closed: _,
+            last_opening,
+            last_closing,
+            last_kink,
+            short_step,
+            long_step,
+            predictions,
+            last_step,
+            energy_surplus,
+            steps: _,
+            rejected_steps: _,
+            iterations: _,
+        } = self;
+        let numbers = [
+            time,
+            support,
+            support_rate,
+            indentation,
+            indentation_rate,
+            force,
+            last_opening,
+            last_closing,
+            last_kink,
+            last_step,
+            energy_surplus,
+        ];
+        let positive = |step: &f64| step.is_finite() && *step > 0.0;
+        numbers.into_iter().all(|number| number.is_finite())
+            && modes.iter().all(|mode| mode.q.is_finite() && mode.v.is_finite())
+            && predictions.is_finite()
+            && positive(short_step)
+            && positive(long_step)
+            && [last_opening, last_closing, last_kink]
+                .iter()
+                .all(|event| **event <= time.max(-1.0))
+    }
+}
+
 impl Model {
     /// The model of a scene, with the fixed contact displaced by `support` (m) at the start.
     ///

@@ -395,6 +395,12 @@ impl Scene {
     /// # Errors
     /// The first [`SceneError`] met.
     pub fn validate(&self) -> Result<(), SceneError> {
+        let longest = self.solver.maximum_step;
+        if longest > 0.0 && longest < SHORTEST_LIMIT {
+            let variable = RealParameter::SolverMaximumStep.variable();
+            let allowed = format!("allowed is 0, for no limit, or {SHORTEST_LIMIT} or more");
+            return Err(SceneError::out_of_range(variable, longest, allowed));
+        }
         let mut copy = *self;
         VARIABLES.iter().try_for_each(|variable| match variable.group {
             Group::RealParameter(parameter) => copy.set_real(parameter, self.real(parameter)),
@@ -457,6 +463,9 @@ pub fn choices(parameter: EnumerationParameter) -> &'static [(&'static str, i32)
         EnumerationParameter::EffectsResistance => ResistanceKind::CHOICES,
     }
 }
+
+/// Smallest limit that can be put on the integration step, s: the steps of a run have to come to an end.
+const SHORTEST_LIMIT: f64 = 1e-9;
 
 /// Whether the bounds of the range are themselves refused: at a Poisson's ratio of -1 or 0.5 a material has no finite moduli.
 fn bounds_excluded(parameter: RealParameter) -> bool {

@@ -131,7 +131,7 @@ fn a_value_out_of_range_is_told_with_its_unit_and_the_range() {
     }
     assert_eq!(
         message("[inputs]\nbase.acceleration = inf\n"),
-        "line 5: base.acceleration = inf m/s2: not allowed, allowed is any finite number"
+        "line 5: base.acceleration = inf m/s2: not allowed, allowed is -1000000000 to 1000000000"
     );
 }
 

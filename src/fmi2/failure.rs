@@ -42,6 +42,9 @@ pub(super) enum Failure {
     /// A communication step that could not be integrated.
     #[error(transparent)]
     Step(StepError),
+    /// A derivative that leads an input out of its range.
+    #[error("{0}; its derivative leads there in this step")]
+    Course(SceneError),
     /// A number of the experiment that is not allowed.
     #[error("{name} = {value}: not allowed, {allowed}")]
     Argument {
@@ -97,6 +100,7 @@ impl Failure {
             | Self::Preview(_)
             | Self::Initialisation(_)
             | Self::Step(_)
+            | Self::Course(_)
             | Self::Argument { .. }
             | Self::Order { .. }
             | Self::NoDerivative { .. }

@@ -49,6 +49,26 @@ pub(super) struct Snapshot {
     time: f64,
 }
 
+impl Snapshot {
+    /// Whether every number is one that an instance can have come to. What the scene may not be, the model refuses.
+    pub(super) fn is_sound(&self) -> bool {
+        let Experiment {
+            tolerance,
+            start_time,
+            stop_time,
+        } = self.experiment;
+        let simulation = self.simulation.as_ref();
+        self.inputs.are_sound()
+            && tolerance.is_none_or(|tolerance| tolerance > 0.0 && tolerance <= LARGEST_TOLERANCE)
+            && start_time.is_finite()
+            && stop_time.is_none_or(|stop| stop >= start_time)
+            && self.time >= start_time
+            && self.time.is_finite()
+            && simulation
+                .is_none_or(|(course, support)| course.is_sound() && course.time == self.time && support.is_finite())
+    }
+}
+
 #[derive(Debug)]
 pub(super) struct Instance {
     state: State,
@@ -403,6 +423,7 @@ impl Instance {
             let allowed = format!("the step ends at {end} s, after the stop time {stop} s of the experiment");
             return refused("communicationStepSize", size, allowed);
         }
+        self.inputs.check_after(size).map_err(Failure::Course)?;
         let Some(simulation) = &mut self.simulation else {
             return Err(Failure::Panic("no simulation after initialisation".to_owned()));
         };

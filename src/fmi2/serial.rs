@@ -3,7 +3,7 @@
 //! ```text
 //! 8 bytes   "relay\0st"
 //! 4 bytes   version of the format, little-endian like all that follows
-//! 38 bytes  GUID of the description the state belongs to
+//! 34 bytes  GUID of the description the state belongs to
 //! 8 bytes   length of the contents
 //! ...       contents, in postcard's format
 //! 4 bytes   CRC-32 of all before
@@ -60,5 +60,10 @@ pub(super) fn from_bytes(bytes: &[u8]) -> Result<Snapshot, Failure> {
     if u32::from_le_bytes(*checksum) != crc32fast::hash(body) {
         return Err(wrong("its checksum is wrong: bytes have changed".to_owned()));
     }
-    postcard::from_bytes(contents).map_err(|error| wrong(error.to_string()))
+    let snapshot: Snapshot = postcard::from_bytes(contents).map_err(|error| wrong(error.to_string()))?;
+    if snapshot.is_sound() {
+        Ok(snapshot)
+    } else {
+        Err(wrong("no simulation comes to such a state".to_owned()))
+    }
 }

@@ -12,9 +12,15 @@ use crate::transient::vector;
 use crate::transient::workspace::{Room, Workspace};
 
 /// Integration steps a communication step may take, and further ones per second of it.
-const BUDGET: u64 = 10_000_000;
+const BUDGET: u64 = 2_000_000;
 /// See [`BUDGET`].
-const BUDGET_RATE: f64 = 1e7;
+const BUDGET_RATE: f64 = 2e7;
+
+/// Spacing of floating-point numbers at an instant, in first steps, with which the motion can be followed.
+const COARSEST: f64 = 1e-2;
+
+/// m/s.
+const SPEED_OF_LIGHT: f64 = 299_792_458.0;
 
 /// Share of the tolerance that one step may use up. Found by comparing errors with tolerances over scenes
 /// (`tests/calibration.rs`): a blow makes the errors of the motion before it a hundred times larger, and without
@@ -39,6 +45,16 @@ const LONG_FLOOR: f64 = 3e-11;
 
 /// Many nodes reach at most about this many times as far as few.
 const LONGER: f64 = 16.0;
+
+/// Integration steps, also repeated ones and ones only looked at, that a communication step of `size` seconds may take.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a count of steps, saturating"
+)]
+pub(super) fn budget(size: f64) -> u64 {
+    BUDGET.saturating_add((size * BUDGET_RATE) as u64)
+}
 
 /// A communication step under way.
 pub(super) struct Integration<'a> {
@@ -147,16 +163,19 @@ impl Model {
 
 impl Integration<'_> {
     fn run(&mut self) -> Result<(), StepError> {
+        let allowed = COARSEST * self.model.first_step();
+        let spacing = self.resolution();
+        if spacing > allowed {
+            return Err(self.error(StepErrorCause::Resolution { spacing, allowed }));
+        }
+        if self.drive.support_rate.abs() > SPEED_OF_LIGHT {
+            return Err(self.error(StepErrorCause::Speed(self.drive.support_rate)));
+        }
         self.set_support_rate();
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a count of steps, saturating"
-        )]
-        let budget = BUDGET.saturating_add((self.progress.size * BUDGET_RATE) as u64);
-        let limit = self.attempts().saturating_add(budget);
+        let budget = budget(self.progress.size);
+        let limit = self.workspace.trials.saturating_add(budget);
         while self.progress.done < 1.0 {
-            if self.attempts() >= limit {
+            if self.workspace.trials >= limit {
                 return Err(self.error(StepErrorCause::Budget(budget)));
             }
             self.advance()?;
@@ -171,10 +190,6 @@ impl Integration<'_> {
             }
         }
         Ok(())
-    }
-
-    fn attempts(&self) -> u64 {
-        self.state.steps + self.state.rejected_steps
     }
 
     pub(super) fn error(&self, cause: StepErrorCause) -> StepError {
@@ -318,6 +333,7 @@ impl Integration<'_> {
     where
         Workspace: Room<S>,
     {
+        self.workspace.trials += 1;
         let (cache, end, probe) = self.workspace.parts();
         let (step, collocation) = cache.get(length, recurring, self.model);
         let source = Source::Law(NEWTON * self.allowed);

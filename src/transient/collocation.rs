@@ -40,6 +40,11 @@ impl Predictions {
     pub fn through_all(&self) -> &Prediction {
         &self.steep
     }
+
+    /// Whether all numbers are finite.
+    pub fn is_finite(&self) -> bool {
+        self.steep.iter().chain(&self.flat).all(|number| number.is_finite())
+    }
 }
 
 /// The polynomials of a step with `S` nodes.

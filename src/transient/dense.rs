@@ -10,7 +10,7 @@ use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
 use crate::inputs::Inputs;
 use crate::model::{Model, State};
-use crate::transient::advance::Steps;
+use crate::transient::advance::{Steps, budget};
 use crate::transient::collocation::Prediction;
 use crate::transient::events::Event;
 use crate::transient::workspace::Workspace;
@@ -95,6 +95,30 @@ impl Course {
         } else {
             &self.start
         }
+    }
+
+    /// Whether every number is one that a simulation can have come to.
+    pub fn is_sound(&self) -> bool {
+        let Self {
+            time,
+            current,
+            current_rate,
+            size,
+            drive,
+            start,
+            end,
+            span,
+        } = self;
+        let polynomials = [&span.force, &span.indentation, &span.rate].into_iter().flatten();
+        let numbers = [*time, *current, *current_rate, *size, drive.jerk, drive.support_rate];
+        let driven = drive.acceleration(start.time);
+        numbers.iter().chain(polynomials).all(|number| number.is_finite())
+            && driven.is_finite()
+            && *size >= 0.0
+            && start.is_sound()
+            && end.is_sound()
+            && start.time <= *time
+            && (start == end && end.time == *time || start.time < end.time && *time <= end.time)
     }
 
     /// The event that the integrator has met beyond the communication point.
@@ -219,16 +243,26 @@ impl Model {
         let reach = course.end.short_step.max(course.end.long_step);
         if steady && (ahead || size < reach || size < MANY_STEPS * reach && size != course.size) {
             if until > course.end.time {
-                self.go_ahead(course, workspace, until)?;
+                let left = until - course.end.time;
+                if left < MANY_STEPS * reach {
+                    self.go_ahead(course, workspace, until)?;
+                } else {
+                    let (mut end, time) = (course.end, course.end.time);
+                    self.advance(&mut end, workspace, course.drive, Steps::Exactly { time, size: left })?;
+                    end.time = until;
+                    (course.start, course.end) = (end, end);
+                }
             }
         } else {
+            let before = ahead.then_some((course.start, course.end));
             if ahead {
                 course.end = self.state(course, workspace)?;
                 course.start = course.end;
                 workspace.events.forget_after(since);
             }
             if let Err(error) = self.advance(&mut course.end, workspace, drive, Steps::Exactly { time, size }) {
-                course.end = course.start;
+                (course.start, course.end) = before.unwrap_or((course.start, course.start));
+                workspace.events.forget_after(since);
                 return Err(error);
             }
             course.end.support = support;
@@ -260,7 +294,13 @@ impl Model {
     fn go_ahead(&self, course: &mut Course, workspace: &mut Workspace, time: f64) -> Result<(), StepError> {
         let (mut start, mut end) = (course.start, course.end);
         let mut span = course.span;
+        let budget = budget(time - course.time);
+        let limit = workspace.trials.saturating_add(budget);
         while end.time < time {
+            if workspace.trials >= limit {
+                let (time, cause) = (end.time, StepErrorCause::Budget(budget));
+                return Err(StepError { time, cause });
+            }
             start = end;
             self.advance(
                 &mut end,

@@ -57,11 +57,13 @@ impl Integration<'_> {
             drive,
             ..
         } = self;
+        let mut trials = 0;
         let (cache, end, _) = Room::<SHORT>::parts(*workspace);
         let (step, collocation) = cache.get(target.length, target.recurring, model);
         let preload = model.preload;
         let from = preload.indentation + state.indentation;
         let mut under = |force: f64| {
+            trials += 1;
             let source = Source::Constant(force - preload.force);
             model.trial(state, drive, step, collocation, source, end)
         };
@@ -76,7 +78,9 @@ impl Integration<'_> {
         let mut excess = |force: f64| under(force).map_or(f64::NAN, |trial| force - wanted(&trial));
         let bracket = ((0.0, -most), (most, excess(most)));
         let force = roots::between(excess, bracket.0, bracket.1, 0.0).unwrap_or(most);
-        under(force)
+        let trial = under(force);
+        workspace.trials += trials;
+        trial
     }
 }
 

@@ -2,7 +2,7 @@
 //! processor, and for those with vectors of four numbers and a fused multiply-add (AVX2 and FMA).
 
 #[cfg(target_arch = "x86_64")]
-use fearless_simd::{Avx2, Level};
+use fearless_simd::Avx2;
 
 /// What the kernel of a step is compiled for.
 #[derive(Clone, Copy, Debug)]
@@ -15,10 +15,10 @@ pub enum Machine {
 }
 
 impl Machine {
-    /// The best for this processor.
+    /// The best for this processor; any processor's where the feature `portable` is on.
     pub fn detect() -> Self {
-        #[cfg(target_arch = "x86_64")]
-        if let Some(token) = Level::new().as_avx2() {
+        #[cfg(all(target_arch = "x86_64", not(feature = "portable")))]
+        if let Some(token) = fearless_simd::Level::new().as_avx2() {
             return Self::Avx2(token);
         }
         Self::Portable

@@ -17,6 +17,8 @@ pub struct Workspace {
     probe: ModeStates,
     /// Of exact steps.
     pub(super) propagator: Propagator,
+    /// Steps computed so far: taken, repeated, or only looked at.
+    pub(super) trials: u64,
     /// Of the last communication step.
     pub events: Events,
 }
@@ -30,6 +32,7 @@ impl Workspace {
             end: [ModeState::default(); MAX_MODES],
             probe: [ModeState::default(); MAX_MODES],
             propagator: Propagator::default(),
+            trials: 0,
             events: Events::new(),
         }
     }

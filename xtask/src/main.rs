@@ -11,6 +11,7 @@ mod package;
 mod python;
 mod scene;
 mod test;
+mod valgrind;
 
 use std::process::ExitCode;
 
@@ -39,6 +40,10 @@ enum Task {
     Accuracy(accuracy::Arguments),
     /// Test the component under other people's importers and print the table of what they did
     Importers,
+    /// Run calls of importers under valgrind: no error, no leak
+    Valgrind,
+    /// Count the instructions of a communication step, through C and in the library alone (needs valgrind)
+    Instructions,
     /// Run every check and test
     Test,
 }
@@ -50,6 +55,8 @@ fn main() -> ExitCode {
         Task::Demo => demo::run(),
         Task::Accuracy(arguments) => accuracy::run(&arguments),
         Task::Importers => test::importers_alone(),
+        Task::Valgrind => valgrind::run(),
+        Task::Instructions => valgrind::instructions(),
         Task::Test => test::run(),
     };
     match outcome {

@@ -8,7 +8,7 @@ use std::time::Instant;
 use anyhow::Result;
 
 use crate::commands::{self, cargo};
-use crate::{fmu, importers, python};
+use crate::{fmu, importers, python, valgrind};
 
 /// Folders and files with Python in them.
 const PYTHON: [&str; 3] = ["examples/python", "conformance/python", "docs"];
@@ -18,6 +18,25 @@ pub fn run() -> Result<()> {
     stage("format", || commands::run(cargo().args(["fmt", "--all", "--check"])))?;
     stage("lint", || commands::run(&mut clippy(&[])))?;
     stage("Rust tests", || commands::run(cargo().arg("test")))?;
+    stage("a million random calls", || {
+        commands::run(
+            cargo()
+                .args([
+                    "test",
+                    "--package=campaign",
+                    "--test=loaded_library",
+                    "--",
+                    "random_calls",
+                    "--nocapture",
+                ])
+                .env("CAMPAIGN_CALLS", "1000000"),
+        )
+    })?;
+    if valgrind::is_installed() {
+        stage("valgrind", valgrind::run)?;
+    } else {
+        println!("== valgrind: NOT RUN, it is not installed (on Debian: apt-get install valgrind)");
+    }
     let mut component = PathBuf::new();
     stage("component", || {
         component = fmu::build()?;

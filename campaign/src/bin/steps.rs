@@ -1,0 +1,95 @@
+//! Makes communication steps, for a tool that counts instructions: `steps SCENE WAY COUNT`, the scene `1us` (steps far inside
+//! those of the integrator), `10us` (about as long) or `shaken` (10 us, and an input that changes every step), the way `fmi2DoStep` (of the library file
+//! beside this program) or `library` (the same steps without C).
+
+use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
+
+use campaign::api::Api;
+use campaign::call::{Call, Fault};
+use campaign::description::{DESCRIPTION, Kind};
+use campaign::importer::Importer;
+use relay_contact::fmi2::{fmi2OK, fmi2True};
+use relay_contact::inputs::Inputs;
+use relay_contact::scene::Scene;
+use relay_contact::simulation::Simulation;
+use relay_contact::variables::{ExcitationKind, RealOutput};
+
+const AMPLITUDE: f64 = 98.0;
+
+/// Step size, s, and the acceleration in a step, m/s2.
+fn plan(scene: &str) -> (f64, fn(u32) -> f64) {
+    match scene {
+        "1us" => (1e-6, |_| 0.0),
+        "10us" => (1e-5, |_| 0.0),
+        "shaken" => (1e-5, |k| f64::from(k % 5)),
+        other => panic!("no scene {other}"),
+    }
+}
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().collect();
+    let [_, scene, way, count] = &arguments[..] else {
+        panic!("wanted: SCENE WAY COUNT");
+    };
+    let count = count.parse().expect("a count of steps");
+    let force = match way.as_str() {
+        "fmi2DoStep" => through_c(plan(scene), count),
+        "library" => alone(plan(scene), count),
+        other => panic!("no way {other}"),
+    };
+    println!("{force}");
+}
+
+fn through_c((size, acceleration): (f64, fn(u32) -> f64), count: u32) -> f64 {
+    let program = std::env::current_exe().expect("a program");
+    let folder = program.parent().expect("a folder").join("deps");
+    let path = folder.join(format!("{DLL_PREFIX}relay_contact{DLL_SUFFIX}"));
+    let api = Api::load(&path).expect("the library");
+    let reference = |name| DESCRIPTION.reference(name);
+    let mut importer = Importer::new(&api);
+    let excitation = Call::Set {
+        kind: Kind::Integer,
+        values: vec![(reference("effects.excitation"), 2.0)],
+        fault: Fault::None,
+    };
+    let amplitude = Call::set_reals(vec![(reference("excitation.amplitude"), AMPLITUDE)]);
+    for call in [
+        excitation,
+        amplitude,
+        Call::EnterInitializationMode,
+        Call::ExitInitializationMode,
+    ] {
+        assert_eq!(importer.make(&call, 0.0).0, fmi2OK);
+    }
+    let (c, input, output) = (
+        importer.component,
+        reference("base.acceleration"),
+        reference("contact.force"),
+    );
+    let (mut force, mut value) = (0.0, 0.0);
+    // SAFETY: pointers to what is declared here.
+    unsafe {
+        for k in 0..count {
+            let before = std::mem::replace(&mut value, acceleration(k));
+            if value != before {
+                assert_eq!((api.fmi2SetReal)(c, &raw const input, 1, &raw const value), fmi2OK);
+            }
+            assert_eq!((api.fmi2DoStep)(c, f64::from(k) * size, size, fmi2True), fmi2OK);
+        }
+        assert_eq!((api.fmi2GetReal)(c, &raw const output, 1, &raw mut force), fmi2OK);
+    }
+    force
+}
+
+fn alone((size, acceleration): (f64, fn(u32) -> f64), count: u32) -> f64 {
+    let mut scene = Scene::default();
+    scene.effects.excitation = ExcitationKind::Sine;
+    scene.excitation.amplitude = AMPLITUDE;
+    let mut inputs = Inputs::default();
+    let mut simulation = Simulation::new(&scene, &inputs, 0.0).expect("a scene that fits");
+    for k in 0..count {
+        inputs.base_acceleration = acceleration(k);
+        simulation.step(&inputs, f64::from(k) * size, size).expect("a step");
+    }
+    simulation.real(RealOutput::ContactForce)
+}

@@ -1,0 +1,70 @@
+//! Choices drawn from bytes: of a random generator, or of a fuzzer.
+
+/// Draws from bytes until none are left; zeros follow.
+#[derive(Clone, Debug)]
+pub struct Choices<'a> {
+    bytes: &'a [u8],
+}
+
+impl<'a> Choices<'a> {
+    /// From these bytes.
+    pub fn new(bytes: &'a [u8]) -> Self {
+        Self { bytes }
+    }
+
+    /// Whether there is nothing left to choose from.
+    pub fn is_empty(&self) -> bool {
+        self.bytes.is_empty()
+    }
+
+    fn byte(&mut self) -> u8 {
+        let (first, rest) = self.bytes.split_first().unwrap_or((&0, &[]));
+        self.bytes = rest;
+        *first
+    }
+
+    /// A number below `count`, which is at most 65536.
+    pub fn below(&mut self, count: usize) -> usize {
+        let high = if count > 256 { self.byte() } else { 0 };
+        (usize::from(high) * 256 + usize::from(self.byte())) % count.max(1)
+    }
+
+    /// True in about `percent` of a hundred cases.
+    pub fn percent(&mut self, percent: usize) -> bool {
+        self.below(100) < percent
+    }
+
+    /// One of several.
+    pub fn one<T: Copy>(&mut self, of: &[T]) -> T {
+        of[self.below(of.len())]
+    }
+
+    /// A number of [0, 1).
+    pub fn unit(&mut self) -> f64 {
+        (f64::from(self.byte()) * 256.0 + f64::from(self.byte())) / 65536.0
+    }
+
+    /// Any 32 bits.
+    pub fn bits(&mut self) -> u32 {
+        u32::from_le_bytes([(); 4].map(|()| self.byte()))
+    }
+}
+
+/// Bytes of a generator (xorshift64*): the same for the same seed.
+pub fn bytes(seed: u64, count: usize) -> Vec<u8> {
+    // Neighbouring seeds are to have nothing in common, and the state must not be zero.
+    let mut state = seed.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+    let mut next = || {
+        state ^= state >> 12;
+        state ^= state << 25;
+        state ^= state >> 27;
+        state.wrapping_mul(0x2545_f491_4f6c_dd1d).to_be_bytes()
+    };
+    (0..count.div_ceil(4))
+        .flat_map(|_| {
+            let [a, b, c, d, ..] = next();
+            [a, b, c, d]
+        })
+        .take(count)
+        .collect()
+}

@@ -1,0 +1,179 @@
+//! What an importer knows of the component: `modelDescription.xml`.
+
+use std::sync::LazyLock;
+
+use relay_contact::MODEL_DESCRIPTION;
+use roxmltree::{Document, Node};
+
+/// The type of a variable by the function that reads it: enumerations are integers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// `fmi2GetReal`.
+    Real,
+    /// `fmi2GetInteger`.
+    Integer,
+    /// `fmi2GetBoolean`.
+    Boolean,
+    /// `fmi2GetString`.
+    String,
+}
+
+/// Where the value of a variable comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// The importer, before every step.
+    Input,
+    /// The importer, until initialisation ends.
+    Parameter,
+    /// The component.
+    Output,
+}
+
+/// A variable.
+#[derive(Clone, Debug)]
+pub struct Variable {
+    /// As in the description.
+    pub name: String,
+    /// Value reference.
+    pub reference: u32,
+    /// Type.
+    pub kind: Kind,
+    /// Where its value comes from.
+    pub role: Role,
+    /// Whether it may change at any time.
+    pub continuous: bool,
+    /// Start value; 0 for outputs.
+    pub start: f64,
+    /// Least value.
+    pub min: f64,
+    /// Largest value.
+    pub max: f64,
+    /// Values of an enumeration.
+    pub choices: Vec<f64>,
+}
+
+impl Variable {
+    /// Whether the value may be set. The bounds of Poisson's ratio are excluded, as their description says.
+    pub fn allows(&self, value: f64) -> bool {
+        let open = self.name.ends_with("poissonRatio") && (value == self.min || value == self.max);
+        value.is_finite()
+            && value >= self.min
+            && value <= self.max
+            && !open
+            && (self.choices.is_empty() || self.choices.contains(&value))
+    }
+}
+
+/// The description.
+#[derive(Clone, Debug)]
+pub struct Description {
+    /// Identifies the description.
+    pub guid: String,
+    /// In the order of the file.
+    pub variables: Vec<Variable>,
+    /// Log categories.
+    pub categories: Vec<String>,
+    /// Whether `fmi2SetRealInputDerivatives` is supported, with order 1.
+    pub input_derivatives: bool,
+    /// Whether `fmi2GetRealOutputDerivatives` is supported, with order 1.
+    pub output_derivatives: bool,
+}
+
+/// The description of this component.
+pub static DESCRIPTION: LazyLock<Description> = LazyLock::new(|| Description::parse(MODEL_DESCRIPTION));
+
+impl Description {
+    /// Reads a description.
+    pub fn parse(xml: &str) -> Self {
+        let document = Document::parse(xml).expect("modelDescription.xml is XML");
+        let element = |name| document.descendants().find(|node| node.has_tag_name(name));
+        let children = |name| {
+            element(name)
+                .into_iter()
+                .flat_map(|node| node.children().filter(Node::is_element))
+        };
+        let capability = |name| element("CoSimulation").and_then(|node| node.attribute(name));
+        let choices = |name: &str| {
+            children("TypeDefinitions")
+                .filter(|definition| definition.attribute("name") == Some(name))
+                .flat_map(|definition| definition.descendants())
+                .filter_map(|item| item.attribute("value")?.parse().ok())
+                .collect()
+        };
+        Self {
+            guid: document.root_element().attribute("guid").unwrap_or_default().to_owned(),
+            variables: children("ModelVariables").map(|node| variable(node, choices)).collect(),
+            categories: children("LogCategories")
+                .filter_map(|node| Some(node.attribute("name")?.to_owned()))
+                .collect(),
+            input_derivatives: capability("canInterpolateInputs") == Some("true"),
+            output_derivatives: capability("maxOutputDerivativeOrder").is_some_and(|order| order != "0"),
+        }
+    }
+
+    /// The position of a variable.
+    pub fn position(&self, reference: u32) -> Option<usize> {
+        self.variables
+            .iter()
+            .position(|variable| variable.reference == reference)
+    }
+
+    /// The variable of a reference.
+    pub fn variable(&self, reference: u32) -> Option<&Variable> {
+        self.variables.get(self.position(reference)?)
+    }
+
+    /// The reference of a name.
+    pub fn reference(&self, name: &str) -> u32 {
+        let variable = self.variables.iter().find(|variable| variable.name == name);
+        variable
+            .unwrap_or_else(|| panic!("modelDescription.xml has no variable {name}"))
+            .reference
+    }
+
+    /// The references of the outputs of a type.
+    pub fn outputs(&self, kind: Kind) -> Vec<u32> {
+        self.variables
+            .iter()
+            .filter(|variable| variable.role == Role::Output && variable.kind == kind)
+            .map(|variable| variable.reference)
+            .collect()
+    }
+}
+
+fn variable<'a>(node: Node<'a, 'a>, choices: impl Fn(&str) -> Vec<f64>) -> Variable {
+    let attribute = |name| node.attribute(name).unwrap_or_default();
+    let value = node.first_element_child().expect("a variable has a type");
+    let number = |name, default| {
+        value.attribute(name).map_or(default, |text| {
+            text.parse().unwrap_or_else(|_| f64::from(u8::from(text == "true")))
+        })
+    };
+    let kind = match value.tag_name().name() {
+        "Real" => Kind::Real,
+        "Boolean" => Kind::Boolean,
+        "String" => Kind::String,
+        _ => Kind::Integer,
+    };
+    Variable {
+        name: attribute("name").to_owned(),
+        reference: attribute("valueReference")
+            .parse()
+            .expect("a value reference is a number"),
+        kind,
+        role: match attribute("causality") {
+            "input" => Role::Input,
+            "parameter" => Role::Parameter,
+            _ => Role::Output,
+        },
+        continuous: attribute("variability") == "continuous",
+        start: number("start", 0.0),
+        min: number("min", f64::NEG_INFINITY),
+        max: number("max", f64::INFINITY),
+        choices: if value.has_tag_name("Enumeration") {
+            choices(value.attribute("declaredType").unwrap_or_default())
+        } else {
+            Vec::new()
+        },
+    }
+}

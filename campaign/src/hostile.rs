@@ -1,0 +1,166 @@
+//! Saved states with hostile contents and a right checksum: what an attacker can make, or a bug of a transport that
+//! computes its own checksums.
+
+use relay_contact::fmi2::*;
+
+use crate::api::Api;
+use crate::call::{Call, Damage, Fault, StatusFunction};
+use crate::choices::Choices;
+use crate::description::{DESCRIPTION, Kind};
+use crate::importer::Importer;
+use crate::judge::Judge;
+
+/// Bytes before the contents: mark, version, GUID, length.
+pub fn head() -> usize {
+    8 + 4 + DESCRIPTION.guid.len() + 8
+}
+
+/// Bytes after the contents: the checksum.
+const TAIL: usize = 4;
+
+/// The bytes of a contact under way: shaken by a sine until it has opened.
+pub fn specimen(api: &Api) -> Vec<u8> {
+    let mut judge = Judge::new(api);
+    let reference = |name| DESCRIPTION.reference(name);
+    let none = Fault::None;
+    let calls = [
+        Call::Set {
+            kind: Kind::Integer,
+            values: vec![(reference("effects.excitation"), 2.0)],
+            fault: none,
+        },
+        Call::set_reals(vec![(reference("excitation.amplitude"), 400.0)]),
+        Call::EnterInitializationMode,
+        Call::ExitInitializationMode,
+        Call::step(1e-3),
+        Call::step(1.3e-6),
+        Call::step(1.3e-6),
+        Call::GetState { slot: 0, fault: none },
+        Call::Serialize { slot: 0, fault: none },
+    ];
+    for call in &calls {
+        judge.call(call).expect("the specimen runs");
+    }
+    judge.importer.bytes(0).clone()
+}
+
+/// The bytes with length and checksum set right for what is between head and tail.
+pub fn repaired(mut bytes: Vec<u8>) -> Vec<u8> {
+    if let Some(length) = bytes.len().checked_sub(head() + TAIL) {
+        bytes[head() - 8..head()].copy_from_slice(&(length as u64).to_le_bytes());
+        let end = bytes.len() - TAIL;
+        let checksum = crc32fast::hash(&bytes[..end]).to_le_bytes();
+        bytes[end..].copy_from_slice(&checksum);
+    }
+    bytes
+}
+
+/// Numbers that go wrong where numbers can.
+const NUMBERS: [f64; 14] = [
+    f64::NAN,
+    f64::INFINITY,
+    f64::NEG_INFINITY,
+    0.0,
+    -0.0,
+    -1.0,
+    1e308,
+    -1e308,
+    1e300,
+    5e-324,
+    1e-300,
+    1e-12,
+    1e9,
+    1.0,
+];
+
+/// The specimen changed as the choices say, head and checksum right.
+pub fn changed(specimen: &[u8], choices: &mut Choices) -> Vec<u8> {
+    let mut bytes = specimen.to_vec();
+    for _ in 0..=choices.below(4) {
+        let room = bytes.len() - head() - TAIL;
+        let at = head() + choices.below(room);
+        match choices.below(4) {
+            // The contents are mostly numbers of eight bytes, one after the other.
+            0 | 1 => {
+                let number = choices.one(&NUMBERS).to_le_bytes();
+                let end = (at + 8).min(head() + room);
+                bytes[at..end].copy_from_slice(&number[..end - at]);
+            }
+            2 => bytes[at] = choices.below(256).to_le_bytes()[0],
+            _ => bytes[at] ^= 1 << choices.below(8),
+        }
+    }
+    repaired(bytes)
+}
+
+/// What became of hostile bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Outcome {
+    /// They are no saved state.
+    NotRead,
+    /// They are one, which no instance can be taken back to.
+    NotSet,
+    /// An instance stood there; a step failed.
+    StepFailed,
+    /// An instance went on from there.
+    WentOn,
+}
+
+/// Reads the bytes, takes an instance there, and goes on for `steps` communication steps.
+///
+/// # Errors
+/// A panic in the component, told by its message, or a status that FMI does not allow.
+pub fn meet(api: &Api, bytes: &[u8], steps: u32) -> Result<Outcome, String> {
+    let mut importer = Importer::new(api);
+    *importer.bytes(0) = bytes.to_vec();
+    let none = Fault::None;
+    let read = Call::Deserialize {
+        slot: 0,
+        damage: Damage::None,
+        fault: none,
+    };
+    if answer(&mut importer, &read, 0.0)?.0 != fmi2OK {
+        return Ok(Outcome::NotRead);
+    }
+    if answer(&mut importer, &Call::SetState { slot: 0, fault: none }, 0.0)?.0 != fmi2OK {
+        return Ok(Outcome::NotSet);
+    }
+    for step in 0..=steps {
+        // Where does it stand? There alone it goes on.
+        let time = Call::Status {
+            function: StatusFunction::Real,
+            kind: fmi2LastSuccessfulTime,
+            fault: none,
+        };
+        let (_, time) = answer(&mut importer, &time, 0.0)?;
+        let time = time.first().copied().unwrap_or(f64::NAN);
+        for kind in [Kind::Real, Kind::Integer, Kind::Boolean] {
+            answer(&mut importer, &Call::get(kind, DESCRIPTION.outputs(kind)), time)?;
+        }
+        if step < steps && answer(&mut importer, &Call::step(1e-5), time)?.0 != fmi2OK {
+            return Ok(Outcome::StepFailed);
+        }
+    }
+    for call in [
+        Call::GetState { slot: 1, fault: none },
+        Call::Serialize { slot: 1, fault: none },
+        Call::Reset,
+    ] {
+        if answer(&mut importer, &call, 0.0)?.0 != fmi2OK {
+            return Err(format!("{call:?} is refused"));
+        }
+    }
+    Ok(Outcome::WentOn)
+}
+
+fn answer(importer: &mut Importer, call: &Call, time: f64) -> Result<(fmi2Status, Vec<f64>), String> {
+    let answer = importer.make(call, time);
+    let panics = |message: &&crate::log::Message| message.2.contains("internal error");
+    if let Some(message) = importer.messages().iter().find(panics) {
+        return Err(format!("{call:?}: {}", message.2));
+    }
+    if answer.0 > fmi2Error {
+        return Err(format!("{call:?}: status {}", answer.0));
+    }
+    Ok(answer)
+}

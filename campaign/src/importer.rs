@@ -1,0 +1,349 @@
+//! Makes calls on an instance through the C functions, and keeps what was logged.
+
+use std::ffi::CString;
+use std::ptr;
+
+use relay_contact::fmi2::*;
+
+use crate::api::Api;
+use crate::call::{Call, Damage, Fault, SLOTS, StatusFunction};
+use crate::description::{DESCRIPTION, Kind};
+use crate::log::{Log, Message, callbacks};
+use crate::pointers::{arguments, middle, place, places};
+
+/// An instance, the states saved of it and their bytes. All freed with the value.
+#[derive(Debug)]
+pub struct Importer<'a> {
+    api: &'a Api,
+    /// The instance. Not always its own: a test may put something else here.
+    pub component: fmi2Component,
+    states: [fmi2FMUstate; SLOTS],
+    bytes: [Vec<u8>; SLOTS],
+    // Boxed, so that the address the callback holds stays.
+    log: Box<Log>,
+}
+
+/// What a call gave back: status, and the values read where there were any.
+pub type Answer = (fmi2Status, Vec<f64>);
+
+impl<'a> Importer<'a> {
+    /// A new instance.
+    pub fn new(api: &'a Api) -> Self {
+        let log = Box::new(Log::default());
+        let component = instantiate(
+            api,
+            Some("relay"),
+            fmi2CoSimulation,
+            Some(&DESCRIPTION.guid),
+            Some(&log),
+        );
+        assert!(
+            !component.is_null(),
+            "no instance: is this the library that belongs to the tests? {log:?}"
+        );
+        let states = [ptr::null_mut(); SLOTS];
+        let bytes = [const { Vec::new() }; SLOTS];
+        Self {
+            api,
+            component,
+            states,
+            bytes,
+            log,
+        }
+    }
+
+    /// The messages since the last look.
+    pub fn messages(&self) -> Vec<Message> {
+        self.log
+            .lock()
+            .map(|mut log| std::mem::take(&mut *log))
+            .unwrap_or_default()
+    }
+
+    /// The bytes of the slot.
+    pub fn bytes(&mut self, slot: usize) -> &mut Vec<u8> {
+        &mut self.bytes[slot]
+    }
+
+    /// Makes a call. `time` is where the instance stands.
+    #[allow(clippy::too_many_lines)] // one line a function
+    pub fn make(&mut self, call: &Call, time: f64) -> Answer {
+        let (api, c) = (self.api, self.component);
+        let status = unsafe {
+            match call {
+                Call::SetDebugLogging { on, categories, fault } => {
+                    let texts: Vec<_> = categories
+                        .iter()
+                        .map(|text| {
+                            text.as_ref()
+                                .map(|text| CString::new(text.as_str()).unwrap_or_default())
+                        })
+                        .collect();
+                    let pointers: Vec<_> = texts
+                        .iter()
+                        .map(|text| text.as_ref().map_or(ptr::null(), |text| text.as_ptr()))
+                        .collect();
+                    let (_, pointer, count) = arguments(*fault, &pointers, &pointers);
+                    (api.fmi2SetDebugLogging)(c, (*on).into(), count, pointer)
+                }
+                Call::SetupExperiment { tolerance, start, stop } => (api.fmi2SetupExperiment)(
+                    c,
+                    tolerance.is_some().into(),
+                    tolerance.unwrap_or(0.0),
+                    *start,
+                    stop.is_some().into(),
+                    stop.unwrap_or(0.0),
+                ),
+                Call::EnterInitializationMode => (api.fmi2EnterInitializationMode)(c),
+                Call::ExitInitializationMode => (api.fmi2ExitInitializationMode)(c),
+                Call::Terminate => (api.fmi2Terminate)(c),
+                Call::Reset => (api.fmi2Reset)(c),
+                Call::Renew => {
+                    (api.fmi2FreeInstance)(c);
+                    let guid = Some(DESCRIPTION.guid.as_str());
+                    self.component = instantiate(api, Some("relay"), fmi2CoSimulation, guid, Some(&self.log));
+                    if self.component.is_null() { fmi2Error } else { fmi2OK }
+                }
+                Call::Get {
+                    kind,
+                    references,
+                    fault,
+                } => return self.get(*kind, references, *fault),
+                Call::Set { kind, values, fault } => self.set(*kind, values, *fault),
+                Call::GetState { .. }
+                | Call::SetState { .. }
+                | Call::FreeState { .. }
+                | Call::StateSize { .. }
+                | Call::Serialize { .. }
+                | Call::Deserialize { .. } => return self.state_call(call),
+                Call::DirectionalDerivative => {
+                    let (known, unknown) = (DESCRIPTION.variables[0].reference, DESCRIPTION.outputs(Kind::Real)[0]);
+                    let (change, mut result) = (1.0, 0.0);
+                    (api.fmi2GetDirectionalDerivative)(
+                        c,
+                        &raw const unknown,
+                        1,
+                        &raw const known,
+                        1,
+                        &raw const change,
+                        &raw mut result,
+                    )
+                }
+                Call::SetInputDerivatives { values, fault } => {
+                    let references: Vec<_> = values.iter().map(|value| value.0).collect();
+                    let orders: Vec<_> = values.iter().map(|value| value.1).collect();
+                    let numbers: Vec<_> = values.iter().map(|value| value.2).collect();
+                    let (vr, value, count) = arguments(*fault, &references, &numbers);
+                    (api.fmi2SetRealInputDerivatives)(c, vr, count, middle(*fault, &orders), value)
+                }
+                Call::GetOutputDerivatives { values, fault } => {
+                    let references: Vec<_> = values.iter().map(|value| value.0).collect();
+                    let orders: Vec<_> = values.iter().map(|value| value.1).collect();
+                    let mut numbers = vec![f64::NAN; values.len()];
+                    let (vr, value, count) = places(*fault, &references, &mut numbers);
+                    let status = (api.fmi2GetRealOutputDerivatives)(c, vr, count, middle(*fault, &orders), value);
+                    return (status, numbers);
+                }
+                Call::DoStep { point, size } => (api.fmi2DoStep)(c, point.instant(time, *size), *size, fmi2True),
+                Call::CancelStep => (api.fmi2CancelStep)(c),
+                Call::Status { function, kind, fault } => return self.status(*function, *kind, *fault),
+                Call::Replay { .. } => unreachable!("a replay is made of other calls"),
+            }
+        };
+        (status, Vec::new())
+    }
+
+    fn get(&self, kind: Kind, references: &[u32], fault: Fault) -> Answer {
+        let (api, c) = (self.api, self.component);
+        let mut reals = vec![f64::NAN; references.len()];
+        let mut integers = vec![i32::MIN; references.len()];
+        let mut texts: Vec<fmi2String> = vec![ptr::null(); references.len()];
+        unsafe {
+            let status = match kind {
+                Kind::Real => {
+                    let (vr, value, count) = places(fault, references, &mut reals);
+                    return ((api.fmi2GetReal)(c, vr, count, value), reals);
+                }
+                Kind::Integer => {
+                    let (vr, value, count) = places(fault, references, &mut integers);
+                    (api.fmi2GetInteger)(c, vr, count, value)
+                }
+                Kind::Boolean => {
+                    let (vr, value, count) = places(fault, references, &mut integers);
+                    (api.fmi2GetBoolean)(c, vr, count, value)
+                }
+                Kind::String => {
+                    let (vr, value, count) = places(fault, references, &mut texts);
+                    (api.fmi2GetString)(c, vr, count, value)
+                }
+            };
+            (status, integers.into_iter().map(f64::from).collect())
+        }
+    }
+
+    #[allow(clippy::cast_possible_truncation)] // saturates, as wanted of values beyond the integers
+    fn set(&self, kind: Kind, values: &[(u32, f64)], fault: Fault) -> fmi2Status {
+        let (api, c) = (self.api, self.component);
+        let references: Vec<_> = values.iter().map(|value| value.0).collect();
+        let reals: Vec<_> = values.iter().map(|value| value.1).collect();
+        let integers: Vec<_> = values.iter().map(|value| value.1 as i32).collect();
+        let texts: Vec<_> = values.iter().map(|_| c"text".as_ptr()).collect();
+        unsafe {
+            match kind {
+                Kind::Real => {
+                    let (vr, value, count) = arguments(fault, &references, &reals);
+                    (api.fmi2SetReal)(c, vr, count, value)
+                }
+                Kind::Integer => {
+                    let (vr, value, count) = arguments(fault, &references, &integers);
+                    (api.fmi2SetInteger)(c, vr, count, value)
+                }
+                Kind::Boolean => {
+                    let (vr, value, count) = arguments(fault, &references, &integers);
+                    (api.fmi2SetBoolean)(c, vr, count, value)
+                }
+                Kind::String => {
+                    let (vr, value, count) = arguments(fault, &references, &texts);
+                    (api.fmi2SetString)(c, vr, count, value)
+                }
+            }
+        }
+    }
+
+    fn state_call(&mut self, call: &Call) -> Answer {
+        let (api, c) = (self.api, self.component);
+        let mut foreign = [0_u64; 8];
+        let mut foreign: fmi2FMUstate = foreign.as_mut_ptr().cast();
+        // The state itself, as some functions want it.
+        let state = |slot: usize, fault| match fault {
+            Fault::Foreign => foreign,
+            Fault::FirstNull => ptr::null_mut(),
+            Fault::Misaligned => foreign.wrapping_byte_add(1),
+            _ => self.states[slot],
+        };
+        let status = unsafe {
+            match *call {
+                Call::SetState { slot, fault } => (api.fmi2SetFMUstate)(c, state(slot, fault)),
+                Call::StateSize { slot, fault } => {
+                    let mut size = 0;
+                    let place = if fault == Fault::LastNull {
+                        ptr::null_mut()
+                    } else {
+                        &raw mut size
+                    };
+                    let status = (api.fmi2SerializedFMUstateSize)(c, state(slot, fault), place);
+                    return (status, vec![size as f64]);
+                }
+                Call::Serialize { slot, fault } => {
+                    let from = state(slot, fault);
+                    let mut size = 0;
+                    if !self.states[slot].is_null() {
+                        (api.fmi2SerializedFMUstateSize)(c, self.states[slot], &raw mut size);
+                    }
+                    let mut room = vec![0_u8; size];
+                    let (place, size) = match fault {
+                        Fault::LastNull => (ptr::null_mut(), size),
+                        Fault::NullAndEndless => (ptr::null_mut(), usize::MAX),
+                        Fault::Endless => (room.as_mut_ptr().cast(), usize::MAX),
+                        _ => (room.as_mut_ptr().cast(), size),
+                    };
+                    let status = (api.fmi2SerializeFMUstate)(c, from, place, size);
+                    if status == fmi2OK {
+                        self.bytes[slot] = room;
+                    }
+                    status
+                }
+                Call::GetState { slot, fault } => match fault {
+                    Fault::FirstNull => (api.fmi2GetFMUstate)(c, ptr::null_mut()),
+                    Fault::Foreign => (api.fmi2GetFMUstate)(c, &raw mut foreign),
+                    _ => (api.fmi2GetFMUstate)(c, &raw mut self.states[slot]),
+                },
+                Call::FreeState { slot, fault } => match fault {
+                    Fault::FirstNull => (api.fmi2FreeFMUstate)(c, ptr::null_mut()),
+                    Fault::Foreign => (api.fmi2FreeFMUstate)(c, &raw mut foreign),
+                    _ => (api.fmi2FreeFMUstate)(c, &raw mut self.states[slot]),
+                },
+                Call::Deserialize { slot, damage, fault } => {
+                    let bytes = damaged(&self.bytes[slot], damage);
+                    let (bytes, size) = match fault {
+                        Fault::FirstNull => (ptr::null(), bytes.len()),
+                        Fault::NullAndEndless => (ptr::null(), usize::MAX),
+                        Fault::Endless => (bytes.as_ptr().cast(), usize::MAX),
+                        _ => (bytes.as_ptr().cast(), bytes.len()),
+                    };
+                    let place = match fault {
+                        Fault::LastNull => ptr::null_mut(),
+                        Fault::Foreign => &raw mut foreign,
+                        _ => &raw mut self.states[slot],
+                    };
+                    (api.fmi2DeSerializeFMUstate)(c, bytes, size, place)
+                }
+                _ => unreachable!("no call about saved states: {call:?}"),
+            }
+        };
+        (status, Vec::new())
+    }
+
+    fn status(&self, function: StatusFunction, kind: u32, fault: Fault) -> Answer {
+        let (api, c) = (self.api, self.component);
+        let (mut status, mut real, mut integer, mut text) = (fmi2OK, f64::NAN, i32::MIN, ptr::null());
+        unsafe {
+            match function {
+                StatusFunction::Status => ((api.fmi2GetStatus)(c, kind, place(fault, &mut status)), Vec::new()),
+                StatusFunction::Real => ((api.fmi2GetRealStatus)(c, kind, place(fault, &mut real)), vec![real]),
+                StatusFunction::Integer => (
+                    (api.fmi2GetIntegerStatus)(c, kind, place(fault, &mut integer)),
+                    Vec::new(),
+                ),
+                StatusFunction::Boolean => (
+                    (api.fmi2GetBooleanStatus)(c, kind, place(fault, &mut integer)),
+                    vec![f64::from(integer)],
+                ),
+                StatusFunction::String => ((api.fmi2GetStringStatus)(c, kind, place(fault, &mut text)), Vec::new()),
+            }
+        }
+    }
+}
+
+impl Drop for Importer<'_> {
+    fn drop(&mut self) {
+        unsafe {
+            for state in &mut self.states {
+                (self.api.fmi2FreeFMUstate)(self.component, state);
+            }
+            (self.api.fmi2FreeInstance)(self.component);
+        }
+    }
+}
+
+/// The bytes with their damage.
+pub fn damaged(bytes: &[u8], damage: Damage) -> Vec<u8> {
+    let mut bytes = bytes.to_vec();
+    match damage {
+        Damage::None => {}
+        Damage::Flip(_) | Damage::Cut(_) if bytes.is_empty() => {}
+        Damage::Flip(at) => {
+            let at = at as usize % (8 * bytes.len());
+            bytes[at / 8] ^= 1 << (at % 8);
+        }
+        Damage::Cut(length) => bytes.truncate(length as usize % bytes.len()),
+        Damage::Longer(count) => bytes.extend(vec![0; usize::from(count) + 1]),
+    }
+    bytes
+}
+
+/// `fmi2Instantiate` with what can go wrong left open; no callbacks without a log.
+pub fn instantiate(
+    api: &Api,
+    name: Option<&str>,
+    kind: fmi2Type,
+    guid: Option<&str>,
+    log: Option<&Log>,
+) -> fmi2Component {
+    let text = |text: Option<&str>| text.map(|text| CString::new(text).unwrap_or_default());
+    let pointer = |text: &Option<CString>| text.as_ref().map_or(ptr::null(), |text| text.as_ptr());
+    let (name, guid) = (text(name), text(guid));
+    let callbacks = log.map(callbacks);
+    let callbacks = callbacks.as_ref().map_or(ptr::null(), ptr::from_ref);
+    unsafe { (api.fmi2Instantiate)(pointer(&name), kind, pointer(&guid), ptr::null(), callbacks, 0, 0) }
+}

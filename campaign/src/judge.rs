@@ -1,0 +1,224 @@
+//! A call made, and compared with what the life cycle says.
+
+use std::collections::BTreeSet;
+
+use relay_contact::fmi2::*;
+
+use crate::api::Api;
+use crate::call::{Call, Fault, StatusFunction};
+use crate::description::{DESCRIPTION, Kind, Role};
+use crate::importer::{Answer, Importer};
+use crate::life_cycle::{LifeCycle, of_kind};
+use crate::phase::Phase;
+
+/// An instance under judgement.
+#[derive(Debug)]
+pub struct Judge<'a> {
+    /// The instance.
+    pub importer: Importer<'a>,
+    /// What should be true of it.
+    pub life: LifeCycle,
+    /// Calls made.
+    pub calls: u64,
+    /// Communication steps made.
+    pub steps: u64,
+    /// Functions with the statuses they answered.
+    pub met: BTreeSet<(&'static str, fmi2Status)>,
+}
+
+impl<'a> Judge<'a> {
+    /// A new instance.
+    pub fn new(api: &'a Api) -> Self {
+        Self {
+            importer: Importer::new(api),
+            life: LifeCycle::default(),
+            calls: 0,
+            steps: 0,
+            met: BTreeSet::new(),
+        }
+    }
+
+    /// Makes a call.
+    ///
+    /// # Errors
+    /// What the component did wrong.
+    pub fn call(&mut self, call: &Call) -> Result<(), String> {
+        if let Call::Replay {
+            slot,
+            inputs,
+            steps,
+            size,
+        } = call
+        {
+            return self.replay(*slot, inputs, *steps, *size);
+        }
+        self.learn_whether_it_fits(call)?;
+        let (status, values) = self.answer(call)?;
+        if status == fmi2OK {
+            self.check_values(call, &values)?;
+        }
+        self.life.follow(call, status);
+        self.check_state(call, status)
+    }
+
+    /// Status and message.
+    fn answer(&mut self, call: &Call) -> Result<Answer, String> {
+        let verdict = self.life.verdict(call);
+        let (status, values) = self.importer.make(call, self.life.now.time);
+        self.calls += 1;
+        self.met.insert((call.function(), status));
+        let messages = self.importer.messages();
+        if !verdict.statuses().contains(&status) {
+            let phase = self.life.now.phase;
+            return Err(format!(
+                "{call:?} in {phase:?}: status {status}, expected {verdict:?}; {messages:?}"
+            ));
+        }
+        let (category, shown) = match status {
+            fmi2OK => ("", false),
+            fmi2Warning | fmi2Discard => ("logStatusWarning", self.life.warnings),
+            _ => ("logStatusError", self.life.errors),
+        };
+        let about_status: Vec<_> = messages
+            .iter()
+            .filter(|message| message.1.starts_with("logStatus"))
+            .collect();
+        let right = match about_status[..] {
+            [] => !shown,
+            [(told, named, text)] => {
+                shown && *told == status && named == category && text.starts_with(&format!("{}: ", call.function()))
+            }
+            _ => false,
+        };
+        if right {
+            Ok((status, values))
+        } else {
+            Err(format!(
+                "{call:?}: status {status}, but the messages are {messages:?} (shown: {shown})"
+            ))
+        }
+    }
+
+    /// Once an output can be read in Initialization Mode, initialisation must end well, and the other way round.
+    fn learn_whether_it_fits(&mut self, call: &Call) -> Result<(), String> {
+        let asks = matches!(call, Call::Get { references, .. } if references.len() > 1);
+        if asks && self.life.now.phase == Phase::InitializationMode && self.life.now.fits.is_none() {
+            let one = DESCRIPTION.outputs(Kind::Real)[0];
+            self.call(&Call::get(Kind::Real, vec![one]))?;
+        }
+        Ok(())
+    }
+
+    fn check_values(&self, call: &Call, values: &[f64]) -> Result<(), String> {
+        let now = &self.life.now;
+        match call {
+            Call::Get { kind, references, .. } => {
+                for (&reference, &value) in references.iter().zip(values) {
+                    let known = of_kind(*kind, reference).is_some_and(|variable| variable.role != Role::Output);
+                    if known && value.to_bits() != now.value(reference).to_bits() {
+                        return Err(format!("{reference} is {value}, was set to {}", now.value(reference)));
+                    }
+                    if !value.is_finite() || (*kind == Kind::Boolean && ![0.0, 1.0].contains(&value)) {
+                        return Err(format!("{reference} is {value}; {:?}", now.values));
+                    }
+                }
+            }
+            Call::GetOutputDerivatives { .. } if !values.iter().all(|value| value.is_finite()) => {
+                return Err(format!("{call:?}: {values:?}"));
+            }
+            Call::Status {
+                function: StatusFunction::Real,
+                ..
+            } if values != [now.time] => {
+                return Err(format!("last successful time {values:?} instead of {}", now.time));
+            }
+            Call::Status {
+                function: StatusFunction::Boolean,
+                ..
+            } if values != [0.0] => return Err(format!("terminated: {values:?}")),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// The outputs after calls that could have changed them, and the values after a state was set.
+    fn check_state(&mut self, call: &Call, status: fmi2Status) -> Result<(), String> {
+        let moves = match call {
+            Call::DoStep { .. } => true,
+            Call::ExitInitializationMode | Call::SetState { .. } | Call::Terminate | Call::Set { .. } => {
+                status == fmi2OK
+            }
+            _ => false,
+        };
+        let readable = matches!(self.life.now.phase, Phase::StepComplete | Phase::Terminated)
+            || (self.life.now.phase == Phase::Error && self.life.now.computed);
+        if moves && readable {
+            let outputs = self.outputs()?;
+            let anew = matches!(call, Call::DoStep { .. } | Call::ExitInitializationMode) && status == fmi2OK;
+            if let Some(before) = self
+                .life
+                .now
+                .outputs
+                .as_ref()
+                .filter(|before| !anew && **before != outputs)
+            {
+                return Err(format!("{call:?}: outputs were {before:x?}, are {outputs:x?}"));
+            }
+            self.life.now.outputs = Some(outputs);
+        }
+        if matches!(call, Call::DoStep { .. }) && status == fmi2OK {
+            self.steps += 1;
+            self.call(&Call::Status {
+                function: StatusFunction::Real,
+                kind: fmi2LastSuccessfulTime,
+                fault: Fault::None,
+            })?;
+        }
+        if matches!(call, Call::SetState { .. }) && status == fmi2OK {
+            for kind in [Kind::Real, Kind::Integer, Kind::Boolean] {
+                let settable =
+                    |variable: &&crate::description::Variable| variable.role != Role::Output && variable.kind == kind;
+                let references = DESCRIPTION.variables.iter().filter(settable);
+                self.call(&Call::get(
+                    kind,
+                    references.map(|variable| variable.reference).collect(),
+                ))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The bits of all outputs, which must be finite.
+    fn outputs(&mut self) -> Result<Vec<u64>, String> {
+        let mut bits = Vec::new();
+        for kind in [Kind::Real, Kind::Integer, Kind::Boolean] {
+            let get = Call::get(kind, DESCRIPTION.outputs(kind));
+            let (_, values) = self.answer(&get)?;
+            self.check_values(&get, &values)?;
+            bits.extend(values.iter().map(|value| value.to_bits()));
+        }
+        Ok(bits)
+    }
+
+    fn replay(&mut self, slot: usize, inputs: &[(u32, f64)], steps: u32, size: f64) -> Result<(), String> {
+        let mut run = || {
+            self.call(&Call::SetState {
+                slot,
+                fault: Fault::None,
+            })?;
+            self.call(&Call::set_reals(inputs.to_vec()))?;
+            let mut trace = Vec::new();
+            for _ in 0..steps {
+                self.call(&Call::step(size))?;
+                trace.push((self.life.now.phase, self.life.now.outputs.clone()));
+            }
+            Ok::<_, String>(trace)
+        };
+        let (first, second) = (run()?, run()?);
+        if first == second {
+            Ok(())
+        } else {
+            Err(format!("a replay differs: {first:x?}\n{second:x?}"))
+        }
+    }
+}

@@ -1,0 +1,424 @@
+//! The life of an instance as FMI 2.0 has it for co-simulation (sections 2.1 and 4.2), in our own words and apart from
+//! the component's own table: which status a call must have, and what is true after it.
+//!
+//! Where the standard leaves room, this is what the component promises:
+//! - the first wrong thing of a call decides its status: a state that does not allow it, a pointer, then the elements of
+//!   its arrays in their order;
+//! - inputs and parameters can be read before initialisation; outputs cannot;
+//! - a value out of range is `fmi2Discard` and nothing of its call is taken over; any other wrong call is `fmi2Error`;
+//! - after `fmi2Error`, values and status can be read, a saved state be set, the instance be reset or freed; but a capability that
+//!   is not offered, or outputs asked for while parameters do not fit yet, leave the instance as it was.
+
+use relay_contact::fmi2::*;
+
+use crate::call::{Call, Damage, Fault, Point, SLOTS, StatusFunction};
+use crate::description::{DESCRIPTION, Kind, Role, Variable};
+use crate::phase::{Phase, allowed};
+
+use Phase::{Error, InitializationMode, Instantiated, StepComplete, Terminated};
+
+/// The statuses a call may have, and what an error among them does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// `fmi2OK`.
+    Accept,
+    /// `fmi2Warning`: done but for what the log tells.
+    Remark,
+    /// `fmi2Discard`, nothing changed.
+    Discard,
+    /// `fmi2Error`, the instance is in the state error.
+    Fail,
+    /// `fmi2Error`, nothing changed.
+    Refuse,
+    /// `Accept` or `Fail`, as the physics wants.
+    AcceptOrFail,
+    /// `Accept` or `Refuse`, as the physics wants.
+    AcceptOrRefuse,
+}
+
+use Verdict::{Accept, AcceptOrFail, AcceptOrRefuse, Discard, Fail, Refuse, Remark};
+
+impl Verdict {
+    /// The statuses.
+    pub fn statuses(self) -> &'static [fmi2Status] {
+        match self {
+            Accept => &[fmi2OK],
+            Remark => &[fmi2Warning],
+            Discard => &[fmi2Discard],
+            Fail | Refuse => &[fmi2Error],
+            AcceptOrFail | AcceptOrRefuse => &[fmi2OK, fmi2Error],
+        }
+    }
+}
+
+/// All that is true of an instance at a moment, and that a saved state brings back.
+#[derive(Clone, Debug)]
+pub struct Moment {
+    /// Where in its life.
+    pub phase: Phase,
+    /// Values of the inputs and parameters, in the order of the description.
+    pub values: Vec<f64>,
+    /// Derivatives of the inputs over the next step, in the same order.
+    rates: Vec<f64>,
+    /// Where it stands, s.
+    pub time: f64,
+    /// End of the experiment, s.
+    pub stop: f64,
+    /// Whether outputs have been computed.
+    pub computed: bool,
+    /// Whether the parameters fit together, once that is known.
+    pub fits: Option<bool>,
+    /// Whether it was driven by more than numbers can follow, so that a step may fail.
+    pub extreme: bool,
+    /// The bits of the outputs, once read at this communication point.
+    pub outputs: Option<Vec<u64>>,
+}
+
+impl Moment {
+    fn new() -> Self {
+        Self {
+            phase: Instantiated,
+            values: DESCRIPTION.variables.iter().map(|variable| variable.start).collect(),
+            rates: vec![0.0; DESCRIPTION.variables.len()],
+            time: 0.0,
+            stop: f64::INFINITY,
+            computed: false,
+            fits: None,
+            extreme: false,
+            outputs: None,
+        }
+    }
+
+    /// The value of an input or parameter.
+    pub fn value(&self, reference: u32) -> f64 {
+        DESCRIPTION
+            .position(reference)
+            .map_or(f64::NAN, |position| self.values[position])
+    }
+}
+
+/// An instance, its saved states and their bytes.
+#[derive(Clone, Debug)]
+pub struct LifeCycle {
+    /// The instance.
+    pub now: Moment,
+    /// The saved states.
+    pub saved: [Option<Moment>; SLOTS],
+    /// What the bytes of each slot hold.
+    pub written: [Option<Moment>; SLOTS],
+    /// Whether errors are logged.
+    pub errors: bool,
+    /// Whether warnings are logged.
+    pub warnings: bool,
+}
+
+impl Default for LifeCycle {
+    fn default() -> Self {
+        Self {
+            now: Moment::new(),
+            saved: [const { None }; SLOTS],
+            written: [const { None }; SLOTS],
+            errors: true,
+            warnings: true,
+        }
+    }
+}
+
+impl LifeCycle {
+    /// What a call must come to.
+    pub fn verdict(&self, call: &Call) -> Verdict {
+        if !allowed(call.function(), self.now.phase) {
+            return Fail;
+        }
+        match call {
+            Call::SetDebugLogging { categories, fault, .. } => self::logging(categories, *fault),
+            Call::SetupExperiment { tolerance, start, stop } => {
+                if !start.is_finite() || stop.is_some_and(|stop| stop.is_nan() || stop < *start) {
+                    Fail
+                } else if tolerance.is_some_and(|tolerance| !(tolerance.is_finite() && tolerance > 0.0)) {
+                    Remark
+                } else {
+                    Accept
+                }
+            }
+            Call::ExitInitializationMode => match self.now.fits {
+                Some(true) => Accept,
+                Some(false) => Fail,
+                None => AcceptOrFail,
+            },
+            Call::EnterInitializationMode | Call::Terminate | Call::Reset | Call::Renew => Accept,
+            Call::Get {
+                kind,
+                references,
+                fault,
+            } => arrays(*fault, references.len()).unwrap_or_else(|| self.get(*kind, references)),
+            Call::Set { kind, values, fault } => {
+                arrays(*fault, values.len()).unwrap_or_else(|| self.set(*kind, values))
+            }
+            Call::DoStep { point, size } => self.step(*point, *size),
+            Call::Status { function, kind, fault } => match (fault, function, kind) {
+                (Fault::LastNull | Fault::Misaligned, ..) => Fail,
+                (_, StatusFunction::Real, 2) | (_, StatusFunction::Boolean, 3) => Accept,
+                _ => Discard,
+            },
+            Call::DirectionalDerivative => Refuse,
+            Call::SetInputDerivatives { values, fault } => {
+                if !DESCRIPTION.input_derivatives {
+                    return Refuse;
+                }
+                let judge = |&(reference, order, value): &(u32, i32, f64)| match continuous(reference, Role::Input) {
+                    true if order == 1 && value.is_finite() => Accept,
+                    true if order == 1 => Discard,
+                    _ => Fail,
+                };
+                three_arrays(*fault, values.len()).unwrap_or_else(|| first_wrong(values.iter().map(judge)))
+            }
+            Call::GetOutputDerivatives { values, fault } => {
+                if !DESCRIPTION.output_derivatives {
+                    return Refuse;
+                }
+                let judge = |&(reference, order): &(u32, i32)| {
+                    if continuous(reference, Role::Output) && order == 1 && self.now.computed {
+                        Accept
+                    } else {
+                        Fail
+                    }
+                };
+                three_arrays(*fault, values.len()).unwrap_or_else(|| first_wrong(values.iter().map(judge)))
+            }
+            Call::CancelStep => Fail,
+            Call::GetState { fault, .. } => no_fault(*fault, &[Fault::FirstNull, Fault::Foreign]),
+            Call::FreeState { fault, .. } => no_fault(*fault, &[Fault::Foreign]),
+            Call::SetState { slot, fault } => self.held(*slot, *fault, &[]),
+            Call::StateSize { slot, fault } => self.held(*slot, *fault, &[Fault::LastNull]),
+            Call::Serialize { slot, fault } => {
+                self.held(*slot, *fault, &[Fault::LastNull, Fault::Endless, Fault::NullAndEndless])
+            }
+            Call::Deserialize { slot, damage, fault } => {
+                let wrong = [
+                    Fault::FirstNull,
+                    Fault::LastNull,
+                    Fault::Foreign,
+                    Fault::Endless,
+                    Fault::NullAndEndless,
+                ];
+                if *damage == Damage::None && self.written[*slot].is_some() {
+                    no_fault(*fault, &wrong)
+                } else {
+                    Fail
+                }
+            }
+            Call::Replay { .. } => unreachable!("a replay is made of other calls"),
+        }
+    }
+
+    fn held(&self, slot: usize, fault: Fault, also: &[Fault]) -> Verdict {
+        let wrong = [Fault::FirstNull, Fault::Foreign, Fault::Misaligned].contains(&fault);
+        if wrong || self.saved[slot].is_none() {
+            Fail
+        } else {
+            no_fault(fault, also)
+        }
+    }
+
+    fn get(&self, kind: Kind, references: &[u32]) -> Verdict {
+        first_wrong(references.iter().map(|&reference| match of_kind(kind, reference) {
+            None => Fail,
+            Some(variable) if variable.role != Role::Output => Accept,
+            Some(_) => match (self.now.phase, self.now.fits) {
+                (InitializationMode, Some(true)) | (StepComplete | Terminated, _) => Accept,
+                (InitializationMode, Some(false)) => Refuse,
+                (InitializationMode, None) => AcceptOrRefuse,
+                (Error, _) if self.now.computed => Accept,
+                (Instantiated | Error, _) => Fail,
+            },
+        }))
+    }
+
+    fn set(&self, kind: Kind, values: &[(u32, f64)]) -> Verdict {
+        first_wrong(values.iter().map(|&(reference, value)| match of_kind(kind, reference) {
+            None => Fail,
+            Some(variable) => match variable.role {
+                Role::Output => Fail,
+                Role::Parameter if self.now.phase == StepComplete => Fail,
+                _ if variable.allows(as_held(kind, value)) => Accept,
+                _ => Discard,
+            },
+        }))
+    }
+
+    fn step(&self, point: Point, size: f64) -> Verdict {
+        let point = point.instant(self.now.time, size);
+        let end = point + size;
+        if !(size.is_finite() && size > 0.0 && point.is_finite() && end.is_finite() && end > point) {
+            return Fail;
+        }
+        // The importer's time and the component's may differ by a few roundings, and must not by a thousandth of a
+        // step; what lies between is the component's affair. The same holds for the stop time.
+        let rounding = f64::EPSILON * point.abs().max(end.abs());
+        let off = (point - self.now.time).abs();
+        if off > 1e2 * rounding + 1e-3 * size {
+            return Fail;
+        }
+        let late = end - self.now.stop;
+        if late > 1e2 * rounding + 1e-2 * size {
+            return Fail;
+        }
+        let mut courses = DESCRIPTION.variables.iter().zip(&self.now.values).zip(&self.now.rates);
+        if courses.any(|((variable, value), rate)| *rate != 0.0 && !variable.allows(value + rate * size)) {
+            return Fail;
+        }
+        if !ORDINARY_STEPS.contains(&size)
+            || off > 4.0 * rounding
+            || late > 0.0
+            || self.now.extreme
+            || self.pushed_hard()
+        {
+            return AcceptOrFail;
+        }
+        Accept
+    }
+
+    /// Whether the inputs are beyond what the ranges of the generated excitation allow, which are meant to be wide.
+    fn pushed_hard(&self) -> bool {
+        let acceleration = DESCRIPTION.reference("base.acceleration");
+        let rate = DESCRIPTION
+            .position(acceleration)
+            .map_or(0.0, |position| self.now.rates[position]);
+        self.now.value(acceleration).abs() > 1e6 || rate.abs() > 1e12
+    }
+
+    /// What is true after the call came to `status`, which the verdict allows.
+    pub fn follow(&mut self, call: &Call, status: fmi2Status) {
+        let verdict = self.verdict(call);
+        let now = &mut self.now;
+        if let (Call::Get { kind, references, .. }, InitializationMode) = (call, now.phase) {
+            let reads_output = references
+                .iter()
+                .any(|&reference| of_kind(*kind, reference).is_some_and(|variable| variable.role == Role::Output));
+            if reads_output && now.fits.is_none() && verdict == AcceptOrRefuse {
+                now.fits = Some(status == fmi2OK);
+            }
+            now.computed |= reads_output && now.fits == Some(true);
+        }
+        if status == fmi2Error {
+            if !matches!(verdict, Refuse | AcceptOrRefuse) {
+                now.phase = Error;
+            }
+            return;
+        }
+        if status == fmi2Discard {
+            return;
+        }
+        match call {
+            Call::SetDebugLogging { on, categories, .. } if status == fmi2OK => {
+                let named = |name: &str| categories.iter().flatten().any(|category| category == name);
+                let (errors, warnings) = (named("logStatusError"), named("logStatusWarning"));
+                (self.errors, self.warnings) = match (on, categories.is_empty()) {
+                    (true, true) => (true, true),
+                    (true, false) => (errors, warnings),
+                    (false, _) => (self.errors && !errors, self.warnings && !warnings),
+                };
+            }
+            Call::SetupExperiment { start, stop, .. } => {
+                (now.time, now.stop) = (*start, stop.unwrap_or(f64::INFINITY));
+            }
+            Call::EnterInitializationMode => now.phase = InitializationMode,
+            Call::ExitInitializationMode => (now.phase, now.fits, now.computed) = (StepComplete, Some(true), true),
+            Call::Terminate => now.phase = Terminated,
+            Call::Reset => *now = Moment::new(),
+            Call::Renew => (*now, self.errors, self.warnings) = (Moment::new(), true, true),
+            Call::Set { kind, values, .. } => {
+                for &(reference, value) in values {
+                    if let Some(position) = DESCRIPTION.position(reference) {
+                        now.values[position] = as_held(*kind, value);
+                    }
+                }
+                if now.phase == InitializationMode {
+                    (now.fits, now.computed) = (None, false);
+                }
+            }
+            Call::SetInputDerivatives { values, .. } => {
+                for &(reference, _, rate) in values {
+                    if let Some(position) = DESCRIPTION.position(reference) {
+                        now.rates[position] = rate;
+                    }
+                }
+            }
+            Call::DoStep { point, size } => {
+                now.time = point.instant(now.time, *size) + size;
+                self.now.extreme |= self.pushed_hard();
+                self.now.rates.fill(0.0);
+            }
+            Call::GetState { slot, .. } => self.saved[*slot] = Some(now.clone()),
+            Call::SetState { slot, .. } => {
+                if let Some(moment) = &self.saved[*slot] {
+                    *now = moment.clone();
+                }
+            }
+            Call::FreeState { slot, fault } if *fault != Fault::FirstNull => self.saved[*slot] = None,
+            Call::Serialize { slot, .. } => self.written[*slot].clone_from(&self.saved[*slot]),
+            Call::Deserialize { slot, .. } => self.saved[*slot].clone_from(&self.written[*slot]),
+            _ => {}
+        }
+    }
+}
+
+/// Communication steps (s) in which no input can change faster, and no time get coarser, than numbers can follow.
+const ORDINARY_STEPS: std::ops::RangeInclusive<f64> = 1e-9..=1e3;
+
+/// The variable of the reference, if it has the type.
+pub fn of_kind(kind: Kind, reference: u32) -> Option<&'static Variable> {
+    DESCRIPTION.variable(reference).filter(|variable| variable.kind == kind)
+}
+
+fn continuous(reference: u32, role: Role) -> bool {
+    of_kind(Kind::Real, reference).is_some_and(|variable| variable.role == role && variable.continuous)
+}
+
+/// The value as a variable of the type holds it.
+fn as_held(kind: Kind, value: f64) -> f64 {
+    #[allow(clippy::cast_possible_truncation)] // saturates
+    match kind {
+        Kind::Real => value,
+        Kind::Integer => f64::from(value as i32),
+        Kind::Boolean | Kind::String => f64::from(u8::from(value != 0.0)),
+    }
+}
+
+fn first_wrong(verdicts: impl Iterator<Item = Verdict>) -> Verdict {
+    let mut wrong = verdicts.filter(|verdict| *verdict != Accept);
+    wrong.next().unwrap_or(Accept)
+}
+
+/// The verdict on the pointers of arrays of some length, unless they are right. Empty arrays may be anything.
+fn arrays(fault: Fault, length: usize) -> Option<Verdict> {
+    let wrong = match fault {
+        Fault::None | Fault::MiddleNull | Fault::Foreign => false,
+        Fault::FirstNull | Fault::LastNull | Fault::Misaligned => length > 0,
+        Fault::NullAndEndless | Fault::Endless => true,
+    };
+    wrong.then_some(Fail)
+}
+
+/// The same with a third array between the two.
+fn three_arrays(fault: Fault, length: usize) -> Option<Verdict> {
+    let missing = fault == Fault::MiddleNull && length > 0;
+    missing.then_some(Fail).or_else(|| arrays(fault, length))
+}
+
+fn no_fault(fault: Fault, wrong: &[Fault]) -> Verdict {
+    if wrong.contains(&fault) { Fail } else { Accept }
+}
+
+fn logging(categories: &[Option<String>], fault: Fault) -> Verdict {
+    if fault != Fault::FirstNull && arrays(fault, categories.len()).is_some() || categories.contains(&None) {
+        return Fail;
+    }
+    let known = |category: &String| DESCRIPTION.categories.contains(category);
+    if categories.iter().flatten().all(known) {
+        Accept
+    } else {
+        Remark
+    }
+}

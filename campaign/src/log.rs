@@ -1,0 +1,43 @@
+//! The messages of an instance.
+
+use std::ffi::CStr;
+use std::ptr;
+use std::sync::Mutex;
+
+use relay_contact::fmi2::*;
+
+/// A message: status, category, text.
+pub type Message = (fmi2Status, String, String);
+
+/// Where the callback writes to.
+pub type Log = Mutex<Vec<Message>>;
+
+/// The log callback without its variable arguments, which the component never passes.
+unsafe extern "C" fn logger(
+    environment: fmi2ComponentEnvironment,
+    instance: fmi2String,
+    status: fmi2Status,
+    category: fmi2String,
+    message: fmi2String,
+) {
+    assert!(!instance.is_null() && !category.is_null() && !message.is_null());
+    let text = |text| unsafe { CStr::from_ptr(text) }.to_string_lossy().into_owned();
+    let log = unsafe { &*environment.cast::<Log>() };
+    if let Ok(mut log) = log.lock() {
+        log.push((status, text(category), text(message)));
+    }
+}
+
+/// Callbacks that write to `log`.
+pub fn callbacks(log: &Log) -> fmi2CallbackFunctions {
+    type Fixed = unsafe extern "C" fn(fmi2ComponentEnvironment, fmi2String, fmi2Status, fmi2String, fmi2String);
+    fmi2CallbackFunctions {
+        // Stable Rust cannot define a variadic function; the C calling conventions of the platforms we test on pass the
+        // fixed arguments of one as those of this function.
+        logger: unsafe { std::mem::transmute::<Fixed, fmi2CallbackLogger>(logger) },
+        allocateMemory: None,
+        freeMemory: None,
+        stepFinished: None,
+        componentEnvironment: ptr::from_ref(log).cast_mut().cast(),
+    }
+}

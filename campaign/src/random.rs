@@ -1,0 +1,93 @@
+//! Sequences of random calls, and the shortest that still fails.
+
+use std::time::{Duration, Instant};
+
+use crate::api::Api;
+use crate::call::Call;
+use crate::choices::{Choices, bytes};
+use crate::draw;
+use crate::judge::Judge;
+
+/// What a sequence did.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Count {
+    /// Calls made.
+    pub calls: u64,
+    /// Communication steps made.
+    pub steps: u64,
+}
+
+/// Bytes a sequence is drawn from: some hundreds of calls.
+const LENGTH: usize = 2000;
+
+/// Makes random calls until there are `wanted` of them, from the sequence with the number `seed` on.
+///
+/// # Panics
+/// At the first wrong answer, with the seed and the shortest sequence found that shows it.
+pub fn campaign(api: &Api, seed: u64, wanted: u64) -> Count {
+    let mut count = Count::default();
+    for seed in seed.. {
+        if count.calls >= wanted {
+            break;
+        }
+        let one = sequence(api, &bytes(seed, LENGTH)).unwrap_or_else(|failure| panic!("seed {seed}\n{failure}"));
+        count.calls += one.calls;
+        count.steps += one.steps;
+    }
+    count
+}
+
+/// Makes the calls that the bytes choose.
+///
+/// # Errors
+/// The first wrong answer, with the shortest sequence found that shows it.
+pub fn sequence(api: &Api, bytes: &[u8]) -> Result<Count, String> {
+    let mut judge = Judge::new(api);
+    let mut choices = Choices::new(bytes);
+    let mut made = Vec::new();
+    while !choices.is_empty() {
+        let call = draw::call(&mut choices, &judge.life.now);
+        made.push(call.clone());
+        if let Err(reason) = judge.call(&call) {
+            drop(judge);
+            let (calls, reason) = shortened(api, made, reason);
+            let calls: Vec<_> = calls.iter().map(|call| format!("  {call:?}")).collect();
+            return Err(format!("{reason}\nafter the calls\n{}", calls.join("\n")));
+        }
+    }
+    Ok(Count {
+        calls: judge.calls,
+        steps: judge.steps,
+    })
+}
+
+/// Makes the calls on a new instance.
+///
+/// # Errors
+/// The first wrong answer.
+pub fn run(api: &Api, calls: &[Call]) -> Result<(), String> {
+    let mut judge = Judge::new(api);
+    calls.iter().try_for_each(|call| judge.call(call))
+}
+
+/// How long a shorter sequence is looked for.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+/// Leaves out what is not needed for a failure: halves first, single calls last.
+fn shortened(api: &Api, mut calls: Vec<Call>, mut reason: String) -> (Vec<Call>, String) {
+    let start = Instant::now();
+    let mut piece = calls.len().div_ceil(2);
+    while piece > 0 && start.elapsed() < PATIENCE {
+        let mut at = 0;
+        while at < calls.len() && start.elapsed() < PATIENCE {
+            let end = (at + piece).min(calls.len());
+            let rest = [&calls[..at], &calls[end..]].concat();
+            match run(api, &rest) {
+                Err(other) => (calls, reason) = (rest, other),
+                Ok(()) => at = end,
+            }
+        }
+        piece /= 2;
+    }
+    (calls, reason)
+}

@@ -1,0 +1,38 @@
+//! Saved states with hostile contents and a right checksum.
+
+use std::collections::BTreeMap;
+
+use campaign::choices::{Choices, bytes};
+use campaign::hostile::{Outcome, changed, meet, repaired, specimen};
+
+use crate::library::LIBRARY;
+
+#[test]
+fn a_repaired_specimen_is_the_specimen() {
+    let specimen = specimen(&LIBRARY);
+    assert_eq!(
+        repaired(specimen.clone()),
+        specimen,
+        "the form of saved states has changed"
+    );
+    assert_eq!(meet(&LIBRARY, &specimen, 10), Ok(Outcome::WentOn));
+}
+
+#[test]
+fn hostile_contents_are_refused_or_gone_on_from() {
+    let specimen = specimen(&LIBRARY);
+    let mut outcomes = BTreeMap::new();
+    for seed in 0..1000 {
+        let drawn = bytes(seed, 32);
+        let hostile = changed(&specimen, &mut Choices::new(&drawn));
+        // One of some hundred leads to where a step takes its whole budget, which is half a minute at the most: the fuzz
+        // target makes them all.
+        let steps = if seed < 400 { 2 } else { 0 };
+        let outcome = meet(&LIBRARY, &hostile, steps).unwrap_or_else(|reason| panic!("seed {seed}: {reason}"));
+        *outcomes.entry(outcome).or_insert(0) += 1;
+    }
+    println!("{outcomes:?}");
+    for outcome in [Outcome::NotRead, Outcome::NotSet, Outcome::WentOn] {
+        assert!(outcomes.contains_key(&outcome), "no {outcome:?} among {outcomes:?}");
+    }
+}

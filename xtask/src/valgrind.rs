@@ -1,0 +1,133 @@
+//! The calls of importers under valgrind: no error, no leak; and what the checks of a call cost, in instructions.
+//!
+//! Valgrind does not know every instruction of the compilation for AVX2, so the library is built with the feature
+//! `portable`, in a target folder of its own: no other build can mistake its library for one of theirs.
+
+use std::io::BufReader;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+use anyhow::{Context, Result, bail};
+use cargo_metadata::Message;
+
+use crate::commands::{self, cargo, command};
+
+/// Random calls made under valgrind, fifty times slower there.
+const CALLS: &str = "5000";
+
+/// Communication steps of the shorter of the two runs whose instructions are compared.
+const STEPS: u32 = 5000;
+
+/// Whether valgrind is there.
+pub fn is_installed() -> bool {
+    commands::output(command("valgrind").arg("--version")).is_ok()
+}
+
+/// Runs the campaign and the C program under valgrind.
+pub fn run() -> Result<()> {
+    if !is_installed() {
+        bail!("valgrind is missing (on Debian: apt-get install valgrind)");
+    }
+    let campaign = built(&["test", "--no-run", "--package=campaign", "--test=loaded_library"])?;
+    commands::run(
+        memcheck()
+            .arg(campaign)
+            // Instances by the thousand, and every call in every state, show nothing new here and take minutes.
+            .args([
+                "--test-threads=1",
+                "--skip=thousands",
+                "--skip=every_call_in_every_state",
+            ])
+            .env("CAMPAIGN_CALLS", CALLS),
+    )?;
+    let life_cycle = built(&["test", "--no-run", "--package=relay-contact", "--test=c_life_cycle"])?;
+    commands::run(
+        memcheck()
+            // The C program is started by the test, and so is its compiler, which is not looked at.
+            .args([
+                "--trace-children=yes",
+                "--trace-children-skip=*/cc,*/gcc,*/collect2,*/ld,*/as,*/cc1",
+            ])
+            .arg(life_cycle),
+    )
+}
+
+fn memcheck() -> Command {
+    let mut valgrind = command("valgrind");
+    valgrind.args([
+        "--quiet",
+        "--leak-check=full",
+        // What Rust's runtime holds of its main thread to the end is "possibly lost" to valgrind.
+        "--show-leak-kinds=definite,indirect",
+        "--errors-for-leak-kinds=definite,indirect",
+        "--error-exitcode=1",
+    ]);
+    valgrind
+}
+
+/// Prints the instructions of a communication step through C and in the library alone.
+pub fn instructions() -> Result<()> {
+    if !is_installed() {
+        bail!("valgrind is missing (on Debian: apt-get install valgrind)");
+    }
+    let program = built(&["build", "--release", "--package=campaign", "--bin=steps"])?;
+    for scene in ["1us", "10us", "shaken"] {
+        let through_c = per_step(&program, scene, "fmi2DoStep")?;
+        let alone = per_step(&program, scene, "library")?;
+        println!(
+            "{scene}: {through_c:.0} instructions per fmi2DoStep, {alone:.0} per Simulation::step: {:+.2} %",
+            100.0 * (through_c / alone - 1.0)
+        );
+    }
+    Ok(())
+}
+
+/// Instructions of one step: the difference of two runs, so that all that is done once drops out.
+fn per_step(program: &PathBuf, scene: &str, way: &str) -> Result<f64> {
+    let count = |steps: u32| {
+        let output = command("valgrind")
+            .args(["--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null"])
+            .arg(program)
+            .args([scene, way, &steps.to_string()])
+            .output()?;
+        let said = String::from_utf8_lossy(&output.stderr);
+        if !output.status.success() {
+            bail!("{said}");
+        }
+        let total = said
+            .lines()
+            .find_map(|line| line.split_once("I   refs:"))
+            .context("no count of instructions")?;
+        Ok(total.1.trim().replace(',', "").parse::<f64>()?)
+    };
+    Ok((count(2 * STEPS)? - count(STEPS)?) / f64::from(STEPS))
+}
+
+/// Builds with the feature and gives the program.
+fn built(arguments: &[&str]) -> Result<PathBuf> {
+    let (subcommand, rest) = arguments.split_first().context("no arguments")?;
+    let mut build = cargo();
+    build
+        .arg(subcommand)
+        .args([
+            "--features=portable",
+            "--target-dir=target/portable",
+            "--message-format=json-render-diagnostics",
+        ])
+        .args(rest)
+        .stdout(Stdio::piped());
+    let mut child = build.spawn()?;
+    let messages = child.stdout.take().context("cargo says nothing")?;
+    let mut program = None;
+    for message in Message::parse_stream(BufReader::new(messages)) {
+        if let Message::CompilerArtifact(artifact) = message?
+            && let Some(executable) = artifact.executable
+        {
+            program = Some(executable.into_std_path_buf());
+        }
+    }
+    if !child.wait()?.success() {
+        bail!("the build with the feature portable failed");
+    }
+    program.context("cargo built no program")
+}
