@@ -471,8 +471,8 @@ fn a_slow_sweep_is_not_stepped_at_its_highest_frequency() {
 fn random_acceleration_has_the_power_asked_for() {
     let (low, high, density) = (20.0, 2000.0, 3.0);
     let generator = generator(&random(0.0, low, high, density));
-    let (rate, time) = (10_007.0, 10.0);
-    let count = (rate * time) as u32;
+    let (rate, count) = (10_007.0, 100_000_u32);
+    let time = f64::from(count) / rate;
     let power = (0..count)
         .map(|k| generator.acceleration(f64::from(k) / rate).powi(2))
         .sum::<f64>()

@@ -31,14 +31,6 @@ pub struct Accelerations<const S: usize> {
     pub nodes: Nodal<S>,
 }
 
-impl<const S: usize> Accelerations<S> {
-    /// Without a generator.
-    const NONE: Self = Self {
-        start: 0.0,
-        nodes: [0.0; S],
-    };
-}
-
 /// Sines and cosines of the angles that a phase turns through from the start of a step to its nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotation<const S: usize> {
@@ -192,19 +184,40 @@ impl Generator {
     /// that [`Generator::next_break`] tells.
     #[inline(always)]
     pub fn over_step<const S: usize>(&self, machine: Machine, time: f64, turns: &Turns<S>) -> Accelerations<S> {
-        match (self, turns) {
+        let mut nodes = [0.0; S];
+        let start = match (self, turns) {
+            (Self::None, _) => 0.0,
             (Self::Sine(_), Turns::Sine(rotation)) => {
                 let (sin, cos) = self.phasor(time);
-                let mut nodes = rotation.cos;
-                for (node, turn) in nodes.iter_mut().zip(&rotation.sin) {
-                    *node = sin * *node + cos * turn;
+                for ((node, to_sin), to_cos) in nodes.iter_mut().zip(&rotation.sin).zip(&rotation.cos) {
+                    *node = sin * to_cos + cos * to_sin;
                 }
-                Accelerations { start: sin, nodes }
+                sin
             }
-            (Self::LogSweep(sweep), Turns::LogSweep(times)) => sweep.over_step(time, times),
-            (Self::Random(random), Turns::Random(rotations)) => random.over_step(machine, time, rotations),
-            _ => Accelerations::NONE,
-        }
+            _ => self.over_step_out_of_line(machine, time, turns, &mut nodes),
+        };
+        Accelerations { start, nodes }
+    }
+
+    /// [`Generator::over_step`] of the generators that take their time, kept out of the kernel of a step: the acceleration at
+    /// the start, and those at the nodes in place of zeros.
+    #[inline(never)]
+    fn over_step_out_of_line<const S: usize>(
+        &self,
+        machine: Machine,
+        time: f64,
+        turns: &Turns<S>,
+        nodes: &mut Nodal<S>,
+    ) -> f64 {
+        let found = match (self, turns) {
+            (Self::LogSweep(sweep), Turns::LogSweep(times)) if self.is_active(time) => sweep.over_step(time, times),
+            (Self::Random(random), Turns::Random(rotations)) if self.is_active(time) => {
+                random.over_step(machine, time, rotations)
+            }
+            _ => return 0.0,
+        };
+        *nodes = found.nodes;
+        found.start
     }
 
     /// Whether there is an acceleration at `time` (s) or just after it.
@@ -214,25 +227,21 @@ impl Generator {
 
     /// The next instant after `time` at which the acceleration or its rate is not smooth, s.
     pub fn next_break(&self, time: f64) -> Option<f64> {
-        let within = match self {
-            Self::LogSweep(sweep) => sweep.crossover.filter(|crossover| *crossover > time),
-            _ => None,
-        };
-        let next = self.window().and_then(|window| window.next_end(time));
-        match (within, next) {
-            (Some(a), Some(b)) => Some(a.min(b)),
-            (a, b) => a.or(b),
+        match self {
+            Self::None => None,
+            Self::Sine(sine) => sine.window.next_end(time),
+            Self::LogSweep(sweep) => sweep.next_break(time),
+            Self::Random(random) => random.window.next_end(time),
         }
     }
 
     /// Longest step from `time` on within which the acceleration cannot turn unseen, a quarter of its shortest period, s.
     pub fn longest_step(&self, time: f64) -> f64 {
         match self {
-            _ if !self.is_active(time) => f64::INFINITY,
-            Self::None => f64::INFINITY,
-            Self::Sine(sine) => 0.25 / sine.frequency,
-            Self::LogSweep(sweep) => sweep.longest_step(time),
-            Self::Random(random) => 0.25 / random.highest,
+            Self::Sine(sine) if sine.window.is_open_after(time) => 0.25 / sine.frequency,
+            Self::LogSweep(sweep) if sweep.window.is_open_after(time) => sweep.longest_step(time),
+            Self::Random(random) if random.window.is_open_after(time) => 0.25 / random.highest,
+            _ => f64::INFINITY,
         }
     }
 }

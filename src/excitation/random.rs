@@ -53,10 +53,7 @@ impl Random {
             frequencies,
             phases,
             highest: excitation.end_frequency,
-            window: Window {
-                start: excitation.start_time,
-                end: f64::INFINITY,
-            },
+            window: Window::from(excitation.start_time),
         }
     }
 
@@ -83,16 +80,12 @@ impl Random {
     }
 
     /// Accelerations over a step that begins at `time` (s), in which the sines turn like this.
-    #[inline(never)]
     pub fn over_step<const S: usize>(
         &self,
         machine: Machine,
         time: f64,
         rotations: &[Rotation<S>],
     ) -> Accelerations<S> {
-        if !self.window.is_open_after(time) {
-            return Accelerations::NONE;
-        }
         compiled_for!(machine, A => self.compute::<S, A>(time, rotations))
     }
 
@@ -147,6 +140,7 @@ fn phasors<A: Arithmetic>(frequencies: &Each, tau: f64, phases: &Each) -> (Each,
 const TERMS: usize = 10;
 
 /// `1 / n!`.
+#[expect(clippy::indexing_slicing, reason = "the indices are those of the table")]
 const INVERSE_FACTORIALS: [f64; 2 * TERMS] = {
     let mut values = [1.0; 2 * TERMS];
     let mut n = 1;

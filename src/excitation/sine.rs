@@ -26,10 +26,7 @@ impl Sine {
             amplitude: limited_amplitude(excitation, excitation.frequency),
             frequency: excitation.frequency,
             phase: excitation.phase,
-            window: Window {
-                start: excitation.start_time,
-                end: f64::INFINITY,
-            },
+            window: Window::from(excitation.start_time),
         }
     }
 

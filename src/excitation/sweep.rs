@@ -27,7 +27,7 @@ pub struct LogSweep {
     /// Largest displacement amplitude, m: below the crossover it sets the amplitude. Infinite: none.
     displacement_limit: f64,
     /// The instant within the sweep at which the displacement limit begins or ceases to set the amplitude, s.
-    pub crossover: Option<f64>,
+    crossover: Option<f64>,
     /// When.
     pub window: Window,
 }
@@ -98,11 +98,7 @@ impl LogSweep {
 
     /// Accelerations over a step that begins at `time` (s) and has its nodes at the times (s) after it. The phase at the
     /// nodes is counted from that at the start, so that within a step nothing is rounded that is not small.
-    #[inline(never)]
     pub fn over_step<const S: usize>(&self, time: f64, times: &Nodal<S>) -> Accelerations<S> {
-        if !self.window.is_open_after(time) {
-            return Accelerations::NONE;
-        }
         let tau = time - self.window.start;
         let (frequency, phase) = (self.frequency_after(tau), self.phase_after(tau));
         let at = |after: f64| {
@@ -117,7 +113,19 @@ impl LogSweep {
         }
     }
 
+    /// The next instant after `time` (s) at which it starts, crosses over or ends.
+    #[inline(never)]
+    pub fn next_break(&self, time: f64) -> Option<f64> {
+        let next = self.window.next_end(time);
+        let crossover = self.crossover.filter(|crossover| *crossover > time);
+        match (next, crossover) {
+            (Some(end), Some(crossover)) => Some(end.min(crossover)),
+            _ => next,
+        }
+    }
+
     /// The time from `time` on in which the phase turns by a quarter, s, or the frequency changes by a factor of e.
+    #[inline(never)]
     pub fn longest_step(&self, time: f64) -> f64 {
         let quarter = 0.25 / self.frequency_after(time - self.window.start);
         let x = self.rate * quarter;

@@ -9,6 +9,16 @@ pub struct Window {
     pub end: f64,
 }
 
+impl From<f64> for Window {
+    /// From the instant (s) on, without an end.
+    fn from(start: f64) -> Self {
+        Self {
+            start,
+            end: f64::INFINITY,
+        }
+    }
+}
+
 impl Window {
     /// Whether it is open at `time` (s) and just after it.
     pub fn is_open_after(&self, time: f64) -> bool {
@@ -22,8 +32,7 @@ impl Window {
 
     /// The next instant after `time` (s) at which it opens or closes.
     pub fn next_end(&self, time: f64) -> Option<f64> {
-        [self.start, self.end]
-            .into_iter()
-            .find(|end| *end > time && end.is_finite())
+        let next = if self.start > time { self.start } else { self.end };
+        (next > time && next < f64::INFINITY).then_some(next)
     }
 }
