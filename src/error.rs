@@ -58,6 +58,17 @@ pub enum SceneError {
         /// The buckling load of the cantilever, N.
         limit: f64,
     },
+    /// A random acceleration whose band of frequencies is empty.
+    #[error(
+        "excitation.endFrequency = {end_frequency} Hz with excitation.frequency = {frequency} Hz: no band for \
+         effects.excitation = Random, allowed is excitation.endFrequency above excitation.frequency"
+    )]
+    NoBand {
+        /// Lower end asked for, Hz.
+        frequency: f64,
+        /// Upper end asked for, Hz.
+        end_frequency: f64,
+    },
     /// A linear contact law without a contact force to linearise about.
     #[error("effects.contactLaw: Linearised and Bonded need a contact that is closed at rest, preload.force is 0 N")]
     NoPreload,

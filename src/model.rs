@@ -47,14 +47,12 @@ pub struct Model {
     pub preload: Preload,
     /// The modes, frequency ascending.
     pub modes: Vec<Mode>,
-    /// Modes and contact together, where they are linear.
+    /// Modes and contact together, where they are linear and the generator harmonic.
     pub closed_loop: Option<ClosedLoop>,
     /// The base acceleration generated inside.
     pub generator: Generator,
     /// `support.displacement` at the start, m: part of the preload.
     pub initial_support: f64,
-    /// Longest step, s: of the scene, and of the generator.
-    pub longest_step: f64,
     /// What the tolerance is relative to, N: max(F_0, 3 E I max(|s|, 0.1 mm) / L^3).
     pub force_scale: f64,
     /// Lowest natural frequency with the contact as a spring, from the exact characteristic equation, Hz.
@@ -217,10 +215,10 @@ impl Model {
         let frequency = characteristic::frequencies(&section, preload.axial_force, preload.contact_stiffness, 1)
             .first()
             .map_or(0.0, |omega| omega / std::f64::consts::TAU);
-        let generator = Generator::new(scene);
+        let generator = Generator::new(scene)?;
         let closed_loop = match law {
-            Law::Linear(contact) => ClosedLoop::new(scene, &modes, contact, &generator),
-            Law::Hertz(_) => None,
+            Law::Linear(contact) if generator.is_harmonic() => ClosedLoop::new(scene, &modes, contact, &generator),
+            _ => None,
         };
         Ok(Self {
             scene: *scene,
@@ -231,11 +229,6 @@ impl Model {
             closed_loop,
             generator,
             initial_support: support,
-            longest_step: if scene.solver.maximum_step > 0.0 {
-                generator.longest_step().min(scene.solver.maximum_step)
-            } else {
-                generator.longest_step()
-            },
             force_scale: preload.force.max(reference),
             frequency,
             path: Path::new(scene),
@@ -263,8 +256,8 @@ impl Model {
             last_opening: -1.0,
             last_closing: -1.0,
             last_kink: time,
-            short_step: self.first_step(),
-            long_step: self.first_step(),
+            short_step: self.first_step(time),
+            long_step: self.first_step(time),
             predictions: Predictions::default(),
             last_step: 0.0,
             energy_surplus: 0.0,
@@ -289,9 +282,19 @@ impl Model {
         self.modes.iter().map(|mode| mode.tip * mode.tip).sum()
     }
 
-    /// A step short against the motion that may begin, s.
-    pub fn first_step(&self) -> f64 {
-        (0.02 / self.frequency.max(1.0)).min(0.1 * self.generator.longest_step())
+    /// Longest step from the instant `time` (s) on, s: of the scene, and of the generator.
+    pub fn longest_step(&self, time: f64) -> f64 {
+        let generated = self.generator.longest_step(time);
+        if self.scene.solver.maximum_step > 0.0 {
+            generated.min(self.scene.solver.maximum_step)
+        } else {
+            generated
+        }
+    }
+
+    /// A step short against the motion that may begin at the instant `time` (s), s.
+    pub fn first_step(&self, time: f64) -> f64 {
+        (0.02 / self.frequency.max(1.0)).min(0.1 * self.generator.longest_step(time))
     }
 }
 

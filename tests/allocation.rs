@@ -6,7 +6,7 @@ use std::ffi::CString;
 use std::ptr;
 
 use relay_contact::fmi2::*;
-use relay_contact::variables::{GUID, Variable};
+use relay_contact::variables::{ExcitationKind, GUID, Variable};
 
 /// The system's allocator, which counts what this thread asks for.
 struct Counting;
@@ -33,8 +33,15 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
+/// With every choice of `effects.excitation`.
 #[test]
 fn a_communication_step_allocates_nothing() {
+    for &(_, excitation) in ExcitationKind::CHOICES {
+        check(excitation);
+    }
+}
+
+fn check(excitation: i32) {
     let guid = CString::new(GUID).unwrap();
     let silent = fmi2CallbackFunctions {
         logger: None,
@@ -58,6 +65,8 @@ fn a_communication_step_allocates_nothing() {
             0,
             0,
         );
+        let kind = Variable::by_name("effects.excitation").unwrap().value_reference;
+        assert_eq!(fmi2SetInteger(c, &raw const kind, 1, &raw const excitation), fmi2OK);
         assert_eq!(fmi2EnterInitializationMode(c), fmi2OK);
         assert_eq!(fmi2ExitInitializationMode(c), fmi2OK);
         let before = COUNT.get();

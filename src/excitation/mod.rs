@@ -1,11 +1,25 @@
 //! Base acceleration generated inside the component, and [`drive`]: what comes from the inputs.
+//!
+//! One file for each idea of a waveform: [`sine`], also one half wave of it; [`sweep`]; [`random`]. A generator runs
+//! within its [`window`]; outside of it there is no acceleration.
 
 pub mod drive;
+pub mod random;
+pub mod sine;
+pub mod sweep;
+pub mod window;
 
 use std::f64::consts::TAU;
 
-use crate::scene::Scene;
+use crate::error::SceneError;
+use crate::excitation::random::Random;
+use crate::excitation::sine::Sine;
+use crate::excitation::sweep::LogSweep;
+use crate::excitation::window::Window;
+use crate::scene::{Excitation, Scene};
 use crate::transient::collocation::Nodal;
+use crate::transient::machine::Machine;
+use crate::transient::vector::scaled;
 use crate::variables::ExcitationKind;
 
 /// Base accelerations over a step, m/s2.
@@ -17,135 +31,217 @@ pub struct Accelerations<const S: usize> {
     pub nodes: Nodal<S>,
 }
 
-/// Sines and cosines of the angles the generator turns through from the start of a step: they depend on its length alone.
+/// Sines and cosines of the angles that a phase turns through from the start of a step to its nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Turns<const S: usize> {
-    /// To the nodes.
+pub struct Rotation<const S: usize> {
+    /// Sines.
     sin: Nodal<S>,
-    /// See [`Turns::sin`].
+    /// Cosines.
     cos: Nodal<S>,
 }
 
+impl<const S: usize> Rotation<S> {
+    /// By nothing yet.
+    const ZERO: Self = Self {
+        sin: [0.0; S],
+        cos: [0.0; S],
+    };
+}
+
+/// What a generator needs to know of a step and depends on its length alone.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Turns<const S: usize> {
+    /// Nothing.
+    None,
+    /// How far a sine turns.
+    Sine(Rotation<S>),
+    /// When the nodes are, s from the start of the step.
+    LogSweep(Nodal<S>),
+    /// How far each of many sines turns.
+    Random(Box<[Rotation<S>]>),
+}
+
 impl<const S: usize> Turns<S> {
-    /// Without a generator.
-    pub fn none() -> Self {
-        Self {
-            sin: [0.0; S],
-            cos: [0.0; S],
+    /// Room for what the generator needs.
+    pub fn room(generator: &Generator) -> Self {
+        match generator {
+            Generator::None => Self::None,
+            Generator::Sine(_) => Self::Sine(Rotation::ZERO),
+            Generator::LogSweep(_) => Self::LogSweep([0.0; S]),
+            Generator::Random(_) => Self::Random(vec![Rotation::ZERO; random::SINES].into()),
+        }
+    }
+
+    /// Computes in place what belongs to a step of `length` seconds with these nodes.
+    pub fn fill(&mut self, generator: &Generator, machine: Machine, length: f64, nodes: &Nodal<S>) {
+        match (generator, self) {
+            (Generator::Sine(sine), Self::Sine(rotation)) => {
+                let angles = scaled(nodes, TAU * sine.frequency * length);
+                (rotation.sin, rotation.cos) = (angles.map(f64::sin), angles.map(f64::cos));
+            }
+            (Generator::LogSweep(_), Self::LogSweep(times)) => *times = scaled(nodes, length),
+            (Generator::Random(random), Self::Random(rotations)) => {
+                random.turn(machine, &scaled(nodes, length), rotations);
+            }
+            _ => {}
         }
     }
 }
 
 /// The generator a scene asks for.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Generator {
     /// No acceleration.
     None,
-    /// `A sin(2 pi f tau + phase)` for `tau = t - t0 >= 0`: Machines 2025, 13(1), 52, eqs. (26), (27).
-    Sine {
-        /// A, m/s2.
-        amplitude: f64,
-        /// f, Hz.
-        frequency: f64,
-        /// Phase, rad.
-        phase: f64,
-        /// t0, s.
-        start: f64,
-    },
+    /// A sine, or one half wave of it.
+    Sine(Sine),
+    /// A sine whose frequency grows or falls exponentially.
+    LogSweep(LogSweep),
+    /// A sum of sines of equal power.
+    Random(Box<Random>),
 }
 
 impl Generator {
     /// The generator of the scene.
-    pub fn new(scene: &Scene) -> Self {
+    ///
+    /// # Errors
+    /// [`SceneError::NoBand`] for a random acceleration without a band of frequencies.
+    pub fn new(scene: &Scene) -> Result<Self, SceneError> {
         let excitation = &scene.excitation;
-        match scene.effects.excitation {
-            ExcitationKind::Sine if excitation.amplitude > 0.0 => Self::Sine {
-                amplitude: excitation.amplitude,
-                frequency: excitation.frequency,
-                phase: excitation.phase,
-                start: excitation.start_time,
-            },
-            _ => Self::None,
+        let shakes = match scene.effects.excitation {
+            ExcitationKind::None => false,
+            ExcitationKind::Random => excitation.spectral_density > 0.0,
+            _ => excitation.amplitude > 0.0,
+        };
+        Ok(match scene.effects.excitation {
+            ExcitationKind::Random if excitation.end_frequency <= excitation.frequency => {
+                return Err(SceneError::NoBand {
+                    frequency: excitation.frequency,
+                    end_frequency: excitation.end_frequency,
+                });
+            }
+            _ if !shakes => Self::None,
+            ExcitationKind::None => Self::None,
+            ExcitationKind::Sine => Self::Sine(Sine::new(excitation)),
+            ExcitationKind::HalfSine => Self::Sine(Sine::half(excitation)),
+            ExcitationKind::LogSweep => Self::LogSweep(LogSweep::new(excitation)),
+            ExcitationKind::Random => Self::Random(Box::new(Random::new(excitation))),
+        })
+    }
+
+    /// The acceleration of the generator's course at an instant (s) within its window, m/s2.
+    fn value(&self, time: f64) -> f64 {
+        match self {
+            Self::None => 0.0,
+            Self::Sine(sine) => sine.phasor(time).0,
+            Self::LogSweep(sweep) => sweep.value(time),
+            Self::Random(random) => random.value(time),
         }
     }
 
-    /// Sine and cosine of the generator's phase at `time`, times its amplitude.
+    fn window(&self) -> Option<Window> {
+        match self {
+            Self::None => None,
+            Self::Sine(sine) => Some(sine.window),
+            Self::LogSweep(sweep) => Some(sweep.window),
+            Self::Random(random) => Some(random.window),
+        }
+    }
+
+    /// Acceleration at an instant (s), m/s2: where it jumps, that which follows.
+    pub fn acceleration(&self, time: f64) -> f64 {
+        if self.is_active(time) { self.value(time) } else { 0.0 }
+    }
+
+    /// Acceleration at an instant (s) as it has been reached, m/s2: where it jumps, that which was before.
+    pub fn acceleration_before(&self, time: f64) -> f64 {
+        let active = self.window().is_some_and(|window| window.is_open_before(time));
+        if active { self.value(time) } else { 0.0 }
+    }
+
+    /// Sine and cosine of the generator's phase at `time`, times its amplitude: none where it is not a sine.
     pub(crate) fn phasor(&self, time: f64) -> (f64, f64) {
-        match *self {
-            Self::Sine {
-                amplitude,
-                frequency,
-                phase,
-                start,
-            } if time >= start => {
-                let (sin, cos) = (TAU * turned(frequency, time - start) + phase).sin_cos();
-                (amplitude * sin, amplitude * cos)
-            }
+        match self {
+            Self::Sine(sine) if sine.window.is_open_after(time) => sine.phasor(time),
             _ => (0.0, 0.0),
         }
     }
 
-    /// Frequency, Hz.
+    /// The one frequency of the generator, where it has one, Hz.
     pub(crate) fn frequency(&self) -> Option<f64> {
-        match *self {
-            Self::None => None,
-            Self::Sine { frequency, .. } => Some(frequency),
-        }
-    }
-
-    /// Accelerations over a step that begins at `time` (s) and has the given turns. A step that begins before the start of
-    /// the generator ends there at the latest.
-    #[inline(always)]
-    pub fn over_step<const S: usize>(&self, time: f64, turns: &Turns<S>) -> Accelerations<S> {
-        let (sin, cos) = match self {
-            Self::None => {
-                return Accelerations {
-                    start: 0.0,
-                    nodes: [0.0; S],
-                };
-            }
-            Self::Sine { .. } => self.phasor(time),
-        };
-        let mut nodes = turns.cos;
-        for (node, turn) in nodes.iter_mut().zip(&turns.sin) {
-            *node = sin * *node + cos * turn;
-        }
-        Accelerations { start: sin, nodes }
-    }
-
-    /// The turns of a step of `length` seconds with these nodes.
-    pub fn turns<const S: usize>(&self, length: f64, nodes: &Nodal<S>) -> Turns<S> {
-        let Self::Sine { frequency, .. } = *self else {
-            return Turns::none();
-        };
-        let angle = |x: f64| TAU * frequency * x * length;
-        Turns {
-            sin: nodes.map(|x| angle(x).sin()),
-            cos: nodes.map(|x| angle(x).cos()),
-        }
-    }
-
-    /// Whether there is an acceleration at `time` (s) or just after it.
-    pub fn is_active(&self, time: f64) -> bool {
-        match *self {
-            Self::None => false,
-            Self::Sine { start, .. } => time >= start,
-        }
-    }
-
-    /// The next instant after `time` at which the acceleration is not smooth, s.
-    pub fn next_break(&self, time: f64) -> Option<f64> {
-        match *self {
-            Self::Sine { start, .. } if start > time => Some(start),
+        match self {
+            Self::Sine(sine) => Some(sine.frequency),
             _ => None,
         }
     }
 
-    /// Longest step within which the acceleration cannot turn unseen, s.
-    pub fn longest_step(&self) -> f64 {
-        match *self {
-            Self::None => f64::INFINITY,
-            Self::Sine { frequency, .. } => 0.25 / frequency,
+    /// Whether linear motion under it is known in closed form: under a sine, or nothing.
+    pub(crate) fn is_harmonic(&self) -> bool {
+        matches!(self, Self::None | Self::Sine(_))
+    }
+
+    /// Accelerations over a step that begins at `time` (s) and has the given turns. A step goes over none of the breaks
+    /// that [`Generator::next_break`] tells.
+    #[inline(always)]
+    pub fn over_step<const S: usize>(&self, machine: Machine, time: f64, turns: &Turns<S>) -> Accelerations<S> {
+        let mut nodes = [0.0; S];
+        let start = match (self, turns) {
+            (Self::None, _) => 0.0,
+            (Self::Sine(_), Turns::Sine(rotation)) => {
+                let (sin, cos) = self.phasor(time);
+                for ((node, to_sin), to_cos) in nodes.iter_mut().zip(&rotation.sin).zip(&rotation.cos) {
+                    *node = sin * to_cos + cos * to_sin;
+                }
+                sin
+            }
+            _ => self.over_step_out_of_line(machine, time, turns, &mut nodes),
+        };
+        Accelerations { start, nodes }
+    }
+
+    /// [`Generator::over_step`] of the generators that take their time, kept out of the kernel of a step: the acceleration at
+    /// the start, and those at the nodes in place of zeros.
+    #[inline(never)]
+    fn over_step_out_of_line<const S: usize>(
+        &self,
+        machine: Machine,
+        time: f64,
+        turns: &Turns<S>,
+        nodes: &mut Nodal<S>,
+    ) -> f64 {
+        let found = match (self, turns) {
+            (Self::LogSweep(sweep), Turns::LogSweep(times)) if self.is_active(time) => sweep.over_step(time, times),
+            (Self::Random(random), Turns::Random(rotations)) if self.is_active(time) => {
+                random.over_step(machine, time, rotations)
+            }
+            _ => return 0.0,
+        };
+        *nodes = found.nodes;
+        found.start
+    }
+
+    /// Whether there is an acceleration at `time` (s) or just after it.
+    pub fn is_active(&self, time: f64) -> bool {
+        self.window().is_some_and(|window| window.is_open_after(time))
+    }
+
+    /// The next instant after `time` at which the acceleration or its rate is not smooth, s.
+    pub fn next_break(&self, time: f64) -> Option<f64> {
+        match self {
+            Self::None => None,
+            Self::Sine(sine) => sine.window.next_end(time),
+            Self::LogSweep(sweep) => sweep.next_break(time),
+            Self::Random(random) => random.window.next_end(time),
+        }
+    }
+
+    /// Longest step from `time` on within which the acceleration cannot turn unseen, a quarter of its shortest period, s.
+    pub fn longest_step(&self, time: f64) -> f64 {
+        match self {
+            Self::Sine(sine) if sine.window.is_open_after(time) => 0.25 / sine.frequency,
+            Self::LogSweep(sweep) if sweep.window.is_open_after(time) => sweep.longest_step(time),
+            Self::Random(random) if random.window.is_open_after(time) => 0.25 / random.highest,
+            _ => f64::INFINITY,
         }
     }
 }
@@ -155,4 +251,16 @@ impl Generator {
 pub(crate) fn turned(frequency: f64, time: f64) -> f64 {
     let turns = frequency * time;
     turns.fract() + frequency.mul_add(time, -turns)
+}
+
+/// Amplitude at a frequency (Hz), m/s2: that of the displacement limit where this is lower, as in the crossover of vibration
+/// standards.
+fn limited_amplitude(excitation: &Excitation, frequency: f64) -> f64 {
+    if excitation.displacement_limit > 0.0 {
+        excitation
+            .amplitude
+            .min((TAU * frequency).powi(2) * excitation.displacement_limit)
+    } else {
+        excitation.amplitude
+    }
 }

@@ -233,7 +233,9 @@ impl Integration<'_> {
     where
         Workspace: Room<S>,
     {
-        let wanted = wanted.min(self.model.longest_step).max(self.shortest());
+        let wanted = wanted
+            .min(self.model.longest_step(self.state.time))
+            .max(self.shortest());
         let corner = self.model.generator.next_break(self.state.time);
         let target = self.progress.target(wanted, self.state.time, corner);
         let attempt = self.attempt::<S>(&target);

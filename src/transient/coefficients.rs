@@ -130,8 +130,8 @@ impl<const S: usize> ErrorColumn<S> {
 }
 
 impl<const S: usize> StepCoefficients<S> {
-    /// Room for the modes, no length yet.
-    fn empty(modes: usize) -> Self {
+    /// Room for the model, no length yet.
+    fn empty(model: &Model) -> Self {
         let mode = NodeRows {
             tip_from_q: [0.0; S],
             tip_from_v: [0.0; S],
@@ -140,11 +140,11 @@ impl<const S: usize> StepCoefficients<S> {
         };
         Self {
             length: 0.0,
-            modes: vec![mode; modes],
+            modes: vec![mode; model.modes.len()],
             end: EndRows::ZERO,
             force: TipColumns::ZERO,
             acceleration: TipColumns::ZERO,
-            turns: Turns::none(),
+            turns: Turns::room(&model.generator),
             force_error: ErrorColumn::ZERO,
             acceleration_error: ErrorColumn::ZERO,
         }
@@ -159,7 +159,8 @@ impl<const S: usize> StepCoefficients<S> {
     fn compute<A: Arithmetic>(&mut self, length: f64, model: &Model, collocation: &Collocation<S>) {
         let (h, shapes) = (length, &collocation.shapes);
         self.length = length;
-        self.turns = model.generator.turns(length, &collocation.nodes);
+        self.turns
+            .fill(&model.generator, model.machine, length, &collocation.nodes);
         let (mut force, mut acceleration) = (Sum::<S>::ZERO, Sum::<S>::ZERO);
         for (i, (mode, step)) in model.modes.iter().zip(&mut self.modes).enumerate() {
             let tip = mode.tip;
@@ -216,12 +217,12 @@ pub struct Cache<const S: usize> {
 const SLOTS: usize = 32;
 
 impl<const S: usize> Cache<S> {
-    /// For a model with this many modes.
-    pub fn new(modes: usize) -> Self {
+    /// For the model.
+    pub fn new(model: &Model) -> Self {
         Self {
             collocation: Collocation::new(),
-            slots: vec![StepCoefficients::empty(modes); SLOTS],
-            other: StepCoefficients::empty(modes),
+            slots: vec![StepCoefficients::empty(model); SLOTS],
+            other: StepCoefficients::empty(model),
         }
     }
 

@@ -177,7 +177,7 @@ impl Course {
                 acceleration: slope(&self.span.rate),
             };
         }
-        let base = self.drive.acceleration(self.time) + model.generator.phasor(self.time).0;
+        let base = self.drive.acceleration(self.time) + model.generator.acceleration_before(self.time);
         let force = state.force - model.preload.force;
         let modes = model.modes.iter().zip(&state.modes);
         let acceleration = modes.fold(0.0, |sum, (mode, at)| {

@@ -341,8 +341,8 @@ struct Steady {
 }
 
 impl Model {
-    /// Takes the communication step from the state's time over `size` seconds in one exact step, or two where the
-    /// generator starts in it; `false`, with the state unchanged, where that cannot be done: the motion is not linear,
+    /// Takes the communication step from the state's time over `size` seconds in one exact step, or several where
+    /// the generator starts or ends in it; `false`, with the state unchanged, where that cannot be done: the motion is not linear,
     /// or the contact may open.
     pub(super) fn step_exactly(
         &self,
@@ -376,7 +376,7 @@ impl Model {
         let first = corner - state.time;
         if closed_loop.advance(self, state, propagator, drive, first) {
             state.time = corner;
-            if closed_loop.advance(self, state, propagator, drive, size - first) {
+            if self.step_exactly(state, propagator, drive, size - first) {
                 state.time = end;
                 return true;
             }

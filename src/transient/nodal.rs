@@ -96,7 +96,7 @@ impl Model {
         end_modes: &mut ModeStates,
     ) -> Option<Trial<S>> {
         let h = step.length;
-        let generated = self.generator.over_step(state.time, &step.turns);
+        let generated = self.generator.over_step(self.machine, state.time, &step.turns);
         let driven = drive.acceleration(state.time);
         let mut accelerations = generated.nodes;
         add::<S, A>(&mut accelerations, drive.jerk * h, &collocation.nodes);

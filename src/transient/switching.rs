@@ -88,7 +88,7 @@ impl Integration<'_> {
             self.first_closed_step()
         } else {
             self.state.last_opening = self.state.time;
-            0.1 * self.model.first_step()
+            0.1 * self.model.first_step(self.state.time)
         }
     }
 
@@ -125,7 +125,7 @@ impl Integration<'_> {
         let d = model.preload.indentation + state.indentation;
         let speed = state.indentation_rate.abs();
         let mobility = model.mobility();
-        let mut h = model.first_step();
+        let mut h = model.first_step(state.time);
         for _ in 0..40 {
             let law = model.law.closed_branch(d + speed * h, state.indentation_rate);
             let gain = mobility * h * (law.damping + 0.5 * h * law.stiffness.abs());

@@ -6,6 +6,8 @@
 use crate::common::{Rig, compose, oscillator};
 use crate::{digits, penalty};
 use relay_contact::excitation::Generator;
+use relay_contact::excitation::sine::Sine;
+use relay_contact::excitation::window::Window;
 use relay_contact::inputs::Inputs;
 
 /// Touch and release, s: the first three contacts, and the last one within the first period.
@@ -21,12 +23,12 @@ fn touch_and_release() {
     let (mass, force) = (156.0, 3000.0);
     for tolerance in [1e-7, 1e-9, 1e-11] {
         let mut model = compose(&[oscillator(mass, 2e6)], penalty(1e10), 1e-3, tolerance, force);
-        model.generator = Generator::Sine {
+        model.generator = Generator::Sine(Sine {
             amplitude: force / mass,
             frequency: 5.0,
             phase: 0.0,
-            start: 0.0,
-        };
+            window: Window::from(0.0),
+        });
         let mut rig = Rig::new(model);
         let mut found: Vec<(f64, f64)> = Vec::new();
         for k in 1..=2100 {

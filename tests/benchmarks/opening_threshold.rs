@@ -9,6 +9,8 @@ use crate::common::Rig;
 use relay_contact::contact::law::Law;
 use relay_contact::contact::linear::Linear;
 use relay_contact::excitation::Generator;
+use relay_contact::excitation::sine::Sine;
+use relay_contact::excitation::window::Window;
 use relay_contact::harmonic;
 use relay_contact::inputs::Inputs;
 use relay_contact::model::Model;
@@ -28,12 +30,12 @@ fn model(law: ContactLawKind, tolerance: f64, frequency: f64) -> Model {
 /// The model shaken with the amplitude (m/s2) until nothing is left of the start: the slowest motion decays by more than
 /// 1e-13 in 40 ms.
 fn periodic(mut model: Model, amplitude: f64, frequency: f64) -> Rig {
-    model.generator = Generator::Sine {
+    model.generator = Generator::Sine(Sine {
         amplitude,
         frequency,
         phase: 0.0,
-        start: 0.0,
-    };
+        window: Window::from(0.0),
+    });
     let mut rig = Rig::new(model);
     rig.run_to(&Inputs::default(), (0.04 * frequency).ceil() / frequency)
         .unwrap();
