@@ -22,24 +22,26 @@ use relay_contact::variables::ExcitationKind;
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
-/// Base accelerations of the response curves, m/s2: 10, 20 and 29 g. The last one is just below the lowest threshold.
-const ACCELERATIONS: [f64; 3] = [98.0, 196.0, 284.0];
+/// Base accelerations of the response curves, m/s2: 10 g, close to the lowest threshold, and beyond it.
+const ACCELERATIONS: [f64; 3] = [98.0, 250.0, 400.0];
 /// Of the curves, Hz.
 const LOWEST: f64 = 50.0;
 /// See [`LOWEST`].
 const HIGHEST: f64 = 3000.0;
 /// From point to point of the stepped sweep, Hz.
-const STEP: f64 = 50.0;
+const STEP: f64 = 25.0;
 /// Frequencies at which the nonlinear threshold is sought, Hz.
 const THRESHOLDS: u32 = 20;
 
 /// Communication steps of a period.
-const SAMPLES: u32 = 100;
+const SAMPLES: u32 = 1000;
+/// Parts of these just after the contact has closed with a blow, whose force rises and falls within a microsecond.
+const BLOW: u32 = 200;
 /// A motion counts as periodic when the extremes of the force change by less than this part of the preload from one
 /// period to the next: far below what the picture shows.
 const PERIODIC: f64 = 1e-6;
-/// Periods after which it is left to be: where the contact bounces it need not become periodic.
-const PATIENCE: u32 = 300;
+/// Periods after which it should be: 20 are enough for the scenes here, also where the contact bounces.
+const PATIENCE: u32 = 100;
 
 /// The specimen shaken with a sine, from the instant `start` (s).
 fn shaken(acceleration: f64, frequency: f64, start: f64) -> Scene {
@@ -55,6 +57,8 @@ fn shaken(acceleration: f64, frequency: f64, start: f64) -> Scene {
 struct Period {
     least: f64,
     most: f64,
+    /// Whether the contact opens in it.
+    opens: bool,
     end: State,
 }
 
@@ -62,6 +66,11 @@ impl Period {
     fn amplitude(&self) -> f64 {
         0.5 * (self.most - self.least)
     }
+}
+
+fn advance(model: &Model, course: &mut Course, workspace: &mut Workspace, until: f64) -> Result<()> {
+    let time = course.time;
+    Ok(model.step(course, workspace, &Inputs::default(), time, until - time)?)
 }
 
 /// The periodic motion that the vibration leads to from another motion, or from rest. The sine starts with that motion:
@@ -75,34 +84,54 @@ fn settle(acceleration: f64, frequency: f64, from: Option<&State>) -> Result<Per
     for period in 0..PATIENCE {
         let last = (least, most);
         (least, most) = (f64::INFINITY, f64::NEG_INFINITY);
-        for k in 1..=SAMPLES {
-            let end = start + (f64::from(period) + f64::from(k) / f64::from(SAMPLES)) / frequency;
-            let time = course.time;
-            model.step(&mut course, &mut workspace, &Inputs::default(), time, end - time)?;
+        for k in 0..SAMPLES {
+            let sample =
+                |parts: f64| start + (f64::from(period) + (f64::from(k) + parts) / f64::from(SAMPLES)) / frequency;
+            let before = course;
+            advance(&model, &mut course, &mut workspace, sample(1.0))?;
+            // Closed in this sample or the last: once more, looking closely.
+            if course.state().last_closing > sample(-1.0) {
+                course = before;
+                for part in 1..=BLOW {
+                    advance(
+                        &model,
+                        &mut course,
+                        &mut workspace,
+                        sample(f64::from(part) / f64::from(BLOW)),
+                    )?;
+                    most = most.max(course.tip(&model).force);
+                }
+            }
             let force = course.tip(&model).force;
             (least, most) = (least.min(force), most.max(force));
         }
         let changed = (least - last.0).abs().max((most - last.1).abs());
         if changed < PERIODIC * model.preload.force {
-            break;
+            let end = model.state(&course, &mut workspace)?;
+            let opens = end.last_opening > end.time - 1.0 / frequency;
+            return Ok(Period {
+                least,
+                most,
+                opens,
+                end,
+            });
         }
     }
-    let end = model.state(&course, &mut workspace)?;
-    Ok(Period { least, most, end })
+    Err(format!("{acceleration} m/s2 at {frequency} Hz: not periodic after {PATIENCE} periods").into())
 }
 
-/// Least acceleration whose periodic motion opens the contact, within a thousandth, m/s2. The acceleration is approached from
+/// Least acceleration whose periodic motion opens the contact, within 1e-4 of it, m/s2. The acceleration is approached from
 /// below, each motion beginning with the one before.
 fn threshold(frequency: f64, linear: f64) -> Result<f64> {
     let (mut low, mut high) = (0.0, f64::INFINITY);
     let mut trial = 0.5 * linear;
     let mut closed = None;
-    while high - low > 1e-3 * low || low == 0.0 {
+    while high - low > 1e-4 * low || low == 0.0 {
         let period = settle(trial, frequency, closed.as_ref())?;
-        if period.least > 0.0 {
-            (low, closed) = (trial, Some(period.end));
-        } else {
+        if period.opens {
             high = trial;
+        } else {
+            (low, closed) = (trial, Some(period.end));
         }
         trial = if high.is_finite() {
             f64::midpoint(low, high)

@@ -58,6 +58,8 @@ fn a_communication_step_allocates_nothing() {
             0,
             0,
         );
+        let energy = Variable::by_name("effects.energy").unwrap().value_reference;
+        assert_eq!(fmi2SetBoolean(c, &raw const energy, 1, [fmi2True].as_ptr()), fmi2OK);
         assert_eq!(fmi2EnterInitializationMode(c), fmi2OK);
         assert_eq!(fmi2ExitInitializationMode(c), fmi2OK);
         let before = COUNT.get();

@@ -4,6 +4,7 @@ import argparse
 import csv
 from collections import defaultdict
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
 
@@ -15,7 +16,14 @@ from matplotlib.lines import Line2D
 # Colours of Okabe and Ito, told apart also by the colour-blind.
 COLOURS = ("#0072B2", "#E69F00", "#D55E00")
 GRAVITY = 9.80665  # m/s2
-PRELOAD_COLOUR = "#666666"
+GREY = "#666666"
+
+# Label and look of each curve.
+STYLES: dict[str, tuple[str, dict[str, Any]]] = {
+    "linear": ("linear (contact held)", {"linestyle": "-", "linewidth": 1.4}),
+    "up": ("nonlinear, stepped up", {"linestyle": "none", "marker": "|", "markersize": 8}),
+    "down": ("nonlinear, stepped down", {"linestyle": "none", "marker": "o", "markersize": 4, "fillstyle": "none"}),
+}
 
 Points = list[tuple[float, float, float]]
 """Acceleration [m/s2], frequency [Hz], amplitude of the force [N]."""
@@ -31,46 +39,51 @@ def read(path: Path) -> dict[str, Points]:
     return curves
 
 
+def in_gravities(acceleration: float) -> float:
+    """Give m/s2 in g."""
+    return acceleration / GRAVITY
+
+
+def in_metres(gravities: float) -> float:
+    """Give g in m/s2."""
+    return gravities * GRAVITY
+
+
 def response(axes: Axes, curves: dict[str, Points]) -> None:
-    """Draw the amplitude of the force over the frequency."""
-    preload = curves["linear threshold"][0][2]
-    axes.axhline(100 * preload, color=PRELOAD_COLOUR, linestyle=":", linewidth=1.2)
-    axes.annotate(
-        "preload", (2990, 100 * preload), xytext=(0, -4), textcoords="offset points", ha="right", va="top",
-        color=PRELOAD_COLOUR, fontsize="small",
-    )  # fmt: skip
+    """Draw the amplitude of the force over the frequency; blows are so strong that the scale is logarithmic."""
+    preload = 100 * curves["linear threshold"][0][2]
+    axes.axhline(preload, color=GREY, linestyle=":", linewidth=1.2)
+    axes.annotate("preload", (30, preload), xytext=(0, 3), textcoords="offset points", color=GREY, fontsize="small")
     accelerations = sorted({point[0] for point in curves["linear"]})
-    styles = {
-        "linear": {"linestyle": "-", "linewidth": 1.6},
-        "up": {"linestyle": "none", "marker": "^", "markersize": 5},
-        "down": {"linestyle": "none", "marker": "v", "markersize": 5, "fillstyle": "none"},
-    }
     for acceleration, colour in zip(accelerations, COLOURS, strict=True):
-        for curve, style in styles.items():
+        for curve, (_, style) in STYLES.items():
             points = [point for point in curves[curve] if point[0] == acceleration]
             axes.plot([p[1] for p in points], [100 * p[2] for p in points], color=colour, **style)
-    handles = [Line2D([], [], color="black", label=name, **styles[key]) for key, name in (
-        ("linear", "linear"), ("up", "nonlinear, swept up"), ("down", "nonlinear, swept down"))]  # fmt: skip
+    handles = [Line2D([], [], color="black", label=label, **style) for label, style in STYLES.values()]
     handles += [
-        Line2D([], [], color=colour, linewidth=5, label=f"{a:g} m/s² ({a / GRAVITY:.0f} g)")
-        for a, colour in zip(accelerations, COLOURS, strict=True)
+        Line2D([], [], color=colour, linewidth=5, label=f"{a:g} m/s² ({in_gravities(a):.1f} g)")
+        for a, colour in reversed(list(zip(accelerations, COLOURS, strict=True)))
     ]
-    axes.legend(handles=handles, fontsize="small", frameon=False)
-    axes.set(xlabel="frequency [Hz]", ylabel="amplitude of the contact force [cN]", xlim=(0, 3000), ylim=(0, None))
+    axes.legend(handles=handles, loc="upper right", fontsize="small", frameon=False)
+    axes.set(xlabel="frequency [Hz]", ylabel="half of peak-to-peak contact force [cN]", xlim=(0, 3050))
+    axes.set_yscale("log")
+    axes.yaxis.set_major_formatter("{x:g}")
     axes.set_title("Response to base vibration", fontsize="medium")
 
 
 def thresholds(axes: Axes, curves: dict[str, Points]) -> None:
     """Draw the acceleration at which the contact opens over the frequency."""
     linear, nonlinear = curves["linear threshold"], curves["threshold"]
-    axes.plot([p[1] for p in linear], [p[0] for p in linear], color="#0072B2", label="linear: amplitude = preload")
-    axes.plot(
-        [p[1] for p in nonlinear], [p[0] for p in nonlinear], color="#D55E00", marker="o", linestyle="none",
-        label="nonlinear, periodic motion",
-    )  # fmt: skip
-    axes.set(xlabel="frequency [Hz]", ylabel="base acceleration [m/s²]", xlim=(0, 3050), ylim=(0, None))
-    in_g = axes.secondary_yaxis("right", functions=(lambda a: a / GRAVITY, lambda g: g * GRAVITY))
-    in_g.set_ylabel("[g]")
+    frequencies, accelerations = [p[1] for p in linear], [p[0] for p in linear]
+    axes.fill_between(frequencies, accelerations, 1400, color="#D55E00", alpha=0.08, linewidth=0)
+    axes.plot(frequencies, accelerations, color="#0072B2", label="linear: force amplitude = preload")
+    dots: dict[str, Any] = {"color": "#D55E00", "marker": "o", "markersize": 5, "linestyle": "none"}
+    axes.plot([p[1] for p in nonlinear], [p[0] for p in nonlinear], label="nonlinear: periodic motion opens", **dots)
+    axes.text(1100, 750, "opens", color=GREY, ha="center")
+    axes.text(1100, 150, "stays closed", color=GREY, ha="center")
+    axes.set(xlabel="frequency [Hz]", ylabel="base acceleration [m/s²]", xlim=(0, 3050), ylim=(0, 1400))
+    in_g = axes.secondary_yaxis("right", functions=(in_gravities, in_metres))  # type: ignore[arg-type]
+    in_g.set_ylabel("base acceleration [g]")
     axes.set_title("Vibration that opens the contact", fontsize="medium")
     axes.legend(fontsize="small", frameon=False)
 

@@ -95,6 +95,8 @@ impl Integration<'_> {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::SVector;
+
     use super::*;
     use crate::excitation::drive::Drive;
     use crate::inputs::Inputs;
@@ -105,7 +107,10 @@ mod tests {
     use crate::transient::progress::Progress;
     use crate::variables::ExcitationKind;
 
-    /// Six modes of the specimen under way: shaken by the generator and by the input, which grows, with the fixed contact
+    const MODES: usize = 6;
+    type Along = SVector<f64, { 2 * MODES + 2 }>;
+
+    /// The specimen under way: shaken by the generator and by the input, which grows, with the fixed contact
     /// moving.
     fn moving() -> (Model, State, Drive) {
         let mut scene = Scene::default();
@@ -113,7 +118,7 @@ mod tests {
         scene.effects.energy = true;
         scene.excitation.amplitude = 300.0;
         scene.excitation.phase = 0.3;
-        scene.solver.modes = 6;
+        scene.solver.modes = i32::try_from(MODES).unwrap();
         let model = Model::new(&scene, 0.0).unwrap();
         let mut state = model.initial_state(0.0);
         let inputs = Inputs {
@@ -162,6 +167,7 @@ mod tests {
 
     /// The same, with every work, energy and loss summed up along the motion under the force of the step, integrated by
     /// the classical Runge-Kutta method, J.
+    #[expect(clippy::indexing_slicing, reason = "as many entries as the modes need")]
     fn summed<const S: usize>(
         model: &Model,
         start: &State,
@@ -171,49 +177,44 @@ mod tests {
         trial: &Trial<S>,
     ) -> f64 {
         const STEPS: u32 = 20_000;
-        const SIZE: usize = 6;
         let collocation = Collocation::<S>::new();
-        let modes: [_; SIZE] = std::array::from_fn(|i| model.modes[i]);
-        let rates = |t: f64, y: &[f64; 2 * SIZE + 2]| {
+        // Displacement and velocity of each mode in turn, energy put in, energy dissipated.
+        let rates = |t: f64, y: &Along| {
             let force = collocation.interpolate(&trial.forces, t / length);
             let base = drive.acceleration(start.time + t) + model.generator.phasor(start.time + t).0;
             let (mut d, mut rate) = (start.support + drive.support_rate * t, drive.support_rate);
-            let mut slope = [0.0; 2 * SIZE + 2];
-            let (mut by_base, mut in_beam) = (0.0, 0.0);
-            for (i, mode) in modes.iter().enumerate() {
+            let mut slope = Along::zeros();
+            for (i, mode) in model.modes.iter().enumerate() {
                 let (q, v) = (y[2 * i], y[2 * i + 1]);
                 slope[2 * i] = v;
                 slope[2 * i + 1] =
                     mode.tip * force - mode.participation * base - mode.damping * v - mode.omega_squared * q;
                 d -= mode.tip * q;
                 rate -= mode.tip * v;
-                by_base -= base * mode.participation * v;
-                in_beam += mode.damping * v * v;
+                slope[2 * MODES] -= base * mode.participation * v;
+                slope[2 * MODES + 1] += mode.damping * v * v;
             }
             let d = model.preload.indentation + d;
-            let dissipative = model.law.force(d, rate) - model.law.force(d, 0.0);
-            let whole = model.preload.force + force;
-            slope[2 * SIZE] = by_base + whole * drive.support_rate;
-            slope[2 * SIZE + 1] = in_beam + dissipative * rate;
+            slope[2 * MODES] += (model.preload.force + force) * drive.support_rate;
+            slope[2 * MODES + 1] += (model.law.force(d, rate) - model.law.force(d, 0.0)) * rate;
             slope
         };
-        let mut y = [0.0; 2 * SIZE + 2];
-        for (i, at) in start.modes.iter().take(SIZE).enumerate() {
+        let mut y = Along::zeros();
+        for (i, at) in start.modes.iter().take(MODES).enumerate() {
             (y[2 * i], y[2 * i + 1]) = (at.q, at.v);
         }
         let h = length / f64::from(STEPS);
         for k in 0..STEPS {
             let t = f64::from(k) * h;
-            let along = |slope: &[f64; 2 * SIZE + 2], h: f64| std::array::from_fn(|i| y[i] + h * slope[i]);
             let a = rates(t, &y);
-            let b = rates(t + 0.5 * h, &along(&a, 0.5 * h));
-            let c = rates(t + 0.5 * h, &along(&b, 0.5 * h));
-            let d = rates(t + h, &along(&c, h));
-            y = std::array::from_fn(|i| y[i] + h / 6.0 * (a[i] + 2.0 * (b[i] + c[i]) + d[i]));
+            let b = rates(t + 0.5 * h, &(y + a * (0.5 * h)));
+            let c = rates(t + 0.5 * h, &(y + b * (0.5 * h)));
+            let d = rates(t + h, &(y + c * h));
+            y += (a + (b + c) * 2.0 + d) * (h / 6.0);
         }
         let stored =
             |state: &State| model.energy(&state.modes, state.indentation) + model.preload.force * state.support;
-        y[2 * SIZE] - y[2 * SIZE + 1] - (stored(end) - stored(start))
+        y[2 * MODES] - y[2 * MODES + 1] - (stored(end) - stored(start))
     }
 
     #[test]
@@ -257,9 +258,10 @@ mod tests {
         let mut end = start;
         let mut made = 0.0;
         let (entered, _) = balance::<LONG>(&model, &mut end, drive, 6e-5, |_, modes| {
-            let due = modes[0].v;
-            modes[0].v *= 1.0 + 1e-6;
-            made = 0.5 * (modes[0].v * modes[0].v - due * due);
+            let first = modes.first_mut().unwrap();
+            let due = first.v;
+            first.v *= 1.0 + 1e-6;
+            made = 0.5 * (first.v * first.v - due * due);
         });
         assert!(
             (entered + made).abs() < 1e-3 * made,
