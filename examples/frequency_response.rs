@@ -40,7 +40,7 @@ const BLOW: u32 = 200;
 /// A motion counts as periodic when the extremes of the force change by less than this part of the preload from one
 /// period to the next: far below what the picture shows.
 const PERIODIC: f64 = 1e-6;
-/// Periods after which it should be: 20 are enough for the scenes here, also where the contact bounces.
+/// Periods after which it has to be.
 const PATIENCE: u32 = 100;
 
 /// The specimen shaken with a sine, from the instant `start` (s).

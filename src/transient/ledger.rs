@@ -31,6 +31,9 @@
 //! solution of a single mode, which it relies on. A contact at rest and an exact step of the linear scene add nothing
 //! to it: one does not move, the other has no polynomial, its motion obeys the law at every instant to rounding.
 //!
+//! The balance is drawn up at the ends of the integrator's steps: at a communication point inside a step it is that of
+//! the step's start.
+//!
 //! A force wrong by `e` over a way `s` of the tip is worth `e s` at most. That is what to hold the balance against: the
 //! tolerance times the force scale times the way.
 
