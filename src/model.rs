@@ -111,6 +111,8 @@ pub struct State {
     pub last_step: f64,
     /// Energy that the steps so far have made and not yet returned, J, where nothing dissipates.
     pub energy_surplus: f64,
+    /// Energy put in less stored less dissipated since initialisation, J, where that is asked for.
+    pub energy_balance: f64,
     /// Accepted steps.
     pub steps: u64,
     /// Steps discarded and repeated shorter.
@@ -261,6 +263,7 @@ impl Model {
             predictions: Predictions::default(),
             last_step: 0.0,
             energy_surplus: 0.0,
+            energy_balance: 0.0,
             steps: 0,
             rejected_steps: 0,
             iterations: 0,

@@ -116,8 +116,8 @@ impl Simulation {
             | RealOutput::StepMaximumForce
             | RealOutput::StepMaximumResistance
             | RealOutput::ChatterLongestInterruption
-            | RealOutput::ChatterTotalInterruption
-            | RealOutput::EnergyBalance => 0.0,
+            | RealOutput::ChatterTotalInterruption => 0.0,
+            RealOutput::EnergyBalance => state.energy_balance,
             RealOutput::ContactIndentation => model.preload.indentation + tip().indentation,
             RealOutput::TipDisplacement => model.preload.deflection + state.support - tip().indentation,
             RealOutput::TipVelocity => state.support_rate - tip().rate,

@@ -67,6 +67,8 @@ fn check(excitation: i32) {
         );
         let kind = Variable::by_name("effects.excitation").unwrap().value_reference;
         assert_eq!(fmi2SetInteger(c, &raw const kind, 1, &raw const excitation), fmi2OK);
+        let energy = Variable::by_name("effects.energy").unwrap().value_reference;
+        assert_eq!(fmi2SetBoolean(c, &raw const energy, 1, [fmi2True].as_ptr()), fmi2OK);
         assert_eq!(fmi2EnterInitializationMode(c), fmi2OK);
         assert_eq!(fmi2ExitInitializationMode(c), fmi2OK);
         let before = COUNT.get();

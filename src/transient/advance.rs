@@ -376,6 +376,7 @@ impl Integration<'_> {
         if !(trial.indentation.is_finite() && trial.rate.is_finite()) {
             return Err(self.error(StepErrorCause::NotFinite));
         }
+        let due = self.energy_due(trial, target);
         self.enter(trial, target.length);
         let Self { model, state, .. } = self;
         let (cache, end, _) = Room::<S>::parts(self.workspace);
@@ -410,6 +411,7 @@ impl Integration<'_> {
         self.progress.done = target.done;
         self.refusals = 0;
         self.settle(target.length);
+        self.balance(due);
         Ok(())
     }
 }

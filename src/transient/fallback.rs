@@ -64,7 +64,7 @@ impl Integration<'_> {
         let from = preload.indentation + state.indentation;
         let mut under = |force: f64| {
             trials += 1;
-            let source = Source::Constant(force - preload.force);
+            let source = Source::Given([force - preload.force; SHORT]);
             model.trial(state, drive, step, collocation, source, end)
         };
         let wanted = |trial: &Trial<SHORT>| {

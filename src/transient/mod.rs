@@ -10,7 +10,7 @@
 //! - [`switching`]: steps end where the contact opens ([`release`]) or closes ([`touchdown`]), and begin anew;
 //!   [`events`] keeps a list.
 //! - [`fallback`]: a step with a constant force, where the collocation cannot go on.
-//! - [`energy`]: where nothing dissipates, the energy is kept.
+//! - [`energy`]: where nothing dissipates, the energy is kept. [`ledger`]: what a step loses or makes of it.
 //!
 //! One step, in which the contact force is a polynomial through Radau nodes ([`collocation`]):
 //!
@@ -36,6 +36,7 @@ pub mod energy;
 pub mod events;
 pub mod fallback;
 pub mod free_motion;
+pub mod ledger;
 pub mod linear;
 pub mod machine;
 pub mod mode_over_step;

@@ -31,10 +31,10 @@ pub(super) struct Solution<const S: usize> {
 }
 
 impl<const S: usize> Solution<S> {
-    /// A force that does not depend on the motion.
-    pub(super) fn constant(force: f64) -> Self {
+    /// Forces that do not depend on the motion.
+    pub(super) fn given(forces: Nodal<S>) -> Self {
         Self {
-            forces: [force; S],
+            forces,
             iterations: 0,
             by_force: (0.0, 0.0),
             by_acceleration: (0.0, 0.0),

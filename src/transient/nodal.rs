@@ -11,11 +11,11 @@ use crate::transient::vector::{add, add_columns, add_products, dot, end};
 
 /// Where the contact force of a step comes from.
 #[derive(Clone, Copy, Debug)]
-pub enum Source {
+pub enum Source<const S: usize> {
     /// The law at the nodes while the contact is closed, met by Newton's method to this, N; nothing while it is open.
     Law(f64),
-    /// This throughout, as deviation from the preload force, N.
-    Constant(f64),
+    /// This at the nodes, as deviation from the preload force, N.
+    Given(Nodal<S>),
 }
 
 /// A step computed but not yet taken.
@@ -78,7 +78,7 @@ impl Model {
         drive: &Drive,
         step: &StepCoefficients<S>,
         collocation: &Collocation<S>,
-        source: Source,
+        source: Source<S>,
         end_modes: &mut ModeStates,
     ) -> Option<Trial<S>> {
         compiled_for!(self.machine, A => self.compute::<S, A>(state, drive, step, collocation, source, end_modes))
@@ -92,7 +92,7 @@ impl Model {
         drive: &Drive,
         step: &StepCoefficients<S>,
         collocation: &Collocation<S>,
-        source: Source,
+        source: Source<S>,
         end_modes: &mut ModeStates,
     ) -> Option<Trial<S>> {
         let h = step.length;
@@ -125,8 +125,8 @@ impl Model {
             Source::Law(newton) if state.closed => {
                 self.closed_forces::<S, A>(state, step, collocation, &free, &free_rate, newton)?
             }
-            Source::Law(_) => Solution::constant(-self.preload.force),
-            Source::Constant(force) => Solution::constant(force),
+            Source::Law(_) => Solution::given([-self.preload.force; S]),
+            Source::Given(forces) => Solution::given(forces),
         };
         let Solution { forces, iterations, .. } = solution;
         let (indentations, rates) = at_nodes::<S, A>(step, &free, &free_rate, &forces);

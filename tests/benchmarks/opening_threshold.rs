@@ -64,7 +64,7 @@ fn the_linearised_contact_opens_at_the_analytic_threshold() {
     for frequency in [250.0, 700.0, 1000.0, 1300.0, 2000.0] {
         let tolerance = 1e-8;
         let closed = model(ContactLawKind::Bonded, tolerance, frequency);
-        let threshold = closed.preload.force / harmonic::force_response(&closed, TAU * frequency).norm();
+        let threshold = harmonic::opening_threshold(&closed, TAU * frequency);
         // The force misses zero by 1e-6 of the preload force on either side, a hundred times the error allowed.
         for (factor, opens) in [(1.0 - 1e-6, false), (1.0 + 1e-6, true)] {
             let mut rig = periodic(closed.clone(), factor * threshold, frequency);
@@ -92,7 +92,7 @@ fn the_linearised_contact_opens_at_the_analytic_threshold() {
 fn the_nonlinear_force_leaves_the_linear_one_quadratically() {
     let frequency = 1000.0;
     let hertz = model(ContactLawKind::Hertz, 1e-10, frequency);
-    let response = harmonic::force_response(&hertz, TAU * frequency).norm();
+    let response = harmonic::response(&hertz, TAU * frequency).force.norm();
     let preload = hertz.preload.force;
     let deviation = |ratio: f64| {
         let mut rig = periodic(hertz.clone(), ratio * preload / response, frequency);

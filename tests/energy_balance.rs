@@ -1,0 +1,305 @@
+//! The balance of the energy against the sum of all works, stored energies and losses, made outside of it.
+//!
+//! A force wrong by `e` along a way `s` of the tip changes the energy by at most `e s`: the balance has to stay below the
+//! tolerance times the force scale times the way.
+
+#![allow(clippy::unwrap_used)]
+
+#[allow(dead_code)]
+mod common;
+
+use std::f64::consts::TAU;
+
+use common::{Rig, undamped};
+use relay_contact::inputs::Inputs;
+use relay_contact::model::Model;
+use relay_contact::scene::Scene;
+use relay_contact::simulation::Simulation;
+use relay_contact::variables::{ContactLawKind, ExcitationKind, IntegerOutput, RealOutput};
+
+/// Inputs over the communication step from an instant (s) by a length (s).
+type Drive = fn(f64, f64) -> Inputs;
+
+struct Case {
+    name: &'static str,
+    scene: Scene,
+    drive: Drive,
+    /// s.
+    stop: f64,
+    /// Velocity of the base at the start, m/s, where nothing else gets things going.
+    launch: f64,
+}
+
+fn held(_: f64, _: f64) -> Inputs {
+    Inputs::default()
+}
+
+/// 500 Hz, 150 m/s2, held.
+fn base_held(time: f64, _: f64) -> Inputs {
+    Inputs {
+        base_acceleration: 150.0 * (TAU * 500.0 * time).sin(),
+        ..Inputs::default()
+    }
+}
+
+/// The same, linear between communication points.
+fn base_linear(time: f64, size: f64) -> Inputs {
+    let at = |time: f64| 150.0 * (TAU * 500.0 * time).sin();
+    Inputs {
+        base_acceleration: at(time),
+        base_acceleration_rate: (at(time + size) - at(time)) / size,
+        ..Inputs::default()
+    }
+}
+
+/// The fixed contact goes back and forth by 40 nm, 800 times a second.
+fn support_moves(time: f64, size: f64) -> Inputs {
+    let at = |time: f64| 4e-8 * (1.0 - (TAU * 800.0 * time).cos());
+    Inputs {
+        support_displacement: at(time),
+        support_displacement_rate: (at(time + size) - at(time)) / size,
+        ..Inputs::default()
+    }
+}
+
+fn shaken(amplitude: f64) -> Scene {
+    let mut scene = Scene::default();
+    scene.effects.excitation = ExcitationKind::Sine;
+    scene.excitation.amplitude = amplitude;
+    scene
+}
+
+/// Steps of the linear scenes are exact, unless a longest step is set.
+fn law(kind: ContactLawKind, maximum_step: f64) -> Scene {
+    let mut scene = shaken(300.0);
+    scene.effects.contact_law = kind;
+    scene.solver.maximum_step = maximum_step;
+    scene
+}
+
+fn cases() -> Vec<Case> {
+    let case = |name, scene, drive| Case {
+        name,
+        scene,
+        drive,
+        stop: 3e-3,
+        launch: 0.0,
+    };
+    vec![
+        case("98 m/s2 at 1000 Hz", shaken(98.0), held),
+        case("chatter at 400 m/s2", shaken(400.0), held),
+        case("base held", Scene::default(), base_held),
+        case("base linear", Scene::default(), base_linear),
+        case("fixed contact moves", Scene::default(), support_moves),
+        case("fixed contact moves, chatter", shaken(400.0), support_moves),
+        case("linearised", law(ContactLawKind::Linearised, 2e-5), held),
+        case("bonded", law(ContactLawKind::Bonded, 2e-5), held),
+        case("bonded, exact steps", law(ContactLawKind::Bonded, 0.0), held),
+        Case {
+            launch: 1e-3,
+            ..case("undamped", undamped(), held)
+        },
+        Case {
+            launch: 0.1,
+            ..case("undamped, blows", undamped(), held)
+        },
+    ]
+}
+
+/// What the sum outside comes to, J.
+#[derive(Default)]
+struct Sum {
+    put_in: f64,
+    dissipated: f64,
+    /// All that went in or out, without signs.
+    turnover: f64,
+    /// Error of the trapezoidal rule at most, where the powers rise or fall over a step, J.
+    uncertainty: f64,
+    /// Way of the tip against the fixed contact, m.
+    way: f64,
+    /// What the tolerance is relative to, N.
+    force_scale: f64,
+}
+
+/// Powers at an instant, W: put in, dissipated.
+fn powers(rig: &Rig, inputs: &Inputs, since: f64) -> [f64; 2] {
+    let Rig { model, state, .. } = rig;
+    let generated = match model.scene.effects.excitation {
+        ExcitationKind::Sine => {
+            let excitation = &model.scene.excitation;
+            excitation.amplitude * (TAU * excitation.frequency * state.time).sin()
+        }
+        _ => 0.0,
+    };
+    let base = generated + inputs.base_acceleration + inputs.base_acceleration_rate * (state.time - since);
+    let modes = || model.modes.iter().zip(&state.modes);
+    let by_base: f64 = modes().map(|(mode, at)| -base * mode.participation * at.v).sum();
+    let in_beam: f64 = modes().map(|(mode, at)| mode.damping * at.v * at.v).sum();
+    let d = model.preload.indentation + state.indentation;
+    let rate = state.indentation_rate;
+    let in_contact = (model.law.force(d, rate) - model.law.force(d, 0.0)) * rate;
+    [
+        by_base + model.law.force(d, rate) * state.support_rate,
+        in_beam + in_contact,
+    ]
+}
+
+/// Runs a case with communication steps of `size` (s), and sums up by the trapezoidal rule. Returns the sum, the change of
+/// what is stored and the balance, J.
+fn run(case: &Case, tolerance: f64, size: f64) -> (Sum, f64, f64) {
+    let mut scene = case.scene;
+    scene.solver.tolerance = tolerance;
+    scene.solver.modes = 6;
+    scene.effects.energy = true;
+    let mut rig = Rig::new(Model::new(&scene, 0.0).unwrap());
+    if case.launch > 0.0 {
+        let velocities: Vec<f64> = rig
+            .model
+            .modes
+            .iter()
+            .map(|mode| case.launch * mode.participation)
+            .collect();
+        rig.launch(&velocities);
+    }
+    // The static force does work on the displaced tip.
+    let stored = |rig: &Rig| rig.energy() + rig.model.preload.force * rig.state.support;
+    let start = stored(&rig);
+    let mut sum = Sum {
+        force_scale: rig.model.force_scale,
+        ..Sum::default()
+    };
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // some thousands
+    let steps = (case.stop / size).round() as u32;
+    for k in 0..steps {
+        let time = rig.state.time;
+        let inputs = (case.drive)(time, size);
+        // A new velocity of the fixed contact holds from the start of the step.
+        let jump = inputs.support_displacement_rate - rig.state.support_rate;
+        rig.state.support_rate += jump;
+        rig.state.indentation_rate += jump;
+        let before = powers(&rig, &inputs, time);
+        let from = rig.state.indentation;
+        rig.run_to(&inputs, f64::from(k + 1) * size).unwrap();
+        let after = powers(&rig, &inputs, time);
+        let [put_in, dissipated] = [0, 1].map(|i| 0.5 * size * (before[i] + after[i]));
+        sum.put_in += put_in;
+        sum.dissipated += dissipated;
+        sum.turnover += put_in.abs() + dissipated.abs();
+        let changes = after.iter().zip(&before).map(|(after, before)| (after - before).abs());
+        sum.uncertainty += 0.5 * size * changes.sum::<f64>();
+        sum.way += (rig.state.indentation - from).abs();
+    }
+    sum.turnover += start;
+    (sum, stored(&rig) - start, rig.state.energy_balance)
+}
+
+#[test]
+fn the_balance_is_that_of_all_works_and_losses() {
+    for case in cases() {
+        let (sum, stored, balance) = run(&case, 1e-8, 5e-8);
+        let rest = sum.put_in - stored - sum.dissipated - balance;
+        println!(
+            "{}: rest {rest:.1e} J, allowed {:.1e} J, of {:.1e} J",
+            case.name, sum.uncertainty, sum.turnover
+        );
+        // What remains is the error of the trapezoidal rule, and rounding.
+        assert!(
+            rest.abs() < sum.uncertainty + 1e-12 * sum.turnover,
+            "{}: {rest:e} J",
+            case.name
+        );
+        assert!(
+            sum.uncertainty < 0.01 * sum.turnover,
+            "{}: {:e} J",
+            case.name,
+            sum.uncertainty
+        );
+    }
+}
+
+#[test]
+fn the_balance_stays_below_the_tolerance() {
+    for case in cases() {
+        for tolerance in [1e-2, 1e-4, 1e-6, 1e-8, 1e-10] {
+            for size in [1e-4, 1e-5] {
+                let (sum, _, balance) = run(&case, tolerance, size);
+                let allowed = tolerance * sum.force_scale * sum.way;
+                println!(
+                    "{}, {tolerance:e}, {size:e} s: {balance:.1e} J, {:.1e} of what is allowed",
+                    case.name,
+                    balance / allowed
+                );
+                assert!(
+                    balance.abs() < allowed,
+                    "{}, {tolerance:e}, {size:e} s: {balance:e} J, allowed {allowed:e} J",
+                    case.name
+                );
+            }
+        }
+    }
+}
+
+/// Chatter with the balance kept or not.
+fn chatter(energy: bool) -> Simulation {
+    let mut scene = shaken(400.0);
+    scene.effects.energy = energy;
+    Simulation::new(&scene, &Inputs::default(), 0.0).unwrap()
+}
+
+#[test]
+fn keeping_the_balance_changes_no_motion() {
+    let (mut with, mut without) = (chatter(true), chatter(false));
+    for k in 0..300 {
+        for simulation in [&mut with, &mut without] {
+            simulation.step(&Inputs::default(), f64::from(k) * 1e-5, 1e-5).unwrap();
+        }
+        assert_eq!(
+            with.real(RealOutput::ContactForce),
+            without.real(RealOutput::ContactForce)
+        );
+        assert_eq!(without.real(RealOutput::EnergyBalance), 0.0);
+    }
+    assert_eq!(with.state().modes, without.state().modes);
+    assert_eq!(with.state().steps, without.state().steps);
+    assert_ne!(with.real(RealOutput::EnergyBalance), 0.0);
+}
+
+#[test]
+fn the_balance_belongs_to_the_communication_point() {
+    let size = 1e-7;
+    let mut simulation = chatter(true);
+    let step = |simulation: &mut Simulation, k: u32| {
+        simulation.step(&Inputs::default(), f64::from(k) * size, size).unwrap();
+        let steps = simulation.integer(IntegerOutput::SolverSteps);
+        (steps, simulation.real(RealOutput::EnergyBalance))
+    };
+    // Through the opening at 0.709 ms and the closing at 1.089 ms.
+    let (saved_at, end) = (3001, 12_000);
+    let mut saved = None;
+    let mut entries = Vec::new();
+    for k in 0..end {
+        if k == saved_at {
+            saved = Some(*simulation.course());
+        }
+        entries.push(step(&mut simulation, k));
+    }
+    // It is drawn up at the ends of the integrator's steps: between them it stays, also where the integrator is ahead.
+    let inside = entries.windows(2).filter(|pair| pair[0].0 == pair[1].0).count();
+    assert!(inside > 9_000, "{inside}");
+    for pair in entries.windows(2) {
+        assert!(pair[0].0 != pair[1].0 || pair[0].1 == pair[1].1);
+    }
+    // A saved motion goes on with the balance it had.
+    simulation.go_on_from(&saved.unwrap());
+    for k in saved_at..end {
+        assert_eq!(step(&mut simulation, k), entries[k as usize]);
+    }
+    // A drive that changes takes the motion back to the communication point: what was entered beyond it is forgotten.
+    let changed = Inputs {
+        base_acceleration: 1.0,
+        ..Inputs::default()
+    };
+    simulation.step(&changed, f64::from(end) * size, 1e-3).unwrap();
+    let way = 1e-4; // m, far more than the tip moves
+    assert!(simulation.real(RealOutput::EnergyBalance).abs() < 1e-6 * simulation.model().force_scale * way);
+}
