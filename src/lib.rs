@@ -49,6 +49,7 @@ pub mod error;
 pub mod excitation;
 pub mod fmi2;
 pub mod harmonic;
+pub mod input_table;
 pub mod inputs;
 pub mod math;
 pub mod model;

@@ -10,6 +10,8 @@ mod licences;
 mod package;
 mod python;
 mod scene;
+mod ssv;
+mod summary;
 mod test;
 
 use std::process::ExitCode;
@@ -31,8 +33,10 @@ struct Arguments {
 enum Task {
     /// Build the component and pack it as dist/RelayContact.fmu
     Fmu,
-    /// Run a scene and write what it looks at to out/scenes/NAME.csv
+    /// Run a scene, write what it looks at to out/scenes/NAME.csv and .png, and tell what happened
     Scene(scene::Arguments),
+    /// Write each scene as a parameter set for SSP tools, out/ssv/NAME.ssv
+    Ssv,
     /// Build the component, run the published 1 kHz case under FMPy, compare and plot
     Demo,
     /// Measure what accuracy costs, beside other integrators; rewrite docs/accuracy.csv, its figures and its tables
@@ -47,6 +51,7 @@ fn main() -> ExitCode {
     let outcome = match Arguments::parse().task {
         Task::Fmu => fmu::build().map(|path| println!("{}", path.display())),
         Task::Scene(arguments) => scene::run(&arguments),
+        Task::Ssv => ssv::write().map(|paths| paths.iter().for_each(|path| println!("{}", path.display()))),
         Task::Demo => demo::run(),
         Task::Accuracy(arguments) => accuracy::run(&arguments),
         Task::Importers => test::importers_alone(),
