@@ -58,6 +58,9 @@ pub enum SceneError {
         /// The buckling load of the cantilever, N.
         limit: f64,
     },
+    /// An effect that a bare build ([`crate::BARE`]) does not have.
+    #[error("{0}: this is a bare build, which has only what is simplest")]
+    Bare(&'static str),
     /// A linear contact law without a contact force to linearise about.
     #[error("effects.contactLaw: Linearised and Bonded need a contact that is closed at rest, preload.force is 0 N")]
     NoPreload,

@@ -5,6 +5,7 @@ use crate::beam::galerkin::Space;
 use crate::beam::section::Section;
 use crate::contact::hertz::Hertz;
 use crate::contact::law::Law;
+#[cfg(not(feature = "bare"))]
 use crate::contact::linear::Linear;
 use crate::electrical::Path;
 use crate::error::SceneError;
@@ -137,6 +138,9 @@ impl Model {
         let law = match scene.effects.contact_law {
             ContactLawKind::Hertz => Law::Hertz(hertz),
             _ if preload.force <= 0.0 => return Err(SceneError::NoPreload),
+            #[cfg(feature = "bare")]
+            _ => return Err(SceneError::Bare("effects.contactLaw")),
+            #[cfg(not(feature = "bare"))]
             kind => Law::Linear(Linear {
                 stiffness: preload.contact_stiffness,
                 damping: hertz.damping,

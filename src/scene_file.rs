@@ -195,12 +195,17 @@ impl SceneFile {
         Ok(inputs)
     }
 
-    /// Sets `stop`, `communicationStep`, a parameter or an input by name, from text such as `0.0155` or `Sine`. An input is
-    /// then held, also where the table had a column for it.
+    /// Sets `stop`, `communicationStep`, `outputs` (names with commas between them), a parameter or an input by name, from text
+    /// such as `0.0155` or `Sine`. An input is then held, also where the table had a column for it.
     ///
     /// # Errors
     /// A [`SceneError`] for a name that does not exist or a value it cannot take; nothing is changed then.
     pub fn set(&mut self, name: &str, value: &str) -> Result<(), SceneError> {
+        if name == "outputs" {
+            let outputs = value.split(',').map(|name| variable(Role::Output, name.trim()));
+            self.outputs = outputs.collect::<Result<_, _>>()?;
+            return Ok(());
+        }
         let parsed = ValueDeserializer::parse(value).and_then(Value::deserialize);
         let value = parsed.unwrap_or_else(|_| Value::Text(value.to_owned()));
         match name {

@@ -229,6 +229,7 @@ fn setting_by_name_takes_numbers_and_choices_and_keeps_the_rest_when_refused() -
     file.set("base.acceleration", "-5")?;
     file.set("solver.modes", "4")?;
     file.set("effects.chatter", "false")?;
+    file.set("outputs", "contact.force, contact.closed")?;
     file.set("stop", "0.5")?;
     let kept = file.clone();
     for (name, value) in [
@@ -238,12 +239,15 @@ fn setting_by_name_takes_numbers_and_choices_and_keeps_the_rest_when_refused() -
         ("effects.chatter", "0"),
         ("base.acceleration", "nan"),
         ("contact.force", "1"),
+        ("outputs", "contact.force,contact.forse"),
         ("stop", "-1"),
     ] {
         assert!(file.set(name, value).is_err(), "{name} = {value}");
     }
     assert_eq!(file.scene, kept.scene);
     assert_eq!(file.inputs, kept.inputs);
+    let names: Vec<_> = file.outputs.iter().map(|variable| variable.name).collect();
+    assert_eq!(names, ["contact.force", "contact.closed"]);
     assert_eq!(file.stop, 0.5);
     assert_eq!(file.scene.beam.length, 0.02);
     assert_eq!(file.scene.solver.modes, 4);

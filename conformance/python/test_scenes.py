@@ -1,4 +1,4 @@
-"""Every scene from its parameter set under FMPy: the set follows the schema of SSP, and the force is that of our own run.
+"""Every scene from its parameter set under FMPy: the set follows the schema of SSP, the force is that of our own run.
 
 `cargo xtask test` writes the sets and the runs before this test.
 """
@@ -6,6 +6,7 @@
 import csv
 import math
 import tomllib
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -70,7 +71,7 @@ def difference(name: str, folder: Path) -> float:
         apply(instance, name)
         instance.initialise()
         forces = [instance.get("contact.force")]
-        for n, (start, end) in enumerate(zip(time, time[1:], strict=False)):
+        for n, (start, end) in enumerate(pairwise(time)):
             for variable, values in inputs.items():
                 instance.set(variable, values[n])
                 set_derivative(instance, variable, (values[n + 1] - values[n]) / (end - start))

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 mpl.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator
 
 ROOT = Path(__file__).resolve().parents[2]
 # Colours of Okabe and Ito, told apart also by the colour-blind.
@@ -42,15 +43,15 @@ def units() -> dict[str, Unit]:
     description = ElementTree.parse(ROOT / "modelDescription.xml").getroot()
     shown = {}
     for unit in description.iter("Unit"):
-        for display in unit.iter("DisplayUnit"):
-            factor, offset = float(display.get("factor", "1")), float(display.get("offset", "0"))
-            shown[unit.get("name", ""), display.get("name", "")] = (factor, offset)
+        for other in unit.iter("DisplayUnit"):
+            factor, offset = float(other.get("factor", "1")), float(other.get("offset", "0"))
+            shown[unit.get("name", ""), other.get("name", "")] = (factor, offset)
     types = {}
     for kind in description.iter("SimpleType"):
         real = kind.find("Real")
         if real is not None:
             si = real.get("unit", "")
-            display = real.get("displayUnit", si)
+            display: str = real.get("displayUnit", si)
             types[kind.get("name")] = Unit(si, display, *shown.get((si, display), (1.0, 0.0)))
     found = {}
     for variable in description.iter("ScalarVariable"):
@@ -73,7 +74,7 @@ def panel(axes: Axes, time: Array, name: str, values: Array, unit: Unit | None, 
     whole = unit is None
     axes.plot(time, values, color=colour, linewidth=1.2, drawstyle="steps-post" if whole else "default")
     if whole:
-        axes.yaxis.get_major_locator().set_params(integer=True)
+        axes.yaxis.set_major_locator(MaxNLocator(integer=True))
         axes.set_ylim(-0.1 * max(1.0, greatest), 1.1 * max(1.0, greatest))
     words = re.sub(r"\.|(?<=[a-z])(?=[A-Z])", "\n", name)
     label = SIGNS.get(label, label)

@@ -15,10 +15,12 @@ pub enum Machine {
 }
 
 impl Machine {
-    /// The best for this processor.
+    /// The best for this processor; any processor in builds with the feature `portable`.
     pub fn detect() -> Self {
         #[cfg(target_arch = "x86_64")]
-        if let Some(token) = Level::new().as_avx2() {
+        if !cfg!(feature = "portable")
+            && let Some(token) = Level::new().as_avx2()
+        {
             return Self::Avx2(token);
         }
         Self::Portable

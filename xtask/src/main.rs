@@ -4,6 +4,7 @@ mod accuracy;
 mod commands;
 mod demo;
 mod documentation;
+mod effects;
 mod fmu;
 mod importers;
 mod licences;
@@ -41,6 +42,8 @@ enum Task {
     Demo,
     /// Measure what accuracy costs, beside other integrators; rewrite docs/accuracy.csv, its figures and its tables
     Accuracy(accuracy::Arguments),
+    /// Measure what each effect costs and changes; rewrite docs/effects.md
+    Effects(effects::Arguments),
     /// Test the component under other people's importers and print the table of what they did
     Importers,
     /// Run every check and test
@@ -54,6 +57,7 @@ fn main() -> ExitCode {
         Task::Ssv => ssv::write().map(|paths| paths.iter().for_each(|path| println!("{}", path.display()))),
         Task::Demo => demo::run(),
         Task::Accuracy(arguments) => accuracy::run(&arguments),
+        Task::Effects(arguments) => effects::run(&arguments),
         Task::Importers => test::importers_alone(),
         Task::Test => test::run(),
     };

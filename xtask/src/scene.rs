@@ -21,7 +21,7 @@ pub struct Arguments {
     /// Name of a file in scenes/, or path of a scene file
     #[arg(value_name = "NAME|FILE")]
     scene: String,
-    /// Change a parameter, an input, stop or communicationStep: beam.length=0.02, effects.excitation=Sine
+    /// Change a parameter, an input, stop, communicationStep or outputs: beam.length=0.02, effects.excitation=Sine
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
     changes: Vec<(String, String)>,
 }

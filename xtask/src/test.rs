@@ -8,7 +8,7 @@ use std::time::Instant;
 use anyhow::Result;
 
 use crate::commands::{self, cargo};
-use crate::{fmu, importers, python};
+use crate::{effects, fmu, importers, python};
 
 /// Folders and files with Python in them.
 const PYTHON: [&str; 3] = ["examples/python", "conformance/python", "docs"];
@@ -18,6 +18,7 @@ pub fn run() -> Result<()> {
     stage("format", || commands::run(cargo().args(["fmt", "--all", "--check"])))?;
     stage("lint", || commands::run(&mut clippy(&[])))?;
     stage("Rust tests", || commands::run(cargo().arg("test")))?;
+    stage("effects that are off", effects::check)?;
     let mut component = PathBuf::new();
     stage("component", || {
         component = fmu::build()?;
