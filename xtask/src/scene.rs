@@ -36,21 +36,23 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let path = find(&arguments.scene)?;
     let mut file = SceneFile::read(&path)?;
     let mut name = path.file_stem().context("a scene file needs a name")?.to_os_string();
+    let mut title = file.title.clone();
     for (variable, value) in &arguments.changes {
         file.set(variable, value)?;
         name.push(format!(",{variable}={value}"));
+        title += &format!(", {variable} = {value}");
     }
     let folder = root().join("out/scenes");
     fs::create_dir_all(&folder)?;
     name.push(".csv");
     let table = folder.join(name);
-    println!("{}", file.title);
+    println!("{title}");
     let summary = simulate(&file, &table)?;
     println!("{summary}\n{}", table.display());
     python::prepare()?;
     commands::run(
         python::python()
-            .args(["examples/python/plot_scene.py", "--title", &file.title])
+            .args(["examples/python/plot_scene.py", "--title", &title])
             .arg(&table),
     )
 }

@@ -82,12 +82,7 @@ fn build(target: &str, features: &[&str]) -> Result<PathBuf> {
     // A folder of its own, so that the library of `cargo xtask fmu` is not built over.
     let folder = root().join(target);
     run(cargo()
-        .args([
-            "build",
-            "--release",
-            "--package=relay-contact",
-            "--example=run_scene",
-        ])
+        .args(["build", "--release", "--package=relay-contact", "--example=run_scene"])
         .arg("--target-dir")
         .arg(&folder)
         .args(features))?;
