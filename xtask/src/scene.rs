@@ -35,17 +35,17 @@ fn assignment(text: &str) -> Result<(String, String), String> {
 pub fn run(arguments: &Arguments) -> Result<()> {
     let path = find(&arguments.scene)?;
     let mut file = SceneFile::read(&path)?;
-    let mut name = path.file_stem().context("a scene file needs a name")?.to_os_string();
-    let mut title = file.title.clone();
+    let name = path.file_stem().context("a scene file needs a name")?.to_string_lossy();
+    let (mut names, mut titles) = (vec![name.into_owned()], vec![file.title.clone()]);
     for (variable, value) in &arguments.changes {
         file.set(variable, value)?;
-        name.push(format!(",{variable}={value}"));
-        title += &format!(", {variable} = {value}");
+        names.push(format!("{variable}={value}"));
+        titles.push(format!("{variable} = {value}"));
     }
     let folder = root().join("out/scenes");
     fs::create_dir_all(&folder)?;
-    name.push(".csv");
-    let table = folder.join(name);
+    let table = folder.join(format!("{}.csv", names.join(",")));
+    let title = titles.join(", ");
     println!("{title}");
     let summary = simulate(&file, &table)?;
     println!("{summary}\n{}", table.display());
