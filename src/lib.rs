@@ -60,8 +60,9 @@ pub mod simulation;
 pub mod transient;
 pub mod variables;
 
-/// Whether this build lacks the effects that reach into the steps of the integrator and are off at its simplest. Such a build
-/// (the feature `bare`) shows what they cost where they are off: `cargo xtask effects`.
+/// Whether this build lacks the effects that reach into the steps of the integrator: `effects.chatter`, `.extremes`,
+/// `.energy`, and the axial force from the deflection. Where the integrator asks for one of them it asks for `!BARE` too, so
+/// that a build with the feature `bare` shows what asking costs: `cargo xtask effects`.
 pub const BARE: bool = cfg!(feature = "bare");
 
 /// `modelDescription.xml` with the GUID filled in, as it stands in the packaged component.

@@ -5,7 +5,6 @@ use crate::beam::galerkin::Space;
 use crate::beam::section::Section;
 use crate::contact::hertz::Hertz;
 use crate::contact::law::Law;
-#[cfg(not(feature = "bare"))]
 use crate::contact::linear::Linear;
 use crate::electrical::Path;
 use crate::error::SceneError;
@@ -138,9 +137,6 @@ impl Model {
         let law = match scene.effects.contact_law {
             ContactLawKind::Hertz => Law::Hertz(hertz),
             _ if preload.force <= 0.0 => return Err(SceneError::NoPreload),
-            #[cfg(feature = "bare")]
-            _ => return Err(SceneError::Bare("effects.contactLaw")),
-            #[cfg(not(feature = "bare"))]
             kind => Law::Linear(Linear {
                 stiffness: preload.contact_stiffness,
                 damping: hertz.damping,

@@ -16,9 +16,6 @@ pub struct Linear {
     pub offset: f64,
     /// Whether the contact can pull.
     pub bonded: bool,
-    /// Of which there is none: a bare build ([`crate::BARE`]) has no such law, and the compiler drops what is for it.
-    #[cfg(feature = "bare")]
-    pub none: std::convert::Infallible,
 }
 
 impl Linear {
