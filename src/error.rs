@@ -69,6 +69,9 @@ pub enum SceneError {
         /// Upper end asked for, Hz.
         end_frequency: f64,
     },
+    /// An effect that a bare build ([`crate::BARE`]) does not have.
+    #[error("{0}: this is a bare build, which has only what is simplest")]
+    Bare(&'static str),
     /// A linear contact law without a contact force to linearise about.
     #[error("effects.contactLaw: Linearised and Bonded need a contact that is closed at rest, preload.force is 0 N")]
     NoPreload,
@@ -88,7 +91,15 @@ pub enum SceneError {
         /// What it has to hold.
         allowed: &'static str,
     },
-    /// Any of these, with the line of the scene file it stands on.
+    /// A name that stands where another of its kind does.
+    #[error("{name}: given twice, allowed is {allowed}")]
+    GivenTwice {
+        /// The name.
+        name: String,
+        /// What it may be given as.
+        allowed: &'static str,
+    },
+    /// Any of these, with the line of the scene file or table it stands on.
     #[error("line {line}: {error}")]
     AtLine {
         /// Line, counted from 1.
@@ -99,6 +110,25 @@ pub enum SceneError {
     /// A scene file that is not TOML, or with a key or a type of value that scene files do not have.
     #[error("not a scene file: {}", .0.trim_end())]
     Syntax(String),
+    /// A table of inputs that is not CSV, or has no rows.
+    #[error("not a table of inputs: {0}")]
+    InputTable(String),
+    /// Any of these, with the file it is in.
+    #[error("{file}: {error}")]
+    InFile {
+        /// Path of the file.
+        file: String,
+        /// What is wrong there.
+        error: Box<SceneError>,
+    },
+    /// A file that cannot be read.
+    #[error("{file}: cannot be read: {cause}")]
+    Unreadable {
+        /// Path of the file.
+        file: String,
+        /// What the system says.
+        cause: String,
+    },
 }
 
 impl SceneError {

@@ -49,6 +49,7 @@ pub mod error;
 pub mod excitation;
 pub mod fmi2;
 pub mod harmonic;
+pub mod input_table;
 pub mod inputs;
 pub mod math;
 pub mod model;
@@ -58,6 +59,11 @@ pub mod scene_file;
 pub mod simulation;
 pub mod transient;
 pub mod variables;
+
+/// Whether this build lacks the effects that reach into the steps of the integrator: `effects.chatter`, `.extremes`,
+/// `.energy`, and the axial force from the deflection. Where the integrator asks for one of them it asks for `!BARE` too, so
+/// that a build with the feature `bare` shows what asking costs: `cargo xtask effects`.
+pub const BARE: bool = cfg!(feature = "bare");
 
 /// `modelDescription.xml` with the GUID filled in, as it stands in the packaged component.
 pub const MODEL_DESCRIPTION: &str = include_str!(concat!(env!("OUT_DIR"), "/modelDescription.xml"));

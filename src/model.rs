@@ -141,6 +141,7 @@ impl State {
             predictions,
             last_step,
             energy_surplus,
+            energy_balance,
             steps: _,
             rejected_steps: _,
             iterations: _,
@@ -157,6 +158,7 @@ impl State {
             last_kink,
             last_step,
             energy_surplus,
+            energy_balance,
         ];
         let positive = |step: &f64| step.is_finite() && *step > 0.0;
         numbers.into_iter().all(|number| number.is_finite())

@@ -3,6 +3,7 @@
 //! The names, ranges and start values are those of `modelDescription.xml`; [`Scene::default`] is the specimen of
 //! Zhang, Zhang, Meng, Ren, Machines 2025, 13(1), 52, with the values the paper leaves out identified from its results.
 
+use crate::BARE;
 use crate::error::SceneError;
 use crate::variables::{
     AxialForceKind, BooleanParameter, ContactLawKind, EnumerationParameter, ExcitationKind, Group, IntegerParameter,
@@ -390,7 +391,8 @@ impl Scene {
         Ok(())
     }
 
-    /// Checks every parameter against its range, for scenes whose fields were written directly.
+    /// Checks every parameter against its range, for scenes whose fields were written directly, and whether this build has
+    /// the effects.
     ///
     /// # Errors
     /// The first [`SceneError`] met.
@@ -400,6 +402,19 @@ impl Scene {
             let variable = RealParameter::SolverMaximumStep.variable();
             let allowed = format!("allowed is 0, for no limit, or {SHORTEST_LIMIT} or more");
             return Err(SceneError::out_of_range(variable, longest, allowed));
+        }
+        let effects = &self.effects;
+        let beyond_bare = [
+            ("effects.chatter", effects.chatter),
+            ("effects.extremes", effects.extremes),
+            ("effects.energy", effects.energy),
+            (
+                "effects.axialForce",
+                effects.axial_force == AxialForceKind::FromDeflection,
+            ),
+        ];
+        if BARE && let Some((name, _)) = beyond_bare.into_iter().find(|(_, asked)| *asked) {
+            return Err(SceneError::Bare(name));
         }
         let mut copy = *self;
         VARIABLES.iter().try_for_each(|variable| match variable.group {

@@ -1,4 +1,4 @@
-//! Scene files: a scene, its constant inputs, how long to run it and what to look at, in TOML.
+//! Scene files: a scene, its inputs, how long to run it and what to look at, in TOML.
 //!
 //! ```toml
 //! title = "Contact at rest, 0.3 mm overtravel"
@@ -12,17 +12,20 @@
 //!
 //! [inputs]                    # held during the whole run; what is not named is 0
 //! contact.current = 0.1
+//! file = "closing.csv"        # further inputs over time, beside this file: see `input_table`
 //! ```
 
 use std::collections::BTreeMap;
-use std::fmt;
+use std::path::Path;
 use std::str::FromStr;
+use std::{fmt, fs};
 
 use serde::de::{self, Deserialize, Deserializer, MapAccess, Unexpected, Visitor};
 use toml::Spanned;
 use toml::de::ValueDeserializer;
 
 use crate::error::SceneError;
+use crate::input_table::InputTable;
 use crate::inputs::Inputs;
 use crate::scene::{Scene, choices};
 use crate::variables::{Group, VARIABLES, Variable};
@@ -40,8 +43,10 @@ pub struct SceneFile {
     pub outputs: Vec<&'static Variable>,
     /// Parameters and effects.
     pub scene: Scene,
-    /// Inputs, held during the whole run.
+    /// Inputs that are held during the whole run.
     pub inputs: Inputs,
+    /// Inputs that are not.
+    pub table: InputTable,
 }
 
 /// The file as it stands; what it says of variables is checked after it is read.
@@ -113,12 +118,35 @@ impl<'de> Deserialize<'de> for Value {
 impl FromStr for SceneFile {
     type Err = SceneError;
 
-    /// Reads a scene file.
+    /// Reads the text of a scene file; a table of inputs is looked for in the current folder.
     ///
     /// # Errors
     /// The first [`SceneError`] met, with its line; only a missing key has none.
     fn from_str(text: &str) -> Result<Self, SceneError> {
-        let document: Document = toml::from_str(text).map_err(|error| SceneError::Syntax(error.to_string()))?;
+        Self::parse(text, Path::new(""))
+    }
+}
+
+impl SceneFile {
+    /// Reads a scene file, and the table of inputs that it names, from beside it.
+    ///
+    /// # Errors
+    /// The first [`SceneError`] met, with its file and line; only a missing key has no line.
+    pub fn read(path: &Path) -> Result<Self, SceneError> {
+        let file = || path.display().to_string();
+        let text = fs::read_to_string(path).map_err(|error| SceneError::Unreadable {
+            file: file(),
+            cause: error.to_string(),
+        })?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::parse(&text, folder).map_err(|error| SceneError::InFile {
+            file: file(),
+            error: Box::new(error),
+        })
+    }
+
+    fn parse(text: &str, folder: &Path) -> Result<Self, SceneError> {
+        let mut document: Document = toml::from_str(text).map_err(|error| SceneError::Syntax(error.to_string()))?;
         let missing = |name, allowed| SceneError::MissingKey { name, allowed };
         let seconds = |name, value: Option<Spanned<Value>>| {
             let value = value.ok_or(missing(name, "a positive number of seconds"))?;
@@ -126,6 +154,8 @@ impl FromStr for SceneFile {
         };
         let output = |name: &Spanned<String>| at_line(text, name, variable(Role::Output, name.get_ref()));
         let outputs = document.outputs.ok_or(missing("outputs", "a list of output names"))?;
+        let table = document.inputs.iter().find(|(key, _)| key.get_ref() == "file");
+        let table = table.map(|(key, value)| at_line(text, key, input_table(folder, value)));
         let mut file = Self {
             title: document.title,
             stop: seconds("stop", document.stop)?,
@@ -133,19 +163,49 @@ impl FromStr for SceneFile {
             outputs: outputs.iter().map(output).collect::<Result<_, _>>()?,
             scene: Scene::default(),
             inputs: Inputs::default(),
+            table: table.transpose()?.unwrap_or_default(),
         };
+        document.inputs.retain(|key, _| key.get_ref() != "file");
         file.apply(Role::Parameter, text, "", &document.parameters)?;
         file.apply(Role::Input, text, "", &document.inputs)?;
         Ok(file)
     }
-}
 
-impl SceneFile {
-    /// Sets `stop`, `communicationStep`, a parameter or an input by name, from text such as `0.0155` or `Sine`.
+    /// The communication steps of the run, s: where each begins, and its length; the last ends with the run.
+    pub fn steps(&self) -> impl Iterator<Item = (f64, f64)> {
+        // A remainder of rounding alone is no step.
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a positive count, saturating"
+        )]
+        let count = (self.stop / self.communication_step - 1e-9).ceil().max(1.0) as u64;
+        let point = |n: u64| (n as f64 * self.communication_step).min(self.stop);
+        (0..count).map(move |n| (point(n), point(n + 1) - point(n)))
+    }
+
+    /// The inputs over the communication step from `time` by `size` (s): held, or with the rates that lead to their values
+    /// at its end.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] where a rate is not finite.
+    pub fn inputs_over(&self, time: f64, size: f64) -> Result<Inputs, SceneError> {
+        let mut inputs = self.inputs;
+        self.table.set(&mut inputs, time, size)?;
+        Ok(inputs)
+    }
+
+    /// Sets `stop`, `communicationStep`, `outputs` (names with commas between them), a parameter or an input by name, from text
+    /// such as `0.0155` or `Sine`. An input is then held, also where the table had a column for it.
     ///
     /// # Errors
     /// A [`SceneError`] for a name that does not exist or a value it cannot take; nothing is changed then.
     pub fn set(&mut self, name: &str, value: &str) -> Result<(), SceneError> {
+        if name == "outputs" {
+            let outputs = value.split(',').map(|name| variable(Role::Output, name.trim()));
+            self.outputs = outputs.collect::<Result<_, _>>()?;
+            return Ok(());
+        }
         let parsed = ValueDeserializer::parse(value).and_then(Value::deserialize);
         let value = parsed.unwrap_or_else(|_| Value::Text(value.to_owned()));
         match name {
@@ -171,7 +231,17 @@ impl SceneFile {
         let variable = variable(role, name)?;
         match variable.group {
             Group::RealParameter(parameter) => self.scene.set_real(parameter, number(name, value)?),
-            Group::RealInput(input) => self.inputs.set_real(input, number(name, value)?),
+            Group::RealInput(input) => {
+                if matches!(role, Role::Input) && self.table.drives(input) {
+                    return Err(SceneError::GivenTwice {
+                        name: name.to_owned(),
+                        allowed: "a value here or a column of the file",
+                    });
+                }
+                self.inputs.set_real(input, number(name, value)?)?;
+                self.table.release(input);
+                Ok(())
+            }
             Group::IntegerParameter(parameter) => {
                 let number = match value {
                     Value::Integer(value) => i32::try_from(*value).ok(),
@@ -207,7 +277,7 @@ impl SceneFile {
 
 /// What a name may stand for at a place of the file.
 #[derive(Clone, Copy)]
-enum Role {
+pub(crate) enum Role {
     Parameter,
     Input,
     Settable,
@@ -237,7 +307,7 @@ impl Role {
 }
 
 /// The variable of this name, or the error with the three names that come nearest.
-fn variable(role: Role, name: &str) -> Result<&'static Variable, SceneError> {
+pub(crate) fn variable(role: Role, name: &str) -> Result<&'static Variable, SceneError> {
     let variables = VARIABLES.iter().filter(|variable| role.covers(variable));
     if let Some(variable) = variables.clone().find(|variable| variable.name == name) {
         return Ok(variable);
@@ -254,6 +324,14 @@ fn variable(role: Role, name: &str) -> Result<&'static Variable, SceneError> {
         what: role.noun(),
         nearest: list(names.into_iter().take(3)),
     })
+}
+
+/// The table of inputs that the key `file` names.
+fn input_table(folder: &Path, value: &Value) -> Result<InputTable, SceneError> {
+    match value {
+        Value::Text(name) => InputTable::read(&folder.join(name)),
+        _ => Err(wrong_type("file", value, "the path of a table of inputs, as a text")),
+    }
 }
 
 fn number(name: &str, value: &Value) -> Result<f64, SceneError> {

@@ -24,14 +24,15 @@ fn every_scene_of_the_project_is_valid() -> Result<(), Box<dyn Error>> {
     let mut count = 0;
     for entry in fs::read_dir("scenes")? {
         let path = entry?.path();
-        let file: SceneFile = fs::read_to_string(&path)?
-            .parse()
-            .map_err(|error| format!("{}: {error}", path.display()))?;
+        if path.extension().is_none_or(|extension| extension != "toml") {
+            continue;
+        }
+        let file = SceneFile::read(&path)?;
         assert!(!file.title.is_empty() && !file.outputs.is_empty(), "{}", path.display());
         assert!(file.communication_step <= file.stop, "{}", path.display());
         count += 1;
     }
-    assert!(count >= 2);
+    assert!(count >= 10);
     Ok(())
 }
 
@@ -124,7 +125,7 @@ fn a_value_out_of_range_is_told_with_its_unit_and_the_range() {
         ),
         (
             "effects.excitation = \"Sinus\"",
-            "line 5: effects.excitation = Sinus: no such choice, allowed are None, Sine",
+            "line 5: effects.excitation = Sinus: no such choice, allowed are None, Sine, LogSweep, HalfSine, Random",
         ),
     ] {
         assert_eq!(message(&format!("[parameters]\n{rest}\n")), expected);
@@ -150,6 +151,22 @@ fn a_value_of_the_wrong_type_is_told_with_the_type_wanted() {
             "effects.excitation = 2",
             "line 5: effects.excitation = 2: wrong type, allowed is the name of a choice, as a text",
         ),
+        (
+            "effects.chatter = 1",
+            "line 5: effects.chatter = 1: wrong type, allowed is true or false",
+        ),
+        (
+            "effects.chatter = \"false\"",
+            "line 5: effects.chatter = \"false\": wrong type, allowed is true or false",
+        ),
+        (
+            "beam.length = true",
+            "line 5: beam.length = true: wrong type, allowed is a number",
+        ),
+        (
+            "effects.excitation = false",
+            "line 5: effects.excitation = false: wrong type, allowed is the name of a choice, as a text",
+        ),
     ] {
         assert_eq!(message(&format!("[parameters]\n{rest}\n")), expected);
     }
@@ -160,12 +177,12 @@ fn a_value_of_the_wrong_type_is_told_with_the_type_wanted() {
         (
             "[parameters]\nbeam.length = [1]",
             5,
-            "invalid type: sequence, expected a number, a text or a table",
+            "invalid type: sequence, expected a number, true or false, a text or a table",
         ),
         (
             "[parameters]\nbeam.length = 1979-05-27",
             5,
-            "invalid type: date or time, expected a number, a text or a table",
+            "invalid type: date or time, expected a number, true or false, a text or a table",
         ),
     ] {
         let message = message(rest);
@@ -211,24 +228,46 @@ fn setting_by_name_takes_numbers_and_choices_and_keeps_the_rest_when_refused() -
     file.set("effects.excitation", "Sine")?;
     file.set("base.acceleration", "-5")?;
     file.set("solver.modes", "4")?;
+    file.set("effects.chatter", "false")?;
+    file.set("outputs", "contact.force, contact.closed")?;
     file.set("stop", "0.5")?;
     let kept = file.clone();
     for (name, value) in [
         ("beam.length", "1"),
         ("beam.length", "long"),
         ("effects.excitation", "Noise"),
+        ("effects.chatter", "0"),
         ("base.acceleration", "nan"),
         ("contact.force", "1"),
+        ("outputs", "contact.force,contact.forse"),
         ("stop", "-1"),
     ] {
         assert!(file.set(name, value).is_err(), "{name} = {value}");
     }
     assert_eq!(file.scene, kept.scene);
     assert_eq!(file.inputs, kept.inputs);
+    let names: Vec<_> = file.outputs.iter().map(|variable| variable.name).collect();
+    assert_eq!(names, ["contact.force", "contact.closed"]);
     assert_eq!(file.stop, 0.5);
     assert_eq!(file.scene.beam.length, 0.02);
     assert_eq!(file.scene.solver.modes, 4);
     assert_eq!(file.scene.effects.excitation, ExcitationKind::Sine);
+    assert!(!file.scene.effects.chatter);
     assert_eq!(file.inputs.base_acceleration, -5.0);
+    Ok(())
+}
+
+#[test]
+fn communication_steps_fill_the_run_and_the_last_ends_with_it() -> Result<(), SceneError> {
+    let steps = |stop: &str, step: &str| -> Result<Vec<(f64, f64)>, SceneError> {
+        let file: SceneFile = format!("stop = {stop}\ncommunicationStep = {step}\noutputs = []").parse()?;
+        Ok(file.steps().collect())
+    };
+    assert_eq!(steps("1", "0.5")?, [(0.0, 0.5), (0.5, 0.5)]);
+    assert_eq!(steps("1.25", "0.5")?, [(0.0, 0.5), (0.5, 0.5), (1.0, 0.25)]);
+    assert_eq!(steps("0.5", "2")?, [(0.0, 0.5)]);
+    // 0.3 / 0.1 is less than 3 by rounding, 0.7 / 0.1 more than 7 by hair.
+    assert_eq!(steps("0.3", "0.1")?.len(), 3);
+    assert_eq!(steps("0.7", "0.1")?.len(), 7);
     Ok(())
 }

@@ -163,7 +163,7 @@ impl Model {
 
 impl Integration<'_> {
     fn run(&mut self) -> Result<(), StepError> {
-        let allowed = COARSEST * self.model.first_step();
+        let allowed = COARSEST * self.model.first_step(self.state.time);
         let spacing = self.resolution();
         if spacing > allowed {
             return Err(self.error(StepErrorCause::Resolution { spacing, allowed }));

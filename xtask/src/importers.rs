@@ -1,7 +1,7 @@
 //! The component in other people's importers: what they are to reproduce, and the table of what they did.
 //!
-//! [`prepare`] writes to `out/conformance` our own runs and a system of two contacts; the tests under `conformance/`
-//! compare with them and each leave a row there; [`table`] prints the rows.
+//! [`prepare`] writes to `out/conformance` our own runs and a system of two contacts, and the scenes' parameter sets to
+//! `out/ssv`; the tests under `conformance/` compare with them and each leave a row there; [`table`] prints the rows.
 
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -12,18 +12,20 @@ use anyhow::{Context, Result, bail};
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::RealOutput;
+use relay_contact::variables::{RealOutput, Variable};
 use serde::Deserialize;
 
 use crate::commands::root;
 use crate::package::{Files, pack};
+use crate::{scene, ssv};
 
 /// Every row that the table has to have.
-const EXPECTED: [(&str, &str); 11] = [
+const EXPECTED: [(&str, &str); 12] = [
     ("FMPy", "validation"),
     ("FMPy", "run"),
     ("FMPy", "saved states"),
     ("FMPy", "SSP description"),
+    ("FMPy", "scenes"),
     ("libcosim", "run"),
     ("libcosim", "two coupled"),
     ("libcosim", "SSP"),
@@ -64,6 +66,8 @@ pub fn prepare(component: &Path) -> Result<()> {
         _ => fs::create_dir_all(folder())?,
     }
     fs::write(folder().join("reference.csv"), reference()?)?;
+    ssv::write()?;
+    scenes()?;
     let system = Files::from([
         (
             "SystemStructure.ssd".to_owned(),
@@ -72,6 +76,18 @@ pub fn prepare(component: &Path) -> Result<()> {
         ("resources/RelayContact.fmu".to_owned(), fs::read(component)?),
     ]);
     fs::write(folder().join("two-contacts.ssp"), pack(&system)?)?;
+    Ok(())
+}
+
+/// Runs every scene, its contact force to `scenes/<name>.csv`.
+fn scenes() -> Result<()> {
+    let folder = folder().join("scenes");
+    fs::create_dir_all(&folder)?;
+    let force = Variable::by_name("contact.force").context("no contact force")?;
+    for (name, mut file) in scene::all()? {
+        file.outputs = vec![force];
+        scene::simulate(&file, &folder.join(format!("{name}.csv")))?;
+    }
     Ok(())
 }
 

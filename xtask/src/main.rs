@@ -4,12 +4,15 @@ mod accuracy;
 mod commands;
 mod demo;
 mod documentation;
+mod effects;
 mod fmu;
 mod importers;
 mod licences;
 mod package;
 mod python;
 mod scene;
+mod ssv;
+mod summary;
 mod test;
 mod valgrind;
 
@@ -32,12 +35,16 @@ struct Arguments {
 enum Task {
     /// Build the component and pack it as dist/RelayContact.fmu
     Fmu,
-    /// Run a scene and write what it looks at to out/scenes/NAME.csv
+    /// Run a scene, write what it looks at to out/scenes/NAME.csv and .png, and tell what happened
     Scene(scene::Arguments),
+    /// Write each scene as a parameter set for SSP tools, out/ssv/NAME.ssv
+    Ssv,
     /// Build the component, run the published 1 kHz case under FMPy, compare and plot
     Demo,
     /// Measure what accuracy costs, beside other integrators; rewrite docs/accuracy.csv, its figures and its tables
     Accuracy(accuracy::Arguments),
+    /// Measure what each effect costs and changes; rewrite docs/effects.md
+    Effects(effects::Arguments),
     /// Test the component under other people's importers and print the table of what they did
     Importers,
     /// Run calls of importers under valgrind: no error, no leak
@@ -52,8 +59,10 @@ fn main() -> ExitCode {
     let outcome = match Arguments::parse().task {
         Task::Fmu => fmu::build().map(|path| println!("{}", path.display())),
         Task::Scene(arguments) => scene::run(&arguments),
+        Task::Ssv => ssv::write().map(|paths| paths.iter().for_each(|path| println!("{}", path.display()))),
         Task::Demo => demo::run(),
         Task::Accuracy(arguments) => accuracy::run(&arguments),
+        Task::Effects(arguments) => effects::run(&arguments),
         Task::Importers => test::importers_alone(),
         Task::Valgrind => valgrind::run(),
         Task::Instructions => valgrind::instructions(),

@@ -1,0 +1,125 @@
+"""Draw what `cargo xtask scene` wrote: a panel for each output, the times shaded at which the contact is open.
+
+The figure stands beside the table, as a PNG file of the same name. Units are those of modelDescription.xml.
+"""
+
+import argparse
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree
+
+import matplotlib as mpl
+import numpy as np
+from numpy.typing import NDArray
+
+mpl.use("Agg")
+import matplotlib.pyplot as plt
+from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator
+
+ROOT = Path(__file__).resolve().parents[2]
+# Colours of Okabe and Ito, told apart also by the colour-blind.
+COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#E69F00"]
+SIGNS = {"Ohm": "Ω", "mOhm": "mΩ", "um": "µm", "us": "µs", "degC": "°C", "m/s2": "m/s²"}
+# Beyond this ratio of greatest to least a logarithmic axis is used.
+DECADES = 1e3
+
+Array = NDArray[np.float64]
+
+
+@dataclass
+class Unit:
+    """How values in SI units are shown."""
+
+    si: str
+    shown: str
+    factor: float
+    offset: float
+
+
+def units() -> dict[str, Unit]:
+    """Give the unit of every variable that has one."""
+    description = ElementTree.parse(ROOT / "modelDescription.xml").getroot()
+    shown = {}
+    for unit in description.iter("Unit"):
+        for other in unit.iter("DisplayUnit"):
+            factor, offset = float(other.get("factor", "1")), float(other.get("offset", "0"))
+            shown[unit.get("name", ""), other.get("name", "")] = (factor, offset)
+    types = {}
+    for kind in description.iter("SimpleType"):
+        real = kind.find("Real")
+        if real is not None:
+            si = real.get("unit", "")
+            display: str = real.get("displayUnit", si)
+            types[kind.get("name")] = Unit(si, display, *shown.get((si, display), (1.0, 0.0)))
+    found = {}
+    for variable in description.iter("ScalarVariable"):
+        declared = next(iter(variable)).get("declaredType")
+        if declared in types:
+            found[variable.get("name", "")] = types[declared]
+    return found
+
+
+def panel(axes: Axes, time: Array, name: str, values: Array, unit: Unit | None, colour: str) -> None:
+    """Draw one output."""
+    least, greatest = float(values.min()), float(values.max())
+    logarithmic = least > 0 and greatest > DECADES * least
+    label = ""
+    if logarithmic:
+        axes.set_yscale("log")
+        label = unit.si if unit else ""
+    elif unit:
+        values, label = unit.factor * values + unit.offset, unit.shown
+    whole = unit is None
+    axes.plot(time, values, color=colour, linewidth=1.2, drawstyle="steps-post" if whole else "default")
+    if whole:
+        axes.yaxis.set_major_locator(MaxNLocator(integer=True))
+        axes.set_ylim(-0.1 * max(1.0, greatest), 1.1 * max(1.0, greatest))
+    words = re.sub(r"\.|(?<=[a-z])(?=[A-Z])", "\n", name)
+    label = SIGNS.get(label, label)
+    axes.set_ylabel(words + (f" [{label}]" if label not in ("", "1") else ""), fontsize="small")
+    axes.grid(alpha=0.3)
+
+
+def draw(table: Path, title: str) -> Path:
+    """Draw the table."""
+    names = table.read_text(encoding="utf-8").split("\n", 1)[0].split(",")
+    columns = dict(zip(names, np.loadtxt(table, delimiter=",", skiprows=1, ndmin=2).T, strict=True))
+    time = columns.pop("time")
+    known = units()
+    scale, second = (1.0, "s") if time[-1] > 0.2 else (1e3, "ms")
+    figure, grid = plt.subplots(
+        len(columns), 1, sharex=True, squeeze=False, figsize=(9, 1.2 + 1.7 * len(columns)), layout="constrained"
+    )
+    is_open = columns["contact.force"] <= 0 if "contact.force" in columns else np.zeros(len(time), dtype=bool)
+    for index, (axes, (name, values)) in enumerate(zip(grid[:, 0], columns.items(), strict=True)):
+        panel(axes, scale * time, name, values, known.get(name), COLOURS[index % len(COLOURS)])
+        if is_open.any():
+            axes.fill_between(
+                scale * time, 0, 1, where=is_open, step="post", transform=axes.get_xaxis_transform(),
+                color="#999999", alpha=0.25, linewidth=0, label="open",
+            )  # fmt: skip
+    grid[0, 0].set_title(title, fontsize="medium")
+    if is_open.any():
+        grid[0, 0].legend(loc="upper right", fontsize="small")
+    grid[-1, 0].set_xlabel(f"time [{second}]")
+    grid[-1, 0].set_xlim(0, scale * time[-1])
+    figure.align_ylabels()
+    path = table.with_name(table.name.removesuffix(".csv") + ".png")
+    figure.savefig(path, dpi=130)
+    plt.close(figure)
+    return path
+
+
+def main() -> None:
+    """Draw a table."""
+    parser = argparse.ArgumentParser(description="Draw what `cargo xtask scene` wrote.")
+    parser.add_argument("table", type=Path, help="the table, such as out/scenes/paper-1khz.csv")
+    parser.add_argument("--title", default="", help="title of the figure")
+    arguments = parser.parse_args()
+    print(draw(arguments.table, arguments.title))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,57 @@
+//! Runs a scene file, with changes; prints what it looks at as it stands at the end, and what simulating a millisecond took.
+//!
+//!     cargo run --release --example run_scene -- scenes/paper-1khz.toml excitation.amplitude=400 stop=0.1
+
+use std::env;
+use std::error::Error;
+use std::hint::black_box;
+use std::path::Path;
+use std::time::Instant;
+
+use relay_contact::scene_file::SceneFile;
+use relay_contact::simulation::Simulation;
+use relay_contact::variables::{Group, Variable};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut arguments = env::args().skip(1);
+    let path = arguments.next().ok_or("wanted is: FILE [NAME=VALUE...]")?;
+    let mut scene = SceneFile::read(Path::new(&path))?;
+    for change in arguments {
+        let (name, value) = change.split_once('=').ok_or("wanted is NAME=VALUE")?;
+        scene.set(name, value)?;
+    }
+
+    let start = scene.inputs_over(0.0, scene.communication_step)?;
+    let mut contact = Simulation::new(&scene.scene, &start, 0.0)?;
+    let mut outputs = vec![0.0; scene.outputs.len()];
+    let begun = Instant::now();
+    for (time, size) in scene.steps() {
+        contact.step(&scene.inputs_over(time, size)?, time, size)?;
+        // What is not read is not computed.
+        for (value, variable) in outputs.iter_mut().zip(&scene.outputs) {
+            *value = read(&contact, variable);
+        }
+        black_box(&mut outputs);
+    }
+    let taken = begun.elapsed();
+
+    println!("{}, at {} s", scene.title, contact.time());
+    for (value, variable) in outputs.iter().zip(&scene.outputs) {
+        println!("{} = {value} {}", variable.name, variable.unit);
+    }
+    println!(
+        "{} ns per simulated millisecond",
+        1e6 * taken.as_secs_f64() / scene.stop
+    );
+    Ok(())
+}
+
+/// An output of any type as a number.
+fn read(contact: &Simulation, variable: &Variable) -> f64 {
+    match variable.group {
+        Group::RealOutput(output) => contact.real(output),
+        Group::IntegerOutput(output) => f64::from(contact.integer(output)),
+        Group::BooleanOutput(output) => f64::from(u8::from(contact.boolean(output))),
+        _ => f64::NAN,
+    }
+}

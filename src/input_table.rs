@@ -1,0 +1,196 @@
+//! Inputs over time, from a table in CSV: a column `time` in seconds and columns named as inputs, in SI units.
+//!
+//! ```csv
+//! time,support.displacement
+//! 0,0
+//! 0.005,3e-4
+//! ```
+//!
+//! Between its rows the values are linear; before the first row and after the last they stay what they are there.
+
+use std::fs;
+use std::path::Path;
+
+use csv::{ReaderBuilder, StringRecord, Trim};
+
+use crate::error::SceneError;
+use crate::inputs::Inputs;
+use crate::scene::check_range;
+use crate::scene_file::{Role, variable};
+use crate::variables::{Group, RealInput};
+
+/// The courses of some inputs; empty: of none.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct InputTable {
+    /// Instants of the rows, ascending, s.
+    times: Vec<f64>,
+    /// Values at these instants.
+    columns: Vec<(RealInput, Vec<f64>)>,
+}
+
+/// What a column holds.
+enum Column {
+    Time,
+    Input(RealInput),
+}
+
+impl InputTable {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// The first [`SceneError`] met, with the file, the line and the column's name.
+    pub fn read(path: &Path) -> Result<Self, SceneError> {
+        let file = path.display().to_string();
+        match fs::read_to_string(path) {
+            Ok(text) => Self::parse(&text).map_err(|error| SceneError::InFile {
+                file,
+                error: Box::new(error),
+            }),
+            Err(error) => Err(SceneError::Unreadable {
+                file,
+                cause: error.to_string(),
+            }),
+        }
+    }
+
+    fn parse(text: &str) -> Result<Self, SceneError> {
+        let syntax = |error: csv::Error| SceneError::InputTable(error.to_string());
+        let mut reader = ReaderBuilder::new().trim(Trim::All).from_reader(text.as_bytes());
+        let head = reader.headers().map_err(syntax)?.clone();
+        let columns = at_line(text, &head, columns(&head))?;
+        let inputs = columns.iter().filter_map(|column| match column {
+            Column::Input(input) => Some((*input, Vec::new())),
+            Column::Time => None,
+        });
+        let mut table = Self {
+            times: Vec::new(),
+            columns: inputs.collect(),
+        };
+        for record in reader.records() {
+            let record = record.map_err(syntax)?;
+            at_line(text, &record, table.add(&columns, &record))?;
+        }
+        if table.times.is_empty() {
+            return Err(SceneError::InputTable("no row below the names".to_owned()));
+        }
+        Ok(table)
+    }
+
+    /// Adds a row.
+    fn add(&mut self, columns: &[Column], record: &StringRecord) -> Result<(), SceneError> {
+        let mut rows = self.columns.iter_mut();
+        for (column, field) in columns.iter().zip(record) {
+            match column {
+                Column::Time => {
+                    let time = number("time", field)?;
+                    let last = self.times.last().copied().unwrap_or(f64::NEG_INFINITY);
+                    if !(time > last && time.is_finite()) {
+                        return Err(SceneError::OutOfRange {
+                            name: "time",
+                            value: time,
+                            unit: "s",
+                            allowed: format!("allowed is any finite number above that of the row before, {last} s"),
+                        });
+                    }
+                    self.times.push(time);
+                }
+                Column::Input(input) => {
+                    let value = number(input.variable().name, field)?;
+                    check_range(input.variable(), value, false)?;
+                    if let Some((_, values)) = rows.next() {
+                        values.push(value);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the table has a column for the input.
+    pub fn drives(&self, input: RealInput) -> bool {
+        self.columns.iter().any(|(column, _)| *column == input)
+    }
+
+    /// Drops the column of an input.
+    pub fn release(&mut self, input: RealInput) {
+        self.columns.retain(|(column, _)| *column != input);
+    }
+
+    /// Sets the inputs of the table to their values at `time` (s), and their rates so that they reach those `size` seconds
+    /// later.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] where a rate is not finite.
+    pub fn set(&self, inputs: &mut Inputs, time: f64, size: f64) -> Result<(), SceneError> {
+        self.columns.iter().try_for_each(|(input, values)| {
+            let value = self.value(values, time);
+            inputs.set_real(*input, value)?;
+            inputs.set_rate(*input, (self.value(values, time + size) - value) / size)
+        })
+    }
+
+    fn value(&self, values: &[f64], time: f64) -> f64 {
+        let mut rows = self.times.iter().zip(values);
+        let after = self.times.partition_point(|row| *row <= time);
+        let Some(before) = after.checked_sub(1) else {
+            return rows.next().map_or(0.0, |(_, value)| *value);
+        };
+        let before = rows.nth(before);
+        match (before, rows.next()) {
+            (Some((t0, v0)), Some((t1, v1))) => (v1 - v0) / (t1 - t0) * (time - t0) + v0,
+            (last, _) => last.map_or(0.0, |(_, value)| *value),
+        }
+    }
+}
+
+/// What the columns are called.
+fn columns(head: &StringRecord) -> Result<Vec<Column>, SceneError> {
+    let mut seen = Vec::new();
+    let columns = head.iter().map(|name| {
+        if seen.contains(&name) {
+            return Err(SceneError::GivenTwice {
+                name: name.to_owned(),
+                allowed: "one column",
+            });
+        }
+        seen.push(name);
+        if name == "time" {
+            return Ok(Column::Time);
+        }
+        match variable(Role::Input, name)?.group {
+            Group::RealInput(input) => Ok(Column::Input(input)),
+            _ => Err(SceneError::InputTable(format!("{name} is not an input"))),
+        }
+    });
+    let columns = columns.collect::<Result<Vec<_>, _>>()?;
+    if !columns.iter().any(|column| matches!(column, Column::Time)) {
+        return Err(SceneError::MissingKey {
+            name: "time",
+            allowed: "a column of instants in s",
+        });
+    }
+    Ok(columns)
+}
+
+fn number(name: &str, field: &str) -> Result<f64, SceneError> {
+    field.parse().map_err(|_| SceneError::WrongType {
+        name: name.to_owned(),
+        value: format!("{field:?}"),
+        allowed: "a number",
+    })
+}
+
+/// Gives an error the line of its row.
+fn at_line<T>(text: &str, row: &StringRecord, result: Result<T, SceneError>) -> Result<T, SceneError> {
+    result.map_err(|error| {
+        // Its position is that of the empty lines before it, if there are any.
+        let position = row.position().map_or(0, csv::Position::byte);
+        let position = usize::try_from(position).unwrap_or(usize::MAX);
+        let empty = text.bytes().skip(position).take_while(|byte| b"\r\n".contains(byte));
+        let before = text.bytes().take(position.saturating_add(empty.count()));
+        SceneError::AtLine {
+            line: 1 + before.filter(|byte| *byte == b'\n').count(),
+            error: Box::new(error),
+        }
+    })
+}

@@ -1,0 +1,175 @@
+//! The effects, how each is switched on, and when it matters.
+
+/// Names of variables and their values.
+pub type Settings = &'static [(&'static str, &'static str)];
+
+/// Name of what the effects are added to.
+pub const MINIMAL: &str = "minimal scene";
+
+/// An effect that a scene may ask for.
+pub struct Effect {
+    /// As in the table.
+    pub name: &'static str,
+    /// What asks for it.
+    pub setting: Settings,
+    /// What else the run needs to show its cost.
+    pub with: Settings,
+    /// Outputs that it is for, read after each communication step, with commas between them.
+    pub reads: &'static str,
+    /// The effect that it cannot be without, and is compared with.
+    pub beside: Option<&'static str>,
+    /// What takes it away from a scene; empty where there is nothing to compare.
+    pub off: Settings,
+    /// When it matters.
+    pub matters: &'static str,
+}
+
+const POWER_LAW: &str = "resistance by the power law";
+
+const NOTHING: Effect = Effect {
+    name: "",
+    setting: &[],
+    with: &[],
+    reads: "contact.force",
+    beside: None,
+    off: &[],
+    matters: "",
+};
+
+/// All of them, those that others are compared with first.
+pub const EFFECTS: &[Effect] = &[
+    Effect {
+        name: "no excitation",
+        setting: &[("effects.excitation", "None")],
+        matters: "where inputs drive the contact, or nothing does: at rest no step is taken, however long the run.",
+        ..NOTHING
+    },
+    Effect {
+        name: "logarithmic sweep",
+        setting: &[("effects.excitation", "LogSweep")],
+        with: &[("excitation.duration", "0.1")],
+        matters: "to find resonances; its cost beside that of a sine is mostly that of the higher frequencies.",
+        ..NOTHING
+    },
+    Effect {
+        name: "half sine",
+        setting: &[("effects.excitation", "HalfSine")],
+        with: &[("excitation.duration", "0.1")],
+        matters: "for shocks; after its duration it costs nothing.",
+        ..NOTHING
+    },
+    Effect {
+        name: "random excitation",
+        setting: &[("effects.excitation", "Random")],
+        with: &[("excitation.spectralDensity", "9.617"), ("excitation.frequency", "50")],
+        matters: "for vibration of vehicles and the like, which a sine cannot stand for.",
+        ..NOTHING
+    },
+    Effect {
+        name: "contact damping",
+        setting: &[("effects.contactDamping", "true")],
+        off: &[("effects.contactDamping", "false")],
+        matters: "whenever the contact is shaken or hit: it makes the force of a blow, and without it the contact bounces.",
+        ..NOTHING
+    },
+    Effect {
+        name: "linearised contact",
+        setting: &[("effects.contactLaw", "Linearised")],
+        off: &[("effects.contactLaw", "Hertz")],
+        matters: "to compare with modal and frequency-domain analyses; wrong as soon as the force comes near zero.",
+        ..NOTHING
+    },
+    Effect {
+        name: "bonded contact",
+        setting: &[("effects.contactLaw", "Bonded")],
+        off: &[("effects.contactLaw", "Hertz")],
+        matters: "where the contact cannot open: every communication step is one exact step, so long ones cost least.",
+        ..NOTHING
+    },
+    Effect {
+        name: "axial force from the preload",
+        setting: &[("effects.axialForce", "FromPreload")],
+        off: &[("effects.axialForce", "None")],
+        matters: "hardly ever: the published formula gives millinewtons, and the modes are computed with it once.",
+        ..NOTHING
+    },
+    Effect {
+        name: "axial force from the deflection",
+        setting: &[("effects.axialForce", "FromDeflection")],
+        off: &[("effects.axialForce", "FromPreload")],
+        matters: "where the tip moves by much of its deflection at preload, in wide openings and shocks.",
+        ..NOTHING
+    },
+    Effect {
+        name: "prescribed axial force",
+        setting: &[("effects.axialForce", "Prescribed"), ("beam.axialForce", "1")],
+        off: &[("effects.axialForce", "None")],
+        matters: "where the spring is clamped under compression, which lowers its frequencies; the modes are computed with it \
+                  once.",
+        ..NOTHING
+    },
+    Effect {
+        name: POWER_LAW,
+        setting: &[("effects.resistance", "PowerLaw")],
+        reads: "contact.force,contact.resistance",
+        matters: "for every question about resistance; a power is taken where the resistance is read, and nowhere else.",
+        ..NOTHING
+    },
+    Effect {
+        name: "resistance by Holm",
+        setting: &[("effects.resistance", "Holm")],
+        reads: "contact.force,contact.resistance",
+        off: &[("effects.resistance", "PowerLaw")],
+        matters: "for clean metal of known hardness and resistivity, instead of the power law fitted to one contact.",
+        ..NOTHING
+    },
+    Effect {
+        name: "heating",
+        setting: &[("effects.heating", "true")],
+        with: &[("effects.resistance", "PowerLaw"), ("contact.current", "0.1")],
+        reads: "contact.force,contact.resistance,contact.temperature",
+        beside: Some(POWER_LAW),
+        off: &[("effects.heating", "false")],
+        matters: "for `contact.temperature` alone; motion and resistance do not depend on it.",
+    },
+    Effect {
+        name: "chatter",
+        setting: &[("effects.chatter", "true")],
+        with: &[("effects.resistance", "PowerLaw")],
+        reads: "contact.force,contact.resistance,chatter.count",
+        beside: Some(POWER_LAW),
+        off: &[("effects.chatter", "false")],
+        matters: "where interruptions are asked for: shorter than a communication step they show nowhere else.",
+    },
+    Effect {
+        name: "extremes",
+        setting: &[("effects.extremes", "true")],
+        reads: "contact.force,step.minimumForce,step.maximumForce",
+        off: &[("effects.extremes", "false")],
+        matters: "where communication steps are long against the vibration.",
+        ..NOTHING
+    },
+    Effect {
+        name: "energy balance",
+        setting: &[("effects.energy", "true")],
+        reads: "contact.force,energy.balance",
+        off: &[("effects.energy", "false")],
+        matters: "to check a run; the motion does not depend on it.",
+        ..NOTHING
+    },
+];
+
+/// What is changed in the minimal scene to see the effect.
+pub fn changes(effect: &Effect) -> Vec<(String, String)> {
+    let outputs = [("outputs", effect.reads)];
+    let settings = effect.with.iter().chain(effect.setting).chain(&outputs);
+    settings
+        .map(|(name, value)| ((*name).to_owned(), (*value).to_owned()))
+        .collect()
+}
+
+/// Settings as code.
+pub fn code(settings: Settings) -> String {
+    let settings = settings.iter().map(|(name, value)| format!("`{name} = {value}`"));
+    settings.collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,155 @@
+//! What each effect costs and changes: `docs/effects.md`.
+//!
+//! [`list`]: the effects;   [`cost`]: instructions and time of the minimal scene with each;   [`influence`]: what each changes
+//! in the scenes.
+
+mod cost;
+mod influence;
+mod list;
+
+use std::fmt::Write;
+use std::fs;
+use std::path::PathBuf;
+
+use anyhow::{Context, Result, bail};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use self::cost::{Cost, Runner};
+use self::influence::influence;
+use self::list::{EFFECTS, Effect, MINIMAL};
+
+/// Instructions that everything that is off may cost, of those of a build that does not have it.
+const ALLOWED: f64 = 0.01;
+
+/// Where to write.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The page to write
+    #[arg(long, default_value = "docs/effects.md")]
+    page: PathBuf,
+}
+
+/// Measures and writes the page.
+pub fn run(arguments: &Arguments) -> Result<()> {
+    let counted = cost::valgrind();
+    if !counted {
+        eprintln!("{}: nanoseconds alone", cost::MISSING);
+    }
+    let runner = Runner::build(counted)?;
+    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} {msg}")?;
+    let progress = ProgressBar::new(EFFECTS.len() as u64 + 1).with_style(style);
+    let minimal = runner.cost(&[])?;
+    progress.inc(1);
+    let mut table = String::from(
+        "| effect | setting | instructions per ms | added | ns per ms | added |\n|---|---|---:|---:|---:|---:|\n",
+    );
+    let _ = writeln!(
+        table,
+        "| {MINIMAL} | | {} | | {:.0} | |",
+        instructions(minimal.instructions),
+        minimal.nanoseconds
+    );
+    let mut sentences = String::new();
+    let mut costs: Vec<(&Effect, Cost)> = Vec::new();
+    for effect in EFFECTS {
+        progress.set_message(effect.name);
+        let cost = runner.cost(&list::changes(effect))?;
+        let base = match effect.beside {
+            Some(name) => {
+                let base = costs.iter().find(|(known, _)| known.name == name);
+                base.context("an effect beside one that comes later")?.1
+            }
+            None => minimal,
+        };
+        let _ = writeln!(table, "{}", row(effect, &cost, &base));
+        let _ = writeln!(sentences, "{}", sentence(effect)?);
+        costs.push((effect, cost));
+        progress.inc(1);
+    }
+    progress.finish_and_clear();
+    let off = if counted {
+        off(&runner)?
+    } else {
+        "Not measured.".to_owned()
+    };
+    fs::write(&arguments.page, page(&table, &sentences, &off))
+        .with_context(|| format!("cannot write {}", arguments.page.display()))?;
+    print!("{table}\n{off}\n");
+    println!("{}", arguments.page.display());
+    Ok(())
+}
+
+/// Fails where effects that are off cost more than [`ALLOWED`]; where that cannot be measured, says so.
+pub fn check() -> Result<()> {
+    if !cost::valgrind() {
+        println!("not run: {}", cost::MISSING);
+        return Ok(());
+    }
+    println!("{}", off(&Runner::build(true)?)?);
+    Ok(())
+}
+
+/// What the effects that are off cost, as a sentence; an error where it is too much.
+fn off(runner: &Runner) -> Result<String> {
+    let mut text = String::from(
+        "Instructions per millisecond, with everything off that can be, and in a build that does not have it:",
+    );
+    for (name, amplitude) in [("closed contact, 98 m/s²", "98"), ("opening contact, 400 m/s²", "400")] {
+        let changes = [("excitation.amplitude".to_owned(), amplitude.to_owned())];
+        let (with, without) = runner.with_and_without(&changes)?;
+        let more = with / without - 1.0;
+        let _ = write!(text, "\n- {name}: {with:.0} and {without:.0}, {:+.2} %", 100.0 * more);
+        if more > ALLOWED {
+            bail!("effects that are off cost more than {} %\n{text}", 100.0 * ALLOWED);
+        }
+    }
+    Ok(text)
+}
+
+fn row(effect: &Effect, cost: &Cost, base: &Cost) -> String {
+    let added = |now: f64, before: f64| format!("{:+.1} %", 100.0 * (now / before - 1.0));
+    let counted = match (cost.instructions, base.instructions) {
+        (Some(now), Some(before)) => added(now, before),
+        _ => String::new(),
+    };
+    let beside = effect.beside.map_or(String::new(), |name| format!(", beside {name}"));
+    format!(
+        "| {}{beside} | {} | {} | {counted} | {:.0} | {} |",
+        effect.name,
+        list::code(effect.setting),
+        instructions(cost.instructions),
+        cost.nanoseconds,
+        added(cost.nanoseconds, base.nanoseconds),
+    )
+}
+
+fn instructions(count: Option<f64>) -> String {
+    count.map_or("not counted".to_owned(), |count| format!("{count:.0}"))
+}
+
+/// When the effect matters, and what it changes in the scenes.
+fn sentence(effect: &Effect) -> Result<String> {
+    let mut text = format!("- **{}**: {}", effect.name, effect.matters);
+    if !effect.off.is_empty() {
+        let changed = influence(effect)?;
+        let against = list::code(effect.off);
+        let _ = write!(text, " Against {against} it changes {}.", changed.join("; "));
+    }
+    Ok(text)
+}
+
+fn page(table: &str, sentences: &str, off: &str) -> String {
+    format!(
+        "<!-- Written by cargo xtask effects. -->\n# What each effect costs and changes\n\n    cargo xtask effects\n\n\
+         runs [`scenes/minimal.toml`](../scenes/minimal.toml), in which everything is off that can be, and adds each effect \
+         alone. The run is {} ms long in communication steps of 10 µs; after each, the contact force is read, and what the \
+         effect is for. Instructions are counted by valgrind's callgrind in a build for any processor, nanoseconds taken on \
+         this machine in the usual build, the median of {} runs.\n\n{table}\n\
+         ## When each matters\n\n\
+         Each effect on against off in three scenes, the largest difference at a communication point. A resistance is \
+         compared while the contact stays closed in both runs.\n\n{sentences}\n\
+         ## What is off costs nothing\n\n{off}\n",
+        cost::LENGTH * 1e3,
+        cost::RUNS,
+    )
+}
