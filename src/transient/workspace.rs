@@ -25,8 +25,8 @@ impl Workspace {
     /// For the model.
     pub fn new(model: &Model) -> Self {
         Self {
-            short: Cache::new(model.modes.len()),
-            long: Cache::new(model.modes.len()),
+            short: Cache::new(model),
+            long: Cache::new(model),
             end: [ModeState::default(); MAX_MODES],
             probe: [ModeState::default(); MAX_MODES],
             propagator: Propagator::default(),

@@ -1,0 +1,253 @@
+//! A step where the axial force follows the deflection ([`Feedback`]): loads on all modes that follow from all of them.
+//!
+//! The loads are polynomials through the nodes, as the contact force is, and weak against the stiffness of the modes
+//! over a step. So they are found by iteration: the motion under the forces known, the loads in it, the contact forces
+//! under those loads. What the polynomials of the loads miss at the start goes into the estimate of the error as what
+//! that of the base acceleration misses does. A step in which the loads do not settle is too long.
+
+use crate::beam::axial::Feedback;
+use crate::excitation::drive::Drive;
+use crate::model::{MAX_MODES, ModeStates, Model, State};
+use crate::transient::coefficients::{ErrorColumn, Modal, ModeColumns, StepCoefficients};
+use crate::transient::collocation::{Collocation, Nodal, Prediction};
+use crate::transient::machine::{Arithmetic, compiled_for};
+use crate::transient::newton::Solution;
+use crate::transient::nodal::{LANES, Outside, Source, Trial, end_of_modes, loads_on_modes};
+use crate::transient::vector::{add, add_columns, dot, end};
+
+/// Rounds before a step is judged too long.
+const ROUNDS: u32 = 8;
+
+/// Rounding of the loads, relative to them.
+const ROUNDING: f64 = 1e-13;
+
+/// A value at each node for each mode.
+type NodalModes<const S: usize> = [Nodal<S>; MAX_MODES];
+
+/// The axial force at the nodes in a motion of the modes.
+struct Compression<const S: usize> {
+    /// Axial force above that of the preload, N.
+    change: Nodal<S>,
+    /// How much shorter the beam is along its axis than at preload, m: what the axial force does work on.
+    shortening: Nodal<S>,
+}
+
+impl Model {
+    /// [`Model::trial`] with the axial force that follows the deflection.
+    pub(super) fn axial_trial<const S: usize>(
+        &self,
+        axial: &Feedback,
+        state: &State,
+        (drive, source): (&Drive, Source),
+        coefficients: (&StepCoefficients<S>, &Collocation<S>),
+        end_modes: &mut ModeStates,
+    ) -> Option<Trial<S>> {
+        compiled_for!(self.machine, A =>
+            self.axial_compute::<S, A>(axial, state, (drive, source), coefficients, end_modes))
+    }
+
+    #[inline(always)]
+    fn axial_compute<const S: usize, A: Arithmetic>(
+        &self,
+        axial: &Feedback,
+        state: &State,
+        (drive, source): (&Drive, Source),
+        (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
+        end_modes: &mut ModeStates,
+    ) -> Option<Trial<S>> {
+        let outside = self.outside::<S, A>(state, drive, step, collocation);
+        let start = axial.motion(&self.modes, &state.modes);
+        let (tolerance, mut forces) = match source {
+            Source::Law(newton) if state.closed => (newton, self.predicted_forces::<S, A>(state, step, collocation)),
+            Source::Law(newton) => (newton, [-self.preload.force; S]),
+            Source::Constant(force) => (0.0, [force; S]),
+        };
+        let mut loads: NodalModes<S> = start.loads().map(|load| [load; S]);
+        let mut iterations = 0;
+        let mut solved: Option<Solution<S>> = None;
+        for _ in 0..ROUNDS {
+            let motion = self.motion_of_modes::<S, A>(state, step, &forces, &outside.accelerations, &loads);
+            let mut next = [[0.0; S]; MAX_MODES];
+            let compression = self.compression::<S, A>(axial, &motion, &mut next);
+            let (change, size) = self.force_of_change(&loads, &next);
+            if let Some(mut solution) = solved.take_if(|_| change <= tolerance + ROUNDING * size) {
+                solution.iterations = iterations;
+                let error = self.load_error::<S, A>(&outside, &start.loads(), &loads, (step, collocation));
+                let outside = self.with_loads::<S, A>(&outside, step, &loads);
+                let tip = end_of_modes::<S, A>(
+                    state,
+                    step,
+                    self.modes.len(),
+                    #[inline(always)]
+                    |first, lanes| {
+                        loads_on_modes::<S, A>(&step.end, first, &solution.forces, &outside.accelerations, lanes);
+                        for (i, load) in loads.iter().skip(first).take(LANES).enumerate() {
+                            for (lanes, load) in lanes.iter_mut().zip(load) {
+                                lanes.iter_mut().skip(i).take(1).for_each(|lane| *lane += load);
+                            }
+                        }
+                    },
+                    end_modes,
+                );
+                // The contact answers to what is missed of all loads together.
+                let outside = Outside {
+                    error: &error,
+                    missed: 1.0,
+                    ..outside
+                };
+                let mut trial = self.judged::<S, A>(state, drive, (step, collocation), &solution, &outside, tip);
+                trial.axial_work = work(
+                    &collocation.through(start.change, &compression.change),
+                    &collocation.through(start.shortening, &compression.shortening),
+                );
+                return Some(trial);
+            }
+            loads = next;
+            let solution = match source {
+                Source::Law(newton) if state.closed => {
+                    let error = self.load_error::<S, A>(&outside, &start.loads(), &loads, (step, collocation));
+                    let outside = Outside {
+                        error: &error,
+                        missed: 1.0,
+                        ..self.with_loads::<S, A>(&outside, step, &loads)
+                    };
+                    self.closed_forces::<S, A>(step, &outside, forces, newton)?
+                }
+                _ => Solution::constant(end(&forces)),
+            };
+            iterations += solution.iterations;
+            forces = solution.forces;
+            solved = Some(solution);
+        }
+        None
+    }
+
+    /// The modes at the nodes under contact forces, base acceleration and the loads.
+    #[inline(always)]
+    fn motion_of_modes<const S: usize, A: Arithmetic>(
+        &self,
+        state: &State,
+        step: &StepCoefficients<S>,
+        forces: &Nodal<S>,
+        accelerations: &Nodal<S>,
+        loads: &NodalModes<S>,
+    ) -> NodalModes<S> {
+        let mut motion = [[0.0; S]; MAX_MODES];
+        let modes = self.modes.iter().zip(&state.modes).zip(&step.columns).zip(loads);
+        for (q, (((mode, at), columns), load)) in motion.iter_mut().zip(modes) {
+            let mut load = *load;
+            add::<S, A>(&mut load, mode.tip, forces);
+            add::<S, A>(&mut load, -mode.participation, accelerations);
+            add::<S, A>(q, at.q, &columns.q_from_q);
+            add::<S, A>(q, at.v, &columns.q_from_v);
+            add_columns::<S, A>(q, &columns.load.displacement, &load);
+        }
+        motion
+    }
+
+    /// The axial force in the motion of the modes at the nodes, and the loads it is on them.
+    #[inline(always)]
+    fn compression<const S: usize, A: Arithmetic>(
+        &self,
+        axial: &Feedback,
+        motion: &NodalModes<S>,
+        loads: &mut NodalModes<S>,
+    ) -> Compression<S> {
+        let count = self.modes.len();
+        let (mut tip, mut shortening) = ([0.0; S], [0.0; S]);
+        for (mode, q) in self.modes.iter().zip(motion) {
+            add::<S, A>(&mut tip, mode.tip, q);
+        }
+        let change = tip.map(|y| axial.change(y));
+        // Several rows at once, which do not wait for one another.
+        let blocks = loads.chunks_exact_mut(LANES).zip(motion.chunks_exact(LANES)).zip(axial.slopes.chunks_exact(LANES));
+        for (block, ((loads, motion_here), slopes)) in blocks.enumerate().take(count.div_ceil(LANES)) {
+            let mut sums = [[0.0; S]; LANES];
+            for (row, q) in axial.geometric.iter().zip(motion) {
+                for (sum, entry) in sums.iter_mut().zip(row.chunks_exact(LANES).nth(block).unwrap_or_default()) {
+                    add::<S, A>(sum, *entry, q);
+                }
+            }
+            for (((load, sum), slope), q) in loads.iter_mut().zip(&sums).zip(slopes).zip(motion_here) {
+                for ((((load, sum), change), q), shortening) in
+                    load.iter_mut().zip(sum).zip(&change).zip(q).zip(&mut shortening)
+                {
+                    *load = change * (slope + sum);
+                    *shortening += q * (slope + 0.5 * sum);
+                }
+            }
+        }
+        Compression { change, shortening }
+    }
+
+    /// The force on the tip that would bend the spring as much as the difference of the loads, and as much as the loads,
+    /// N: the largest over the nodes.
+    #[inline(always)]
+    fn force_of_change<const S: usize>(&self, loads: &NodalModes<S>, next: &NodalModes<S>) -> (f64, f64) {
+        let (mut change, mut size, mut unit) = ([0.0; S], [0.0; S], f64::MIN_POSITIVE);
+        for ((mode, load), next) in self.modes.iter().zip(loads).zip(next) {
+            let compliance = 1.0 / mode.omega_squared;
+            unit += mode.tip * mode.tip * compliance;
+            for (((change, size), load), next) in change.iter_mut().zip(&mut size).zip(load).zip(next) {
+                *change += (next - load) * (next - load) * compliance;
+                *size += next * next * compliance;
+            }
+        }
+        // Not `max`, which would hide what is not a number.
+        let root = |values: Nodal<S>| values.iter().fold(0.0, |most, value| if most >= *value { most } else { *value });
+        ((root(change) / unit).sqrt(), (root(size) / unit).sqrt())
+    }
+
+    /// The indentation without contact force, with the loads.
+    #[inline(always)]
+    fn with_loads<'a, const S: usize, A: Arithmetic>(
+        &self,
+        outside: &Outside<'a, S>,
+        step: &StepCoefficients<S>,
+        loads: &NodalModes<S>,
+    ) -> Outside<'a, S> {
+        let mut with = outside.clone();
+        for ((mode, columns), load) in self.modes.iter().zip(&step.columns).zip(loads) {
+            let ModeColumns { load: columns, .. } = columns;
+            let load = load.map(|load| -mode.tip * load);
+            add_columns::<S, A>(&mut with.free, &columns.displacement, &load);
+            add_columns::<S, A>(&mut with.free_rate, &columns.velocity, &load);
+        }
+        with
+    }
+
+    /// What the polynomials of base acceleration and loads miss at the start makes of the indentation.
+    #[inline(always)]
+    fn load_error<const S: usize, A: Arithmetic>(
+        &self,
+        outside: &Outside<S>,
+        start: &Modal,
+        loads: &NodalModes<S>,
+        (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
+    ) -> ErrorColumn<S> {
+        let mut error = ErrorColumn {
+            displacement: outside.error.displacement.map(|d| outside.missed * d),
+            velocity: outside.error.velocity.map(|r| outside.missed * r),
+        };
+        let modes = self.modes.iter().zip(&step.columns).zip(start).zip(loads);
+        for (((mode, columns), start), load) in modes {
+            let missed = -mode.tip * (start - dot::<S, A>(load, &collocation.at_start));
+            add::<S, A>(&mut error.displacement, missed, &columns.error.displacement);
+            add::<S, A>(&mut error.velocity, missed, &columns.error.velocity);
+        }
+        error
+    }
+}
+
+/// Integral over a step of a force by the rate of a length, both polynomials about its end.
+fn work(force: &Prediction, length: &Prediction) -> f64 {
+    let mut work = 0.0;
+    for (a, force) in force.iter().enumerate() {
+        for (b, length) in length.iter().enumerate().skip(1) {
+            // The integral of y^(a + b - 1) from -1 to 0.
+            let sign = if (a + b) % 2 == 0 { -1.0 } else { 1.0 };
+            work += sign * force * length * b as f64 / (a + b) as f64;
+        }
+    }
+    work
+}
