@@ -78,13 +78,7 @@ impl Feedback {
         };
         let geometric: Vec<Modal> = shapes
             .iter()
-            .map(|a| {
-                modal(&|i| {
-                    shapes
-                        .get(i)
-                        .map_or(0.0, |b| space.slope_product(section.length, a, b))
-                })
-            })
+            .map(|a| modal(&|i| shapes.get(i).map_or(0.0, |b| space.slope_product(section.length, a, b))))
             .collect();
         let at_rest = |mode: &Mode| (mode.tip * preload.force - mode.participation * gravity) / mode.omega_squared;
         let mut slopes = [0.0; MAX_MODES];
@@ -108,8 +102,7 @@ impl Feedback {
         let per_length = 1.5 / self.section.length;
         let sin = (per_length * (self.deflection + y)).sin();
         // The difference of two sines, without cancellation.
-        let difference =
-            2.0 * (per_length * (self.deflection + 0.5 * y)).cos() * (0.5 * per_length * y).sin();
+        let difference = 2.0 * (per_length * (self.deflection + 0.5 * y)).cos() * (0.5 * per_length * y).sin();
         self.section.tip_stiffness() * (y * sin + self.deflection * difference)
     }
 
@@ -130,7 +123,11 @@ impl Feedback {
             }
         }
         let both = slopes.iter().zip(&self.slopes);
-        let shortening = states.iter().zip(both).map(|(at, (now, preload))| 0.5 * at.q * (now + preload)).sum();
+        let shortening = states
+            .iter()
+            .zip(both)
+            .map(|(at, (now, preload))| 0.5 * at.q * (now + preload))
+            .sum();
         Compression {
             change: self.change(y),
             slopes,
@@ -154,7 +151,12 @@ impl Feedback {
         let y: f64 = modes.iter().zip(states).map(|(mode, at)| mode.tip * at.q).sum();
         let change = self.change(y);
         // Norms in units of the stiffness. That of the slopes of all modes is bounded by the buckling load.
-        let slopes: f64 = self.slopes.iter().zip(modes).map(|(g, mode)| g * g / mode.omega_squared).sum();
+        let slopes: f64 = self
+            .slopes
+            .iter()
+            .zip(modes)
+            .map(|(g, mode)| g * g / mode.omega_squared)
+            .sum();
         let tips: f64 = modes.iter().map(|mode| mode.tip * mode.tip / mode.omega_squared).sum();
         let geometric = self.geometric.iter().enumerate().zip(modes);
         let trace: f64 = geometric

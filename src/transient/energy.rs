@@ -20,7 +20,11 @@ impl Model {
     pub(super) fn conserves(&self, drive: &Drive) -> bool {
         let undamped = self.modes.iter().all(|mode| mode.damping == 0.0);
         // An axial force that follows the deflection has no potential.
-        undamped && self.axial.is_none() && self.law.damping() == 0.0 && self.generator == Generator::None && drive.jerk == 0.0
+        undamped
+            && self.axial.is_none()
+            && self.law.damping() == 0.0
+            && self.generator == Generator::None
+            && drive.jerk == 0.0
     }
 }
 

@@ -106,7 +106,9 @@ impl Model {
         guess: Nodal<S>,
         newton: f64,
     ) -> Option<Solution<S>> {
-        let Outside { free, free_rate, error, .. } = outside;
+        let Outside {
+            free, free_rate, error, ..
+        } = outside;
         let mut forces = guess;
         let d0 = self.preload.indentation;
         let greatest = |values: &Nodal<S>| values.iter().fold(0.0_f64, |greatest, value| greatest.max(value.abs()));
@@ -130,9 +132,7 @@ impl Model {
             // The motion has to obey the law, not only the nodal forces to be right: on a stiff contact they hardly
             // depend on it. What rounding leaves of the motion is all that can be asked.
             let rounding = MOTION_ROUNDING * (greatest(&stiffness) * farthest + greatest(&damping) * fastest);
-            if let Some((by_force, by_load)) =
-                by_errors.filter(|_| greatest(&residual) <= newton.max(rounding))
-            {
+            if let Some((by_force, by_load)) = by_errors.filter(|_| greatest(&residual) <= newton.max(rounding)) {
                 return Some(Solution::new(
                     step,
                     forces,

@@ -303,9 +303,11 @@ pub(super) fn loads_on_modes<const S: usize, A: Arithmetic>(
     accelerations: &Nodal<S>,
     loads: &mut LaneLoads<S>,
 ) {
+    let tips = &rows.tip[first..first + LANES];
+    let participations = &rows.participation[first..first + LANES];
     for ((load, force), acceleration) in loads.iter_mut().zip(forces).zip(accelerations) {
-        for i in 0..LANES {
-            load[i] = A::mul_add(rows.tip[first + i], *force, -rows.participation[first + i] * acceleration);
+        for ((load, tip), participation) in load.iter_mut().zip(tips).zip(participations) {
+            *load = A::mul_add(*tip, *force, -participation * acceleration);
         }
     }
 }

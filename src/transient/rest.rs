@@ -6,6 +6,9 @@ use crate::model::{Model, State};
 /// Change of the contact force, in tolerances, that a contact at rest may still have before it.
 const UNREST: f64 = 1e-2;
 
+/// Rounding of a contact force, relative to it.
+const ROUNDING: f64 = 1e-14;
+
 /// Change of the stiffness of the modes by an axial force that is small.
 const WEAK: f64 = 0.1;
 
@@ -20,7 +23,7 @@ impl Model {
     ///
     /// An axial force that follows the deflection adds its loads. It has no potential, but where it changes the stiffness
     /// of the modes little and something dissipates, the bound holds but for a factor near one, and the hundredth is
-    /// there for such. Elsewhere nothing but the equilibrium itself is rest.
+    /// there for such. Elsewhere nothing but the equilibrium to rounding is rest.
     pub(super) fn rests_until(&self, state: &State, drive: &Drive, tolerance: f64, end: f64) -> Option<f64> {
         if !drive.is_constant() || self.generator.is_active(state.time) {
             return None;
@@ -34,7 +37,8 @@ impl Model {
         if let Some(feedback) = &self.axial {
             let damped = self.law.damping() > 0.0 || self.modes.iter().all(|mode| mode.damping > 0.0);
             if !damped || feedback.strength(&self.modes, &state.modes) > WEAK {
-                least = 0.0;
+                let rounding = ROUNDING * force.max(self.preload.force);
+                least = rounding * rounding / (2.0 * self.law.tangent_stiffness(force));
             }
             axial = Some(feedback.loads(&self.modes, &state.modes));
         }
