@@ -300,7 +300,6 @@ fn small_vibration_has_the_frequencies_of_the_tangent() {
             simulation.real(RealOutput::ContactIndentation) - rest
         })
         .collect();
-    println!("{:e}", samples.iter().fold(0.0_f64, |a, x| a.max(x.abs())));
     let measured = two_frequencies(&samples, size);
 
     // The tangent in the polynomials of the reference.

@@ -13,8 +13,8 @@
 //! symmetric: the axial force follows the tip alone and acts on the whole beam, so no potential stands behind it, and it
 //! does work over a cycle. Such a matrix cannot be part of a Rayleigh damping matrix: `-N' beta g_i T_j` would feed
 //! energy in, and has no common modes with the mass. So damping and modes have the stiffness of bending and of the
-//! constant `N_0`, which is symmetric and positive below the buckling load, whichever form the axial force has; and
-//! `beta N_0 w_xt` at the tip is what damps. The rest is a load. Relative to the tip stiffness it is of the order of
+//! constant `N_0`, which is symmetric and positive below the buckling load; the damping at the tip has
+//! `beta N_0 w_xt`. The rest is a load. Relative to the tip stiffness it is of the order of
 //! `N_0 L^2 / (E I)`, 7e-4 at the specimen.
 
 use nalgebra::{DMatrix, DVector};

@@ -4,6 +4,9 @@
 //! over a step. So they are found by iteration: the motion under the forces known, the loads in it, the contact forces
 //! under those loads. What the polynomials of the loads miss at the start goes into the estimate of the error as what
 //! that of the base acceleration misses does. A step in which the loads do not settle is too long.
+//!
+//! In violent motion the axial force may exceed the buckling load for a while: the beam then moves away from where it is,
+//! until the sine in the law of the axial force turns to tension. That is followed like any other motion, in shorter steps.
 
 use crate::beam::axial::Feedback;
 use crate::excitation::drive::Drive;
