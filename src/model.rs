@@ -1,5 +1,6 @@
 //! Model and state: everything computed once from a scene, and the numbers that move.
 
+use crate::beam::axial::Feedback;
 use crate::beam::characteristic;
 use crate::beam::galerkin::Space;
 use crate::beam::section::Section;
@@ -14,7 +15,7 @@ use crate::scene::Scene;
 use crate::transient::collocation::Predictions;
 use crate::transient::linear::ClosedLoop;
 use crate::transient::machine::Machine;
-use crate::variables::{ContactLawKind, RealParameter};
+use crate::variables::{AxialForceKind, ContactLawKind, RealParameter};
 use serde::{Deserialize, Serialize};
 use serde_big_array::BigArray;
 
@@ -47,6 +48,8 @@ pub struct Model {
     pub preload: Preload,
     /// The modes, frequency ascending.
     pub modes: Vec<Mode>,
+    /// The axial force, where it follows the deflection at all times.
+    pub axial: Option<Feedback>,
     /// Modes and contact together, where they are linear and the generator harmonic.
     pub closed_loop: Option<ClosedLoop>,
     /// The base acceleration generated inside.
@@ -204,24 +207,37 @@ impl Model {
             value: preload.axial_force,
             limit: section.buckling_load(),
         };
-        let modes: Vec<Mode> = Space::new(count)
-            .modes(&section, preload.axial_force, 0.0)
+        let space = Space::new(count);
+        let (modes, shapes): (Vec<Mode>, Vec<_>) = space
+            .modes_with_shapes(&section, preload.axial_force, 0.0)
             .ok_or_else(buckled)?
             .into_iter()
-            .map(|mode| Mode {
-                omega_squared: mode.omega_squared,
-                damping: scene.beam.mass_damping + scene.beam.stiffness_damping * mode.omega_squared,
-                tip: mode.tip,
-                participation: mode.participation,
+            .map(|(mode, shape)| {
+                let mode = Mode {
+                    omega_squared: mode.omega_squared,
+                    damping: scene.beam.mass_damping + scene.beam.stiffness_damping * mode.omega_squared,
+                    tip: mode.tip,
+                    participation: mode.participation,
+                };
+                (mode, shape)
             })
-            .collect();
+            .unzip();
+        let axial = (scene.effects.axial_force == AxialForceKind::FromDeflection)
+            .then(|| Feedback::new(&section, &preload, scene.environment.gravity, &space, &modes, &shapes));
         let reference = section.tip_stiffness() * scene.contact.overtravel.abs().max(1e-4);
         let frequency = characteristic::frequencies(&section, preload.axial_force, preload.contact_stiffness, 1)
             .first()
+            .copied();
+        let frequency = axial
+            .as_ref()
+            .and_then(|axial| axial.frequency(&modes, preload.contact_stiffness))
+            .or(frequency)
             .map_or(0.0, |omega| omega / std::f64::consts::TAU);
         let generator = Generator::new(scene)?;
         let closed_loop = match law {
-            Law::Linear(contact) if generator.is_harmonic() => ClosedLoop::new(scene, &modes, contact, &generator),
+            Law::Linear(contact) if generator.is_harmonic() && axial.is_none() => {
+                ClosedLoop::new(scene, &modes, contact, &generator)
+            }
             _ => None,
         };
         Ok(Self {
@@ -230,6 +246,7 @@ impl Model {
             law,
             preload,
             modes,
+            axial,
             closed_loop,
             generator,
             initial_support: support,

@@ -1,6 +1,29 @@
-//! Axial force of the spring, compression positive.
+//! Axial force of the spring, compression positive, and what it does where it follows the deflection at all times.
+//!
+//! With `w = w_0 + sum q_j phi_j`, `w_0` the deflection at preload and `phi_j` the modes under the axial force `N_0` there,
+//! the weak form of `rho A w_tt + E I w_xxxx + N w_xx = ...` has the axial force as `-N` times the integral of `w' phi_i'`
+//! (the boundary term at the tip is the shear `N w_x` of the condition there). The modes hold its part
+//! `-N_0 w'`; what is left is a load on mode i,
+//!
+//! `L_i = (N(y) - N_0) (g_i + sum_j G_ij q_j)`, `G_ij` the integral of `phi_i' phi_j'`, `g_i` that of `w_0' phi_i'`,
+//!
+//! where `w_0 = sum q0_j phi_j` with `omega_j^2 q0_j = T_j F_0 - (g_j of the base) g0`, so that `g = G q0`.
+//!
+//! The tangent of the beam at preload is `diag(omega_i^2) - N'(y_0) g_i T_j`. Its second part has rank one and is not
+//! symmetric: the axial force follows the tip alone and acts on the whole beam, so no potential stands behind it, and it
+//! does work over a cycle. Such a matrix cannot be part of a Rayleigh damping matrix: `-N' beta g_i T_j` would feed
+//! energy in, and has no common modes with the mass. So damping and modes have the stiffness of bending and of the
+//! constant `N_0`, which is symmetric and positive below the buckling load; the damping at the tip has
+//! `beta N_0 w_xt`. The rest is a load. Relative to the tip stiffness it is of the order of
+//! `N_0 L^2 / (E I)`, 7e-4 at the specimen.
 
+use nalgebra::{DMatrix, DVector};
+
+use crate::beam::galerkin::Space;
 use crate::beam::section::Section;
+use crate::model::{MAX_MODES, Mode, ModeState};
+use crate::preload::Preload;
+use crate::transient::coefficients::Modal;
 
 /// Axial force that a tip deflection `y` (m) causes, N: `N = (3 E I y / L^3) sin(3 y / (2 L))`.
 ///
@@ -8,4 +31,160 @@ use crate::beam::section::Section;
 /// not explain the shift of 43 Hz published there.
 pub fn from_deflection(section: &Section, y: f64) -> f64 {
     section.tip_stiffness() * y * (1.5 * y / section.length).sin()
+}
+
+/// The axial force that follows the deflection at all times, as a load on the modes.
+#[derive(Clone, Debug)]
+pub struct Feedback {
+    section: Section,
+    /// Deflection of the tip at preload, m.
+    deflection: f64,
+    /// G_ij, row by row, 1/(kg m).
+    pub geometric: Vec<Modal>,
+    /// g_i, 1/sqrt(kg).
+    pub slopes: Modal,
+}
+
+/// The axial force in a motion.
+#[derive(Clone, Copy, Debug)]
+pub struct Compression {
+    /// Axial force above that of the preload, N.
+    pub change: f64,
+    /// Integrals of `w' phi_i'`, 1/sqrt(kg).
+    slopes: Modal,
+    /// How much shorter the beam is along its axis than at preload, m: what the axial force does work on.
+    pub shortening: f64,
+}
+
+impl Compression {
+    /// Loads on the modes.
+    pub fn loads(&self) -> Modal {
+        self.slopes.map(|slope| self.change * slope)
+    }
+}
+
+impl Feedback {
+    /// About the preload, for the modes there and their shapes in `space`, under the constant acceleration `gravity` (m/s2).
+    pub fn new(
+        section: &Section,
+        preload: &Preload,
+        gravity: f64,
+        space: &Space,
+        modes: &[Mode],
+        shapes: &[DVector<f64>],
+    ) -> Self {
+        let modal = |value: &dyn Fn(usize) -> f64| -> Modal {
+            std::array::from_fn(|i| if i < modes.len() { value(i) } else { 0.0 })
+        };
+        let geometric: Vec<Modal> = shapes
+            .iter()
+            .map(|a| modal(&|i| shapes.get(i).map_or(0.0, |b| space.slope_product(section.length, a, b))))
+            .collect();
+        let at_rest = |mode: &Mode| (mode.tip * preload.force - mode.participation * gravity) / mode.omega_squared;
+        let mut slopes = [0.0; MAX_MODES];
+        for (mode, row) in modes.iter().zip(&geometric) {
+            let q = at_rest(mode);
+            for (slope, entry) in slopes.iter_mut().zip(row) {
+                *slope += entry * q;
+            }
+        }
+        Self {
+            section: *section,
+            deflection: preload.deflection,
+            geometric,
+            slopes,
+        }
+    }
+
+    /// Axial force above that of the preload, N, at a deflection of the tip given as deviation from it (m).
+    #[inline(always)]
+    pub fn change(&self, y: f64) -> f64 {
+        let per_length = 1.5 / self.section.length;
+        let sin = (per_length * (self.deflection + y)).sin();
+        // The difference of two sines, without cancellation.
+        let difference = 2.0 * (per_length * (self.deflection + 0.5 * y)).cos() * (0.5 * per_length * y).sin();
+        self.section.tip_stiffness() * (y * sin + self.deflection * difference)
+    }
+
+    /// Axial force per deflection of the tip, N/m, at the deviation `y` (m) from the preload.
+    pub fn slope(&self, y: f64) -> f64 {
+        let at = self.deflection + y;
+        let (sin, cos) = (1.5 * at / self.section.length).sin_cos();
+        self.section.tip_stiffness() * (sin + 1.5 * at / self.section.length * cos)
+    }
+
+    /// The axial force in the motion.
+    pub fn motion(&self, modes: &[Mode], states: &[ModeState]) -> Compression {
+        let y: f64 = modes.iter().zip(states).map(|(mode, at)| mode.tip * at.q).sum();
+        let mut slopes = self.slopes;
+        for (row, at) in self.geometric.iter().zip(states) {
+            for (slope, entry) in slopes.iter_mut().zip(row) {
+                *slope += entry * at.q;
+            }
+        }
+        let both = slopes.iter().zip(&self.slopes);
+        let shortening = states
+            .iter()
+            .zip(both)
+            .map(|(at, (now, preload))| 0.5 * at.q * (now + preload))
+            .sum();
+        Compression {
+            change: self.change(y),
+            slopes,
+            shortening,
+        }
+    }
+
+    /// Loads on the modes in the motion.
+    pub fn loads(&self, modes: &[Mode], states: &[ModeState]) -> Modal {
+        self.motion(modes, states).loads()
+    }
+
+    /// Power of what the axial force is above that of the preload, W: energy put into modes and contact.
+    pub fn power(&self, modes: &[Mode], states: &[ModeState]) -> f64 {
+        let loads = self.loads(modes, states);
+        loads.iter().zip(states).map(|(load, at)| load * at.v).sum()
+    }
+
+    /// How much the axial force may change the stiffness of the modes at most, relative to it, in the motion.
+    pub fn strength(&self, modes: &[Mode], states: &[ModeState]) -> f64 {
+        let y: f64 = modes.iter().zip(states).map(|(mode, at)| mode.tip * at.q).sum();
+        let change = self.change(y);
+        // Norms in units of the stiffness. That of the slopes of all modes is bounded by the buckling load.
+        let slopes: f64 = self
+            .slopes
+            .iter()
+            .zip(modes)
+            .map(|(g, mode)| g * g / mode.omega_squared)
+            .sum();
+        let tips: f64 = modes.iter().map(|mode| mode.tip * mode.tip / mode.omega_squared).sum();
+        let geometric = self.geometric.iter().enumerate().zip(modes);
+        let trace: f64 = geometric
+            .map(|((i, row), mode)| row.get(i).copied().unwrap_or_default() / mode.omega_squared)
+            .sum();
+        self.slope(y).abs() * (slopes * tips).sqrt() + change.abs() * trace
+    }
+
+    /// Lowest angular frequency (rad/s) of small vibration about the preload, with an elastic support of `stiffness` (N/m)
+    /// at the tip: of the tangent `diag(omega_i^2) + (k T_i - N' g_i) T_j`, whose inverse Sherman and Morrison give.
+    pub fn frequency(&self, modes: &[Mode], stiffness: f64) -> Option<f64> {
+        let count = modes.len();
+        let slope = self.slope(0.0);
+        let compliant = DVector::from_iterator(count, modes.iter().map(|mode| mode.tip / mode.omega_squared));
+        let pushed = DVector::from_iterator(
+            count,
+            modes
+                .iter()
+                .zip(&self.slopes)
+                .map(|(mode, g)| (stiffness * mode.tip - slope * g) / mode.omega_squared),
+        );
+        let tips = DVector::from_iterator(count, modes.iter().map(|mode| mode.tip));
+        let mut inverse = DMatrix::from_diagonal(&DVector::from_iterator(
+            count,
+            modes.iter().map(|mode| 1.0 / mode.omega_squared),
+        ));
+        inverse.ger(-1.0 / (1.0 + tips.dot(&pushed)), &pushed, &compliant, 1.0);
+        let largest = inverse.complex_eigenvalues().iter().map(|mu| mu.re).fold(0.0, f64::max);
+        (largest > 0.0).then(|| 1.0 / largest.sqrt())
+    }
 }

@@ -60,6 +60,17 @@ impl Space {
     /// The modes of the section under the axial compression (N) with an elastic support of `stiffness` (N/m) at the tip,
     /// frequency ascending; `None` at or above the buckling load.
     pub fn modes(&self, section: &Section, axial_force: f64, stiffness: f64) -> Option<Vec<Mode>> {
+        let modes = self.modes_with_shapes(section, axial_force, stiffness)?;
+        Some(modes.into_iter().map(|(mode, _)| mode).collect())
+    }
+
+    /// [`Space::modes`], each with its shape: factors of the functions, 1/sqrt(kg).
+    pub fn modes_with_shapes(
+        &self,
+        section: &Section,
+        axial_force: f64,
+        stiffness: f64,
+    ) -> Option<Vec<(Mode, DVector<f64>)>> {
         let Section {
             length,
             bending_stiffness,
@@ -84,7 +95,7 @@ impl Space {
         let eigen = ((&reduced + reduced.transpose()) * 0.5).symmetric_eigen();
         let shapes = factor.l_dirty().tr_solve_lower_triangular(&eigen.eigenvectors)?;
         let largest = eigen.eigenvalues.max();
-        let mut modes: Vec<Mode> = eigen
+        let mut modes: Vec<_> = eigen
             .eigenvalues
             .iter()
             .zip(shapes.column_iter())
@@ -93,15 +104,21 @@ impl Space {
                 let mu = mu.max(f64::EPSILON * largest);
                 let normalisation = 1.0 / (mu * half_mass).sqrt();
                 let tip = shape.dot(&self.tip) * normalisation;
-                Mode {
+                let mode = Mode {
                     omega_squared: half_stiffness / (half_mass * mu),
                     tip,
                     participation: half_mass * shape.dot(&self.load) * normalisation + tip_mass * tip,
-                }
+                };
+                (mode, shape * normalisation)
             })
             .collect();
-        modes.sort_by(|a, b| a.omega_squared.total_cmp(&b.omega_squared));
+        modes.sort_by(|(a, _), (b, _)| a.omega_squared.total_cmp(&b.omega_squared));
         Some(modes)
+    }
+
+    /// Integral over the length (m) of the product of the slopes of two shapes.
+    pub fn slope_product(&self, length: f64, a: &DVector<f64>, b: &DVector<f64>) -> f64 {
+        2.0 / length * a.dot(&(&self.geometric * b))
     }
 }
 

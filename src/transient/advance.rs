@@ -247,6 +247,9 @@ impl Integration<'_> {
             if self.state.closed && (self.is_shortest(&target) || self.refusals >= REFUSALS) {
                 return self.fall_back(&target);
             }
+            if self.is_shortest(&target) {
+                return Err(self.error(StepErrorCause::NotFinite));
+            }
             // Without an error estimate by the most, as nothing is known.
             let shrink = if ratio.is_finite() {
                 0.8 * reach::<S>(ratio)

@@ -94,6 +94,19 @@ pub struct ErrorColumn<const S: usize> {
     pub velocity: Nodal<S>,
 }
 
+/// How one mode moves over a step, at the nodes.
+#[derive(Clone, Copy, Debug)]
+pub struct ModeColumns<const S: usize> {
+    /// Displacement per initial q, and per initial v.
+    pub q_from_q: Nodal<S>,
+    /// See [`ModeColumns::q_from_q`].
+    pub q_from_v: Nodal<S>,
+    /// Displacement and velocity per load on the mode.
+    pub load: TipColumns<S>,
+    /// Displacement and velocity per load on the mode that the nodal polynomial misses.
+    pub error: ErrorColumn<S>,
+}
+
 /// The coefficients of a step of one length.
 #[derive(Clone, Debug)]
 pub struct StepCoefficients<const S: usize> {
@@ -101,6 +114,8 @@ pub struct StepCoefficients<const S: usize> {
     pub length: f64,
     /// How the modes move the tip, mode by mode.
     pub modes: Vec<NodeRows<S>>,
+    /// How the modes move, where there are loads on each of them; else empty.
+    pub columns: Vec<ModeColumns<S>>,
     /// How the modes end.
     pub end: EndRows<S>,
     /// Per force on the tip.
@@ -141,6 +156,15 @@ impl<const S: usize> StepCoefficients<S> {
         Self {
             length: 0.0,
             modes: vec![mode; model.modes.len()],
+            columns: vec![
+                ModeColumns {
+                    q_from_q: [0.0; S],
+                    q_from_v: [0.0; S],
+                    load: TipColumns::ZERO,
+                    error: ErrorColumn::ZERO,
+                };
+                if model.axial.is_some() { model.modes.len() } else { 0 }
+            ],
             end: EndRows::ZERO,
             force: TipColumns::ZERO,
             acceleration: TipColumns::ZERO,
@@ -180,6 +204,14 @@ impl<const S: usize> StepCoefficients<S> {
             let loads = response.at_end::<A>(shapes);
             self.end
                 .set(i, mode, &end, &scaled(&loads.q, h * h), &scaled(&loads.v, h));
+            if let Some(columns) = self.columns.get_mut(i) {
+                let mut alone = Sum::ZERO;
+                alone.add::<A>(1.0, &response);
+                columns.q_from_v = scaled(q, h);
+                columns.q_from_q = *v;
+                add::<S, A>(&mut columns.q_from_q, mode.damping * h, q);
+                (columns.load, columns.error) = in_seconds(alone.at_nodes::<A>(shapes), h);
+            }
         }
         (self.force, self.force_error) = in_seconds(force.at_nodes::<A>(shapes), h);
         (self.acceleration, self.acceleration_error) = in_seconds(acceleration.at_nodes::<A>(shapes), h);

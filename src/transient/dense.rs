@@ -9,7 +9,7 @@
 use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
 use crate::inputs::Inputs;
-use crate::model::{Model, State};
+use crate::model::{MAX_MODES, Model, State};
 use crate::transient::advance::{Steps, budget};
 use crate::transient::collocation::Prediction;
 use crate::transient::events::Event;
@@ -179,9 +179,13 @@ impl Course {
         }
         let base = self.drive.acceleration(self.time) + model.generator.acceleration_before(self.time);
         let force = state.force - model.preload.force;
-        let modes = model.modes.iter().zip(&state.modes);
-        let acceleration = modes.fold(0.0, |sum, (mode, at)| {
-            let load = mode.tip * force - mode.participation * base;
+        let axial = match &model.axial {
+            Some(axial) => axial.loads(&model.modes, &state.modes),
+            None => [0.0; MAX_MODES],
+        };
+        let modes = model.modes.iter().zip(&state.modes).zip(&axial);
+        let acceleration = modes.fold(0.0, |sum, ((mode, at), axial)| {
+            let load = mode.tip * force - mode.participation * base + axial;
             sum - mode.tip * (load - mode.omega_squared * at.q - mode.damping * at.v)
         });
         let rate = state.indentation_rate;

@@ -19,7 +19,12 @@ impl Model {
     /// Whether nothing dissipates, and the work done on the motion is known.
     pub(super) fn conserves(&self, drive: &Drive) -> bool {
         let undamped = self.modes.iter().all(|mode| mode.damping == 0.0);
-        undamped && self.law.damping() == 0.0 && self.generator == Generator::None && drive.jerk == 0.0
+        // An axial force that follows the deflection has no potential.
+        undamped
+            && self.axial.is_none()
+            && self.law.damping() == 0.0
+            && self.generator == Generator::None
+            && drive.jerk == 0.0
     }
 }
 

@@ -21,6 +21,10 @@
 //!   integrals and derivatives of the polynomials; [`response`]: the responses of many modes added up.
 //! - [`machine`]: the kernel is compiled for the processor; [`vector`]: the arithmetic in it.
 //!
+//! Where the axial force follows the deflection:
+//!
+//! - [`axial`]: the step with loads on every mode that follow from the motion.
+//!
 //! Where the contact is linear and stays closed, a communication step is one exact step:
 //!
 //! - [`linear`]: the step, in the eigenvectors of beam and contact; [`oscillator`]: each pair of eigenvalues on its
@@ -29,6 +33,7 @@
 //!   differently.
 
 pub mod advance;
+pub mod axial;
 pub mod coefficients;
 pub mod collocation;
 pub mod dense;

@@ -4,7 +4,7 @@ use crate::model::{Model, State};
 use crate::transient::coefficients::{ErrorColumn, StepCoefficients};
 use crate::transient::collocation::{Collocation, Nodal};
 use crate::transient::machine::Arithmetic;
-use crate::transient::nodal::Slopes;
+use crate::transient::nodal::{Outside, Slopes};
 use crate::transient::vector::{add_columns, end};
 
 /// Rounding of the motion at the nodes, relative to what it would be without contact force.
@@ -24,8 +24,8 @@ pub(super) struct Solution<const S: usize> {
     pub(super) iterations: u64,
     /// Displacement and velocity of the tip at the end per force that the polynomial misses at the start.
     pub(super) by_force: (f64, f64),
-    /// The same per base acceleration.
-    pub(super) by_acceleration: (f64, f64),
+    /// The same per what is missed of the other loads.
+    pub(super) by_load: (f64, f64),
     /// Of the law.
     pub(super) slopes: Slopes,
 }
@@ -37,13 +37,14 @@ impl<const S: usize> Solution<S> {
             forces,
             iterations: 0,
             by_force: (0.0, 0.0),
-            by_acceleration: (0.0, 0.0),
+            by_load: (0.0, 0.0),
             slopes: Slopes::default(),
         }
     }
 
-    /// Of the law at the last iterate, whose greatest stiffness and damping are given; `force_error` and
-    /// `acceleration_error` are the nodal forces that the respective errors cause, whose effects at the end are formed.
+    /// Of the law at the last iterate, whose greatest stiffness and damping are given; `force_error` is the nodal forces
+    /// that the error of the force causes, `load_error` what the error of the other loads does without contact and the
+    /// nodal forces that it causes. Their effects at the end are formed.
     #[inline(always)]
     fn new(
         step: &StepCoefficients<S>,
@@ -51,7 +52,7 @@ impl<const S: usize> Solution<S> {
         iterations: u64,
         (stiffness, damping): (f64, f64),
         force_error: &Nodal<S>,
-        acceleration_error: &Nodal<S>,
+        load_error: (&ErrorColumn<S>, &Nodal<S>),
     ) -> Self {
         let last = |columns: &[Nodal<S>; S], loads: &Nodal<S>| {
             let entries = columns.iter().filter_map(|column| column.last());
@@ -69,7 +70,7 @@ impl<const S: usize> Solution<S> {
             forces,
             iterations,
             by_force: tip(&step.force_error, force_error),
-            by_acceleration: tip(&step.acceleration_error, acceleration_error),
+            by_load: tip(load_error.0, load_error.1),
             slopes: Slopes {
                 stiffness,
                 damping,
@@ -80,23 +81,35 @@ impl<const S: usize> Solution<S> {
 }
 
 impl Model {
-    /// The nodal forces from the tip's motion without contact force, which differ from the law's by at most `newton` (N)
-    /// or rounding; `None` where the iteration does not converge.
+    /// The nodal forces as those of the last step predict them.
     #[inline(always)]
-    pub(super) fn closed_forces<const S: usize, A: Arithmetic>(
+    pub(super) fn predicted_forces<const S: usize, A: Arithmetic>(
         &self,
         state: &State,
         step: &StepCoefficients<S>,
         collocation: &Collocation<S>,
-        free: &Nodal<S>,
-        free_rate: &Nodal<S>,
-        newton: f64,
-    ) -> Option<Solution<S>> {
-        let mut forces = if state.last_step > 0.0 {
+    ) -> Nodal<S> {
+        if state.last_step > 0.0 {
             collocation.predict::<A>(&state.predictions, step.length / state.last_step)
         } else {
             [state.force - self.preload.force; S]
-        };
+        }
+    }
+
+    /// The nodal forces, from those guessed, which differ from the law's by at most `newton` (N) or rounding; `None`
+    /// where the iteration does not converge.
+    #[inline(always)]
+    pub(super) fn closed_forces<const S: usize, A: Arithmetic>(
+        &self,
+        step: &StepCoefficients<S>,
+        outside: &Outside<S>,
+        guess: Nodal<S>,
+        newton: f64,
+    ) -> Option<Solution<S>> {
+        let Outside {
+            free, free_rate, error, ..
+        } = outside;
+        let mut forces = guess;
         let d0 = self.preload.indentation;
         let greatest = |values: &Nodal<S>| values.iter().fold(0.0_f64, |greatest, value| greatest.max(value.abs()));
         let (farthest, fastest) = (greatest(free), greatest(free_rate));
@@ -119,16 +132,14 @@ impl Model {
             // The motion has to obey the law, not only the nodal forces to be right: on a stiff contact they hardly
             // depend on it. What rounding leaves of the motion is all that can be asked.
             let rounding = MOTION_ROUNDING * (greatest(&stiffness) * farthest + greatest(&damping) * fastest);
-            if let Some((force_error, acceleration_error)) =
-                by_errors.filter(|_| greatest(&residual) <= newton.max(rounding))
-            {
+            if let Some((by_force, by_load)) = by_errors.filter(|_| greatest(&residual) <= newton.max(rounding)) {
                 return Some(Solution::new(
                     step,
                     forces,
                     iterations,
                     (greatest(&stiffness), greatest(&damping)),
-                    &force_error,
-                    &acceleration_error,
+                    &by_force,
+                    (error, &by_load),
                 ));
             }
             // The derivative of the residuals by each nodal force.
@@ -140,14 +151,13 @@ impl Model {
                     *entry = A::mul_add(*stiffness, *entry, damping * velocity);
                 }
             }
-            let force_error = react::<S, A>(&step.force_error, &stiffness, &damping);
-            let acceleration_error = react::<S, A>(&step.acceleration_error, &stiffness, &damping);
-            let [correction, force_error, acceleration_error] =
-                solve::<S, 3, A>(jacobian, [residual, force_error, acceleration_error])?;
+            let by_force = react::<S, A>(&step.force_error, &stiffness, &damping);
+            let by_load = react::<S, A>(error, &stiffness, &damping);
+            let [correction, by_force, by_load] = solve::<S, 3, A>(jacobian, [residual, by_force, by_load])?;
             for (force, correction) in forces.iter_mut().zip(&correction) {
                 *force -= correction;
             }
-            by_errors = Some((force_error, acceleration_error));
+            by_errors = Some((by_force, by_load));
         }
         None
     }

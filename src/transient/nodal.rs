@@ -3,7 +3,7 @@
 
 use crate::excitation::drive::Drive;
 use crate::model::{ModeStates, Model, State};
-use crate::transient::coefficients::{Modal, StepCoefficients};
+use crate::transient::coefficients::{EndRows, ErrorColumn, Modal, StepCoefficients};
 use crate::transient::collocation::{Collocation, Nodal};
 use crate::transient::machine::{Arithmetic, compiled_for};
 use crate::transient::newton::{Solution, at_nodes};
@@ -43,7 +43,27 @@ pub struct Trial<const S: usize> {
     pub iterations: u64,
     /// Of the law.
     pub slopes: Slopes,
+    /// Work done by an axial force that follows the deflection, beyond that of the preload's, J.
+    pub axial_work: f64,
 }
+
+/// What acts on the tip in a step besides the contact force.
+#[derive(Clone)]
+pub(super) struct Outside<'a, const S: usize> {
+    /// Base acceleration at the nodes, m/s2.
+    pub(super) accelerations: Nodal<S>,
+    /// Indentation at the nodes without contact force, as deviation from the preload, m.
+    pub(super) free: Nodal<S>,
+    /// Its velocity, m/s.
+    pub(super) free_rate: Nodal<S>,
+    /// What the nodal polynomials miss of it at the start, m/s2 where it is the base acceleration.
+    pub(super) missed: f64,
+    /// Displacement and velocity of the fixed contact relative to the tip per what is missed.
+    pub(super) error: &'a ErrorColumn<S>,
+}
+
+/// The loads on [`LANES`] modes at the nodes.
+pub(super) type LaneLoads<const S: usize> = [[f64; LANES]; S];
 
 /// How the law answers within a step; nothing where the force does not depend on the motion.
 #[derive(Clone, Copy, Debug, Default)]
@@ -81,6 +101,9 @@ impl Model {
         source: Source<S>,
         end_modes: &mut ModeStates,
     ) -> Option<Trial<S>> {
+        if let Some(axial) = &self.axial {
+            return self.axial_trial(axial, state, (drive, source), (step, collocation), end_modes);
+        }
         compiled_for!(self.machine, A => self.compute::<S, A>(state, drive, step, collocation, source, end_modes))
     }
 
@@ -95,6 +118,37 @@ impl Model {
         source: Source<S>,
         end_modes: &mut ModeStates,
     ) -> Option<Trial<S>> {
+        let outside = self.outside::<S, A>(state, drive, step, collocation);
+        let solution = match source {
+            Source::Law(newton) if state.closed => {
+                let guess = self.predicted_forces::<S, A>(state, step, collocation);
+                self.closed_forces::<S, A>(step, &outside, guess, newton)?
+            }
+            Source::Law(_) => Solution::given([-self.preload.force; S]),
+            Source::Given(forces) => Solution::given(forces),
+        };
+        let tip = end_of_modes::<S, A>(
+            state,
+            step,
+            self.modes.len(),
+            #[inline(always)]
+            |first, loads| {
+                loads_on_modes::<S, A>(&step.end, first, &solution.forces, &outside.accelerations, loads);
+            },
+            end_modes,
+        );
+        Some(self.judged::<S, A>(state, drive, (step, collocation), &solution, &outside, tip))
+    }
+
+    /// What acts on the tip besides the contact force.
+    #[inline(always)]
+    pub(super) fn outside<'a, const S: usize, A: Arithmetic>(
+        &self,
+        state: &State,
+        drive: &Drive,
+        step: &'a StepCoefficients<S>,
+        collocation: &Collocation<S>,
+    ) -> Outside<'a, S> {
         let h = step.length;
         let generated = self.generator.over_step(self.machine, state.time, &step.turns);
         let driven = drive.acceleration(state.time);
@@ -104,7 +158,6 @@ impl Model {
             *acceleration += driven;
         }
 
-        // Indentation at the nodes without contact force.
         let mut free = [state.support; S];
         add::<S, A>(&mut free, drive.support_rate * h, &collocation.nodes);
         let mut free_rate = [drive.support_rate; S];
@@ -120,33 +173,41 @@ impl Model {
         subtract(&mut free_rate, &rate_from_q, &rate_from_v);
         add_columns::<S, A>(&mut free, &step.acceleration.displacement, &accelerations);
         add_columns::<S, A>(&mut free_rate, &step.acceleration.velocity, &accelerations);
+        Outside {
+            missed: driven + generated.start - dot::<S, A>(&accelerations, &collocation.at_start),
+            error: &step.acceleration_error,
+            accelerations,
+            free,
+            free_rate,
+        }
+    }
 
-        let solution = match source {
-            Source::Law(newton) if state.closed => {
-                self.closed_forces::<S, A>(state, step, collocation, &free, &free_rate, newton)?
-            }
-            Source::Law(_) => Solution::given([-self.preload.force; S]),
-            Source::Given(forces) => Solution::given(forces),
-        };
-        let Solution { forces, iterations, .. } = solution;
-        let (indentations, rates) = at_nodes::<S, A>(step, &free, &free_rate, &forces);
-
-        let support = state.support + drive.support_rate * h;
-        let (tip, tip_rate) = end_of_modes::<S, A>(state, step, self.modes.len(), &forces, &accelerations, end_modes);
+    /// The trial, once the nodal forces are found and with them displacement and velocity of the tip at the end.
+    #[inline(always)]
+    pub(super) fn judged<const S: usize, A: Arithmetic>(
+        &self,
+        state: &State,
+        drive: &Drive,
+        (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
+        solution: &Solution<S>,
+        outside: &Outside<S>,
+        (tip, tip_rate): (f64, f64),
+    ) -> Trial<S> {
+        let Solution { forces, iterations, .. } = *solution;
+        let (indentations, rates) = at_nodes::<S, A>(step, &outside.free, &outside.free_rate, &forces);
+        let support = state.support + drive.support_rate * step.length;
         let (indentation, rate) = (support - tip, drive.support_rate - tip_rate);
 
-        let at_start = driven + generated.start;
         let largest = forces.iter().fold(f64::MIN_POSITIVE, |largest, force| {
             largest.max((self.preload.force + force).abs())
         });
-        let missed_acceleration = at_start - dot::<S, A>(&accelerations, &collocation.at_start);
         let missed = if state.closed {
             state.force - self.preload.force - dot::<S, A>(&forces, &collocation.at_start)
         } else {
             0.0
         };
-        let error = self.error(state, step, &solution, missed, missed_acceleration, largest);
-        Some(Trial {
+        let error = self.error(state, step, solution, missed, outside, largest);
+        Trial {
             forces,
             indentations,
             rates,
@@ -158,7 +219,8 @@ impl Model {
             missed: missed.abs(),
             iterations,
             slopes: solution.slopes,
-        })
+            axial_work: 0.0,
+        }
     }
 
     /// Estimate of what a step adds to the error of the contact force, N.
@@ -169,8 +231,7 @@ impl Model {
     /// error of twice the order, about three times the square of what is missed (an impact of a free mass on a Hertz
     /// contact). Just after a touch or a jump the force is no polynomial of any degree, and they see more.
     ///
-    /// `missed` (N) and `missed_acceleration` (m/s2) are what the polynomials miss at the start, `largest` (N) is the
-    /// largest nodal force.
+    /// `missed` (N) is what the force's polynomial misses at the start, `largest` (N) the largest nodal force.
     #[inline(always)]
     fn error<const S: usize>(
         &self,
@@ -178,13 +239,13 @@ impl Model {
         step: &StepCoefficients<S>,
         solution: &Solution<S>,
         missed: f64,
-        missed_acceleration: f64,
+        outside: &Outside<S>,
         largest: f64,
     ) -> f64 {
         if state.closed {
-            let (by_force, by_acceleration) = (solution.by_force, solution.by_acceleration);
-            let wrong_d = by_acceleration.0 * missed_acceleration - by_force.0 * missed;
-            let wrong_r = by_acceleration.1 * missed_acceleration - by_force.1 * missed;
+            let (by_force, by_load) = (solution.by_force, solution.by_load);
+            let wrong_d = by_load.0 * outside.missed - by_force.0 * missed;
+            let wrong_r = by_load.1 * outside.missed - by_force.1 * missed;
             let fast = (solution.slopes.stiffness * wrong_d).abs() + (solution.slopes.damping * wrong_r).abs();
             let elapsed = state.time - state.last_kink;
             let kinked = if elapsed < FAR * step.length {
@@ -195,8 +256,8 @@ impl Model {
             let slow = 3.0 * missed * missed / largest + kinked;
             fast + slow * solution.slopes.gain / (1.0 + solution.slopes.gain)
         } else {
-            let last = |values: &Nodal<S>| (end(values) * missed_acceleration).abs();
-            let rows = &step.acceleration_error;
+            let last = |values: &Nodal<S>| (end(values) * outside.missed).abs();
+            let rows = outside.error;
             let wrong = last(&rows.displacement) + self.law.damping() * last(&rows.velocity);
             self.law.tangent_stiffness(self.force_scale) * wrong
         }
@@ -227,20 +288,42 @@ fn analytic<const S: usize>(distance: f64) -> f64 {
 }
 
 /// Modes computed at once.
-const LANES: usize = 4;
+pub(super) const LANES: usize = 4;
 
-/// The modes in use at the end of a step, into `ends`. Returns displacement and velocity of the tip.
+/// The loads of forces and base acceleration on the modes from `first` on.
 #[inline(always)]
 #[expect(
     clippy::indexing_slicing,
     reason = "the room for the modes is a whole number of lanes"
 )]
-fn end_of_modes<const S: usize, A: Arithmetic>(
+pub(super) fn loads_on_modes<const S: usize, A: Arithmetic>(
+    rows: &EndRows<S>,
+    first: usize,
+    forces: &Nodal<S>,
+    accelerations: &Nodal<S>,
+    loads: &mut LaneLoads<S>,
+) {
+    let tips = &rows.tip[first..first + LANES];
+    let participations = &rows.participation[first..first + LANES];
+    for ((load, force), acceleration) in loads.iter_mut().zip(forces).zip(accelerations) {
+        for ((load, tip), participation) in load.iter_mut().zip(tips).zip(participations) {
+            *load = A::mul_add(*tip, *force, -participation * acceleration);
+        }
+    }
+}
+
+/// The modes in use at the end of a step, into `ends`; `loads` gives those on the modes from a first one on. Returns
+/// displacement and velocity of the tip.
+#[inline(always)]
+#[expect(
+    clippy::indexing_slicing,
+    reason = "the room for the modes is a whole number of lanes"
+)]
+pub(super) fn end_of_modes<const S: usize, A: Arithmetic>(
     state: &State,
     step: &StepCoefficients<S>,
     modes: usize,
-    forces: &Nodal<S>,
-    accelerations: &Nodal<S>,
+    loads_from: impl Fn(usize, &mut LaneLoads<S>),
     ends: &mut ModeStates,
 ) -> (f64, f64) {
     let rows = &step.end;
@@ -252,19 +335,17 @@ fn end_of_modes<const S: usize, A: Arithmetic>(
             std::array::from_fn(|i| starts[i].q),
             std::array::from_fn(|i| starts[i].v),
         );
-        let (tips, participations) = (lanes(&rows.tip, first), lanes(&rows.participation, first));
+        let tips = lanes(&rows.tip, first);
+        let mut loads = [[0.0; LANES]; S];
+        loads_from(first, &mut loads);
         let (mut q, mut v) = ([0.0; LANES], [0.0; LANES]);
         add_products::<LANES, A>(&mut q, &lanes(&rows.q_from_q, first), &start_q);
         add_products::<LANES, A>(&mut q, &lanes(&rows.q_from_v, first), &start_v);
         add_products::<LANES, A>(&mut v, &lanes(&rows.v_from_q, first), &start_q);
         add_products::<LANES, A>(&mut v, &lanes(&rows.v_from_v, first), &start_v);
-        for node in 0..S {
-            let mut load = [0.0; LANES];
-            for i in 0..LANES {
-                load[i] = A::mul_add(tips[i], forces[node], -participations[i] * accelerations[node]);
-            }
-            add_products::<LANES, A>(&mut q, &lanes(&rows.q_from_load[node], first), &load);
-            add_products::<LANES, A>(&mut v, &lanes(&rows.v_from_load[node], first), &load);
+        for (node, load) in loads.iter().enumerate() {
+            add_products::<LANES, A>(&mut q, &lanes(&rows.q_from_load[node], first), load);
+            add_products::<LANES, A>(&mut v, &lanes(&rows.v_from_load[node], first), load);
         }
         add_products::<LANES, A>(&mut tip, &tips, &q);
         add_products::<LANES, A>(&mut tip_rate, &tips, &v);
