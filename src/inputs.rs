@@ -93,6 +93,11 @@ impl Inputs {
         })
     }
 
+    /// Whether the inputs do not change over the step.
+    pub fn are_held(&self) -> bool {
+        self.base_acceleration_rate == 0.0 && self.support_displacement_rate == 0.0 && self.contact_current_rate == 0.0
+    }
+
     /// Holds the inputs at their values.
     pub fn hold(&mut self) {
         self.base_acceleration_rate = 0.0;

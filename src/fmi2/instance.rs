@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use std::ffi::CStr;
 
 use super::failure::Failure;
-use super::logger::{Category, Logger};
+use super::logger::Logger;
 use super::report::{self, Effort};
 use super::states::{Function, State};
 use super::types::{fmi2Boolean, fmi2False, fmi2Status};
@@ -164,7 +164,7 @@ impl Instance {
     pub(super) fn exit_initialization_mode(&mut self) -> Result<(), Failure> {
         self.prepare().map_err(Failure::Initialisation)?;
         self.state = State::StepComplete;
-        if let Some(simulation) = self.simulation.as_ref().filter(|_| self.logger.shows(Category::Solver)) {
+        if let Some(simulation) = self.simulation.as_ref().filter(|_| self.logger.debugs()) {
             report::model(&self.logger, simulation.model());
         }
         Ok(())
@@ -423,19 +423,21 @@ impl Instance {
             let allowed = format!("the step ends at {end} s, after the stop time {stop} s of the experiment");
             return refused("communicationStepSize", size, allowed);
         }
-        self.inputs.check_after(size).map_err(Failure::Course)?;
+        let held = self.inputs.are_held();
+        if !held {
+            self.inputs.check_after(size).map_err(Failure::Course)?;
+        }
         let Some(simulation) = &mut self.simulation else {
             return Err(Failure::Panic("no simulation after initialisation".to_owned()));
         };
-        let before = self.logger.shows(Category::Solver).then(|| Effort::of(simulation));
+        let before = self.logger.debugs().then(|| Effort::of(simulation));
         simulation.step(&self.inputs, point, size).map_err(Failure::Step)?;
         self.time = simulation.time();
-        self.inputs.hold();
-        if self.logger.shows(Category::Events) {
-            report::events(&self.logger, simulation);
+        if !held {
+            self.inputs.hold();
         }
         if let Some(before) = before {
-            before.report(&self.logger, simulation);
+            report::step(&self.logger, simulation, before);
         }
         Ok(())
     }

@@ -90,8 +90,14 @@ impl Logger {
         Ok(())
     }
 
+    /// Whether debug messages reach anybody.
+    pub(super) fn debugs(&self) -> bool {
+        let [_, _, events, solver] = self.shown;
+        (events || solver) && self.callback.is_some()
+    }
+
     /// Whether messages of a category reach anybody.
-    pub(super) fn shows(&self, category: Category) -> bool {
+    fn shows(&self, category: Category) -> bool {
         let [errors, warnings, events, solver] = self.shown;
         let shown = match category {
             StatusError => errors,

@@ -26,8 +26,15 @@ pub(super) fn model(logger: &Logger, model: &Model) {
     logger.log(Category::Solver, fmi2OK, &text);
 }
 
-/// The openings and closings of a communication step.
-pub(super) fn events(logger: &Logger, simulation: &Simulation) {
+/// A communication step, before which the integration had cost `before`.
+#[cold]
+pub(super) fn step(logger: &Logger, simulation: &Simulation, before: Effort) {
+    events(logger, simulation);
+    before.report(logger, simulation);
+}
+
+/// Its openings and closings.
+fn events(logger: &Logger, simulation: &Simulation) {
     let (events, left_out) = simulation.events();
     for event in events {
         let verb = if event.closes { "closes" } else { "opens" };
@@ -59,7 +66,7 @@ impl Effort {
     }
 
     /// What it has cost since then.
-    pub(super) fn report(self, logger: &Logger, simulation: &Simulation) {
+    fn report(self, logger: &Logger, simulation: &Simulation) {
         let now = Self::of(simulation);
         let text = format!(
             "fmi2DoStep: to {} s: {} steps, {} rejected, {} iterations",

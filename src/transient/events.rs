@@ -41,6 +41,9 @@ impl Events {
 
     /// Forgets those up to an instant (s): a communication step begins there.
     pub(super) fn forget_until(&mut self, time: f64) {
+        if self.list.is_empty() {
+            return;
+        }
         self.left_out = 0;
         self.list.retain(|event| event.time > time);
     }
