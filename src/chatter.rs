@@ -40,6 +40,8 @@ pub struct Interruptions {
     longest: f64,
     /// Duration of those that have ended and count, s.
     total: f64,
+    /// When one last began or ended, s.
+    turned: Option<f64>,
 }
 
 /// The interruptions up to an instant, one in progress included.
@@ -67,7 +69,26 @@ impl Interruptions {
             count,
             longest,
             total,
+            turned: Some(time),
         };
+    }
+
+    /// Whether one began or ended at an instant (s).
+    pub fn turned_at(&self, time: f64) -> bool {
+        self.turned == Some(time)
+    }
+
+    /// Whether every number is one that a simulation can have come to by an instant (s).
+    pub fn is_sound(&self, time: f64) -> bool {
+        let Self {
+            since,
+            count: _,
+            longest,
+            total,
+            turned,
+        } = self;
+        let past = |instant: &Option<f64>| instant.is_none_or(|instant| instant <= time && instant.is_finite());
+        past(since) && past(turned) && longest.is_finite() && total.is_finite()
     }
 
     /// All up to an instant (s).

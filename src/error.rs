@@ -69,6 +69,9 @@ pub enum SceneError {
         /// Upper end asked for, Hz.
         end_frequency: f64,
     },
+    /// Interruptions asked for without a resistance to tell them by.
+    #[error("effects.chatter = true: not allowed with effects.resistance = None, allowed is false")]
+    NoResistance,
     /// An effect that a bare build ([`crate::BARE`]) does not have.
     #[error("{0}: this is a bare build, which has only what is simplest")]
     Bare(&'static str),

@@ -10,6 +10,7 @@
 //! preload     static equilibrium of beam and contact
 //! model       Scene -> Model (never changes) and State (all that moves)
 //! transient   Model, State, inputs -> State after a communication step
+//! chatter     interruptions of the current
 //! electrical  contact force -> resistance;   harmonic  the same contact in the frequency domain
 //! simulation  Model and State together, read by output
 //! fmi2        all of it behind the C interface of FMI 2.0
@@ -43,6 +44,7 @@
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 pub mod beam;
+pub mod chatter;
 pub mod contact;
 pub mod electrical;
 pub mod error;

@@ -4,6 +4,7 @@ use crate::beam::axial::Feedback;
 use crate::beam::characteristic;
 use crate::beam::galerkin::Space;
 use crate::beam::section::Section;
+use crate::chatter::{Criterion, Interruptions};
 use crate::contact::hertz::Hertz;
 use crate::contact::law::Law;
 use crate::contact::linear::Linear;
@@ -50,7 +51,7 @@ pub struct Model {
     pub modes: Vec<Mode>,
     /// The axial force, where it follows the deflection at all times.
     pub axial: Option<Feedback>,
-    /// Modes and contact together, where they are linear and the generator harmonic.
+    /// Modes and contact together, where they are linear, the generator harmonic, and nobody looks inside steps.
     pub closed_loop: Option<ClosedLoop>,
     /// The base acceleration generated inside.
     pub generator: Generator,
@@ -62,6 +63,8 @@ pub struct Model {
     pub frequency: f64,
     /// What current sees of it.
     pub path: Option<Path>,
+    /// What counts as an interruption, where they are asked for.
+    pub criterion: Option<Criterion>,
     /// What the steps are computed with.
     pub machine: Machine,
 }
@@ -116,6 +119,8 @@ pub struct State {
     pub energy_surplus: f64,
     /// Energy put in less stored less dissipated since initialisation, J, where that is asked for.
     pub energy_balance: f64,
+    /// Interruptions so far.
+    pub interruptions: Interruptions,
     /// Accepted steps.
     pub steps: u64,
     /// Steps discarded and repeated shorter.
@@ -145,6 +150,7 @@ impl State {
             last_step,
             energy_surplus,
             energy_balance,
+            interruptions,
             steps: _,
             rejected_steps: _,
             iterations: _,
@@ -167,6 +173,7 @@ impl State {
         numbers.into_iter().all(|number| number.is_finite())
             && modes.iter().all(|mode| mode.q.is_finite() && mode.v.is_finite())
             && predictions.is_finite()
+            && interruptions.is_sound(*time)
             && positive(short_step)
             && positive(long_step)
             && [last_opening, last_closing, last_kink]
@@ -234,8 +241,13 @@ impl Model {
             .or(frequency)
             .map_or(0.0, |omega| omega / std::f64::consts::TAU);
         let generator = Generator::new(scene)?;
+        let path = Path::new(scene);
+        if scene.effects.chatter && path.is_none() {
+            return Err(SceneError::NoResistance);
+        }
+        let criterion = path.as_ref().and_then(|path| Criterion::new(scene, path));
         let closed_loop = match law {
-            Law::Linear(contact) if generator.is_harmonic() && axial.is_none() => {
+            Law::Linear(contact) if generator.is_harmonic() && axial.is_none() && !scene.effects.extremes => {
                 ClosedLoop::new(scene, &modes, contact, &generator)
             }
             _ => None,
@@ -252,7 +264,8 @@ impl Model {
             initial_support: support,
             force_scale: preload.force.max(reference),
             frequency,
-            path: Path::new(scene),
+            path,
+            criterion,
             machine: Machine::detect(),
         })
     }
@@ -265,6 +278,10 @@ impl Model {
 
     /// At rest in the preload.
     pub fn initial_state(&self, time: f64) -> State {
+        let mut interruptions = Interruptions::default();
+        if let Some(criterion) = self.criterion.filter(|criterion| self.preload.force < criterion.force) {
+            interruptions.turn(&criterion, time);
+        }
         State {
             time,
             modes: [ModeState::default(); MAX_MODES],
@@ -283,6 +300,7 @@ impl Model {
             last_step: 0.0,
             energy_surplus: 0.0,
             energy_balance: 0.0,
+            interruptions,
             steps: 0,
             rejected_steps: 0,
             iterations: 0,

@@ -1,5 +1,6 @@
 //! A scene under way: the model, its state, and the scratch the steps need.
 
+use crate::chatter::Summary;
 use crate::error::{SceneError, StepError};
 use crate::inputs::Inputs;
 use crate::model::{Model, State};
@@ -103,6 +104,7 @@ impl Simulation {
         let Self { model, course, .. } = self;
         let (state, tip) = (course.state(), || course.tip(model));
         let conductance = || model.path.map(|path| path.conductance(tip().force));
+        let extremes = || model.scene.effects.extremes.then(|| course.extremes(model));
         match output {
             RealOutput::ContactForce => tip().force,
             RealOutput::ContactConductance => conductance().unwrap_or_default(),
@@ -112,11 +114,14 @@ impl Simulation {
                 Some(path) => path.temperature(&model.scene, tip().force, course.current),
                 None => model.scene.environment.temperature,
             },
-            RealOutput::StepMinimumForce
-            | RealOutput::StepMaximumForce
-            | RealOutput::StepMaximumResistance
-            | RealOutput::ChatterLongestInterruption
-            | RealOutput::ChatterTotalInterruption => 0.0,
+            RealOutput::StepMinimumForce => extremes().map_or(0.0, |extremes| extremes.least),
+            RealOutput::StepMaximumForce => extremes().map_or(0.0, |extremes| extremes.greatest),
+            RealOutput::StepMaximumResistance => match (extremes(), &model.path) {
+                (Some(extremes), Some(path)) => 1.0 / path.conductance(extremes.least),
+                _ => 0.0,
+            },
+            RealOutput::ChatterLongestInterruption => self.interruptions().longest,
+            RealOutput::ChatterTotalInterruption => self.interruptions().total,
             RealOutput::EnergyBalance => state.energy_balance,
             RealOutput::ContactIndentation => model.preload.indentation + tip().indentation,
             RealOutput::TipDisplacement => model.preload.deflection + state.support - tip().indentation,
@@ -179,6 +184,14 @@ impl Simulation {
         })
     }
 
+    /// Interruptions up to the communication point; none where they are not asked for.
+    pub fn interruptions(&self) -> Summary {
+        let criterion = self.model.criterion.as_ref();
+        criterion.map_or_else(Summary::default, |criterion| {
+            self.state().interruptions.summary(criterion, self.time())
+        })
+    }
+
     /// An integer output or calculated parameter; counts beyond the range of an integer stay at its end.
     pub fn integer(&self, output: IntegerOutput) -> i32 {
         let count = |n: u64| i32::try_from(n).unwrap_or(i32::MAX);
@@ -186,7 +199,7 @@ impl Simulation {
             IntegerOutput::SolverSteps => count(self.state().steps),
             IntegerOutput::SolverRejectedSteps => count(self.state().rejected_steps),
             IntegerOutput::SolverIterations => count(self.state().iterations),
-            IntegerOutput::ChatterCount => 0,
+            IntegerOutput::ChatterCount => count(self.interruptions().count),
             IntegerOutput::SolverModesUsed => count(self.model.modes.len() as u64),
         }
     }

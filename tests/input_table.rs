@@ -117,7 +117,7 @@ fn what_is_wrong_in_a_table_is_told_with_its_place() -> Result<(), Box<dyn Error
         ),
         (
             "time,contact.current\n0,nan\n",
-            "line 2: contact.current = NaN A: not allowed, allowed is any finite number",
+            "line 2: contact.current = NaN A: not allowed, allowed is -1000000 to 1000000",
         ),
         (
             "time,contact.current\n1,0\n1,1\n",

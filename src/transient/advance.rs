@@ -1,5 +1,6 @@
 //! A communication step as a sequence of integration steps.
 
+use crate::BARE;
 use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
 use crate::model::{Model, State};
@@ -9,15 +10,16 @@ use crate::transient::fallback::REFUSALS;
 use crate::transient::nodal::{Source, Trial};
 use crate::transient::progress::{Progress, Target};
 use crate::transient::vector;
+use crate::transient::watch::Extremes;
 use crate::transient::workspace::{Room, Workspace};
 
 /// Integration steps a communication step may take, and further ones per second of it.
-const BUDGET: u64 = 2_000_000;
+const BUDGET: u64 = 10_000_000;
 /// See [`BUDGET`].
-const BUDGET_RATE: f64 = 2e7;
+const BUDGET_RATE: f64 = 1e7;
 
 /// Spacing of floating-point numbers at an instant, in first steps, with which the motion can be followed.
-const COARSEST: f64 = 1e-2;
+const COARSEST: f64 = 0.1;
 
 /// m/s.
 const SPEED_OF_LIGHT: f64 = 299_792_458.0;
@@ -65,6 +67,8 @@ pub(super) struct Integration<'a> {
     pub(super) progress: Progress,
     /// The instant beyond which the step is looked into, s, and what the tip does in it.
     pub(super) span: Option<(f64, &'a mut Span)>,
+    /// Of the contact force, where they are asked for.
+    pub(super) extremes: Option<&'a mut Extremes>,
     /// Error allowed in the contact force, N.
     pub(super) tolerance: f64,
     /// Error allowed in a step, N.
@@ -129,6 +133,7 @@ impl Model {
         workspace: &mut Workspace,
         drive: Drive,
         steps: Steps,
+        extremes: Option<&mut Extremes>,
     ) -> Result<(), StepError> {
         let tolerance = self.scene.solver.effective_tolerance() * self.force_scale;
         let (progress, span) = match steps {
@@ -152,6 +157,7 @@ impl Model {
             drive,
             progress,
             span,
+            extremes: extremes.filter(|_| !BARE),
             tolerance,
             allowed: SHARE * tolerance,
             refusals: 0,
@@ -172,6 +178,7 @@ impl Integration<'_> {
             return Err(self.error(StepErrorCause::Speed(self.drive.support_rate)));
         }
         self.set_support_rate();
+        self.note_force();
         let budget = budget(self.progress.size);
         let limit = self.workspace.trials.saturating_add(budget);
         while self.progress.done < 1.0 {
@@ -179,6 +186,7 @@ impl Integration<'_> {
                 return Err(self.error(StepErrorCause::Budget(budget)));
             }
             self.advance()?;
+            self.note_force();
             let Progress { free, done, .. } = self.progress;
             let end = self.progress.end();
             if !free
@@ -268,7 +276,14 @@ impl Integration<'_> {
         } else {
             (0.9 * reach::<S>(ratio)).clamp(0.5, 64.0)
         };
-        if let Some(part) = self.first_suspect(&trial, target.length) {
+        let suspect = self.first_suspect(&trial, target.length);
+        if let Some(passed) = self.first_passage(&trial)
+            && suspect.is_none_or(|part| passed <= part)
+            && let Some(advice) = self.pass::<S>(passed, &target, growth, wanted)?
+        {
+            return Ok(advice);
+        }
+        if let Some(part) = suspect {
             if S != SHORT {
                 // Events are located in short steps; long ones end before.
                 return Ok(self.reject(0.9 * part * target.length));
@@ -407,6 +422,18 @@ impl Integration<'_> {
         if state.closed {
             let force = model.preload.force + vector::end(&trial.forces);
             state.force = if model.law.never_opens() { force } else { force.max(0.0) };
+        }
+        if let Some(extremes) = &mut self.extremes {
+            if state.closed {
+                let floor = if model.law.never_opens() {
+                    f64::NEG_INFINITY
+                } else {
+                    0.0
+                };
+                extremes.add_course(state.predictions.through_all(), -1.0, 0.0, model.preload.force, floor);
+            } else {
+                extremes.add(0.0);
+            }
         }
         state.last_step = target.length;
         state.steps += 1;

@@ -6,6 +6,7 @@
 //! is read from the step's polynomial. An input that changes meanwhile takes the motion back to the communication
 //! point, exactly, from the start of the step.
 
+use crate::BARE;
 use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
 use crate::inputs::Inputs;
@@ -13,6 +14,7 @@ use crate::model::{MAX_MODES, Model, State};
 use crate::transient::advance::{Steps, budget};
 use crate::transient::collocation::Prediction;
 use crate::transient::events::Event;
+use crate::transient::watch::{Extremes, value_and_slope};
 use crate::transient::workspace::Workspace;
 use serde::{Deserialize, Serialize};
 
@@ -30,6 +32,8 @@ pub struct Course {
     pub current_rate: f64,
     /// Length of the last communication step, s.
     size: f64,
+    /// Extremes of the contact force in it, but for what lies in [`Course::span`] inside which it ends, N.
+    extremes: Extremes,
     /// What drove the contact over it.
     drive: Drive,
     /// The motion at the communication point, or before it where the integrator is ahead.
@@ -81,6 +85,7 @@ impl Course {
             current: 0.0,
             current_rate: 0.0,
             size: 0.0,
+            extremes: Extremes::at(state.force),
             drive: Drive::default(),
             start: state,
             end: state,
@@ -104,13 +109,23 @@ impl Course {
             current,
             current_rate,
             size,
+            extremes,
             drive,
             start,
             end,
             span,
         } = self;
         let polynomials = [&span.force, &span.indentation, &span.rate].into_iter().flatten();
-        let numbers = [*time, *current, *current_rate, *size, drive.jerk, drive.support_rate];
+        let numbers = [
+            *time,
+            *current,
+            *current_rate,
+            *size,
+            extremes.least,
+            extremes.greatest,
+            drive.jerk,
+            drive.support_rate,
+        ];
         let driven = drive.acceleration(start.time);
         numbers.iter().chain(polynomials).all(|number| number.is_finite())
             && driven.is_finite()
@@ -164,6 +179,30 @@ impl Course {
         }
     }
 
+    /// Extremes of the contact force within the last communication step, N, where the scene asks for them.
+    pub fn extremes(&self, model: &Model) -> Extremes {
+        let mut extremes = self.extremes;
+        if self.time < self.end.time {
+            self.add_span(&mut extremes, model, self.time - self.size, self.time);
+        }
+        extremes
+    }
+
+    /// Adds what the force does in the span between two instants (s), of which the first may lie before it.
+    fn add_span(&self, extremes: &mut Extremes, model: &Model, from: f64, to: f64) {
+        let at = |time: f64| ((time - self.end.time) / self.length()).clamp(-1.0, 0.0);
+        if self.start.closed {
+            let floor = if model.law.never_opens() {
+                f64::NEG_INFINITY
+            } else {
+                0.0
+            };
+            extremes.add_course(&self.span.force, at(from), at(to), model.preload.force, floor);
+        } else {
+            extremes.add(0.0);
+        }
+    }
+
     /// How the tip changes at the communication point, as it has been reached: what changes there at once comes after.
     pub fn tip_rates(&self, model: &Model) -> TipRates {
         let state = self.state();
@@ -203,14 +242,6 @@ impl Course {
     }
 }
 
-/// A polynomial and its derivative (Horner's rule).
-fn value_and_slope(coefficients: &Prediction, y: f64) -> (f64, f64) {
-    let terms = coefficients.iter().rev();
-    terms.fold((0.0, 0.0), |(value, slope), coefficient| {
-        (value * y + coefficient, slope * y + value)
-    })
-}
-
 impl Model {
     /// Advances over the communication step from `time` to `time + size` (s) with inputs that are held or change linearly.
     ///
@@ -239,6 +270,7 @@ impl Model {
         };
         let since = course.time;
         workspace.events.forget_until(since);
+        let mut extremes = Extremes::at(if self.is_watched() { course.tip(self).force } else { 0.0 });
         // The fixed contact moves linearly to where the input leads.
         let support = inputs.support_displacement_after(size) - self.initial_support;
         let drive = Drive::new(inputs, time, size, support - course.state().support);
@@ -249,10 +281,14 @@ impl Model {
             if until > course.end.time {
                 let left = until - course.end.time;
                 if left < MANY_STEPS * reach {
-                    self.go_ahead(course, workspace, until)?;
+                    self.go_ahead(course, workspace, until, &mut extremes)?;
                 } else {
                     let (mut end, time) = (course.end, course.end.time);
-                    self.advance(&mut end, workspace, course.drive, Steps::Exactly { time, size: left })?;
+                    let steps = Steps::Exactly { time, size: left };
+                    if self.is_watched() {
+                        course.add_span(&mut extremes, self, since, time);
+                    }
+                    self.advance(&mut end, workspace, course.drive, steps, self.watched(&mut extremes))?;
                     end.time = until;
                     (course.start, course.end) = (end, end);
                 }
@@ -264,7 +300,9 @@ impl Model {
                 course.start = course.end;
                 workspace.events.forget_after(since);
             }
-            if let Err(error) = self.advance(&mut course.end, workspace, drive, Steps::Exactly { time, size }) {
+            let steps = Steps::Exactly { time, size };
+            let watched = self.watched(&mut extremes);
+            if let Err(error) = self.advance(&mut course.end, workspace, drive, steps, watched) {
                 (course.start, course.end) = before.unwrap_or((course.start, course.start));
                 workspace.events.forget_after(since);
                 return Err(error);
@@ -275,6 +313,7 @@ impl Model {
             course.drive = drive;
         }
         course.size = size;
+        course.extremes = extremes;
         course.time = until;
         course.current = inputs.contact_current_after(size);
         course.current_rate = inputs.contact_current_rate;
@@ -289,40 +328,62 @@ impl Model {
         let mut state = *course.state();
         let (time, size) = (state.time, course.time - state.time);
         if size > 0.0 {
-            self.advance(&mut state, workspace, course.drive, Steps::Exactly { time, size })?;
+            let steps = Steps::Exactly { time, size };
+            self.advance(&mut state, workspace, course.drive, steps, None)?;
         }
         Ok(state)
     }
 
-    /// Advances the integrator by its own steps until it is at `time` (s) or ahead of it.
-    fn go_ahead(&self, course: &mut Course, workspace: &mut Workspace, time: f64) -> Result<(), StepError> {
-        let (mut start, mut end) = (course.start, course.end);
-        let mut span = course.span;
-        let budget = budget(time - course.time);
+    /// Whether extremes are asked for.
+    fn is_watched(&self) -> bool {
+        self.scene.effects.extremes && !BARE
+    }
+
+    fn watched<'a>(&self, extremes: &'a mut Extremes) -> Option<&'a mut Extremes> {
+        self.is_watched().then_some(extremes)
+    }
+
+    /// Advances the integrator by its own steps until it is at `time` (s) or ahead of it. Extremes are those up to the
+    /// end of the last step that lies before.
+    fn go_ahead(
+        &self,
+        course: &mut Course,
+        workspace: &mut Workspace,
+        time: f64,
+        extremes: &mut Extremes,
+    ) -> Result<(), StepError> {
+        let since = course.time;
+        let mut ahead = *course;
+        if self.is_watched() && since < ahead.end.time {
+            ahead.add_span(extremes, self, since, ahead.end.time);
+            extremes.add(ahead.end.force);
+        }
+        let budget = budget(time - since);
         let limit = workspace.trials.saturating_add(budget);
-        while end.time < time {
+        while ahead.end.time < time {
             if workspace.trials >= limit {
-                let (time, cause) = (end.time, StepErrorCause::Budget(budget));
+                let (time, cause) = (ahead.end.time, StepErrorCause::Budget(budget));
                 return Err(StepError { time, cause });
             }
-            start = end;
-            self.advance(
-                &mut end,
-                workspace,
-                course.drive,
-                Steps::Own {
-                    until: time,
-                    span: &mut span,
-                },
-            )?;
+            ahead.start = ahead.end;
+            let steps = Steps::Own {
+                until: time,
+                span: &mut ahead.span,
+            };
+            self.advance(&mut ahead.end, workspace, ahead.drive, steps, None)?;
+            if self.is_watched() && ahead.end.time <= time {
+                ahead.add_span(extremes, self, since, ahead.end.time);
+                extremes.add(ahead.end.force);
+            }
         }
-        if end.time > time && !span.good {
-            end = start;
-            workspace.events.forget_after(end.time);
-            let (start, size) = (end.time, time - end.time);
-            self.advance(&mut end, workspace, course.drive, Steps::Exactly { time: start, size })?;
+        if ahead.end.time > time && !ahead.span.good {
+            ahead.end = ahead.start;
+            workspace.events.forget_after(ahead.end.time);
+            let (start, size) = (ahead.end.time, time - ahead.end.time);
+            let steps = Steps::Exactly { time: start, size };
+            self.advance(&mut ahead.end, workspace, ahead.drive, steps, self.watched(extremes))?;
         }
-        (course.start, course.end, course.span) = (start, end, span);
+        *course = ahead;
         Ok(())
     }
 }

@@ -120,6 +120,7 @@ mod tests {
                 drive: Drive::default(),
                 progress: Progress::over(step * f64::from(k), step),
                 span: None,
+                extremes: None,
                 tolerance: 1e-6,
                 allowed: 1e-8,
                 refusals: 0,

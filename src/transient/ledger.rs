@@ -132,7 +132,7 @@ mod tests {
         let drive = Drive::new(&inputs, 0.0, 1e-3, -2e-8);
         let steps = Steps::Exactly { time: 0.0, size: 4e-4 };
         let mut workspace = Workspace::new(&model);
-        model.advance(&mut state, &mut workspace, drive, steps).unwrap();
+        model.advance(&mut state, &mut workspace, drive, steps, None).unwrap();
         state.energy_balance = 0.0;
         (model, state, drive)
     }
@@ -156,6 +156,7 @@ mod tests {
             workspace: &mut workspace,
             drive,
             span: None,
+            extremes: None,
             tolerance: 1e-6,
             allowed: 1e-9,
             refusals: 0,

@@ -225,7 +225,13 @@ impl ClosedLoop {
         };
         self.add_particular(&mut free, &steady, -1.0);
         let (sine, cosine) = model.generator.phasor(state.time);
-        if !model.law.never_opens() && !self.stays_closed(model, &free, &steady, (sine, cosine), length) {
+        if state.interruptions.in_progress() {
+            return false;
+        }
+        // Above no force, or that of an interruption.
+        let least = model.criterion.map_or(0.0, |criterion| criterion.force);
+        let watched = !model.law.never_opens() || least > 0.0;
+        if watched && least >= self.least_force(model, &free, &steady, (sine, cosine), length) {
             return false;
         }
         propagator.set_length(length, &self.oscillators, &model.generator);
@@ -287,15 +293,15 @@ impl ClosedLoop {
         }
     }
 
-    /// Whether the contact certainly stays closed over a step that begins with the free motion.
-    fn stays_closed(
+    /// A force (N) below which that of the contact does not fall over a step that begins with the free motion.
+    fn least_force(
         &self,
         model: &Model,
         free: &Coordinates,
         steady: &Steady,
         (sine, cosine): (f64, f64),
         length: f64,
-    ) -> bool {
+    ) -> f64 {
         let count = self.oscillators.len();
         let [per_sine, per_cosine] = &self.steady;
         let mut transient = *free;
@@ -323,7 +329,7 @@ impl ClosedLoop {
             + steady.growth * force(&self.growth);
         let grown = steady.growth * (1.0 + force(&self.force)) + steady.jerk * force(&self.acceleration);
         let end = start + grown * length;
-        model.preload.force + start.min(end) - swing > 0.0
+        model.preload.force + start.min(end) - swing
     }
 }
 

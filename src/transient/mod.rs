@@ -9,6 +9,7 @@
 //!   [`progress`]: the grid they end on; [`rest`]: a contact at rest takes none.
 //! - [`switching`]: steps end where the contact opens ([`release`]) or closes ([`touchdown`]), and begin anew;
 //!   [`events`] keeps a list.
+//! - [`watch`]: extremes of the force within steps, and where it passes that of an interruption.
 //! - [`fallback`]: a step with a constant force, where the collocation cannot go on.
 //! - [`energy`]: where nothing dissipates, the energy is kept. [`ledger`]: what a step loses or makes of it.
 //!
@@ -57,5 +58,6 @@ pub mod shapes;
 pub mod switching;
 pub mod touchdown;
 pub mod vector;
+pub mod watch;
 pub mod workspace;
 pub mod zeros;

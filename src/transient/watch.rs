@@ -2,11 +2,15 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::BARE;
 use crate::chatter::Criterion;
+use crate::error::StepError;
 use crate::math::roots;
-use crate::transient::advance::Integration;
-use crate::transient::collocation::Prediction;
+use crate::transient::advance::{Advice, Integration};
+use crate::transient::collocation::{Prediction, SHORT};
 use crate::transient::nodal::Trial;
+use crate::transient::progress::Target;
+use crate::transient::switching::Cut;
 use crate::transient::vector;
 use crate::transient::workspace::{Room, Workspace};
 
@@ -75,7 +79,7 @@ impl Integration<'_> {
     where
         Workspace: Room<S>,
     {
-        let criterion = self.model.criterion?;
+        let criterion = self.model.criterion.filter(|_| !BARE)?;
         if !self.state.closed {
             return None;
         }
@@ -97,43 +101,82 @@ impl Integration<'_> {
     /// How far a force, as deviation from the preload force, is on the side of the threshold on which it was, N.
     fn excess(&self, criterion: &Criterion, force: f64) -> f64 {
         let above = self.model.preload.force + force - criterion.force;
-        if self.state.interruptions.in_progress() { -above } else { above }
+        if self.state.interruptions.in_progress() {
+            -above
+        } else {
+            above
+        }
     }
 
-    /// The length (s) of the step that ends with the passage, which a step of `length` seconds shows to have happened after
-    /// the part `passed` of it.
-    pub(super) fn passage<const S: usize>(&mut self, passed: f64, length: f64) -> Option<f64>
+    /// Ends the step at the passage that shows after the part `passed` of it; nothing where it may go on to its end.
+    pub(super) fn pass<const S: usize>(
+        &mut self,
+        passed: f64,
+        target: &Target,
+        growth: f64,
+        wanted: f64,
+    ) -> Result<Option<Advice>, StepError>
     where
         Workspace: Room<S>,
     {
-        let criterion = self.model.criterion?;
-        let start = self.state.force - self.model.preload.force;
-        let start = self.excess(&criterion, start).max(f64::MIN_POSITIVE);
-        let latest = passed * length;
+        let Some(criterion) = &self.model.criterion else {
+            return Ok(None);
+        };
+        let latest = passed * target.length;
+        if S != SHORT {
+            // Events are located in short steps; long ones end before.
+            return Ok(Some(self.reject(0.9 * latest)));
+        }
         let mut excess = |at: f64| {
             let trial = self.probe::<S>(at);
-            trial.map_or(f64::NAN, |trial| self.excess(&criterion, vector::end(&trial.forces)))
+            trial.map_or(f64::NAN, |trial| self.excess(criterion, vector::end(&trial.forces)))
         };
         let end = excess(latest);
-        // The polynomial passes, the force does not.
         if end > 0.0 {
-            return None;
+            // The polynomial passes, the force does not: the next step starts here.
+            let cut = Cut {
+                length: latest,
+                switches: false,
+            };
+            return (latest < target.length)
+                .then(|| self.end_at::<S>(&cut, growth, wanted))
+                .transpose();
         }
-        let resolution = self.resolution();
+        let start = self.excess(criterion, self.state.force - self.model.preload.force);
+        let (start, resolution) = (start.max(f64::MIN_POSITIVE), self.resolution());
         let mut excess = |at: f64| {
             let trial = self.probe::<S>(at);
-            trial.map_or(f64::NAN, |trial| self.excess(&criterion, vector::end(&trial.forces)))
+            trial.map_or(f64::NAN, |trial| self.excess(criterion, vector::end(&trial.forces)))
         };
-        roots::between(&mut excess, (0.0, start), (latest, end), resolution)
+        let length = roots::between(&mut excess, (0.0, start), (latest, end), resolution).unwrap_or(latest);
+        if length <= resolution {
+            // Nothing of the step is left.
+            self.state.interruptions.turn(criterion, self.state.time);
+            return Ok(Some(self.reject(target.length)));
+        }
+        let cut = Cut {
+            length,
+            switches: false,
+        };
+        let advice = self.end_at::<S>(&cut, growth, wanted)?;
+        if advice.taken {
+            self.state.interruptions.turn(criterion, self.state.time);
+        }
+        Ok(Some(advice))
     }
 
-    /// Notes an interruption that begins or ends with the contact force as it is now.
-    pub(super) fn note_interruption(&mut self) {
-        let Some(criterion) = &self.model.criterion else {
+    /// Notes the contact force as it is now, and an interruption that begins or ends with it.
+    pub(super) fn note_force(&mut self) {
+        if let Some(extremes) = &mut self.extremes {
+            extremes.add(self.state.force);
+        }
+        let Some(criterion) = self.model.criterion.as_ref().filter(|_| !BARE) else {
             return;
         };
         let state = &mut *self.state;
-        if (state.force < criterion.force) != state.interruptions.in_progress() {
+        if !state.interruptions.turned_at(state.time)
+            && (state.force < criterion.force) != state.interruptions.in_progress()
+        {
             state.interruptions.turn(criterion, state.time);
         }
     }

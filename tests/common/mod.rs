@@ -100,6 +100,8 @@ pub fn undamped() -> Scene {
 pub fn compose(modes: &[Mode], law: Law, gap: f64, tolerance: f64, force_scale: f64) -> Model {
     let mut scene = Scene::default();
     scene.solver.tolerance = tolerance;
+    // Of a mass there is no current.
+    scene.effects.chatter = false;
     let model = Model::new(&scene, 0.0).unwrap();
     Model {
         preload: Preload {

@@ -9,14 +9,15 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use relay_contact::model::Model;
 use relay_contact::scene::{Scene, choices};
-use relay_contact::variables::{ExcitationKind, Group, VARIABLES, Variable};
+use relay_contact::variables::{AxialForceKind, ExcitationKind, Group, ResistanceKind, VARIABLES, Variable};
 
 /// Longest communication step drawn, s. With the shortest oscillations of the stiffest scenes some 1e-8 s long it keeps the work within
 /// seconds.
 const LONGEST: f64 = 1e-3;
 
-/// Integration steps that are enough for a ride, taken and repeated.
-const ENOUGH: u64 = 3_000_000;
+/// Integration steps that are enough for a ride, taken and repeated: the high modes of an undamped spring 1 mm long want some
+/// millions in a millisecond.
+const ENOUGH: u64 = 10_000_000;
 
 /// A value of the range at `x` in [0, 1).
 fn within(variable: &Variable, x: f64) -> f64 {
@@ -59,8 +60,13 @@ fn scene(draws: &[Option<f64>], tightest: f64) -> Scene {
     if scene.solver.tolerance > 0.0 {
         scene.solver.tolerance = scene.solver.tolerance.max(tightest);
     }
-    // What the generator puts in is not in the account of the energy.
+    // What the generator and an axial force that changes put in is not in the account of the energy.
     scene.effects.excitation = ExcitationKind::None;
+    if scene.effects.axial_force == AxialForceKind::FromDeflection {
+        scene.effects.axial_force = AxialForceKind::FromPreload;
+    }
+    // Interruptions need a resistance.
+    scene.effects.chatter &= scene.effects.resistance != ResistanceKind::None;
     scene
 }
 

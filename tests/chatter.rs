@@ -1,0 +1,211 @@
+//! Interruptions and extremes: what is watched inside communication steps.
+
+#![allow(clippy::unwrap_used)]
+
+use relay_contact::electrical::Path;
+use relay_contact::error::SceneError;
+use relay_contact::inputs::Inputs;
+use relay_contact::scene::Scene;
+use relay_contact::simulation::Simulation;
+use relay_contact::variables::{
+    AxialForceKind, ContactLawKind, ExcitationKind, IntegerOutput, RealOutput, ResistanceKind,
+};
+
+fn shaken(amplitude: f64) -> Scene {
+    let mut scene = Scene::default();
+    scene.effects.excitation = ExcitationKind::Sine;
+    scene.effects.axial_force = AxialForceKind::None;
+    scene.excitation.amplitude = amplitude;
+    scene
+}
+
+/// Count, longest and total after `stop` seconds in communication steps of `size` seconds.
+fn interruptions(scene: &Scene, size: f64, stop: f64) -> (i32, f64, f64) {
+    let mut simulation = Simulation::new(scene, &Inputs::default(), 0.0).unwrap();
+    while simulation.time() < stop - 1e-12 {
+        let time = simulation.time();
+        simulation
+            .step(&Inputs::default(), time, size.min(stop - time))
+            .unwrap();
+    }
+    (
+        simulation.integer(IntegerOutput::ChatterCount),
+        simulation.real(RealOutput::ChatterLongestInterruption),
+        simulation.real(RealOutput::ChatterTotalInterruption),
+    )
+}
+
+/// The same from a trace every 10 ns: by the resistance read there.
+fn traced(scene: &Scene, stop: f64) -> (i32, f64, f64) {
+    let size = 1e-8;
+    let mut simulation = Simulation::new(scene, &Inputs::default(), 0.0).unwrap();
+    let (mut count, mut longest, mut total, mut since) = (0, 0.0_f64, 0.0, None);
+    let mut end = |from: f64, to: f64| {
+        longest = longest.max(to - from);
+        if to - from >= scene.chatter.minimum_duration {
+            count += 1;
+            total += to - from;
+        }
+    };
+    while simulation.time() < stop - 1e-12 {
+        let time = simulation.time();
+        let interrupted = simulation.real(RealOutput::ContactResistance) > scene.chatter.resistance_threshold;
+        match (since, interrupted) {
+            (None, true) => since = Some(time),
+            (Some(from), false) => {
+                end(from, time);
+                since = None;
+            }
+            _ => {}
+        }
+        simulation.step(&Inputs::default(), time, size).unwrap();
+    }
+    if let Some(from) = since {
+        end(from, simulation.time());
+    }
+    (count, longest, total)
+}
+
+#[test]
+fn interruptions_do_not_depend_on_the_communication_step() {
+    // Errors grow from blow to blow, most under the strongest excitation.
+    for (amplitude, threshold, tolerance) in [
+        (400.0, 60.0, 1e-6),
+        (400.0, 0.1, 1e-6),
+        (98.0, 0.05, 1e-6),
+        (800.0, 60.0, 1e-9),
+    ] {
+        let mut scene = shaken(amplitude);
+        scene.solver.tolerance = tolerance;
+        scene.chatter.resistance_threshold = threshold;
+        let (stop, events) = (5e-3, 12.0);
+        let expected = interruptions(&scene, 1e-2, stop);
+        let trace = traced(&scene, stop);
+        println!("{amplitude} m/s2, {threshold} Ohm: {expected:?}, traced {trace:?}");
+        assert!(expected.0 > 0);
+        assert_eq!(trace.0, expected.0);
+        // Each end of an interruption is seen up to 10 ns late.
+        assert!((trace.1 - expected.1).abs() <= 1.1e-8, "{trace:?} {expected:?}");
+        assert!(
+            (trace.2 - expected.2).abs() <= 1.1e-8 * events,
+            "{trace:?} {expected:?}"
+        );
+        for size in [1e-3, 1e-4, 1e-5, 3e-6, 1e-6] {
+            let found = interruptions(&scene, size, stop);
+            assert_eq!(found.0, expected.0, "{size}");
+            // Instants to 1 ns.
+            assert!((found.1 - expected.1).abs() < 2e-9, "{size}: {found:?} {expected:?}");
+            assert!(
+                (found.2 - expected.2).abs() < 2e-9 * events,
+                "{size}: {found:?} {expected:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn an_interruption_that_stands_at_the_start_begins_there_and_counts_while_it_goes_on() {
+    let mut scene = Scene::default();
+    scene.contact.overtravel = -1e-5;
+    let mut simulation = Simulation::new(&scene, &Inputs::default(), 2.0).unwrap();
+    let read = |simulation: &Simulation| {
+        (
+            simulation.integer(IntegerOutput::ChatterCount),
+            simulation.real(RealOutput::ChatterLongestInterruption),
+            simulation.real(RealOutput::ChatterTotalInterruption),
+        )
+    };
+    assert_eq!(read(&simulation), (0, 0.0, 0.0));
+    simulation.step(&Inputs::default(), 2.0, 9e-6).unwrap();
+    let (count, longest, total) = read(&simulation);
+    assert_eq!((count, total), (0, 0.0));
+    assert!((longest - 9e-6).abs() < 1e-15);
+    simulation.step(&Inputs::default(), simulation.time(), 2e-6).unwrap();
+    let (count, longest, total) = read(&simulation);
+    assert_eq!((count, total), (1, longest));
+    assert!((longest - 1.1e-5).abs() < 1e-14);
+}
+
+#[test]
+fn what_no_interruption_can_be_is_none() {
+    // Even an open contact conducts more than this.
+    let mut scene = shaken(400.0);
+    scene.chatter.resistance_threshold = 2e9;
+    assert_eq!(interruptions(&scene, 1e-3, 5e-3), (0, 0.0, 0.0));
+    // A film that is more than the threshold is one interruption without end.
+    let mut scene = shaken(98.0);
+    scene.resistance.film = 100.0;
+    let (count, longest, total) = interruptions(&scene, 1e-3, 5e-3);
+    assert_eq!((count, longest), (1, total));
+    assert!((longest - 5e-3).abs() < 1e-15);
+    // Nobody asked.
+    let mut scene = shaken(400.0);
+    scene.effects.chatter = false;
+    assert_eq!(interruptions(&scene, 1e-3, 5e-3), (0, 0.0, 0.0));
+    scene.effects.resistance = ResistanceKind::None;
+    assert!(Path::new(&scene).is_none());
+    assert_eq!(interruptions(&scene, 1e-3, 5e-3), (0, 0.0, 0.0));
+    scene.effects.chatter = true;
+    assert!(matches!(
+        Simulation::new(&scene, &Inputs::default(), 0.0),
+        Err(SceneError::NoResistance)
+    ));
+}
+
+/// Extremes are those of a trace every 10 ns.
+#[test]
+fn extremes_are_those_of_the_course_inside_the_step() {
+    for law in [
+        ContactLawKind::Hertz,
+        ContactLawKind::Linearised,
+        ContactLawKind::Bonded,
+    ] {
+        for amplitude in [98.0, 400.0] {
+            let mut scene = shaken(amplitude);
+            scene.effects.contact_law = law;
+            let tolerance = 1e-6
+                * Simulation::new(&scene, &Inputs::default(), 0.0)
+                    .unwrap()
+                    .model()
+                    .force_scale;
+            for (size, parts) in [(1e-3, 100_000), (1e-4, 10_000), (2.5e-5, 2500), (1e-6, 100)] {
+                let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
+                let mut fine = simulation.clone();
+                for _ in 0..20 {
+                    let time = simulation.time();
+                    let mut forces = vec![fine.real(RealOutput::ContactForce)];
+                    simulation.step(&Inputs::default(), time, size).unwrap();
+                    for part in 0..parts {
+                        let fine_size = size / f64::from(parts);
+                        fine.step(&Inputs::default(), time + f64::from(part) * fine_size, fine_size)
+                            .unwrap();
+                        forces.push(fine.real(RealOutput::ContactForce));
+                    }
+                    let least = simulation.real(RealOutput::StepMinimumForce);
+                    let greatest = simulation.real(RealOutput::StepMaximumForce);
+                    let (low, high) = forces.iter().fold((f64::MAX, f64::MIN), |(low, high), force| {
+                        (low.min(*force), high.max(*force))
+                    });
+                    // Between two points of the trace the force turns: by an eighth of its second difference.
+                    let turn = forces
+                        .windows(3)
+                        .map(|f| (f[0] - 2.0 * f[1] + f[2]).abs())
+                        .fold(0.0, f64::max);
+                    let allowed = 2.0 * tolerance;
+                    let at = format!("{law:?} {amplitude} m/s2, {size} s from {time}");
+                    assert!(
+                        least <= low + allowed && least >= low - allowed - turn,
+                        "{at}: {least} {low} {turn}"
+                    );
+                    assert!(
+                        greatest >= high - allowed && greatest <= high + allowed + turn,
+                        "{at}: {greatest} {high} {turn}"
+                    );
+                    let worst = simulation.real(RealOutput::StepMaximumResistance);
+                    let path = simulation.model().path.unwrap();
+                    assert_eq!(worst, 1.0 / path.conductance(least));
+                }
+            }
+        }
+    }
+}
