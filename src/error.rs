@@ -169,7 +169,7 @@ pub enum StepErrorCause {
     #[error("the communication step size must be positive and finite")]
     StepSize,
     /// More integration steps than a communication step may take.
-    #[error("more than {0} integration steps, taken or tried, within one communication step")]
+    #[error("more than the work of {0} integration steps within one communication step")]
     Budget(u64),
     /// An instant so late that floating-point numbers there are too far apart for the motion.
     #[error("time is known to {spacing:e} s only, allowed is {allowed:e} s")]

@@ -13,7 +13,7 @@ use crate::transient::vector;
 use crate::transient::watch::Extremes;
 use crate::transient::workspace::{Room, Workspace};
 
-/// Integration steps a communication step may take, and further ones per second of it.
+/// Integration steps of known lengths whose work a communication step may take, and further ones per second of it.
 const BUDGET: u64 = 10_000_000;
 /// See [`BUDGET`].
 const BUDGET_RATE: f64 = 1e7;
@@ -23,6 +23,9 @@ const COARSEST: f64 = 0.1;
 
 /// m/s.
 const SPEED_OF_LIGHT: f64 = 299_792_458.0;
+
+/// Work of a step of a new length, in steps of known lengths: its coefficients have to be computed.
+const NEW_LENGTH: u64 = 10;
 
 /// Share of the tolerance that one step may use up. Found by comparing errors with tolerances over scenes
 /// (`tests/calibration.rs`): a blow makes the errors of the motion before it a hundred times larger, and without
@@ -48,7 +51,8 @@ const LONG_FLOOR: f64 = 3e-11;
 /// Many nodes reach at most about this many times as far as few.
 const LONGER: f64 = 16.0;
 
-/// Integration steps, also repeated ones and ones only looked at, that a communication step of `size` seconds may take.
+/// Work that a communication step of `size` seconds may take, in integration steps of known lengths, also repeated ones
+/// and ones only looked at.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -180,9 +184,9 @@ impl Integration<'_> {
         self.set_support_rate();
         self.note_force();
         let budget = budget(self.progress.size);
-        let limit = self.workspace.trials.saturating_add(budget);
+        let limit = self.workspace.work.saturating_add(budget);
         while self.progress.done < 1.0 {
-            if self.workspace.trials >= limit {
+            if self.workspace.work >= limit {
                 return Err(self.error(StepErrorCause::Budget(budget)));
             }
             self.advance()?;
@@ -353,7 +357,7 @@ impl Integration<'_> {
     where
         Workspace: Room<S>,
     {
-        self.workspace.trials += 1;
+        self.workspace.work += if recurring { 1 } else { NEW_LENGTH };
         let (cache, end, probe) = self.workspace.parts();
         let (step, collocation) = cache.get(length, recurring, self.model);
         let source = Source::Law(NEWTON * self.allowed);

@@ -359,9 +359,9 @@ impl Model {
             extremes.add(ahead.end.force);
         }
         let budget = budget(time - since);
-        let limit = workspace.trials.saturating_add(budget);
+        let limit = workspace.work.saturating_add(budget);
         while ahead.end.time < time {
-            if workspace.trials >= limit {
+            if workspace.work >= limit {
                 let (time, cause) = (ahead.end.time, StepErrorCause::Budget(budget));
                 return Err(StepError { time, cause });
             }

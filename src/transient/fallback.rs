@@ -79,7 +79,7 @@ impl Integration<'_> {
         let bracket = ((0.0, -most), (most, excess(most)));
         let force = roots::between(excess, bracket.0, bracket.1, 0.0).unwrap_or(most);
         let trial = under(force);
-        workspace.trials += trials;
+        workspace.work += trials;
         trial
     }
 }

@@ -17,8 +17,8 @@ pub struct Workspace {
     probe: ModeStates,
     /// Of exact steps.
     pub(super) propagator: Propagator,
-    /// Steps computed so far: taken, repeated, or only looked at.
-    pub(super) trials: u64,
+    /// Steps computed so far, taken, repeated, or only looked at; those of a new length count for several.
+    pub(super) work: u64,
     /// Of the last communication step.
     pub events: Events,
 }
@@ -32,7 +32,7 @@ impl Workspace {
             end: [ModeState::default(); MAX_MODES],
             probe: [ModeState::default(); MAX_MODES],
             propagator: Propagator::default(),
-            trials: 0,
+            work: 0,
             events: Events::new(),
         }
     }

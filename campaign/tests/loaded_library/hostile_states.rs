@@ -25,7 +25,7 @@ fn hostile_contents_are_refused_or_gone_on_from() {
     for seed in 0..1000 {
         let drawn = bytes(seed, 32);
         let hostile = changed(&specimen, &mut Choices::new(&drawn));
-        // One of some hundred leads to where a step takes its whole budget, which is minutes at the most: the fuzz
+        // One of some hundred leads to where a step takes its whole budget, which is some ten seconds: the fuzz
         // target makes them all.
         let steps = if seed < 400 { 2 } else { 0 };
         let outcome = meet(&LIBRARY, &hostile, steps).unwrap_or_else(|reason| panic!("seed {seed}: {reason}"));
