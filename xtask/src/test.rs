@@ -8,7 +8,7 @@ use std::time::Instant;
 use anyhow::Result;
 
 use crate::commands::{self, cargo};
-use crate::{effects, fmu, importers, python, valgrind};
+use crate::{fmu, importers, python, valgrind};
 
 /// Folders and files with Python in them.
 const PYTHON: [&str; 3] = ["examples/python", "conformance/python", "docs"];
@@ -37,7 +37,6 @@ pub fn run() -> Result<()> {
     } else {
         println!("== valgrind: NOT RUN, it is not installed (on Debian: apt-get install valgrind)");
     }
-    stage("effects that are off", effects::check)?;
     let mut component = PathBuf::new();
     stage("component", || {
         component = fmu::build()?;

@@ -79,16 +79,6 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     Ok(())
 }
 
-/// Fails where effects that are off cost more than [`ALLOWED`]; where that cannot be measured, says so.
-pub fn check() -> Result<()> {
-    if !cost::valgrind() {
-        println!("not run: {}", cost::MISSING);
-        return Ok(());
-    }
-    println!("{}", off(&Runner::build(true)?)?);
-    Ok(())
-}
-
 /// What the effects that are off cost, as a sentence; an error where it is too much.
 fn off(runner: &Runner) -> Result<String> {
     let mut text = String::from(
