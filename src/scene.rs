@@ -279,17 +279,6 @@ impl Default for Scene {
     }
 }
 
-/// A parameter's value, of the type the parameter has.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Value {
-    /// Of a [`RealParameter`].
-    Real(f64),
-    /// Of an [`IntegerParameter`], or of an [`EnumerationParameter`] by its number.
-    Integer(i32),
-    /// Of a [`BooleanParameter`].
-    Boolean(bool),
-}
-
 impl Scene {
     /// Value of a real parameter, in its SI unit.
     pub fn real(&self, parameter: RealParameter) -> f64 {

@@ -8,7 +8,7 @@ use crate::scene::Scene;
 use crate::transient::dense::Course;
 use crate::transient::events::Event;
 use crate::transient::workspace::Workspace;
-use crate::variables::{BooleanOutput, IntegerOutput, RealOutput};
+use crate::variables::{BooleanOutput, Group, IntegerOutput, RealOutput, Variable};
 
 /// A simulation from its preload onwards.
 #[derive(Clone, Debug)]
@@ -201,6 +201,16 @@ impl Simulation {
             IntegerOutput::SolverIterations => count(self.state().iterations),
             IntegerOutput::ChatterCount => count(self.interruptions().count),
             IntegerOutput::SolverModesUsed => count(self.model.modes.len() as u64),
+        }
+    }
+
+    /// An output or calculated parameter as a number, Booleans as 0 or 1; `None` for what is set.
+    pub fn output(&self, variable: &Variable) -> Option<f64> {
+        match variable.group {
+            Group::RealOutput(output) => Some(self.real(output)),
+            Group::IntegerOutput(output) => Some(f64::from(self.integer(output))),
+            Group::BooleanOutput(output) => Some(f64::from(u8::from(self.boolean(output)))),
+            _ => None,
         }
     }
 

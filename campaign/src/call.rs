@@ -26,6 +26,19 @@ pub enum Fault {
     Foreign,
 }
 
+impl Fault {
+    /// All that are one.
+    pub const ALL: [Self; 7] = [
+        Self::FirstNull,
+        Self::MiddleNull,
+        Self::LastNull,
+        Self::Misaligned,
+        Self::NullAndEndless,
+        Self::Endless,
+        Self::Foreign,
+    ];
+}
+
 /// The instant a step is to start from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Point {

@@ -9,16 +9,6 @@ use crate::phase::Phase;
 /// Steps are drawn up to this length, s, so that stiff scenes do not take minutes.
 const LONGEST_STEP: f64 = 1e-4;
 
-const FAULTS: [Fault; 7] = [
-    Fault::FirstNull,
-    Fault::MiddleNull,
-    Fault::LastNull,
-    Fault::Misaligned,
-    Fault::NullAndEndless,
-    Fault::Endless,
-    Fault::Foreign,
-];
-
 /// The next call of an instance.
 pub fn call(choices: &mut Choices, now: &Moment) -> Call {
     if choices.percent(6) {
@@ -99,7 +89,7 @@ fn any_kind(choices: &mut Choices) -> Kind {
 /// Mostly none.
 fn fault(choices: &mut Choices) -> Fault {
     if choices.percent(2) {
-        choices.one(&FAULTS)
+        choices.one(&Fault::ALL)
     } else {
         Fault::None
     }

@@ -11,17 +11,8 @@ use super::entry::{array, array_mut, call, place};
 use super::failure::Failure;
 use super::instance::{Instance, Snapshot};
 use super::serial;
-use super::states::{self, Function};
+use super::states;
 use super::types::{fmi2Byte, fmi2Component, fmi2FMUstate, fmi2Real, fmi2Status, fmi2ValueReference};
-
-/// Refuses a call for the reason that a capability flag gives.
-///
-/// # Safety
-/// The contract of the module.
-unsafe fn unsupported(c: fmi2Component, function: Function, flag: &'static str) -> fmi2Status {
-    // SAFETY: passed on to the caller.
-    unsafe { call(c, function, |_: &mut Instance| Err(Failure::Unsupported(flag))) }
-}
 
 /// What a saved state points to. The guard comes first: it tells one from other memory.
 #[repr(C)]
@@ -190,6 +181,7 @@ pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
     dvKnown: *const fmi2Real,
     dvUnknown: *mut fmi2Real,
 ) -> fmi2Status {
+    let body = |_: &mut Instance| Err(Failure::Unsupported("providesDirectionalDerivative"));
     // SAFETY: the contract of the module.
-    unsafe { unsupported(c, states::GET_DIRECTIONAL_DERIVATIVE, "providesDirectionalDerivative") }
+    unsafe { call(c, states::GET_DIRECTIONAL_DERIVATIVE, body) }
 }

@@ -96,16 +96,15 @@ impl Logger {
         (events || solver) && self.callback.is_some()
     }
 
-    /// Whether messages of a category reach anybody.
+    /// Whether messages of a category are wanted.
     fn shows(&self, category: Category) -> bool {
         let [errors, warnings, events, solver] = self.shown;
-        let shown = match category {
+        match category {
             StatusError => errors,
             StatusWarning => warnings,
             Events => events,
             Solver => solver,
-        };
-        shown && self.callback.is_some()
+        }
     }
 
     /// Hands the importer the message of a call that did not do what was asked.

@@ -9,7 +9,6 @@ use anyhow::{Context, Result, bail};
 use indicatif::{ProgressBar, ProgressStyle};
 use relay_contact::scene_file::SceneFile;
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::Group;
 
 use crate::commands::{self, root};
 use crate::python;
@@ -60,10 +59,15 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 /// Every file in `scenes/`, by name.
 pub fn all() -> Result<Vec<(String, SceneFile)>> {
     let scenes = names()?.into_iter().map(|name| {
-        let file = SceneFile::read(&find(&name)?)?;
+        let file = read(&name)?;
         Ok((name, file))
     });
     scenes.collect()
+}
+
+/// A file of `scenes/` by name, or one by its path.
+pub fn read(scene: &str) -> Result<SceneFile> {
+    Ok(SceneFile::read(&find(scene)?)?)
 }
 
 fn names() -> Result<Vec<String>> {
@@ -136,12 +140,12 @@ pub fn start(file: &SceneFile) -> Result<Simulation> {
 fn write_row(rows: &mut impl Write, file: &SceneFile, simulation: &Simulation, time: f64) -> Result<()> {
     write!(rows, "{time}")?;
     for output in &file.outputs {
-        match output.group {
-            Group::RealOutput(output) => write!(rows, ",{}", simulation.real(output))?,
-            Group::IntegerOutput(output) => write!(rows, ",{}", simulation.integer(output))?,
-            Group::BooleanOutput(output) => write!(rows, ",{}", u8::from(simulation.boolean(output)))?,
-            _ => bail!("{}: not an output", output.name),
-        }
+        let value = simulation.output(output);
+        write!(
+            rows,
+            ",{}",
+            value.with_context(|| format!("{}: not an output", output.name))?
+        )?;
     }
     writeln!(rows)?;
     Ok(())
@@ -168,7 +172,7 @@ mod tests {
 
     #[test]
     fn the_summary_tells_how_often_the_contact_opened_and_when() -> Result<()> {
-        let mut file = SceneFile::read(&find("chatter-41g")?)?;
+        let mut file = read("chatter-41g")?;
         file.set("stop", "0.0015")?;
         let table = std::env::temp_dir().join(format!("relay-contact-summary-{}.csv", std::process::id()));
         let summary = simulate(&file, &table)?.to_string();

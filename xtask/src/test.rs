@@ -35,7 +35,7 @@ pub fn run() -> Result<()> {
     if valgrind::is_installed() {
         stage("valgrind", valgrind::run)?;
     } else {
-        println!("== valgrind: NOT RUN, it is not installed (on Debian: apt-get install valgrind)");
+        println!("== valgrind: NOT RUN, {}", valgrind::MISSING);
     }
     let mut component = PathBuf::new();
     stage("component", || {

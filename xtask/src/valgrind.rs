@@ -4,7 +4,7 @@
 //! `portable`, in a target folder of its own: no other build can mistake its library for one of theirs.
 
 use std::io::BufReader;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result, bail};
@@ -18,6 +18,9 @@ const CALLS: &str = "5000";
 /// Communication steps of the shorter of the two runs whose instructions are compared.
 const STEPS: u32 = 5000;
 
+/// Said where valgrind is missing.
+pub const MISSING: &str = "valgrind is missing (on Debian: apt-get install valgrind)";
+
 /// Whether valgrind is there.
 pub fn is_installed() -> bool {
     commands::output(command("valgrind").arg("--version")).is_ok()
@@ -26,7 +29,7 @@ pub fn is_installed() -> bool {
 /// Runs the campaign and the C program under valgrind.
 pub fn run() -> Result<()> {
     if !is_installed() {
-        bail!("valgrind is missing (on Debian: apt-get install valgrind)");
+        bail!(MISSING);
     }
     let campaign = built(&["test", "--no-run", "--package=campaign", "--test=loaded_library"])?;
     commands::run(
@@ -68,7 +71,7 @@ fn memcheck() -> Command {
 /// Prints the instructions of a communication step through C and in the library alone.
 pub fn instructions() -> Result<()> {
     if !is_installed() {
-        bail!("valgrind is missing (on Debian: apt-get install valgrind)");
+        bail!(MISSING);
     }
     let program = built(&["build", "--release", "--package=campaign", "--bin=steps"])?;
     for scene in ["1us", "10us", "shaken"] {
@@ -83,24 +86,25 @@ pub fn instructions() -> Result<()> {
 }
 
 /// Instructions of one step: the difference of two runs, so that all that is done once drops out.
-fn per_step(program: &PathBuf, scene: &str, way: &str) -> Result<f64> {
-    let count = |steps: u32| {
-        let output = command("valgrind")
-            .args(["--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null"])
-            .arg(program)
-            .args([scene, way, &steps.to_string()])
-            .output()?;
-        let said = String::from_utf8_lossy(&output.stderr);
-        if !output.status.success() {
-            bail!("{said}");
-        }
-        let total = said
-            .lines()
-            .find_map(|line| line.split_once("I   refs:"))
-            .context("no count of instructions")?;
-        Ok(total.1.trim().replace(',', "").parse::<f64>()?)
-    };
+fn per_step(program: &Path, scene: &str, way: &str) -> Result<f64> {
+    let count = |steps: u32| count(program, |run| run.args([scene, way, &steps.to_string()]));
     Ok((count(2 * STEPS)? - count(STEPS)?) / f64::from(STEPS))
+}
+
+/// Instructions of a whole run of a program, with the arguments given to it.
+pub fn count(program: &Path, arguments: impl FnOnce(&mut Command) -> &mut Command) -> Result<f64> {
+    let mut valgrind = command("valgrind");
+    valgrind
+        .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
+        .arg(program);
+    let finished = arguments(&mut valgrind).output().context(MISSING)?;
+    let told = String::from_utf8_lossy(&finished.stderr);
+    if !finished.status.success() {
+        bail!("{told}");
+    }
+    let count = told.lines().find_map(|line| line.split_once("Collected : "));
+    let (_, count) = count.with_context(|| format!("callgrind told no count: {told}"))?;
+    count.trim().parse().context("callgrind told no number")
 }
 
 /// Builds with the feature and gives the program.

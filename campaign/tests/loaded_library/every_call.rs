@@ -87,17 +87,7 @@ fn calls() -> Vec<Call> {
     ];
     let input = DESCRIPTION.reference("base.acceleration");
     let force = DESCRIPTION.reference("contact.force");
-    let faults = [
-        Fault::None,
-        Fault::FirstNull,
-        Fault::MiddleNull,
-        Fault::LastNull,
-        Fault::Misaligned,
-        Fault::NullAndEndless,
-        Fault::Endless,
-        Fault::Foreign,
-    ];
-    for fault in faults {
+    for fault in [Fault::None].into_iter().chain(Fault::ALL) {
         for kind in [Kind::Real, Kind::Integer, Kind::Boolean, Kind::String] {
             let some: Vec<_> = DESCRIPTION
                 .variables

@@ -1,20 +1,18 @@
 //! Instructions and nanoseconds that a simulated millisecond takes.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result};
 
 use crate::commands::{cargo, command, output, root, run};
+use crate::valgrind;
 
 /// Simulated in a run, s.
 pub const LENGTH: f64 = 0.1;
 
 /// Runs whose median time is taken.
 pub const RUNS: usize = 9;
-
-/// Said where instructions cannot be counted.
-pub const MISSING: &str = "valgrind is missing (on Debian: apt-get install valgrind), so instructions are not counted";
 
 /// Communication step of the minimal scene, s: a run of one tells what is spent before the steps.
 const STEP: f64 = 1e-5;
@@ -34,11 +32,6 @@ pub struct Runner {
     usual: PathBuf,
     /// For any processor, with all effects and without those that may be off.
     counted: Option<(PathBuf, PathBuf)>,
-}
-
-/// Whether valgrind is there.
-pub fn valgrind() -> bool {
-    output(command("valgrind").arg("--version")).is_ok()
 }
 
 impl Runner {
@@ -73,7 +66,7 @@ impl Runner {
 
     /// Instructions of the minimal scene with changes, in a build with all effects and in one without those that may be off.
     pub fn with_and_without(&self, changes: &Changes) -> Result<(f64, f64)> {
-        let (with, without) = self.counted.as_ref().context(MISSING)?;
+        let (with, without) = self.counted.as_ref().context(valgrind::MISSING)?;
         Ok((instructions(with, changes)?, instructions(without, changes)?))
     }
 }
@@ -91,7 +84,7 @@ fn build(target: &str, features: &[&str]) -> Result<PathBuf> {
         .with_extension(std::env::consts::EXE_EXTENSION))
 }
 
-fn nanoseconds(runner: &PathBuf, changes: &Changes) -> Result<f64> {
+fn nanoseconds(runner: &Path, changes: &Changes) -> Result<f64> {
     let printed = output(arguments(&mut command(runner), changes, LENGTH))?;
     let words = printed
         .lines()
@@ -102,24 +95,9 @@ fn nanoseconds(runner: &PathBuf, changes: &Changes) -> Result<f64> {
         .context("run_scene told no time")
 }
 
-fn instructions(runner: &PathBuf, changes: &Changes) -> Result<f64> {
-    let steps = counted(runner, changes, LENGTH)? - counted(runner, changes, STEP)?;
-    Ok(steps / (1e3 * (LENGTH - STEP)))
-}
-
-/// Instructions of a whole run.
-fn counted(runner: &PathBuf, changes: &Changes, stop: f64) -> Result<f64> {
-    let mut valgrind = command("valgrind");
-    valgrind
-        .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
-        .arg(runner);
-    let finished = arguments(&mut valgrind, changes, stop)
-        .output()
-        .context("cannot start valgrind")?;
-    let told = String::from_utf8_lossy(&finished.stderr);
-    let count = told.lines().find_map(|line| line.split_once("Collected : "));
-    let (_, count) = count.with_context(|| format!("callgrind failed: {told}"))?;
-    count.trim().parse().context("callgrind told no number")
+fn instructions(runner: &Path, changes: &Changes) -> Result<f64> {
+    let counted = |stop| valgrind::count(runner, |run| arguments(run, changes, stop));
+    Ok((counted(LENGTH)? - counted(STEP)?) / (1e3 * (LENGTH - STEP)))
 }
 
 fn arguments<'a>(command: &'a mut Command, changes: &Changes, stop: f64) -> &'a mut Command {

@@ -5,7 +5,6 @@ use relay_contact::scene_file::SceneFile;
 use relay_contact::variables::RealOutput;
 
 use super::list::{Effect, Settings};
-use crate::commands::root;
 use crate::scene;
 
 const SCENES: [&str; 3] = ["paper-1khz", "chatter-41g", "shock-50g"];
@@ -22,9 +21,8 @@ pub fn influence(effect: &Effect) -> Result<Vec<String>> {
 }
 
 fn in_scene(effect: &Effect, name: &str) -> Result<String> {
-    let path = root().join(format!("scenes/{name}.toml"));
-    let with = course(SceneFile::read(&path)?, effect.setting)?;
-    let without = course(SceneFile::read(&path)?, effect.off)?;
+    let with = course(scene::read(name)?, effect.setting)?;
+    let without = course(scene::read(name)?, effect.off)?;
     let forces = with.forces.iter().zip(&without.forces);
     let force = greatest(forces.map(|(with, without)| with - without));
     // Both start closed.

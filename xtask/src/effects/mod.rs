@@ -17,6 +17,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use self::cost::{Cost, Runner};
 use self::influence::influence;
 use self::list::{EFFECTS, Effect, MINIMAL};
+use crate::valgrind;
 
 /// Instructions that everything that is off may cost, of those of a build that does not have it.
 const ALLOWED: f64 = 0.01;
@@ -31,9 +32,12 @@ pub struct Arguments {
 
 /// Measures and writes the page.
 pub fn run(arguments: &Arguments) -> Result<()> {
-    let counted = cost::valgrind();
+    let counted = valgrind::is_installed();
     if !counted {
-        eprintln!("{}: nanoseconds alone", cost::MISSING);
+        eprintln!(
+            "{}, so instructions are not counted: nanoseconds alone",
+            valgrind::MISSING
+        );
     }
     let runner = Runner::build(counted)?;
     let style = ProgressStyle::with_template("{bar:40} {pos}/{len} {msg}")?;
