@@ -62,9 +62,9 @@ pub mod simulation;
 pub mod transient;
 pub mod variables;
 
-/// Whether this build lacks the effects that reach into the steps of the integrator: `effects.chatter`, `.extremes`,
-/// `.energy`, and the axial force from the deflection. Where the integrator asks for one of them it asks for `!BARE` too, so
-/// that a build with the feature `bare` shows what asking costs: `cargo xtask effects`.
+/// Whether this build lacks the effects that reach into the steps of the integrator: `effects.contactDamping`, `.chatter`,
+/// `.extremes`, `.energy`, the axial force from the deflection, and all excitations but the sine. Where the integrator asks
+/// for one of them it asks for `!BARE` too, so that a build with the feature `bare` shows what asking costs: `cargo xtask effects`.
 pub const BARE: bool = cfg!(feature = "bare");
 
 /// `modelDescription.xml` with the GUID filled in, as it stands in the packaged component.

@@ -1,5 +1,6 @@
 //! Model and state: everything computed once from a scene, and the numbers that move.
 
+use crate::BARE;
 use crate::beam::axial::Feedback;
 use crate::beam::characteristic;
 use crate::beam::galerkin::Space;
@@ -268,6 +269,11 @@ impl Model {
             criterion,
             machine: Machine::detect(),
         })
+    }
+
+    /// [`Model::axial`], where the build has it.
+    pub fn axial(&self) -> Option<&Feedback> {
+        self.axial.as_ref().filter(|_| !BARE)
     }
 
     /// The law's engagement at an indentation given as deviation from the preload (m) that grows at `rate` (m/s), m: positive

@@ -394,9 +394,14 @@ impl Scene {
         }
         let effects = &self.effects;
         let beyond_bare = [
+            ("effects.contactDamping", effects.contact_damping),
             ("effects.chatter", effects.chatter),
             ("effects.extremes", effects.extremes),
             ("effects.energy", effects.energy),
+            (
+                "effects.excitation",
+                !matches!(effects.excitation, ExcitationKind::None | ExcitationKind::Sine),
+            ),
             (
                 "effects.axialForce",
                 effects.axial_force == AxialForceKind::FromDeflection,

@@ -11,6 +11,7 @@ pub mod window;
 
 use std::f64::consts::TAU;
 
+use crate::BARE;
 use crate::error::SceneError;
 use crate::excitation::random::Random;
 use crate::excitation::sine::Sine;
@@ -194,6 +195,7 @@ impl Generator {
                 }
                 sin
             }
+            _ if BARE => 0.0,
             _ => self.over_step_out_of_line(machine, time, turns, &mut nodes),
         };
         Accelerations { start, nodes }

@@ -319,12 +319,7 @@ mod tests {
                     before += contact(trial.indentation) - contact(state.indentation);
                     before -= force * (trial.indentation - state.indentation);
                 }
-                let power = |modes| {
-                    model
-                        .axial
-                        .as_ref()
-                        .map_or(0.0, |axial| axial.power(&model.modes, modes))
-                };
+                let power = |modes| model.axial().map_or(0.0, |axial| axial.power(&model.modes, modes));
                 by_power += 0.5 * length * (power(&state.modes) + power(&end)) - trial.axial_work;
                 wrong = wrong.max((after - before - trial.axial_work).abs());
                 most = most.max(trial.axial_work.abs());

@@ -163,7 +163,7 @@ impl<const S: usize> StepCoefficients<S> {
                     load: TipColumns::ZERO,
                     error: ErrorColumn::ZERO,
                 };
-                if model.axial.is_some() { model.modes.len() } else { 0 }
+                if model.axial().is_some() { model.modes.len() } else { 0 }
             ],
             end: EndRows::ZERO,
             force: TipColumns::ZERO,

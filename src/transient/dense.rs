@@ -218,7 +218,7 @@ impl Course {
         }
         let base = self.drive.acceleration(self.time) + model.generator.acceleration_before(self.time);
         let force = state.force - model.preload.force;
-        let axial = match &model.axial {
+        let axial = match model.axial() {
             Some(axial) => axial.loads(&model.modes, &state.modes),
             None => [0.0; MAX_MODES],
         };

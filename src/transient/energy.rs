@@ -21,7 +21,7 @@ impl Model {
         let undamped = self.modes.iter().all(|mode| mode.damping == 0.0);
         // An axial force that follows the deflection has no potential.
         undamped
-            && self.axial.is_none()
+            && self.axial().is_none()
             && self.law.damping() == 0.0
             && self.generator == Generator::None
             && drive.jerk == 0.0

@@ -37,6 +37,7 @@
 //! A force wrong by `e` over a way `s` of the tip is worth `e s` at most. That is what to hold the balance against: the
 //! tolerance times the force scale times the way.
 
+use crate::BARE;
 use crate::model::State;
 use crate::transient::advance::Integration;
 use crate::transient::collocation::LONG;
@@ -51,7 +52,7 @@ impl Integration<'_> {
     where
         Workspace: Room<S>,
     {
-        if !self.model.scene.effects.energy {
+        if BARE || !self.model.scene.effects.energy {
             return None;
         }
         let half = 0.5 * target.length;

@@ -1,11 +1,12 @@
 //! Newton's method for the nodal forces on the closed branch: the forces of the law at the motion that they give.
 
+use crate::BARE;
 use crate::model::{Model, State};
 use crate::transient::coefficients::{ErrorColumn, StepCoefficients};
 use crate::transient::collocation::{Collocation, Nodal};
 use crate::transient::machine::Arithmetic;
 use crate::transient::nodal::{Outside, Slopes};
-use crate::transient::vector::{add_columns, end};
+use crate::transient::vector::{add_columns, end, scaled};
 
 /// Rounding of the motion at the nodes, relative to what it would be without contact force.
 const MOTION_ROUNDING: f64 = 4.0 * f64::EPSILON;
@@ -97,9 +98,25 @@ impl Model {
     }
 
     /// The nodal forces, from those guessed, which differ from the law's by at most `newton` (N) or rounding; `None`
-    /// where the iteration does not converge.
+    /// where the iteration does not converge. A contact that does not damp is spared the velocities.
     #[inline(always)]
     pub(super) fn closed_forces<const S: usize, A: Arithmetic>(
+        &self,
+        step: &StepCoefficients<S>,
+        outside: &Outside<S>,
+        guess: Nodal<S>,
+        newton: f64,
+    ) -> Option<Solution<S>> {
+        if self.law.damping() > 0.0 && !BARE {
+            self.iterated::<S, A, true>(step, outside, guess, newton)
+        } else {
+            self.iterated::<S, A, false>(step, outside, guess, newton)
+        }
+    }
+
+    /// [`Model::closed_forces`] of a law that damps, or of one that does not.
+    #[inline(always)]
+    fn iterated<const S: usize, A: Arithmetic, const DAMPED: bool>(
         &self,
         step: &StepCoefficients<S>,
         outside: &Outside<S>,
@@ -115,7 +132,11 @@ impl Model {
         let (farthest, fastest) = (greatest(free), greatest(free_rate));
         let mut by_errors = None;
         for iterations in 0..=ITERATIONS {
-            let (indentations, rates) = at_nodes::<S, A>(step, free, free_rate, &forces);
+            let (indentations, rates) = if DAMPED {
+                at_nodes::<S, A>(step, free, free_rate, &forces)
+            } else {
+                (displaced::<S, A>(free, &step.force.displacement, &forces), [0.0; S])
+            };
             let mut residual = forces;
             let (mut stiffness, mut damping) = ([0.0; S], [0.0; S]);
             for ((((residual, stiffness), damping), d), rate) in residual
@@ -145,14 +166,13 @@ impl Model {
             // The derivative of the residuals by each nodal force.
             let mut jacobian = step.force.displacement;
             for (column, velocity) in jacobian.iter_mut().zip(&step.force.velocity) {
-                for (((entry, velocity), stiffness), damping) in
-                    column.iter_mut().zip(velocity).zip(&stiffness).zip(&damping)
-                {
-                    *entry = A::mul_add(*stiffness, *entry, damping * velocity);
-                }
+                *column = react::<S, A, DAMPED>(column, velocity, &stiffness, &damping);
             }
-            let by_force = react::<S, A>(&step.force_error, &stiffness, &damping);
-            let by_load = react::<S, A>(error, &stiffness, &damping);
+            let answer = |error: &ErrorColumn<S>| {
+                react::<S, A, DAMPED>(&error.displacement, &error.velocity, &stiffness, &damping)
+            };
+            let by_force = answer(&step.force_error);
+            let by_load = answer(error);
             let [correction, by_force, by_load] = solve::<S, 3, A>(jacobian, [residual, by_force, by_load])?;
             for (force, correction) in forces.iter_mut().zip(&correction) {
                 *force -= correction;
@@ -187,24 +207,46 @@ fn solve<const S: usize, const R: usize, A: Arithmetic>(
         }
         let pivot = a[p];
         let inverse = 1.0 / pivot[p];
-        let eliminate = |column: &mut Nodal<S>| {
-            let share = column[p] * inverse;
-            for k in 0..S {
-                column[k] = A::mul_add(-pivot[k], share, column[k]);
-            }
-            column[p] = share;
-        };
-        a.iter_mut().skip(p + 1).chain(&mut right).for_each(eliminate);
+        // Two loops, not a chain: that may be left out of line, compiled for any processor.
+        for column in a.iter_mut().skip(p + 1) {
+            eliminate::<S, A>(column, p, &pivot, inverse);
+        }
+        for column in &mut right {
+            eliminate::<S, A>(column, p, &pivot, inverse);
+        }
     }
     right.iter().flatten().all(|x| x.is_finite()).then_some(right)
 }
 
+/// Takes row `p` of a column out of the rows below and above it, and divides it by its pivot.
+#[expect(
+    clippy::indexing_slicing,
+    reason = "every index runs over the fixed size of the arrays"
+)]
+#[inline(always)]
+fn eliminate<const S: usize, A: Arithmetic>(column: &mut Nodal<S>, p: usize, pivot: &Nodal<S>, inverse: f64) {
+    let share = column[p] * inverse;
+    for k in 0..S {
+        column[k] = A::mul_add(-pivot[k], share, column[k]);
+    }
+    column[p] = share;
+}
+
 /// Forces of the law at the nodes that belong to displacements and velocities of the tip.
 #[inline(always)]
-fn react<const S: usize, A: Arithmetic>(tip: &ErrorColumn<S>, stiffness: &Nodal<S>, damping: &Nodal<S>) -> Nodal<S> {
-    let mut forces = tip.displacement;
-    for (((force, velocity), stiffness), damping) in forces.iter_mut().zip(&tip.velocity).zip(stiffness).zip(damping) {
-        *force = A::mul_add(*stiffness, *force, damping * velocity);
+fn react<const S: usize, A: Arithmetic, const DAMPED: bool>(
+    displacement: &Nodal<S>,
+    velocity: &Nodal<S>,
+    stiffness: &Nodal<S>,
+    damping: &Nodal<S>,
+) -> Nodal<S> {
+    let mut forces = *displacement;
+    for (((force, velocity), stiffness), damping) in forces.iter_mut().zip(velocity).zip(stiffness).zip(damping) {
+        *force = if DAMPED {
+            A::mul_add(*stiffness, *force, damping * velocity)
+        } else {
+            stiffness * *force
+        };
     }
     forces
 }
@@ -217,12 +259,16 @@ pub(super) fn at_nodes<const S: usize, A: Arithmetic>(
     free_rate: &Nodal<S>,
     forces: &Nodal<S>,
 ) -> (Nodal<S>, Nodal<S>) {
-    let (mut indentations, mut rates) = (*free, *free_rate);
-    let mut loads = *forces;
-    for load in &mut loads {
-        *load = -*load;
-    }
-    add_columns::<S, A>(&mut indentations, &step.force.displacement, &loads);
-    add_columns::<S, A>(&mut rates, &step.force.velocity, &loads);
-    (indentations, rates)
+    (
+        displaced::<S, A>(free, &step.force.displacement, forces),
+        displaced::<S, A>(free_rate, &step.force.velocity, forces),
+    )
+}
+
+/// What is at the nodes without contact force, and what of it is left under the nodal forces.
+#[inline(always)]
+fn displaced<const S: usize, A: Arithmetic>(free: &Nodal<S>, columns: &[Nodal<S>; S], forces: &Nodal<S>) -> Nodal<S> {
+    let mut left = *free;
+    add_columns::<S, A>(&mut left, columns, &scaled(forces, -1.0));
+    left
 }

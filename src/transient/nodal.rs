@@ -101,7 +101,7 @@ impl Model {
         source: Source<S>,
         end_modes: &mut ModeStates,
     ) -> Option<Trial<S>> {
-        if let Some(axial) = &self.axial {
+        if let Some(axial) = self.axial() {
             return self.axial_trial(axial, state, (drive, source), (step, collocation), end_modes);
         }
         compiled_for!(self.machine, A => self.compute::<S, A>(state, drive, step, collocation, source, end_modes))

@@ -34,7 +34,7 @@ impl Model {
         let mut least = change * change / (2.0 * self.law.tangent_stiffness(force + change));
         let acceleration = drive.acceleration(state.time);
         let mut axial = None;
-        if let Some(feedback) = &self.axial {
+        if let Some(feedback) = self.axial() {
             let damped = self.law.damping() > 0.0 || self.modes.iter().all(|mode| mode.damping > 0.0);
             if !damped || feedback.strength(&self.modes, &state.modes) > WEAK {
                 let rounding = ROUNDING * force.max(self.preload.force);

@@ -8,7 +8,7 @@ use std::time::Instant;
 use anyhow::Result;
 
 use crate::commands::{self, cargo};
-use crate::{fmu, importers, python, valgrind};
+use crate::{effects, fmu, importers, python, valgrind};
 
 /// Folders and files with Python in them.
 const PYTHON: [&str; 3] = ["examples/python", "conformance/python", "docs"];
@@ -34,8 +34,9 @@ pub fn run() -> Result<()> {
     })?;
     if valgrind::is_installed() {
         stage("valgrind", valgrind::run)?;
+        stage("what is off costs nothing", effects::what_is_off)?;
     } else {
-        println!("== valgrind: NOT RUN, {}", valgrind::MISSING);
+        println!("== valgrind, what is off costs nothing: NOT RUN, {}", valgrind::MISSING);
     }
     let mut component = PathBuf::new();
     stage("component", || {

@@ -27,47 +27,59 @@ pub struct Cost {
     pub nanoseconds: f64,
 }
 
-/// Builds of the example `run_scene`.
-pub struct Runner {
-    usual: PathBuf,
-    /// For any processor, with all effects and without those that may be off.
-    counted: Option<(PathBuf, PathBuf)>,
+/// Builds of the example `run_scene` for any processor, whose instructions are counted.
+pub struct Counter {
+    with_all: PathBuf,
+    /// Without the effects that reach into the steps of the integrator.
+    bare: PathBuf,
 }
 
-impl Runner {
-    /// Builds what is needed, for counting too if asked for.
-    pub fn build(counted: bool) -> Result<Self> {
-        let counted = if counted {
-            Some((
-                build("target/portable", &["--features=portable"])?,
-                build("target/bare", &["--features=bare"])?,
-            ))
-        } else {
-            None
-        };
+impl Counter {
+    /// Builds both.
+    pub fn build() -> Result<Self> {
+        Ok(Self {
+            with_all: build("target/portable", &["--features=portable"])?,
+            bare: build("target/bare", &["--features=bare"])?,
+        })
+    }
+
+    /// Instructions per simulated millisecond of the minimal scene with changes, in both builds.
+    pub fn both(&self, changes: &Changes) -> Result<(f64, f64)> {
+        Ok((
+            instructions(&self.with_all, changes)?,
+            instructions(&self.bare, changes)?,
+        ))
+    }
+}
+
+/// Runs the usual build, and counts where it can.
+pub struct Runner<'a> {
+    usual: PathBuf,
+    counter: Option<&'a Counter>,
+}
+
+impl<'a> Runner<'a> {
+    /// Builds what is needed besides the counter.
+    pub fn build(counter: Option<&'a Counter>) -> Result<Self> {
         Ok(Self {
             usual: build("target", &[])?,
-            counted,
+            counter,
         })
     }
 
     /// Of the minimal scene with changes.
     pub fn cost(&self, changes: &Changes) -> Result<Cost> {
-        let counted = self.counted.as_ref();
         let mut times = (0..RUNS)
             .map(|_| nanoseconds(&self.usual, changes))
             .collect::<Result<Vec<_>>>()?;
         times.sort_by(f64::total_cmp);
         Ok(Cost {
-            instructions: counted.map(|(with, _)| instructions(with, changes)).transpose()?,
+            instructions: self
+                .counter
+                .map(|counter| instructions(&counter.with_all, changes))
+                .transpose()?,
             nanoseconds: times.get(RUNS / 2).copied().unwrap_or(f64::NAN),
         })
-    }
-
-    /// Instructions of the minimal scene with changes, in a build with all effects and in one without those that may be off.
-    pub fn with_and_without(&self, changes: &Changes) -> Result<(f64, f64)> {
-        let (with, without) = self.counted.as_ref().context(valgrind::MISSING)?;
-        Ok((instructions(with, changes)?, instructions(without, changes)?))
     }
 }
 

@@ -7,40 +7,36 @@ use relay_contact::variables::RealOutput;
 use super::list::{Effect, Settings};
 use crate::scene;
 
-const SCENES: [&str; 3] = ["paper-1khz", "chatter-41g", "shock-50g"];
+/// Scenes in which the contact stays closed.
+pub const CLOSED: [&str; 2] = ["paper-1khz", "shock-50g"];
+
+/// A scene in which it opens again and again: forces of blows are not compared, they depend on everything.
+pub const OPENING: &str = "chatter-41g";
 
 /// Contact force, N, and resistance, Ohm, at the communication points.
 struct Course {
     forces: Vec<f64>,
     resistances: Vec<f64>,
+    step: f64,
 }
 
-/// What it changes in each scene.
-pub fn influence(effect: &Effect) -> Result<Vec<String>> {
-    SCENES.iter().map(|name| in_scene(effect, name)).collect()
+/// What it changes, as the cells of a row: force and resistance in each of [`CLOSED`], the time open in [`OPENING`].
+pub fn influence(effect: &Effect) -> Result<String> {
+    let mut cells = Vec::new();
+    for name in CLOSED {
+        let with = course(name, effect.setting)?;
+        let without = course(name, effect.off)?;
+        cells.push(amount(1e3 * greatest(&with.forces, &without.forces)));
+        cells.push(amount(1e3 * greatest(&with.resistances, &without.resistances)));
+    }
+    for settings in [effect.off, effect.setting] {
+        cells.push(format!("{:.3}", 1e3 * course(OPENING, settings)?.open()));
+    }
+    Ok(cells.join(" | "))
 }
 
-fn in_scene(effect: &Effect, name: &str) -> Result<String> {
-    let with = course(scene::read(name)?, effect.setting)?;
-    let without = course(scene::read(name)?, effect.off)?;
-    let forces = with.forces.iter().zip(&without.forces);
-    let force = greatest(forces.map(|(with, without)| with - without));
-    // Both start closed.
-    let opens = with.forces.iter().chain(&without.forces).any(|force| *force <= 0.0);
-    let resistances = with.resistances.iter().zip(&without.resistances);
-    let resistance = greatest(resistances.map(|(with, without)| with - without));
-    let resistance = if opens {
-        "the contact opens".to_owned()
-    } else {
-        format!("the resistance by {}", amount(1e3 * resistance, "mΩ"))
-    };
-    Ok(format!(
-        "in *{name}* the force by {}, {resistance}",
-        amount(1e3 * force, "mN")
-    ))
-}
-
-fn course(mut file: SceneFile, settings: Settings) -> Result<Course> {
+fn course(name: &str, settings: Settings) -> Result<Course> {
+    let mut file: SceneFile = scene::read(name)?;
     for (name, value) in settings {
         file.set(name, value)?;
     }
@@ -48,6 +44,7 @@ fn course(mut file: SceneFile, settings: Settings) -> Result<Course> {
     let mut course = Course {
         forces: Vec::new(),
         resistances: Vec::new(),
+        step: file.communication_step,
     };
     for (time, size) in file.steps() {
         contact.step(&file.inputs_over(time, size)?, time, size)?;
@@ -57,19 +54,32 @@ fn course(mut file: SceneFile, settings: Settings) -> Result<Course> {
     Ok(course)
 }
 
-fn greatest(differences: impl Iterator<Item = f64>) -> f64 {
+impl Course {
+    /// Time without force, s, by the communication points.
+    fn open(&self) -> f64 {
+        self.forces
+            .iter()
+            .filter(|force| **force <= 0.0)
+            .map(|_| self.step)
+            .sum()
+    }
+}
+
+/// The largest difference at a communication point.
+fn greatest(with: &[f64], without: &[f64]) -> f64 {
+    let differences = with.iter().zip(without).map(|(with, without)| with - without);
     differences.fold(0.0, |greatest, difference| greatest.max(difference.abs()))
 }
 
-/// Three digits, or nothing.
-fn amount(value: f64, unit: &str) -> String {
+/// Two digits.
+fn amount(value: f64) -> String {
     match value {
-        0.0 => "nothing".to_owned(),
+        0.0 => "0".to_owned(),
         value if (0.01..1e4).contains(&value) => {
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 4")]
-            let places = (2.0 - value.log10().floor()).clamp(0.0, 4.0) as usize;
-            format!("{value:.places$} {unit}")
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 3")]
+            let places = (1.0 - value.log10().floor()).clamp(0.0, 3.0) as usize;
+            format!("{value:.places$}")
         }
-        value => format!("{value:.1e} {unit}"),
+        value => format!("{value:.0e}"),
     }
 }

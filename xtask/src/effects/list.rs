@@ -69,14 +69,15 @@ pub const EFFECTS: &[Effect] = &[
         name: "contact damping",
         setting: &[("effects.contactDamping", "true")],
         off: &[("effects.contactDamping", "false")],
-        matters: "whenever the contact is shaken or hit: it makes the force of a blow, and without it the contact bounces.",
+        matters: "where the contact opens: it decides the force of a blow and how long it bounces; a closed one hardly feels it.",
         ..NOTHING
     },
     Effect {
         name: "linearised contact",
         setting: &[("effects.contactLaw", "Linearised")],
         off: &[("effects.contactLaw", "Hertz")],
-        matters: "to compare with modal and frequency-domain analyses; wrong as soon as the force comes near zero.",
+        matters: "to compare with modal and frequency-domain analyses; near enough while the force stays far from zero, wrong where the \
+                  contact opens.",
         ..NOTHING
     },
     Effect {
@@ -90,14 +91,15 @@ pub const EFFECTS: &[Effect] = &[
         name: "axial force from the preload",
         setting: &[("effects.axialForce", "FromPreload")],
         off: &[("effects.axialForce", "None")],
-        matters: "hardly ever: the published formula gives millinewtons, and the modes are computed with it once.",
+        matters: "hardly ever: it is millinewtons for the specimen, and the modes are computed with it once.",
         ..NOTHING
     },
     Effect {
         name: "axial force from the deflection",
         setting: &[("effects.axialForce", "FromDeflection")],
         off: &[("effects.axialForce", "FromPreload")],
-        matters: "where the tip moves by much of its deflection at preload, in wide openings and shocks.",
+        matters: "where the tip moves by much of its deflection at preload, in wide openings; a closed contact does not tell it from \
+                  that of the preload.",
         ..NOTHING
     },
     Effect {
