@@ -6,6 +6,7 @@ use relay_contact::electrical::Path;
 use relay_contact::error::SceneError;
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
+use relay_contact::scene_file::SceneFile;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{
     AxialForceKind, ContactLawKind, ExcitationKind, IntegerOutput, RealOutput, ResistanceKind,
@@ -94,10 +95,41 @@ fn interruptions_do_not_depend_on_the_communication_step() {
             let found = interruptions(&scene, size, stop);
             assert_eq!(found.0, expected.0, "{size}");
             // Instants to 1 ns.
-            assert!((found.1 - expected.1).abs() < 2e-9, "{size}: {found:?} {expected:?}");
+            assert!((found.1 - expected.1).abs() < 1e-9, "{size}: {found:?} {expected:?}");
             assert!(
-                (found.2 - expected.2).abs() < 2e-9 * events,
+                (found.2 - expected.2).abs() < 1e-9 * events,
                 "{size}: {found:?} {expected:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_chatter_scene_opens_and_closes_at_the_same_instants_whatever_the_communication_step() {
+    let file = SceneFile::read("scenes/chatter-41g.toml".as_ref()).unwrap();
+    let events = |steps: u32| {
+        let size = file.stop / f64::from(steps);
+        let mut simulation = Simulation::new(&file.scene, &Inputs::default(), 0.0).unwrap();
+        let mut events = Vec::new();
+        for step in 0..steps {
+            simulation
+                .step(&Inputs::default(), f64::from(step) * size, size)
+                .unwrap();
+            events.extend(simulation.events().0.copied());
+        }
+        events
+    };
+    // 10 ms to 1 us.
+    let expected = events(1);
+    assert_eq!(expected.len(), 19);
+    for steps in [10, 100, 1000, 10_000] {
+        let found = events(steps);
+        assert_eq!(found.len(), expected.len());
+        for (found, expected) in found.iter().zip(&expected) {
+            assert_eq!(found.closes, expected.closes);
+            assert!(
+                (found.time - expected.time).abs() < 1e-9,
+                "{steps}: {found:?} {expected:?}"
             );
         }
     }

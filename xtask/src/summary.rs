@@ -144,6 +144,8 @@ impl fmt::Display for Summary {
                 "energy balance: {:.3e} J",
                 self.real(RealOutput::EnergyBalance)
             )?;
+        } else {
+            writeln!(formatter, "energy balance: not drawn up (effects.energy)")?;
         }
         writeln!(
             formatter,
