@@ -120,10 +120,10 @@ class Reference:
             return float(1 + self.tangent * self.compliances(2 * pi * frequency, self.axial_force, False)[0].real)
 
         # Resonances of the cantilever alone are poles, from which it rises to zeros.
-        above = 1.0
-        while determinant(above) > 0 or determinant(above + 1.0) <= 0:
-            above += 1.0
-        return float(brentq(determinant, above, above + 1.0, xtol=1e-12, rtol=1e-14))
+        above, step = 1.0, 10.0
+        while determinant(above) > 0 or determinant(above + step) <= 0:
+            above += step
+        return float(brentq(determinant, above, above + step, xtol=1e-12, rtol=1e-14))
 
     def modes(self) -> Modes:
         """Modes by Galerkin's method, with the functions x^2 times the Legendre polynomials."""
@@ -224,7 +224,7 @@ class Reference:
             matrix[n:, n:] = -np.diag(modes.damping) - by_rate * np.outer(modes.tip, modes.tip)
             return matrix
 
-        # Velocities per newton of force: what a force of the scale gives the first mode in its period.
+        # Velocity that the force scale gives the first mode in 1 / omega.
         scale = self.force_scale * abs(modes.tip[-1]) / omega.min()
         solution = solve_ivp(
             rates,

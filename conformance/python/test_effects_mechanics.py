@@ -140,7 +140,7 @@ def test_an_axial_force_changes_preload_and_frequency(name: str) -> None:
     assert axial == pytest.approx(reference.axial_force, rel=1e-12, abs=0)
     assert force == pytest.approx(reference.force, rel=1e-12)
     follows = name == "from deflection"
-    assert frequency == pytest.approx(reference.frequency_following() if follows else reference.frequency(), rel=1e-8)
+    assert frequency == pytest.approx(reference.frequency_following() if follows else reference.frequency(), rel=1e-10)
     # The stiffness of the tip in closed form.
     stiffness = reference.tip_stiffness
     if axial != 0:
@@ -156,14 +156,14 @@ def test_an_axial_force_changes_preload_and_frequency(name: str) -> None:
 
 @pytest.mark.parametrize("name", AXIAL)
 def test_an_axial_force_changes_the_force_under_vibration(name: str) -> None:
-    tolerance, amplitude, stop = 1e-7, 4000.0 if name.startswith("from") else 98.0, 2e-3
+    tolerance, amplitude, stop = 1e-8, 4000.0 if name.startswith("from") else 98.0, 2e-3
     result = run(shaken(AXIAL[name], amplitude, tolerance), stop, 1e-5, ["contact.force"])
     reference = Reference(AXIAL[name])
     others = [Reference({**AXIAL[name], "effects.axialForce": kind}) for kind in ("None", "FromPreload")]
     expected, *without = (
         np.array([motion(time) for time in result["time"]])
         for model in [reference, *others]
-        for motion in [model.motion(lambda time: sine(amplitude, time), stop, 1e-10)]
+        for motion in [model.motion(lambda time: sine(amplitude, time), stop, 1e-11)]
     )
     allowed = tolerance * reference.force_scale
     assert np.max(np.abs(result["contact.force"] - expected)) <= allowed
@@ -188,7 +188,8 @@ def test_gravity_is_a_constant_acceleration_that_belongs_to_the_preload(gravity:
     assert end[-1] == pytest.approx(force, rel=0, abs=tolerance * Reference(NO_AXIAL).force_scale)
 
 
-# Without damping the sum over the modes of the beam converges slowly: few, but the same in both.
+# Without damping the sum over the modes of the beam converges slowly, and the number chosen is for a damped one:
+# here few, but the same in both.
 UNDAMPED: Values = {"beam.stiffnessDamping": 0.0, "solver.modes": 8}
 TERMS: dict[str, Values] = {
     "mass damping": {"beam.massDamping": 3000.0},
@@ -201,7 +202,7 @@ TERMS: dict[str, Values] = {
 
 
 @pytest.mark.parametrize("name", TERMS)
-def test_a_term_of_the_beam_does_what_the_equations_say_and_nothing_at_zero(name: str) -> None:
+def test_a_term_of_the_beam_does_what_the_equations_say(name: str) -> None:
     tolerance, step, steps = 1e-9, 2e-5, 150
     bonded: Values = {**NO_AXIAL, "effects.contactLaw": "Bonded"}
     values = {**bonded, **TERMS[name]}
