@@ -1,6 +1,7 @@
 """The packaged component under FMPy: whole runs, and instances stepped by hand with their messages kept."""
 
 import os
+from collections.abc import Mapping
 from ctypes import byref
 from pathlib import Path
 from types import TracebackType
@@ -23,22 +24,51 @@ Array = NDArray[np.float64]
 ROOT = Path(__file__).resolve().parents[2]
 FMU = Path(os.environ.get("RELAY_CONTACT_FMU", ROOT / "dist" / "RelayContact.fmu"))
 
-# Choices of effects.excitation and effects.axialForce.
-SINE = 2
-NO_AXIAL_FORCE = 2
-PRESCRIBED = 4
+# Of a parameter: a choice of an enumeration by its name.
+Value = float | str
+Values = Mapping[str, Value]
+
+DESCRIPTION = read_model_description(str(FMU))
+# Numbers of the choices of each enumeration, by its name and theirs.
+CHOICES: dict[str, dict[str, int]] = {
+    variable.name: {item.name: int(item.value) for item in variable.declaredType.items}
+    for variable in DESCRIPTION.modelVariables
+    if variable.type == "Enumeration"
+}
+
+
+def _start(variable: Any) -> Value:  # noqa: ANN401
+    match variable.type:
+        case "Boolean":
+            return bool(variable.start == "true")
+        case "Enumeration":
+            return next(name for name, number in CHOICES[variable.name].items() if number == int(variable.start))
+        case _:
+            return float(variable.start)
+
+
+# Start values of the parameters.
+STARTS = {
+    variable.name: _start(variable) for variable in DESCRIPTION.modelVariables if variable.causality == "parameter"
+}
+
+
+def number(name: str, value: Value) -> float:
+    """Give the number that stands for a value of the variable `name`."""
+    return CHOICES[name][value] if isinstance(value, str) else value
 
 
 def run(
-    values: dict[str, float],
+    values: Values,
     stop: float,
     step: float,
     output: list[str],
     signals: Any = None,  # noqa: ANN401
 ) -> dict[str, Array]:
     """Simulate from 0 to `stop`; give time and the outputs at every communication point."""
+    start = {name: number(name, value) for name, value in values.items()}
     result = simulate_fmu(
-        str(FMU), stop_time=stop, output_interval=step, start_values=values, output=output, input=signals
+        str(FMU), stop_time=stop, output_interval=step, start_values=start, output=output, input=signals
     )
     return {name: np.asarray(result[name]) for name in ["time", *output]}
 
@@ -59,13 +89,12 @@ class Instance:
 
     def __init__(self, folder: Path) -> None:
         """Instantiate the component, unpacked in `folder`."""
-        description = read_model_description(str(FMU))
-        self.references = {variable.name: variable.valueReference for variable in description.modelVariables}
+        self.references = {variable.name: variable.valueReference for variable in DESCRIPTION.modelVariables}
         self.messages: list[str] = []
         self.slave = FMU2Slave(
-            guid=description.guid,
+            guid=DESCRIPTION.guid,
             unzipDirectory=extract(str(FMU), unzipdir=str(folder)),
-            modelIdentifier=description.coSimulation.modelIdentifier,
+            modelIdentifier=DESCRIPTION.coSimulation.modelIdentifier,
             instanceName="instance",
         )
         self.callbacks = fmi2CallbackFunctions()
@@ -92,9 +121,9 @@ class Instance:
         """Set a real variable."""
         self.slave.setReal([self.references[name]], [value])
 
-    def choose(self, name: str, value: int) -> None:
+    def choose(self, name: str, value: Value) -> None:
         """Set an integer or enumeration variable."""
-        self.slave.setInteger([self.references[name]], [value])
+        self.slave.setInteger([self.references[name]], [int(number(name, value))])
 
     def get(self, name: str) -> float:
         """Give the value of a real variable."""

@@ -5,10 +5,10 @@ The digits were computed by two independent implementations of the model. A valu
 
 import numpy as np
 import pytest
-from component import NO_AXIAL_FORCE, SINE, Array, extremes, run
+from component import Array, Values, extremes, run
 
 TOLERANCE = 1e-8
-NO_AXIAL = {"effects.axialForce": NO_AXIAL_FORCE, "solver.tolerance": TOLERANCE}
+NO_AXIAL: Values = {"effects.axialForce": "None", "solver.tolerance": TOLERANCE}
 PRELOAD = ["preload.force", "preload.indentation", "preload.contactStiffness", "preload.frequency"]
 
 
@@ -42,10 +42,10 @@ def test_preload_with_axial_force_from_the_preload() -> None:
     check(result["preload.frequency"][-1], "1354.5151")
 
 
-def periodic(values: dict[str, float], frequency: float, samples: int, output: list[str]) -> dict[str, Array]:
+def periodic(values: Values, frequency: float, samples: int, output: list[str]) -> dict[str, Array]:
     """Give outputs over the last of enough periods that the transient, which falls as exp(-2900 t), is gone."""
     period = 1 / frequency
-    scene = {**NO_AXIAL, "effects.excitation": SINE, "excitation.frequency": frequency, **values}
+    scene: Values = {**NO_AXIAL, "effects.excitation": "Sine", "excitation.frequency": frequency, **values}
     periods = int(np.ceil(0.015 / period)) + 1
     result = run(scene, periods * period, period / samples, output)
     return {name: values[-samples - 1 :] for name, values in result.items()}
@@ -76,7 +76,12 @@ def test_periodic_state_of_the_nonlinear_contact() -> None:
 
 
 def test_first_opening_and_closing_under_hard_vibration() -> None:
-    values = {**NO_AXIAL, "effects.excitation": SINE, "excitation.amplitude": 400, "excitation.frequency": 1000}
+    values: Values = {
+        **NO_AXIAL,
+        "effects.excitation": "Sine",
+        "excitation.amplitude": 400,
+        "excitation.frequency": 1000,
+    }
     output = ["contact.lastOpening", "contact.lastClosing", "contact.closed"]
     result = run(values, 1.2e-3, 1e-6, output)
     opening, closing = result["contact.lastOpening"], result["contact.lastClosing"]

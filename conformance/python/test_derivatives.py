@@ -4,7 +4,7 @@ from ctypes import c_double, c_int, c_uint
 from math import cos, pi, sin
 from pathlib import Path
 
-from component import SINE, Instance
+from component import Instance
 
 AMPLITUDE = 98.0
 OMEGA = 2 * pi * 1000
@@ -30,7 +30,7 @@ def derivative(instance: Instance, name: str) -> float:
 def test_derivatives_make_a_sampled_sine_right_to_the_second_order(tmp_path: Path) -> None:
     """With a hundred steps a period the error falls from some pi / 100 to some (pi / 100)^2 of the amplitude."""
     with Instance(tmp_path / "generated") as instance:
-        instance.choose("effects.excitation", SINE)
+        instance.choose("effects.excitation", "Sine")
         instance.set("excitation.amplitude", AMPLITUDE)
         instance.initialise(tolerance=1e-8)
         exact = []
@@ -56,7 +56,7 @@ def test_derivatives_make_a_sampled_sine_right_to_the_second_order(tmp_path: Pat
 def test_the_derivative_of_the_force_is_its_slope(tmp_path: Path) -> None:
     """Central differences over 10 us differ from a derivative by the square of that over the fastest period, 0.2 ms."""
     with Instance(tmp_path) as instance:
-        instance.choose("effects.excitation", SINE)
+        instance.choose("effects.excitation", "Sine")
         instance.initialise(tolerance=1e-8)
         forces, rates = [], []
         for step in range(STEPS):
@@ -72,7 +72,7 @@ def test_the_derivative_of_the_force_is_its_slope(tmp_path: Path) -> None:
 def test_openings_are_logged_with_their_instants(tmp_path: Path) -> None:
     """With logging on each event is a message, and nothing else is."""
     with Instance(tmp_path) as instance:
-        instance.choose("effects.excitation", SINE)
+        instance.choose("effects.excitation", "Sine")
         instance.set("excitation.amplitude", 400.0)
         instance.initialise()
         instance.step(0.0, 1e-3)

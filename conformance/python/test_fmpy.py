@@ -5,7 +5,7 @@ from pathlib import Path
 
 import fmpy
 import numpy as np
-from component import FMU, SINE, Instance, run
+from component import FMU, Instance, run
 from fmpy import read_model_description, simulate_fmu
 from fmpy.ssp.ssd import read_ssd
 from results import STEP, SYSTEM, TOLERANCE, column, compare, record
@@ -44,7 +44,7 @@ def values(instance: Instance) -> dict[str, float]:
 
 def test_all_variables_can_be_read_in_initialization_mode(tmp_path: Path) -> None:
     with Instance(tmp_path) as instance:
-        instance.choose("effects.excitation", SINE)
+        instance.choose("effects.excitation", "Sine")
         instance.slave.setupExperiment(startTime=0.0)
         instance.slave.enterInitializationMode()
         before = values(instance)

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from component import FMU, ROOT, SINE, Array, run
+from component import FMU, ROOT, Array, Values, run
 from fmpy import simulate_fmu
 
 AMPLITUDE, FREQUENCY = 98.0, 1000.0
-SCENE = {"effects.excitation": SINE, "excitation.amplitude": AMPLITUDE, "excitation.frequency": FREQUENCY}
+SCENE: Values = {"effects.excitation": "Sine", "excitation.amplitude": AMPLITUDE, "excitation.frequency": FREQUENCY}
 # solver.tolerance is relative to max(F_0, 3 E I s_ref / L^3); for the specimen the second is F_0 without axial force.
 FORCE_SCALE = 0.1520261
 

@@ -4,7 +4,7 @@ import multiprocessing
 from pathlib import Path
 
 import fmpy
-from component import SINE, Instance
+from component import Instance
 from results import record
 
 STEP = 1e-6
@@ -23,7 +23,7 @@ def forces(instance: Instance, first: int, count: int) -> list[float]:
 def shaken(folder: Path) -> Instance:
     """Give an instance whose contact opens."""
     instance = Instance(folder)
-    instance.choose("effects.excitation", SINE)
+    instance.choose("effects.excitation", "Sine")
     instance.set("excitation.amplitude", 400.0)
     instance.initialise()
     return instance

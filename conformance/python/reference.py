@@ -1,0 +1,250 @@
+"""The model of the component once more, written from its equations and solved by other means.
+
+Static and harmonic motions are exact: solutions of the boundary value problem, by a matrix exponential along the beam.
+In time the beam has modes by Galerkin's method. With a linear contact their motion is a matrix exponential too, with
+any other it is integrated by scipy's implicit Runge-Kutta method. Names and units are those of the component.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import pi, sin, sqrt
+from typing import Any
+
+import numpy as np
+from component import STARTS, Array, Values
+from numpy.polynomial.legendre import Legendre, leggauss
+from scipy.integrate import solve_ivp
+from scipy.linalg import eig, eigh, expm
+from scipy.optimize import brentq
+
+Acceleration = Callable[[float], float]
+
+# Functions of Galerkin's method where solver.modes is not set. Where the beam is damped, the contact force of motion
+# without blows is then right to 1e-10 of its scale.
+FUNCTIONS = 16
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Modes of the cantilever without contact, of modal mass 1 kg."""
+
+    omega_squared: Array
+    damping: Array
+    tip: Array
+    # Load per base acceleration.
+    participation: Array
+    # Integrals of products of their slopes.
+    slopes: Array
+
+
+class Reference:
+    """The contact with its spring at preload."""
+
+    def __init__(self, values: Values) -> None:
+        """Take the parameters by name; what is not given has its start value."""
+        self.values: dict[str, Any] = {**STARTS, **values}
+        get = self.values.__getitem__
+        self.length: float = get("beam.length")
+        self.stiffness: float = get("beam.youngsModulus") * get("beam.width") * get("beam.thickness") ** 3 / 12  # E I
+        self.density: float = get("beam.density") * get("beam.width") * get("beam.thickness")  # rho A
+        self.mass: float = get("tip.mass")
+        self.inertia: float = get("tip.rotaryInertia")
+        compliance = sum(
+            (1 - get(f"contact.{side}.poissonRatio") ** 2) / get(f"contact.{side}.youngsModulus")
+            for side in ("moving", "fixed")
+        )
+        self.hertz: float = 4 / 3 / compliance * sqrt(get("contact.curvatureRadius"))  # k_H
+        self.contact_damping: float = get("contact.damping") if get("effects.contactDamping") else 0.0
+        self.law, self.axial = get("effects.contactLaw"), get("effects.axialForce")
+        self.gravity: float = get("environment.gravity")
+        self.overtravel: float = get("contact.overtravel")
+        self.indentation: float = brentq(self._unbalance, 0.0, self.overtravel, xtol=1e-22, rtol=1e-15)
+        self.deflection: float = self.overtravel - self.indentation
+        self.axial_force = self.axial_force_at(self.deflection)
+        self.force: float = self.hertz * self.indentation**1.5
+        self.tangent: float = 1.5 * self.hertz * sqrt(self.indentation)
+
+    @property
+    def tip_stiffness(self) -> float:
+        """3 E I / L^3, N/m."""
+        return 3 * self.stiffness / self.length**3
+
+    @property
+    def force_scale(self) -> float:
+        """What the tolerance is relative to, N."""
+        return max(self.force, self.tip_stiffness * max(abs(self.overtravel), 1e-4))
+
+    def axial_force_at(self, deflection: float) -> float:
+        """Axial force in the preload, N; eq. (9) where it comes from the deflection."""
+        match self.axial:
+            case "None":
+                return 0.0
+            case "Prescribed":
+                return float(self.values["beam.axialForce"])
+            case _:
+                return self.tip_stiffness * deflection * sin(1.5 * deflection / self.length)
+
+    def _unbalance(self, indentation: float) -> float:
+        deflection = self.overtravel - indentation
+        per_force, per_acceleration = self.compliances(0.0, self.axial_force_at(deflection)).real
+        pushed = per_force * self.hertz * indentation**1.5 + per_acceleration * self.gravity
+        return float(deflection - pushed)
+
+    def compliances(self, omega: float, axial_force: float, damped: bool = True) -> Any:  # noqa: ANN401
+        """Tip deflection (m) per tip force (N) and per base acceleration (m/s2), at an angular frequency; exact."""
+        alpha, beta = (damped * self.values[f"beam.{kind}Damping"] for kind in ("mass", "stiffness"))
+        loss, inertial = 1 + 1j * omega * beta, -(omega**2) + 1j * omega * alpha
+        bending, axial = self.stiffness * loss, axial_force * loss
+        # w, w', w'', w''' and the acceleration of the base along the beam.
+        along = np.diag(np.array([1, 1, 1, 0], dtype=complex), 1)
+        along[3] = [-self.density * inertial / bending, 0, -axial / bending, 0, -self.density / bending]
+        end = expm(along * self.length)
+        moment = bending * end[2] + self.inertia * inertial * end[1]
+        shear = bending * end[3] + axial * end[1] - self.mass * inertial * end[0]
+        # The unknown w'' and w''' at the clamp, under unit force and under unit acceleration.
+        loads = np.array([[0, -moment[4]], [-1, self.mass - shear[4]]])
+        clamp = np.linalg.solve(np.array([moment[2:4], shear[2:4]]), loads)
+        return end[0, 2:4] @ clamp + np.array([0, end[0, 4]])
+
+    def force_response(self, frequency: float) -> complex:
+        """Contact force (N) per base acceleration (m/s2) of the linear contact, at a frequency (Hz); exact."""
+        omega = 2 * pi * frequency
+        contact = self.tangent * (1 + 1j * omega * self.contact_damping)
+        per_force, per_acceleration = self.compliances(omega, self.axial_force)
+        return complex(-contact * per_acceleration / (1 + contact * per_force))
+
+    def frequency(self) -> float:
+        """Lowest natural frequency with the contact as a spring, under a constant axial force, Hz; exact."""
+
+        def determinant(frequency: float) -> float:
+            return float(1 + self.tangent * self.compliances(2 * pi * frequency, self.axial_force, False)[0].real)
+
+        # Resonances of the cantilever alone are poles, from which it rises to zeros.
+        above, step = 1.0, 10.0
+        while determinant(above) > 0 or determinant(above + step) <= 0:
+            above += step
+        return float(brentq(determinant, above, above + step, xtol=1e-12, rtol=1e-14))
+
+    def modes(self) -> Modes:
+        """Modes by Galerkin's method, with the functions x^2 times the Legendre polynomials."""
+        count = int(self.values["solver.modes"]) or FUNCTIONS
+        points, weights = leggauss(count + 4)
+        x, weights = (points + 1) * self.length / 2, weights * self.length / 2
+        square = Legendre([1 / 3, 1 / 2, 1 / 6], domain=[0, self.length]) * self.length**2  # x^2
+        functions = [square * Legendre.basis(k, domain=[0, self.length]) for k in range(count)]
+
+        def at(where: Any, order: int) -> Array:  # noqa: ANN401
+            return np.array([(f.deriv(order) if order else f)(where) for f in functions])
+
+        value, slope, curvature = (at(x, order) for order in range(3))
+        tip, tip_slope = at(self.length, 0), at(self.length, 1)
+        mass = self.density * (value * weights) @ value.T + self.mass * np.outer(tip, tip)
+        mass += self.inertia * np.outer(tip_slope, tip_slope)
+        slopes = (slope * weights) @ slope.T
+        rigidity = self.stiffness * (curvature * weights) @ curvature.T - self.axial_force * slopes
+        inverse, shapes = eigh(mass, rigidity)
+        omega_squared = 1 / inverse
+        shapes = shapes * np.sqrt(omega_squared)
+        return Modes(
+            omega_squared,
+            self.values["beam.massDamping"] + self.values["beam.stiffnessDamping"] * omega_squared,
+            tip @ shapes,
+            (self.density * value @ weights + self.mass * tip) @ shapes,
+            shapes.T @ slopes @ shapes,
+        )
+
+    def linear_force(self, acceleration: Acceleration, step: float, steps: int) -> Array:
+        """Contact force of the linear contact, which can pull, at the multiples of a step from rest, N.
+
+        The acceleration is smooth within each step: its polynomial through six points is off by some
+        (omega step / 2)^6 / (6! 2^5) of it, 1e-10 at 1 kHz and 30 us.
+        """
+        modes = self.modes()
+        n, omega = len(modes.tip), np.sqrt(modes.omega_squared)
+        # Displacements times the angular frequency, velocities, and the acceleration with its derivatives, in steps.
+        matrix = np.zeros((2 * n + 6, 2 * n + 6))
+        matrix[:n, n : 2 * n] = np.diag(omega)
+        matrix[n : 2 * n, :n] = -np.diag(omega) - self.tangent * np.outer(modes.tip, modes.tip / omega)
+        matrix[n : 2 * n, n : 2 * n] = -np.diag(modes.damping)
+        matrix[n : 2 * n, n : 2 * n] -= self.contact_damping * self.tangent * np.outer(modes.tip, modes.tip)
+        matrix[n : 2 * n, 2 * n] = -modes.participation
+        matrix[2 * n :, 2 * n :] = np.diag([1 / step] * 5, 1)
+        over_step = expm(matrix * step)[: 2 * n]
+        points = 0.5 - 0.5 * np.cos(pi * (np.arange(6) + 0.5) / 6)
+        # Derivatives at the start from values at the points.
+        taylor = np.linalg.inv(np.vander(points, 6, increasing=True)) * np.array([[1], [1], [2], [6], [24], [120]])
+        to_force = -self.tangent * np.concatenate([modes.tip / omega, self.contact_damping * modes.tip])
+        motion, force = np.zeros(2 * n), [self.force]
+        for k in range(steps):
+            accelerations = np.array([acceleration((k + point) * step) for point in points])
+            motion = over_step @ np.concatenate([motion, taylor @ accelerations])
+            force.append(self.force + to_force @ motion)
+        return np.array(force)
+
+    def law_force(self, indentation: float, rate: float) -> tuple[float, float, float]:
+        """Contact force (N) with its derivatives by indentation and rate."""
+        if self.law == "Hertz":
+            if indentation <= 0:
+                return 0.0, 0.0, 0.0
+            root = self.hertz * sqrt(indentation)
+            force = root * (indentation + 1.5 * self.contact_damping * rate)
+            by_indentation = 1.5 * root + 0.75 * self.contact_damping * rate * root / indentation
+            by_rate = 1.5 * self.contact_damping * root
+        else:
+            force = self.force + self.tangent * (indentation - self.indentation + self.contact_damping * rate)
+            by_indentation, by_rate = self.tangent, self.contact_damping * self.tangent
+        if force <= 0 and self.law != "Bonded":
+            return 0.0, 0.0, 0.0
+        return force, by_indentation, by_rate
+
+    def motion(self, acceleration: Acceleration, stop: float, tolerance: float) -> Callable[[float], float]:
+        """Contact force (N) as a function of time, from rest at 0, for any contact law and axial force."""
+        modes = self.modes()
+        n, omega = len(modes.tip), np.sqrt(modes.omega_squared)
+        preload = (modes.tip * self.force - modes.participation * self.gravity) / modes.omega_squared
+        follows = self.axial == "FromDeflection"
+
+        def contact(motion: Array) -> tuple[float, float, float]:
+            indentation = self.indentation - modes.tip @ (motion[:n] / omega)
+            return self.law_force(float(indentation), -float(modes.tip @ motion[n:]))
+
+        def rates(time: float, motion: Array) -> Array:
+            q = motion[:n] / omega
+            load = modes.tip * (contact(motion)[0] - self.force) - modes.participation * acceleration(time)
+            if follows:
+                change = self.axial_force_at(self.deflection + float(modes.tip @ q)) - self.axial_force
+                load = load + change * modes.slopes @ (preload + q)
+            return np.concatenate([omega * motion[n:], load - omega * motion[:n] - modes.damping * motion[n:]])
+
+        def jacobian(_time: float, motion: Array) -> Array:
+            _, by_indentation, by_rate = contact(motion)
+            matrix = np.zeros((2 * n, 2 * n))
+            matrix[:n, n:] = np.diag(omega)
+            matrix[n:, :n] = -np.diag(omega) - by_indentation * np.outer(modes.tip, modes.tip / omega)
+            matrix[n:, n:] = -np.diag(modes.damping) - by_rate * np.outer(modes.tip, modes.tip)
+            return matrix
+
+        # Velocity that the force scale gives the first mode in 1 / omega.
+        scale = self.force_scale * abs(modes.tip[-1]) / omega.min()
+        solution = solve_ivp(
+            rates,
+            (0.0, stop),
+            np.zeros(2 * n),
+            method="Radau",
+            jac=jacobian,
+            rtol=tolerance,
+            atol=tolerance * scale,
+            dense_output=True,
+        )
+        assert solution.success, solution.message
+        return lambda time: contact(solution.sol(time))[0]
+
+    def frequency_following(self) -> float:
+        """Lowest natural frequency with the contact as a spring and the axial force following the deflection, Hz."""
+        modes = self.modes()
+        preload = (modes.tip * self.force - modes.participation * self.gravity) / modes.omega_squared
+        step = 1e-4 * self.deflection
+        slope = (self.axial_force_at(self.deflection + step) - self.axial_force_at(self.deflection - step)) / (2 * step)
+        matrix = np.diag(modes.omega_squared)
+        matrix = matrix + np.outer(self.tangent * modes.tip - slope * modes.slopes @ preload, modes.tip)
+        return float(sqrt(np.min(eig(matrix, right=False).real))) / (2 * pi)
