@@ -424,20 +424,10 @@ impl Integration<'_> {
         state.indentation = trial.indentation;
         state.indentation_rate = trial.rate;
         if state.closed {
-            let force = model.preload.force + vector::end(&trial.forces);
-            state.force = if model.law.never_opens() { force } else { force.max(0.0) };
+            state.force = model.law.without_pull(model.preload.force + vector::end(&trial.forces));
         }
         if let Some(extremes) = &mut self.extremes {
-            if state.closed {
-                let floor = if model.law.never_opens() {
-                    f64::NEG_INFINITY
-                } else {
-                    0.0
-                };
-                extremes.add_course(state.predictions.through_all(), -1.0, 0.0, model.preload.force, floor);
-            } else {
-                extremes.add(0.0);
-            }
+            extremes.add_course(model, state.closed, state.predictions.through_all(), -1.0, 0.0);
         }
         state.last_step = target.length;
         state.steps += 1;

@@ -191,16 +191,7 @@ impl Course {
     /// Adds what the force does in the span between two instants (s), of which the first may lie before it.
     fn add_span(&self, extremes: &mut Extremes, model: &Model, from: f64, to: f64) {
         let at = |time: f64| ((time - self.end.time) / self.length()).clamp(-1.0, 0.0);
-        if self.start.closed {
-            let floor = if model.law.never_opens() {
-                f64::NEG_INFINITY
-            } else {
-                0.0
-            };
-            extremes.add_course(&self.span.force, at(from), at(to), model.preload.force, floor);
-        } else {
-            extremes.add(0.0);
-        }
+        extremes.add_course(model, self.start.closed, &self.span.force, at(from), at(to));
     }
 
     /// How the tip changes at the communication point, as it has been reached: what changes there at once comes after.
