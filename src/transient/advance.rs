@@ -4,6 +4,7 @@ use crate::BARE;
 use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
 use crate::model::{Model, State};
+use crate::transient::budget::{Budget, work};
 use crate::transient::collocation::{Collocation, LONG, SHORT};
 use crate::transient::dense::Span;
 use crate::transient::fallback::REFUSALS;
@@ -13,19 +14,11 @@ use crate::transient::vector;
 use crate::transient::watch::Extremes;
 use crate::transient::workspace::{Room, Workspace};
 
-/// Integration steps of known lengths whose work a communication step may take, and further ones per second of it.
-const BUDGET: u64 = 10_000_000;
-/// See [`BUDGET`].
-const BUDGET_RATE: f64 = 1e7;
-
 /// Spacing of floating-point numbers at an instant, in first steps, with which the motion can be followed.
 const COARSEST: f64 = 0.1;
 
 /// m/s.
 const SPEED_OF_LIGHT: f64 = 299_792_458.0;
-
-/// Work of a step of a new length, in steps of known lengths: its coefficients have to be computed.
-const NEW_LENGTH: u64 = 10;
 
 /// Share of the tolerance that one step may use up. Found by comparing errors with tolerances over scenes
 /// (`tests/calibration.rs`): a blow makes the errors of the motion before it a hundred times larger, and without
@@ -50,17 +43,6 @@ const LONG_FLOOR: f64 = 3e-11;
 
 /// Many nodes reach at most about this many times as far as few.
 const LONGER: f64 = 16.0;
-
-/// Work that a communication step of `size` seconds may take, in integration steps of known lengths, also repeated ones
-/// and ones only looked at.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a count of steps, saturating"
-)]
-pub(super) fn budget(size: f64) -> u64 {
-    BUDGET.saturating_add((size * BUDGET_RATE) as u64)
-}
 
 /// A communication step under way.
 pub(super) struct Integration<'a> {
@@ -144,7 +126,7 @@ impl Model {
             Steps::Exactly { time, size } => {
                 state.time = self.rests_until(state, &drive, tolerance, time + size).unwrap_or(time);
                 let left = size - (state.time - time);
-                if left <= 0.0 || self.step_exactly(state, &mut workspace.propagator, &drive, left) {
+                if left <= 0.0 || self.step_exactly(state, &mut workspace.propagators, &drive, left) {
                     return Ok(());
                 }
                 (Progress::over(state.time, left), None)
@@ -183,12 +165,9 @@ impl Integration<'_> {
         }
         self.set_support_rate();
         self.note_force();
-        let budget = budget(self.progress.size);
-        let limit = self.workspace.work.saturating_add(budget);
+        let budget = Budget::new(self.workspace, self.progress.size);
         while self.progress.done < 1.0 {
-            if self.workspace.work >= limit {
-                return Err(self.error(StepErrorCause::Budget(budget)));
-            }
+            budget.check(self.workspace, self.state.time)?;
             self.advance()?;
             self.note_force();
             let Progress { free, done, .. } = self.progress;
@@ -357,7 +336,7 @@ impl Integration<'_> {
     where
         Workspace: Room<S>,
     {
-        self.workspace.work += if recurring { 1 } else { NEW_LENGTH };
+        self.workspace.work += work(recurring);
         let (cache, end, probe) = self.workspace.parts();
         let (step, collocation) = cache.get(length, recurring, self.model);
         let source = Source::Law(NEWTON * self.allowed);
@@ -399,6 +378,10 @@ impl Integration<'_> {
             return Err(self.error(StepErrorCause::NotFinite));
         }
         let due = self.energy_due(trial, target);
+        if due.is_some() {
+            // The step once more, in halves.
+            self.workspace.work += work(target.recurring) + 1;
+        }
         self.enter(trial, target.length);
         let Self { model, state, .. } = self;
         let (cache, end, _) = Room::<S>::parts(self.workspace);
