@@ -69,7 +69,7 @@ impl Propagator {
 pub struct Propagators {
     /// s; 0: none yet.
     lengths: [f64; KEPT],
-    motions: Box<[Propagator; KEPT]>,
+    motions: Vec<Propagator>,
     /// The one to make room next.
     oldest: usize,
 }
@@ -98,7 +98,7 @@ impl Default for Propagators {
     fn default() -> Self {
         Self {
             lengths: [0.0; KEPT],
-            motions: Box::new([Propagator::ZERO; KEPT]),
+            motions: vec![Propagator::ZERO; KEPT],
             oldest: 0,
         }
     }
