@@ -241,3 +241,26 @@ fn extremes_are_those_of_the_course_inside_the_step() {
         }
     }
 }
+
+#[test]
+fn a_step_that_ends_with_the_integrators_own_has_the_extremes_of_it() {
+    let mut scene = shaken(400.0);
+    // Its threshold is passed just before the contact opens, and ends a step.
+    scene.effects.chatter = false;
+    let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
+    let mut openings = 0;
+    while openings < 2 {
+        let time = simulation.time();
+        let ahead = simulation.course().event_ahead();
+        let Some(event) = ahead.filter(|event| !event.closes) else {
+            simulation.step(&Inputs::default(), time, 1e-6).unwrap();
+            continue;
+        };
+        let before = simulation.real(RealOutput::ContactForce);
+        simulation.step(&Inputs::default(), time, event.time - time).unwrap();
+        assert_eq!(simulation.time(), event.time);
+        assert_eq!(simulation.real(RealOutput::StepMinimumForce), 0.0);
+        assert!(simulation.real(RealOutput::StepMaximumForce) >= before);
+        openings += 1;
+    }
+}

@@ -85,6 +85,26 @@ fn an_input_that_changes_counts_from_its_communication_point_on() {
 }
 
 #[test]
+fn a_step_of_a_rounding_from_a_point_early_by_more_does_not_turn_time_back() {
+    let mut simulation = Simulation::new(&shaken(98.0, 1e-6), &Inputs::default(), 0.0).unwrap();
+    // Communication points inside steps of the integrator and, each 300 us, at the end of one.
+    for k in 0..2000 {
+        let size = if k % 30 == 0 { 3e-4 } else { 1e-6 };
+        let time = simulation.time();
+        simulation.step(&Inputs::default(), time, size).unwrap();
+        let (time, force) = (simulation.time(), simulation.real(RealOutput::ContactForce));
+        let spacing = time.next_up() - time;
+        simulation
+            .step(&Inputs::default(), time - 4.0 * spacing, spacing)
+            .unwrap();
+        assert!(simulation.time() >= time, "{} {time}", simulation.time());
+        // It changes by some hundreds of newtons a second.
+        let found = simulation.real(RealOutput::ContactForce);
+        assert!((found - force).abs() < 1e-13, "{time}: {found} {force}");
+    }
+}
+
+#[test]
 fn events_show_from_the_communication_point_after_them_on() {
     let scene = shaken(400.0, 1e-6);
     let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();

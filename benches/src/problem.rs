@@ -71,6 +71,9 @@ impl Problem {
     }
 
     /// Amplitude (m/s2), angular frequency (rad/s) and phase of the base acceleration; the scenes here start it at 0.
+    ///
+    /// # Panics
+    /// Under a generator of another waveform, of which the scenes here have none.
     pub fn sine(&self) -> (f64, f64, f64) {
         let Scene {
             effects, excitation, ..
@@ -78,6 +81,7 @@ impl Problem {
         match effects.excitation {
             ExcitationKind::None => (0.0, 0.0, 0.0),
             ExcitationKind::Sine => (excitation.amplitude, TAU * excitation.frequency, excitation.phase),
+            other => panic!("the peers know no {other:?}"),
         }
     }
 

@@ -155,9 +155,9 @@ pub fn meet(api: &Api, bytes: &[u8], steps: u32) -> Result<Outcome, String> {
 
 fn answer(importer: &mut Importer, call: &Call, time: f64) -> Result<(fmi2Status, Vec<f64>), String> {
     let answer = importer.make(call, time);
-    let panics = |message: &&crate::log::Message| message.2.contains("internal error");
+    let panics = |message: &&crate::log::Message| message.text.contains("internal error");
     if let Some(message) = importer.messages().iter().find(panics) {
-        return Err(format!("{call:?}: {}", message.2));
+        return Err(format!("{call:?}: {}", message.text));
     }
     if answer.0 > fmi2Error {
         return Err(format!("{call:?}: status {}", answer.0));

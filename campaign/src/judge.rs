@@ -81,12 +81,13 @@ impl<'a> Judge<'a> {
         };
         let about_status: Vec<_> = messages
             .iter()
-            .filter(|message| message.1.starts_with("logStatus"))
+            .filter(|message| message.category.starts_with("logStatus"))
             .collect();
         let right = match about_status[..] {
             [] => !shown,
-            [(told, named, text)] => {
-                shown && *told == status && named == category && text.starts_with(&format!("{}: ", call.function()))
+            [told] => {
+                let function = format!("{}: ", call.function());
+                shown && told.status == status && told.category == category && told.text.starts_with(&function)
             }
             _ => false,
         };

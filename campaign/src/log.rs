@@ -6,8 +6,18 @@ use std::sync::Mutex;
 
 use relay_contact::fmi2::*;
 
-/// A message: status, category, text.
-pub type Message = (fmi2Status, String, String);
+/// A message as it reached the importer.
+#[derive(Clone, Debug)]
+pub struct Message {
+    /// Name of the instance.
+    pub instance: String,
+    /// Status.
+    pub status: fmi2Status,
+    /// Category.
+    pub category: String,
+    /// Text.
+    pub text: String,
+}
 
 /// Where the callback writes to.
 pub type Log = Mutex<Vec<Message>>;
@@ -24,7 +34,12 @@ unsafe extern "C" fn logger(
     let text = |text| unsafe { CStr::from_ptr(text) }.to_string_lossy().into_owned();
     let log = unsafe { &*environment.cast::<Log>() };
     if let Ok(mut log) = log.lock() {
-        log.push((status, text(category), text(message)));
+        log.push(Message {
+            instance: text(instance),
+            status,
+            category: text(category),
+            text: text(message),
+        });
     }
 }
 

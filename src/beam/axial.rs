@@ -45,24 +45,6 @@ pub struct Feedback {
     pub slopes: Modal,
 }
 
-/// The axial force in a motion.
-#[derive(Clone, Copy, Debug)]
-pub struct Compression {
-    /// Axial force above that of the preload, N.
-    pub change: f64,
-    /// Integrals of `w' phi_i'`, 1/sqrt(kg).
-    slopes: Modal,
-    /// How much shorter the beam is along its axis than at preload, m: what the axial force does work on.
-    pub shortening: f64,
-}
-
-impl Compression {
-    /// Loads on the modes.
-    pub fn loads(&self) -> Modal {
-        self.slopes.map(|slope| self.change * slope)
-    }
-}
-
 impl Feedback {
     /// About the preload, for the modes there and their shapes in `space`, under the constant acceleration `gravity` (m/s2).
     pub fn new(
@@ -113,8 +95,8 @@ impl Feedback {
         self.section.tip_stiffness() * (sin + 1.5 * at / self.section.length * cos)
     }
 
-    /// The axial force in the motion.
-    pub fn motion(&self, modes: &[Mode], states: &[ModeState]) -> Compression {
+    /// Loads on the modes in the motion.
+    pub fn loads(&self, modes: &[Mode], states: &[ModeState]) -> Modal {
         let y: f64 = modes.iter().zip(states).map(|(mode, at)| mode.tip * at.q).sum();
         let mut slopes = self.slopes;
         for (row, at) in self.geometric.iter().zip(states) {
@@ -122,28 +104,8 @@ impl Feedback {
                 *slope += entry * at.q;
             }
         }
-        let both = slopes.iter().zip(&self.slopes);
-        let shortening = states
-            .iter()
-            .zip(both)
-            .map(|(at, (now, preload))| 0.5 * at.q * (now + preload))
-            .sum();
-        Compression {
-            change: self.change(y),
-            slopes,
-            shortening,
-        }
-    }
-
-    /// Loads on the modes in the motion.
-    pub fn loads(&self, modes: &[Mode], states: &[ModeState]) -> Modal {
-        self.motion(modes, states).loads()
-    }
-
-    /// Power of what the axial force is above that of the preload, W: energy put into modes and contact.
-    pub fn power(&self, modes: &[Mode], states: &[ModeState]) -> f64 {
-        let loads = self.loads(modes, states);
-        loads.iter().zip(states).map(|(load, at)| load * at.v).sum()
+        let change = self.change(y);
+        slopes.map(|slope| change * slope)
     }
 
     /// How much the axial force may change the stiffness of the modes at most, relative to it, in the motion.

@@ -49,8 +49,7 @@ impl Law {
             Self::Hertz(hertz) => (hertz.mean_force(from, to), hertz.mean_stiffness(from, to)),
             Self::Linear(linear) => (linear.mean_force(from, to), linear.mean_stiffness(from, to)),
         };
-        let force = elastic + self.damping() * stiffness * speed;
-        if self.never_opens() { force } else { force.max(0.0) }
+        self.without_pull(elastic + self.damping() * stiffness * speed)
     }
 
     /// Elastic energy at the indentation `d0 + deviation` above its tangent at `d0` (m), J; never negative.
@@ -64,6 +63,11 @@ impl Law {
     /// Whether the contact holds whatever pulls at it.
     pub fn never_opens(&self) -> bool {
         matches!(self, Self::Linear(linear) if linear.bonded)
+    }
+
+    /// A force (N), or none where it would pull at a contact that cannot.
+    pub fn without_pull(&self, force: f64) -> f64 {
+        if self.never_opens() { force } else { force.max(0.0) }
     }
 
     /// Indentation beyond that of first touch at which a contact at rest bears `force` (N), m.

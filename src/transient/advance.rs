@@ -4,19 +4,16 @@ use crate::BARE;
 use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
 use crate::model::{Model, State};
-use crate::transient::collocation::{Collocation, LONG, SHORT};
+use crate::transient::attempt::{INSIDE, reach};
+use crate::transient::budget::{Budget, work};
+use crate::transient::collocation::{LONG, SHORT};
 use crate::transient::dense::Span;
 use crate::transient::fallback::REFUSALS;
-use crate::transient::nodal::{Source, Trial};
+use crate::transient::nodal::Trial;
 use crate::transient::progress::{Progress, Target};
 use crate::transient::vector;
 use crate::transient::watch::Extremes;
 use crate::transient::workspace::{Room, Workspace};
-
-/// Integration steps of known lengths whose work a communication step may take, and further ones per second of it.
-const BUDGET: u64 = 10_000_000;
-/// See [`BUDGET`].
-const BUDGET_RATE: f64 = 1e7;
 
 /// Spacing of floating-point numbers at an instant, in first steps, with which the motion can be followed.
 const COARSEST: f64 = 0.1;
@@ -24,20 +21,10 @@ const COARSEST: f64 = 0.1;
 /// m/s.
 const SPEED_OF_LIGHT: f64 = 299_792_458.0;
 
-/// Work of a step of a new length, in steps of known lengths: its coefficients have to be computed.
-const NEW_LENGTH: u64 = 10;
-
 /// Share of the tolerance that one step may use up. Found by comparing errors with tolerances over scenes
 /// (`tests/calibration.rs`): a blow makes the errors of the motion before it a hundred times larger, and without
 /// damping errors add up.
 const SHARE: f64 = 0.004;
-
-/// Error of the contact force within a step, per force that its polynomial misses at the start.
-const INSIDE: f64 = 0.3;
-
-/// Largest difference that Newton's method leaves between a nodal force and that of the law, in errors allowed in a
-/// step.
-const NEWTON: f64 = 0.2;
 
 /// Growth from step to step that shows the steps are still finding their length.
 const GROWING: f64 = 1.5;
@@ -50,17 +37,6 @@ const LONG_FLOOR: f64 = 3e-11;
 
 /// Many nodes reach at most about this many times as far as few.
 const LONGER: f64 = 16.0;
-
-/// Work that a communication step of `size` seconds may take, in integration steps of known lengths, also repeated ones
-/// and ones only looked at.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a count of steps, saturating"
-)]
-pub(super) fn budget(size: f64) -> u64 {
-    BUDGET.saturating_add((size * BUDGET_RATE) as u64)
-}
 
 /// A communication step under way.
 pub(super) struct Integration<'a> {
@@ -144,7 +120,7 @@ impl Model {
             Steps::Exactly { time, size } => {
                 state.time = self.rests_until(state, &drive, tolerance, time + size).unwrap_or(time);
                 let left = size - (state.time - time);
-                if left <= 0.0 || self.step_exactly(state, &mut workspace.propagator, &drive, left) {
+                if left <= 0.0 || self.step_exactly(state, &mut workspace.propagators, &drive, left) {
                     return Ok(());
                 }
                 (Progress::over(state.time, left), None)
@@ -183,12 +159,9 @@ impl Integration<'_> {
         }
         self.set_support_rate();
         self.note_force();
-        let budget = budget(self.progress.size);
-        let limit = self.workspace.work.saturating_add(budget);
+        let budget = Budget::new(self.workspace, self.progress.size);
         while self.progress.done < 1.0 {
-            if self.workspace.work >= limit {
-                return Err(self.error(StepErrorCause::Budget(budget)));
-            }
+            budget.check(self.workspace, self.state.time)?;
             self.advance()?;
             self.note_force();
             let Progress { free, done, .. } = self.progress;
@@ -300,85 +273,6 @@ impl Integration<'_> {
         Ok(Advice::after(target.length, wanted, growth))
     }
 
-    /// Estimated error of a trial to the target, in errors allowed; none where it is rounding, which no shorter step
-    /// makes smaller.
-    pub(super) fn relative_error<const S: usize>(&self, trial: &Trial<S>, target: &Target) -> f64 {
-        let looked_into = self.span.as_ref().is_some_and(|(until, _)| *until < target.time);
-        // Short steps may be wrong inside: `Span::good` then keeps them from being looked into.
-        let inside = if looked_into && S != SHORT {
-            INSIDE / self.tolerance
-        } else {
-            0.0
-        };
-        let (ratio, inside) = (trial.error / self.allowed.max(trial.rounding), trial.missed * inside);
-        // Not `max`, which would hide what is not a number.
-        let ratio = if ratio < inside { inside } else { ratio };
-        if ratio > 1.0 && self.model.is_rounding(self.state, trial) {
-            0.0
-        } else {
-            ratio
-        }
-    }
-
-    /// Whether a step to the target may have this error: what is allowed, and any where it cannot be shorter.
-    pub(super) fn is_acceptable(&self, ratio: f64, target: &Target) -> bool {
-        ratio <= 1.0 || self.is_shortest(target) && ratio.is_finite()
-    }
-
-    /// Whether the step is as short as steps get: half of it would be too short.
-    pub(super) fn is_shortest(&self, target: &Target) -> bool {
-        target.length <= 2.0 * self.shortest()
-    }
-
-    /// Length below which no step is wanted, s.
-    fn shortest(&self) -> f64 {
-        8.0 * self.resolution()
-    }
-
-    /// The step to the target, with the modes at its end kept for [`Integration::take`].
-    pub(super) fn attempt<const S: usize>(&mut self, target: &Target) -> Option<Trial<S>>
-    where
-        Workspace: Room<S>,
-    {
-        self.trial(target.length, target.recurring, true)
-    }
-
-    /// A step of `length` seconds only to be looked at.
-    pub(super) fn probe<const S: usize>(&mut self, length: f64) -> Option<Trial<S>>
-    where
-        Workspace: Room<S>,
-    {
-        self.trial(length, false, false)
-    }
-
-    /// A step of `length` seconds, whose coefficients may be wanted again (`recurring`), and the modes at its end
-    /// (`kept`).
-    fn trial<const S: usize>(&mut self, length: f64, recurring: bool, kept: bool) -> Option<Trial<S>>
-    where
-        Workspace: Room<S>,
-    {
-        self.workspace.work += if recurring { 1 } else { NEW_LENGTH };
-        let (cache, end, probe) = self.workspace.parts();
-        let (step, collocation) = cache.get(length, recurring, self.model);
-        let source = Source::Law(NEWTON * self.allowed);
-        let modes = if kept { end } else { probe };
-        self.model
-            .trial(self.state, &self.drive, step, collocation, source, modes)
-    }
-
-    /// Difference between instants that cannot be told apart, s.
-    pub(super) fn resolution(&self) -> f64 {
-        f64::EPSILON * (self.progress.start.abs() + self.progress.size)
-    }
-
-    /// The polynomials of the steps.
-    pub(super) fn collocation<const S: usize>(&mut self) -> &Collocation<S>
-    where
-        Workspace: Room<S>,
-    {
-        self.workspace.parts().0.collocation()
-    }
-
     /// Gives up a step; the next one is to have the length.
     pub(super) fn reject(&mut self, length: f64) -> Advice {
         self.state.rejected_steps += 1;
@@ -399,6 +293,10 @@ impl Integration<'_> {
             return Err(self.error(StepErrorCause::NotFinite));
         }
         let due = self.energy_due(trial, target);
+        if due.is_some() {
+            // The step once more, in halves.
+            self.workspace.work += work(target.recurring) + 1;
+        }
         self.enter(trial, target.length);
         let Self { model, state, .. } = self;
         let (cache, end, _) = Room::<S>::parts(self.workspace);
@@ -424,20 +322,10 @@ impl Integration<'_> {
         state.indentation = trial.indentation;
         state.indentation_rate = trial.rate;
         if state.closed {
-            let force = model.preload.force + vector::end(&trial.forces);
-            state.force = if model.law.never_opens() { force } else { force.max(0.0) };
+            state.force = model.law.without_pull(model.preload.force + vector::end(&trial.forces));
         }
         if let Some(extremes) = &mut self.extremes {
-            if state.closed {
-                let floor = if model.law.never_opens() {
-                    f64::NEG_INFINITY
-                } else {
-                    0.0
-                };
-                extremes.add_course(state.predictions.through_all(), -1.0, 0.0, model.preload.force, floor);
-            } else {
-                extremes.add(0.0);
-            }
+            extremes.add_course(model, state.closed, state.predictions.through_all(), -1.0, 0.0);
         }
         state.last_step = target.length;
         state.steps += 1;
@@ -448,10 +336,4 @@ impl Integration<'_> {
         self.balance(due);
         Ok(())
     }
-}
-
-/// How many times as long a step could be that is wrong by `ratio` errors allowed: the error estimate grows with the
-/// power `S + 1` of the length.
-fn reach<const S: usize>(ratio: f64) -> f64 {
-    ratio.powf(-1.0 / (S as f64 + 1.0))
 }

@@ -20,6 +20,12 @@ pub const MAX_SHAPES: usize = LONG + 1;
 /// A value at each node.
 pub type Nodal<const S: usize> = [f64; S];
 
+/// Points at which a nodal polynomial is looked at where it comes near zero.
+const LOOKS: u32 = 32;
+
+/// Share of its greatest value above which a nodal polynomial stays between its nodes if it does at them.
+const NEAR: f64 = 0.25;
+
 /// Nodes that a flat prediction goes through.
 const FLAT: usize = 4;
 
@@ -67,6 +73,9 @@ pub struct Collocation<const S: usize> {
 }
 
 impl<const S: usize> Collocation<S> {
+    /// Distance of the places that [`Collocation::looks`] gives, in steps.
+    pub const LOOK: f64 = 1.0 / LOOKS as f64;
+
     /// The nodes and shapes.
     pub fn new() -> Self {
         let mut nodes = [0.0; S];
@@ -114,6 +123,23 @@ impl<const S: usize> Collocation<S> {
             sum += value * others.map(|node| (x - node) / (own - node)).product::<f64>();
         }
         sum
+    }
+
+    /// Whether the nodal polynomial through `values`, which was `start` where the step begins, may reach zero within it.
+    pub fn comes_near_zero(start: f64, values: &Nodal<S>) -> bool {
+        let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let highest = values.iter().copied().fold(start, f64::max);
+        lowest <= NEAR * highest
+    }
+
+    /// Where to look for it (in steps), ascending: before the first node the polynomial extrapolates, there it is no
+    /// evidence.
+    pub fn looks(&self) -> impl Iterator<Item = f64> + Clone + use<S> {
+        let first = self.nodes.first().copied().unwrap_or_default();
+        let between = (1..LOOKS)
+            .map(|k| f64::from(k) * Self::LOOK)
+            .filter(move |x| *x > first);
+        [first].into_iter().chain(between).chain([1.0])
     }
 
     /// Mean over the step of the nodal polynomial through `values`.

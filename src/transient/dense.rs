@@ -11,7 +11,8 @@ use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
 use crate::inputs::Inputs;
 use crate::model::{MAX_MODES, Model, State};
-use crate::transient::advance::{Steps, budget};
+use crate::transient::advance::Steps;
+use crate::transient::budget::Budget;
 use crate::transient::collocation::Prediction;
 use crate::transient::events::Event;
 use crate::transient::watch::{Extremes, value_and_slope};
@@ -32,8 +33,9 @@ pub struct Course {
     pub current_rate: f64,
     /// Length of the last communication step, s.
     size: f64,
-    /// Extremes of the contact force in it, but for what lies in [`Course::span`] inside which it ends, N.
-    extremes: Extremes,
+    /// Extremes of the contact force in it, but for what lies in [`Course::span`] inside which it ends, N; none where all
+    /// of it does or nobody asks.
+    extremes: Option<Extremes>,
     /// What drove the contact over it.
     drive: Drive,
     /// The motion at the communication point, or before it where the integrator is ahead.
@@ -85,7 +87,7 @@ impl Course {
             current: 0.0,
             current_rate: 0.0,
             size: 0.0,
-            extremes: Extremes::at(state.force),
+            extremes: None,
             drive: Drive::default(),
             start: state,
             end: state,
@@ -116,18 +118,16 @@ impl Course {
             span,
         } = self;
         let polynomials = [&span.force, &span.indentation, &span.rate].into_iter().flatten();
-        let numbers = [
-            *time,
-            *current,
-            *current_rate,
-            *size,
-            extremes.least,
-            extremes.greatest,
-            drive.jerk,
-            drive.support_rate,
-        ];
+        let numbers = [*time, *current, *current_rate, *size, drive.jerk, drive.support_rate];
+        let extremes = extremes
+            .iter()
+            .flat_map(|extremes| [&extremes.least, &extremes.greatest]);
         let driven = drive.acceleration(start.time);
-        numbers.iter().chain(polynomials).all(|number| number.is_finite())
+        numbers
+            .iter()
+            .chain(extremes)
+            .chain(polynomials)
+            .all(|number| number.is_finite())
             && driven.is_finite()
             && *size >= 0.0
             && start.is_sound()
@@ -181,7 +181,7 @@ impl Course {
 
     /// Extremes of the contact force within the last communication step, N, where the scene asks for them.
     pub fn extremes(&self, model: &Model) -> Extremes {
-        let mut extremes = self.extremes;
+        let mut extremes = self.extremes.unwrap_or_else(|| Extremes::at(self.tip(model).force));
         if self.time < self.end.time {
             self.add_span(&mut extremes, model, self.time - self.size, self.time);
         }
@@ -191,16 +191,7 @@ impl Course {
     /// Adds what the force does in the span between two instants (s), of which the first may lie before it.
     fn add_span(&self, extremes: &mut Extremes, model: &Model, from: f64, to: f64) {
         let at = |time: f64| ((time - self.end.time) / self.length()).clamp(-1.0, 0.0);
-        if self.start.closed {
-            let floor = if model.law.never_opens() {
-                f64::NEG_INFINITY
-            } else {
-                0.0
-            };
-            extremes.add_course(&self.span.force, at(from), at(to), model.preload.force, floor);
-        } else {
-            extremes.add(0.0);
-        }
+        extremes.add_course(model, self.start.closed, &self.span.force, at(from), at(to));
     }
 
     /// How the tip changes at the communication point, as it has been reached: what changes there at once comes after.
@@ -255,8 +246,9 @@ impl Model {
         time: f64,
         size: f64,
     ) -> Result<(), StepError> {
-        let until = time + size;
-        if !(size > 0.0 && size.is_finite() && until.is_finite()) {
+        // Where a point comes early by more than the step is long, time stands still.
+        let until = (time + size).max(course.time);
+        if !(size > 0.0 && size.is_finite() && time.is_finite() && until.is_finite()) {
             return Err(StepError {
                 time,
                 cause: StepErrorCause::StepSize,
@@ -270,25 +262,28 @@ impl Model {
         };
         let since = course.time;
         workspace.events.forget_until(since);
-        let mut extremes = Extremes::at(if self.is_watched() { course.tip(self).force } else { 0.0 });
         // The fixed contact moves linearly to where the input leads.
         let support = inputs.support_displacement_after(size) - self.initial_support;
         let drive = Drive::new(inputs, time, size, support - course.state().support);
         let steady = drive.continues(&course.drive) && self.closed_loop.is_none();
         let ahead = course.time < course.end.time;
+        // Nothing is integrated: what is read of the step is computed when it is read.
+        let inside = steady && until < course.end.time;
+        let asked = self.scene.effects.extremes && !BARE;
+        let mut extremes = (asked && !inside).then(|| Extremes::at(course.tip(self).force));
         let reach = course.end.short_step.max(course.end.long_step);
         if steady && (ahead || size < reach || size < MANY_STEPS * reach && size != course.size) {
-            if until > course.end.time {
+            if !inside {
                 let left = until - course.end.time;
                 if left < MANY_STEPS * reach {
-                    self.go_ahead(course, workspace, until, &mut extremes)?;
+                    self.go_ahead(course, workspace, until, extremes.as_mut())?;
                 } else {
                     let (mut end, time) = (course.end, course.end.time);
                     let steps = Steps::Exactly { time, size: left };
-                    if self.is_watched() {
-                        course.add_span(&mut extremes, self, since, time);
+                    if let Some(extremes) = &mut extremes {
+                        course.add_span(extremes, self, since, time);
                     }
-                    self.advance(&mut end, workspace, course.drive, steps, self.watched(&mut extremes))?;
+                    self.advance(&mut end, workspace, course.drive, steps, extremes.as_mut())?;
                     end.time = until;
                     (course.start, course.end) = (end, end);
                 }
@@ -301,8 +296,7 @@ impl Model {
                 workspace.events.forget_after(since);
             }
             let steps = Steps::Exactly { time, size };
-            let watched = self.watched(&mut extremes);
-            if let Err(error) = self.advance(&mut course.end, workspace, drive, steps, watched) {
+            if let Err(error) = self.advance(&mut course.end, workspace, drive, steps, extremes.as_mut()) {
                 (course.start, course.end) = before.unwrap_or((course.start, course.start));
                 workspace.events.forget_after(since);
                 return Err(error);
@@ -334,15 +328,6 @@ impl Model {
         Ok(state)
     }
 
-    /// Whether extremes are asked for.
-    fn is_watched(&self) -> bool {
-        self.scene.effects.extremes && !BARE
-    }
-
-    fn watched<'a>(&self, extremes: &'a mut Extremes) -> Option<&'a mut Extremes> {
-        self.is_watched().then_some(extremes)
-    }
-
     /// Advances the integrator by its own steps until it is at `time` (s) or ahead of it. Extremes are those up to the
     /// end of the last step that lies before.
     fn go_ahead(
@@ -350,28 +335,28 @@ impl Model {
         course: &mut Course,
         workspace: &mut Workspace,
         time: f64,
-        extremes: &mut Extremes,
+        mut extremes: Option<&mut Extremes>,
     ) -> Result<(), StepError> {
         let since = course.time;
         let mut ahead = *course;
-        if self.is_watched() && since < ahead.end.time {
+        if let Some(extremes) = &mut extremes
+            && since < ahead.end.time
+        {
             ahead.add_span(extremes, self, since, ahead.end.time);
             extremes.add(ahead.end.force);
         }
-        let budget = budget(time - since);
-        let limit = workspace.work.saturating_add(budget);
+        let budget = Budget::new(workspace, time - since);
         while ahead.end.time < time {
-            if workspace.work >= limit {
-                let (time, cause) = (ahead.end.time, StepErrorCause::Budget(budget));
-                return Err(StepError { time, cause });
-            }
+            budget.check(workspace, ahead.end.time)?;
             ahead.start = ahead.end;
             let steps = Steps::Own {
                 until: time,
                 span: &mut ahead.span,
             };
             self.advance(&mut ahead.end, workspace, ahead.drive, steps, None)?;
-            if self.is_watched() && ahead.end.time <= time {
+            if let Some(extremes) = &mut extremes
+                && ahead.end.time <= time
+            {
                 ahead.add_span(extremes, self, since, ahead.end.time);
                 extremes.add(ahead.end.force);
             }
@@ -381,7 +366,7 @@ impl Model {
             workspace.events.forget_after(ahead.end.time);
             let (start, size) = (ahead.end.time, time - ahead.end.time);
             let steps = Steps::Exactly { time: start, size };
-            self.advance(&mut ahead.end, workspace, ahead.drive, steps, self.watched(extremes))?;
+            self.advance(&mut ahead.end, workspace, ahead.drive, steps, extremes)?;
         }
         *course = ahead;
         Ok(())

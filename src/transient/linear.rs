@@ -1,7 +1,7 @@
 //! Exact steps of any length where beam and contact are linear.
 //!
 //! With the contact as a spring and damper at the tip, the eigenvalues of the motion come in pairs
-//! ([`super::secular`]), each a damped oscillator of its own that is propagated exactly ([`super::oscillator`]). A step
+//! ([`super::secular`]), each a damped oscillator of its own ([`super::oscillator`]) that is propagated exactly ([`super::propagator`]). A step
 //! goes from the cantilever's modes to these oscillators, moves them, and comes back.
 //!
 //! Constant and linear loads (base acceleration held or linear, fixed contact moving linearly) are taken out by a particular
@@ -15,7 +15,8 @@ use crate::excitation::drive::Drive;
 use crate::model::{MAX_MODES, Mode, Model, State};
 use crate::scene::Scene;
 use crate::transient::machine::{Arithmetic, Machine, compiled_for};
-use crate::transient::oscillator::{Coordinates, Oscillator, Propagator, set};
+use crate::transient::oscillator::{Coordinates, Oscillator, set};
+use crate::transient::propagator::Propagators;
 use crate::transient::secular::{EigenPair, Problem};
 
 /// Largest error of taking the motion of a single mode apart and putting it together again, relative to its amplitude.
@@ -203,7 +204,7 @@ impl ClosedLoop {
         &self,
         model: &Model,
         state: &mut State,
-        propagator: &mut Propagator,
+        propagators: &mut Propagators,
         drive: &Drive,
         length: f64,
     ) -> bool {
@@ -234,7 +235,9 @@ impl ClosedLoop {
         if watched && least >= self.least_force(model, &free, &steady, (sine, cosine), length) {
             return false;
         }
-        propagator.set_length(length, &self.oscillators, &model.generator);
+        let Some(propagator) = propagators.over(length, &self.oscillators, &model.generator) else {
+            return false;
+        };
         let (x, v) = free.split_at(count);
         let mut moved = [0.0; 2 * MAX_MODES];
         let (x_end, v_end) = moved.split_at_mut(count);
@@ -353,7 +356,7 @@ impl Model {
     pub(super) fn step_exactly(
         &self,
         state: &mut State,
-        propagator: &mut Propagator,
+        propagators: &mut Propagators,
         drive: &Drive,
         size: f64,
     ) -> bool {
@@ -372,7 +375,7 @@ impl Model {
         }
         let end = state.time + size;
         let Some(corner) = self.generator.next_break(state.time).filter(|corner| *corner < end) else {
-            if !closed_loop.advance(self, state, propagator, drive, size) {
+            if !closed_loop.advance(self, state, propagators, drive, size) {
                 return false;
             }
             state.time = end;
@@ -380,9 +383,9 @@ impl Model {
         };
         let saved = *state;
         let first = corner - state.time;
-        if closed_loop.advance(self, state, propagator, drive, first) {
+        if closed_loop.advance(self, state, propagators, drive, first) {
             state.time = corner;
-            if self.step_exactly(state, propagator, drive, size - first) {
+            if self.step_exactly(state, propagators, drive, size - first) {
                 state.time = end;
                 return true;
             }

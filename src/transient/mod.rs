@@ -5,8 +5,9 @@
 //!
 //! - [`dense`]: a communication step, also where its end lies inside a step of the integrator; [`workspace`]: the room
 //!   for it, made once.
-//! - [`advance`]: integration steps one after the other, taken or rejected by an estimate of the error of the force;
-//!   [`progress`]: the grid they end on; [`rest`]: a contact at rest takes none.
+//! - [`advance`]: integration steps one after the other, taken or rejected by an estimate of the error of the force
+//!   ([`attempt`]);
+//!   [`progress`]: the grid they end on; [`budget`]: how many there may be; [`rest`]: a contact at rest takes none.
 //! - [`switching`]: steps end where the contact opens ([`release`]) or closes ([`touchdown`]), and begin anew;
 //!   [`events`] keeps a list.
 //! - [`watch`]: extremes of the force within steps, and where it passes that of an interruption.
@@ -29,12 +30,14 @@
 //! Where the contact is linear and stays closed, a communication step is one exact step:
 //!
 //! - [`linear`]: the step, in the eigenvectors of beam and contact; [`oscillator`]: each pair of eigenvalues on its
-//!   own.
+//!   own; [`propagator`]: its motion over a step, kept for lengths that come again.
 //! - [`secular`]: eigenvalues and eigenvectors; [`zeros`]: the eigenvalues where beam and contact are damped
 //!   differently.
 
 pub mod advance;
+pub mod attempt;
 pub mod axial;
+pub mod budget;
 pub mod coefficients;
 pub mod collocation;
 pub mod dense;
@@ -50,6 +53,7 @@ pub mod newton;
 pub mod nodal;
 pub mod oscillator;
 pub mod progress;
+pub mod propagator;
 pub mod release;
 pub mod response;
 pub mod rest;

@@ -43,8 +43,6 @@ pub struct Trial<const S: usize> {
     pub iterations: u64,
     /// Of the law.
     pub slopes: Slopes,
-    /// Work done by an axial force that follows the deflection, beyond that of the preload's, J.
-    pub axial_work: f64,
 }
 
 /// What acts on the tip in a step besides the contact force.
@@ -219,7 +217,6 @@ impl Model {
             missed: missed.abs(),
             iterations,
             slopes: solution.slopes,
-            axial_work: 0.0,
         }
     }
 

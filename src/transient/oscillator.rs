@@ -1,10 +1,9 @@
-//! A pair of eigenvalues of beam and linear contact as a damped oscillator, and its exact motion over a step.
+//! A pair of eigenvalues of beam and linear contact as a damped oscillator, and its motion in closed form.
 
 use std::f64::consts::TAU;
 
 use nalgebra::Complex;
 
-use crate::excitation::{self, Generator};
 use crate::model::MAX_MODES;
 use crate::transient::free_motion::FreeMotion;
 
@@ -26,63 +25,6 @@ pub struct Oscillator {
     pub(super) apart: Option<[(f64, f64); 2]>,
     /// Contact force per displacement and per velocity.
     pub(super) force: [f64; 2],
-}
-
-/// Everything of a step that depends on its length alone, for the last length.
-#[derive(Clone, Debug)]
-pub struct Propagator {
-    /// The length, s; 0 before the first.
-    length: f64,
-    /// Free motion of each oscillator: displacement and velocity at the end per displacement and velocity at the start.
-    pub(super) x_from_x: [f64; MAX_MODES],
-    pub(super) x_from_v: [f64; MAX_MODES],
-    pub(super) v_from_x: [f64; MAX_MODES],
-    pub(super) v_from_v: [f64; MAX_MODES],
-    /// Motion from rest under the generator with unit amplitude: per sine and per cosine of its phase at the start.
-    pub(super) from_sine: Coordinates,
-    pub(super) from_cosine: Coordinates,
-}
-
-impl Default for Propagator {
-    /// No length yet.
-    fn default() -> Self {
-        Self {
-            length: 0.0,
-            x_from_x: [0.0; MAX_MODES],
-            x_from_v: [0.0; MAX_MODES],
-            v_from_x: [0.0; MAX_MODES],
-            v_from_v: [0.0; MAX_MODES],
-            from_sine: [0.0; 2 * MAX_MODES],
-            from_cosine: [0.0; 2 * MAX_MODES],
-        }
-    }
-}
-
-impl Propagator {
-    /// Computes what belongs to the length (s), unless it is there.
-    pub(super) fn set_length(&mut self, length: f64, oscillators: &[Oscillator], generator: &Generator) {
-        if self.length.to_bits() == length.to_bits() {
-            return;
-        }
-        self.length = length;
-        let count = oscillators.len();
-        let generated = generator.frequency().map(|frequency| {
-            let turn = Complex::from_polar(1.0, TAU * excitation::turned(frequency, length));
-            (frequency, turn)
-        });
-        let from_x = self.x_from_x.iter_mut().zip(&mut self.v_from_x);
-        let from_v = self.x_from_v.iter_mut().zip(&mut self.v_from_v);
-        for (n, (oscillator, (from_x, from_v))) in oscillators.iter().zip(from_x.zip(from_v)).enumerate() {
-            let free = FreeMotion::new(oscillator.omega_squared, oscillator.damping, length);
-            (*from_x.0, *from_x.1) = (free.q_from_q, free.v_from_q);
-            (*from_v.0, *from_v.1) = (free.q_from_v, free.v_from_v);
-            if let Some((frequency, turn)) = generated {
-                let driven = oscillator.loaded(oscillator.driven_from_rest(&free, frequency, turn, length));
-                set(&mut self.from_sine, n, count, driven.map(|motion| motion.re));
-                set(&mut self.from_cosine, n, count, driven.map(|motion| motion.im));
-            }
-        }
-    }
 }
 
 /// Sets displacement and velocity of an oscillator.
@@ -136,7 +78,7 @@ impl Oscillator {
 
     /// Displacement and velocity `length` seconds after rest under the acceleration `e^(i omega t)`, which is `turn`
     /// there.
-    fn driven_from_rest(
+    pub(super) fn driven_from_rest(
         &self,
         free: &FreeMotion,
         frequency: f64,

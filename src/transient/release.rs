@@ -2,12 +2,10 @@
 
 use crate::math::roots;
 use crate::transient::advance::Integration;
+use crate::transient::collocation::Collocation;
 use crate::transient::nodal::Trial;
 use crate::transient::switching::Cut;
 use crate::transient::workspace::{Room, Workspace};
-
-/// Points at which the force polynomial is looked at where it comes near zero.
-const LOOKS: u32 = 32;
 
 /// The golden section.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
@@ -50,7 +48,7 @@ impl Integration<'_> {
     {
         let preload = self.model.preload;
         let model = self.model;
-        let highest = self.state.force;
+        let start = self.state.force;
         let collocation = self.collocation::<S>();
         let open = |d: f64, rate: f64| model.engagement(d, rate) <= 0.0;
         let node = collocation
@@ -62,29 +60,20 @@ impl Integration<'_> {
         let sure = node.or_else(|| open(trial.indentation, trial.rate).then_some(1.0));
 
         let forces = trial.forces.map(|force| preload.force + force);
-        let lowest = forces.iter().copied().fold(f64::INFINITY, f64::min);
-        let highest = forces.iter().copied().fold(highest, f64::max);
-        if sure.is_none() && (lowest > 0.25 * highest || model.law.never_opens()) {
+        if sure.is_none() && (model.law.never_opens() || !Collocation::comes_near_zero(start, &forces)) {
             return None;
         }
         let force = |x: f64| collocation.interpolate(&forces, x);
-        // Before the first node the polynomial extrapolates: there it is no evidence.
-        let first = collocation.nodes.first().copied().unwrap_or_default();
-        let look = |k: u32| f64::from(k) / f64::from(LOOKS);
-        if let Some(dip) = (1..LOOKS)
-            .map(look)
-            .skip_while(|x| *x < first)
-            .take_while(|x| sure.is_none_or(|sure| *x < sure))
-            .find(|x| force(*x) < 0.0)
-        {
+        let looks = collocation.looks();
+        let mut before = looks.clone().take_while(|x| sure.is_none_or(|sure| *x < sure));
+        if let Some(dip) = before.find(|x| force(*x) < 0.0) {
             return Some(dip);
         }
         // The lowest place between two looks, by golden section.
-        let lowest = (1..LOOKS)
-            .map(look)
-            .min_by(|a, b| force(*a).total_cmp(&force(*b)))
-            .unwrap_or_default();
-        let (mut a, mut b) = ((lowest - look(1)).max(first), lowest + look(1));
+        let first = looks.clone().next().unwrap_or_default();
+        let lowest = looks.min_by(|a, b| force(*a).total_cmp(&force(*b))).unwrap_or_default();
+        let look = Collocation::<S>::LOOK;
+        let (mut a, mut b) = ((lowest - look).max(first), (lowest + look).min(1.0));
         for _ in 0..25 {
             let (c, d) = (b - GOLDEN * (b - a), a + GOLDEN * (b - a));
             (a, b) = if force(c) < force(d) { (a, d) } else { (c, b) };

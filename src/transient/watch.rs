@@ -6,8 +6,9 @@ use crate::BARE;
 use crate::chatter::Criterion;
 use crate::error::StepError;
 use crate::math::roots;
+use crate::model::Model;
 use crate::transient::advance::{Advice, Integration};
-use crate::transient::collocation::{Prediction, SHORT};
+use crate::transient::collocation::{Collocation, Prediction, SHORT};
 use crate::transient::nodal::Trial;
 use crate::transient::progress::Target;
 use crate::transient::switching::Cut;
@@ -41,9 +42,17 @@ impl Extremes {
         self.greatest = self.greatest.max(force);
     }
 
-    /// The forces that a polynomial takes from `from` to `to`, added to `offset` (N) and not less than `floor` (N).
-    pub(super) fn add_course(&mut self, polynomial: &Prediction, from: f64, to: f64, offset: f64, floor: f64) {
-        let value = |y: f64| (offset + value_and_slope(polynomial, y).0).max(floor);
+    /// The forces within a step, from `from` to `to` (in steps before its end): those of the polynomial, or none where the
+    /// contact is open.
+    pub(super) fn add_course(&mut self, model: &Model, closed: bool, polynomial: &Prediction, from: f64, to: f64) {
+        if !closed {
+            self.add(0.0);
+            return;
+        }
+        let value = |y: f64| {
+            let force = model.preload.force + value_and_slope(polynomial, y).0;
+            model.law.without_pull(force)
+        };
         let slope = |y: f64| value_and_slope(polynomial, y).1;
         let at = |k: u32| from + (to - from) * f64::from(k) / f64::from(PIECES);
         self.add(value(from));
@@ -70,9 +79,6 @@ pub(super) fn value_and_slope(coefficients: &Prediction, y: f64) -> (f64, f64) {
     })
 }
 
-/// Points at which the force polynomial is looked at where it comes near the threshold.
-const LOOKS: u32 = 32;
-
 impl Integration<'_> {
     /// Where in a step of the closed contact (in steps) the force first passes that of an interruption, where it does.
     pub(super) fn first_passage<const S: usize>(&mut self, trial: &Trial<S>) -> Option<f64>
@@ -84,18 +90,12 @@ impl Integration<'_> {
             return None;
         }
         let excess = trial.forces.map(|force| self.excess(&criterion, force));
-        let lowest = excess.iter().copied().fold(f64::INFINITY, f64::min);
-        let highest = excess.iter().copied().fold(0.0, f64::max);
-        // As far from the threshold as this, a polynomial does not reach it between its nodes.
-        if lowest > 0.25 * highest {
+        let start = self.excess(&criterion, self.state.force - self.model.preload.force);
+        if !Collocation::comes_near_zero(start, &excess) {
             return None;
         }
         let collocation = self.collocation::<S>();
-        let passed = |x: &f64| collocation.interpolate(&excess, *x) < 0.0;
-        // Before the first node the polynomial extrapolates: there it is no evidence.
-        let first = collocation.nodes.first().copied().unwrap_or_default();
-        let looks = (1..=LOOKS).map(|k| f64::from(k) / f64::from(LOOKS));
-        [first].into_iter().chain(looks.filter(|x| *x > first)).find(passed)
+        collocation.looks().find(|x| collocation.interpolate(&excess, *x) < 0.0)
     }
 
     /// How far a force, as deviation from the preload force, is on the side of the threshold on which it was, N.
@@ -106,6 +106,15 @@ impl Integration<'_> {
         } else {
             above
         }
+    }
+
+    /// The same after a step of `length` seconds, N.
+    fn excess_after<const S: usize>(&mut self, criterion: &Criterion, length: f64) -> f64
+    where
+        Workspace: Room<S>,
+    {
+        let trial = self.probe::<S>(length);
+        trial.map_or(f64::NAN, |trial| self.excess(criterion, vector::end(&trial.forces)))
     }
 
     /// Ends the step at the passage that shows after the part `passed` of it; nothing where it may go on to its end.
@@ -119,7 +128,8 @@ impl Integration<'_> {
     where
         Workspace: Room<S>,
     {
-        let Some(criterion) = &self.model.criterion else {
+        let model = self.model;
+        let Some(criterion) = &model.criterion else {
             return Ok(None);
         };
         let latest = passed * target.length;
@@ -127,38 +137,27 @@ impl Integration<'_> {
             // Events are located in short steps; long ones end before.
             return Ok(Some(self.reject(0.9 * latest)));
         }
-        let mut excess = |at: f64| {
-            let trial = self.probe::<S>(at);
-            trial.map_or(f64::NAN, |trial| self.excess(criterion, vector::end(&trial.forces)))
+        let cut_at = |length| Cut {
+            length,
+            switches: false,
         };
-        let end = excess(latest);
+        let end = self.excess_after::<S>(criterion, latest);
         if end > 0.0 {
             // The polynomial passes, the force does not: the next step starts here.
-            let cut = Cut {
-                length: latest,
-                switches: false,
-            };
             return (latest < target.length)
-                .then(|| self.end_at::<S>(&cut, growth, wanted))
+                .then(|| self.end_at::<S>(&cut_at(latest), growth, wanted))
                 .transpose();
         }
-        let start = self.excess(criterion, self.state.force - self.model.preload.force);
+        let start = self.excess(criterion, self.state.force - model.preload.force);
         let (start, resolution) = (start.max(f64::MIN_POSITIVE), self.resolution());
-        let mut excess = |at: f64| {
-            let trial = self.probe::<S>(at);
-            trial.map_or(f64::NAN, |trial| self.excess(criterion, vector::end(&trial.forces)))
-        };
-        let length = roots::between(&mut excess, (0.0, start), (latest, end), resolution).unwrap_or(latest);
+        let excess = |at| self.excess_after::<S>(criterion, at);
+        let length = roots::between(excess, (0.0, start), (latest, end), resolution).unwrap_or(latest);
         if length <= resolution {
             // Nothing of the step is left.
             self.state.interruptions.turn(criterion, self.state.time);
             return Ok(Some(self.reject(target.length)));
         }
-        let cut = Cut {
-            length,
-            switches: false,
-        };
-        let advice = self.end_at::<S>(&cut, growth, wanted)?;
+        let advice = self.end_at::<S>(&cut_at(length), growth, wanted)?;
         if advice.taken {
             self.state.interruptions.turn(criterion, self.state.time);
         }

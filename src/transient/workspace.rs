@@ -4,7 +4,7 @@ use crate::model::{MAX_MODES, ModeState, ModeStates, Model};
 use crate::transient::coefficients::Cache;
 use crate::transient::collocation::{LONG, SHORT};
 use crate::transient::events::Events;
-use crate::transient::oscillator::Propagator;
+use crate::transient::propagator::Propagators;
 
 /// Scratch of the steps. Nothing in it changes a result, only the time it takes.
 #[derive(Clone, Debug)]
@@ -16,7 +16,7 @@ pub struct Workspace {
     /// The modes at instants looked at.
     probe: ModeStates,
     /// Of exact steps.
-    pub(super) propagator: Propagator,
+    pub(super) propagators: Propagators,
     /// Steps computed so far, taken, repeated, or only looked at; those of a new length count for several.
     pub(super) work: u64,
     /// Of the last communication step.
@@ -31,7 +31,7 @@ impl Workspace {
             long: Cache::new(model),
             end: [ModeState::default(); MAX_MODES],
             probe: [ModeState::default(); MAX_MODES],
-            propagator: Propagator::default(),
+            propagators: Propagators::default(),
             work: 0,
             events: Events::new(),
         }

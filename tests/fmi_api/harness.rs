@@ -1,61 +1,18 @@
 //! An importer for tests: calls the C functions as C would, and keeps what was logged.
 
-use std::ffi::{CStr, CString};
+use std::ffi::CString;
 use std::ptr;
-use std::sync::Mutex;
 
 use relay_contact::fmi2::*;
 use relay_contact::variables::{GUID, Variable};
 
-/// A message as it reached the importer.
-#[derive(Clone, Debug)]
-pub struct Message {
-    pub instance: String,
-    pub status: fmi2Status,
-    pub category: String,
-    pub text: String,
-}
-
-pub type Log = Mutex<Vec<Message>>;
+pub use crate::log::{Log, Message, callbacks};
 
 /// An instance under test. Freed with the value.
 pub struct Fmu {
     pub component: fmi2Component,
     // Boxed, so that the address the callback holds stays.
     log: Box<Log>,
-}
-
-/// The log callback without its variable arguments, which the component never passes.
-unsafe extern "C" fn logger(
-    environment: fmi2ComponentEnvironment,
-    instance: fmi2String,
-    status: fmi2Status,
-    category: fmi2String,
-    message: fmi2String,
-) {
-    assert!(!instance.is_null() && !category.is_null() && !message.is_null());
-    let text = |text| unsafe { CStr::from_ptr(text) }.to_str().unwrap().to_owned();
-    let log = unsafe { &*environment.cast::<Log>() };
-    log.lock().unwrap().push(Message {
-        instance: text(instance),
-        status,
-        category: text(category),
-        text: text(message),
-    });
-}
-
-/// Callbacks that write to `log`.
-pub fn callbacks(log: &Log) -> fmi2CallbackFunctions {
-    type Fixed = unsafe extern "C" fn(fmi2ComponentEnvironment, fmi2String, fmi2Status, fmi2String, fmi2String);
-    fmi2CallbackFunctions {
-        // Stable Rust cannot define a variadic function; the C calling conventions of the platforms we test on pass the
-        // fixed arguments of one as those of this function.
-        logger: unsafe { std::mem::transmute::<Fixed, fmi2CallbackLogger>(logger) },
-        allocateMemory: None,
-        freeMemory: None,
-        stepFinished: None,
-        componentEnvironment: ptr::from_ref(log).cast_mut().cast(),
-    }
 }
 
 /// `fmi2Instantiate` with what can go wrong left open.

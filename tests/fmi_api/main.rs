@@ -7,6 +7,8 @@ mod fmu_state;
 mod harness;
 mod importers;
 mod life_cycle;
+#[path = "../../campaign/src/log.rs"]
+mod log;
 mod logging;
 mod steps;
 mod values;

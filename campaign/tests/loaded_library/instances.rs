@@ -45,7 +45,7 @@ fn a_wrong_guid_type_name_or_no_callbacks_make_no_instance() {
         assert!(instantiate(&LIBRARY, name, kind, guid, Some(&log)).is_null());
         let messages = log.into_inner().unwrap();
         assert!(
-            matches!(&messages[..], [(status, ..)] if *status == fmi2Error),
+            matches!(&messages[..], [message] if message.status == fmi2Error),
             "{messages:?}"
         );
     }

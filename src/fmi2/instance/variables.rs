@@ -1,0 +1,201 @@
+//! The variables of an instance by value reference: who may be read and set when.
+
+use super::Instance;
+use crate::fmi2::failure::Failure;
+use crate::fmi2::states::State;
+use crate::fmi2::types::{fmi2Boolean, fmi2False};
+use crate::inputs::Inputs;
+use crate::scene::Scene;
+use crate::simulation::Simulation;
+use crate::variables::{Group, Variable};
+
+impl Instance {
+    /// The simulation to read the output `variable` from.
+    fn computed(&mut self, variable: &Variable) -> Result<&Simulation, Failure> {
+        if self.state == State::InitializationMode {
+            return self.prepare().map_err(Failure::Preview);
+        }
+        self.simulation.as_ref().ok_or(Failure::NotComputed {
+            name: variable.name,
+            state: self.state,
+        })
+    }
+
+    pub(in crate::fmi2) fn real(&mut self, reference: u32) -> Result<f64, Failure> {
+        let variable = find("Real", reference)?;
+        match variable.group {
+            Group::RealOutput(output) => Ok(self.computed(variable)?.real(output)),
+            Group::RealInput(input) => Ok(self.inputs.real(input)),
+            Group::RealParameter(parameter) => Ok(self.scene.real(parameter)),
+            _ => Err(wrong_type("Real", variable)),
+        }
+    }
+
+    pub(in crate::fmi2) fn integer(&mut self, reference: u32) -> Result<i32, Failure> {
+        let variable = find("Integer", reference)?;
+        match variable.group {
+            Group::IntegerOutput(output) => Ok(self.computed(variable)?.integer(output)),
+            Group::IntegerParameter(parameter) => Ok(self.scene.integer(parameter)),
+            Group::EnumerationParameter(parameter) => Ok(self.scene.enumeration(parameter)),
+            _ => Err(wrong_type("Integer", variable)),
+        }
+    }
+
+    pub(in crate::fmi2) fn boolean(&mut self, reference: u32) -> Result<bool, Failure> {
+        let variable = find("Boolean", reference)?;
+        match variable.group {
+            Group::BooleanOutput(output) => Ok(self.computed(variable)?.boolean(output)),
+            Group::BooleanParameter(parameter) => Ok(self.scene.boolean(parameter)),
+            _ => Err(wrong_type("Boolean", variable)),
+        }
+    }
+
+    /// Sets real inputs and parameters; all of them or, on an error, none.
+    pub(in crate::fmi2) fn set_reals(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
+        let (mut scene, mut inputs) = (self.scene, self.inputs);
+        for (&reference, &value) in references.iter().zip(values) {
+            let variable = find("Real", reference)?;
+            match variable.group {
+                Group::RealInput(input) => inputs.set_real(input, value).map_err(Failure::Value)?,
+                Group::RealParameter(parameter) => {
+                    self.check_fixed(variable)?;
+                    scene.set_real(parameter, value).map_err(Failure::Value)?;
+                }
+                Group::RealOutput(_) => return Err(self.output_set(variable)),
+                _ => return Err(wrong_type("Real", variable)),
+            }
+        }
+        self.take_over(&scene, &inputs);
+        Ok(())
+    }
+
+    /// Sets integer and enumeration parameters; all of them or, on an error, none.
+    pub(in crate::fmi2) fn set_integers(&mut self, references: &[u32], values: &[i32]) -> Result<(), Failure> {
+        let mut scene = self.scene;
+        for (&reference, &value) in references.iter().zip(values) {
+            let variable = find("Integer", reference)?;
+            match variable.group {
+                Group::IntegerParameter(parameter) => {
+                    self.check_fixed(variable)?;
+                    scene.set_integer(parameter, value).map_err(Failure::Value)?;
+                }
+                Group::EnumerationParameter(parameter) => {
+                    self.check_fixed(variable)?;
+                    scene.set_enumeration(parameter, value).map_err(Failure::Value)?;
+                }
+                Group::IntegerOutput(_) => return Err(self.output_set(variable)),
+                _ => return Err(wrong_type("Integer", variable)),
+            }
+        }
+        let inputs = self.inputs;
+        self.take_over(&scene, &inputs);
+        Ok(())
+    }
+
+    /// Sets Boolean parameters; all of them or, on an error, none.
+    pub(in crate::fmi2) fn set_booleans(&mut self, references: &[u32], values: &[fmi2Boolean]) -> Result<(), Failure> {
+        let mut scene = self.scene;
+        for (&reference, &value) in references.iter().zip(values) {
+            let variable = find("Boolean", reference)?;
+            match variable.group {
+                Group::BooleanParameter(parameter) => {
+                    self.check_fixed(variable)?;
+                    scene.set_boolean(parameter, value != fmi2False);
+                }
+                Group::BooleanOutput(_) => return Err(self.output_set(variable)),
+                _ => return Err(wrong_type("Boolean", variable)),
+            }
+        }
+        let inputs = self.inputs;
+        self.take_over(&scene, &inputs);
+        Ok(())
+    }
+
+    /// Sets first derivatives of continuous inputs; all of them or, on an error, none.
+    pub(in crate::fmi2) fn set_input_derivatives(
+        &mut self,
+        references: &[u32],
+        orders: &[i32],
+        values: &[f64],
+    ) -> Result<(), Failure> {
+        let mut inputs = self.inputs;
+        for ((&reference, &order), &value) in references.iter().zip(orders).zip(values) {
+            let variable = find("Real", reference)?;
+            let Group::RealInput(input) = variable.group else {
+                return Err(no_derivative(variable, "inputs"));
+            };
+            first_order(variable, order)?;
+            inputs.set_rate(input, value).map_err(Failure::Value)?;
+        }
+        self.inputs = inputs;
+        Ok(())
+    }
+
+    /// The first derivative of a continuous output.
+    pub(in crate::fmi2) fn output_derivative(&mut self, reference: u32, order: i32) -> Result<f64, Failure> {
+        let variable = find("Real", reference)?;
+        let rate = match variable.group {
+            Group::RealOutput(output) => self.computed(variable)?.rate(output),
+            _ => None,
+        };
+        let rate = rate.ok_or(no_derivative(variable, "outputs"))?;
+        first_order(variable, order)?;
+        Ok(rate)
+    }
+
+    fn take_over(&mut self, scene: &Scene, inputs: &Inputs) {
+        (self.scene, self.inputs) = (*scene, *inputs);
+        if self.state == State::InitializationMode {
+            self.simulation = None;
+        }
+    }
+
+    /// Fixed parameters can be set until initialisation ends.
+    fn check_fixed(&self, variable: &Variable) -> Result<(), Failure> {
+        match self.state {
+            State::Instantiated | State::InitializationMode => Ok(()),
+            state => Err(Failure::NotSettable {
+                name: variable.name,
+                state,
+                reason: "a fixed parameter can be set until initialisation ends",
+            }),
+        }
+    }
+
+    fn output_set(&self, variable: &Variable) -> Failure {
+        Failure::NotSettable {
+            name: variable.name,
+            state: self.state,
+            reason: "it is computed; inputs and parameters can be set",
+        }
+    }
+}
+
+fn find(kind: &'static str, reference: u32) -> Result<&'static Variable, Failure> {
+    Variable::by_value_reference(reference).ok_or(Failure::UnknownReference {
+        kind,
+        reference,
+        owner: None,
+    })
+}
+
+/// Derivatives of order 1 are all there are.
+fn first_order(variable: &Variable, order: i32) -> Result<(), Failure> {
+    let name = variable.name;
+    (order == 1).then_some(()).ok_or(Failure::Order { name, order })
+}
+
+fn no_derivative(variable: &Variable, role: &'static str) -> Failure {
+    Failure::NoDerivative {
+        name: variable.name,
+        role,
+    }
+}
+
+fn wrong_type(kind: &'static str, variable: &Variable) -> Failure {
+    Failure::UnknownReference {
+        kind,
+        reference: variable.value_reference,
+        owner: Some(variable.name),
+    }
+}

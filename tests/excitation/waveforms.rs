@@ -1,0 +1,158 @@
+//! The accelerations themselves, against their closed forms and the standards.
+
+use std::f64::consts::TAU;
+
+use relay_contact::excitation::Turns;
+use relay_contact::scene::Scene;
+use relay_contact::transient::collocation::{Collocation, LONG, SHORT};
+use relay_contact::transient::machine::Machine;
+use relay_contact::variables::ExcitationKind;
+
+use crate::{G, closed_form, every_waveform, excited, generator, half_sine, limited, phased, random, sweep};
+
+#[test]
+fn waveforms_are_those_of_their_closed_forms() {
+    for (name, scene) in every_waveform() {
+        let generator = generator(&scene);
+        let mut largest = 0.0_f64;
+        for k in 0..3000 {
+            let time = 1e-6 * (f64::from(k) + 0.5);
+            let (found, expected) = (generator.acceleration(time), closed_form(&scene, time));
+            largest = largest.max(found.abs());
+            assert!(
+                (found - expected).abs() < 1e-11 * 300.0,
+                "{name} at {time}: {found} {expected}"
+            );
+            assert_eq!(generator.is_active(time), found != 0.0, "{name} at {time}");
+        }
+        assert!(largest > 30.0, "{name}: {largest}");
+    }
+}
+
+/// A step's accelerations, at its start and at its nodes, are those of the instants.
+#[test]
+fn nodes_agree_with_direct_evaluation() {
+    fn check<const S: usize>(name: &str, scene: &Scene, time: f64, length: f64) {
+        let generator = generator(scene);
+        let nodes = Collocation::<S>::new().nodes;
+        let mut turns = Turns::<S>::room(&generator);
+        let e = &scene.excitation;
+        let highest = match scene.effects.excitation {
+            ExcitationKind::HalfSine => 0.5 / e.duration,
+            ExcitationKind::Sine => e.frequency,
+            _ => e.frequency.max(e.end_frequency),
+        };
+        let largest = match scene.effects.excitation {
+            // Half its sines in step.
+            ExcitationKind::Random => 0.5 * (512.0 * e.spectral_density * (e.end_frequency - e.frequency)).sqrt(),
+            _ => e.amplitude,
+        };
+        // The rounding of time to each side, in radians, and some of the sums.
+        let allowed = largest * (2.0 * TAU * highest * f64::EPSILON * (time + length) + 1e-13);
+        for machine in [Machine::Portable, Machine::detect()] {
+            turns.fill(&generator, machine, length, &nodes);
+            let found = generator.over_step(machine, time, &turns);
+            let start = generator.acceleration(time);
+            assert!(
+                (found.start - start).abs() <= allowed,
+                "{name} at {time}: {} {start}",
+                found.start
+            );
+            for (x, found) in nodes.iter().zip(&found.nodes) {
+                let expected = generator.acceleration_before(time + x * length);
+                assert!(
+                    (found - expected).abs() <= allowed,
+                    "{name} at {time} + {x} {length}: {found} {expected}, allowed {allowed:e}"
+                );
+            }
+        }
+    }
+    for (name, scene) in every_waveform() {
+        for (time, length) in [
+            (0.0, 3e-4),
+            (3e-4, 1e-4),
+            (7.1e-4, 3e-5),
+            (1.3e-3, 1e-9),
+            (2.2e-3, 1e-4),
+        ] {
+            check::<SHORT>(name, &scene, time, length);
+            check::<LONG>(name, &scene, time, length);
+        }
+    }
+    let late = [
+        ("sweep", sweep(0.0, 10.0, 2000.0, 900.0)),
+        ("slow sweep", sweep(0.0, 1000.0, 1e6, 1e9)),
+        ("slow sweep down", sweep(0.0, 1e6, 1000.0, 1e9)),
+        ("slight sweep", sweep(0.0, 1000.0, 1001.0, 1e9)),
+        ("sweep that is a sine", sweep(0.0, 1000.0, 1000.0, 1e9)),
+        ("sine", excited(ExcitationKind::Sine, 0.0)),
+        ("random", random(0.0, 10.0, 2000.0, 1.0)),
+    ];
+    for (name, scene) in late {
+        for time in [0.1, 17.3, 449.9, 451.2, 899.9] {
+            check::<SHORT>(name, &scene, time, 3e-5);
+            check::<LONG>(name, &scene, time, 3e-5);
+        }
+    }
+    check::<LONG>("slow sweep", &late[1].1, 7e8, 1e-7);
+}
+
+#[test]
+fn a_sweep_between_like_frequencies_is_the_sine() {
+    let sine = generator(&phased(excited(ExcitationKind::Sine, 0.0), 0.3));
+    // Turns that the sweep is ahead: f tau (r - 1) tau / 2 D.
+    for (end_frequency, part) in [
+        (1000.0, 0.0),
+        (1000.0 + 2e-12, 2e-15),
+        (1000.0 + 1e-9, 1e-12),
+        (1000.0 - 1e-9, -1e-12),
+    ] {
+        let near = generator(&phased(sweep(0.0, 1000.0, end_frequency, 1e9), 0.3));
+        for tau in [0.0, 1e-4, 0.77, 1234.567, 1e6, 3.3e8 + 0.125] {
+            let ahead = TAU * 1000.0 * tau * part * tau / 2e9;
+            let difference = (near.acceleration(tau) - sine.acceleration(tau)).abs();
+            // The end frequency is rounded to its spacing, 1e-13 Hz, and what is ahead is within a few parts of it.
+            let allowed = 98.0 * (1.1 * ahead.abs() + TAU * tau * 1e-13 * tau / 1e9 + 1e-12);
+            assert!(difference <= allowed, "{end_frequency} {tau}: {difference} {allowed}");
+        }
+    }
+}
+
+#[test]
+fn the_displacement_limit_crosses_over_where_the_standard_does() {
+    // MIL-STD-202 method 204 condition A: the lesser of 0.06 in double amplitude and 10 g crosses over at 57.10 Hz.
+    let limit = 0.5 * 0.06 * 0.0254;
+    let mut scene = limited(sweep(0.0, 10.0, 500.0, 450.0), limit);
+    scene.excitation.amplitude = 10.0 * G;
+    let crossover = generator(&scene).next_break(0.0).unwrap();
+    let frequency = 10.0 * 50_f64.powf(crossover / 450.0);
+    assert!((frequency - 57.10).abs() < 0.005, "{frequency}");
+    // Up to there the displacement amplitude is the limit, from there on the acceleration is the amplitude.
+    let generator = generator(&scene);
+    for (time, expected) in [(20.0, None), (crossover - 2.0, None), (crossover + 2.0, Some(10.0 * G))] {
+        let frequency = 10.0 * 50_f64.powf(time / 450.0);
+        let course = (0..2000).map(|k| generator.acceleration(time + f64::from(k) * 1e-3 / frequency));
+        let found = course.fold(0.0_f64, |largest, a| largest.max(a.abs()));
+        let expected = expected.unwrap_or((TAU * frequency).powi(2) * limit);
+        // Over two periods the frequency grows by 2 ln(50) / (450 f), the amplitude with its square at the most; the
+        // largest is at most half a thousandth of a period from an instant looked at.
+        let allowed = 4.0 * 50_f64.ln() / (450.0 * frequency) + 0.5 * (TAU * 5e-4).powi(2);
+        assert!((found / expected - 1.0).abs() < allowed, "{time} s: {found} {expected}");
+    }
+}
+
+#[test]
+fn a_shock_changes_the_velocity_as_the_standard_says() {
+    // MIL-STD-202 method 213 condition A: 50 g, 11 ms, half sine.
+    let generator = generator(&half_sine(0.02, 50.0 * G, 0.011));
+    let size = 1e-6;
+    let change: f64 = (0..50_000)
+        .map(|k| size * generator.acceleration(size * (f64::from(k) + 0.5)))
+        .sum();
+    assert!((change - 3.434).abs() < 5e-4, "{change}");
+    assert_eq!(
+        (generator.next_break(0.0), generator.next_break(0.02)),
+        (Some(0.02), Some(0.031))
+    );
+    assert_eq!(generator.next_break(0.031), None);
+}
