@@ -246,14 +246,15 @@ impl Model {
         time: f64,
         size: f64,
     ) -> Result<(), StepError> {
-        // Where a point comes early by more than the step is long, time stands still.
-        let until = (time + size).max(course.time);
-        if !(size > 0.0 && size.is_finite() && time.is_finite() && until.is_finite()) {
+        let until = time + size;
+        if !(size > 0.0 && size.is_finite() && until.is_finite()) {
             return Err(StepError {
                 time,
                 cause: StepErrorCause::StepSize,
             });
         }
+        // Where a point comes early by more than the step is long, time stands still.
+        let until = until.max(course.time);
         // Lengths that differ by the rounding of time are one, but for exact steps.
         let size = if self.closed_loop.is_none() && (size - course.size).abs() <= f64::EPSILON * until.abs() {
             course.size
