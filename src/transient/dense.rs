@@ -246,6 +246,21 @@ impl Model {
         time: f64,
         size: f64,
     ) -> Result<(), StepError> {
+        if self.scene.effects.extremes && !BARE {
+            self.step_by::<true>(course, workspace, inputs, (time, size))
+        } else {
+            self.step_by::<false>(course, workspace, inputs, (time, size))
+        }
+    }
+
+    /// [`Model::step`], with the extremes or without.
+    fn step_by<const EXTREMES: bool>(
+        &self,
+        course: &mut Course,
+        workspace: &mut Workspace,
+        inputs: &Inputs,
+        (time, size): (f64, f64),
+    ) -> Result<(), StepError> {
         let until = time + size;
         if !(size > 0.0 && size.is_finite() && until.is_finite()) {
             return Err(StepError {
@@ -270,8 +285,7 @@ impl Model {
         let ahead = course.time < course.end.time;
         // Nothing is integrated: what is read of the step is computed when it is read.
         let inside = steady && until < course.end.time;
-        let asked = self.scene.effects.extremes && !BARE;
-        let mut extremes = (asked && !inside).then(|| Extremes::at(course.tip(self).force));
+        let mut extremes = (EXTREMES && !inside).then(|| Extremes::at(course.tip(self).force));
         let reach = course.end.short_step.max(course.end.long_step);
         if steady && (ahead || size < reach || size < MANY_STEPS * reach && size != course.size) {
             if !inside {
@@ -308,7 +322,9 @@ impl Model {
             course.drive = drive;
         }
         course.size = size;
-        course.extremes = extremes;
+        if EXTREMES {
+            course.extremes = extremes;
+        }
         course.time = until;
         course.current = inputs.contact_current_after(size);
         course.current_rate = inputs.contact_current_rate;
