@@ -1,7 +1,5 @@
 //! Model and state: everything computed once from a scene, and the numbers that move.
 
-use std::f64::consts::PI;
-
 use crate::BARE;
 use crate::beam::axial::Feedback;
 use crate::beam::characteristic;
@@ -15,12 +13,11 @@ use crate::electrical::Path;
 use crate::error::SceneError;
 use crate::excitation::Generator;
 use crate::preload::Preload;
-use crate::scene::{Beam, Scene};
+use crate::scene::Scene;
 use crate::transient::collocation::Predictions;
 use crate::transient::linear::ClosedLoop;
 use crate::transient::machine::Machine;
 use crate::variables::{AxialForceKind, ContactLawKind, RealParameter};
-
 use serde::{Deserialize, Serialize};
 use serde_big_array::BigArray;
 
@@ -211,7 +208,7 @@ impl Model {
         };
         let count = match usize::try_from(scene.solver.modes) {
             Ok(count) if count > 0 => count.min(MAX_MODES),
-            _ => modes_for(scene.solver.effective_tolerance(), &section, &scene.beam),
+            _ => modes_for(scene.solver.effective_tolerance()),
         };
         let buckled = || SceneError::Buckled {
             name: RealParameter::BeamAxialForce.variable().name,
@@ -347,22 +344,9 @@ impl Model {
     }
 }
 
-/// Modes for a tolerance. Where the damping keeps the last of them from ringing, what is left out is felt most in the
-/// first microsecond after the contact has closed with a blow, where the error of the contact force falls tenfold with
-/// every 1.6 modes (`tests/calibration.rs`). Where they ring, every kink of an excitation sets them off, and the error
-/// falls with the power -4.3 of their number: that of the specimen, shaken with 98 m/s2 from one instant to the next, is
-/// 7e-5 with 16.
-fn modes_for(tolerance: f64, section: &Section, beam: &Beam) -> usize {
+/// Modes for a tolerance: what is left out is felt most in the first microsecond after the contact has closed with a blow,
+/// where the error of the contact force falls tenfold with every 1.6 modes (`tests/calibration.rs`).
+fn modes_for(tolerance: f64) -> usize {
     let digits = (0..11).take_while(|digits| tolerance < 10f64.powi(-digits)).count();
-    let damped = 12 + (8 * digits).div_ceil(5);
-    // About that of the last mode of a clamped beam.
-    let waves = (damped as f64 - 0.5) * PI / section.length;
-    let omega = waves * waves * (section.bending_stiffness / section.mass_per_length).sqrt();
-    let damping_ratio = 0.5 * (beam.mass_damping / omega + beam.stiffness_damping * omega);
-    if damping_ratio > 1.0 {
-        return damped;
-    }
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below MAX_MODES")]
-    let ringing = (16.0 * (7e-5 / tolerance).powf(1.0 / 4.3)).min(MAX_MODES as f64).ceil() as usize;
-    damped.max(ringing)
+    12 + (8 * digits).div_ceil(5)
 }
