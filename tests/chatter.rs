@@ -264,3 +264,61 @@ fn a_step_that_ends_with_the_integrators_own_has_the_extremes_of_it() {
         openings += 1;
     }
 }
+
+/// Where the force dips for an instant below that of an interruption, and is back within the same integration step.
+#[test]
+fn interruptions_of_microseconds_begin_and_end() {
+    let mut scene = shaken(98.0);
+    // The depth of the shortest dip is 2e-9 of the preload force.
+    scene.solver.tolerance = 1e-11;
+    scene.chatter.minimum_duration = 0.0;
+    let course = |scene: &Scene| {
+        let mut simulation = Simulation::new(scene, &Inputs::default(), 0.0).unwrap();
+        simulation.step(&Inputs::default(), 0.0, 1e-3).unwrap();
+        simulation
+    };
+    let least = course(&scene).real(RealOutput::StepMinimumForce);
+    let path = Path::new(&scene).unwrap();
+    let mut growth = Vec::new();
+    for k in 1..=300 {
+        let duration = 3e-8 * f64::from(k);
+        // About its minimum the force is F_min + c t^2, with about this c of its sine, N/s2.
+        let force = least + 9.5e5 * (0.5 * duration).powi(2);
+        scene.chatter.resistance_threshold = 1.0 / path.conductance(force);
+        let simulation = course(&scene);
+        assert_eq!(simulation.integer(IntegerOutput::ChatterCount), 1, "{duration}");
+        growth.push(simulation.real(RealOutput::ChatterTotalInterruption) / duration);
+    }
+    // The same c for all: to the error of the force over the depth, and to the curve's third derivative.
+    let last = growth.last().unwrap();
+    for (k, growth) in growth.iter().enumerate() {
+        assert!((growth / last - 1.0).abs() < 0.01, "{k}: {growth} {last}");
+    }
+}
+
+/// However rounding leaves the force at the instant at which an interruption begins, it goes on.
+#[test]
+fn an_interruption_that_hardly_is_one_comes_to_an_end() {
+    let mut scene = shaken(98.0);
+    scene.chatter.minimum_duration = 0.0;
+    let path = Path::new(&scene).unwrap();
+    let mut least = f64::INFINITY;
+    for k in 0..400 {
+        // From a force that is never reached to one below which it stays for microseconds.
+        let force = 0.1037 + 1e-6 * f64::from(k);
+        scene.chatter.resistance_threshold = 1.0 / path.conductance(force);
+        let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
+        for period in 0..6 {
+            simulation
+                .step(&Inputs::default(), 1e-3 * f64::from(period), 1e-3)
+                .unwrap();
+            least = least.min(simulation.real(RealOutput::StepMinimumForce));
+        }
+        let (count, steps) = (
+            simulation.integer(IntegerOutput::ChatterCount),
+            simulation.integer(IntegerOutput::SolverSteps),
+        );
+        assert!(steps < 200 && count <= 6, "{force}: {count} in {steps} steps");
+        assert!(count > 0 || force < least + 1e-6, "{force} {least}");
+    }
+}

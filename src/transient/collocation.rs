@@ -23,6 +23,9 @@ pub type Nodal<const S: usize> = [f64; S];
 /// Points at which a nodal polynomial is looked at where it comes near zero.
 const LOOKS: u32 = 32;
 
+/// The golden section.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
 /// Share of its greatest value above which a nodal polynomial stays between its nodes if it does at them.
 const NEAR: f64 = 0.25;
 
@@ -73,9 +76,6 @@ pub struct Collocation<const S: usize> {
 }
 
 impl<const S: usize> Collocation<S> {
-    /// Distance of the places that [`Collocation::looks`] gives, in steps.
-    pub const LOOK: f64 = 1.0 / LOOKS as f64;
-
     /// The nodes and shapes.
     pub fn new() -> Self {
         let mut nodes = [0.0; S];
@@ -132,14 +132,27 @@ impl<const S: usize> Collocation<S> {
         lowest <= NEAR * highest
     }
 
-    /// Where to look for it (in steps), ascending: before the first node the polynomial extrapolates, there it is no
-    /// evidence.
-    pub fn looks(&self) -> impl Iterator<Item = f64> + Clone + use<S> {
+    /// Where in the step (in steps) the nodal polynomial through `values` is first seen below zero, before the place
+    /// `until`: at one of the looks, or at the lowest place about the lowest of them. It is not looked at before the first
+    /// node, where it extrapolates and is no evidence.
+    pub fn first_dip(&self, values: &Nodal<S>, until: f64) -> Option<f64> {
+        let value = |x: f64| self.interpolate(values, x);
+        let look = 1.0 / f64::from(LOOKS);
         let first = self.nodes.first().copied().unwrap_or_default();
-        let between = (1..LOOKS)
-            .map(|k| f64::from(k) * Self::LOOK)
-            .filter(move |x| *x > first);
-        [first].into_iter().chain(between).chain([1.0])
+        let between = (1..LOOKS).map(|k| f64::from(k) * look).filter(|x| *x > first);
+        let looks = [first].into_iter().chain(between).chain([1.0]);
+        if let Some(dip) = looks.clone().take_while(|x| *x < until).find(|x| value(*x) < 0.0) {
+            return Some(dip);
+        }
+        // By golden section.
+        let lowest = looks.min_by(|a, b| value(*a).total_cmp(&value(*b))).unwrap_or_default();
+        let (mut a, mut b) = ((lowest - look).max(first), (lowest + look).min(1.0));
+        for _ in 0..25 {
+            let (c, d) = (b - GOLDEN * (b - a), a + GOLDEN * (b - a));
+            (a, b) = if value(c) < value(d) { (a, d) } else { (c, b) };
+        }
+        let bottom = f64::midpoint(a, b);
+        (bottom < until && value(bottom) < 0.0).then_some(bottom)
     }
 
     /// Mean over the step of the nodal polynomial through `values`.

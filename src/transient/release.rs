@@ -7,9 +7,6 @@ use crate::transient::nodal::Trial;
 use crate::transient::switching::Cut;
 use crate::transient::workspace::{Room, Workspace};
 
-/// The golden section.
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
-
 impl Integration<'_> {
     /// Where the step of `length` seconds has to end because the contact opens, which it has done after `latest`
     /// seconds if it does at all.
@@ -63,24 +60,6 @@ impl Integration<'_> {
         if sure.is_none() && (model.law.never_opens() || !Collocation::comes_near_zero(start, &forces)) {
             return None;
         }
-        let force = |x: f64| collocation.interpolate(&forces, x);
-        let looks = collocation.looks();
-        let mut before = looks.clone().take_while(|x| sure.is_none_or(|sure| *x < sure));
-        if let Some(dip) = before.find(|x| force(*x) < 0.0) {
-            return Some(dip);
-        }
-        // The lowest place between two looks, by golden section.
-        let first = looks.clone().next().unwrap_or_default();
-        let lowest = looks.min_by(|a, b| force(*a).total_cmp(&force(*b))).unwrap_or_default();
-        let look = Collocation::<S>::LOOK;
-        let (mut a, mut b) = ((lowest - look).max(first), (lowest + look).min(1.0));
-        for _ in 0..25 {
-            let (c, d) = (b - GOLDEN * (b - a), a + GOLDEN * (b - a));
-            (a, b) = if force(c) < force(d) { (a, d) } else { (c, b) };
-        }
-        let bottom = f64::midpoint(a, b);
-        (sure.is_none_or(|sure| bottom < sure) && force(bottom) < 0.0)
-            .then_some(bottom)
-            .or(sure)
+        collocation.first_dip(&forces, sure.unwrap_or(f64::INFINITY)).or(sure)
     }
 }

@@ -94,8 +94,7 @@ impl Integration<'_> {
         if !Collocation::comes_near_zero(start, &excess) {
             return None;
         }
-        let collocation = self.collocation::<S>();
-        collocation.looks().find(|x| collocation.interpolate(&excess, *x) < 0.0)
+        self.collocation::<S>().first_dip(&excess, f64::INFINITY)
     }
 
     /// How far a force, as deviation from the preload force, is on the side of the threshold on which it was, N.
@@ -149,14 +148,34 @@ impl Integration<'_> {
                 .transpose();
         }
         let start = self.excess(criterion, self.state.force - model.preload.force);
-        let (start, resolution) = (start.max(f64::MIN_POSITIVE), self.resolution());
-        let excess = |at| self.excess_after::<S>(criterion, at);
-        let length = roots::between(excess, (0.0, start), (latest, end), resolution).unwrap_or(latest);
-        if length <= resolution {
-            // Nothing of the step is left.
-            self.state.interruptions.turn(criterion, self.state.time);
-            return Ok(Some(self.reject(target.length)));
-        }
+        let resolution = self.resolution();
+        // Where an interruption has just begun or ended, rounding may show the force where it was before: it is then taken
+        // from where it is clearly beyond.
+        let clear = if start > 0.0 {
+            Some((0.0, start))
+        } else {
+            (1..PIECES).find_map(|k| {
+                let at = latest * f64::from(k) / f64::from(PIECES);
+                let excess = self.excess_after::<S>(criterion, at);
+                (excess > 0.0).then_some((at, excess))
+            })
+        };
+        let length = clear.and_then(|clear| {
+            let excess = |at| self.excess_after::<S>(criterion, at);
+            roots::between(excess, clear, (latest, end), resolution)
+        });
+        let length = match length {
+            Some(length) if length > resolution => length,
+            _ if self.state.interruptions.turned_at(self.state.time) && start <= 0.0 => {
+                // It never was beyond, or for less than can be told: it has turned back by the end of this piece.
+                return self.end_at::<S>(&cut_at(latest), growth, wanted).map(Some);
+            }
+            _ => {
+                // Nothing of the step is left.
+                self.state.interruptions.turn(criterion, self.state.time);
+                return Ok(Some(self.reject(target.length)));
+            }
+        };
         let advice = self.end_at::<S>(&cut_at(length), growth, wanted)?;
         if advice.taken {
             self.state.interruptions.turn(criterion, self.state.time);
