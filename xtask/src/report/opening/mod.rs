@@ -1,0 +1,335 @@
+//! Does the contact open? The verdict of the standards on the specimen.
+//!
+//! [`vibration`]: a sine, and the accelerations from which on it opens;   [`shock`]: a half sine.
+
+mod shock;
+mod vibration;
+
+use std::f64::consts::TAU;
+
+use anyhow::{Context, Result};
+
+use self::shock::shock;
+use self::vibration::{DWELL, Outcome, RESOLUTION, Thresholds, shake, thresholds};
+use super::content::{Axis, Block, Curve, Figure, Section, Style, Table};
+use super::{Arguments, threads};
+
+/// Standard acceleration of free fall, m/s2.
+const G: f64 = 9.80665;
+
+/// Range of the map, Hz.
+const RANGE: (f64, f64) = (10.0, 3000.0);
+
+/// A level of vibration that standards ask for.
+struct Level {
+    name: &'static str,
+    /// g.
+    acceleration: f64,
+    /// Hz.
+    frequencies: (f64, f64),
+    /// Largest displacement, from end to end, m.
+    double_amplitude: f64,
+}
+
+const LEVELS: [Level; 4] = [
+    Level {
+        name: "MIL-STD-202 method 204, condition A",
+        acceleration: 10.0,
+        frequencies: (10.0, 500.0),
+        double_amplitude: 1.52e-3,
+    },
+    Level {
+        name: "MIL-STD-202 method 204, condition B",
+        acceleration: 15.0,
+        frequencies: (10.0, 2000.0),
+        double_amplitude: 1.52e-3,
+    },
+    Level {
+        name: "MIL-STD-202 method 204, condition D",
+        acceleration: 20.0,
+        frequencies: (10.0, 2000.0),
+        double_amplitude: 1.52e-3,
+    },
+    Level {
+        name: "MIL-PRF-28776 (relays)",
+        acceleration: 30.0,
+        frequencies: (10.0, 3000.0),
+        double_amplitude: 4.95e-3,
+    },
+];
+
+/// Shocks of MIL-STD-202 method 213: condition, g, s.
+const SHOCKS: [(&str, f64, f64); 3] = [("A", 50.0, 11e-3), ("B", 75.0, 6e-3), ("C", 100.0, 6e-3)];
+
+impl Level {
+    /// Amplitude at a frequency (Hz), m/s2.
+    fn amplitude(&self, frequency: f64) -> f64 {
+        (G * self.acceleration).min(0.5 * self.double_amplitude * (TAU * frequency).powi(2))
+    }
+
+    fn covers(&self, frequency: f64) -> bool {
+        (self.frequencies.0..=self.frequencies.1).contains(&frequency)
+    }
+
+    fn curve(&self, colour: usize) -> Curve {
+        let (low, high) = self.frequencies;
+        let crossover = (G * self.acceleration / (0.5 * self.double_amplitude)).sqrt() / TAU;
+        let x = vec![low, crossover, high];
+        Curve {
+            name: format!("{} g: {}", self.acceleration, self.name),
+            y: x.iter().map(|frequency| self.amplitude(*frequency) / G).collect(),
+            x,
+            style: Style::Dashed,
+            colour,
+        }
+    }
+}
+
+/// What a level comes to over the frequencies it covers.
+struct Verdict {
+    level: Level,
+    /// Worst of each, and the frequency (Hz) at which it occurs.
+    least_force: (f64, f64),
+    longest: (f64, f64),
+    opened: bool,
+    interruptions: i32,
+    /// Acceleration that interrupts, over that of the level.
+    margin: (f64, f64),
+}
+
+/// The section.
+pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
+    let points = map(if arguments.quick { 12 } else { 40 })?;
+    let verdicts = LEVELS
+        .into_iter()
+        .map(|level| verdict(level, &points))
+        .collect::<Result<Vec<_>>>()?;
+    let least = |threshold: fn(&Thresholds) -> f64| {
+        let points = points.iter().map(|point| (threshold(point), point.frequency));
+        points.fold((f64::INFINITY, 0.0), |least, point| if point.0 < least.0 { point } else { least })
+    };
+    let (opens, interrupts) = (least(|point| point.opens), least(|point| point.interrupts));
+    let asked = verdicts.last().context("no levels")?;
+    let mut blocks = vec![
+        Block::Text(answer(asked, opens, interrupts)),
+        Block::Figure(figure(&points)),
+        Block::Table(table(&verdicts)),
+        Block::Table(shocks(arguments.quick)?),
+    ];
+    blocks.push(Block::Text(method(points.len())));
+    Ok(vec![Section {
+        id: "opening",
+        title: "Does the contact open?",
+        blocks,
+    }])
+}
+
+/// Thresholds at `count` frequencies at equal ratios, and more of them where they are lowest.
+fn map(count: u32) -> Result<Vec<Thresholds>> {
+    let between = |(low, high): (f64, f64), count: u32| {
+        (0..count).map(move |k| low * (high / low).powf(f64::from(k) / f64::from(count - 1)))
+    };
+    let coarse: Vec<f64> = between(RANGE, count).collect();
+    let mut points = threads::map(&coarse, |frequency| thresholds(*frequency))?;
+    let lowest = points.iter().enumerate().min_by(|a, b| a.1.opens.total_cmp(&b.1.opens));
+    let lowest = lowest.map_or(0, |(index, _)| index);
+    let around = points.get(lowest.saturating_sub(1)..(lowest + 2).min(points.len()));
+    if let Some([first, .., last]) = around {
+        let fine: Vec<f64> = between((first.frequency, last.frequency), 11).skip(1).take(9).collect();
+        let new: Vec<f64> = fine
+            .into_iter()
+            .filter(|frequency| points.iter().all(|point| (point.frequency / frequency - 1.0).abs() > 1e-6))
+            .collect();
+        points.extend(threads::map(&new, |frequency| thresholds(*frequency))?);
+        points.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
+    }
+    Ok(points)
+}
+
+/// Runs a level at every frequency of the map that it covers, and at its ends.
+fn verdict(level: Level, points: &[Thresholds]) -> Result<Verdict> {
+    let covered: Vec<&Thresholds> = points.iter().filter(|point| level.covers(point.frequency)).collect();
+    let outcomes = threads::map(&covered, |point| shake(point.frequency, level.amplitude(point.frequency), None))?;
+    let runs = || covered.iter().zip(&outcomes);
+    let worst = |value: &dyn Fn(&Thresholds, &Outcome) -> f64| {
+        let values = runs().map(|(point, outcome)| (value(point, outcome), point.frequency));
+        values.fold((f64::INFINITY, 0.0), |worst, value| if value.0 < worst.0 { value } else { worst })
+    };
+    let least_force = worst(&|_, outcome| outcome.least_force);
+    let longest = worst(&|_, outcome| -outcome.longest);
+    let margin = worst(&|point, _| point.interrupts / level.amplitude(point.frequency));
+    Ok(Verdict {
+        least_force,
+        longest: (-longest.0, longest.1),
+        opened: outcomes.iter().any(|outcome| outcome.opened),
+        interruptions: outcomes.iter().map(|outcome| outcome.interruptions).max().unwrap_or(0),
+        margin,
+        level,
+    })
+}
+
+fn answer(asked: &Verdict, opens: (f64, f64), interrupts: (f64, f64)) -> String {
+    let acceleration = asked.level.acceleration;
+    let verdict = if asked.interruptions == 0 {
+        format!("**At {acceleration} g no contact opens for 10 µs or more at any frequency from 10 to 3000 Hz")
+    } else {
+        format!(
+            "**At {acceleration} g the contact does open for 10 µs or more, for up to {:.0} µs at {:.0} Hz",
+            1e6 * asked.longest.0,
+            asked.longest.1
+        )
+    };
+    let touch = if asked.interruptions == 0 && asked.opened {
+        ", though it opens for a shorter time"
+    } else {
+        ""
+    };
+    format!(
+        "{verdict}{touch}.** The specimen is weakest near its first resonance: its contact force first touches zero at {} \
+         ({:.0} Hz), and an interruption of 10 µs first occurs at {} ({:.0} Hz).",
+        acceleration_text(opens.0),
+        opens.1,
+        acceleration_text(interrupts.0),
+        interrupts.1,
+    )
+}
+
+fn acceleration_text(acceleration: f64) -> String {
+    format!("{:.1} g ({acceleration:.0} m/s²)", acceleration / G)
+}
+
+fn figure(points: &[Thresholds]) -> Figure {
+    let curve = |name: &str, value: fn(&Thresholds) -> f64, style, colour| Curve {
+        name: name.to_owned(),
+        x: points.iter().map(|point| point.frequency).collect(),
+        y: points.iter().map(|point| value(point) / G).collect(),
+        style,
+        colour,
+    };
+    let mut curves = vec![
+        curve("opens for 10 µs (interruption)", |point| point.interrupts, Style::LineAndMarkers, 0),
+        curve("opens at all", |point| point.opens, Style::LineAndMarkers, 1),
+        curve("linear theory: opens at all", |point| point.linear, Style::Line, 2),
+    ];
+    curves.extend(LEVELS.iter().zip(3..).map(|(level, colour)| level.curve(colour)));
+    Figure {
+        id: "opening-map",
+        title: "Base acceleration that opens the contact".to_owned(),
+        x: Axis {
+            label: "frequency",
+            unit: "Hz",
+            logarithmic: true,
+        },
+        y: Axis {
+            label: "amplitude of the base acceleration",
+            unit: "g",
+            logarithmic: false,
+        },
+        curves,
+        caption: "A test level passes where its dashed line stays below the solid curves. Left of its corner a level is limited by \
+                  the stroke of the shaker, not by acceleration. 1 g = 9.80665 m/s²."
+            .to_owned(),
+    }
+}
+
+fn yes(answer: bool) -> String {
+    if answer { "yes" } else { "no" }.to_owned()
+}
+
+fn table(verdicts: &[Verdict]) -> Table {
+    let rows = verdicts.iter().map(|verdict| {
+        let level = &verdict.level;
+        vec![
+            format!("{} g", level.acceleration),
+            level.name.to_owned(),
+            format!("{:.0} to {:.0} Hz", level.frequencies.0, level.frequencies.1),
+            yes(verdict.opened),
+            yes(verdict.interruptions > 0),
+            microseconds(verdict.longest),
+            format!("{:.1} % at {:.0} Hz", 100.0 * verdict.least_force.0, verdict.least_force.1),
+            format!("{:.2} at {:.0} Hz", verdict.margin.0, verdict.margin.1),
+        ]
+    });
+    Table {
+        caption: "Vibration. Each level was run at every frequency of the figure that it covers. Margin: the acceleration that \
+                  interrupts for 10 µs, over that of the level; below 1 the test fails."
+            .to_owned(),
+        columns: [
+            "level",
+            "asked by",
+            "range",
+            "opens at all",
+            "opens for 10 µs",
+            "longest interruption",
+            "least force, of the preload",
+            "lowest margin",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        rows: rows.collect(),
+    }
+}
+
+fn microseconds((longest, frequency): (f64, f64)) -> String {
+    if longest > 0.0 {
+        format!("{:.1} µs at {frequency:.0} Hz", 1e6 * longest)
+    } else {
+        "none".to_owned()
+    }
+}
+
+fn shocks(quick: bool) -> Result<Table> {
+    let conditions = SHOCKS.get(..if quick { 1 } else { SHOCKS.len() }).unwrap_or_default();
+    let directions = [("presses the contact", 1.0), ("pulls it open", -1.0)];
+    let runs: Vec<_> = conditions
+        .iter()
+        .flat_map(|condition| directions.map(|direction| (condition, direction)))
+        .collect();
+    let outcomes = threads::map(&runs, |((_, acceleration, duration), (_, sign))| {
+        shock(sign * G * acceleration, *duration)
+    })?;
+    let rows = runs.iter().zip(outcomes).map(|(((name, acceleration, duration), (direction, _)), outcome)| {
+        vec![
+            format!("method 213, condition {name}"),
+            format!("{acceleration} g, {:.0} ms", 1e3 * duration),
+            (*direction).to_owned(),
+            yes(outcome.opened),
+            yes(outcome.interruptions > 0),
+            if outcome.longest > 0.0 {
+                format!("{:.1} µs", 1e6 * outcome.longest)
+            } else {
+                "none".to_owned()
+            },
+            format!("{:.1} %", 100.0 * outcome.least_force),
+        ]
+    });
+    Ok(Table {
+        caption: "Half-sine shock of MIL-STD-202, in both directions along the motion of the contact.".to_owned(),
+        columns: [
+            "test",
+            "shock",
+            "direction",
+            "opens at all",
+            "opens for 10 µs",
+            "longest interruption",
+            "least force, of the preload",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        rows: rows.collect(),
+    })
+}
+
+fn method(frequencies: usize) -> String {
+    let (duration, periods) = DWELL;
+    format!(
+        "How it was found: the nonlinear specimen, contact current flowing through the power-law resistance, is shaken from rest \
+         with a sine for {:.0} ms or {periods:.0} periods, whichever is longer, at {frequencies} frequencies; nothing of the start \
+         is left by then. It *opens at all* where the contact force reaches zero at any instant, and is *interrupted* where the \
+         resistance stays above 60 Ω for 10 µs (MIL-PRF-28776; MIL-STD-202 method 310). Each threshold is the least acceleration \
+         found, by bisection to {} %. The verdict is that of the equivalent beam with its identified damping, vibrated along the \
+         motion of the contact, and of a contact at rest: bounce after switching and the case's own resonances are not in it.",
+        1e3 * duration,
+        100.0 * RESOLUTION,
+    )
+}
