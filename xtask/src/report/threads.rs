@@ -41,7 +41,12 @@ mod tests {
     fn results_stand_in_the_order_of_the_items() -> Result<()> {
         let items: Vec<u32> = (0..100).collect();
         let squares = map(&items, |item| Ok(item * item))?;
-        assert!(squares.iter().zip(0..).all(|(square, item): (&u32, u32)| *square == item * item));
+        assert!(
+            squares
+                .iter()
+                .zip(0..)
+                .all(|(square, item): (&u32, u32)| *square == item * item)
+        );
         Ok(())
     }
 
