@@ -160,7 +160,7 @@ fn page(table: &str, sentences: &str, changed: &str, off: &str) -> String {
          runs [`scenes/minimal.toml`](../scenes/minimal.toml), in which everything is off that can be, and adds each effect \
          alone. The run is {} ms long in communication steps of 10 µs; after each, the contact force is read, and what the \
          effect is for. Instructions are counted by valgrind's callgrind in a build for any processor, nanoseconds taken on \
-         this machine in the usual build, the median of {} runs.\n\n{table}\n\
+         this machine in the usual build, the shortest of {} runs.\n\n{table}\n\
          ## When each matters\n\n{sentences}\n\
          Each on against off in three scenes: the largest difference of contact force and resistance at a communication \
          point, and where the contact opens, the time without force.\n\n{changed}\n\
