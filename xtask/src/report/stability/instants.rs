@@ -57,7 +57,7 @@ fn communication_steps(_: bool) -> Result<Vec<Check>> {
     }
     Ok(vec![Check {
         case: "Chatter at 41 g in communication steps of 1 µs to 10 ms",
-        hard: "a step of 10 ms holds all openings and closings at once, one of 1 µs a part of a blow",
+        hard: "a step of 10 ms holds all openings and closings at once, one of 1 µs a part of a blow".to_owned(),
         property: "the same openings and closings at the same instants",
         measured: worst,
         allowed: PROMISED,
@@ -75,7 +75,7 @@ fn point_at_an_opening(_: bool) -> Result<Vec<Check>> {
     }
     Ok(vec![Check {
         case: "Communication points exactly at openings and closings, and 10⁻¹⁵ and 10⁻¹² s beside",
-        hard: "an event at the end of a step is easily lost, or met twice",
+        hard: "an event at the end of a step is easily lost, or met twice".to_owned(),
         property: "the same openings and closings at the same instants",
         measured: worst,
         allowed: PROMISED,
@@ -104,7 +104,7 @@ fn grazing(_: bool) -> Result<Vec<Check>> {
     }
     Ok(vec![Check {
         case: "Grazing: a throw that overlaps or misses by 10⁻², 10⁻⁶, 10⁻⁹ of the gap",
-        hard: "the force does not change sign where a touch is sought by its sign",
+        hard: "the force does not change sign where a touch is sought by its sign".to_owned(),
         property: "a touch is met, a miss is not (wrong answers of 6)",
         measured: f64::from(wrong),
         allowed: 0.0,
@@ -133,12 +133,12 @@ fn stiff_contact(_: bool) -> Result<Vec<Check>> {
     rig.run_to(&Inputs::default(), 1e-3)?;
     let lasted = rig.state.last_opening - rig.state.last_closing;
     let exact = PI * (mass / stiffness).sqrt();
-    let hard = "a contact of 1 µs in a communication step of 1 ms";
+    let hard = || "a contact of 1 µs in a communication step of 1 ms".to_owned();
     let back = rig.state.modes.first().context("no mode")?.v / mass.sqrt();
     Ok(vec![
         Check {
             case: "Very stiff contact, 10¹⁰ N/m",
-            hard,
+            hard: hard(),
             property: "it lasts π √(m/k) (part of it)",
             measured: (lasted / exact - 1.0).abs(),
             // The error of the force and the rounding of an instant of 1 ms.
@@ -147,7 +147,7 @@ fn stiff_contact(_: bool) -> Result<Vec<Check>> {
         },
         Check {
             case: "Very stiff contact, 10¹⁰ N/m",
-            hard,
+            hard: hard(),
             property: "the speed comes back whole (part of it)",
             measured: (back / speed - 1.0).abs(),
             // Impulse of a force wrong by the tolerance while it lasts, over the momentum.

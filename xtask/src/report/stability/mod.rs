@@ -25,7 +25,7 @@ use super::{Arguments, threads};
 struct Check {
     case: &'static str,
     /// What makes it hard.
-    hard: &'static str,
+    hard: String,
     property: &'static str,
     /// What was measured, at most what is allowed where the property is kept.
     measured: f64,
@@ -54,7 +54,7 @@ impl Check {
         };
         vec![
             self.case.to_owned(),
-            self.hard.to_owned(),
+            self.hard.clone(),
             self.property.to_owned(),
             amount(self.measured).trim_end().to_owned(),
             amount(self.allowed).trim_end().to_owned(),
@@ -87,13 +87,27 @@ pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
     let table = Table {
         caption: "Tolerance 1e-6 of the preload force where nothing else is said.".to_owned(),
         columns: columns.map(str::to_owned).to_vec(),
-        rows: checks.iter().map(Check::row).collect(),
+        rows: rows(&checks),
     };
     Ok(vec![Section {
         id: "stability",
         title: "Hard cases",
         blocks: vec![Block::Text(text), Block::Table(table)],
     }])
+}
+
+/// What is said once of a case is not repeated.
+fn rows(checks: &[Check]) -> Vec<Vec<String>> {
+    let mut last = "";
+    let row = |check: &Check| {
+        let mut row = check.row();
+        if check.case == last {
+            row.iter_mut().take(2).for_each(String::clear);
+        }
+        last = check.case;
+        row
+    };
+    checks.iter().map(row).collect()
 }
 
 fn run(quick: bool) -> Result<Vec<Check>> {
@@ -130,7 +144,7 @@ mod tests {
     fn what_is_no_number_or_too_much_is_not_kept() {
         let check = |measured| Check {
             case: "",
-            hard: "",
+            hard: String::new(),
             property: "",
             measured,
             allowed: 1e-9,
