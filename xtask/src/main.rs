@@ -11,10 +11,12 @@ mod licences;
 mod package;
 mod python;
 mod report;
+mod run_scene;
 mod scene;
 mod ssv;
 mod summary;
 mod test;
+mod threads;
 mod valgrind;
 
 use std::process::ExitCode;

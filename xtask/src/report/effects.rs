@@ -1,11 +1,32 @@
-//! To be written.
+//! What each effect costs and changes, by the same measurement as `docs/effects.md`.
 
 use anyhow::Result;
+use indicatif::ProgressBar;
 
 use super::Arguments;
-use super::content::Section;
+use super::content::{Block, Section};
+use crate::effects::{Extent, measure, page};
 
-/// The sections.
-pub fn sections(_arguments: Arguments) -> Result<Vec<Section>> {
-    Ok(Vec::new())
+/// The section.
+pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
+    let extent = Extent {
+        runs: if arguments.quick { 3 } else { 9 },
+        instructions: !arguments.quick,
+        influence: !arguments.quick,
+    };
+    let measurement = measure(extent, &ProgressBar::hidden())?;
+    let text = format!(
+        "Every effect is asked for by a parameter; what is off costs nothing. Instructions are counted by valgrind in a build for any \
+         processor and are the same on every machine; nanoseconds are those of this machine, the shortest of {} runs. \
+         `cargo xtask effects` writes the same to `docs/effects.md`.",
+        page::runs(&measurement)
+    );
+    let mut blocks = vec![Block::Text(text), Block::Table(page::costs(&measurement))];
+    blocks.extend(page::influences(&measurement).map(Block::Table));
+    blocks.push(Block::Text(page::when(&measurement)));
+    Ok(vec![Section {
+        id: "effects",
+        title: "What each effect costs and changes",
+        blocks,
+    }])
 }

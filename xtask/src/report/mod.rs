@@ -2,18 +2,16 @@
 //!
 //! [`content`]: sections, tables, figures;   [`page`]: the page made of them.   Sections:   [`opening`]: whether the contact
 //! opens;   [`paper`]: the published results beside ours;   [`accuracy`], [`effects`]: what accuracy and effects cost;
-//! [`stability`]: hard cases and the property each keeps;   [`importers`]: other people's importers.   [`threads`]: runs
-//! side by side.
+//! [`stability`]: hard cases and the property each keeps;   [`importers`]: other people's importers.
 
 mod accuracy;
-mod content;
+pub mod content;
 mod effects;
 mod importers;
 mod opening;
 mod page;
 mod paper;
 mod stability;
-mod threads;
 
 use anyhow::Result;
 use indicatif::{ProgressBar, ProgressStyle};

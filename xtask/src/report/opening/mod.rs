@@ -11,8 +11,9 @@ use anyhow::{Context, Result};
 
 use self::shock::shock;
 use self::vibration::{DWELL, Outcome, RESOLUTION, Thresholds, shake, thresholds};
+use super::Arguments;
 use super::content::{Axis, Block, Curve, Figure, Section, Style, Table};
-use super::{Arguments, threads};
+use crate::threads;
 
 /// Standard acceleration of free fall, m/s2.
 const G: f64 = 9.80665;

@@ -17,8 +17,9 @@ use std::fmt::Write;
 
 use anyhow::{Result, bail};
 
+use super::Arguments;
 use super::content::{Block, Section, Table};
-use super::{Arguments, threads};
+use crate::threads;
 
 /// A property and what became of it.
 #[derive(Debug)]
