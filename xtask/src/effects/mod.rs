@@ -63,7 +63,7 @@ struct Measured {
 }
 
 /// Instructions of the usual build and of one without what is off, per millisecond of a run.
-struct Off {
+pub struct Off {
     run: &'static str,
     with: f64,
     without: f64,
