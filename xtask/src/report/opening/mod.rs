@@ -1,16 +1,17 @@
 //! Does the contact open? The verdict of the standards on the specimen.
 //!
-//! [`vibration`]: a sine, and the accelerations from which on it opens;   [`shock`]: a half sine.
+//! [`vibration`]: a sine, and the accelerations from which on it opens;   [`levels`]: those that standards ask for;
+//! [`shock`]: a half sine.
 
+mod levels;
 mod shock;
 mod vibration;
 
-use std::f64::consts::TAU;
-
 use anyhow::{Context, Result};
 
+use self::levels::{LEVELS, Verdict, table, verdict};
 use self::shock::shock;
-use self::vibration::{DWELL, Outcome, RESOLUTION, Thresholds, shake, thresholds};
+use self::vibration::{DWELL, RESOLUTION, Thresholds, thresholds};
 use super::Arguments;
 use super::content::{Axis, Block, Curve, Figure, Section, Style, Table};
 use crate::threads;
@@ -21,82 +22,8 @@ const G: f64 = 9.80665;
 /// Range of the map, Hz.
 const RANGE: (f64, f64) = (10.0, 3000.0);
 
-/// A level of vibration that standards ask for.
-struct Level {
-    name: &'static str,
-    /// g.
-    acceleration: f64,
-    /// Hz.
-    frequencies: (f64, f64),
-    /// Largest displacement, from end to end, m.
-    double_amplitude: f64,
-}
-
-const LEVELS: [Level; 4] = [
-    Level {
-        name: "MIL-STD-202 method 204, condition A",
-        acceleration: 10.0,
-        frequencies: (10.0, 500.0),
-        double_amplitude: 1.52e-3,
-    },
-    Level {
-        name: "MIL-STD-202 method 204, condition B",
-        acceleration: 15.0,
-        frequencies: (10.0, 2000.0),
-        double_amplitude: 1.52e-3,
-    },
-    Level {
-        name: "MIL-STD-202 method 204, condition D",
-        acceleration: 20.0,
-        frequencies: (10.0, 2000.0),
-        double_amplitude: 1.52e-3,
-    },
-    Level {
-        name: "MIL-PRF-28776 (relays)",
-        acceleration: 30.0,
-        frequencies: (10.0, 3000.0),
-        double_amplitude: 4.95e-3,
-    },
-];
-
 /// Shocks of MIL-STD-202 method 213: condition, g, s.
 const SHOCKS: [(&str, f64, f64); 3] = [("A", 50.0, 11e-3), ("B", 75.0, 6e-3), ("C", 100.0, 6e-3)];
-
-impl Level {
-    /// Amplitude at a frequency (Hz), m/s2.
-    fn amplitude(&self, frequency: f64) -> f64 {
-        (G * self.acceleration).min(0.5 * self.double_amplitude * (TAU * frequency).powi(2))
-    }
-
-    fn covers(&self, frequency: f64) -> bool {
-        (self.frequencies.0..=self.frequencies.1).contains(&frequency)
-    }
-
-    fn curve(&self, colour: usize) -> Curve {
-        let (low, high) = self.frequencies;
-        let crossover = (G * self.acceleration / (0.5 * self.double_amplitude)).sqrt() / TAU;
-        let x = vec![low, crossover, high];
-        Curve {
-            name: format!("{} g: {}", self.acceleration, self.name),
-            y: x.iter().map(|frequency| self.amplitude(*frequency) / G).collect(),
-            x,
-            style: Style::Dashed,
-            colour,
-        }
-    }
-}
-
-/// What a level comes to over the frequencies it covers.
-struct Verdict {
-    level: Level,
-    /// Worst of each, and the frequency (Hz) at which it occurs.
-    least_force: (f64, f64),
-    longest: (f64, f64),
-    opened: bool,
-    interruptions: i32,
-    /// Acceleration that interrupts, over that of the level.
-    margin: (f64, f64),
-}
 
 /// The section.
 pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
@@ -115,7 +42,7 @@ pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
     let (opens, interrupts) = (least(|point| point.opens), least(|point| point.interrupts));
     let asked = verdicts.last().context("no levels")?;
     let mut blocks = vec![
-        Block::Text(answer(asked, opens, interrupts)),
+        Block::Text(answer(&verdicts, asked, opens, interrupts)),
         Block::Figure(figure(&points)),
         Block::Table(table(&verdicts)),
         Block::Table(shocks(arguments.quick)?),
@@ -154,34 +81,7 @@ fn map(count: u32) -> Result<Vec<Thresholds>> {
     Ok(points)
 }
 
-/// Runs a level at every frequency of the map that it covers, and at its ends.
-fn verdict(level: Level, points: &[Thresholds]) -> Result<Verdict> {
-    let covered: Vec<&Thresholds> = points.iter().filter(|point| level.covers(point.frequency)).collect();
-    let outcomes = threads::map(&covered, |point| {
-        shake(point.frequency, level.amplitude(point.frequency), None)
-    })?;
-    let runs = || covered.iter().zip(&outcomes);
-    let worst = |value: &dyn Fn(&Thresholds, &Outcome) -> f64| {
-        let values = runs().map(|(point, outcome)| (value(point, outcome), point.frequency));
-        values.fold(
-            (f64::INFINITY, 0.0),
-            |worst, value| if value.0 < worst.0 { value } else { worst },
-        )
-    };
-    let least_force = worst(&|_, outcome| outcome.least_force);
-    let longest = worst(&|_, outcome| -outcome.longest);
-    let margin = worst(&|point, _| point.interrupts / level.amplitude(point.frequency));
-    Ok(Verdict {
-        least_force,
-        longest: (-longest.0, longest.1),
-        opened: outcomes.iter().any(|outcome| outcome.opened),
-        interruptions: outcomes.iter().map(|outcome| outcome.interruptions).max().unwrap_or(0),
-        margin,
-        level,
-    })
-}
-
-fn answer(asked: &Verdict, opens: (f64, f64), interrupts: (f64, f64)) -> String {
+fn answer(verdicts: &[Verdict], asked: &Verdict, opens: (f64, f64), interrupts: (f64, f64)) -> String {
     let acceleration = asked.level.acceleration;
     let verdict = if asked.interruptions == 0 {
         format!("**At {acceleration} g no contact opens for 10 µs or more at any frequency from 10 to 3000 Hz")
@@ -198,14 +98,28 @@ fn answer(asked: &Verdict, opens: (f64, f64), interrupts: (f64, f64)) -> String 
         ""
     };
     format!(
-        "{verdict}{shorter}.** The specimen is weakest near its first resonance: its contact force first touches zero at {} at \
+        "{verdict}{shorter}.** {} The specimen is weakest near its first resonance: its contact force first touches zero at {} at \
          {:.0} Hz, and an interruption of 10 µs first occurs at {} at {:.0} Hz. The identified damping, rivet mass and preload are \
          known to some per cent, and so is this acceleration.",
+        passed(verdicts),
         acceleration_text(opens.0),
         opens.1,
         acceleration_text(interrupts.0),
         interrupts.1,
     )
+}
+
+/// The levels at which nothing is interrupted, as a sentence.
+fn passed(verdicts: &[Verdict]) -> String {
+    let passed = verdicts.iter().filter(|verdict| verdict.interruptions == 0);
+    let levels: Vec<String> = passed
+        .map(|verdict| format!("{} g", verdict.level.acceleration))
+        .collect();
+    if levels.is_empty() {
+        "It passes none of the levels below.".to_owned()
+    } else {
+        format!("It passes {}.", levels.join(", "))
+    }
 }
 
 fn acceleration_text(acceleration: f64) -> String {
@@ -260,52 +174,6 @@ fn figure(points: &[Thresholds]) -> Figure {
 
 fn yes(answer: bool) -> String {
     if answer { "yes" } else { "no" }.to_owned()
-}
-
-fn table(verdicts: &[Verdict]) -> Table {
-    let rows = verdicts.iter().map(|verdict| {
-        let level = &verdict.level;
-        vec![
-            format!("{} g", level.acceleration),
-            level.name.to_owned(),
-            format!("{:.0} to {:.0} Hz", level.frequencies.0, level.frequencies.1),
-            yes(verdict.opened),
-            yes(verdict.interruptions > 0),
-            microseconds(verdict.longest),
-            format!(
-                "{:.1} % at {:.0} Hz",
-                100.0 * verdict.least_force.0,
-                verdict.least_force.1
-            ),
-            format!("{:.2} at {:.0} Hz", verdict.margin.0, verdict.margin.1),
-        ]
-    });
-    Table {
-        caption: "Vibration. Each level was run at every frequency of the figure that it covers. Margin: the acceleration that \
-                  interrupts for 10 µs, over that of the level; below 1 the test fails."
-            .to_owned(),
-        columns: [
-            "level",
-            "asked by",
-            "range",
-            "opens at all",
-            "opens for 10 µs",
-            "longest interruption",
-            "least force, of the preload",
-            "lowest margin",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: rows.collect(),
-    }
-}
-
-fn microseconds((longest, frequency): (f64, f64)) -> String {
-    if longest > 0.0 {
-        format!("{:.1} µs at {frequency:.0} Hz", 1e6 * longest)
-    } else {
-        "none".to_owned()
-    }
 }
 
 fn shocks(quick: bool) -> Result<Table> {
