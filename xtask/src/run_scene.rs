@@ -17,10 +17,11 @@ pub struct RunScene(PathBuf);
 impl RunScene {
     /// As it is usually built.
     pub fn build() -> Result<Self> {
-        Self::build_in("target", &[])
+        Self::build_in("target/run_scene", &[])
     }
 
-    /// With features, in a target folder of its own, so that the library of `cargo xtask fmu` is not built over.
+    /// With features, in a target folder of its own: the file of the library has the same name in all builds, and in one
+    /// folder each would build over the others.
     pub fn build_in(target: &str, features: &[&str]) -> Result<Self> {
         let folder = root().join(target);
         run(cargo()

@@ -3,7 +3,8 @@
 use anyhow::{Context, Result};
 use serde::Deserialize;
 
-use crate::commands::{self, cargo, root};
+use crate::accuracy::measurement;
+use crate::commands::{self, root};
 
 use super::super::content::{Axis, Block, Curve, Figure, Style, Table};
 use super::{digits, seconds};
@@ -32,11 +33,7 @@ struct Row {
 pub fn blocks(quick: bool) -> Result<Vec<Block>> {
     let folder = if quick { "docs" } else { "out/accuracy" };
     if !quick {
-        commands::output(
-            cargo()
-                .args(["run", "--release", "--package=benches", "--bin=accuracy", "--"])
-                .args(["--folder", folder, "--turns", "1"]),
-        )?;
+        commands::output(measurement().args(["--folder", folder, "--turns", "1"]))?;
     }
     let rows = read(folder)?;
     let source = if quick {
