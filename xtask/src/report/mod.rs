@@ -40,13 +40,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let progress = ProgressBar::new(parts.len() as u64).with_style(style);
     let mut sections = Vec::new();
     for part in parts {
-        let t = std::time::Instant::now();
         sections.extend(part(*arguments)?);
-        eprintln!(
-            "TIME {:.1} {:?}",
-            t.elapsed().as_secs_f64(),
-            sections.last().map(|s: &Section| s.id)
-        );
         progress.inc(1);
     }
     progress.finish_and_clear();
