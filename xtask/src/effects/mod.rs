@@ -96,7 +96,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     };
     let measurement = measure(extent, &progress)?;
     progress.finish_and_clear();
-    let off = measurement.off.as_ref().map_or_else(String::new, page::off);
+    let off = page::nothing(&measurement).unwrap_or_default();
     fs::write(&arguments.page, page::page(&measurement))
         .with_context(|| format!("cannot write {}", arguments.page.display()))?;
     println!("{}\n{off}", page::markdown(&page::costs(&measurement), 2));

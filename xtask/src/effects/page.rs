@@ -129,8 +129,26 @@ pub fn off(off: &[Off; 2]) -> String {
     text
 }
 
+/// What instructions and times are, as a sentence.
+pub fn how(measurement: &Measurement) -> String {
+    let counted = if measurement.minimal.instructions.is_some() {
+        "Instructions are counted by valgrind in a build for any processor"
+    } else {
+        "Instructions were not counted in this run (that needs valgrind, and is left out of a quick one)"
+    };
+    format!(
+        "{counted}; nanoseconds are those of this machine, the shortest of {} runs.",
+        runs(measurement)
+    )
+}
+
+/// What the effects that are off cost, where that was measured.
+pub fn nothing(measurement: &Measurement) -> Option<String> {
+    measurement.off.as_ref().map(off)
+}
+
 /// How often each was timed.
-pub fn runs(measurement: &Measurement) -> usize {
+fn runs(measurement: &Measurement) -> usize {
     measurement.extent.runs
 }
 
@@ -155,7 +173,7 @@ pub fn page(measurement: &Measurement) -> String {
     let changes = influences(measurement);
     let caption = changes.as_ref().map_or("", |table| &table.caption);
     let changed = changes.as_ref().map_or(String::new(), |table| markdown(table, 2));
-    let off = measurement.off.as_ref().map_or("Not measured.".to_owned(), off);
+    let off = nothing(measurement).unwrap_or("Not measured.".to_owned());
     format!(
         "<!-- Written by cargo xtask effects. -->\n# What each effect costs and changes\n\n    cargo xtask effects\n\n\
          runs [`scenes/minimal.toml`](../scenes/minimal.toml), in which everything is off that can be, and adds each effect \

@@ -16,14 +16,13 @@ pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
     };
     let measurement = measure(extent, &ProgressBar::hidden())?;
     let text = format!(
-        "Every effect is asked for by a parameter; what is off costs nothing. Instructions are counted by valgrind in a build for any \
-         processor and are the same on every machine; nanoseconds are those of this machine, the shortest of {} runs. \
-         `cargo xtask effects` writes the same to `docs/effects.md`.",
-        page::runs(&measurement)
+        "Every effect is asked for by a parameter. {} `cargo xtask effects` writes the same to `docs/effects.md`.",
+        page::how(&measurement)
     );
     let mut blocks = vec![Block::Text(text), Block::Table(page::costs(&measurement))];
     blocks.extend(page::influences(&measurement).map(Block::Table));
     blocks.push(Block::Text(page::when(&measurement)));
+    blocks.extend(page::nothing(&measurement).map(Block::Text));
     Ok(vec![Section {
         id: "effects",
         title: "What each effect costs and changes",

@@ -1,5 +1,7 @@
 //! What other people's importers did with the packaged component.
 
+use std::fmt::Write;
+
 use anyhow::Result;
 
 use super::Arguments;
@@ -32,7 +34,11 @@ pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
     };
     text = format!("{text}\n\n{when}");
     if !rows.is_empty() && !missing.is_empty() {
-        text += &format!(" Not among them: {} (`cargo xtask importers`).", missing.join(", "));
+        let _ = write!(
+            text,
+            " Not among them: {} (`cargo xtask importers`).",
+            missing.join(", ")
+        );
     }
     let mut blocks = vec![Block::Text(text)];
     if !rows.is_empty() {

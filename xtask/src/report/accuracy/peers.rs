@@ -58,9 +58,12 @@ fn read(folder: &str) -> Result<Vec<Row>> {
     Ok(rows.into_iter().filter(|row| row.part == "peers").collect())
 }
 
+/// Error and time of the runs of an integrator.
+type Runs = Vec<(f64, f64)>;
+
 /// Integrators of a scene in the order in which they come, the component first, with error and time of their runs.
-fn integrators<'a>(rows: &'a [Row], scene: &str) -> Vec<(&'a str, Vec<(f64, f64)>)> {
-    let mut found: Vec<(&str, Vec<(f64, f64)>)> = Vec::new();
+fn integrators<'a>(rows: &'a [Row], scene: &str) -> Vec<(&'a str, Runs)> {
+    let mut found: Vec<(&str, Runs)> = Vec::new();
     for row in rows.iter().filter(|row| row.scene == scene) {
         let (Some(error), Some(time)) = (row.force_error, row.seconds_per_second) else {
             continue;
@@ -83,7 +86,7 @@ fn table(rows: &[Row], scene: &str) -> Table {
     let own = integrators.first().map(|(_, runs)| runs.clone()).unwrap_or_default();
     let mut columns = vec!["integrator".to_owned()];
     columns.extend(LEVELS.map(|level| format!("error {level:.0e}")));
-    let row = |(index, (name, runs)): (usize, &(&str, Vec<(f64, f64)>))| {
+    let row = |(index, (name, runs)): (usize, &(&str, Runs))| {
         let cell = |level: f64| match (cheapest(runs, level), cheapest(&own, level)) {
             (None, _) => "not reached".to_owned(),
             (Some(time), Some(least)) if index > 0 => format!("{} ({}×)", seconds(time), digits(time / least)),
@@ -103,7 +106,7 @@ fn table(rows: &[Row], scene: &str) -> Table {
 }
 
 fn figure(rows: &[Row], scene: &str, id: &'static str) -> Figure {
-    let curve = |((name, runs), colour): (&(&str, Vec<(f64, f64)>), usize)| Curve {
+    let curve = |((name, runs), colour): (&(&str, Runs), usize)| Curve {
         name: (*name).to_owned(),
         x: runs.iter().map(|(_, time)| *time).collect(),
         y: runs.iter().map(|(error, _)| *error).collect(),

@@ -15,7 +15,7 @@ pub struct Level {
     /// g.
     pub acceleration: f64,
     /// Hz.
-    frequencies: (f64, f64),
+    pub frequencies: (f64, f64),
     /// Largest displacement, from end to end, m.
     double_amplitude: f64,
 }
@@ -83,7 +83,7 @@ pub struct Verdict {
     margin: (f64, f64),
 }
 
-/// Runs a level at every frequency of the map that it covers, and at its ends.
+/// Runs a level at every frequency of the map that it covers.
 pub fn verdict(level: Level, points: &[Thresholds]) -> Result<Verdict> {
     let covered: Vec<&Thresholds> = points.iter().filter(|point| level.covers(point.frequency)).collect();
     let outcomes = threads::map(&covered, |point| {

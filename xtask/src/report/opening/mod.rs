@@ -55,12 +55,20 @@ pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
     }])
 }
 
-/// Thresholds at `count` frequencies at equal ratios, and more of them where they are lowest.
+/// Frequencies closer than this part of them are one.
+const SAME: f64 = 1e-6;
+
+/// Thresholds at `count` frequencies at equal ratios and at the ends of the levels, and more of them where they are lowest.
 fn map(count: u32) -> Result<Vec<Thresholds>> {
     let between = |(low, high): (f64, f64), count: u32| {
         (0..count).map(move |k| low * (high / low).powf(f64::from(k) / f64::from(count - 1)))
     };
-    let coarse: Vec<f64> = between(RANGE, count).collect();
+    let ends = LEVELS
+        .iter()
+        .flat_map(|level| [level.frequencies.0, level.frequencies.1]);
+    let mut coarse: Vec<f64> = between(RANGE, count).chain(ends).collect();
+    coarse.sort_by(f64::total_cmp);
+    coarse.dedup_by(|a, b| (*a / *b - 1.0).abs() < SAME);
     let mut points = threads::map(&coarse, |frequency| thresholds(*frequency))?;
     let lowest = points.iter().enumerate().min_by(|a, b| a.1.opens.total_cmp(&b.1.opens));
     let lowest = lowest.map_or(0, |(index, _)| index);
@@ -72,7 +80,7 @@ fn map(count: u32) -> Result<Vec<Thresholds>> {
             .filter(|frequency| {
                 points
                     .iter()
-                    .all(|point| (point.frequency / frequency - 1.0).abs() > 1e-6)
+                    .all(|point| (point.frequency / frequency - 1.0).abs() > SAME)
             })
             .collect();
         points.extend(threads::map(&new, |frequency| thresholds(*frequency))?);
