@@ -169,7 +169,7 @@ fn figure(points: &[Thresholds]) -> Figure {
         curves,
         caption: format!(
             "The first two curves differ by {:.1} % at most: the force stays below that of 60 Ω for 10 µs about as soon as it \
-             touches zero. A test level passes where its dashed line stays below them. Left of its corner a level is limited by \
+             touches zero. Above the resonance the first swing of the sudden start opens the contact, below the steady vibration of linear theory. A test level passes where its dashed line stays below them. Left of its corner a level is limited by \
              the stroke of the shaker, not by acceleration. 1 g = {G} m/s².",
             100.0
                 * points
