@@ -169,8 +169,9 @@ fn figure(points: &[Thresholds]) -> Figure {
         curves,
         caption: format!(
             "The first two curves differ by {:.1} % at most: the force stays below that of 60 Ω for 10 µs about as soon as it \
-             touches zero. Above the resonance the first swing of the sudden start opens the contact, below the steady vibration of linear theory. A test level passes where its dashed line stays below them. Left of its corner a level is limited by \
-             the stroke of the shaker, not by acceleration. 1 g = {G} m/s².",
+             touches zero. Above the resonance they lie below linear theory because the first swing of the sudden start opens \
+             the contact. A test level passes where its dashed line stays below the first curve. Left of its corner a level is \
+             limited by the stroke of the shaker, not by acceleration. 1 g = {G} m/s².",
             100.0
                 * points
                     .iter()
@@ -233,8 +234,8 @@ fn method(frequencies: usize) -> String {
     let (duration, periods) = DWELL;
     format!(
         "How it was found: the nonlinear specimen is shaken from rest with a sine for {:.0} ms or {periods:.0} periods, whichever \
-         is longer, at {frequencies} frequencies; by then nothing of the start is left, which counts too. It *opens at all* where the contact force reaches zero at any instant, and is *interrupted* where the \
-         resistance stays above 60 Ω for 10 µs (MIL-PRF-28776; MIL-STD-202 method 310). Each threshold is the least acceleration \
+         is longer, at {frequencies} frequencies; by then nothing of the start is left, which counts too. It *opens at all* where \
+         the contact force reaches zero at any instant, and is *interrupted* where the resistance stays above 60 Ω for 10 µs (MIL-PRF-28776; MIL-STD-202 method 310). Each threshold is the least acceleration \
          found, by bisection to {} %. The verdict is that of the equivalent beam with its identified damping, vibrated along the \
          motion of the contact, and of a contact at rest: bounce after switching and the case's own resonances are not in it.",
         1e3 * duration,
