@@ -235,8 +235,8 @@ fn method(frequencies: usize) -> String {
     format!(
         "How it was found: the nonlinear specimen is shaken from rest with a sine for {:.0} ms or {periods:.0} periods, whichever \
          is longer, at {frequencies} frequencies; by then nothing of the start is left, which counts too. It *opens at all* where \
-         the contact force reaches zero at any instant, and is *interrupted* where the resistance stays above 60 Ω for 10 µs (MIL-PRF-28776; MIL-STD-202 method 310). Each threshold is the least acceleration \
-         found, by bisection to {} %. The verdict is that of the equivalent beam with its identified damping, vibrated along the \
+         the contact force reaches zero at any instant, and is *interrupted* where the resistance stays above 60 Ω for 10 µs \
+         (MIL-PRF-28776; MIL-STD-202 method 310). Each threshold is the least acceleration found, by bisection to {} %. The verdict is that of the equivalent beam with its identified damping, vibrated along the \
          motion of the contact, and of a contact at rest: bounce after switching and the case's own resonances are not in it.",
         1e3 * duration,
         100.0 * RESOLUTION,

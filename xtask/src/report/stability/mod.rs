@@ -75,7 +75,8 @@ pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
         "{} properties of physics in scenes that break integrators, measured in this run; the report is not written where one is \
          not kept. Margin: how many times smaller the measured value is than what theory allows at the tolerance asked. \
          Balances of energy are the component's own where they are *in = stored + dissipated* (`tests/energy_balance.rs` checks them \
-         from outside), else reckoned outside of it. `cargo test --test hard_cases` has more cases, `docs/robustness.md` what wrong calls do.",
+         from outside), else reckoned outside of it. `cargo test --test hard_cases` has more cases, `docs/robustness.md` \
+         what wrong calls do.",
         checks.len(),
     );
     let columns = [
