@@ -1,5 +1,7 @@
 //! What accuracy costs: measures, then draws the figures of `docs/accuracy.md`.
 
+use std::process::Command;
+
 use anyhow::Result;
 
 use crate::commands::{self, cargo};
@@ -18,11 +20,15 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     python::prepare()?;
     let folder = if arguments.quick { "out/accuracy" } else { "docs" };
     let quick = arguments.quick.then_some("--quick");
-    commands::run(
-        cargo()
-            .args(["run", "--release", "--package=benches", "--bin=accuracy", "--"])
-            .args(["--folder", folder])
-            .args(quick),
-    )?;
+    commands::run(measurement().args(["--folder", folder]).args(quick))?;
     commands::run(python::python().args(["docs/accuracy.py", folder]))
+}
+
+/// The program that measures, to be given its arguments.
+pub fn measurement() -> Command {
+    let mut run = cargo();
+    run.args(["run", "--release", "--package=benches", "--bin=accuracy"])
+        // Its own, as the library is built here with other features.
+        .args(["--target-dir=target/benches", "--"]);
+    run
 }

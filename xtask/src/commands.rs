@@ -35,14 +35,15 @@ pub fn run(command: &mut Command) -> Result<()> {
     Ok(())
 }
 
-/// Runs a program and gives what it printed.
+/// Runs a program and gives what it printed; the error tells all that it said.
 pub fn output(command: &mut Command) -> Result<String> {
     let output = command
         .output()
         .with_context(|| format!("cannot start: {}", line(command)))?;
     if !output.status.success() {
-        let message = String::from_utf8_lossy(&output.stderr);
-        bail!("failed ({}): {}\n{}", output.status, line(command), message.trim());
+        let [printed, message] = [&output.stdout, &output.stderr].map(|said| String::from_utf8_lossy(said));
+        let said = format!("{printed}{message}");
+        bail!("failed ({}): {}\n{}", output.status, line(command), said.trim());
     }
     Ok(String::from_utf8(output.stdout)?)
 }

@@ -6,6 +6,7 @@
 use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 use std::{fs, io};
 
 use anyhow::{Context, Result, bail};
@@ -15,9 +16,9 @@ use relay_contact::simulation::Simulation;
 use relay_contact::variables::{RealOutput, Variable};
 use serde::Deserialize;
 
-use crate::commands::root;
+use crate::commands::{self, root};
 use crate::package::{Files, pack};
-use crate::{scene, ssv};
+use crate::{fmu, python, scene, ssv};
 
 /// Every row that the table has to have.
 const EXPECTED: [(&str, &str); 12] = [
@@ -37,15 +38,36 @@ const EXPECTED: [(&str, &str); 12] = [
 
 /// What became of one task of an importer.
 #[derive(Deserialize)]
-struct Row {
-    importer: String,
-    version: String,
-    task: String,
+pub struct Row {
+    pub importer: String,
+    pub version: String,
+    pub task: String,
     /// `passed`, or `not run: ` and why; what failed has failed its test before.
-    result: String,
+    pub result: String,
     /// Largest difference in the contact force from our own run, N, where forces were compared.
-    difference: Option<f64>,
+    pub difference: Option<f64>,
 }
+
+impl Row {
+    /// The difference in words.
+    pub fn difference(&self) -> String {
+        match self.difference {
+            Some(0.0) => "0 N".to_owned(),
+            Some(force) => format!("{force:.1e} N"),
+            None => "-".to_owned(),
+        }
+    }
+}
+
+/// Tests in `conformance/python` that leave rows; the others compare with numbers of their own.
+const PYTHON: [&str; 6] = [
+    "test_ecos.py",
+    "test_fmpy.py",
+    "test_libcosim.py",
+    "test_scenes.py",
+    "test_state.py",
+    "test_validate.py",
+];
 
 fn folder() -> PathBuf {
     root().join("out/conformance")
@@ -153,39 +175,72 @@ fn coupled() -> Result<Vec<f64>> {
     Ok(forces)
 }
 
-/// Prints the table. An error where a row is missing; a warning below the table where an importer did not run.
-pub fn table() -> Result<()> {
-    let mut rows = Vec::new();
-    for entry in fs::read_dir(folder()).context("nothing was prepared")? {
+/// The rows that are there, of those the table has to have, and those that are not: importer and task.
+pub fn rows() -> Result<(Vec<Row>, Vec<String>)> {
+    let mut found = Vec::new();
+    let entries = match fs::read_dir(folder()) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => None,
+        entries => Some(entries?),
+    };
+    for entry in entries.into_iter().flatten() {
         let path = entry?.path();
         if path.extension().is_some_and(|extension| extension == "json") {
             let row: Row = serde_json::from_slice(&fs::read(&path)?).with_context(|| path.display().to_string())?;
-            rows.push(row);
+            found.push(row);
         }
     }
+    let (mut rows, mut missing) = (Vec::new(), Vec::new());
+    for (importer, task) in EXPECTED {
+        let position = found
+            .iter()
+            .position(|row| row.importer == importer && row.task == task);
+        match position {
+            Some(position) => rows.push(found.swap_remove(position)),
+            None => missing.push(format!("{importer} {task}")),
+        }
+    }
+    Ok((rows, missing))
+}
+
+/// When the runs to reproduce were written, just before the rows.
+pub fn prepared() -> Result<SystemTime> {
+    Ok(fs::metadata(folder().join("reference.csv"))?.modified()?)
+}
+
+/// Runs the importers that are called from Python, those alone that leave rows.
+pub fn run_python() -> Result<()> {
+    let component = fmu::build()?;
+    python::prepare()?;
+    prepare(&component)?;
+    let tests = PYTHON.map(|name| format!("conformance/python/{name}"));
+    commands::output(
+        python::python()
+            .args(["-m", "pytest", "--quiet"])
+            .args(tests)
+            .env("RELAY_CONTACT_FMU", component),
+    )?;
+    Ok(())
+}
+
+/// Prints the table. An error where a row is missing; a warning below the table where an importer did not run.
+pub fn table() -> Result<()> {
+    let (rows, missing) = rows()?;
     println!(
         "{:<12} {:<9} {:<17} {:<10} largest difference in force",
         "importer", "version", "task", "result"
     );
-    let (mut missing, mut warnings) = (Vec::new(), Vec::new());
-    for (importer, task) in EXPECTED {
-        let Some(row) = rows.iter().find(|row| row.importer == importer && row.task == task) else {
-            missing.push(format!("{importer} {task}"));
-            continue;
-        };
-        let difference = match row.difference {
-            Some(0.0) => "0 N".to_owned(),
-            Some(force) => format!("{force:.1e} N"),
-            None => "-".to_owned(),
-        };
+    for row in &rows {
         let (result, _) = row.result.split_once(':').unwrap_or((&row.result, ""));
-        println!("{importer:<12} {:<9} {task:<17} {result:<10} {difference}", row.version);
-        if row.result != "passed" {
-            warnings.push(format!("WARNING: {importer}, {task}: {}", row.result));
-        }
+        println!(
+            "{:<12} {:<9} {:<17} {result:<10} {}",
+            row.importer,
+            row.version,
+            row.task,
+            row.difference()
+        );
     }
-    for warning in warnings {
-        println!("{warning}");
+    for row in rows.iter().filter(|row| row.result != "passed") {
+        println!("WARNING: {}, {}: {}", row.importer, row.task, row.result);
     }
     if !missing.is_empty() {
         bail!("no result of {}", missing.join(", "));

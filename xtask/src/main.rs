@@ -10,10 +10,13 @@ mod importers;
 mod licences;
 mod package;
 mod python;
+mod report;
+mod run_scene;
 mod scene;
 mod ssv;
 mod summary;
 mod test;
+mod threads;
 mod valgrind;
 
 use std::process::ExitCode;
@@ -45,6 +48,8 @@ enum Task {
     Accuracy(accuracy::Arguments),
     /// Measure what each effect costs and changes; rewrite docs/effects.md
     Effects(effects::Arguments),
+    /// Run what the report shows and write out/report/index.html
+    Report(report::Arguments),
     /// Test the component under other people's importers and print the table of what they did
     Importers,
     /// Run calls of importers under valgrind: no error, no leak
@@ -63,6 +68,7 @@ fn main() -> ExitCode {
         Task::Demo => demo::run(),
         Task::Accuracy(arguments) => accuracy::run(&arguments),
         Task::Effects(arguments) => effects::run(&arguments),
+        Task::Report(arguments) => report::run(&arguments),
         Task::Importers => test::importers_alone(),
         Task::Valgrind => valgrind::run(),
         Task::Instructions => valgrind::instructions(),

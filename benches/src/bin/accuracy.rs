@@ -20,6 +20,9 @@ struct Arguments {
     /// Few settings and one turn
     #[arg(long)]
     quick: bool,
+    /// How often each run is timed; the median counts
+    #[arg(long, default_value_t = 7)]
+    turns: usize,
 }
 
 fn main() -> Result<()> {
@@ -29,7 +32,7 @@ fn main() -> Result<()> {
         cases.extend(plan::peers(&problem, arguments.quick)?);
         cases.extend(plan::own(&problem, arguments.quick)?);
     }
-    let rows = study::run(&cases, if arguments.quick { 1 } else { 7 });
+    let rows = study::run(&cases, if arguments.quick { 1 } else { arguments.turns });
     fs::create_dir_all(&arguments.folder)?;
     write(&arguments.folder.join("accuracy.csv"), &table::csv(&rows))?;
     update(&arguments.folder.join("accuracy.md"), &table::report(&rows))

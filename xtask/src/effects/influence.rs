@@ -20,19 +20,30 @@ struct Course {
     step: f64,
 }
 
-/// What it changes, as the cells of a row: force and resistance in each of [`CLOSED`], the time open in [`OPENING`].
-pub fn influence(effect: &Effect) -> Result<String> {
-    let mut cells = Vec::new();
-    for name in CLOSED {
+/// What an effect changes.
+pub struct Influence {
+    /// Largest difference of force, N, and of resistance, Ohm, in each of [`CLOSED`].
+    pub closed: [[f64; 2]; CLOSED.len()],
+    /// Time open in [`OPENING`] without it and with it, s.
+    pub open: [f64; 2],
+}
+
+/// What it changes in the scenes.
+pub fn influence(effect: &Effect) -> Result<Influence> {
+    let mut closed = [[0.0; 2]; CLOSED.len()];
+    for (name, differences) in CLOSED.into_iter().zip(&mut closed) {
         let with = course(name, effect.setting)?;
         let without = course(name, effect.off)?;
-        cells.push(amount(1e3 * greatest(&with.forces, &without.forces)));
-        cells.push(amount(1e3 * greatest(&with.resistances, &without.resistances)));
+        *differences = [
+            greatest(&with.forces, &without.forces),
+            greatest(&with.resistances, &without.resistances),
+        ];
     }
-    for settings in [effect.off, effect.setting] {
-        cells.push(format!("{:.3}", 1e3 * course(OPENING, settings)?.open()));
-    }
-    Ok(cells.join(" | "))
+    let open = |settings| Ok::<_, anyhow::Error>(course(OPENING, settings)?.open());
+    Ok(Influence {
+        closed,
+        open: [open(effect.off)?, open(effect.setting)?],
+    })
 }
 
 fn course(name: &str, settings: Settings) -> Result<Course> {
@@ -69,17 +80,4 @@ impl Course {
 fn greatest(with: &[f64], without: &[f64]) -> f64 {
     let differences = with.iter().zip(without).map(|(with, without)| with - without);
     differences.fold(0.0, |greatest, difference| greatest.max(difference.abs()))
-}
-
-/// Two digits.
-fn amount(value: f64) -> String {
-    match value {
-        0.0 => "0".to_owned(),
-        value if (0.01..1e4).contains(&value) => {
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 3")]
-            let places = (1.0 - value.log10().floor()).clamp(0.0, 3.0) as usize;
-            format!("{value:.places$}")
-        }
-        value => format!("{value:.0e}"),
-    }
 }

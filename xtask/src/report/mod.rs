@@ -1,0 +1,50 @@
+//! The report: what the component reproduces, what accuracy costs, what stays stable, on one page.
+//!
+//! [`content`]: sections, tables, figures;   [`page`]: the page made of them.   Sections:   [`opening`]: whether the contact
+//! opens;   [`paper`]: the published results beside ours;   [`accuracy`], [`effects`]: what accuracy and effects cost;
+//! [`stability`]: hard cases and the property each keeps;   [`importers`]: other people's importers.
+
+mod accuracy;
+pub mod content;
+mod effects;
+mod importers;
+mod opening;
+mod page;
+mod paper;
+mod stability;
+
+use anyhow::Result;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use self::content::Section;
+
+/// How much is run.
+#[derive(clap::Args, Clone, Copy)]
+pub struct Arguments {
+    /// Fewer points and runs, to see that everything works
+    #[arg(long)]
+    pub quick: bool,
+}
+
+/// Runs everything and writes `out/report/index.html`.
+pub fn run(arguments: &Arguments) -> Result<()> {
+    let parts: [fn(Arguments) -> Result<Vec<Section>>; 6] = [
+        opening::sections,
+        paper::sections,
+        accuracy::sections,
+        stability::sections,
+        effects::sections,
+        importers::sections,
+    ];
+    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} {msg}")?;
+    let progress = ProgressBar::new(parts.len() as u64).with_style(style);
+    let mut sections = Vec::new();
+    for part in parts {
+        sections.extend(part(*arguments)?);
+        progress.inc(1);
+    }
+    progress.finish_and_clear();
+    let path = page::write(&sections)?;
+    println!("{}", path.display());
+    Ok(())
+}
