@@ -1,0 +1,65 @@
+//! How width, thickness, camber radius, rivet mass and damping of the specimen follow from published results, how strongly
+//! each depends on each, and how far the start values of the parameters are from them.
+//!
+//! `cargo run --release --example identify`
+
+mod identification;
+
+use identification::{Error, PARAMETERS, Published, SOURCES, Specimen, sensitivities};
+use relay_contact::scene::Scene;
+
+fn main() -> Result<(), Error> {
+    println!("Published (Zhang, Zhang, Meng, Ren, Machines 2025, 13(1), 52)");
+    for source in SOURCES {
+        println!("  {:28} {:>10} {:5} {}", source.name, source.value, source.unit, source.place);
+    }
+    let found = Specimen::identify(&Published::default())?;
+    let start = Specimen::of(&Scene::default());
+    println!("\nIdentified, beside the start value of the parameter");
+    for ((parameter, found), start) in PARAMETERS.iter().zip(found.values).zip(start.values) {
+        println!(
+            "  {:22} {found:12.7} {:5} start {start:12.7}, {:+.4} %   from {}",
+            parameter.name,
+            parameter.unit,
+            100.0 * (start / found - 1.0),
+            parameter.from
+        );
+    }
+    let slopes = sensitivities()?;
+    println!("\nChange in % where a published result changes by 1 % (small changes)");
+    let name = |name: &str| format!("{:>12.12}", name.trim_end_matches(" EI"));
+    let names: String = PARAMETERS.iter().map(|parameter| name(parameter.name)).collect();
+    println!("  {:28}{names}", "");
+    for (source, row) in SOURCES.iter().zip(&slopes) {
+        let cells: String = row.iter().map(|slope| format!("{slope:+12.3}")).collect();
+        println!("  {:28}{cells}", source.name);
+    }
+    println!("\nThe same as derivatives, parameter per published result in their units");
+    for (source, row) in SOURCES.iter().zip(&slopes) {
+        for ((parameter, slope), value) in PARAMETERS.iter().zip(row).zip(found.values) {
+            if slope.abs() > 1e-6 {
+                let derivative = slope * value / source.value;
+                println!(
+                    "  d {} / d {} = {derivative:.4e} {} per {}",
+                    parameter.name, source.name, parameter.unit, source.unit
+                );
+            }
+        }
+    }
+    println!("\nHow far each is known, in %, where a published result may be half its last digit off");
+    println!("  {:28}{names}", "");
+    for (index, source) in SOURCES.iter().enumerate() {
+        let half = 0.5 * source.digit / source.value;
+        let above = Specimen::identify(&Published::default().changed(index, half))?;
+        let below = Specimen::identify(&Published::default().changed(index, -half))?;
+        let cells: String = above
+            .values
+            .iter()
+            .zip(below.values)
+            .zip(found.values)
+            .map(|((a, b), x)| format!("{:12.4}", 50.0 * (a - b).abs() / x))
+            .collect();
+        println!("  {:28}{cells}", source.name);
+    }
+    Ok(())
+}
