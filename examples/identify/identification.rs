@@ -64,6 +64,29 @@ pub const FREQUENCY: f64 = 1000.0;
 #[derive(Clone, Copy, Debug)]
 pub struct Published {
     pub values: [f64; 5],
+    /// What the published force amplitude is taken for.
+    pub amplitude: Amplitude,
+}
+
+/// Which force has the published amplitude.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Amplitude {
+    /// The whole contact force.
+    Whole,
+    /// Its elastic part, without what the damping of the contact adds.
+    Elastic,
+}
+
+impl Amplitude {
+    /// Of this force in the linear response to the published acceleration at a frequency (Hz), cN.
+    pub fn of(self, model: &Model, frequency: f64) -> f64 {
+        let omega = TAU * frequency;
+        let whole = 100.0 * ACCELERATION * harmonic::response(model, omega).force.norm();
+        match self {
+            Self::Whole => whole,
+            Self::Elastic => whole / f64::hypot(1.0, omega * model.law.damping()),
+        }
+    }
 }
 
 /// The parameters found.
@@ -108,6 +131,7 @@ impl Default for Published {
     fn default() -> Self {
         Self {
             values: SOURCES.map(|source| source.value),
+            amplitude: Amplitude::Whole,
         }
     }
 }
@@ -185,7 +209,13 @@ pub fn scene(published: &Published) -> Result<Scene, Error> {
     scene.beam.stiffness_damping = published.damping();
     scene.contact.damping = published.damping();
 
-    let excess = |mass: f64| with_rivet(&scene, bending, mass, frequency).map_or(f64::NAN, |s| response(&s) - amplitude);
+    let excess = |mass: f64| {
+        let model = with_rivet(&scene, bending, mass, frequency).map(|scene| Model::new(&scene, 0.0));
+        match model {
+            Some(Ok(model)) => published.amplitude.of(&model, FREQUENCY) - amplitude,
+            _ => f64::NAN,
+        }
+    };
     let mass = roots::bracketed(excess, 0.0, 200e-6).ok_or("no rivet mass up to 200 mg")?;
     with_rivet(&scene, bending, mass, frequency).ok_or_else(|| "no mass per length".into())
 }
@@ -219,13 +249,6 @@ fn first_frequency(scene: &Scene) -> Option<f64> {
     found.first().map(|omega| omega / TAU)
 }
 
-/// Linear amplitude of the contact force under the published vibration, cN.
-fn response(scene: &Scene) -> f64 {
-    Model::new(scene, 0.0).map_or(f64::NAN, |model| {
-        100.0 * ACCELERATION * harmonic::response(&model, TAU * FREQUENCY).force.norm()
-    })
-}
-
 /// Change of a published value for the derivatives, relative.
 const STEP: f64 = 1e-3;
 
@@ -236,13 +259,33 @@ const STEP: f64 = 1e-3;
 pub fn sensitivities() -> Result<Vec<[f64; 7]>, Error> {
     (0..SOURCES.len())
         .map(|source| {
-            let above = Specimen::identify(&Published::default().changed(source, STEP))?;
-            let below = Specimen::identify(&Published::default().changed(source, -STEP))?;
-            let mut slopes = [0.0; 7];
-            for ((slope, a), b) in slopes.iter_mut().zip(above.values).zip(below.values) {
-                *slope = (a / b).ln() / (2.0 * STEP);
-            }
-            Ok(slopes)
+            let part = change(source, STEP)?;
+            Ok(part.map(|part| part / (2.0 * STEP)))
         })
         .collect()
+}
+
+/// How far each parameter is uncertain, +- %, because a published result is rounded to its last digit.
+///
+/// # Errors
+/// A step that has no solution.
+pub fn precision() -> Result<Vec<[f64; 7]>, Error> {
+    let sources = SOURCES.iter().enumerate();
+    sources
+        .map(|(index, source)| {
+            let part = change(index, 0.5 * source.digit / source.value)?;
+            Ok(part.map(|part| 50.0 * part.abs()))
+        })
+        .collect()
+}
+
+/// Relative change of each parameter where a published result goes from a part below its value to a part above.
+fn change(source: usize, part: f64) -> Result<[f64; 7], Error> {
+    let above = Specimen::identify(&Published::default().changed(source, part))?;
+    let below = Specimen::identify(&Published::default().changed(source, -part))?;
+    let mut changes = above.values;
+    for (change, below) in changes.iter_mut().zip(below.values) {
+        *change = (*change / below).ln();
+    }
+    Ok(changes)
 }

@@ -5,7 +5,7 @@
 
 mod identification;
 
-use identification::{Error, PARAMETERS, Published, SOURCES, Specimen, sensitivities};
+use identification::{Error, PARAMETERS, Published, SOURCES, Specimen, precision, sensitivities};
 use relay_contact::scene::Scene;
 
 fn main() -> Result<(), Error> {
@@ -46,19 +46,10 @@ fn main() -> Result<(), Error> {
             }
         }
     }
-    println!("\nHow far each is known, in %, where a published result may be half its last digit off");
+    println!("\nUncertain by, in %, because a published result is rounded to its last digit (half of it, up or down)");
     println!("  {:28}{names}", "");
-    for (index, source) in SOURCES.iter().enumerate() {
-        let half = 0.5 * source.digit / source.value;
-        let above = Specimen::identify(&Published::default().changed(index, half))?;
-        let below = Specimen::identify(&Published::default().changed(index, -half))?;
-        let cells: String = above
-            .values
-            .iter()
-            .zip(below.values)
-            .zip(found.values)
-            .map(|((a, b), x)| format!("{:12.4}", 50.0 * (a - b).abs() / x))
-            .collect();
+    for (source, row) in SOURCES.iter().zip(precision()?) {
+        let cells: String = row.iter().map(|percent| format!("{percent:12.4}")).collect();
         println!("  {:28}{cells}", source.name);
     }
     Ok(())

@@ -1,0 +1,70 @@
+//! Cells and rows of the tables.
+
+use super::super::content::{Block, Table};
+
+/// A number with digits after the point; never minus zero, whose sign would be that of rounding.
+pub fn number(value: f64, digits: usize) -> String {
+    let text = format!("{value:.digits$}");
+    if text.bytes().any(|digit| (b'1'..=b'9').contains(&digit)) {
+        text
+    } else {
+        text.trim_start_matches('-').to_owned()
+    }
+}
+
+/// The same with four significant digits.
+pub fn significant(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return number(value, 0);
+    }
+    #[allow(clippy::cast_possible_truncation)] // at most 308
+    let magnitude = value.abs().log10().floor() as i32;
+    if (-3..6).contains(&magnitude) {
+        number(value, usize::try_from(3 - magnitude).unwrap_or_default())
+    } else {
+        format!("{value:.3e}")
+    }
+}
+
+/// How far ours is from the published value.
+pub fn deviation(ours: f64, published: f64) -> String {
+    percent(100.0 * (ours / published - 1.0))
+}
+
+/// A signed percentage.
+pub fn percent(value: f64) -> String {
+    let text = number(value, 2);
+    let sign = if value > 0.0 && text != "0.00" { "+" } else { "" };
+    format!("{sign}{text} %")
+}
+
+/// quantity | published | ours | deviation | place
+pub fn row(quantity: &str, published: f64, ours: f64, digits: usize, unit: &str, place: &str) -> Vec<String> {
+    cells(&[
+        quantity,
+        &format!("{published} {unit}"),
+        &format!("{} {unit}", number(ours, digits)),
+        &deviation(ours, published),
+        place,
+    ])
+}
+
+/// A row of texts.
+pub fn cells(cells: &[&str]) -> Vec<String> {
+    cells.iter().map(|cell| (*cell).trim_end().to_owned()).collect()
+}
+
+/// A table of [`row`]s.
+pub fn comparison(caption: &str, rows: Vec<Vec<String>>) -> Block {
+    let columns = ["quantity", "published", "ours", "deviation", "where in the publication"];
+    table(caption, &columns, rows)
+}
+
+/// Any table.
+pub fn table(caption: &str, columns: &[&str], rows: Vec<Vec<String>>) -> Block {
+    Block::Table(Table {
+        caption: caption.to_owned(),
+        columns: cells(columns),
+        rows,
+    })
+}
