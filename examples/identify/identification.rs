@@ -103,11 +103,26 @@ pub struct Parameter {
 /// The parameters, in the order of [`Specimen::values`].
 pub const PARAMETERS: [Parameter; 7] = [
     parameter("camber radius", "mm", 1e-3, "F_0 and k_j, by the Hertz law"),
-    parameter("bending stiffness EI", "N m²", 1.0, "F_0 at the overtravel of 0.2 mm"),
-    parameter("mass per length", "kg/m", 1.0, "f_1, with the rivet mass"),
-    parameter("width", "mm", 1e-3, "EI and mass per length, with E = 124 GPa and 8300 kg/m³"),
-    parameter("thickness", "mm", 1e-3, "EI and mass per length, with E = 124 GPa and 8300 kg/m³"),
-    parameter("rivet mass", "mg", 1e-6, "force amplitude at 1000 Hz, with the mass per length"),
+    parameter("bending stiffness EI", "N mm²", 1e-6, "F_0 at the overtravel of 0.2 mm"),
+    parameter("mass per length", "g/m", 1e-3, "f_1, with the rivet mass"),
+    parameter(
+        "width",
+        "mm",
+        1e-3,
+        "EI and mass per length, with E = 124 GPa and 8300 kg/m³",
+    ),
+    parameter(
+        "thickness",
+        "mm",
+        1e-3,
+        "EI and mass per length, with E = 124 GPa and 8300 kg/m³",
+    ),
+    parameter(
+        "rivet mass",
+        "mg",
+        1e-6,
+        "force amplitude at 1000 Hz, with the mass per length",
+    ),
     parameter("damping times", "µs", 1e-6, "beta over 4 π²"),
 ];
 

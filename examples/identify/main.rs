@@ -11,7 +11,10 @@ use relay_contact::scene::Scene;
 fn main() -> Result<(), Error> {
     println!("Published (Zhang, Zhang, Meng, Ren, Machines 2025, 13(1), 52)");
     for source in SOURCES {
-        println!("  {:28} {:>10} {:5} {}", source.name, source.value, source.unit, source.place);
+        println!(
+            "  {:28} {:>10} {:5} {}",
+            source.name, source.value, source.unit, source.place
+        );
     }
     let found = Specimen::identify(&Published::default())?;
     let start = Specimen::of(&Scene::default());

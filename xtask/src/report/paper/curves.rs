@@ -29,7 +29,12 @@ pub fn curve(name: &str, points: impl IntoIterator<Item = (f64, f64)>, style: St
 
 /// The force amplitude over the frequency.
 pub fn amplitudes(name: &str, runs: &[Periodic], style: Style, colour: usize) -> Curve {
-    curve(name, runs.iter().map(|run| (run.frequency, run.amplitude())), style, colour)
+    curve(
+        name,
+        runs.iter().map(|run| (run.frequency, run.amplitude())),
+        style,
+        colour,
+    )
 }
 
 /// Published points.

@@ -25,7 +25,9 @@ fn damping(results: &Results) -> Result<Vec<Block>> {
     let beta = paper::BETAS[3];
     let amplitudes: Vec<f64> = results.literal.iter().map(runs::Periodic::amplitude).collect();
     let least = amplitudes.iter().fold(f64::INFINITY, |least, a| least.min(*a));
-    let greatest = amplitudes.iter().fold(f64::NEG_INFINITY, |greatest, a| greatest.max(*a));
+    let greatest = amplitudes
+        .iter()
+        .fold(f64::NEG_INFINITY, |greatest, a| greatest.max(*a));
     let omega = paper::ALPHA_PER_BETA.sqrt();
     let first = results.specimen.frequency;
     let text = format!(
@@ -37,8 +39,8 @@ fn damping(results: &Results) -> Result<Vec<Block>> {
          angular frequency (eq. 32). The factor is the square of {}: near the first frequency in Hz ({}), not in rad/s ({}). \
          So the coefficient seems to belong to frequencies in Hz, and in SI units it is smaller by 4 π²: {} s. That is a \
          calibration which this supports, not a proof. With it the resonance is there.",
-        number(least, 2),
-        number(greatest, 2),
+        number(least, 3),
+        number(greatest, 3),
         number(omega, 1),
         number(first, 1),
         number(TAU * first, 0),
@@ -82,9 +84,10 @@ fn literal_figure(results: &Results) -> Figure {
         x: FREQUENCY,
         y: FORCE_AMPLITUDE,
         curves,
-        caption: "As printed, damping is so strong that beam and contact creep: the same force at every frequency. The \
+        caption:
+            "As printed, damping is so strong that beam and contact creep: the same force at every frequency. The \
                   published points lie on a resonance."
-            .to_owned(),
+                .to_owned(),
     }
 }
 
@@ -115,7 +118,11 @@ fn axial_force(results: &Results) -> Result<Vec<Block>> {
         number(buckling, 2),
     );
     let rows = vec![
-        cells(&["axial force by eq. 9", &format!("{} N", significant(force)), &format!("{} Hz", number(shift, 3))]),
+        cells(&[
+            "axial force by eq. 9",
+            &format!("{} N", significant(force)),
+            &format!("{} Hz", number(shift, 3)),
+        ]),
         cells(&[
             "axial force for the published part of the frequency",
             &format!("{} N", significant(needed)),
@@ -123,5 +130,8 @@ fn axial_force(results: &Results) -> Result<Vec<Block>> {
         ]),
     ];
     let columns = ["", "axial force", "first frequency lower by"];
-    Ok(vec![Block::Text(text), table("Axial force and first frequency of the specimen", &columns, rows)])
+    Ok(vec![
+        Block::Text(text),
+        table("Axial force and first frequency of the specimen", &columns, rows),
+    ])
 }

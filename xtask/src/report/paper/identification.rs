@@ -5,7 +5,7 @@ use relay_contact::scene::Scene;
 
 use super::super::content::Block;
 use super::calculation::{PARAMETERS, Published, SOURCES, Specimen, precision, sensitivities};
-use super::table::{deviation, number, percent, significant, table};
+use super::table::{deviation, number, percent, table};
 
 /// The blocks of the section.
 pub fn blocks() -> Result<Vec<Block>> {
@@ -13,7 +13,12 @@ pub fn blocks() -> Result<Vec<Block>> {
     let slopes = sensitivities().map_err(|error| anyhow!(error))?;
     let precision = precision().map_err(|error| anyhow!(error))?;
     let start = Specimen::of(&Scene::default());
-    let position = |name: &str| PARAMETERS.iter().position(|parameter| parameter.name == name).unwrap_or_default();
+    let position = |name: &str| {
+        PARAMETERS
+            .iter()
+            .position(|parameter| parameter.name == name)
+            .unwrap_or_default()
+    };
     let rivet = position("rivet mass");
     let text = format!(
         "Width, thickness, rivet mass, camber radius and a usable damping are not published. They follow from published results by root \
@@ -26,38 +31,61 @@ pub fn blocks() -> Result<Vec<Block>> {
         percent(slopes[2][rivet]),
         number(precision[0][rivet], 1),
     );
-    let rows = PARAMETERS.iter().zip(found.values).zip(start.values).map(|((parameter, found), start)| {
-        vec![
-            parameter.name.to_owned(),
-            parameter.from.to_owned(),
-            format!("{found:.*} {}", decimals(found), parameter.unit),
-            format!("{start:.*} {}", decimals(start), parameter.unit),
-            deviation(start, found),
-        ]
-    });
-    let columns = ["parameter", "follows from", "identified", "start value", "off by rounding"];
+    let rows = PARAMETERS
+        .iter()
+        .zip(found.values)
+        .zip(start.values)
+        .map(|((parameter, found), start)| {
+            vec![
+                parameter.name.to_owned(),
+                parameter.from.to_owned(),
+                format!("{found:.*} {}", decimals(found), parameter.unit),
+                format!("{start:.*} {}", decimals(start), parameter.unit),
+                deviation(start, found),
+            ]
+        });
+    let columns = [
+        "parameter",
+        "follows from",
+        "identified",
+        "start value",
+        "off by rounding",
+    ];
     let parameters = table("Identified parameters", &columns, rows.collect());
 
     let matrix = |caption: &str, cell: &dyn Fn(usize, usize) -> String| {
         let names = PARAMETERS.iter().map(|parameter| parameter.name);
         let columns: Vec<_> = ["published result"].into_iter().chain(names).collect();
         let rows = SOURCES.iter().enumerate().map(|(source, published)| {
-            let head = format!("{}: {} {}", published.name, significant(published.value), published.unit);
-            [head].into_iter().chain((0..PARAMETERS.len()).map(|parameter| cell(source, parameter))).collect()
+            let value = published.value;
+            let value = if (1e-2..1e5).contains(&value) {
+                format!("{value}")
+            } else {
+                format!("{value:e}")
+            };
+            let head = format!("{}: {value} {}, {}", published.name, published.unit, published.place);
+            [head]
+                .into_iter()
+                .chain((0..PARAMETERS.len()).map(|parameter| cell(source, parameter)))
+                .collect()
         });
         table(caption, &columns, rows.collect())
     };
-    let sensitivity = matrix("Change of each parameter where a published result is 1 % higher, by the slope", &|source, parameter| {
-        percent(slopes[source][parameter])
-    });
+    let sensitivity = matrix(
+        "Change of each parameter where a published result is 1 % higher, by the slope",
+        &|source, parameter| percent(slopes[source][parameter]),
+    );
     let units = matrix(
         "The same as derivatives: parameter per published result, in the units of both",
         &|source, parameter| {
             let slope = slopes[source][parameter] * found.values[parameter] / SOURCES[source].value;
             if percent(slopes[source][parameter]) == "0.00 %" {
-                return "0".to_owned();
+                return "≈ 0".to_owned();
             }
-            format!("{slope:.3e} {} per {}", PARAMETERS[parameter].unit, SOURCES[source].unit)
+            format!(
+                "{slope:.3e} {} per {}",
+                PARAMETERS[parameter].unit, SOURCES[source].unit
+            )
         },
     );
     let digits = matrix(

@@ -15,7 +15,11 @@ pub fn markdown(sections: &[Section]) -> String {
                 Block::Text(paragraphs) => text.push_str(paragraphs),
                 Block::Table(table) => table_text(&mut text, table),
                 Block::Figure(figure) => {
-                    let _ = write!(text, "![{}](report/{}.png)\n\n{}", figure.title, figure.id, figure.caption);
+                    let _ = write!(
+                        text,
+                        "![{}](report/{}.png)\n\n{}",
+                        figure.title, figure.id, figure.caption
+                    );
                 }
             }
             text.push('\n');
@@ -25,7 +29,13 @@ pub fn markdown(sections: &[Section]) -> String {
 }
 
 fn table_text(text: &mut String, table: &Table) {
-    let _ = write!(text, "**{}**\n\n| {} |\n|{}", table.caption, table.columns.join(" | "), "---|".repeat(table.columns.len()));
+    let _ = write!(
+        text,
+        "**{}**\n\n| {} |\n|{}",
+        table.caption,
+        table.columns.join(" | "),
+        "---|".repeat(table.columns.len())
+    );
     for row in &table.rows {
         let _ = write!(text, "\n| {} |", row.join(" | "));
     }

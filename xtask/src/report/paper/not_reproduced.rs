@@ -73,7 +73,10 @@ fn short_springs(results: &Results) -> Result<Vec<Block>> {
         number(ratio, 0),
     );
     let columns = ["spring", "published", "ours", "deviation", "by 1/L²"];
-    Ok(vec![Block::Text(text), table("First frequency of shorter springs, with prestress", &columns, rows)])
+    Ok(vec![
+        Block::Text(text),
+        table("First frequency of shorter springs, with prestress", &columns, rows),
+    ])
 }
 
 fn displacements(results: &Results) -> Result<Vec<Block>> {
@@ -101,7 +104,7 @@ fn displacements(results: &Results) -> Result<Vec<Block>> {
          {} N/µm is at most {} nm of motion between the two, and the whole indentation at rest is {} nm. Published is up to {} µm more than the \
          base. No contact of the published stiffness can do that with the published force, so the published displacement was read \
          at another place: somewhere on the spring, or on a contact that turns or slides in the three-dimensional model. Where is not \
-         published. The measured {} µm have the same doubt: the laser does not look at the contact spot. The phase of 90° between \
+         published. So was the measured {} µm: where the laser pointed is not published either. The phase of 90° between \
          force and displacement belongs to that place too.",
         number(base, 3),
         number(run.amplitude(), 2),
@@ -111,8 +114,22 @@ fn displacements(results: &Results) -> Result<Vec<Block>> {
         number(paper::DISPLACEMENTS[0] - base, 1),
         paper::MEASURED_DISPLACEMENT,
     );
-    let columns = ["ratio", "published", "ours", "deviation", "published above that of the base", "ours relative to the base"];
-    Ok(vec![Block::Text(text), table("Displacement amplitude at 1000 Hz, base included (Table 4)", &columns, rows)])
+    let columns = [
+        "ratio",
+        "published",
+        "ours",
+        "deviation",
+        "published above that of the base",
+        "ours relative to the base",
+    ];
+    Ok(vec![
+        Block::Text(text),
+        table(
+            "Displacement amplitude at 1000 Hz, base included (Table 4)",
+            &columns,
+            rows,
+        ),
+    ])
 }
 
 fn undamped(results: &Results) -> Result<Vec<Block>> {
@@ -139,13 +156,22 @@ fn undamped(results: &Results) -> Result<Vec<Block>> {
     let text = format!(
         "### The undamped end of the damping grid\n\n\
          With ratios of {} the linear force amplitude at 1250 Hz is above the static force: the contact opens and hammers. The \
-         force is then no sine and need not repeat from period to period, and blows reach newtons. The publication reports smooth \
-         amplitudes over the whole grid. What the model gives there depends on the damping of the contact and of the highest modes, \
+         force is then no sine and need not repeat from period to period, and its blows are far above the static force. The publication \
+         gives an amplitude for every point of its grid. What the model gives there depends on the damping of the contact and of the highest modes, \
          which nothing published fixes; so no number of ours is shown beside the published ones.",
         opening.join(" and ")
     );
-    let columns = ["ratio", "damping of the first mode, of critical", "greatest linear force amplitude", "of the static force", "contact"];
-    Ok(vec![Block::Text(text), table("The weakly damped end of the grid, 98 m/s²", &columns, rows)])
+    let columns = [
+        "ratio",
+        "damping of the first mode, of critical",
+        "greatest linear force amplitude",
+        "of the static force",
+        "contact",
+    ];
+    Ok(vec![
+        Block::Text(text),
+        table("The weakly damped end of the grid, 98 m/s²", &columns, rows),
+    ])
 }
 
 /// The scene in which the elastic part of the force has the published amplitudes at 1000 and 1250 Hz.
@@ -213,18 +239,33 @@ fn strong_damping(results: &Results) -> Result<Vec<Block>> {
          other.\n\n\
          One reading would explain most of it. With stiffness damping, a growing part of our contact force is that of the contact's \
          damping. Contact elements of finite-element programs commonly report the elastic force alone. Taking the elastic part of our force, \
-         all else equal, the amplitudes at 20 and 30 come near the published ones, and the two domains near each other (table of the domains \
-         above). If the rivet mass and the damping are fitted anew, so that the elastic part has the published amplitudes at 1000 and \
+         all else equal, the amplitudes at 20 and 30 come near the published ones, and up to 1500 Hz the two domains near each other (table of the domains \
+         in *The publication reproduced*). If the rivet mass and the damping are fitted anew, so that the elastic part has the published amplitudes at 1000 and \
          1250 Hz ({} mg, and {} times the damping), all three peaks are at the published frequencies. That is a reading of the \
          publication, which does not say which force it shows. The start values are fitted to the whole force.",
         number(1e6 * fit.section.tip_mass, 1),
         number(fit.scene.contact.damping / results.specimen.scene.contact.damping, 2),
     );
-    let peaks = ["ratio", "published", "ours, whole force", "ours, elastic part", "elastic part, fitted to it"];
-    let resistance = ["ratio", "published (no sign)", "ours, whole force", "ours, elastic part"];
+    let peaks = [
+        "ratio",
+        "published",
+        "ours, whole force",
+        "ours, elastic part",
+        "elastic part, fitted to it",
+    ];
+    let resistance = [
+        "ratio",
+        "published (no sign)",
+        "ours, whole force",
+        "ours, elastic part",
+    ];
     Ok(vec![
         Block::Text(text),
-        table("Greatest force amplitude over the grid, time domain, 98 m/s²", &peaks, rows),
+        table(
+            "Greatest force amplitude over the grid, time domain, 98 m/s²",
+            &peaks,
+            rows,
+        ),
         table(
             "Deviation of greatest and least resistance from the measured 63 and 25 mΩ at 1000 Hz (Table 6)",
             &resistance,

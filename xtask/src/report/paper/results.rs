@@ -33,11 +33,17 @@ impl Results {
         let grid = pairs(&RATIOS, &FREQUENCIES);
         let curves = pairs(&DRAWN, &frequencies);
         let literal = BETAS[3];
-        let mut points: Vec<_> = grid.iter().chain(&curves).map(|(ratio, f)| (runs::specimen(*ratio), *f)).collect();
+        let mut points: Vec<_> = grid
+            .iter()
+            .chain(&curves)
+            .map(|(ratio, f)| (runs::specimen(*ratio), *f))
+            .collect();
         points.extend(FREQUENCIES.map(|f| (runs::with_damping(literal), f)));
         let mut done = runs::each(&points, |(scene, frequency)| runs::periodic(scene, *frequency))?.into_iter();
         let grid: Vec<_> = done.by_ref().take(grid.len()).collect();
-        let curves = DRAWN.map(|ratio| (ratio, done.by_ref().take(frequencies.len()).collect())).to_vec();
+        let curves = DRAWN
+            .map(|ratio| (ratio, done.by_ref().take(frequencies.len()).collect()))
+            .to_vec();
         let literal = done.collect();
         let alphas = ALPHAS.iter().chain(&[5125.0, 10_250.0, 15_375.0]);
         Ok(Self {
@@ -54,9 +60,14 @@ impl Results {
 
     /// The runs of a published ratio over the published frequencies.
     pub fn ratio(&self, ratio: f64) -> Result<&[Periodic]> {
-        let index = RATIOS.iter().position(|known| *known == ratio).context("no such ratio")?;
+        let index = RATIOS
+            .iter()
+            .position(|known| *known == ratio)
+            .context("no such ratio")?;
         let count = FREQUENCIES.len();
-        self.grid.get(index * count..(index + 1) * count).context("grid not run")
+        self.grid
+            .get(index * count..(index + 1) * count)
+            .context("grid not run")
     }
 
     /// The run of a published ratio at a published frequency.
@@ -82,5 +93,7 @@ fn pairs(ratios: &[f64], frequencies: &[f64]) -> Vec<(f64, f64)> {
 
 /// Frequency (Hz) and value of the highest of some points.
 pub fn peak(points: impl Iterator<Item = (f64, f64)>) -> (f64, f64) {
-    points.fold((f64::NAN, f64::NEG_INFINITY), |best, point| if point.1 > best.1 { point } else { best })
+    points.fold((f64::NAN, f64::NEG_INFINITY), |best, point| {
+        if point.1 > best.1 { point } else { best }
+    })
 }

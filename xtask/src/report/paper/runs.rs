@@ -151,7 +151,9 @@ pub fn periodic(scene: &Scene, frequency: f64) -> Result<Periodic> {
                 let shaken = -base * (TAU * f64::from(sample) / f64::from(SAMPLES)).sin();
                 let displacement = simulation.real(RealOutput::TipDisplacement) - deflection + shaken;
                 let force = simulation.real(RealOutput::ContactForce);
-                found.course.push((f64::from(sample) / f64::from(SAMPLES) / frequency, force, displacement));
+                found
+                    .course
+                    .push((f64::from(sample) / f64::from(SAMPLES) / frequency, force, displacement));
             }
         }
     }
@@ -159,7 +161,8 @@ pub fn periodic(scene: &Scene, frequency: f64) -> Result<Periodic> {
     found.periodic = changed < PERIODIC * force_scale;
     found.opens = found.least <= 0.0;
     let displacements = found.course.iter().map(|point| point.2);
-    found.displacement = 0.5 * (displacements.clone().fold(f64::MIN, f64::max) - displacements.fold(f64::MAX, f64::min));
+    found.displacement =
+        0.5 * (displacements.clone().fold(f64::MIN, f64::max) - displacements.fold(f64::MAX, f64::min));
     let angle = angle(&found.course, |point| point.1) - angle(&found.course, |point| point.2);
     found.phase = angle.sin().atan2(angle.cos()).abs() * 180.0 / PI;
     Ok(found)

@@ -33,9 +33,14 @@ pub fn deviation(ours: f64, published: f64) -> String {
 
 /// A signed percentage.
 pub fn percent(value: f64) -> String {
-    let text = number(value, 2);
-    let sign = if value > 0.0 && text != "0.00" { "+" } else { "" };
-    format!("{sign}{text} %")
+    format!("{} %", signed(value, 2))
+}
+
+/// A number with its sign, unless it is rounded to zero.
+pub fn signed(value: f64, digits: usize) -> String {
+    let text = number(value, digits);
+    let zero = text.bytes().all(|byte| byte == b'0' || byte == b'.');
+    if zero || value < 0.0 { text } else { format!("+{text}") }
 }
 
 /// quantity | published | ours | deviation | place
@@ -47,6 +52,13 @@ pub fn row(quantity: &str, published: f64, ours: f64, digits: usize, unit: &str,
         &deviation(ours, published),
         place,
     ])
+}
+
+/// The same where a difference says more than a ratio.
+pub fn difference(quantity: &str, published: f64, ours: f64, digits: usize, unit: &str, place: &str) -> Vec<String> {
+    let mut row = row(quantity, published, ours, digits, unit, place);
+    row[3] = format!("{} {unit}", signed(ours - published, digits));
+    row
 }
 
 /// A row of texts.

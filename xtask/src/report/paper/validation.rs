@@ -27,7 +27,10 @@ pub fn write() -> Result<PathBuf> {
 
 /// The page. The curves are not in it, so they may be coarse.
 fn text() -> Result<String> {
-    let sections = validation(Arguments { quick: true, docs: true })?;
+    let sections = validation(Arguments {
+        quick: true,
+        docs: true,
+    })?;
     Ok(format!(
         "<!-- Written by cargo xtask report --docs. -->\n# Validation\n\n    cargo xtask report --docs\n\nruns the model and writes this \
          page: what the model's source publishes, beside what the component computes.\n{}",
@@ -44,7 +47,10 @@ mod tests {
         let text = text().unwrap();
         let written = fs::read_to_string(path()).unwrap();
         let different = text.lines().zip(written.lines()).find(|(now, then)| now != then);
-        assert_eq!(different, None, "now and in docs/validation.md: run cargo xtask report --docs");
+        assert_eq!(
+            different, None,
+            "now and in docs/validation.md: run cargo xtask report --docs"
+        );
         assert_eq!(text.len(), written.len(), "run cargo xtask report --docs");
     }
 }
