@@ -6,9 +6,9 @@ use relay_contact::scene::Scene;
 use relay_contact::variables::{AxialForceKind, ResistanceKind};
 
 use super::super::content::{Axis, Figure, Style};
-use super::comparison::resistance_deviations;
 use super::curves::{axis, curve, published};
 use super::published as paper;
+use super::resistance::resistance_deviations;
 use super::results::Results;
 use super::runs::{self, Periodic, excitation, linear_force, resistance};
 use super::table::number;

@@ -1,23 +1,30 @@
 //! The publication beside the model.
 //!
 //! [`published`]: its numbers;   [`runs`], [`results`]: ours;   [`calculation`]: the identification, shared with its example.
-//! Sections, of blocks by [`comparison`], [`figures`], [`responses`], [`not_reproduced`], [`findings`], [`identification`];
-//! [`table`], [`curves`]: what these are made with;   [`validation`]: the same as `docs/validation.md`.
+//! Sections, of blocks by [`comparison`], [`resistance`], [`figures`], [`responses`]; [`not_reproduced`] with [`displacement`],
+//! [`elastic`]; [`findings`]; [`identification`].   [`table`], [`curves`]: what these are made with;   [`spring`]: the motion
+//! between clamp and contact;   [`validation`]: the same as `docs/validation.md`.
 
 #[path = "../../../../examples/identify/identification.rs"]
 mod calculation;
 mod comparison;
 mod curves;
+mod displacement;
+mod elastic;
 mod figures;
 mod findings;
 mod identification;
 mod markdown;
 mod not_reproduced;
 mod published;
+mod resistance;
 mod responses;
 mod results;
 mod runs;
+mod spring;
 mod table;
+#[cfg(test)]
+mod tests;
 pub mod validation;
 
 use anyhow::Result;
@@ -57,7 +64,7 @@ fn paper(results: &Results, quick: bool) -> Result<Vec<Block>> {
         Block::Figure(responses::frequency_domain(results)?),
         comparison::domains(results)?,
         Block::Figure(responses::domains(results)?),
-        comparison::resistances(results)?,
+        resistance::resistances(results)?,
         Block::Figure(figures::laws()?),
         Block::Figure(figures::resistance_course(results)?),
         Block::Figure(time),

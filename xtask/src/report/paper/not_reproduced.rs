@@ -1,25 +1,22 @@
 //! What the model does not reproduce, how far off it is, and why.
 
-use anyhow::{Context, Result, anyhow};
-use relay_contact::math::roots;
-use relay_contact::model::Model;
+use anyhow::Result;
 use relay_contact::variables::AxialForceKind;
 
 use super::super::content::Block;
-use super::calculation::{self, Amplitude, Published};
-use super::comparison::{amplitude_cells, resistance_deviations};
 use super::published as paper;
 use super::results::{Results, peak};
-use super::runs::{self, elastic_force, excitation, linear_force};
-use super::table::{cells, deviation, number, percent, significant, table};
+use super::runs::{self, linear_force};
+use super::table::{cells, deviation, number, significant, table};
+use super::{displacement, elastic};
 
 /// The blocks of the section.
 pub fn blocks(results: &Results) -> Result<Vec<Block>> {
     let mut blocks = vec![prestress(results)?];
     blocks.extend(short_springs(results)?);
-    blocks.extend(displacements(results)?);
+    blocks.extend(displacement::blocks(results)?);
     blocks.extend(undamped(results)?);
-    blocks.extend(strong_damping(results)?);
+    blocks.extend(elastic::blocks(results)?);
     blocks.push(mass_damping(results)?);
     Ok(blocks)
 }
@@ -79,59 +76,6 @@ fn short_springs(results: &Results) -> Result<Vec<Block>> {
     ])
 }
 
-fn displacements(results: &Results) -> Result<Vec<Block>> {
-    let base = 1e6 * excitation(1000.0);
-    let stiffness = results.specimen.preload.contact_stiffness;
-    let mut rows = Vec::new();
-    for (ratio, published) in paper::RATIOS.into_iter().zip(paper::DISPLACEMENTS) {
-        let run = results.at(ratio, 1000.0)?;
-        let ours = 1e6 * run.displacement;
-        let relative = elastic_force(&runs::model(&runs::specimen(ratio))?, 1000.0) / stiffness;
-        rows.push(cells(&[
-            &format!("{ratio}"),
-            &format!("{published} µm"),
-            &format!("{} µm", number(ours, 3)),
-            &deviation(ours, published),
-            &format!("{} µm", number(published - base, 3)),
-            &format!("{} nm", number(1e7 * relative, 1)),
-        ]));
-    }
-    let run = results.at(paper::BEST, 1000.0)?;
-    let indentation = results.specimen.preload.indentation;
-    let text = format!(
-        "### The displacement of the contact\n\n\
-         The base moves by {} µm at 1000 Hz and 98 m/s². A closed contact moves with it: a force amplitude of {} cN over a contact stiffness of \
-         {} N/µm is at most {} nm of motion between the two, and the whole indentation at rest is {} nm. Published is up to {} µm more than the \
-         base. No contact of the published stiffness can do that with the published force, so the published displacement was read \
-         at another place: somewhere on the spring, or on a contact that turns or slides in the three-dimensional model. Where is not \
-         published. So was the measured {} µm: where the laser pointed is not published either. The phase of 90° between \
-         force and displacement belongs to that place too.",
-        number(base, 3),
-        number(run.amplitude(), 2),
-        number(1e-6 * stiffness, 2),
-        number(1e7 * run.amplitude() / stiffness, 1),
-        number(1e9 * indentation, 1),
-        number(paper::DISPLACEMENTS[0] - base, 1),
-        paper::MEASURED_DISPLACEMENT,
-    );
-    let columns = [
-        "ratio",
-        "published",
-        "ours",
-        "deviation",
-        "published above that of the base",
-        "ours relative to the base",
-    ];
-    Ok(vec![
-        Block::Text(text),
-        table(
-            "Displacement amplitude at 1000 Hz, base included (Table 4)",
-            &columns,
-            rows,
-        ),
-    ])
-}
-
 fn undamped(results: &Results) -> Result<Vec<Block>> {
     let mut rows = Vec::new();
     let force = results.specimen.preload.force;
@@ -171,106 +115,6 @@ fn undamped(results: &Results) -> Result<Vec<Block>> {
     Ok(vec![
         Block::Text(text),
         table("The weakly damped end of the grid, 98 m/s²", &columns, rows),
-    ])
-}
-
-/// The scene in which the elastic part of the force has the published amplitudes at 1000 and 1250 Hz.
-fn elastic_fit() -> Result<Model> {
-    let found = |factor: f64| {
-        let mut published = Published {
-            amplitude: Amplitude::Elastic,
-            ..Published::default()
-        };
-        published.values[4] *= factor;
-        let scene = calculation::scene(&published).map_err(|error| anyhow!(error))?;
-        runs::model(&scene)
-    };
-    let (_, at, amplitude) = paper::PEAKS[0];
-    let excess = |factor: f64| found(factor).map_or(f64::NAN, |model| elastic_force(&model, at) - amplitude);
-    found(roots::bracketed(excess, 0.72, 1.0).context("no damping fits the elastic part")?)
-}
-
-/// Its damping for another ratio.
-fn scaled(fit: &Model, ratio: f64) -> Result<Model> {
-    let mut scene = fit.scene;
-    scene.beam.stiffness_damping *= ratio / paper::BEST;
-    scene.contact.damping *= ratio / paper::BEST;
-    runs::model(&scene)
-}
-
-/// Twice and three times the damping, and what the published force may be.
-fn strong_damping(results: &Results) -> Result<Vec<Block>> {
-    let fit = elastic_fit()?;
-    let grid = paper::FREQUENCIES;
-    let mut rows = Vec::new();
-    for (ratio, at, published) in paper::PEAKS {
-        let model = runs::model(&runs::specimen(ratio))?;
-        let other = scaled(&fit, ratio)?;
-        let readings = [
-            peak(results.ratio(ratio)?.iter().map(|run| (run.frequency, run.amplitude()))),
-            peak(grid.into_iter().map(|f| (f, elastic_force(&model, f)))),
-            peak(grid.into_iter().map(|f| (f, elastic_force(&other, f)))),
-        ];
-        let mut row = vec![format!("{ratio}"), format!("{published} cN near {at} Hz")];
-        for (f, value) in readings {
-            let [ours, deviation] = amplitude_cells(value, published);
-            row.push(format!("{ours} at {f} Hz, {deviation}"));
-        }
-        rows.push(row);
-    }
-    let mut deviations = Vec::new();
-    let force = results.specimen.preload.force;
-    for (ratio, least, greatest) in paper::RESISTANCE_DEVIATIONS {
-        let run = results.at(ratio, 1000.0)?;
-        let (a, b) = resistance_deviations(run.least, run.greatest);
-        let elastic = elastic_force(&runs::model(&runs::specimen(ratio))?, 1000.0) / 100.0;
-        let (c, d) = resistance_deviations(force - elastic, force + elastic);
-        deviations.push(cells(&[
-            &format!("{ratio}"),
-            &format!("{greatest} %, {least} %"),
-            &format!("{}, {}", percent(b), percent(a)),
-            &format!("{}, {}", percent(d), percent(c)),
-        ]));
-    }
-    let text = format!(
-        "### Twice and three times the damping\n\n\
-         With ratios of 20 and 30 our force amplitude falls less than the published one, and its peak stays near 1000 Hz where the \
-         published one moves to 750 and 250 Hz. For the same reason frequency and time domain (alpha = 10250 and 15375 1/s) are not within 8 % of each \
-         other.\n\n\
-         One reading would explain most of it. With stiffness damping, a growing part of our contact force is that of the contact's \
-         damping. Contact elements of finite-element programs commonly report the elastic force alone. Taking the elastic part of our force, \
-         all else equal, the amplitudes at 20 and 30 come near the published ones, and up to 1500 Hz the two domains near each other (table of the domains \
-         in *The publication reproduced*). If the rivet mass and the damping are fitted anew, so that the elastic part has the published amplitudes at 1000 and \
-         1250 Hz ({} mg, and {} times the damping), all three peaks are at the published frequencies. That is a reading of the \
-         publication, which does not say which force it shows. The start values are fitted to the whole force.",
-        number(1e6 * fit.section.tip_mass, 1),
-        number(fit.scene.contact.damping / results.specimen.scene.contact.damping, 2),
-    );
-    let peaks = [
-        "ratio",
-        "published",
-        "ours, whole force",
-        "ours, elastic part",
-        "elastic part, fitted to it",
-    ];
-    let resistance = [
-        "ratio",
-        "published (no sign)",
-        "ours, whole force",
-        "ours, elastic part",
-    ];
-    Ok(vec![
-        Block::Text(text),
-        table(
-            "Greatest force amplitude over the grid, time domain, 98 m/s²",
-            &peaks,
-            rows,
-        ),
-        table(
-            "Deviation of greatest and least resistance from the measured 63 and 25 mΩ at 1000 Hz (Table 6)",
-            &resistance,
-            deviations,
-        ),
     ])
 }
 

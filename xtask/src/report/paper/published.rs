@@ -55,6 +55,7 @@ pub const MEASURED_RESISTANCE: (f64, f64) = (25.0, 63.0);
 /// Deviations of the least and greatest resistance from the measured ones: ratio, %, % (Table 6).
 pub const RESISTANCE_DEVIATIONS: [(f64, f64, f64); 3] =
     [(10.0, 30.23, 1.89), (20.0, 41.63, 16.18), (30.0, 53.69, 24.85)];
+#[expect(clippy::approx_constant, reason = "a percentage, not pi")]
 /// Deviations of the greatest resistance with a mass coefficient of 5125 1/s: Hz, % (section 4.2).
 pub const FREQUENCY_DOMAIN_DEVIATIONS: [(f64, f64); 4] =
     [(500.0, 5.25), (1000.0, 1.21), (1500.0, 3.14), (2000.0, 7.13)];

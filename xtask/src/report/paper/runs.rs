@@ -18,7 +18,7 @@ use super::published::{ACCELERATION, BEST};
 
 /// Communication steps of a period.
 const SAMPLES: u32 = 1000;
-/// A motion is periodic where the extremes of the force change by less than this part of the preload from one period to
+/// A motion repeats where the extremes of the force change by less than this part of the preload from one period to
 /// the next: below the digits shown.
 const PERIODIC: f64 = 1e-6;
 /// Transients are left to fall to this part.
@@ -97,7 +97,7 @@ pub struct Periodic {
     /// By which the force leads that displacement, degrees from 0 to 180.
     pub phase: f64,
     /// Whether each period is as the one before. Else the extremes are those of the last period alone.
-    pub periodic: bool,
+    pub repeats: bool,
     pub opens: bool,
     /// Over the last period: time, s; force, N; displacement of the contact with the base, m.
     pub course: Vec<(f64, f64, f64)>,
@@ -158,7 +158,7 @@ pub fn periodic(scene: &Scene, frequency: f64) -> Result<Periodic> {
         }
     }
     let changed = (found.least - last.0).abs().max((found.greatest - last.1).abs());
-    found.periodic = changed < PERIODIC * force_scale;
+    found.repeats = changed < PERIODIC * force_scale;
     found.opens = found.least <= 0.0;
     let displacements = found.course.iter().map(|point| point.2);
     found.displacement =

@@ -80,3 +80,20 @@ pub fn table(caption: &str, columns: &[&str], rows: Vec<Vec<String>>) -> Block {
         rows,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_rounded_with_signs_that_mean_something() {
+        assert_eq!(number(-0.004, 2), "0.00");
+        assert_eq!(number(-0.006, 2), "-0.01");
+        assert_eq!(signed(0.004, 2), "0.00");
+        assert_eq!(signed(0.006, 2), "+0.01");
+        assert_eq!(significant(1354.515), "1355");
+        assert_eq!(significant(0.026_954), "0.02695");
+        assert_eq!(significant(3.54e6), "3.540e6");
+        assert_eq!(deviation(0.9, 1.0), "-10.00 %");
+    }
+}
