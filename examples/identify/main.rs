@@ -5,7 +5,7 @@
 
 mod identification;
 
-use identification::{Error, PARAMETERS, Published, SOURCES, Specimen, precision, sensitivities};
+use identification::{Amplitude, Error, PARAMETERS, Published, SOURCES, Specimen, precision, sensitivities};
 use relay_contact::scene::Scene;
 
 fn main() -> Result<(), Error> {
@@ -21,20 +21,36 @@ fn main() -> Result<(), Error> {
     println!("\nIdentified, beside the start value of the parameter");
     for ((parameter, found), start) in PARAMETERS.iter().zip(found.values).zip(start.values) {
         println!(
-            "  {:22} {found:12.7} {:5} start {start:12.7}, {:+.4} %   from {}",
+            "  {:4} {:22} {found:12.6} {:5} start value {start:12.6}, {:+.4} %   from {}",
+            parameter.symbol,
             parameter.name,
             parameter.unit,
             100.0 * (start / found - 1.0),
             parameter.from
         );
     }
+    let elastic = Published {
+        amplitude: Amplitude::Elastic,
+        ..Published::default()
+    };
+    println!("\nThe same, if the published force amplitude is that of the elastic part of the contact force");
+    for ((parameter, found), value) in PARAMETERS
+        .iter()
+        .zip(found.values)
+        .zip(Specimen::identify(&elastic)?.values)
+    {
+        let changed = 100.0 * (value / found - 1.0);
+        println!(
+            "  {:4} {value:12.6} {:5} {changed:+.2} %",
+            parameter.symbol, parameter.unit
+        );
+    }
     let slopes = sensitivities()?;
     println!("\nChange in % where a published result changes by 1 % (small changes)");
-    let name = |name: &str| format!("{:>12.12}", name.trim_end_matches(" EI"));
-    let names: String = PARAMETERS.iter().map(|parameter| name(parameter.name)).collect();
+    let names = PARAMETERS.map(|parameter| format!("{:>12}", parameter.symbol)).concat();
     println!("  {:28}{names}", "");
-    for (source, row) in SOURCES.iter().zip(&slopes) {
-        let cells: String = row.iter().map(|slope| format!("{slope:+12.3}")).collect();
+    for (source, row) in SOURCES.iter().zip(slopes.iter().copied()) {
+        let cells = row.map(|slope| format!("{slope:+12.3}")).concat();
         println!("  {:28}{cells}", source.name);
     }
     println!("\nThe same as derivatives, parameter per published result in their units");
@@ -52,7 +68,7 @@ fn main() -> Result<(), Error> {
     println!("\nUncertain by, in %, because a published result is rounded to its last digit (half of it, up or down)");
     println!("  {:28}{names}", "");
     for (source, row) in SOURCES.iter().zip(precision()?) {
-        let cells: String = row.iter().map(|percent| format!("{percent:12.4}")).collect();
+        let cells = row.map(|percent| format!("{percent:12.4}")).concat();
         println!("  {:28}{cells}", source.name);
     }
     Ok(())

@@ -1,10 +1,10 @@
 //! How the unpublished parameters follow from published results: the table of `examples/identify`.
 
-use anyhow::{Result, anyhow};
+use anyhow::{Context, Result, anyhow};
 use relay_contact::scene::Scene;
 
 use super::super::content::Block;
-use super::calculation::{PARAMETERS, Published, SOURCES, Specimen, precision, sensitivities};
+use super::calculation::{Amplitude, PARAMETERS, Published, SOURCES, Specimen, precision, sensitivities};
 use super::table::{deviation, number, percent, table};
 
 /// The blocks of the section.
@@ -13,23 +13,28 @@ pub fn blocks() -> Result<Vec<Block>> {
     let slopes = sensitivities().map_err(|error| anyhow!(error))?;
     let precision = precision().map_err(|error| anyhow!(error))?;
     let start = Specimen::of(&Scene::default());
-    let position = |name: &str| {
-        PARAMETERS
-            .iter()
-            .position(|parameter| parameter.name == name)
-            .unwrap_or_default()
+    let position = |symbol: &str| PARAMETERS.iter().position(|parameter| parameter.symbol == symbol);
+    let (width, rivet) = (
+        position("b").context("no width")?,
+        position("m").context("no rivet mass")?,
+    );
+    let elastic = Published {
+        amplitude: Amplitude::Elastic,
+        ..Published::default()
     };
-    let rivet = position("rivet mass");
+    let elastic = Specimen::identify(&elastic).map_err(|error| anyhow!(error))?;
     let text = format!(
         "Width, thickness, rivet mass, camber radius and a usable damping are not published. They follow from published results by root \
          finding on the library's own functions: `cargo run --release --example identify` does it again.\n\n\
          Width and thickness are those of an equivalent uniform section, not of the real spring: {} mm of width on a spring of 15.5 mm \
          would be a plate.\n\n\
          The rivet mass is weakly determined: it rests on one force amplitude, and a first frequency that is 1 % higher would change it \
-         by {} (by the slope), half a digit of the static force by {} %. The damping is not found but a calibration (see *Findings*).",
-        number(found.values[position("width")], 1),
+         by {} (by the slope), half a digit of the static force by {} %. If the published force amplitude is that of the elastic part alone (see *Not reproduced*), it \
+         is {} mg. The damping is not found but a calibration (see *Findings*).",
+        number(found.values[width], 1),
         percent(slopes[2][rivet]),
         number(precision[0][rivet], 1),
+        number(elastic.values[rivet], 1),
     );
     let rows = PARAMETERS
         .iter()
@@ -37,7 +42,7 @@ pub fn blocks() -> Result<Vec<Block>> {
         .zip(start.values)
         .map(|((parameter, found), start)| {
             vec![
-                parameter.name.to_owned(),
+                format!("{} {}", parameter.name, parameter.symbol),
                 parameter.from.to_owned(),
                 format!("{found:.*} {}", decimals(found), parameter.unit),
                 format!("{start:.*} {}", decimals(start), parameter.unit),
@@ -54,7 +59,7 @@ pub fn blocks() -> Result<Vec<Block>> {
     let parameters = table("Identified parameters", &columns, rows.collect());
 
     let matrix = |caption: &str, cell: &dyn Fn(usize, usize) -> String| {
-        let names = PARAMETERS.iter().map(|parameter| parameter.name);
+        let names = PARAMETERS.iter().map(|parameter| parameter.symbol);
         let columns: Vec<_> = ["published result"].into_iter().chain(names).collect();
         let rows = SOURCES.iter().enumerate().map(|(source, published)| {
             let value = published.value;

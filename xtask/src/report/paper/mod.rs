@@ -47,6 +47,7 @@ pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
 
 /// The publication's tables and figures beside ours.
 fn paper(results: &Results, quick: bool) -> Result<Vec<Block>> {
+    let [resistances, consistency] = resistance::resistances(results)?;
     let [force, displacement] = figures::courses(results)?;
     let [time, frequency] = figures::deviations(results)?;
     Ok(vec![
@@ -64,7 +65,8 @@ fn paper(results: &Results, quick: bool) -> Result<Vec<Block>> {
         Block::Figure(responses::frequency_domain(results)?),
         comparison::domains(results)?,
         Block::Figure(responses::domains(results)?),
-        resistance::resistances(results)?,
+        resistances,
+        consistency,
         Block::Figure(figures::laws()?),
         Block::Figure(figures::resistance_course(results)?),
         Block::Figure(time),

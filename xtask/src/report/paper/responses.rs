@@ -132,8 +132,8 @@ pub fn domains(results: &Results) -> Result<Figure> {
         x: FREQUENCY,
         y: FORCE_AMPLITUDE,
         curves,
-        caption: "The publication finds both within 8 % of each other. Ours part above a ratio of 10: the damping of the contact adds \
-                  to the force in the time domain; see *Not reproduced*."
+        caption: "The publication finds both within 8 % of each other. Ours part where frequency and damping are high: in the time domain \
+                  the damping of the contact adds to the force; see *Not reproduced*."
             .to_owned(),
     })
 }
