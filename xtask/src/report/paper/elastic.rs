@@ -4,12 +4,13 @@ use anyhow::{Context, Result, anyhow};
 use relay_contact::math::roots;
 use relay_contact::model::Model;
 
-use super::super::content::Block;
+use super::super::content::{Block, Figure, Style};
 use super::calculation::{self, Amplitude, Published};
+use super::curves::{FORCE_AMPLITUDE, FREQUENCY, curve, published};
 use super::published as paper;
 use super::resistance::resistance_deviations;
 use super::results::{Results, peak};
-use super::runs::{self, elastic_force};
+use super::runs::{self, elastic_force, linear_force};
 use super::table::{cells, deviation, number, percent, table};
 
 /// The scene in which the elastic part of the force has the published amplitudes at 1000 and 1250 Hz.
@@ -104,6 +105,7 @@ pub fn blocks(results: &Results) -> Result<Vec<Block>> {
             &peaks,
             rows,
         ),
+        Block::Figure(figure(results, &fit)?),
         table(
             "Deviation of greatest and least resistance from the measured 63 and 25 mΩ at 1000 Hz (Table 6)",
             &resistance,
@@ -115,4 +117,42 @@ pub fn blocks(results: &Results) -> Result<Vec<Block>> {
 /// Published value, ours and deviation of a force amplitude, cN.
 fn amplitude_cells(ours: f64, published: f64) -> [String; 2] {
     [format!("{} cN", number(ours, 2)), deviation(ours, published)]
+}
+
+/// Whole force as fitted, and the elastic part fitted to the same amplitudes, over the frequency.
+fn figure(results: &Results, fit: &Model) -> Result<Figure> {
+    let mut curves = Vec::new();
+    for (colour, (ratio, at, highest)) in paper::PEAKS.into_iter().enumerate() {
+        let (model, other) = (runs::model(&runs::specimen(ratio))?, scaled(fit, ratio)?);
+        let over = |value: &dyn Fn(f64) -> f64| results.frequencies.iter().map(|f| (*f, value(*f))).collect::<Vec<_>>();
+        let elastic = over(&|f| elastic_force(&other, f));
+        curves.push(curve(
+            &format!("elastic part, fitted to it, ratio {ratio}"),
+            elastic,
+            Style::Line,
+            colour,
+        ));
+        let whole = over(&|f| linear_force(&model, f));
+        curves.push(curve(
+            &format!("whole force, ratio {ratio}"),
+            whole,
+            Style::Dashed,
+            colour,
+        ));
+        let mut points = vec![(at, highest)];
+        if ratio == paper::BEST {
+            points.insert(0, (1000.0, paper::FORCE_AMPLITUDE));
+        }
+        curves.push(published(&format!("ratio {ratio}"), points, colour));
+    }
+    Ok(Figure {
+        id: "not-reproduced-elastic",
+        title: "Force amplitude, if the publication shows the elastic part".to_owned(),
+        x: FREQUENCY,
+        y: FORCE_AMPLITUDE,
+        curves,
+        caption: "Linear response, 98 m/s². The elastic part is fitted to the two published points of ratio 10 alone; those of 20 and 30 \
+                  follow. Dashed: the start values."
+            .to_owned(),
+    })
 }

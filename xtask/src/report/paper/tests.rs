@@ -175,10 +175,10 @@ fn every_figure_has_curves_of_finite_points() {
             }
         }
     }
-    assert_eq!(ids.len(), 12);
+    assert_eq!(ids.len(), 13);
     ids.sort_unstable();
     ids.dedup();
-    assert_eq!(ids.len(), 12);
+    assert_eq!(ids.len(), 13);
 }
 
 #[test]
