@@ -99,7 +99,7 @@ fn undamped(results: &Results) -> Result<Vec<Block>> {
     }
     let text = format!(
         "### The undamped end of the damping grid\n\n\
-         With ratios of {} the linear force amplitude at 1250 Hz is above the static force: the contact opens and hammers. The \
+         With ratios of {} the linear force amplitude rises above the static force: the contact opens and hammers. The \
          force is then no sine and need not repeat from period to period, and its blows are far above the static force. The publication \
          gives an amplitude for every point of its grid. What the model gives there depends on the damping of the contact and of the highest modes, \
          which nothing published fixes; so no number of ours is shown beside the published ones.",

@@ -33,8 +33,8 @@ pub fn time_domain(results: &Results) -> Figure {
         x: FREQUENCY,
         y: FORCE_AMPLITUDE,
         curves,
-        caption: "Published are the peaks of three damping ratios and the amplitude at 1000 Hz, to which ratio 10 is fitted. With ratios of 0.1 and \
-                  1 the contact opens near 1250 Hz; see the table of the grid."
+        caption: "Published are the peaks of three damping ratios and the amplitude at 1000 Hz, to which ratio 10 is fitted. Ratios of 0.1 and 1 are \
+                  in the table of the grid alone: where the contact opens there is no one amplitude."
             .to_owned(),
     }
 }

@@ -98,6 +98,7 @@ pub struct Periodic {
     pub phase: f64,
     /// Whether each period is as the one before. Else the extremes are those of the last period alone.
     pub repeats: bool,
+    /// Whether the force reaches zero in the last ten periods.
     pub opens: bool,
     /// Over the last period: time, s; force, N; displacement of the contact with the base, m.
     pub course: Vec<(f64, f64, f64)>,
@@ -156,10 +157,10 @@ pub fn periodic(scene: &Scene, frequency: f64) -> Result<Periodic> {
                     .push((f64::from(sample) / f64::from(SAMPLES) / frequency, force, displacement));
             }
         }
+        found.opens |= period + 10 >= periods && found.least <= 0.0;
     }
     let changed = (found.least - last.0).abs().max((found.greatest - last.1).abs());
     found.repeats = changed < PERIODIC * force_scale;
-    found.opens = found.least <= 0.0;
     let displacements = found.course.iter().map(|point| point.2);
     found.displacement =
         0.5 * (displacements.clone().fold(f64::MIN, f64::max) - displacements.fold(f64::MAX, f64::min));
