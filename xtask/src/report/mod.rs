@@ -24,10 +24,17 @@ pub struct Arguments {
     /// Fewer points and runs, to see that everything works
     #[arg(long)]
     pub quick: bool,
+    /// Only rewrite docs/validation.md
+    #[arg(long)]
+    pub docs: bool,
 }
 
 /// Runs everything and writes `out/report/index.html`.
 pub fn run(arguments: &Arguments) -> Result<()> {
+    if arguments.docs {
+        println!("{}", paper::validation::write()?.display());
+        return Ok(());
+    }
     let parts: [fn(Arguments) -> Result<Vec<Section>>; 6] = [
         opening::sections,
         paper::sections,

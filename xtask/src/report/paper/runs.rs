@@ -1,0 +1,216 @@
+//! The runs behind the comparison: periodic states of the nonlinear model, linear response, first frequencies.
+
+use std::f64::consts::{PI, TAU};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+
+use anyhow::{Context, Result, anyhow};
+use relay_contact::electrical::Path;
+use relay_contact::inputs::Inputs;
+use relay_contact::math::roots;
+use relay_contact::model::Model;
+use relay_contact::scene::Scene;
+use relay_contact::simulation::Simulation;
+use relay_contact::variables::{AxialForceKind, ExcitationKind, RealOutput};
+
+use super::calculation::Amplitude;
+use super::published::{ACCELERATION, BEST};
+
+/// Communication steps of a period.
+const SAMPLES: u32 = 1000;
+/// A motion repeats where the extremes of the force change by less than this part of the preload from one period to
+/// the next: below the digits shown.
+const PERIODIC: f64 = 1e-6;
+/// Transients are left to fall to this part.
+const DECAYED: f64 = 1e-8;
+/// Of the runs: far below the digits shown.
+const TOLERANCE: f64 = 1e-9;
+
+/// The damping times per published ratio, s: those of the start values belong to the ratio 10.
+pub fn damping_per_ratio() -> f64 {
+    Scene::default().beam.stiffness_damping / BEST
+}
+
+/// The specimen with the damping of a published ratio.
+pub fn specimen(ratio: f64) -> Scene {
+    with_damping(damping_per_ratio() * ratio)
+}
+
+/// The specimen with damping times of beam and contact, s.
+pub fn with_damping(damping: f64) -> Scene {
+    let mut scene = Scene::default();
+    scene.beam.stiffness_damping = damping;
+    scene.contact.damping = damping;
+    scene
+}
+
+/// The specimen of the frequency domain, damped by mass alone, with a mass coefficient in 1/s.
+pub fn with_mass_damping(alpha: f64) -> Scene {
+    let mut scene = with_damping(0.0);
+    scene.beam.mass_damping = alpha;
+    scene
+}
+
+/// A spring of another length and overtravel, m.
+pub fn spring(length: f64, overtravel: f64, axial: AxialForceKind) -> Scene {
+    let mut scene = Scene::default();
+    scene.beam.length = length;
+    scene.contact.overtravel = overtravel;
+    scene.effects.axial_force = axial;
+    scene
+}
+
+/// The model of a scene.
+pub fn model(scene: &Scene) -> Result<Model> {
+    Ok(Model::new(scene, 0.0)?)
+}
+
+/// Amplitude of the base displacement, m.
+pub fn excitation(frequency: f64) -> f64 {
+    ACCELERATION / (TAU * frequency).powi(2)
+}
+
+/// Amplitude of the contact force in the linear response to the published vibration, cN.
+pub fn linear_force(model: &Model, frequency: f64) -> f64 {
+    Amplitude::Whole.of(model, frequency)
+}
+
+/// That of its elastic part, cN: without what the damping of the contact adds.
+pub fn elastic_force(model: &Model, frequency: f64) -> f64 {
+    Amplitude::Elastic.of(model, frequency)
+}
+
+/// Contact resistance of the specimen at a force (N), mOhm.
+pub fn resistance(force: f64) -> f64 {
+    Path::new(&Scene::default()).map_or(f64::NAN, |path| 1e3 / path.conductance(force))
+}
+
+/// The periodic motion under the published vibration.
+#[derive(Clone, Debug, Default)]
+pub struct Periodic {
+    pub frequency: f64,
+    /// Extremes of the contact force, N.
+    pub least: f64,
+    pub greatest: f64,
+    /// Amplitude of the displacement of the contact with the base, m.
+    pub displacement: f64,
+    /// By which the force leads that displacement, degrees from 0 to 180.
+    pub phase: f64,
+    /// Whether each period is as the one before. Else the extremes are those of the last period alone.
+    pub repeats: bool,
+    /// Whether the force reaches zero in the last ten periods.
+    pub opens: bool,
+    /// Over the last period: time, s; force, N; displacement of the contact with the base, m.
+    pub course: Vec<(f64, f64, f64)>,
+}
+
+impl Periodic {
+    /// Half of the distance between the extremes of the force, cN.
+    pub fn amplitude(&self) -> f64 {
+        50.0 * (self.greatest - self.least)
+    }
+}
+
+/// The motion that a scene comes to from rest under the published vibration at a frequency, Hz.
+///
+/// The run lasts until what depends on the start has fallen below the digits shown: the slowest transient that the damping
+/// of the linear model has, or the relaxation time where damping is so strong that motion creeps.
+pub fn periodic(scene: &Scene, frequency: f64) -> Result<Periodic> {
+    let mut scene = *scene;
+    scene.effects.excitation = ExcitationKind::Sine;
+    scene.excitation.amplitude = ACCELERATION;
+    scene.excitation.frequency = frequency;
+    scene.solver.tolerance = TOLERANCE;
+    let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0)?;
+    let omega = TAU * simulation.model().frequency;
+    let decay = scene.beam.mass_damping + scene.beam.stiffness_damping * omega * omega;
+    let slowest = (2.0 / decay).max(decay / (omega * omega)).max(scene.contact.damping);
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // some thousands at most
+    let periods = (-DECAYED.ln() * slowest * frequency).ceil().max(10.0) as u32 + 2;
+
+    let base = excitation(frequency);
+    let deflection = simulation.model().preload.deflection;
+    let force_scale = simulation.model().preload.force;
+    let mut found = Periodic {
+        frequency,
+        ..Periodic::default()
+    };
+    let mut last = (f64::NAN, f64::NAN);
+    for period in 0..periods {
+        last = (found.least, found.greatest);
+        (found.least, found.greatest) = (f64::INFINITY, f64::NEG_INFINITY);
+        found.course.clear();
+        for sample in 1..=SAMPLES {
+            let time = simulation.time();
+            let next = (f64::from(period) + f64::from(sample) / f64::from(SAMPLES)) / frequency;
+            simulation
+                .step(&Inputs::default(), time, next - time)
+                .with_context(|| format!("{frequency} Hz"))?;
+            found.least = found.least.min(simulation.real(RealOutput::StepMinimumForce));
+            found.greatest = found.greatest.max(simulation.real(RealOutput::StepMaximumForce));
+            if period + 1 == periods {
+                let shaken = -base * (TAU * f64::from(sample) / f64::from(SAMPLES)).sin();
+                let displacement = simulation.real(RealOutput::TipDisplacement) - deflection + shaken;
+                let force = simulation.real(RealOutput::ContactForce);
+                found
+                    .course
+                    .push((f64::from(sample) / f64::from(SAMPLES) / frequency, force, displacement));
+            }
+        }
+        found.opens |= period + 10 >= periods && found.least <= 0.0;
+    }
+    let changed = (found.least - last.0).abs().max((found.greatest - last.1).abs());
+    found.repeats = changed < PERIODIC * force_scale;
+    let displacements = found.course.iter().map(|point| point.2);
+    found.displacement =
+        0.5 * (displacements.clone().fold(f64::MIN, f64::max) - displacements.fold(f64::MAX, f64::min));
+    let angle = angle(&found.course, |point| point.1) - angle(&found.course, |point| point.2);
+    found.phase = angle.sin().atan2(angle.cos()).abs() * 180.0 / PI;
+    Ok(found)
+}
+
+/// Angle of the part of a course that moves with the excitation, rad.
+fn angle(course: &[(f64, f64, f64)], value: impl Fn(&(f64, f64, f64)) -> f64) -> f64 {
+    let (mut sine, mut cosine) = (0.0, 0.0);
+    for (k, point) in (1..).zip(course) {
+        let turn = TAU * f64::from(k) / f64::from(SAMPLES);
+        sine += value(point) * turn.sin();
+        cosine += value(point) * turn.cos();
+    }
+    f64::atan2(cosine, sine)
+}
+
+/// `work` for each of the items, on two threads, in their order.
+pub fn each<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> Result<R> + Sync) -> Result<Vec<R>> {
+    let next = AtomicUsize::new(0);
+    let turn = || -> Result<Vec<(usize, R)>> {
+        let mut done = Vec::new();
+        loop {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            let Some(item) = items.get(index) else {
+                return Ok(done);
+            };
+            done.push((index, work(item)?));
+        }
+    };
+    let mut done: Vec<(usize, R)> = thread::scope(|scope| {
+        let other = scope.spawn(turn);
+        let mut done = turn()?;
+        done.extend(other.join().map_err(|_| anyhow!("a run has panicked"))??);
+        Ok::<_, anyhow::Error>(done)
+    })?;
+    done.sort_by_key(|(index, _)| *index);
+    Ok(done.into_iter().map(|(_, result)| result).collect())
+}
+
+/// Axial compression that gives the specimen a first frequency (Hz), N.
+pub fn axial_force_for(frequency: f64) -> Result<f64> {
+    let with = |force: f64| {
+        let mut scene = Scene::default();
+        scene.effects.axial_force = AxialForceKind::Prescribed;
+        scene.beam.axial_force = force;
+        Model::new(&scene, 0.0).map_or(f64::NAN, |model| model.frequency - frequency)
+    };
+    let limit = model(&Scene::default())?.section.buckling_load();
+    roots::bracketed(with, 0.0, 0.99 * limit).context("no axial force below the buckling load gives this frequency")
+}
