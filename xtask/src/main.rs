@@ -6,6 +6,7 @@ mod demo;
 mod documentation;
 mod effects;
 mod fmu;
+mod html;
 mod importers;
 mod licences;
 mod package;

@@ -24,6 +24,9 @@ pub struct Arguments {
     /// Fewer points and runs, to see that everything works
     #[arg(long)]
     pub quick: bool,
+    /// Also draw each figure small, as docs/report/FIGURE.png (needs Chromium)
+    #[arg(long)]
+    pub pictures: bool,
 }
 
 /// Runs everything and writes `out/report/index.html`.
@@ -44,7 +47,10 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         progress.inc(1);
     }
     progress.finish_and_clear();
-    let path = page::write(&sections)?;
+    let path = page::write(&sections, arguments.quick)?;
+    if arguments.pictures {
+        page::draw_pictures()?;
+    }
     println!("{}", path.display());
     Ok(())
 }

@@ -1,0 +1,165 @@
+//! What plotly.js is told to draw.
+
+use serde_json::{Value, json};
+
+use crate::report::content::{Axis, Curve, Figure, Style};
+
+/// Okabe and Ito's colours, told apart without colour vision; what starts with `--` is a colour of the style sheet. Their
+/// yellow is left out, too pale on white.
+const COLOURS: [&str; 7] = [
+    "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "--ink",
+];
+
+/// Of the curves of a figure by their colours, in order, so that they differ without colour too; never the dashes of
+/// [`Style::Dashed`].
+const STROKES: [&str; 5] = [
+    "solid",
+    "16px,4px",
+    "16px,4px,3px,4px",
+    "16px,4px,3px,4px,3px,4px",
+    "28px,5px",
+];
+const DASHES: &str = "5px,5px";
+const SYMBOLS: [&str; 7] = [
+    "circle",
+    "square",
+    "diamond",
+    "triangle-up",
+    "triangle-down",
+    "pentagon",
+    "star",
+];
+
+/// Characters of an axis title that fit beside a figure, and below it on a phone.
+const LINE: usize = 42;
+
+/// An axis' title: what, and in which unit.
+pub fn title(axis: &Axis) -> String {
+    if axis.unit.is_empty() {
+        axis.label.to_owned()
+    } else {
+        format!("{} / {}", axis.label, axis.unit)
+    }
+}
+
+/// A figure for plotly.js.
+pub fn plot(figure: &Figure) -> Value {
+    let mut colours: Vec<_> = figure.curves.iter().map(|curve| curve.colour).collect();
+    let mut seen = Vec::new();
+    colours.retain(|colour| {
+        !seen.contains(colour) && {
+            seen.push(*colour);
+            true
+        }
+    });
+    let rank = |curve: &Curve| colours.iter().position(|colour| *colour == curve.colour).unwrap_or(0);
+    let curves: Vec<_> = figure
+        .curves
+        .iter()
+        .map(|curve| trace(figure, curve, rank(curve)))
+        .collect();
+    json!({
+        "id": figure.id,
+        "data": curves,
+        "layout": {
+            "xaxis": axis(&figure.x, figure.curves.iter().map(|curve| &curve.x)),
+            "yaxis": axis(&figure.y, figure.curves.iter().map(|curve| &curve.y)),
+            "font": {"family": "system-ui, sans-serif", "size": 13, "color": "--ink"},
+            "paper_bgcolor": "--paper",
+            "plot_bgcolor": "--paper",
+            "modebar": {"color": "--faint", "activecolor": "--ink", "bgcolor": "--paper"},
+            "hoverlabel": {"namelength": -1, "bgcolor": "--panel", "font": {"color": "--ink"}},
+            "hovermode": "closest",
+            "showlegend": figure.curves.len() > 1,
+            "legend": {"orientation": "h", "x": 0, "yref": "container", "y": 0, "yanchor": "bottom", "bgcolor": "--paper"},
+        },
+    })
+}
+
+fn trace(figure: &Figure, curve: &Curve, rank: usize) -> Value {
+    let colour = pick(&COLOURS, curve.colour);
+    let mode = match curve.style {
+        Style::Line | Style::Dashed | Style::Area => "lines",
+        Style::Markers => "markers",
+        Style::LineAndMarkers => "lines+markers",
+    };
+    let dash = match curve.style {
+        Style::Dashed => DASHES,
+        Style::LineAndMarkers => "solid",
+        Style::Line | Style::Area | Style::Markers => pick(&STROKES, rank),
+    };
+    // Points alone are hollow: what lies below them is seen.
+    let hollow = if curve.style == Style::Markers { "-open" } else { "" };
+    let mut trace = json!({
+        "type": "scatter",
+        "name": curve.name,
+        "mode": mode,
+        "x": curve.x.iter().map(|value| rounded(*value)).collect::<Vec<_>>(),
+        "y": curve.y.iter().map(|value| rounded(*value)).collect::<Vec<_>>(),
+        "line": {"color": colour, "dash": dash, "width": 2},
+        "marker": {"color": colour, "symbol": format!("{}{hollow}", pick(&SYMBOLS, rank)), "size": 8, "line": {"width": 2}},
+        "hovertemplate": format!("{}<br>{}", hover("x", &figure.x), hover("y", &figure.y)),
+    });
+    if let (Style::Area, Some(trace)) = (curve.style, trace.as_object_mut()) {
+        trace.insert("fill".to_owned(), json!("tozeroy"));
+    }
+    trace
+}
+
+/// What is told of a point.
+fn hover(letter: &str, axis: &Axis) -> String {
+    format!("{}: %{{{letter}:.5~g}} {}", axis.label, axis.unit)
+}
+
+/// Picks from a list that starts again at its end.
+fn pick(list: &[&'static str], index: usize) -> &'static str {
+    list.iter()
+        .cycle()
+        .nth(index % list.len().max(1))
+        .copied()
+        .unwrap_or_default()
+}
+
+fn axis<'a>(axis: &Axis, values: impl Iterator<Item = &'a Vec<f64>>) -> Value {
+    let mut settings = json!({
+        "title": {"text": broken(&title(axis)), "standoff": 8},
+        "automargin": true,
+        "gridcolor": "--line",
+        "zerolinecolor": "--faint",
+        "linecolor": "--faint",
+        "tickcolor": "--faint",
+        "showline": true,
+        "ticks": "outside",
+        "exponentformat": "power",
+        "type": if axis.logarithmic { "log" } else { "linear" },
+    });
+    let positive = values.flatten().filter(|value| **value > 0.0);
+    let (least, greatest) = positive.fold((f64::INFINITY, 0.0_f64), |(least, greatest), value| {
+        (least.min(*value), greatest.max(*value))
+    });
+    let decades = (greatest / least).log10();
+    if axis.logarithmic
+        && decades >= 2.0
+        && let Some(settings) = settings.as_object_mut()
+    {
+        // Labels at powers of ten alone, about six of them.
+        settings.insert("dtick".to_owned(), json!((decades / 6.0).ceil()));
+    }
+    settings
+}
+
+/// A title on two lines, where one would be too long.
+fn broken(title: &str) -> String {
+    let middle = title.chars().count() / 2;
+    let spaces = title.match_indices(' ').map(|(place, _)| place);
+    let nearest = spaces.min_by_key(|place| place.abs_diff(middle));
+    match nearest.and_then(|place| title.split_at_checked(place)) {
+        Some((first, second)) if 2 * middle > LINE => format!("{first}<br>{}", second.trim_start()),
+        _ => title.to_owned(),
+    }
+}
+
+/// To seven digits, which no eye tells from more.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.6e}").parse().unwrap_or(value)
+}

@@ -1,0 +1,47 @@
+"use strict";
+
+// Draws the figures that the element #figures describes, in the colours of the style sheet.
+const described = document.getElementById("figures").textContent;
+const config = {
+  displaylogo: false,
+  modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d"],
+};
+// Where a finger drags, the page has to scroll; the buttons zoom.
+const dragmode = matchMedia("(pointer: coarse)").matches ? false : "zoom";
+
+function draw() {
+  const style = getComputedStyle(document.documentElement);
+  const colour = (key, value) =>
+    key.endsWith("color") && value.startsWith("--") ? style.getPropertyValue(value).trim() : value;
+  for (const { id, data, layout } of JSON.parse(described, colour)) {
+    const plot = document.querySelector(`#${id} .plot`);
+    const width = plot.clientWidth;
+    let bottom = 55;
+    if (layout.showlegend) {
+      const columns = Math.max(1, Math.floor(width / (55 + 7 * Math.max(...data.map((curve) => curve.name.length)))));
+      bottom += 22 * Math.ceil(data.length / columns);
+    }
+    const height = (width < 600 ? 270 : 340) + bottom;
+    // The same `uirevision` keeps what the reader zoomed and hid.
+    Plotly.react(plot, data, { ...layout, width, height, dragmode, margin: { l: 60, r: 15, t: 15, b: bottom }, uirevision: 1 }, config);
+  }
+}
+
+draw();
+
+let width = innerWidth;
+addEventListener("resize", () => {
+  if (innerWidth !== width) {
+    width = innerWidth;
+    draw();
+  }
+});
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
+
+// Paper is white.
+for (const event of ["beforeprint", "afterprint"]) {
+  addEventListener(event, () => {
+    document.documentElement.classList.toggle("printed", event === "beforeprint");
+    draw();
+  });
+}
