@@ -7,8 +7,8 @@ use super::{attribute, unit};
 
 /// Between two variables, and sizes of the block, in pixels.
 const PITCH: usize = 22;
-const MARGIN: usize = 220;
-const WIDTH: usize = 300;
+const MARGIN: usize = 90;
+const WIDTH: usize = 380;
 const PIN: usize = 24;
 
 /// The block, drawn.
@@ -17,7 +17,7 @@ pub fn block(document: &Document) -> Markup {
     let rows = inputs.len().max(outputs.len());
     let height = (rows + 2) * PITCH;
     let right = MARGIN + WIDTH;
-    let row = |list: &[Node], index: usize| (rows - list.len()) * PITCH / 2 + (index + 2) * PITCH - PITCH / 2;
+    let row = |list: &[Node], index: usize| (rows - list.len()) * PITCH / 2 + (index + 2) * PITCH + PITCH / 4;
     let name = attribute(document.root_element(), "modelName");
     let label = format!(
         "{name} as a block: {} inputs on the left, {} outputs on the right",

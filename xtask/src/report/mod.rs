@@ -17,6 +17,7 @@ use anyhow::Result;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use self::content::Section;
+pub use self::page::{CHROMIUM_MISSING, chromium};
 
 /// How much is run.
 #[derive(clap::Args, Clone, Copy)]
@@ -27,6 +28,15 @@ pub struct Arguments {
     /// Also draw each figure small, as docs/report/FIGURE.png (needs Chromium)
     #[arg(long)]
     pub pictures: bool,
+}
+
+/// The report in its quick form, in a browser.
+pub fn test() -> Result<()> {
+    run(&Arguments {
+        quick: true,
+        pictures: false,
+    })?;
+    page::test()
 }
 
 /// Runs everything and writes `out/report/index.html`.

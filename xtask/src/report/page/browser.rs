@@ -8,7 +8,7 @@ use crate::commands::{self, command};
 use crate::python;
 
 /// Said where Chromium is missing.
-pub const MISSING: &str = "Chromium is missing (on Debian: apt-get install chromium)";
+pub const CHROMIUM_MISSING: &str = "Chromium is missing (on Debian: apt-get install chromium)";
 
 /// What Chromium is called.
 const NAMES: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
@@ -32,6 +32,6 @@ pub fn test() -> Result<()> {
 /// Python, told which Chromium to use.
 fn with_chromium() -> Result<Command> {
     let mut python = python::python();
-    python.env("RELAY_CONTACT_CHROMIUM", chromium().context(MISSING)?);
+    python.env("RELAY_CONTACT_CHROMIUM", chromium().context(CHROMIUM_MISSING)?);
     Ok(python)
 }

@@ -30,8 +30,8 @@ const SYMBOLS: [&str; 7] = [
     "star",
 ];
 
-/// Characters of an axis title that fit beside a figure, and below it on a phone.
-const LINE: usize = 42;
+/// Characters of an axis title that fit below a figure, and beside it, on a phone.
+const LINES: (usize, usize) = (46, 34);
 
 /// An axis' title: what, and in which unit.
 pub fn title(axis: &Axis) -> String {
@@ -62,8 +62,8 @@ pub fn plot(figure: &Figure) -> Value {
         "id": figure.id,
         "data": curves,
         "layout": {
-            "xaxis": axis(&figure.x, figure.curves.iter().map(|curve| &curve.x)),
-            "yaxis": axis(&figure.y, figure.curves.iter().map(|curve| &curve.y)),
+            "xaxis": axis(&figure.x, LINES.0, figure.curves.iter().map(|curve| &curve.x)),
+            "yaxis": axis(&figure.y, LINES.1, figure.curves.iter().map(|curve| &curve.y)),
             "font": {"family": "system-ui, sans-serif", "size": 13, "color": "--ink"},
             "paper_bgcolor": "--paper",
             "plot_bgcolor": "--paper",
@@ -89,7 +89,11 @@ fn trace(figure: &Figure, curve: &Curve, rank: usize) -> Value {
         Style::Line | Style::Area | Style::Markers => pick(&STROKES, rank),
     };
     // Points alone are hollow: what lies below them is seen.
-    let hollow = if curve.style == Style::Markers { "-open" } else { "" };
+    let (hollow, border) = if curve.style == Style::Markers {
+        ("-open", 2)
+    } else {
+        ("", 0)
+    };
     let mut trace = json!({
         "type": "scatter",
         "name": curve.name,
@@ -97,7 +101,7 @@ fn trace(figure: &Figure, curve: &Curve, rank: usize) -> Value {
         "x": curve.x.iter().map(|value| rounded(*value)).collect::<Vec<_>>(),
         "y": curve.y.iter().map(|value| rounded(*value)).collect::<Vec<_>>(),
         "line": {"color": colour, "dash": dash, "width": 2},
-        "marker": {"color": colour, "symbol": format!("{}{hollow}", pick(&SYMBOLS, rank)), "size": 8, "line": {"width": 2}},
+        "marker": {"color": colour, "symbol": format!("{}{hollow}", pick(&SYMBOLS, rank)), "size": 8, "line": {"width": border}},
         "hovertemplate": format!("{}<br>{}", hover("x", &figure.x), hover("y", &figure.y)),
     });
     if let (Style::Area, Some(trace)) = (curve.style, trace.as_object_mut()) {
@@ -120,9 +124,9 @@ fn pick(list: &[&'static str], index: usize) -> &'static str {
         .unwrap_or_default()
 }
 
-fn axis<'a>(axis: &Axis, values: impl Iterator<Item = &'a Vec<f64>>) -> Value {
+fn axis<'a>(axis: &Axis, line: usize, values: impl Iterator<Item = &'a Vec<f64>>) -> Value {
     let mut settings = json!({
-        "title": {"text": broken(&title(axis)), "standoff": 8},
+        "title": {"text": broken(&title(axis), line), "standoff": 8, "font": {"size": 13}},
         "automargin": true,
         "gridcolor": "--line",
         "zerolinecolor": "--faint",
@@ -138,23 +142,25 @@ fn axis<'a>(axis: &Axis, values: impl Iterator<Item = &'a Vec<f64>>) -> Value {
         (least.min(*value), greatest.max(*value))
     });
     let decades = (greatest / least).log10();
-    if axis.logarithmic
-        && decades >= 2.0
-        && let Some(settings) = settings.as_object_mut()
-    {
-        // Labels at powers of ten alone, about six of them.
-        settings.insert("dtick".to_owned(), json!((decades / 6.0).ceil()));
+    if let (true, Some(settings)) = (axis.logarithmic, settings.as_object_mut()) {
+        // Labels at powers of ten alone, about six of them; over few decades at 2 and 5 too, in full.
+        let labels = match decades {
+            few if few < 0.5 => json!({"tickformat": ".6~g"}),
+            few if few < 2.5 => json!({"tickformat": ".6~g", "dtick": "D2"}),
+            many => json!({"dtick": (many / 6.0).ceil()}),
+        };
+        settings.extend(labels.as_object().cloned().unwrap_or_default());
     }
     settings
 }
 
 /// A title on two lines, where one would be too long.
-fn broken(title: &str) -> String {
+fn broken(title: &str, line: usize) -> String {
     let middle = title.chars().count() / 2;
     let spaces = title.match_indices(' ').map(|(place, _)| place);
     let nearest = spaces.min_by_key(|place| place.abs_diff(middle));
     match nearest.and_then(|place| title.split_at_checked(place)) {
-        Some((first, second)) if 2 * middle > LINE => format!("{first}<br>{}", second.trim_start()),
+        Some((first, second)) if title.chars().count() > line => format!("{first}<br>{}", second.trim_start()),
         _ => title.to_owned(),
     }
 }

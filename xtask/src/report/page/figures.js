@@ -4,7 +4,7 @@
 const described = document.getElementById("figures").textContent;
 const config = {
   displaylogo: false,
-  modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d"],
+  modeBarButtons: [["toImage"], ["zoom2d", "pan2d"], ["zoomIn2d", "zoomOut2d", "resetScale2d"]],
 };
 // Where a finger drags, the page has to scroll; the buttons zoom.
 const dragmode = matchMedia("(pointer: coarse)").matches ? false : "zoom";
@@ -16,14 +16,19 @@ function draw() {
   for (const { id, data, layout } of JSON.parse(described, colour)) {
     const plot = document.querySelector(`#${id} .plot`);
     const width = plot.clientWidth;
+    const narrow = width < 600;
     let bottom = 55;
     if (layout.showlegend) {
       const columns = Math.max(1, Math.floor(width / (55 + 7 * Math.max(...data.map((curve) => curve.name.length)))));
       bottom += 22 * Math.ceil(data.length / columns);
     }
-    const height = (width < 600 ? 270 : 340) + bottom;
+    const height = (narrow ? 270 : 340) + bottom;
+    if (narrow && layout.xaxis.dtick > 1) {
+      layout.xaxis.dtick *= 2;
+    }
     // The same `uirevision` keeps what the reader zoomed and hid.
-    Plotly.react(plot, data, { ...layout, width, height, dragmode, margin: { l: 60, r: 15, t: 15, b: bottom }, uirevision: 1 }, config);
+    const margin = { l: 60, r: 25, t: narrow ? 35 : 15, b: bottom };
+    Plotly.react(plot, data, { ...layout, width, height, margin, dragmode, uirevision: 1 }, config);
   }
 }
 

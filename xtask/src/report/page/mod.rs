@@ -18,7 +18,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use relay_contact::MODEL_DESCRIPTION;
 use roxmltree::Document;
 
-pub use self::browser::{MISSING, chromium, draw_pictures, test};
+pub use self::browser::{CHROMIUM_MISSING, chromium, draw_pictures, test};
 pub use self::markdown::markdown;
 use super::content::{Block, Figure, Section};
 use crate::commands::{output, root};
