@@ -70,6 +70,7 @@ pub fn plot(figure: &Figure) -> Value {
             "modebar": {"color": "--faint", "activecolor": "--ink", "bgcolor": "--paper"},
             "hoverlabel": {"namelength": -1, "bgcolor": "--panel", "font": {"color": "--ink"}},
             "hovermode": "closest",
+            "hoverdistance": 50,
             "showlegend": figure.curves.len() > 1,
             "legend": {"orientation": "h", "x": 0, "yref": "container", "y": 0, "yanchor": "bottom", "bgcolor": "--paper"},
         },
