@@ -135,7 +135,7 @@ def test_figures_have_the_colours_of_the_page(visit: Visit) -> None:
 
 def test_pictures_of_the_page_are_kept(visit: Visit) -> None:
     path = FOLDER / f"{visit.window}.png"
-    visit.page.screenshot(path=path, full_page=True)
+    visit.page.screenshot(path=path, full_page=True, timeout=60_000)
     assert path.stat().st_size > 20_000
 
 

@@ -20,7 +20,7 @@ use self::content::Section;
 pub use self::page::{CHROMIUM_MISSING, chromium};
 
 /// How much is run.
-#[derive(clap::Args, Clone, Copy)]
+#[derive(clap::Args, Clone, Copy, Default)]
 pub struct Arguments {
     /// Fewer points and runs, to see that everything works
     #[arg(long)]
@@ -34,7 +34,7 @@ pub struct Arguments {
 pub fn test() -> Result<()> {
     run(&Arguments {
         quick: true,
-        pictures: false,
+        ..Arguments::default()
     })?;
     page::test()
 }

@@ -33,6 +33,9 @@ const SYMBOLS: [&str; 7] = [
 /// Characters of an axis title that fit below a figure, and beside it, on a phone.
 const LINES: (usize, usize) = (46, 34);
 
+/// Setting of an axis beside those of plotly.js: its `dtick` on a narrow screen.
+const NARROW: &str = "narrowdtick";
+
 /// An axis' title: what, and in which unit.
 pub fn title(axis: &Axis) -> String {
     if axis.unit.is_empty() {
@@ -44,20 +47,7 @@ pub fn title(axis: &Axis) -> String {
 
 /// A figure for plotly.js.
 pub fn plot(figure: &Figure) -> Value {
-    let mut colours: Vec<_> = figure.curves.iter().map(|curve| curve.colour).collect();
-    let mut seen = Vec::new();
-    colours.retain(|colour| {
-        !seen.contains(colour) && {
-            seen.push(*colour);
-            true
-        }
-    });
-    let rank = |curve: &Curve| colours.iter().position(|colour| *colour == curve.colour).unwrap_or(0);
-    let curves: Vec<_> = figure
-        .curves
-        .iter()
-        .map(|curve| trace(figure, curve, rank(curve)))
-        .collect();
+    let curves: Vec<_> = figure.curves.iter().map(|curve| trace(figure, curve)).collect();
     json!({
         "id": figure.id,
         "data": curves,
@@ -77,7 +67,19 @@ pub fn plot(figure: &Figure) -> Value {
     })
 }
 
-fn trace(figure: &Figure, curve: &Curve, rank: usize) -> Value {
+/// Which of the colours a curve has, counting those alone of curves of its styles.
+fn rank(figure: &Figure, curve: &Curve, styles: &[Style]) -> usize {
+    let mut colours: Vec<usize> = Vec::new();
+    for other in figure.curves.iter().filter(|other| styles.contains(&other.style)) {
+        if !colours.contains(&other.colour) {
+            colours.push(other.colour);
+        }
+    }
+    let place = colours.iter().position(|colour| *colour == curve.colour);
+    place.unwrap_or(0)
+}
+
+fn trace(figure: &Figure, curve: &Curve) -> Value {
     let colour = pick(&COLOURS, curve.colour);
     let mode = match curve.style {
         Style::Line | Style::Dashed | Style::Area => "lines",
@@ -87,7 +89,7 @@ fn trace(figure: &Figure, curve: &Curve, rank: usize) -> Value {
     let dash = match curve.style {
         Style::Dashed => DASHES,
         Style::LineAndMarkers => "solid",
-        Style::Line | Style::Area | Style::Markers => pick(&STROKES, rank),
+        Style::Line | Style::Area | Style::Markers => pick(&STROKES, rank(figure, curve, &[Style::Line, Style::Area])),
     };
     // Points alone are hollow: what lies below them is seen.
     let (hollow, border) = if curve.style == Style::Markers {
@@ -95,6 +97,7 @@ fn trace(figure: &Figure, curve: &Curve, rank: usize) -> Value {
     } else {
         ("", 0)
     };
+    let symbol = pick(&SYMBOLS, rank(figure, curve, &[Style::Markers, Style::LineAndMarkers]));
     let mut trace = json!({
         "type": "scatter",
         "name": curve.name,
@@ -102,7 +105,7 @@ fn trace(figure: &Figure, curve: &Curve, rank: usize) -> Value {
         "x": curve.x.iter().map(|value| rounded(*value)).collect::<Vec<_>>(),
         "y": curve.y.iter().map(|value| rounded(*value)).collect::<Vec<_>>(),
         "line": {"color": colour, "dash": dash, "width": 2},
-        "marker": {"color": colour, "symbol": format!("{}{hollow}", pick(&SYMBOLS, rank)), "size": 8, "line": {"width": border}},
+        "marker": {"color": colour, "symbol": format!("{symbol}{hollow}"), "size": 8, "line": {"width": border}},
         "hovertemplate": format!("{}<br>{}", hover("x", &figure.x), hover("y", &figure.y)),
     });
     if let (Style::Area, Some(trace)) = (curve.style, trace.as_object_mut()) {
@@ -147,8 +150,9 @@ fn axis<'a>(axis: &Axis, line: usize, values: impl Iterator<Item = &'a Vec<f64>>
         // Labels at powers of ten alone, about six of them; over few decades at 2 and 5 too, in full.
         let labels = match decades {
             few if few < 0.5 => json!({"tickformat": ".6~g"}),
-            few if few < 2.5 => json!({"tickformat": ".6~g", "dtick": "D2"}),
-            many => json!({"dtick": (many / 6.0).ceil()}),
+            few if few < 1.5 => json!({"tickformat": ".6~g", "dtick": "D2"}),
+            some if some < 2.5 => json!({"tickformat": ".6~g", "dtick": "D2", NARROW: 1}),
+            many => json!({"dtick": (many / 6.0).ceil(), NARROW: (many / 3.0).ceil()}),
         };
         settings.extend(labels.as_object().cloned().unwrap_or_default());
     }

@@ -23,8 +23,8 @@ function draw() {
       bottom += 22 * Math.ceil(data.length / columns);
     }
     const height = (narrow ? 270 : 340) + bottom;
-    if (narrow && layout.xaxis.dtick > 1) {
-      layout.xaxis.dtick *= 2;
+    if (narrow) {
+      layout.xaxis.dtick = layout.xaxis.narrowdtick ?? layout.xaxis.dtick;
     }
     // The same `uirevision` keeps what the reader zoomed and hid.
     const margin = { l: 60, r: 25, t: narrow ? 35 : 15, b: bottom };

@@ -31,5 +31,5 @@ fn table(table: &Table) -> String {
         .map(|numeric| if numeric { "---:" } else { "---" });
     let mut lines = vec![cells(&table.columns), line(rule.map(str::to_owned).collect())];
     lines.extend(table.rows.iter().map(|row| cells(row)));
-    format!("{}\n\n{}", table.caption.trim(), lines.join("\n"))
+    format!("**{}**\n\n{}", table.caption.trim(), lines.join("\n"))
 }
