@@ -1,4 +1,4 @@
-"""The report in headless Chromium."""
+"""Headless Chromium, and what is looked at in it."""
 
 import os
 import shutil
@@ -8,8 +8,10 @@ from pathlib import Path
 
 from playwright.sync_api import Browser, sync_playwright
 
-FOLDER = Path(__file__).parents[2] / "out/report"
+ROOT = Path(__file__).parents[2]
+FOLDER = ROOT / "out/report"
 PAGE = FOLDER / "index.html"
+COMPONENT = ROOT / "dist/RelayContact.fmu"
 
 
 @contextmanager

@@ -1,12 +1,11 @@
 """Draws each figure of the report small: docs/report/FIGURE.png."""
 
 import io
-from pathlib import Path
 
-from browser import PAGE, chromium
+from browser import PAGE, ROOT, chromium
 from PIL import Image
 
-FOLDER = Path(__file__).parents[2] / "docs/report"
+FOLDER = ROOT / "docs/report"
 WIDTH, HEIGHT = 640, 800
 
 
@@ -17,9 +16,12 @@ def main() -> None:
         page = browser.new_page(viewport={"width": WIDTH + 32, "height": HEIGHT}, color_scheme="light")
         page.goto(PAGE.as_uri())
         for figure in page.locator("figure:has(.plot)").all():
-            picture = Image.open(io.BytesIO(figure.locator(".plot").screenshot(animations="disabled")))
             path = FOLDER / f"{figure.get_attribute('id')}.png"
-            picture.convert("RGB").quantize(64).save(path, optimize=True)
+            picture = Image.open(io.BytesIO(figure.locator(".plot").screenshot()))
+            # This method alone keeps the colours of thin lines.
+            picture.convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(
+                path, optimize=True
+            )
             print(path)
 
 

@@ -30,9 +30,12 @@ pub struct Arguments {
     pub pictures: bool,
 }
 
+/// Runs what sections are made of.
+type Part = fn(Arguments) -> Result<Vec<Section>>;
+
 /// The report in its quick form, in a browser.
 pub fn test() -> Result<()> {
-    run(&Arguments {
+    run(Arguments {
         quick: true,
         ..Arguments::default()
     })?;
@@ -40,8 +43,8 @@ pub fn test() -> Result<()> {
 }
 
 /// Runs everything and writes `out/report/index.html`.
-pub fn run(arguments: &Arguments) -> Result<()> {
-    let parts: [fn(Arguments) -> Result<Vec<Section>>; 6] = [
+pub fn run(arguments: Arguments) -> Result<()> {
+    let parts: [Part; 6] = [
         opening::sections,
         paper::sections,
         accuracy::sections,
@@ -53,7 +56,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let progress = ProgressBar::new(parts.len() as u64).with_style(style);
     let mut sections = Vec::new();
     for part in parts {
-        sections.extend(part(*arguments)?);
+        sections.extend(part(arguments)?);
         progress.inc(1);
     }
     progress.finish_and_clear();

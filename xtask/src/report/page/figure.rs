@@ -10,8 +10,7 @@ const COLOURS: [&str; 7] = [
     "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "--ink",
 ];
 
-/// Of the curves of a figure by their colours, in order, so that they differ without colour too; never the dashes of
-/// [`Style::Dashed`].
+/// Of the curves of a figure by their colours, in order, so that they differ without colour too.
 const STROKES: [&str; 5] = [
     "solid",
     "16px,4px",
@@ -19,7 +18,7 @@ const STROKES: [&str; 5] = [
     "16px,4px,3px,4px,3px,4px",
     "28px,5px",
 ];
-const DASHES: &str = "5px,5px";
+const DASHES: [&str; 4] = ["6px,4px", "2px,3px", "8px,3px,2px,3px", "3px,6px"];
 const SYMBOLS: [&str; 7] = [
     "circle",
     "square",
@@ -87,7 +86,7 @@ fn trace(figure: &Figure, curve: &Curve) -> Value {
         Style::LineAndMarkers => "lines+markers",
     };
     let dash = match curve.style {
-        Style::Dashed => DASHES,
+        Style::Dashed => pick(&DASHES, rank(figure, curve, &[Style::Dashed])),
         Style::LineAndMarkers => "solid",
         Style::Line | Style::Area | Style::Markers => pick(&STROKES, rank(figure, curve, &[Style::Line, Style::Area])),
     };
@@ -173,4 +172,75 @@ fn broken(title: &str, line: usize) -> String {
 /// To seven digits, which no eye tells from more.
 fn rounded(value: f64) -> f64 {
     format!("{value:.6e}").parse().unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::content::Block;
+    use crate::report::page::sample;
+
+    fn plots() -> Vec<Value> {
+        let sections = sample::sections();
+        let blocks = sections.iter().flat_map(|section| &section.blocks);
+        let figures = blocks.filter_map(|block| match block {
+            Block::Figure(figure) => Some(plot(figure)),
+            Block::Text(_) | Block::Table(_) => None,
+        });
+        figures.collect()
+    }
+
+    #[test]
+    fn curves_of_a_figure_differ_without_colour() {
+        for plot in plots() {
+            let curves = plot["data"].as_array().cloned().unwrap_or_default();
+            let looks = curves.iter().map(|curve| {
+                let (dash, symbol) = (&curve["line"]["dash"], &curve["marker"]["symbol"]);
+                match curve["mode"].as_str() {
+                    Some("lines") => dash.to_string(),
+                    Some("markers") => symbol.to_string(),
+                    _ => format!("{dash}{symbol}"),
+                }
+            });
+            let looks: std::collections::BTreeSet<_> = looks.collect();
+            assert_eq!(looks.len(), curves.len(), "{}", plot["id"]);
+        }
+    }
+
+    #[test]
+    fn axes_and_points_have_their_units() {
+        let plots = plots();
+        let history = plots.iter().find(|plot| plot["id"] == "history");
+        let texts = history.map(|plot| {
+            [
+                &plot["layout"]["yaxis"]["title"]["text"],
+                &plot["data"][0]["hovertemplate"],
+            ]
+        });
+        assert_eq!(
+            texts,
+            Some([
+                &json!("contact force / N"),
+                &json!("time: %{x:.5~g} ms<br>contact force: %{y:.5~g} N")
+            ])
+        );
+    }
+
+    #[test]
+    fn a_long_title_is_broken_near_its_middle() {
+        assert_eq!(broken("contact force / N", 34), "contact force / N");
+        assert_eq!(
+            broken("processor time per simulated second / s", 34),
+            "processor time per<br>simulated second / s"
+        );
+        assert_eq!(broken("ωωωωωωωω", 4), "ωωωωωωωω");
+    }
+
+    #[test]
+    fn what_is_no_number_is_a_gap() {
+        assert_eq!(
+            json!([rounded(1.0 / 3.0), rounded(f64::NAN)]),
+            json!([0.333_333_3, null])
+        );
+    }
 }

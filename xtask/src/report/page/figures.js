@@ -17,17 +17,18 @@ function draw() {
     const plot = document.querySelector(`#${id} .plot`);
     const width = plot.clientWidth;
     const narrow = width < 600;
-    let bottom = 55;
+    const margin = { l: 60, r: 25, t: narrow ? 35 : 15, b: 55 };
     if (layout.showlegend) {
-      const columns = Math.max(1, Math.floor(width / (55 + 7 * Math.max(...data.map((curve) => curve.name.length)))));
-      bottom += 22 * Math.ceil(data.length / columns);
+      // plotly.js gives each entry the width of the longest name.
+      const entry = 50 + 7 * Math.max(...data.map((curve) => curve.name.length));
+      const columns = Math.max(1, Math.floor((width - margin.l - margin.r) / entry));
+      margin.b += 21 * Math.ceil(data.length / columns);
     }
-    const height = (narrow ? 270 : 340) + bottom;
+    const height = (narrow ? 270 : 340) + margin.b;
     if (narrow) {
       layout.xaxis.dtick = layout.xaxis.narrowdtick ?? layout.xaxis.dtick;
     }
     // The same `uirevision` keeps what the reader zoomed and hid.
-    const margin = { l: 60, r: 25, t: narrow ? 35 : 15, b: bottom };
     Plotly.react(plot, data, { ...layout, width, height, margin, dragmode, uirevision: 1 }, config);
   }
 }

@@ -33,3 +33,21 @@ fn table(table: &Table) -> String {
     lines.extend(table.rows.iter().map(|row| cells(row)));
     format!("**{}**\n\n{}", table.caption.trim(), lines.join("\n"))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::page::sample;
+
+    #[test]
+    fn sections_figures_and_tables_are_in_the_markdown() {
+        let text = markdown(&sample::sections());
+        assert!(text.starts_with("## Each kind of block\n\nThe *published* values"));
+        let figure = "### Resistance against force\n\n![Resistance against force](report/resistance.png)\n";
+        assert!(text.contains(figure), "{text}");
+        let table = "| length / mm | overtravel / mm | published / Hz | ours / Hz | deviation |\n| ---: | ---: | ---: | ---: | ---: |\n\
+             | 15.5 | 0.2 | 1397.6 | 1397.58 | −0.001 % |\n";
+        assert!(text.contains(table), "{text}");
+        assert!(text.contains("cell \\| of row 2"), "{text}");
+    }
+}

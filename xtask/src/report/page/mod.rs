@@ -173,16 +173,4 @@ mod tests {
         assert_eq!(page(&sections, false, "")?.matches("</script>").count(), 3);
         Ok(())
     }
-
-    #[test]
-    #[ignore = "development"]
-    fn sample_page() -> Result<()> {
-        println!("{}", write(&sample::sections(), false)?.display());
-        fs::write(root().join("out/report/sample.md"), markdown(&sample::sections()))?;
-        fs::write(
-            root().join("out/report/documentation.html"),
-            crate::documentation::page()?,
-        )?;
-        Ok(())
-    }
 }
