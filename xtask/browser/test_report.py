@@ -67,7 +67,8 @@ def test_every_figure_is_drawn(visit: Visit) -> None:
         box = plot.locator(".nsewdrag").bounding_box()
         assert box is not None, figure["id"]
         assert box["width"] > 150, figure["id"]
-        assert box["height"] > 200, figure["id"]
+        # The legend is beside it, not instead of it.
+        assert box["height"] > (200 if visit.window.startswith("phone") else 280), figure["id"]
         for curve in figure["data"]:
             numbers = [pair for pair in zip(curve["x"], curve["y"], strict=True) if None not in pair]
             assert numbers, f"{figure['id']}: {curve['name']}"

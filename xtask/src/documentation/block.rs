@@ -5,10 +5,11 @@ use roxmltree::{Document, Node};
 
 use super::{attribute, unit};
 
-/// Between two variables, and sizes of the block, in pixels.
+/// Between two variables, and sizes of the block and of what is beside it, in pixels.
 const PITCH: usize = 22;
-const MARGIN: usize = 90;
-const WIDTH: usize = 380;
+const LEFT: usize = 70;
+const WIDTH: usize = 330;
+const RIGHT: usize = 90;
 const PIN: usize = 24;
 
 /// The block, drawn.
@@ -16,7 +17,7 @@ pub fn block(document: &Document) -> Markup {
     let [inputs, outputs] = ["input", "output"].map(|causality| variables(document, causality));
     let rows = inputs.len().max(outputs.len());
     let height = (rows + 2) * PITCH;
-    let right = MARGIN + WIDTH;
+    let right = LEFT + WIDTH;
     let row = |list: &[Node], index: usize| (rows - list.len()) * PITCH / 2 + (index + 2) * PITCH + PITCH / 4;
     let name = attribute(document.root_element(), "modelName");
     let label = format!(
@@ -25,14 +26,14 @@ pub fn block(document: &Document) -> Markup {
         outputs.len()
     );
     html! {
-        svg.block viewBox=(format!("0 0 {} {}", right + MARGIN, height + 2)) width=(right + MARGIN) role="img" aria-label=(label) {
-            rect x=(MARGIN) y="1" width=(WIDTH) height=(height) rx="8" {}
-            text.name x=(MARGIN + WIDTH / 2) y=(PITCH) text-anchor="middle" { (name) }
+        svg.block viewBox=(format!("0 0 {} {}", right + RIGHT, height + 2)) width=(right + RIGHT) role="img" aria-label=(label) {
+            rect x=(LEFT) y="1" width=(WIDTH) height=(height) rx="8" {}
+            text.name x=(LEFT + WIDTH / 2) y=(PITCH) text-anchor="middle" { (name) }
             @for (index, variable) in inputs.iter().enumerate() {
                 @let y = row(&inputs, index);
-                path d=(format!("M{} {y}h{PIN}l-8 -5m8 5l-8 5", MARGIN - PIN)) {}
-                text x=(MARGIN + 8) y=(y) { (attribute(*variable, "name")) }
-                text.unit x=(MARGIN - PIN - 6) y=(y) text-anchor="end" { (signal(document, *variable)) }
+                path d=(format!("M{} {y}h{PIN}l-8 -5m8 5l-8 5", LEFT - PIN)) {}
+                text x=(LEFT + 8) y=(y) { (attribute(*variable, "name")) }
+                text.unit x=(LEFT - PIN - 6) y=(y) text-anchor="end" { (signal(document, *variable)) }
             }
             @for (index, variable) in outputs.iter().enumerate() {
                 @let y = row(&outputs, index);
