@@ -6,6 +6,7 @@ mod demo;
 mod documentation;
 mod effects;
 mod fmu;
+mod html;
 mod importers;
 mod licences;
 mod package;
@@ -68,7 +69,7 @@ fn main() -> ExitCode {
         Task::Demo => demo::run(),
         Task::Accuracy(arguments) => accuracy::run(&arguments),
         Task::Effects(arguments) => effects::run(&arguments),
-        Task::Report(arguments) => report::run(&arguments),
+        Task::Report(arguments) => report::run(arguments),
         Task::Importers => test::importers_alone(),
         Task::Valgrind => valgrind::run(),
         Task::Instructions => valgrind::instructions(),

@@ -8,10 +8,10 @@ use std::time::Instant;
 use anyhow::Result;
 
 use crate::commands::{self, cargo};
-use crate::{effects, fmu, importers, python, valgrind};
+use crate::{effects, fmu, importers, python, report, valgrind};
 
 /// Folders and files with Python in them.
-const PYTHON: [&str; 3] = ["examples/python", "conformance/python", "docs"];
+const PYTHON: [&str; 4] = ["examples/python", "conformance/python", "docs", "xtask/browser"];
 
 /// Runs all stages; the first that fails ends it.
 pub fn run() -> Result<()> {
@@ -44,6 +44,11 @@ pub fn run() -> Result<()> {
         Ok(())
     })?;
     stage("Python environment", python::prepare)?;
+    if report::chromium().is_some() {
+        stage("report", report::test)?;
+    } else {
+        println!("== report: NOT RUN, {}", report::CHROMIUM_MISSING);
+    }
     stage("Python lint", || {
         commands::run(python::python().args(["-m", "ruff", "check"]).args(PYTHON))
     })?;

@@ -17,25 +17,41 @@ use anyhow::Result;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use self::content::Section;
+pub use self::page::{CHROMIUM_MISSING, chromium};
 
 /// How much is run.
-#[derive(clap::Args, Clone, Copy)]
+#[derive(clap::Args, Clone, Copy, Default)]
 pub struct Arguments {
     /// Fewer points and runs, to see that everything works
     #[arg(long)]
     pub quick: bool,
+    /// Also draw each figure small, as docs/report/FIGURE.png (needs Chromium)
+    #[arg(long)]
+    pub pictures: bool,
     /// Only rewrite docs/validation.md
     #[arg(long)]
     pub docs: bool,
 }
 
+/// Runs what sections are made of.
+type Part = fn(Arguments) -> Result<Vec<Section>>;
+
+/// The report in its quick form, in a browser.
+pub fn test() -> Result<()> {
+    run(Arguments {
+        quick: true,
+        ..Arguments::default()
+    })?;
+    page::test()
+}
+
 /// Runs everything and writes `out/report/index.html`.
-pub fn run(arguments: &Arguments) -> Result<()> {
+pub fn run(arguments: Arguments) -> Result<()> {
     if arguments.docs {
         println!("{}", paper::validation::write()?.display());
         return Ok(());
     }
-    let parts: [fn(Arguments) -> Result<Vec<Section>>; 6] = [
+    let parts: [Part; 6] = [
         opening::sections,
         paper::sections,
         accuracy::sections,
@@ -47,11 +63,14 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let progress = ProgressBar::new(parts.len() as u64).with_style(style);
     let mut sections = Vec::new();
     for part in parts {
-        sections.extend(part(*arguments)?);
+        sections.extend(part(arguments)?);
         progress.inc(1);
     }
     progress.finish_and_clear();
-    let path = page::write(&sections)?;
+    let path = page::write(&sections, arguments.quick)?;
+    if arguments.pictures {
+        page::draw_pictures()?;
+    }
     println!("{}", path.display());
     Ok(())
 }

@@ -14,7 +14,6 @@ mod elastic;
 mod figures;
 mod findings;
 mod identification;
-mod markdown;
 mod not_reproduced;
 mod published;
 mod resistance;

@@ -7,7 +7,8 @@ use anyhow::{Context, Result};
 
 use super::super::Arguments;
 use super::super::content::Section;
-use super::{markdown, sections};
+use super::super::page::markdown;
+use super::sections;
 use crate::commands::root;
 
 /// The sections of the page. Their numbers have fewer digits than differ from machine to machine.
@@ -29,12 +30,12 @@ pub fn write() -> Result<PathBuf> {
 fn text() -> Result<String> {
     let sections = validation(Arguments {
         quick: true,
-        docs: true,
+        ..Arguments::default()
     })?;
     Ok(format!(
         "<!-- Written by cargo xtask report --docs. -->\n# Validation\n\n    cargo xtask report --docs\n\nruns the model and writes this \
          page: what the model's source publishes, beside what the component computes.\n{}",
-        markdown::markdown(&sections)
+        markdown(&sections)
     ))
 }
 

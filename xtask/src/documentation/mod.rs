@@ -1,22 +1,21 @@
 //! The page `documentation/index.html` of the component: the variables from `modelDescription.xml`, the words from
 //! the README, so that neither is written twice.
 
+mod block;
+
 use std::fs;
 
 use anyhow::{Context, Result, ensure};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
-use pulldown_cmark::{Options, Parser};
 use relay_contact::MODEL_DESCRIPTION;
 use roxmltree::{Document, Node};
 
+use self::block::block;
 use crate::commands::root;
+use crate::html::{STYLE, markdown};
 
 /// Sections of the README that the page repeats.
 const SECTIONS: [&str; 2] = ["Limits of validity", "Source"];
-
-const STYLE: &str = "body{font-family:sans-serif;max-width:75em;margin:2em auto;padding:0 1em;line-height:1.45}\
-table{border-collapse:collapse}th,td{border:1px solid #bbb;padding:.25em .6em;text-align:left;vertical-align:top}\
-th{background:#eee}code{white-space:nowrap}";
 
 /// The page as HTML.
 pub fn page() -> Result<String> {
@@ -31,21 +30,23 @@ pub fn page() -> Result<String> {
         html lang="en" {
             head {
                 meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
                 title { (name) " " (version) }
                 style { (PreEscaped(STYLE)) }
             }
             body {
-                h1 { (name) " " (version) }
+                h1 { (name) " " span.faint { (version) } }
                 (markdown(introduction(&readme)?))
                 p { "FMI 2.0 for co-simulation. All values are in SI units. Licence: " (attribute(model, "license"))
                     "; the texts, also those of the libraries linked in, are in the folder " a href="licenses/" { "licenses" } "." }
+                (scroll("The component as a block", &block(&document)))
                 @for (title, causality) in [("Inputs", "input"), ("Outputs", "output"),
                     ("Calculated parameters", "calculatedParameter"), ("Parameters", "parameter")] {
                     h2 { (title) }
-                    (variables(&document, causality))
+                    (scroll(title, &variables(&document, causality)))
                 }
                 h2 { "Choices" }
-                (choices(&document))
+                (scroll("Choices", &choices(&document)))
                 @for section in sections {
                     @let (title, text) = section?;
                     h2 { (title) }
@@ -55,6 +56,11 @@ pub fn page() -> Result<String> {
         }
     };
     Ok(page.into_string())
+}
+
+/// What may be wider than the page, in a box that scrolls.
+fn scroll(label: &str, content: &Markup) -> Markup {
+    html! { div.scroll role="region" tabindex="0" aria-label=(label) { (content) } }
 }
 
 fn variables(document: &Document, causality: &str) -> Markup {
@@ -129,7 +135,8 @@ fn start<'a>(document: &'a Document, value: Node<'a, 'a>) -> &'a str {
         .map_or(start, |item| attribute(item, "name"))
 }
 
-fn attribute<'a>(node: Node<'a, '_>, name: &str) -> &'a str {
+/// An attribute, or nothing.
+pub fn attribute<'a>(node: Node<'a, '_>, name: &str) -> &'a str {
     node.attribute(name).unwrap_or("")
 }
 
@@ -149,12 +156,6 @@ fn section<'a>(readme: &'a str, title: &str) -> Result<&'a str> {
     let text = rest.split("\n## ").next().unwrap_or(rest).trim();
     ensure!(!text.is_empty(), "section {title:?} of README.md is empty");
     Ok(text)
-}
-
-fn markdown(text: &str) -> Markup {
-    let mut html = String::new();
-    pulldown_cmark::html::push_html(&mut html, Parser::new_ext(text, Options::empty()));
-    PreEscaped(html)
 }
 
 #[cfg(test)]
