@@ -150,7 +150,7 @@ fn displacement_and_phase_are_those_of_the_linear_response() {
 fn every_figure_has_curves_of_finite_points() {
     let sections = super::sections(Arguments {
         quick: true,
-        docs: false,
+        ..Arguments::default()
     })
     .unwrap();
     let blocks: Vec<_> = sections.iter().flat_map(|section| &section.blocks).collect();
