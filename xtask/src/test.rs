@@ -44,11 +44,6 @@ pub fn run() -> Result<()> {
         Ok(())
     })?;
     stage("Python environment", python::prepare)?;
-    if report::chromium().is_some() {
-        stage("report", report::test)?;
-    } else {
-        println!("== report: NOT RUN, {}", report::CHROMIUM_MISSING);
-    }
     stage("Python lint", || {
         commands::run(python::python().args(["-m", "ruff", "check"]).args(PYTHON))
     })?;
@@ -61,7 +56,13 @@ pub fn run() -> Result<()> {
     stage("conformance lint", || {
         commands::run(clippy(&["--package=conformance"]).envs(bindings()?))
     })?;
-    importers(&component)
+    importers(&component)?;
+    if report::chromium().is_some() {
+        stage("report", report::test)?;
+    } else {
+        println!("== report: NOT RUN, {}", report::CHROMIUM_MISSING);
+    }
+    Ok(())
 }
 
 /// Builds the component and tests it under other people's importers alone.

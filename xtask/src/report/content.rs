@@ -6,6 +6,8 @@ pub struct Section {
     /// Its anchor.
     pub id: &'static str,
     pub title: &'static str,
+    /// The section in a sentence of Markdown, for the summary of the page; empty: it has no place there.
+    pub lead: String,
     pub blocks: Vec<Block>,
 }
 

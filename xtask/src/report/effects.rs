@@ -26,6 +26,7 @@ pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
     Ok(vec![Section {
         id: "effects",
         title: "What each effect costs and changes",
+        lead: String::new(),
         blocks,
     }])
 }

@@ -40,6 +40,16 @@ pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
             missing.join(", ")
         );
     }
+    let passed = rows.iter().filter(|row| row.result == "passed").count();
+    let worst = rows.iter().filter_map(|row| row.difference).fold(0.0, f64::max);
+    let lead = if rows.is_empty() {
+        String::new()
+    } else {
+        format!(
+            "{passed} of {} tasks in programs of others pass; their contact force differs from our own by {worst} N at most.",
+            rows.len()
+        )
+    };
     let mut blocks = vec![Block::Text(text)];
     if !rows.is_empty() {
         blocks.push(Block::Table(table(&rows)));
@@ -47,6 +57,7 @@ pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
     Ok(vec![Section {
         id: "importers",
         title: "Other people's importers",
+        lead,
         blocks,
     }])
 }

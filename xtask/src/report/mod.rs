@@ -16,7 +16,7 @@ mod stability;
 use anyhow::Result;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use self::content::Section;
+use self::content::{Block, Section};
 pub use self::page::{CHROMIUM_MISSING, chromium};
 
 /// How much is run.
@@ -67,10 +67,25 @@ pub fn run(arguments: Arguments) -> Result<()> {
         progress.inc(1);
     }
     progress.finish_and_clear();
+    sections.insert(0, summary(&sections));
     let path = page::write(&sections, arguments.quick)?;
     if arguments.pictures {
         page::draw_pictures()?;
     }
     println!("{}", path.display());
     Ok(())
+}
+
+/// What the sections come to, in a sentence each.
+fn summary(sections: &[Section]) -> Section {
+    let told = sections.iter().filter(|section| !section.lead.is_empty());
+    let lines: Vec<_> = told
+        .map(|section| format!("- [{}](#{}): {}", section.title, section.id, section.lead))
+        .collect();
+    Section {
+        id: "summary",
+        title: "In short",
+        lead: String::new(),
+        blocks: vec![Block::Text(lines.join("\n"))],
+    }
 }

@@ -23,8 +23,9 @@ pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
         .map(|digits| format!("1e-{digits}").parse())
         .collect::<Result<_, _>>()?;
     let scenes = measure(&tolerances, if arguments.quick { 3 } else { 9 })?;
+    let verdict = verdict(&scenes);
     let mut blocks = vec![
-        Block::Text(text(&scenes)),
+        Block::Text(text(&scenes, &verdict)),
         Block::Figure(asked(&scenes)),
         Block::Figure(cost(&scenes)),
         Block::Table(table(&scenes)),
@@ -34,23 +35,28 @@ pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
     Ok(vec![Section {
         id: "accuracy",
         title: "What accuracy costs",
+        lead: format!("{verdict}, in the scenes and at the tolerances that can be judged."),
         blocks,
     }])
 }
 
-fn text(scenes: &[Scene]) -> String {
+/// Whether the errors are what was asked for, and what the default costs.
+fn verdict(scenes: &[Scene]) -> String {
     let judged = scenes.iter().flat_map(Scene::judged);
     let worst = judged
         .map(|delivered| delivered.errors.force / delivered.tolerance)
         .fold(0.0, f64::max);
-    let verdict = if worst <= 1.0 {
+    if worst <= 1.0 {
         format!(
             "The error never exceeds the tolerance asked; it is {} of it at most",
             percent(worst)
         )
     } else {
         format!("The error exceeds the tolerance asked, by up to {worst:.1} times it")
-    };
+    }
+}
+
+fn text(scenes: &[Scene], verdict: &str) -> String {
     let own: Vec<String> = scenes
         .iter()
         .map(|scene| format!("{:.0e} in *{}*", scene.own_error, scene.name))

@@ -41,8 +41,9 @@ pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
     };
     let (opens, interrupts) = (least(|point| point.opens), least(|point| point.interrupts));
     let asked = verdicts.last().context("no levels")?;
+    let lead = answer(&verdicts, asked);
     let mut blocks = vec![
-        Block::Text(answer(&verdicts, asked, opens, interrupts)),
+        Block::Text(format!("{lead} {}", weakest(opens, interrupts))),
         Block::Figure(figure(&points)),
         Block::Table(table(&verdicts)),
         Block::Table(shocks(arguments.quick)?),
@@ -51,6 +52,7 @@ pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
     Ok(vec![Section {
         id: "opening",
         title: "Does the contact open?",
+        lead,
         blocks,
     }])
 }
@@ -89,7 +91,7 @@ fn map(count: u32) -> Result<Vec<Thresholds>> {
     Ok(points)
 }
 
-fn answer(verdicts: &[Verdict], asked: &Verdict, opens: (f64, f64), interrupts: (f64, f64)) -> String {
+fn answer(verdicts: &[Verdict], asked: &Verdict) -> String {
     let acceleration = asked.level.acceleration;
     let verdict = if asked.interruptions == 0 {
         format!("**At {acceleration} g no contact opens for 10 µs or more at any frequency from 10 to 3000 Hz")
@@ -105,11 +107,14 @@ fn answer(verdicts: &[Verdict], asked: &Verdict, opens: (f64, f64), interrupts: 
     } else {
         ""
     };
+    format!("{verdict}{shorter}.** {}", passed(verdicts))
+}
+
+fn weakest(opens: (f64, f64), interrupts: (f64, f64)) -> String {
     format!(
-        "{verdict}{shorter}.** {} The specimen is weakest near its first resonance: its contact force first touches zero at {} at \
-         {:.0} Hz, and an interruption of 10 µs first occurs at {} at {:.0} Hz. The identified damping, rivet mass and preload are \
-         known to some per cent, and so is this acceleration.",
-        passed(verdicts),
+        "The specimen is weakest near its first resonance: its contact force first touches zero at {} at {:.0} Hz, and an \
+         interruption of 10 µs first occurs at {} at {:.0} Hz. The identified damping, rivet mass and preload are known to some \
+         per cent, and so is this acceleration.",
         acceleration_text(opens.0),
         opens.1,
         acceleration_text(interrupts.0),

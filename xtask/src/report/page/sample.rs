@@ -153,6 +153,7 @@ pub fn sections() -> Vec<Section> {
         Section {
             id: "kinds",
             title: "Each kind of block",
+            lead: String::new(),
             blocks: vec![
                 text("The *published* values beside **ours**, in `N`.\n\n- see [many](#many)\n- second item"),
                 Block::Figure(history()),
@@ -162,6 +163,7 @@ pub fn sections() -> Vec<Section> {
         Section {
             id: "many",
             title: "Many curves, wide tables",
+            lead: String::new(),
             blocks: vec![
                 Block::Figure(precision()),
                 Block::Figure(map()),
@@ -172,6 +174,7 @@ pub fn sections() -> Vec<Section> {
         Section {
             id: "summary",
             title: "In five minutes",
+            lead: String::new(),
             blocks: vec![text(
                 "1. The first finding: see [the figure](#history).\n2. The second.",
             )],

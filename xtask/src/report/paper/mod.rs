@@ -35,13 +35,46 @@ use super::content::{Block, Section};
 /// The sections.
 pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
     let results = Results::compute(arguments.quick)?;
-    let section = |id, title, blocks| Section { id, title, blocks };
+    let section = |id, title, lead, blocks| Section {
+        id,
+        title,
+        lead,
+        blocks,
+    };
+    let none = String::new;
     Ok(vec![
-        section("paper", "The publication reproduced", paper(&results, arguments.quick)?),
-        section("not-reproduced", "Not reproduced", not_reproduced::blocks(&results)?),
-        section("findings", "Findings", findings::blocks(&results)?),
-        section("identification", "Identification", identification::blocks()?),
+        section(
+            "paper",
+            "The publication reproduced",
+            lead(&results)?,
+            paper(&results, arguments.quick)?,
+        ),
+        section(
+            "not-reproduced",
+            "Not reproduced",
+            "the shift of the first frequency by prestress, short springs, displacements of the contact, and damping far from \
+             that of the specimen, each with its reason."
+                .to_owned(),
+            not_reproduced::blocks(&results)?,
+        ),
+        section("findings", "Findings", none(), findings::blocks(&results)?),
+        section("identification", "Identification", none(), identification::blocks()?),
     ])
+}
+
+/// What the fitted parameters predict.
+fn lead(results: &Results) -> Result<String> {
+    let (low, high) = published::MEASURED_RESISTANCE;
+    let (ratio, frequency, peak) = published::PEAKS[0];
+    let at_1000 = results.at(published::BEST, 1000.0)?;
+    Ok(format!(
+        "fitted to the published static force, stiffness, first frequency and one force amplitude, the model gives a \
+         resistance of {:.1} to {:.1} mΩ under 98 m/s² at 1000 Hz (measured: {low} \
+         to {high} mΩ), and a greatest force amplitude of {:.2} cN at {frequency} Hz (published: {peak} cN).",
+        runs::resistance(at_1000.greatest),
+        runs::resistance(at_1000.least),
+        results.at(ratio, frequency)?.amplitude(),
+    ))
 }
 
 /// The publication's tables and figures beside ours.
