@@ -88,7 +88,7 @@ fn table(rows: &[Row], scene: &str) -> Table {
     columns.extend(LEVELS.map(|level| format!("error {level:.0e}")));
     let row = |(index, (name, runs)): (usize, &(&str, Runs))| {
         let cell = |level: f64| match (cheapest(runs, level), cheapest(&own, level)) {
-            (None, _) => "not reached".to_owned(),
+            (None, _) => "—".to_owned(),
             (Some(time), Some(least)) if index > 0 => format!("{} ({}×)", seconds(time), digits(time / least)),
             (Some(time), _) => seconds(time),
         };
@@ -98,7 +98,7 @@ fn table(rows: &[Row], scene: &str) -> Table {
     };
     Table {
         caption: format!(
-            "Scene *{scene}*: time per simulated second at equal error of the contact force, of the preload force."
+            "Scene *{scene}*: time per simulated second at equal error of the contact force, of the preload force; —: not reached."
         ),
         columns,
         rows: integrators.iter().enumerate().map(row).collect(),

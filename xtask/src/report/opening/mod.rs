@@ -151,10 +151,10 @@ fn figure(points: &[Thresholds]) -> Figure {
         curve(
             "opens for 10 µs (interruption)",
             |point| point.interrupts,
-            Style::LineAndMarkers,
+            Style::Line,
             0,
         ),
-        curve("opens at all", |point| point.opens, Style::LineAndMarkers, 1),
+        curve("opens at all", |point| point.opens, Style::Dashed, 1),
         curve("linear theory: opens at all", |point| point.linear, Style::Line, 2),
     ];
     curves.extend(LEVELS.iter().zip(3..).map(|(level, colour)| level.curve(colour)));
