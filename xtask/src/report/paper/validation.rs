@@ -34,7 +34,7 @@ fn text() -> Result<String> {
     })?;
     Ok(format!(
         "<!-- Written by cargo xtask report --docs. -->\n# Validation\n\n    cargo xtask report --docs\n\nruns the model and writes this \
-         page: what the model's source publishes, beside what the component computes.\n{}",
+         page: what the model's source publishes, beside what the component computes.\n\n{}",
         markdown(&sections)
     ))
 }
