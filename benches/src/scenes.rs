@@ -62,6 +62,9 @@ pub fn all() -> Result<Vec<Problem>, SceneError> {
 fn still() -> Scene {
     let mut scene = Scene::default();
     scene.effects.axial_force = AxialForceKind::None;
+    // What the others do not do either: none of them looks for interruptions and extremes inside steps.
+    scene.effects.chatter = false;
+    scene.effects.extremes = false;
     scene
 }
 
