@@ -33,10 +33,6 @@ const STEP: f64 = 25.0;
 /// Frequencies at which the nonlinear threshold is sought, Hz.
 const THRESHOLDS: u32 = 20;
 
-/// Communication steps of a period.
-const SAMPLES: u32 = 1000;
-/// Parts of these just after the contact has closed with a blow, whose force rises and falls within a microsecond.
-const BLOW: u32 = 200;
 /// A motion counts as periodic when the extremes of the force change by less than this part of the preload from one
 /// period to the next: far below what the picture shows.
 const PERIODIC: f64 = 1e-6;
@@ -68,11 +64,6 @@ impl Period {
     }
 }
 
-fn advance(model: &Model, course: &mut Course, workspace: &mut Workspace, until: f64) -> Result<()> {
-    let time = course.time;
-    Ok(model.step(course, workspace, &Inputs::default(), time, until - time)?)
-}
-
 /// The periodic motion that the vibration leads to from another motion, or from rest. The sine starts with that motion:
 /// the acceleration does not jump, as the other one has ended with a whole period.
 fn settle(acceleration: f64, frequency: f64, from: Option<&State>) -> Result<Period> {
@@ -83,28 +74,10 @@ fn settle(acceleration: f64, frequency: f64, from: Option<&State>) -> Result<Per
     let (mut least, mut most) = (f64::NAN, f64::NAN);
     for period in 0..PATIENCE {
         let last = (least, most);
-        (least, most) = (f64::INFINITY, f64::NEG_INFINITY);
-        for k in 0..SAMPLES {
-            let sample =
-                |parts: f64| start + (f64::from(period) + (f64::from(k) + parts) / f64::from(SAMPLES)) / frequency;
-            let before = course;
-            advance(&model, &mut course, &mut workspace, sample(1.0))?;
-            // Closed in this sample or the last: once more, looking closely.
-            if course.state().last_closing > sample(-1.0) {
-                course = before;
-                for part in 1..=BLOW {
-                    advance(
-                        &model,
-                        &mut course,
-                        &mut workspace,
-                        sample(f64::from(part) / f64::from(BLOW)),
-                    )?;
-                    most = most.max(course.tip(&model).force);
-                }
-            }
-            let force = course.tip(&model).force;
-            (least, most) = (least.min(force), most.max(force));
-        }
+        let (time, until) = (course.time, start + f64::from(period + 1) / frequency);
+        model.step(&mut course, &mut workspace, &Inputs::default(), time, until - time)?;
+        let extremes = course.extremes(&model);
+        (least, most) = (extremes.least, extremes.greatest);
         let changed = (least - last.0).abs().max((most - last.1).abs());
         if changed < PERIODIC * model.preload.force {
             let end = model.state(&course, &mut workspace)?;

@@ -1,10 +1,24 @@
-//! What the HTML pages share: the style sheet, and Markdown.
+//! What the HTML pages share: their head with the style sheet, and Markdown.
 
-use maud::{Markup, PreEscaped};
+use maud::{Markup, PreEscaped, html};
 use pulldown_cmark::{Options, Parser};
 
 /// The style sheet: light and dark, screen and paper.
-pub const STYLE: &str = include_str!("html.css");
+const STYLE: &str = include_str!("html.css");
+
+/// The head of a page.
+pub fn head(title: &str) -> Markup {
+    html! {
+        head {
+            meta charset="utf-8";
+            meta name="viewport" content="width=device-width, initial-scale=1";
+            // Without it a browser asks for an icon.
+            link rel="icon" href="data:,";
+            title { (title) }
+            style { (PreEscaped(STYLE)) }
+        }
+    }
+}
 
 /// Paragraphs in Markdown.
 pub fn markdown(text: &str) -> Markup {

@@ -6,13 +6,13 @@ mod block;
 use std::fs;
 
 use anyhow::{Context, Result, ensure};
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{DOCTYPE, Markup, html};
 use relay_contact::MODEL_DESCRIPTION;
 use roxmltree::{Document, Node};
 
 use self::block::block;
 use crate::commands::root;
-use crate::html::{STYLE, markdown};
+use crate::html::{head, markdown};
 
 /// Sections of the README that the page repeats.
 const SECTIONS: [&str; 2] = ["Limits of validity", "Source"];
@@ -28,12 +28,7 @@ pub fn page() -> Result<String> {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { (name) " " (version) }
-                style { (PreEscaped(STYLE)) }
-            }
+            (head(&format!("{name} {version}")))
             body {
                 h1 { (name) " " span.faint { (version) } }
                 (markdown(introduction(&readme)?))

@@ -23,7 +23,7 @@ pub use self::markdown::markdown;
 use super::content::{Block, Figure, Section};
 use crate::commands::{output, root};
 use crate::documentation::attribute;
-use crate::html::{STYLE, markdown as html_of};
+use crate::html::{head, markdown as html_of};
 use crate::python;
 
 const SCRIPT: &str = include_str!("figures.js");
@@ -65,14 +65,7 @@ fn page(sections: &[Section], quick: bool, library: &str) -> Result<String> {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                // Without it a browser asks for an icon.
-                link rel="icon" href="data:,";
-                title { "relay-contact: report" }
-                style { (PreEscaped(STYLE)) }
-            }
+            (head("relay-contact: report"))
             body {
                 header {
                     h1 { "relay-contact " span.faint { (attribute(model, "version")) } }

@@ -5,6 +5,7 @@ use relay_contact::model::Model;
 
 use super::published::{ALPHAS, BETAS, FREQUENCIES, RATIOS};
 use super::runs::{self, Periodic};
+use crate::threads;
 
 /// Damping ratios drawn over the frequency: with those below, the contact opens near the resonance.
 pub const DRAWN: [f64; 4] = [5.0, 10.0, 20.0, 30.0];
@@ -39,7 +40,7 @@ impl Results {
             .map(|(ratio, f)| (runs::specimen(*ratio), *f))
             .collect();
         points.extend(FREQUENCIES.map(|f| (runs::with_damping(literal), f)));
-        let mut done = runs::each(&points, |(scene, frequency)| runs::periodic(scene, *frequency))?.into_iter();
+        let mut done = threads::map(&points, |(scene, frequency)| runs::periodic(scene, *frequency))?.into_iter();
         let grid: Vec<_> = done.by_ref().take(grid.len()).collect();
         let curves = DRAWN
             .map(|ratio| (ratio, done.by_ref().take(frequencies.len()).collect()))

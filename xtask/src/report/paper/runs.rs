@@ -1,10 +1,8 @@
 //! The runs behind the comparison: periodic states of the nonlinear model, linear response, first frequencies.
 
 use std::f64::consts::{PI, TAU};
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread;
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result};
 use relay_contact::electrical::Path;
 use relay_contact::inputs::Inputs;
 use relay_contact::math::roots;
@@ -178,29 +176,6 @@ fn angle(course: &[(f64, f64, f64)], value: impl Fn(&(f64, f64, f64)) -> f64) ->
         cosine += value(point) * turn.cos();
     }
     f64::atan2(cosine, sine)
-}
-
-/// `work` for each of the items, on two threads, in their order.
-pub fn each<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> Result<R> + Sync) -> Result<Vec<R>> {
-    let next = AtomicUsize::new(0);
-    let turn = || -> Result<Vec<(usize, R)>> {
-        let mut done = Vec::new();
-        loop {
-            let index = next.fetch_add(1, Ordering::Relaxed);
-            let Some(item) = items.get(index) else {
-                return Ok(done);
-            };
-            done.push((index, work(item)?));
-        }
-    };
-    let mut done: Vec<(usize, R)> = thread::scope(|scope| {
-        let other = scope.spawn(turn);
-        let mut done = turn()?;
-        done.extend(other.join().map_err(|_| anyhow!("a run has panicked"))??);
-        Ok::<_, anyhow::Error>(done)
-    })?;
-    done.sort_by_key(|(index, _)| *index);
-    Ok(done.into_iter().map(|(_, result)| result).collect())
 }
 
 /// Axial compression that gives the specimen a first frequency (Hz), N.

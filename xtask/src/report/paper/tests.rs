@@ -2,7 +2,6 @@
 
 use std::f64::consts::TAU;
 
-use anyhow::bail;
 use relay_contact::model::Model;
 use relay_contact::scene::Scene;
 use relay_contact::variables::AxialForceKind;
@@ -179,25 +178,6 @@ fn every_figure_has_curves_of_finite_points() {
     ids.sort_unstable();
     ids.dedup();
     assert_eq!(ids.len(), 13);
-}
-
-#[test]
-fn runs_keep_their_order_and_an_error_is_told() {
-    let numbers: Vec<i32> = (0..100).collect();
-    let double = runs::each(&numbers, |number| Ok(2 * number)).unwrap();
-    assert!(
-        double
-            .iter()
-            .zip(&numbers)
-            .all(|(double, number)| *double == 2 * number)
-    );
-    let failed = runs::each(&numbers, |number| {
-        if *number == 50 {
-            bail!("fifty");
-        }
-        Ok(())
-    });
-    assert_eq!(failed.unwrap_err().to_string(), "fifty");
 }
 
 #[test]

@@ -40,11 +40,12 @@ impl Check {
         self.measured <= self.allowed
     }
 
-    fn margin(&self) -> String {
+    /// How many times less than what is allowed was measured; infinite where the property is kept exactly.
+    fn margin(&self) -> f64 {
         if self.measured == 0.0 {
-            "exact".to_owned()
+            f64::INFINITY
         } else {
-            format!("{:.1e}", self.allowed / self.measured)
+            self.allowed / self.measured
         }
     }
 
@@ -59,7 +60,10 @@ impl Check {
             self.property.to_owned(),
             amount(self.measured).trim_end().to_owned(),
             amount(self.allowed).trim_end().to_owned(),
-            self.margin(),
+            match self.margin() {
+                f64::INFINITY => "exact".to_owned(),
+                margin => format!("{margin:.1e}"),
+            },
         ]
     }
 }
@@ -71,8 +75,7 @@ const CASES: &[&[Case]] = &[energy::CASES, instants::CASES, balance::CASES];
 /// The section; an error where a property is not kept.
 pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
     let checks = run(arguments.quick)?;
-    let margins = checks.iter().map(|check| check.allowed / check.measured);
-    let least = margins.fold(f64::INFINITY, f64::min);
+    let least = checks.iter().map(Check::margin).fold(f64::INFINITY, f64::min);
     let text = format!(
         "{} properties of physics in scenes that break integrators, measured in this run; the report is not written where one is \
          not kept. Margin: how many times smaller the measured value is than what theory allows at the tolerance asked. \
