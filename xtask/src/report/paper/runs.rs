@@ -14,7 +14,7 @@ use relay_contact::variables::{AxialForceKind, ExcitationKind, RealOutput};
 use super::calculation::Amplitude;
 use super::published::{ACCELERATION, BEST};
 
-/// Communication steps of a period.
+/// Communication steps of the last period, whose course is kept.
 const SAMPLES: u32 = 1000;
 /// A motion repeats where the extremes of the force change by less than this part of the preload from one period to
 /// the next: below the digits shown.
@@ -138,9 +138,10 @@ pub fn periodic(scene: &Scene, frequency: f64) -> Result<Periodic> {
         last = (found.least, found.greatest);
         (found.least, found.greatest) = (f64::INFINITY, f64::NEG_INFINITY);
         found.course.clear();
-        for sample in 1..=SAMPLES {
+        let samples = if period + 1 == periods { SAMPLES } else { 1 };
+        for sample in 1..=samples {
             let time = simulation.time();
-            let next = (f64::from(period) + f64::from(sample) / f64::from(SAMPLES)) / frequency;
+            let next = (f64::from(period) + f64::from(sample) / f64::from(samples)) / frequency;
             simulation
                 .step(&Inputs::default(), time, next - time)
                 .with_context(|| format!("{frequency} Hz"))?;
