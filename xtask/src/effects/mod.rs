@@ -17,6 +17,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use self::cost::{Cost, Counter};
 use self::influence::{Influence, influence};
 use self::list::{EFFECTS, Effect};
+use crate::report::markdown_table;
 use crate::run_scene::RunScene;
 use crate::{threads, valgrind};
 
@@ -99,7 +100,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let off = page::nothing(&measurement).unwrap_or_default();
     fs::write(&arguments.page, page::page(&measurement))
         .with_context(|| format!("cannot write {}", arguments.page.display()))?;
-    println!("{}\n{off}", page::markdown(&page::costs(&measurement), 2));
+    println!("{}\n{off}", markdown_table(&page::costs(&measurement)));
     println!("{}", arguments.page.display());
     check(measurement.off.as_ref())
 }

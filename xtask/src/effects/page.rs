@@ -7,6 +7,7 @@ use super::influence::{CLOSED, Influence, OPENING};
 use super::list::{self, MINIMAL};
 use super::{Measured, Measurement, Off};
 use crate::report::content::Table;
+use crate::report::markdown_table;
 
 /// What each effect costs.
 pub fn costs(measurement: &Measurement) -> Table {
@@ -152,36 +153,21 @@ fn runs(measurement: &Measurement) -> usize {
     measurement.extent.runs
 }
 
-/// A table in Markdown without its caption; the first columns are text, the others numbers.
-pub fn markdown(table: &Table, text: usize) -> String {
-    let line = |cells: &[String]| {
-        cells.iter().fold("|".to_owned(), |line, cell| {
-            // An empty cell is a blank.
-            line + if cell.is_empty() { "" } else { " " } + cell + " |"
-        })
-    };
-    let mut lines = vec![line(&table.columns)];
-    let rule = |column| if column < text { "---|" } else { "---:|" };
-    lines.push("|".to_owned() + &(0..table.columns.len()).map(rule).collect::<String>());
-    lines.extend(table.rows.iter().map(|row| line(row)));
-    lines.join("\n") + "\n"
-}
-
 /// `docs/effects.md`.
 pub fn page(measurement: &Measurement) -> String {
-    let (table, sentences) = (markdown(&costs(measurement), 2), when(measurement));
+    let (table, sentences) = (markdown_table(&costs(measurement)), when(measurement));
     let changes = influences(measurement);
     let caption = changes.as_ref().map_or("", |table| &table.caption);
-    let changed = changes.as_ref().map_or(String::new(), |table| markdown(table, 2));
+    let changed = changes.as_ref().map_or(String::new(), markdown_table);
     let off = nothing(measurement).unwrap_or("Not measured.".to_owned());
     format!(
         "<!-- Written by cargo xtask effects. -->\n# What each effect costs and changes\n\n    cargo xtask effects\n\n\
          runs [`scenes/minimal.toml`](../scenes/minimal.toml), in which everything is off that can be, and adds each effect \
          alone. The run is {} ms long in communication steps of 10 µs; after each, the contact force is read, and what the \
          effect is for. Instructions are counted by valgrind's callgrind in a build for any processor, nanoseconds taken on \
-         this machine in the usual build, the shortest of {} runs.\n\n{table}\n\
+         this machine in the usual build, the shortest of {} runs.\n\n{table}\n\n\
          ## When each matters\n\n{sentences}\n\
-         {caption}\n\n{changed}\n\
+         {caption}\n\n{changed}\n\n\
          ## What is off costs nothing\n\n{off}\n",
         LENGTH * 1e3,
         runs(measurement),

@@ -17,7 +17,7 @@ use anyhow::Result;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use self::content::{Block, Section};
-pub use self::page::{CHROMIUM_MISSING, chromium};
+pub use self::page::{CHROMIUM_MISSING, chromium, markdown_table};
 
 /// How much is run.
 #[derive(clap::Args, Clone, Copy, Default)]

@@ -6,7 +6,7 @@ use anyhow::Result;
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{IntegerOutput, RealOutput};
+use relay_contact::variables::RealOutput;
 
 use super::vibration::Outcome;
 
@@ -40,12 +40,7 @@ pub fn shock(amplitude: f64, duration: f64) -> Result<Outcome> {
         contact.step(&inputs, time, STEP)?;
         least_force = least_force.min(contact.real(RealOutput::StepMinimumForce) / preload);
     }
-    Ok(Outcome {
-        opened: contact.real(RealOutput::ContactLastOpening) >= 0.0,
-        least_force,
-        interruptions: contact.integer(IntegerOutput::ChatterCount),
-        longest: contact.real(RealOutput::ChatterLongestInterruption),
-    })
+    Ok(Outcome::of(&contact, least_force))
 }
 
 #[cfg(test)]

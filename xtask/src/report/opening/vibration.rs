@@ -29,6 +29,18 @@ pub struct Outcome {
     pub longest: f64,
 }
 
+impl Outcome {
+    /// Of a run up to now, whose least force is known.
+    pub fn of(contact: &Simulation, least_force: f64) -> Self {
+        Self {
+            opened: contact.real(RealOutput::ContactLastOpening) >= 0.0,
+            least_force,
+            interruptions: contact.integer(IntegerOutput::ChatterCount),
+            longest: contact.real(RealOutput::ChatterLongestInterruption),
+        }
+    }
+}
+
 /// What a threshold is sought of.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Question {
@@ -72,14 +84,8 @@ pub fn shake(frequency: f64, amplitude: f64, until: Option<Question>) -> Result<
         period += 1.0;
         let time = contact.time();
         contact.step(&Inputs::default(), time, period / frequency - time)?;
-        outcome = Outcome {
-            opened: contact.real(RealOutput::ContactLastOpening) >= 0.0,
-            least_force: outcome
-                .least_force
-                .min(contact.real(RealOutput::StepMinimumForce) / preload),
-            interruptions: contact.integer(IntegerOutput::ChatterCount),
-            longest: contact.real(RealOutput::ChatterLongestInterruption),
-        };
+        let least_force = contact.real(RealOutput::StepMinimumForce) / preload;
+        outcome = Outcome::of(&contact, outcome.least_force.min(least_force));
     }
     Ok(outcome)
 }

@@ -9,7 +9,7 @@ pub fn markdown(sections: &[Section]) -> String {
     let sections = sections.iter().map(|section| {
         let blocks = section.blocks.iter().map(|block| match block {
             Block::Text(text) => text.trim().to_owned(),
-            Block::Table(table) => self::table(table),
+            Block::Table(table) => format!("**{}**\n\n{}", table.caption.trim(), self::table(table)),
             Block::Figure(figure) => self::figure(figure),
         });
         let blocks: Vec<_> = blocks.collect();
@@ -23,7 +23,8 @@ fn figure(figure: &Figure) -> String {
     format!("### {title}\n\n![{title}](report/{id}.png)\n\n{}", caption.trim())
 }
 
-fn table(table: &Table) -> String {
+/// A table without its caption.
+pub fn table(table: &Table) -> String {
     let line = |cells: Vec<String>| format!("| {} |", cells.join(" | "));
     let cells = |cells: &[String]| line(cells.iter().map(|cell| cell.replace('|', "\\|")).collect());
     let rule = numeric(table)
@@ -31,7 +32,7 @@ fn table(table: &Table) -> String {
         .map(|numeric| if numeric { "---:" } else { "---" });
     let mut lines = vec![cells(&table.columns), line(rule.map(str::to_owned).collect())];
     lines.extend(table.rows.iter().map(|row| cells(row)));
-    format!("**{}**\n\n{}", table.caption.trim(), lines.join("\n"))
+    lines.join("\n")
 }
 
 #[cfg(test)]

@@ -19,7 +19,7 @@ use relay_contact::MODEL_DESCRIPTION;
 use roxmltree::Document;
 
 pub use self::browser::{CHROMIUM_MISSING, chromium, draw_pictures, test};
-pub use self::markdown::markdown;
+pub use self::markdown::{markdown, table as markdown_table};
 use super::content::{Block, Figure, Section};
 use crate::commands::{output, root};
 use crate::documentation::attribute;
