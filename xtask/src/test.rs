@@ -56,6 +56,7 @@ pub fn run() -> Result<()> {
     stage("conformance lint", || {
         commands::run(clippy(&["--package=conformance"]).envs(bindings()?))
     })?;
+    stage("Python examples", || pytest("examples/python", &component))?;
     importers(&component)?;
     if report::chromium().is_some() {
         stage("report", report::test)?;
@@ -75,13 +76,7 @@ pub fn importers_alone() -> Result<()> {
 /// The component under other people's importers, and the table of what they did.
 fn importers(component: &Path) -> Result<()> {
     stage("reference runs", || importers::prepare(component))?;
-    stage("Python importers", || {
-        commands::run(
-            python::python()
-                .args(["-m", "pytest", "--quiet", "conformance/python"])
-                .env("RELAY_CONTACT_FMU", component),
-        )
-    })?;
+    stage("Python importers", || pytest("conformance/python", component))?;
     stage("conformance", || {
         commands::run(
             cargo()
@@ -91,6 +86,15 @@ fn importers(component: &Path) -> Result<()> {
         )
     })?;
     stage("importers", importers::table)
+}
+
+/// The Python tests of a folder, with the component.
+fn pytest(folder: &str, component: &Path) -> Result<()> {
+    commands::run(
+        python::python()
+            .args(["-m", "pytest", "--quiet", folder])
+            .env("RELAY_CONTACT_FMU", component),
+    )
 }
 
 /// What the build of the conformance crate's FMI bindings needs in its environment: libclang, and the C compiler's
