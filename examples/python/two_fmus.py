@@ -1,0 +1,418 @@
+"""Couple the relay contact to a partner FMU, by libcosim and by FMPy, wired by hand and as a system (SSP 1.0).
+
+The partner, two_fmus_bench.py made TestBench.fmu by PythonFMU, is a vibration table and a circuit: a source of
+V = 6 V, a load of R = 60 Ohm and L = 1 mH in series, the contact, and across the contact a quench of Rq = 47 Ohm and
+Cq = 220 nF in series. Its states are the current i of the load and the voltage vC of the capacitor:
+
+    v = (i + vC / Rq) / (1 / Rc + 1 / Rq)    voltage of the contact; its current is v / Rc
+    di/dt = (V - R i - v) / L
+    dvC/dt = (v - vC) / (Rq Cq)
+
+The resistance Rc of the contact is held over a communication step, over which the circuit has a closed form. It starts
+at rest. The acceleration of the table is amplitude x sin(2 pi frequency t). Three wires, carried at every communication
+point: table.acceleration to base.acceleration, contact.resistance to contact.resistance, contact.current back.
+The contact is valid below about 12 V and 0.4 A, where nothing arcs; the summary says what was reached. The voltage is
+that of the circuit: contact.voltage of the contact multiplies a current of the step before with the resistance of now,
+which at an opening is no voltage that ever was.
+
+Both FMUs step at the same time with inputs held (a Jacobi coupling), so its error is of order 1 in the communication
+step h: a sine held over h is a sine h/2 late, and so are the openings. The circuit hears of an opening at the next
+communication point, another h/2 late on the average. What is compared: the contact shaken by its own generator (the
+same sine without a step), with the circuit at a finer step.
+
+libcosim
+- knows no enumerations, so effects.excitation stays None and the table shakes the contact;
+- reckons time in whole nanoseconds and hands over differences of instants. Given the same instants FMPy gives the same
+  bits; given n h it differs by what the rounding of time does;
+- applies of each component of an .ssp its first ParameterBinding, inline or by source, and leaves out without a word
+  all others and those of the system: here each component has one. It knows the prefixes ssd, ssc, ssv by their letters;
+- ends its process where a start value is refused.
+It is installed on 64-bit x86 Linux alone; elsewhere FMPy runs the wiring, and system.ssp is written all the same.
+
+TestBench.fmu runs the Python of the process that loads it. It needs no package: the FMU brings its part of PythonFMU.
+A tool that is no Python program must load one: on Linux by LD_PRELOAD=libpython3.11.so.1.0 (the binary in the FMU is
+linked to none), on Windows by python3.dll in the PATH. PythonFMU has binaries for 64-bit x86 Linux and Windows.
+"""
+
+import argparse
+import csv
+import platform
+import sys
+import tempfile
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+from xml.etree.ElementTree import Element, SubElement, indent, register_namespace, tostring
+
+import matplotlib as mpl
+import numpy as np
+from fmpy import extract, instantiate_fmu, read_model_description
+from fmpy.ssp.ssd import read_ssd
+from numpy.typing import NDArray
+from pythonfmu import FmuBuilder
+from tqdm import tqdm
+from two_fmus_bench import PARAMETERS, UNITS
+
+try:
+    from libcosimpy.CosimExecution import CosimExecution
+    from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
+    from libcosimpy.CosimObserver import CosimObserver
+    from libcosimpy.CosimSlave import CosimLocalSlave
+
+    # It warns of every variable that is an enumeration.
+    log_output_level(CosimLogLevel.ERROR)
+    NO_LIBCOSIM = ""
+except (ImportError, OSError) as error:
+    NO_LIBCOSIM = str(error)
+
+mpl.use("Agg")
+import matplotlib.pyplot as plt
+
+ROOT = Path(__file__).resolve().parents[2]
+BENCH = Path(__file__).with_name("two_fmus_bench.py")
+FINER = 8  # steps of the reference in a communication step
+
+# From instance and output to instance and input, with the unit. The first is the vibration.
+WIRES = [
+    ("bench", "table.acceleration", "contact", "base.acceleration", "m/s2"),
+    ("contact", "contact.resistance", "bench", "contact.resistance", "Ohm"),
+    ("bench", "contact.current", "contact", "contact.current", "A"),
+]
+RECORDED = [("bench", each) for each in ("table.acceleration", "contact.voltage", "contact.current")]
+RECORDED += [("contact", f"contact.{each}") for each in ("force", "resistance", "lastOpening", "lastClosing")]
+
+SSP = {
+    "ssd": "http://ssp-standard.org/SSP1/SystemStructureDescription",
+    "ssc": "http://ssp-standard.org/SSP1/SystemStructureCommon",
+    "ssv": "http://ssp-standard.org/SSP1/SystemStructureParameterValues",
+}
+
+Array = NDArray[np.float64]
+Fmus = dict[str, Path]  # the file of each instance
+Starts = dict[str, dict[str, float]]  # start values of each instance
+Run = dict[str, Array]  # time and what is recorded, SI units
+Bar = Any
+
+
+def write_system(path: Path, fmus: Fmus, starts: Starts) -> None:
+    """Write the FMUs, their wires and their start values as one file, and check it by the schema."""
+    for prefix, uri in SSP.items():
+        register_namespace(prefix, uri)
+
+    def add(parent: Element, tag: str, **attributes: str) -> Element:
+        prefix, name = tag.split(":")
+        return SubElement(parent, f"{{{SSP[prefix]}}}{name}", attributes)
+
+    root = Element(f"{{{SSP['ssd']}}}SystemStructureDescription", version="1.0", name="ContactOnTestBench")
+    system, units = add(root, "ssd:System", name="system"), add(root, "ssd:Units")
+    elements, connections = add(system, "ssd:Elements"), add(system, "ssd:Connections")
+    connectors, files = {}, {"SystemStructure.ssd": root}
+    kind = "application/x-fmu-sharedlibrary"
+    for name, fmu in fmus.items():
+        component = add(elements, "ssd:Component", name=name, type=kind, source=f"resources/{fmu.name}")
+        connectors[name] = add(component, "ssd:Connectors")
+        values = f"resources/{name}.ssv"
+        add(add(component, "ssd:ParameterBindings"), "ssd:ParameterBinding", source=values)
+        files[values] = Element(f"{{{SSP['ssv']}}}ParameterSet", version="1.0", name=name)
+        parameters = add(files[values], "ssv:Parameters")
+        for variable, start in starts[name].items():
+            add(add(parameters, "ssv:Parameter", name=variable), "ssv:Real", value=repr(start))
+    for source, output, sink, target, unit in WIRES:
+        add(add(connectors[source], "ssd:Connector", name=output, kind="output"), "ssc:Real", unit=unit)
+        add(add(connectors[sink], "ssd:Connector", name=target, kind="input"), "ssc:Real", unit=unit)
+        ends = {"startElement": source, "startConnector": output, "endElement": sink, "endConnector": target}
+        add(connections, "ssd:Connection", **ends)
+    for name, base in UNITS.items():
+        powers = {each: str(power) for each, power in base.items()}
+        add(add(units, "ssc:Unit", name=name), "ssc:BaseUnit", **powers)
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for file, element in files.items():
+            indent(element)
+            archive.writestr(file, tostring(element, encoding="UTF-8", xml_declaration=True))
+        for fmu in fmus.values():
+            archive.write(fmu, f"resources/{fmu.name}")
+    read_ssd(str(path), validate=True)
+
+
+class Instance:
+    """An FMU in FMPy, its variables known by name."""
+
+    def __init__(self, fmu: Path, folder: Path, starts: dict[str, float]) -> None:
+        """Instantiate the FMU, set its start values, enter initialization."""
+        description = read_model_description(str(fmu))
+        self.variables = {variable.name: variable for variable in description.modelVariables}
+        unpacked = extract(str(fmu), unzipdir=str(folder))
+        self.slave = instantiate_fmu(unpacked, description, fmi_type="CoSimulation")
+        self.slave.setupExperiment(startTime=0.0)
+        for name, value in starts.items():
+            self.set(name, value)
+        self.slave.enterInitializationMode()
+
+    def set(self, name: str, value: float) -> None:
+        """Set a variable; an enumeration by its number."""
+        variable = self.variables[name]
+        put = self.slave.setReal if variable.type == "Real" else self.slave.setInteger
+        put([variable.valueReference], [value])
+
+    def get(self, name: str) -> float:
+        """Give the value of a real variable."""
+        return float(self.slave.getReal([self.variables[name].valueReference])[0])
+
+
+def by_fmpy(fmus: Fmus, starts: Starts, time: Array, bar: Bar, generator: bool = False) -> Run:
+    """Run the wired FMUs through the instants in FMPy; the contact shaken by its own generator if asked."""
+    wires, rows = WIRES, []
+    if generator:
+        bench = starts["bench"]
+        sine = {f"excitation.{each}": bench[f"table.{each}"] for each in ("amplitude", "frequency")}
+        starts = starts | {"contact": starts["contact"] | sine | {"effects.excitation": 2}}  # 2: Sine
+        wires = WIRES[1:]
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+        instances = {name: Instance(fmu, Path(folder) / name, starts[name]) for name, fmu in fmus.items()}
+
+        def carry() -> None:
+            values = [instances[source].get(output) for source, output, *_ in wires]
+            for (_, _, sink, variable, _), value in zip(wires, values, strict=True):
+                instances[sink].set(variable, value)
+
+        def record() -> None:
+            rows.append([instances[name].get(variable) for name, variable in RECORDED])
+
+        carry()
+        for instance in instances.values():
+            instance.slave.exitInitializationMode()
+        record()
+        for now, length in zip(time[:-1].tolist(), np.diff(time).tolist(), strict=True):
+            carry()
+            for instance in instances.values():
+                instance.slave.doStep(currentCommunicationPoint=now, communicationStepSize=length)
+            record()
+            bar.update()
+        for instance in instances.values():
+            instance.slave.terminate()
+            instance.slave.freeInstance()
+    return as_run(time, rows)
+
+
+def as_run(time: Array, rows: list[list[float]]) -> Run:
+    """Name the columns."""
+    return {"time": time} | {name: column for (_, name), column in zip(RECORDED, np.array(rows).T, strict=True)}
+
+
+def find(execution: Any, name: str, variable: str) -> tuple[int, int]:  # noqa: ANN401
+    """Give the index of an instance in libcosim and the value reference of its variable."""
+    index = execution.slave_index_from_instance_name(name)
+    variables = execution.slave_variables(index)
+    return index, next(each.reference for each in variables if each.name == variable.encode())
+
+
+def wired_in_libcosim(fmus: Fmus, starts: Starts, step: int) -> Any:  # noqa: ANN401
+    """Wire the FMUs by hand in libcosim; step in ns."""
+    execution = CosimExecution.from_step_size(step)
+    done = [execution.add_local_slave(CosimLocalSlave(str(fmu), name)) >= 0 for name, fmu in fmus.items()]
+    for name, values in starts.items():
+        for variable, value in values.items():
+            done.append(execution.real_initial_value(*find(execution, name, variable), value))
+    for source, output, sink, variable, _ in WIRES:
+        ends = *find(execution, source, output), *find(execution, sink, variable)
+        done.append(execution.connect_real_variables(*ends) == 0)
+    if not all(done):
+        raise RuntimeError("libcosim refused an FMU, a start value or a wire")
+    return execution
+
+
+def by_libcosim(execution: Any, time: Array, bar: Bar) -> Run:  # noqa: ANN401
+    """Run what libcosim was given. Values can be read after the first step, not before."""
+    observer = CosimObserver.create_last_value()
+    execution.add_observer(observer)
+    recorded = [find(execution, *each) for each in RECORDED]
+    rows = []
+    for _ in time[1:]:
+        if not execution.step():
+            raise RuntimeError("libcosim could not do a step")
+        rows.append([observer.last_real_values(index, [reference])[0] for index, reference in recorded])
+        bar.update()
+    return as_run(time[1:], rows)
+
+
+def instants(run: Run, name: str) -> Array:
+    """Give the instants of all openings or closings."""
+    found = np.unique(run[name])
+    return found[found >= 0]
+
+
+def errors(run: Run, reference: Run) -> tuple[float, float]:
+    """Give how late the openings are on the average, s, and the mean difference of the voltage, V."""
+    found, true = instants(run, "contact.lastOpening"), instants(reference, "contact.lastOpening")
+    late = float(np.mean(found - true)) if len(found) == len(true) > 0 else float("nan")
+    every = (len(reference["time"]) - 1) // (len(run["time"]) - 1)
+    difference = run["contact.voltage"] - reference["contact.voltage"][::every]
+    return late, float(np.mean(np.abs(difference)))
+
+
+def order(steps: Array, values: Array) -> float:
+    """Give the order of convergence: the slope in logarithms."""
+    covariance = np.cov(np.log(steps), np.log(values))
+    return float(covariance[0, 1] / covariance[0, 0])
+
+
+def draw(run: Run, convergence: Array, shaken: str, path: Path) -> None:
+    """Draw the last openings and the convergence."""
+    figure = plt.figure(figsize=(12, 7), layout="constrained")
+    left, right = figure.subfigures(1, 2, squeeze=False, width_ratios=(1.5, 1))[0]
+    time, end = 1e3 * run["time"], run["time"][-1]
+    closings = instants(run, "contact.lastClosing")
+    gaps = [(opening, min([*closings[closings > opening], end])) for opening in instants(run, "contact.lastOpening")]
+    # Colours of Okabe and Ito, told apart also by the colour-blind.
+    shown = [
+        ("table.acceleration", "acceleration\n[m/s²]", "#000000"),
+        ("contact.force", "contact force\n[N]", "#0072B2"),
+        ("contact.resistance", "resistance\n[Ω]", "#D55E00"),
+        ("contact.voltage", "voltage\n[V]", "#009E73"),
+        ("contact.current", "current\n[A]", "#CC79A7"),
+    ]
+    begin = gaps[-3][0] - 3e-4 if len(gaps) > 2 else 0.0
+    rows = left.subplots(len(shown), 1, sharex=True)
+    for axes, (name, label, colour) in zip(rows, shown, strict=True):
+        axes.plot(time, run[name], color=colour, linewidth=1.2)
+        for opening, closing in gaps:
+            axes.axvspan(1e3 * opening, 1e3 * closing, color="#E69F00", alpha=0.25, linewidth=0)
+        axes.set(ylabel=label, xlim=(1e3 * begin, 1e3 * end))
+        axes.grid(alpha=0.3)
+    # A closing strikes with many times the preload: linear below 1 N, logarithmic above.
+    rows[1].set_yscale("symlog", linthresh=1.0)
+    rows[2].set_yscale("log")
+    rows[-1].set_xlabel("time [ms]    (shaded: the contact is open)")
+    left.align_ylabels()
+    left.suptitle(f"Relay contact in a circuit with a quench, {shaken}", fontsize="medium")
+
+    steps = 1e6 * convergence[:, 0]
+    late = ("openings late,\non the average [µs]", 1e6 * convergence[:, 1], "#0072B2")
+    difference = ("mean difference\nof the voltage [mV]", 1e3 * convergence[:, 2], "#009E73")
+    for axes, (label, values, colour) in zip(right.subplots(2, 1), (late, difference), strict=True):
+        axes.set(xlabel="communication step [µs]", ylabel=label)
+        axes.grid(alpha=0.3)
+        if not np.all(values > 0):
+            axes.text(0.5, 0.5, "nothing to compare", ha="center", transform=axes.transAxes)
+            continue
+        axes.plot(steps, values, color=colour, marker="o", label=f"measured, order {order(steps, values):.2f}")
+        first_order = steps * np.exp(np.mean(np.log(values / steps)))
+        axes.plot(steps, first_order, color="#666666", linestyle=":", label="order 1")
+        axes.set_xscale("log", base=2)
+        axes.set_yscale("log", base=2)
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.yaxis.set_major_formatter("{x:g}")
+        axes.legend(frameon=False)
+    right.suptitle("Error of the coupling", fontsize="medium")
+    figure.savefig(path, dpi=150)
+    plt.close(figure)
+
+
+def write_tables(runs: dict[str, Run], convergence: Array, out: Path) -> None:
+    """Write what was recorded in every run, and the convergence, SI units."""
+    with (out / "two-fmus.csv").open("w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file)
+        table.writerow(["run", "time", *(name for _, name in RECORDED)])
+        for name, run in runs.items():
+            table.writerows([name, *row] for row in np.column_stack(list(run.values())).tolist())
+    head = "step,openings.late,voltage.meanDifference"
+    np.savetxt(out / "two-fmus-convergence.csv", convergence, delimiter=",", header=head, comments="", fmt="%.12g")
+
+
+def summary(runs: dict[str, Run], convergence: Array) -> str:
+    """Say what came out."""
+    run = runs["FMPy"]
+    opened = len(instants(run, "contact.lastOpening"))
+    voltage, current = (np.max(np.abs(run[f"contact.{each}"])) for each in ("voltage", "current"))
+    lines = [
+        f"{opened} openings, {100 * np.mean(run['contact.force'] <= 0):.1f} % of the time open",
+        f"at most {voltage:.3f} V and {current:.4f} A; the contact is valid below 12 V and 0.4 A"
+        + ("" if voltage < 12 and current < 0.4 else ": above, it would burn an arc"),
+        "largest difference from FMPy at the instants of libcosim",
+    ]
+    for name, other in list(runs.items())[1:]:
+        first = len(run["time"]) - len(other["time"])
+        names = ("contact.force", "contact.voltage")
+        force, voltage = (np.max(np.abs(other[each] - run[each][first:])) for each in names)
+        lines.append(f"  {name:14} {force:8.1e} N  {voltage:8.1e} V")
+    lines.append("  step [µs]  openings late [µs]  mean voltage difference [mV]")
+    lines += [f"{1e6 * step:11.3f}{1e6 * late:20.4f}{1e3 * difference:30.3f}" for step, late, difference in convergence]
+    steps, late, difference = convergence.T
+    lines.append(f"{'order':>11}{order(steps, late):20.2f}{order(steps, difference):30.2f}")
+    return "\n".join(lines)
+
+
+def within(low: float, high: float) -> Callable[[str], float]:
+    """Give what reads a number in a range."""
+
+    def number(text: str) -> float:
+        value = float(text)
+        if not low <= value <= high:
+            raise argparse.ArgumentTypeError(f"{text} is not from {low:g} to {high:g}")
+        return value
+
+    return number
+
+
+def arguments() -> argparse.Namespace:
+    """Read the command line."""
+    parser = argparse.ArgumentParser(description="Couple the contact to a partner FMU (a quarter of a minute).")
+    add = parser.add_argument
+    add("--fmu", type=Path, default=ROOT / "dist" / "RelayContact.fmu", help="the component")
+    add("--out", type=Path, default=ROOT / "out", help="folder for all that is written")
+    add("--quick", action="store_true", help="4 periods from a step of 2 µs in place of 10 from 1 µs")
+    add("--amplitude", type=within(1, 1e4), default=400.0, help="of the table, 1 to 1e4 m/s2 (400)")
+    add("--frequency", type=within(100, 5000), default=1000.0, help="of the table, 100 to 5000 Hz (1000)")
+    add("--voltage", type=within(0.01, 100), default=6.0, help="of the source, 0.01 to 100 V (6)")
+    return parser.parse_args()
+
+
+def main() -> int:
+    """Build the partner, run all, compare."""
+    given = arguments()
+    if not given.fmu.is_file():
+        print(f"{given.fmu} is missing: build it with `cargo xtask fmu`", file=sys.stderr)
+        return 1
+    if not FmuBuilder.has_binary() or platform.machine() not in ("x86_64", "AMD64"):
+        print("PythonFMU has no binary for this machine: it needs 64-bit x86 Linux or Windows", file=sys.stderr)
+        return 1
+    periods, nanoseconds, halvings = (4, 2000, 2) if given.quick else (10, 1000, 4)
+    coarsest = 2**halvings
+    count = coarsest * round(1e9 * periods / given.frequency / nanoseconds / coarsest)
+
+    given.out.mkdir(parents=True, exist_ok=True)
+    fmus = {"contact": given.fmu.resolve(), "bench": FmuBuilder.build_FMU(BENCH, dest=given.out).resolve()}
+    bench = {name: start for name, _, start, _ in PARAMETERS}
+    bench |= {"supply.voltage": given.voltage, "table.amplitude": given.amplitude, "table.frequency": given.frequency}
+    starts: Starts = {"contact": {"solver.tolerance": 1e-7}, "bench": bench}
+    system = given.out / "system.ssp"
+    write_system(system, fmus, starts)
+
+    steps = count * ((2 if NO_LIBCOSIM else 4) + FINER) + sum(count // 2**each for each in range(1, halvings + 1))
+    # Whole nanoseconds in s, rounded once, as libcosim has them.
+    time = np.arange(count + 1) * nanoseconds / 1e9
+    with tqdm(total=steps, unit="step", desc="communication steps") as bar:
+        runs = {"FMPy": by_fmpy(fmus, starts, time, bar)}
+        if not NO_LIBCOSIM:
+            runs["libcosim"] = by_libcosim(wired_in_libcosim(fmus, starts, nanoseconds), time, bar)
+            runs["libcosim SSP"] = by_libcosim(CosimExecution.from_ssp_file(str(system), nanoseconds), time, bar)
+        runs["FMPy, t = n h"] = by_fmpy(fmus, starts, np.arange(count + 1) * (1e-9 * nanoseconds), bar)
+        coarser = [by_fmpy(fmus, starts, time[:: 2**halving], bar) for halving in range(1, halvings + 1)]
+        fine = np.arange(FINER * count + 1) * (nanoseconds / FINER) / 1e9
+        reference = by_fmpy(fmus, starts, fine, bar, generator=True)
+    convergence = np.array([(run["time"][1], *errors(run, reference)) for run in [runs["FMPy"], *coarser]])
+
+    if NO_LIBCOSIM:
+        print(f"libcosim is not here ({NO_LIBCOSIM}): FMPy alone ran the wiring, nobody ran system.ssp")
+    print(summary(runs, convergence))
+    write_tables(runs, convergence, given.out)
+    shaken = f"shaken with {given.amplitude:g} m/s² at {given.frequency:g} Hz"
+    draw(runs["FMPy"], convergence, shaken, given.out / "two-fmus.png")
+    for name in ("TestBench.fmu", "system.ssp", "two-fmus.csv", "two-fmus-convergence.csv", "two-fmus.png"):
+        print(given.out / name)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
