@@ -100,6 +100,7 @@ def test_the_circuit_obeys_its_equations_and_the_coupling_converges(run: Run, tm
 
     # A sine held over h is late by h/2, and all that it causes; what is left is of the next order.
     steps, late, difference = (np.array(column) for column in convergence(tmp_path))
+    assert np.allclose(1e9 * steps, [NANOSECONDS, 2 * NANOSECONDS, 4 * NANOSECONDS])
     assert np.all(np.abs(late / steps - 0.5) < 0.05)
     assert abs(order(steps, late) - 1) < 0.05
     # Each of 7 jumps of the voltage is late by h/2, and by anything up to h until the next point: h with a standard
@@ -132,6 +133,10 @@ def test_three_ways_give_the_same_and_the_system_runs_alone_by_its_parameters(ru
     system = tmp_path / "system.ssp"
     elements = read_ssd(str(system), validate=True).system.elements
     assert [element.name for element in elements] == ["contact", "bench"]
+    with zipfile.ZipFile(system) as archive:
+        inside = archive.namelist()
+    assert all(element.source in inside for element in elements)
+    assert [binding.source in inside for element in elements for binding in element.parameterBindings] == [True, True]
     steps = len(fmpy["time"]) - 1
     alone = simulate_alone(system, tmp_path / "alone", steps)
     for name, values in alone.items():
