@@ -20,7 +20,8 @@
 
 #include "relay_contact.h"
 
-static const char usage[] = "usage: embed [ACCELERATION [DURATION [FILE]]]\n"
+static const char usage[] = "A relay contact, shaken and under current, in a loop of one's own.\n"
+                            "usage: embed [ACCELERATION [DURATION [FILE]]]\n"
                             "  ACCELERATION  greatest base acceleration, m/s2 (400)\n"
                             "  DURATION      simulated time, 2e-6 to 10 s (0.02, done in some 0.1 s)\n"
                             "  FILE          table to write, CSV in SI units (out/embed-c.csv)\n";
@@ -176,7 +177,7 @@ static fmi2Status run(fmi2Component contact, double amplitude, long count, Row *
     if (circuit.greatest_voltage >= 12.0 || circuit.greatest_current >= 0.4) {
         printf("beyond 12 V and 0.4 A the contact would arc: the results do not hold\n");
     }
-    printf("%.0f ns per step\n", nanoseconds);
+    printf("%.0f ns of processor time per step\n", nanoseconds);
     return fmi2Terminate(contact);
 }
 

@@ -28,7 +28,8 @@ use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{IntegerOutput, RealInput, RealOutput};
 
-const USAGE: &str = "usage: embed [ACCELERATION [DURATION [FILE]]]
+const USAGE: &str = "A relay contact, shaken and under current, in a loop of one's own.
+usage: embed [ACCELERATION [DURATION [FILE]]]
   ACCELERATION  greatest base acceleration, m/s2 (400)
   DURATION      simulated time, 2e-6 to 10 s (0.02, done in some 0.1 s)
   FILE          table to write, CSV in SI units (out/embed.csv)";
@@ -156,7 +157,7 @@ fn run(amplitude: f64, count: u32) -> Result<Vec<[f64; 6]>, Failure> {
     let begun = Instant::now();
     for n in progress.wrap_iter(0..count) {
         let time = f64::from(n) * STEP;
-        // A copy of all that moves, without allocation. It can be kept as long as wanted, and serialised.
+        // A copy of all that moves, without allocation. It can be kept as long as wanted, and serialised by serde.
         let saved = (*contact.course(), circuit);
         let before = switches(&contact);
         advance(&mut contact, &mut circuit, amplitude, time, STEP)?;
@@ -184,14 +185,10 @@ fn run(amplitude: f64, count: u32) -> Result<Vec<[f64; 6]>, Failure> {
     let nanoseconds = 1e9 * begun.elapsed().as_secs_f64() / f64::from(count);
     progress.finish_and_clear();
 
-    println!(
-        "interruptions of 5 us or more: {}",
-        contact.integer(IntegerOutput::ChatterCount)
-    );
-    println!(
-        "longest interruption: {:.3} us",
-        1e6 * contact.real(RealOutput::ChatterLongestInterruption)
-    );
+    let interruptions = contact.integer(IntegerOutput::ChatterCount);
+    println!("interruptions of 5 us or more: {interruptions}");
+    let longest = contact.real(RealOutput::ChatterLongestInterruption);
+    println!("longest interruption: {:.3} us", 1e6 * longest);
     println!("steps done again: {repeated}");
     let (voltage, current) = circuit.greatest;
     println!("greatest voltage and current of the contact: {voltage:.3} V, {current:.4} A");
@@ -228,15 +225,12 @@ fn job() -> Result<(), Failure> {
     };
     let (amplitude, duration) = (number(0, "ACCELERATION", 400.0)?, number(1, "DURATION", 0.02)?);
     if !(STEP..=10.0).contains(&duration) {
-        return Err(Failure::Usage(format!(
-            "DURATION = {duration} s: allowed is 2e-6 to 10 s"
-        )));
+        let wrong = format!("DURATION = {duration} s: allowed is 2e-6 to 10 s");
+        return Err(Failure::Usage(wrong));
     }
     if arguments.len() > 3 {
-        return Err(Failure::Usage(format!(
-            "{} arguments: allowed are three",
-            arguments.len()
-        )));
+        let wrong = format!("{} arguments: allowed are three", arguments.len());
+        return Err(Failure::Usage(wrong));
     }
     let path = arguments.get(2).map_or("out/embed.csv", String::as_str);
     if arguments.len() < 3 {
@@ -254,7 +248,7 @@ fn main() -> ExitCode {
         return ExitCode::SUCCESS;
     };
     eprintln!("{failure}");
-    // The kinds can be told apart, and what they hold be read: `SceneError::OutOfRange { name, allowed, .. }`.
+    // The kinds can be told apart, and what they hold be read: `Refused(SceneError::OutOfRange { name, allowed, .. })`.
     ExitCode::from(match failure {
         Failure::Usage(_) => 2,
         Failure::Refused(_) | Failure::Stopped(_) | Failure::Table(_) => 1,

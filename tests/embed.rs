@@ -51,7 +51,7 @@ impl Run {
         let said = String::from_utf8(ran.stdout).unwrap();
         let mut lines: Vec<_> = said.lines().map(str::to_owned).collect();
         assert_eq!(lines.pop().unwrap(), path.to_str().unwrap());
-        assert!(lines.pop().unwrap().ends_with(" ns per step"), "{said}");
+        assert!(lines.pop().unwrap().ends_with(" per step"), "{said}");
 
         let text = fs::read_to_string(&path).unwrap();
         let (head, rows) = text.split_once('\n').unwrap();
@@ -187,7 +187,7 @@ fn the_interruptions_told_are_those_of_the_table() {
 fn what_is_wrong_is_told() {
     for program in [in_rust, in_c] {
         let help = output(program(), &["--help"]);
-        assert!(help.status.success() && String::from_utf8_lossy(&help.stdout).starts_with("usage: embed ["));
+        assert!(help.status.success() && String::from_utf8_lossy(&help.stdout).contains("usage: embed ["));
         for (arguments, code, wanted) in [
             (["fast", "0.01"], 2, "ACCELERATION = fast: wanted is a number"),
             (["400", "-1"], 2, "DURATION = -1 s: allowed is 2e-6 to 10 s"),
