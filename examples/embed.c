@@ -78,7 +78,7 @@ static void logger(fmi2ComponentEnvironment environment, fmi2String instance, fm
     va_list arguments;
     (void)environment;
     (void)status;
-    fprintf(stderr, "%s: %s: ", instance, category);
+    fprintf(stderr, "\r%s: %s: ", instance, category);
     va_start(arguments, message);
     vfprintf(stderr, message, arguments);
     va_end(arguments);

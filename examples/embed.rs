@@ -46,8 +46,8 @@ enum Failure {
     Refused(#[from] SceneError),
     #[error("{0}; the contact still stands where that step began")]
     Stopped(#[from] StepError),
-    #[error("the table cannot be written: {0}")]
-    Table(#[from] io::Error),
+    #[error("{0}: cannot be written: {1}")]
+    Table(String, io::Error),
 }
 
 /// Source, V.
@@ -200,6 +200,7 @@ fn run(amplitude: f64, count: u32) -> Result<Vec<[f64; 6]>, Failure> {
 }
 
 fn write(path: &Path, rows: &[[f64; 6]]) -> io::Result<()> {
+    fs::create_dir_all(path.parent().unwrap_or(Path::new("")))?;
     let mut file = BufWriter::new(File::create(path)?);
     writeln!(
         file,
@@ -233,12 +234,9 @@ fn job() -> Result<(), Failure> {
         return Err(Failure::Usage(wrong));
     }
     let path = arguments.get(2).map_or("out/embed.csv", String::as_str);
-    if arguments.len() < 3 {
-        fs::create_dir_all("out")?;
-    }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 5 million")]
     let rows = run(amplitude, (duration / STEP).round() as u32)?;
-    write(Path::new(path), &rows)?;
+    write(Path::new(path), &rows).map_err(|error| Failure::Table(path.to_owned(), error))?;
     println!("{path}");
     Ok(())
 }
@@ -251,6 +249,6 @@ fn main() -> ExitCode {
     // The kinds can be told apart, and what they hold be read: `Refused(SceneError::OutOfRange { name, allowed, .. })`.
     ExitCode::from(match failure {
         Failure::Usage(_) => 2,
-        Failure::Refused(_) | Failure::Stopped(_) | Failure::Table(_) => 1,
+        Failure::Refused(_) | Failure::Stopped(_) | Failure::Table(..) => 1,
     })
 }
