@@ -1,5 +1,6 @@
 //! Turns `modelDescription.xml` into Rust: one enum for each group of variables, the table of their
-//! properties, the enumeration types, and the GUID (a hash of the file). Writes the C header beside it.
+//! properties, the enumeration types, and the GUID (a hash of the file). Writes the C header beside it, with the same facts
+//! as constants.
 
 use std::error::Error;
 use std::fmt::Write as _;
@@ -20,8 +21,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Err("modelDescription.xml: guid=\"\" not found, it is filled in here".into());
     }
     fs::write(out.join("modelDescription.xml"), &described)?;
-    fs::write(out.join("variables.rs"), variables(&Document::parse(&xml)?, &guid)?)?;
-    header(&out)
+    let document = Document::parse(&xml)?;
+    fs::write(out.join("variables.rs"), variables(&document, &guid)?)?;
+    header(&out, &constants(&document, &guid)?)
 }
 
 /// 128-bit FNV-1a hash of the description, so that any change of a variable changes the GUID.
@@ -84,12 +86,7 @@ fn variables(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> 
         let name = attribute(variable, "name")?;
         let value = variable.first_element_child().ok_or("a variable without a type")?;
         let kind = value.tag_name().name();
-        let unit = value
-            .attribute("declaredType")
-            .and_then(|declared| types.children().find(|node| node.attribute("name") == Some(declared)))
-            .and_then(|definition| definition.first_element_child())
-            .and_then(|real| real.attribute("unit"))
-            .unwrap_or("");
+        let unit = unit(document, value);
         let group = group(attribute(variable, "causality")?, kind);
         let position = GROUPS
             .iter()
@@ -148,6 +145,18 @@ fn variables(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> 
         )?;
     }
     Ok(code)
+}
+
+/// The unit of a value, by the type it is declared as; empty where there is none.
+fn unit<'a>(document: &'a Document, value: Node) -> &'a str {
+    let declared = value.attribute("declaredType");
+    document
+        .descendants()
+        .filter(|node| node.has_tag_name("SimpleType"))
+        .find(|definition| declared.is_some() && definition.attribute("name") == declared)
+        .and_then(|definition| definition.first_element_child())
+        .and_then(|real| real.attribute("unit"))
+        .unwrap_or("")
 }
 
 /// For each value reference up to the largest, the position of its variable in the table; `u16::MAX` for none.
@@ -214,26 +223,75 @@ fn camel(name: &str) -> String {
         .collect()
 }
 
+/// `contact.moving.youngsModulus` becomes `CONTACT_MOVING_YOUNGS_MODULUS`.
+fn upper(name: &str) -> String {
+    name.chars()
+        .enumerate()
+        .flat_map(|(position, c)| match c {
+            '.' => vec!['_'],
+            c if c.is_ascii_uppercase() && position > 0 => vec!['_', c],
+            c => vec![c.to_ascii_uppercase()],
+        })
+        .collect()
+}
+
+/// For C: the GUID, the value reference of every variable, and the choices of the enumerations.
+fn constants(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> {
+    let mut code = format!(
+        "\n/**\n * What `fmi2Instantiate` has to be given: a hash of the variables below.\n */\n#define RELAY_CONTACT_GUID \"{guid}\"\n"
+    );
+    for variable in document
+        .descendants()
+        .filter(|node| node.has_tag_name("ScalarVariable"))
+    {
+        let value = variable.first_element_child().ok_or("a variable without a type")?;
+        let name = attribute(variable, "name")?;
+        let unit = match unit(document, value) {
+            "" | "1" => String::new(),
+            unit => format!(" in {unit}"),
+        };
+        writeln!(
+            code,
+            "\n/**\n * `{name}`, {}{unit}: {}.\n */\n#define RELAY_CONTACT_{} {}u",
+            value.tag_name().name(),
+            attribute(variable, "description")?,
+            upper(name),
+            attribute(variable, "valueReference")?
+        )?;
+    }
+    for item in document.descendants().filter(|node| node.has_tag_name("Item")) {
+        let kind = item.ancestors().find(|node| node.has_tag_name("SimpleType"));
+        writeln!(
+            code,
+            "\n/**\n * {}.\n */\n#define RELAY_CONTACT_{}_{} {}",
+            attribute(item, "description")?,
+            upper(attribute(kind.ok_or("an item without a type")?, "name")?),
+            upper(attribute(item, "name")?),
+            attribute(item, "value")?
+        )?;
+    }
+    Ok(code)
+}
+
 /// The C header of the exported functions, for C programs that link the library.
-fn header(out: &Path) -> Result<(), Box<dyn Error>> {
+fn header(out: &Path, constants: &str) -> Result<(), Box<dyn Error>> {
     let include = out.join("include");
     fs::create_dir_all(&include)?;
     println!("cargo:rustc-env=RELAY_CONTACT_INCLUDE={}", include.display());
-    if Path::new("src/fmi2").exists() {
-        let sources = ["types", "common", "values", "fmu_state", "co_simulation"];
-        sources
-            .iter()
-            .fold(cbindgen::Builder::new(), |builder, source| {
-                builder.with_src(format!("src/fmi2/{source}.rs"))
-            })
-            .with_language(cbindgen::Language::C)
-            .with_no_includes()
-            .with_sys_include("stddef.h")
-            .with_cpp_compat(true)
-            .with_include_guard("RELAY_CONTACT_H")
-            .with_documentation(true)
-            .generate()?
-            .write_to_file(include.join("relay_contact.h"));
-    }
+    let sources = ["types", "common", "values", "fmu_state", "co_simulation"];
+    sources
+        .iter()
+        .fold(cbindgen::Builder::new(), |builder, source| {
+            builder.with_src(format!("src/fmi2/{source}.rs"))
+        })
+        .with_language(cbindgen::Language::C)
+        .with_no_includes()
+        .with_sys_include("stddef.h")
+        .with_after_include(constants)
+        .with_cpp_compat(true)
+        .with_include_guard("RELAY_CONTACT_H")
+        .with_documentation(true)
+        .generate()?
+        .write_to_file(include.join("relay_contact.h"));
     Ok(())
 }

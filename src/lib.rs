@@ -69,3 +69,6 @@ pub const BARE: bool = cfg!(feature = "bare");
 
 /// `modelDescription.xml` with the GUID filled in, as it stands in the packaged component.
 pub const MODEL_DESCRIPTION: &str = include_str!(concat!(env!("OUT_DIR"), "/modelDescription.xml"));
+
+/// The header for C programs that link the library: its functions, the GUID, and the value references by name.
+pub const C_HEADER: &str = include_str!(concat!(env!("OUT_DIR"), "/include/relay_contact.h"));

@@ -71,7 +71,7 @@ def panel(axes: Axes, time: Array, name: str, values: Array, unit: Unit | None, 
         label = unit.si if unit else ""
     elif unit:
         values, label = unit.factor * values + unit.offset, unit.shown
-    whole = unit is None
+    whole = unit is None and bool((values == np.round(values)).all())
     axes.plot(time, values, color=colour, linewidth=1.2, drawstyle="steps-post" if whole else "default")
     if whole:
         axes.yaxis.set_major_locator(MaxNLocator(integer=True))

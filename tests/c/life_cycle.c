@@ -1,10 +1,8 @@
-/* A full life of two instances, from C, with the generated header. Arguments: GUID, then the value references of
- * base.acceleration, contact.force, preload.force, contact.overtravel, effects.excitation, contact.closed, solver.steps. */
+/* A full life of two instances, from C, with the generated header and its constants. */
 
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "relay_contact.h"
@@ -34,7 +32,10 @@ static void logger(fmi2ComponentEnvironment environment, fmi2String instance, fm
     ++messages;
 }
 
-static fmi2ValueReference acceleration, force, preload, overtravel, excitation, closed, steps;
+static const fmi2ValueReference acceleration = RELAY_CONTACT_BASE_ACCELERATION, force = RELAY_CONTACT_CONTACT_FORCE,
+                                preload = RELAY_CONTACT_PRELOAD_FORCE, overtravel = RELAY_CONTACT_CONTACT_OVERTRAVEL,
+                                excitation = RELAY_CONTACT_EFFECTS_EXCITATION, closed = RELAY_CONTACT_CONTACT_CLOSED,
+                                steps = RELAY_CONTACT_SOLVER_STEPS;
 
 static fmi2Real real(fmi2Component c, fmi2ValueReference reference) {
     fmi2Real value = NAN;
@@ -43,7 +44,7 @@ static fmi2Real real(fmi2Component c, fmi2ValueReference reference) {
 }
 
 static void initialize(fmi2Component c, fmi2Real s) {
-    const fmi2Integer sine = 2;
+    const fmi2Integer sine = RELAY_CONTACT_EXCITATION_KIND_SINE;
     CHECK(fmi2SetupExperiment(c, fmi2True, 1e-6, 0.0, fmi2True, 1e-3) == fmi2OK);
     CHECK(fmi2SetReal(c, &overtravel, 1, &s) == fmi2OK);
     CHECK(fmi2SetInteger(c, &excitation, 1, &sine) == fmi2OK);
@@ -67,7 +68,7 @@ static fmi2Real run(fmi2Component c) {
     return real(c, force);
 }
 
-int main(int argc, char **argv) {
+int main(void) {
     const fmi2CallbackFunctions callbacks = {logger, NULL, NULL, NULL, last_message};
     fmi2Component one, two;
     fmi2Real first, second, last = 0.0;
@@ -75,25 +76,13 @@ int main(int argc, char **argv) {
     fmi2Integer count = 0;
     fmi2ValueReference unknown = 4000000000u;
 
-    if (argc != 9) {
-        fprintf(stderr, "8 arguments expected\n");
-        return 2;
-    }
-    acceleration = (fmi2ValueReference)strtoul(argv[2], NULL, 10);
-    force = (fmi2ValueReference)strtoul(argv[3], NULL, 10);
-    preload = (fmi2ValueReference)strtoul(argv[4], NULL, 10);
-    overtravel = (fmi2ValueReference)strtoul(argv[5], NULL, 10);
-    excitation = (fmi2ValueReference)strtoul(argv[6], NULL, 10);
-    closed = (fmi2ValueReference)strtoul(argv[7], NULL, 10);
-    steps = (fmi2ValueReference)strtoul(argv[8], NULL, 10);
-
     CHECK(strcmp(fmi2GetVersion(), "2.0") == 0);
     CHECK(strcmp(fmi2GetTypesPlatform(), "default") == 0);
     CHECK(fmi2Instantiate("one", fmi2CoSimulation, "no guid", NULL, &callbacks, fmi2False, fmi2False) == NULL);
     CHECK(messages == 1 && strstr(last_message, "no guid") != NULL);
 
-    one = fmi2Instantiate("one", fmi2CoSimulation, argv[1], "file:///tmp", &callbacks, fmi2False, fmi2True);
-    two = fmi2Instantiate("two", fmi2CoSimulation, argv[1], NULL, &callbacks, fmi2False, fmi2False);
+    one = fmi2Instantiate("one", fmi2CoSimulation, RELAY_CONTACT_GUID, "file:///tmp", &callbacks, fmi2False, fmi2True);
+    two = fmi2Instantiate("two", fmi2CoSimulation, RELAY_CONTACT_GUID, NULL, &callbacks, fmi2False, fmi2False);
     if (one == NULL || two == NULL || one == two) {
         fprintf(stderr, "no instances: %s\n", last_message);
         return 1;

@@ -6,20 +6,31 @@ use std::{env, fs};
 
 use anyhow::{Context, Result, bail};
 use cargo_metadata::{Metadata, MetadataCommand};
-use relay_contact::MODEL_DESCRIPTION;
+use relay_contact::{C_HEADER, MODEL_DESCRIPTION};
 
 use crate::commands::{cargo, command, output, root, run};
 use crate::documentation;
 use crate::licences;
 use crate::package::{Files, pack};
 
-/// Writes `dist/RelayContact.fmu` and gives its path.
+/// Writes `dist/RelayContact.fmu` and gives its path. Beside it, for C programs, the library in `lib` and its header in
+/// `include`.
 pub fn build() -> Result<PathBuf> {
     let metadata = MetadataCommand::new().current_dir(root()).exec()?;
     build_library(&metadata)?;
-    let path = root().join("dist/RelayContact.fmu");
-    fs::create_dir_all(root().join("dist"))?;
-    fs::write(&path, pack(&files(&metadata)?)?).with_context(|| format!("cannot write {}", path.display()))?;
+    let (_, prefix, extension) = platform()?;
+    let name = format!("{prefix}relay_contact.{extension}");
+    let library = read(&metadata.target_directory.as_std_path().join("release").join(&name))?;
+    write("include/relay_contact.h", C_HEADER.as_bytes())?;
+    write(&format!("lib/{name}"), &library)?;
+    write("RelayContact.fmu", &pack(&files(&metadata, library)?)?)
+}
+
+/// Writes a file in `dist` and gives its path.
+fn write(name: &str, contents: &[u8]) -> Result<PathBuf> {
+    let path = root().join("dist").join(name);
+    fs::create_dir_all(path.parent().context("a file without a folder")?)?;
+    fs::write(&path, contents).with_context(|| format!("cannot write {}", path.display()))?;
     Ok(path)
 }
 
@@ -60,15 +71,11 @@ fn path_flags(metadata: &Metadata) -> Vec<String> {
     crates.chain([project]).collect()
 }
 
-fn files(metadata: &Metadata) -> Result<Files> {
-    let (folder, prefix, extension) = platform()?;
-    let library = metadata
-        .target_directory
-        .as_std_path()
-        .join(format!("release/{prefix}relay_contact.{extension}"));
+fn files(metadata: &Metadata, library: Vec<u8>) -> Result<Files> {
+    let (folder, _, extension) = platform()?;
     let mut files = Files::from([
         ("modelDescription.xml".to_owned(), MODEL_DESCRIPTION.as_bytes().to_vec()),
-        (format!("binaries/{folder}/RelayContact.{extension}"), read(&library)?),
+        (format!("binaries/{folder}/RelayContact.{extension}"), library),
         ("model.png".to_owned(), read(&root().join("docs/model.png"))?),
         (
             "documentation/index.html".to_owned(),
