@@ -20,7 +20,9 @@ adaptive         step doubling: one step of h, back to the start (fmi2SetFMUstat
                  blind to an opening in the second half of a step, as the mean of a closed and an open contact conducts
                  as well as a closed one: then both ways agree, and both are wrong.
 adaptive, told   the same, but where the component tells an instant in contact.lastOpening or contact.lastClosing that
-                 lies within the step, it goes back and puts a communication point there.
+                 lies within the step, it goes back and puts a communication point there. Then all that is left is
+                 smooth, and as the tolerance bounds the error h^3 of each step, that of the run, which goes with h^2,
+                 falls with its power 2/3.
 
 The work is the number of doStep calls, those of rejected steps included. The error is that of the load current, the
 largest of instants 1 us apart, against the third master at a tolerance of 1e-8.
