@@ -22,7 +22,8 @@ The error is taken against the circuit in closed form on steps of 50 ns, with a 
 (halving these steps changes the load current by 2 uA at most).
 
 ngspice makes one `tran ... uic` analysis per communication step, with the states as initial conditions: so its
-integrator starts afresh after every jump of the resistance.
+integrator starts afresh after every jump of the resistance. (One analysis with `stop`, `alter` and `resume` misses
+stops in ngspice 39.)
 """
 
 import argparse
@@ -185,10 +186,11 @@ class NgSpice:
         for name, value in (("RC", resistance), ("@L1[ic]", start[0]), ("@CQ[ic]", start[1])):
             self.command(f"alter {name} = {value!r}")
         self.command(f"tran {inner!r} {step!r} 0 {inner!r} uic")
-        # The start itself is not among the results.
-        time = np.append(0.0, self.result("time"))
-        current = np.append(start[0], self.result("l1#branch"))
-        capacitor = np.append(start[1], self.result("quench"))
+        # What `uic` starts from is not a result, or not in every version.
+        late = self.result("time") > 0
+        time = np.append(0.0, self.result("time")[late])
+        current = np.append(start[0], self.result("l1#branch")[late])
+        capacitor = np.append(start[1], self.result("quench")[late])
         self.command("destroy all")
         if not abs(time[-1] - step) < 1e-9 * step:
             raise RuntimeError(f"ngspice stopped {time[-1]} s into a step of {step} s: {' / '.join(self.said)}")
@@ -201,7 +203,7 @@ class NgSpice:
         coil, charging = np.diff(SOURCE - LOAD * current - drop), np.diff((drop - capacitor) / QUENCH)
         error = steps @ np.abs(coil * np.diff(current) + charging * np.diff(capacitor)) / 4
         error += steps[0] * (abs(coil[0] * current[0]) + abs(charging[0] * capacitor[0])) / 2
-        error += RELATIVE_TOLERANCE * (SOURCE**2 / LOAD * step + stored(current[-1], capacitor[-1]))
+        error += RELATIVE_TOLERANCE * SOURCE**2 / LOAD * step
         return Course(time, current, capacitor, weights, (float(current[-1]), float(capacitor[-1])), float(error))
 
 
@@ -216,10 +218,12 @@ class Contact:
         self.references = {variable.name: variable.valueReference for variable in description.modelVariables}
         self.fmu = instantiate_fmu(folder, description, fmi_type="CoSimulation")
         self.fmu.setupExperiment(startTime=0.0)
-        choices = {"effects.excitation": 2, "effects.axialForce": 2}  # Sine, None
-        self.fmu.setInteger([self.references[name] for name in choices], list(choices.values()))
-        numbers = {"excitation.amplitude": 400.0, "excitation.frequency": 1 / PERIOD}
-        self.fmu.setReal([self.references[name] for name in numbers], list(numbers.values()))
+        choices, numbers = (
+            ["effects.excitation", "effects.axialForce"],
+            ["excitation.amplitude", "excitation.frequency"],
+        )
+        self.fmu.setInteger([self.references[name] for name in choices], [2, 2])  # Sine, None
+        self.fmu.setReal([self.references[name] for name in numbers], [400.0, 1 / PERIOD])
         self.fmu.enterInitializationMode()
         self.fmu.exitInitializationMode()
 
@@ -423,11 +427,8 @@ def main() -> int:
     order = float(np.polyfit(np.log(table[:, 0]), np.log(table[:, 1]), 1)[0])
     print(f"{name}, communication step {arguments.step:g} us, {1e3 * stop:g} ms\n{summary(result, step)}")
     if other:
-        current, voltage = (
-            np.abs(result.columns[column] - other.columns[column]).max()
-            for column in ("load.current", "capacitor.voltage")
-        )
-        print(f"ngspice and the closed form differ by {current:.1e} A and {voltage:.1e} V at most")
+        gaps = [np.abs(result.columns[name] - other.columns[name]).max() for name in COLUMNS[5:7]]
+        print(f"ngspice and the closed form differ by {gaps[0]:.1e} A and {gaps[1]:.1e} V at most")
     for length, root, largest in 1e3 * table:
         print(f"step {1e3 * length:g} us: error of the load current {root:.4f} mA rms, {largest:.4f} mA at most")
     print(f"observed order: {order:.2f} (1 by theory)")

@@ -86,10 +86,12 @@ class Contact:
         self.references = {variable.name: variable.valueReference for variable in description.modelVariables}
         self.fmu = instantiate_fmu(folder, description, fmi_type="CoSimulation")
         self.fmu.setupExperiment(startTime=0.0)
-        choices = {"effects.excitation": 2, "effects.axialForce": 2}  # Sine, None
-        self.fmu.setInteger([self.references[name] for name in choices], list(choices.values()))
-        numbers = {"excitation.amplitude": 400.0, "excitation.frequency": 1 / PERIOD}
-        self.fmu.setReal([self.references[name] for name in numbers], list(numbers.values()))
+        choices, numbers = (
+            ["effects.excitation", "effects.axialForce"],
+            ["excitation.amplitude", "excitation.frequency"],
+        )
+        self.fmu.setInteger([self.references[name] for name in choices], [2, 2])  # Sine, None
+        self.fmu.setReal([self.references[name] for name in numbers], [400.0, 1 / PERIOD])
         self.fmu.enterInitializationMode()
         self.fmu.exitInitializationMode()
 
