@@ -76,16 +76,13 @@ def stored(current: float, capacitor: float) -> float:
 
 @dataclass
 class Course:
-    """What the circuit does within a communication step: arrays over inner instants."""
+    """What the circuit does within a communication step: at instants since its start, from the start to the end."""
 
     time: Array
-    """Since the start of the step."""
     current: Array
     capacitor: Array
     weights: Array
     """A power times these is the energy over the step."""
-    end: tuple[float, float]
-    """Load current and capacitor's voltage at the end."""
     error: float
     """How far the energies of this step may miss their balance."""
 
@@ -95,13 +92,13 @@ class BuiltIn:
 
     def advance(self, start: tuple[float, float], resistance: float, step: float) -> Course:
         """Step once."""
-        times = np.append((NODES + 1) / 2 * step, step)
+        times, weights = np.pad((NODES + 1) / 2 * step, 1), np.pad(WEIGHTS * step / 2, 1)
+        times[-1] = step
         exponentials, rest = closed_form(np.array(resistance), times)
-        states = rest + exponentials @ (np.array(start) - rest)
-        inner, end = states[:-1], (float(states[-1, 0]), float(states[-1, 1]))
+        current, capacitor = (rest + exponentials @ (np.array(start) - rest)).T
         # Some ten roundings of what flows and of what is stored.
-        error = 10 * np.finfo(float).eps * (SOURCE**2 / LOAD * step + stored(*end))
-        return Course(times[:-1], inner[:, 0], inner[:, 1], WEIGHTS * step / 2, end, error)
+        error = 10 * np.finfo(float).eps * (SOURCE**2 / LOAD * step + stored(current[-1], capacitor[-1]))
+        return Course(times, current, capacitor, weights, error)
 
 
 def closed_form(resistance: Array, time: Array) -> tuple[Array, Array]:
@@ -204,7 +201,7 @@ class NgSpice:
         error = steps @ np.abs(coil * np.diff(current) + charging * np.diff(capacitor)) / 4
         error += steps[0] * (abs(coil[0] * current[0]) + abs(charging[0] * capacitor[0])) / 2
         error += RELATIVE_TOLERANCE * SOURCE**2 / LOAD * step
-        return Course(time, current, capacitor, weights, (float(current[-1]), float(capacitor[-1])), float(error))
+        return Course(time, current, capacitor, weights, float(error))
 
 
 Circuit = BuiltIn | NgSpice
@@ -280,7 +277,7 @@ def simulate(contact: Contact, circuit: Circuit, step: float, count: int, label:
         waves.append(np.stack([index * step + course.time, course.current, drop, drop / resistance]))
         powers = SOURCE * course.current, LOAD * course.current**2, (drop - course.capacitor) ** 2 / QUENCH
         energies[:4] += [power @ course.weights for power in (*powers, drop**2 / resistance)]
-        state, error = course.end, error + course.error
+        state, error = (float(course.current[-1]), float(course.capacitor[-1])), error + course.error
         outputs = contact.get(*COLUMNS[1:5])
     contact.close()
     return Result(dict(zip(COLUMNS, np.array(rows).T, strict=True)), np.concatenate(waves, axis=1), error)
@@ -320,8 +317,7 @@ def summary(result: Result, step: float) -> str:
     columns, spans = result.columns, result.spans()
     energies = {name.split(".")[1]: 1e6 * columns[name][-1] for name in COLUMNS if name.startswith("energy")}
     miss = 2 * energies["source"] - sum(energies.values())
-    voltage = max(np.abs(result.waves[2]).max(), np.abs(columns["circuit.voltage"]).max())
-    current = max(np.abs(result.waves[3]).max(), np.abs(columns["circuit.current"]).max())
+    voltage, current = np.abs(result.waves[2:]).max(axis=1)
     inside = "inside" if voltage < RANGE[0] and current < RANGE[1] else "OUTSIDE"
     # What the component takes for the contact's power, against what the circuit gives off there.
     power = columns["contact.voltage"][1:] * columns["circuit.current"][:-1]
