@@ -143,14 +143,10 @@ class Outcome:
     name: str
     level: str
     interruptions: int
-    longest: float
-    """s."""
-    least_force: float
-    """Of the preload."""
-    weakest: str
-    """Where the longest interruption is, or else the least force."""
-    margin: float
-    """Level that interrupts, over that of the test."""
+    longest: float  # s
+    least_force: float  # of the preload
+    weakest: str  # where the longest interruption is, or else the least force
+    margin: float  # level that interrupts, over that of the test
 
     HEAD = ("test", "level", "verdict", "interruptions", "longest", "least force", "weakest at", "margin")
 
@@ -169,12 +165,9 @@ class Sweep:
     """A sweep by bins of frequency."""
 
     level: Level
-    frequency: Array
-    """Centre of each bin, Hz."""
-    bins: dict[str, Array] = field(default_factory=dict)
-    """Up and down: least force (N), interruptions and their mean length (s), a row for each bin."""
-    longest: tuple[float, float] = (0.0, np.nan)
-    """Longest interruption that counts (s), and where (Hz)."""
+    frequency: Array  # centre of each bin, Hz
+    bins: dict[str, Array] = field(default_factory=dict)  # up, down: least force (N), interruptions, mean length (s)
+    longest: tuple[float, float] = (0.0, np.nan)  # longest interruption that counts (s), and where (Hz)
 
     def least_force(self) -> Array:
         """Give the least force of up and down in each bin, N."""
@@ -293,6 +286,8 @@ def shock(condition: str, preload: float) -> tuple[dict[str, Shock], Outcome]:
 
 def page(path: Path, sweeps: list[Sweep], shocks: dict[str, Shock], outcomes: list[Outcome], notes: list[str]) -> None:
     """Draw the page, A4."""
+    plt.rcParams |= {"font.size": 8, "axes.titlesize": 9, "legend.fontsize": 7.5, "legend.frameon": False}
+    plt.rcParams |= {"axes.grid": True, "grid.alpha": 0.3}
     figure = plt.figure(figsize=(8.27, 11.69))
     heights = {"height_ratios": [0.72, 1, 1, 1, 0.06, 1.15], "hspace": 0.38}
     top, level, force, length, gap, below = figure.subplots(6, 1, gridspec_kw=heights)
@@ -326,13 +321,12 @@ def page(path: Path, sweeps: list[Sweep], shocks: dict[str, Shock], outcomes: li
             note += f"{run.longest[1]:.0f} Hz"
             peak = run.longest[1], 1e6 * run.longest[0]
             length.plot(*peak, "o", color=colour, markersize=3)
-            style: dict[str, Any] = {"textcoords": "offset points", "ha": "right", "fontsize": 8}
-            length.annotate(note, peak, (-8, -3), color=colour, **style)
-    level.legend(loc="upper left", fontsize=7.5, frameon=False)
+            length.annotate(note, peak, (-8, -3), textcoords="offset points", ha="right", color=colour)
+    level.legend(loc="upper left")
     level.set(ylabel="level [g]", ylim=(0, None), title="Amplitude of the base acceleration")
     force.set(ylabel="force [% of preload]", ylim=(-5, 105), title="Least contact force in each bin of frequency")
     length.axhline(1e6 * LIMIT, color=GREY, linestyle="--", label="limit, 10 µs")
-    length.legend(loc="upper left", fontsize=7.5, frameon=False)
+    length.legend(loc="upper left")
     length.set(ylim=(0, max(15.0, 1.25e6 * max(run.longest[0] for run in sweeps))), ylabel="interruption [µs]")
     length.set(
         xlabel="frequency [Hz]", title="Interruptions that last 10 µs: mean in each bin of frequency, dot: longest"
@@ -346,14 +340,8 @@ def page(path: Path, sweeps: list[Sweep], shocks: dict[str, Shock], outcomes: li
         note = f", interrupted for {1e3 * hit.longest:.2f} ms" if hit.count else ""
         below.plot(1e3 * hit.time, 100 * hit.force, color=colour, label=way + note)
     below.axhline(100 * preload, color=GREY, linestyle=":", label="preload")
-    below.legend(loc="upper right", fontsize=7.5, frameon=False)
+    below.legend(loc="upper right")
     below.set(xlabel="time [ms]", ylabel="contact force [cN]", title=f"{outcomes[-1].name}: {outcomes[-1].level}")
-    for axes in (level, force, length, below):
-        axes.grid(alpha=0.3)
-        axes.tick_params(labelsize=8)
-        axes.yaxis.label.set_fontsize(8.5)
-        axes.xaxis.label.set_fontsize(8.5)
-        axes.title.set_fontsize(9)
     figure.align_ylabels()
     figure.text(0.05, 0.115, "\n".join(notes[-few:]), fontsize=7, va="top", linespacing=1.4)
     figure.savefig(path, dpi=150)
@@ -390,14 +378,15 @@ def arguments() -> argparse.Namespace:
     add("--shock", choices=SHOCKS, default="A", help="condition of method 213; B and C are from memory")
     given = parser.parse_args()
     low, high = given.frequencies
-    if not 1e-3 <= low < high <= 1e6:
-        parser.error(f"--frequencies {low:g} {high:g}: the first must be below the second, both from 1e-3 to 1e6 Hz")
-    if not 0 <= given.acceleration <= 1e4:
-        parser.error(f"--acceleration {given.acceleration:g}: must be from 0 to 1e4 g")
-    if not 0 < given.double_amplitude <= 1000:
-        parser.error(f"--double-amplitude {given.double_amplitude:g}: must be above 0, up to 1000 mm")
-    if given.sweep_time is not None and not 0.1 <= given.sweep_time <= 1e5:
-        parser.error(f"--sweep-time {given.sweep_time:g}: must be from 0.1 to 1e5 s")
+    demands = {
+        f"--frequencies {low:g} {high:g}: from 1e-3 to 1e6 Hz, the first below the second": 1e-3 <= low < high <= 1e6,
+        f"--acceleration {given.acceleration:g}: from 0 to 1e4 g": 0 <= given.acceleration <= 1e4,
+        f"--double-amplitude {given.double_amplitude:g}: above 0, to 1000 mm": 0 < given.double_amplitude <= 1000,
+        f"--sweep-time {given.sweep_time}: from 0.1 to 1e5 s": 0.1 <= (given.sweep_time or 1.0) <= 1e5,
+    }
+    for demand, met in demands.items():
+        if not met:
+            parser.error(f"{demand} is allowed")
     return given
 
 
@@ -447,8 +436,7 @@ def main() -> int:
     sweeps, outcomes = [run for run, _ in runs], [outcome for _, outcome in runs] + [shocked]
     notes = [
         *wrap(f"Equivalent beam, identified: {', '.join(shown)}.", 125),
-        f"Preload {100 * preload:.2f} cN, first resonance {natural:.0f} Hz, contact closed and at rest before each test.",
-        f"Component {Contact.description.modelName}, {Contact.description.guid}.",
+        f"Preload {100 * preload:.2f} cN, first resonance {natural:.0f} Hz. Component {Contact.description.guid}.",
         *(pace(level, natural, decay) for level in levels),
         "Margin: level that interrupts, where the contact is weakest and in steady vibration, over that of the test.",
         "Model: along the motion of the contact alone; no resonances of the case, no bounce after switching.",
