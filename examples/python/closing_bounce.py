@@ -8,7 +8,8 @@ set, so travel at a constant speed is exact in steps of any length; the parabola
 with 100, the kinks themselves open a heavily damped contact at 0.2 m/s.
 
 The spring is that of the component's start values: the equivalent beam identified from Zhang et al., "Machines" 2025,
-13(1), 52. Its identified contact damping, 80.63 us, hardly lets it bounce; clean metal has less, so it is varied.
+13(1), 52. Its identified contact damping, 80.63 us, lets nothing bounce below 0.2 m/s; clean metal has
+less, so it is varied.
 
 Definitions. Interruption: the contact resistance is above 60 Ohm (chatter.resistanceThreshold) for --minimum or longer.
 Bounces on make: interruptions after the first touch. Bounce time: from the first touch to the last closing before the
@@ -262,14 +263,14 @@ def draw(path: Path, contact: Contact, outcomes: list[Outcome], shown: Outcome, 
 
 def arguments() -> argparse.Namespace:
     """Read the command line."""
-    parser = argparse.ArgumentParser(description=str(__doc__).splitlines()[0], epilog="Takes one to two minutes.")
+    parser = argparse.ArgumentParser(description=str(__doc__).splitlines()[0], epilog="Takes about half a minute.")
     add = parser.add_argument
     add("--fmu", type=Path, default=ROOT / "dist" / "RelayContact.fmu", help="the component")
     add("--out", type=Path, default=ROOT / "out", help="folder for the tables and the figure")
     add("--quick", action="store_true", help="short form: 6 speeds and 4 dampings instead of 24 and 13")
     limits = {
         "gap": (20.0, 1.0, 5000.0, "µm", "gap before the make"),
-        "overtravel": (200.0, 1.0, 5000.0, "µm", "travel after the first touch"),
+        "overtravel": (200.0, 10.0, 5000.0, "µm", "travel after the first touch"),
         "minimum": (1.0, 0.01, 1000.0, "µs", "shortest interruption that counts as a bounce"),
         "speed": (60.0, 1.0, 500.0, "mm/s", "speed of the courses shown"),
         "damping": (1.0, 0.0, 1000.0, "µs", "contact damping of the courses shown"),

@@ -16,8 +16,9 @@ Condition A of both methods is checked; the other conditions and those of MIL-PR
 against the standards' texts. The standards also ask for two directions across the contact's motion and for repetitions:
 the model has the one direction, and repeats exactly.
 
-A faster sweep (--sweep-time) is not conservative: the force lags behind the frequency, and a sweep that crosses the
-resonance in few decay times shows too little of it upwards. The summary says how many decay times the crossing takes.
+A faster sweep (--sweep-time) is not conservative: the force lags behind the frequency, and a resonance with little
+damping has no time to build up. In 0.5 s the sweep at 30 g shows interruptions of 49 us upwards and 61 us downwards,
+instead of 54 us. The summary says in how many of its decay times the resonance is crossed.
 """
 
 import argparse
@@ -50,6 +51,7 @@ G = 9.80665  # m/s2
 LIMIT = 10e-6  # s
 SINE, LOG_SWEEP, HALF_SINE = 2, 3, 4  # of effects.excitation
 SHOCK_STEP = 1e-5  # s
+RESOLUTION = 1e-4  # of margins
 ENOUGH = (
     1000  # decay times a sweep should take to cross the resonance: the lag then changes an interruption by per cents
 )
@@ -145,7 +147,7 @@ class Outcome:
     interruptions: int
     longest: float  # s
     least_force: float  # of the preload
-    weakest: str  # where the longest interruption is, or else the least force
+    weakest: str  # where a test that grows first interrupts
     margin: float  # level that interrupts, over that of the test
 
     HEAD = ("test", "level", "verdict", "interruptions", "longest", "least force", "weakest at", "margin")
@@ -156,7 +158,7 @@ class Outcome:
         longest = long if self.interruptions else "none"
         verdict = "FAIL" if self.interruptions else "pass"
         least = f"{100 * self.least_force:.1f} %"
-        margin = f"{self.margin:.3f}"
+        margin = f"{self.margin:.4f}"
         return [self.name, self.level, verdict, str(self.interruptions), longest, least, self.weakest, margin]
 
 
@@ -209,39 +211,47 @@ def sweep(level: Level, bins: int) -> Sweep:
 
 
 def threshold(interrupts: Callable[[float], bool]) -> float:
-    """Give the least factor of a level that interrupts, to 0.1 %: by steps of a tenth, then by bisection."""
+    """Give the least factor of a level that interrupts: by steps of a tenth, then by bisection."""
     failed = interrupts(1.0)
     low = high = 1.0
     while interrupts(low if failed else high) == failed:
         low, high = (low / 1.1, low) if failed else (high, high * 1.1)
         if not 1e-3 < high < 1e3:
             return high
-    while high > 1.001 * low:
+    while high > (1 + RESOLUTION) * low:
         middle = (low * high) ** 0.5
         low, high = (low, middle) if interrupts(middle) else (middle, high)
     return high
 
 
+def weakest(run: Sweep, preload: float) -> float:
+    """Give the frequency (Hz) at which a growing level first opens the contact, from one that leaves it closed."""
+    if run.least_force().min() > 0.1 * preload:
+        # The sudden start of a sweep is in the first bin of one way alone.
+        return float(run.frequency[np.max([found[:, 0] for found in run.bins.values()], axis=0).argmin()])
+    level = run.level
+    half = replace(level, acceleration=level.acceleration / 2, double_amplitude=level.double_amplitude / 2)
+    return weakest(sweep(half, len(run.frequency)), preload)
+
+
 def vibration(level: Level, bins: int, preload: float, decay: float) -> tuple[Sweep, Outcome]:
     """Sweep; where the contact is weakest, seek the level that interrupts in steady vibration."""
     run = sweep(level, bins)
-    force = run.least_force()
     count = int(sum(found[:, 1].sum() for found in run.bins.values()))
-    weakest = run.longest[1] if count else float(run.frequency[force.argmin()])
-    amplitude = float(level.amplitude(np.array(weakest)))
+    frequency = weakest(run, preload)
+    amplitude = float(level.amplitude(np.array(frequency)))
 
     def interrupts(factor: float) -> bool:
-        with Contact(
-            effects_excitation=SINE, excitation_frequency=weakest, excitation_amplitude=factor * amplitude
-        ) as contact:
-            contact.step(max(10 * decay, 2 / weakest))  # of the sudden start, 5e-5 are left
+        values = {"excitation_frequency": frequency, "excitation_amplitude": factor * amplitude}
+        with Contact(effects_excitation=SINE, **values) as contact:
+            contact.step(max(10 * decay, 2 / frequency))  # of the sudden start, 5e-5 are left
             settled = contact.monitor()[0]
-            contact.step(5 / weakest)
+            contact.step(5 / frequency)
             return contact.monitor()[0] > settled
 
-    least = float(force.min()) / preload
+    least = float(run.least_force().min()) / preload
     margin = threshold(interrupts)
-    return run, Outcome(level.name, str(level), count, run.longest[0], least, f"{weakest:.0f} Hz", margin)
+    return run, Outcome(level.name, str(level), count, run.longest[0], least, f"{frequency:.0f} Hz", margin)
 
 
 @dataclass
@@ -274,14 +284,20 @@ def half_sine(peak: float, duration: float, pulls: bool) -> Shock:
 def shock(condition: str, preload: float) -> tuple[dict[str, Shock], Outcome]:
     """Run a shock in both directions."""
     peak, duration = SHOCKS[condition]
-    runs = {way: half_sine(G * peak, duration, way == "pulling") for way in ("pressing", "pulling")}
-    worst = min(runs, key=lambda way: (-runs[way].longest, runs[way].least_force))
-    count, longest = sum(run.count for run in runs.values()), max(run.longest for run in runs.values())
+
+    def run(way: str, factor: float = 1.0) -> Shock:
+        return half_sine(factor * G * peak, duration, way == "pulling")
+
+    runs = {way: run(way) for way in ("pressing", "pulling")}
+    margins = {
+        "pressing": threshold(lambda factor: run("pressing", factor).count > 0),
+        "pulling": threshold(lambda factor: run("pulling", factor).count > 0),
+    }
+    way = min(margins, key=lambda way: margins[way])
+    count, longest = sum(hit.count for hit in runs.values()), max(hit.longest for hit in runs.values())
+    least = min(hit.least_force for hit in runs.values()) / preload
     level = f"half sine of {peak:g} g, {1e3 * duration:g} ms"
-    margin = threshold(lambda factor: half_sine(factor * G * peak, duration, worst == "pulling").count > 0)
-    return runs, Outcome(
-        f"method 213 {condition}", level, count, longest, runs[worst].least_force / preload, worst, margin
-    )
+    return runs, Outcome(f"method 213 {condition}", level, count, longest, least, way, margins[way])
 
 
 def page(path: Path, sweeps: list[Sweep], shocks: dict[str, Shock], outcomes: list[Outcome], notes: list[str]) -> None:
@@ -365,7 +381,7 @@ def write(folder: Path, sweeps: list[Sweep], shocks: dict[str, Shock]) -> None:
 
 def arguments() -> argparse.Namespace:
     """Read the command line."""
-    parser = argparse.ArgumentParser(description=str(__doc__).splitlines()[0], epilog="Takes about half a minute.")
+    parser = argparse.ArgumentParser(description=str(__doc__).splitlines()[0], epilog="Takes under a minute.")
     add = parser.add_argument
     add("--fmu", type=Path, default=ROOT / "dist" / "RelayContact.fmu", help="the component")
     add("--out", type=Path, default=ROOT / "out", help="folder for the page and the tables")
@@ -382,7 +398,8 @@ def arguments() -> argparse.Namespace:
         f"--frequencies {low:g} {high:g}: from 1e-3 to 1e6 Hz, the first below the second": 1e-3 <= low < high <= 1e6,
         f"--acceleration {given.acceleration:g}: from 0 to 1e4 g": 0 <= given.acceleration <= 1e4,
         f"--double-amplitude {given.double_amplitude:g}: above 0, to 1000 mm": 0 < given.double_amplitude <= 1000,
-        f"--sweep-time {given.sweep_time}: from 0.1 to 1e5 s": 0.1 <= (given.sweep_time or 1.0) <= 1e5,
+        f"--sweep-time {given.sweep_time}: from 0.1 to 1e5 s": given.sweep_time is None
+        or 0.1 <= given.sweep_time <= 1e5,
     }
     for demand, met in demands.items():
         if not met:
@@ -397,8 +414,9 @@ def asked(given: argparse.Namespace) -> list[Level]:
         changes = (given.acceleration, tuple(given.frequencies), 1e-3 * given.double_amplitude)
         same = changes == (RELAYS.acceleration, RELAYS.frequencies, RELAYS.double_amplitude)
         levels.append(RELAYS if same else Level("as given", *changes, RELAYS.sweep_time))
-    time = given.sweep_time or (60 if given.quick else None)
-    return [replace(level, sweep_time=time) if time else level for level in levels]
+    if given.sweep_time is None and not given.quick:
+        return levels
+    return [replace(level, sweep_time=given.sweep_time or 60) for level in levels]
 
 
 def pace(level: Level, natural: float, decay: float) -> str:
@@ -410,7 +428,7 @@ def pace(level: Level, natural: float, decay: float) -> str:
         return f"{line}; the first resonance is not in its range."
     band = 2 / (decay * 2 * np.pi * natural)  # half-power band, relative to the resonance
     times = band * level.sweep_time / (2 * np.log(high / low)) / decay
-    slow = "slow enough" if times >= ENOUGH else "TOO FAST: not conservative"
+    slow = "slow enough" if times >= ENOUGH else "TOO FAST to rely on"
     return f"{line}; crosses the first resonance in {times:.0f} decay times: {slow}."
 
 
