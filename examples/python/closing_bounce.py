@@ -8,8 +8,8 @@ set, so travel at a constant speed is exact in steps of any length; the parabola
 with 100, the kinks themselves open a heavily damped contact at 0.2 m/s.
 
 The spring is that of the component's start values: the equivalent beam identified from Zhang et al., "Machines" 2025,
-13(1), 52. Its identified contact damping, 80.63 us, lets nothing bounce below 0.2 m/s; clean metal has
-less, so it is varied.
+13(1), 52. Its identified contact damping, 80.63 us, lets nothing bounce on make below 0.2 m/s; clean metal
+has less, so it is varied.
 
 Definitions. Interruption: the contact resistance is above 60 Ohm (chatter.resistanceThreshold) for --minimum or longer.
 Bounces on make: interruptions after the first touch. Bounce time: from the first touch to the last closing before the

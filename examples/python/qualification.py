@@ -17,7 +17,7 @@ against the standards' texts. The standards also ask for two directions across t
 the model has the one direction, and repeats exactly.
 
 A faster sweep (--sweep-time) is not conservative: the force lags behind the frequency, and a resonance with little
-damping has no time to build up. In 0.5 s the sweep at 30 g shows interruptions of 49 us upwards and 61 us downwards,
+damping has no time to build up. In 1 s the sweep at 30 g shows interruptions of 49 us upwards and 57 us downwards,
 instead of 54 us. The summary says in how many of its decay times the resonance is crossed.
 """
 
