@@ -18,7 +18,8 @@ the model has the one direction, and repeats exactly.
 
 A faster sweep (--sweep-time) is not conservative: the force lags behind the frequency, and a resonance with little
 damping has no time to build up. In 1 s the sweep at 30 g shows interruptions of 49 us upwards and 57 us downwards,
-instead of 54 us. The summary says in how many of its decay times the resonance is crossed.
+instead of 54 us. The summary says in how many of its decay times the resonance is crossed. A bin of a fast sweep may
+also be shorter than a period at low frequencies: its least force is then that of a part of a period.
 """
 
 import argparse
@@ -227,8 +228,7 @@ def threshold(interrupts: Callable[[float], bool]) -> float:
 def weakest(run: Sweep, preload: float) -> float:
     """Give the frequency (Hz) at which a growing level first opens the contact, from one that leaves it closed."""
     if run.least_force().min() > 0.1 * preload:
-        # The sudden start of a sweep is in the first bin of one way alone.
-        return float(run.frequency[np.max([found[:, 0] for found in run.bins.values()], axis=0).argmin()])
+        return float(run.frequency[run.least_force().argmin()])
     level = run.level
     half = replace(level, acceleration=level.acceleration / 2, double_amplitude=level.double_amplitude / 2)
     return weakest(sweep(half, len(run.frequency)), preload)
