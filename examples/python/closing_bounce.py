@@ -1,0 +1,327 @@
+"""Make and break of a relay contact under FMPy: bounce over the speed of the actuator and the damping of the contact.
+
+The other side is an actuator that moves the fixed contact, the input support.displacement. From a gap g in front of the
+spring at rest it comes at a speed v, passes the point of touch and half of the overtravel s, and is then stopped by a
+constant deceleration over the other half (v**2/s). After 10 ms it goes back the same way: accelerated over half of the
+overtravel, then at v, and is stopped at the gap. The input is linear over each communication step, its derivative is
+set, so travel at a constant speed is exact in steps of any length; the parabolas are polygons of 1000 pieces:
+with 100, the kinks themselves open a heavily damped contact at 0.2 m/s.
+
+The spring is that of the component's start values: the equivalent beam identified from Zhang et al., "Machines" 2025,
+13(1), 52. Its identified contact damping, 80.63 us, lets nothing bounce on make below 0.2 m/s; clean metal
+has less, so it is varied.
+
+Definitions. Interruption: the contact resistance is above 60 Ohm (chatter.resistanceThreshold) for --minimum or longer.
+Bounces on make: interruptions after the first touch. Bounce time: from the first touch to the last closing before the
+actuator goes back; 0 where nothing bounces. Break time: from the instant at which the actuator starts back to the last
+separation. Bounces on break: interruptions after that start which end again. The monitor of the component times them
+inside the steps, and contact.lastClosing and contact.lastOpening are the instants at which the force leaves and
+reaches zero: the steps need not be short, and travel at a constant speed is one step.
+"""
+
+import argparse
+import itertools
+import sys
+from dataclasses import astuple, dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from fmpy import extract, read_model_description
+from fmpy.simulation import apply_start_values, instantiate_fmu
+from numpy.typing import NDArray
+from tqdm import tqdm
+
+mpl.use("Agg")
+import matplotlib.pyplot as plt
+from matplotlib.axes import Axes
+from matplotlib.colors import BoundaryNorm, LogNorm
+
+ROOT = Path(__file__).resolve().parents[2]
+REST = 0.01  # s, the contact comes to rest within 1 ms
+PIECES = 1000  # of a parabola
+TOUCH = 1e-6  # s after the first touch, a step ends: no bounce is that short
+NO_AXIAL_FORCE = 2  # of effects.axialForce
+BLUE, ORANGE, RED, GREY = "#0072B2", "#E69F00", "#D55E00", "#666666"  # of Okabe and Ito
+
+Array = NDArray[np.float64]
+
+
+@dataclass
+class Course:
+    """How the actuator moves: a polygon."""
+
+    time: Array
+    """s."""
+    position: Array
+    """m."""
+    back: int
+    """Point at which it starts back."""
+
+
+def course(gap: float, overtravel: float, speed: float) -> Course:
+    """Give the course of the actuator (m, m, m/s)."""
+    half = overtravel / 2
+    reach = (gap + half) / speed
+    brake = np.linspace(0, 2 * half / speed, PIECES + 1)  # the mean speed is half
+    travelled = speed * brake - 0.5 * speed**2 / overtravel * brake**2
+    touch = gap / speed + TOUCH
+    make = np.concatenate([[0, touch], reach + brake])
+    position = np.concatenate([[0, speed * touch], gap + half + travelled])
+    start = make[-1] + REST
+    # Back it goes as a film run backwards, but for the touch.
+    back = start + (make[-1] - np.delete(make, 1)[::-1])
+    time = np.concatenate([make, back, [back[-1] + REST]])
+    position = np.concatenate([position, np.delete(position, 1)[::-1], [0]])
+    return Course(time, position, len(make))
+
+
+@dataclass
+class Outcome:
+    """What came of a make and a break, SI units."""
+
+    speed: float
+    damping: float
+    first_touch: float
+    """After the start from the gap."""
+    bounces: int
+    bounce_time: float
+    open_time: float
+    """Sum of the bounces."""
+    largest_force: float
+    break_time: float
+    break_bounces: int
+
+
+COLUMNS = (
+    "speed [m/s],contact.damping [s],first touch [s],bounces on make,bounce time [s],open while bouncing [s],"
+    "largest force [N],break time [s],bounces on break"
+)
+
+
+class Contact:
+    """The component, and what is the same in all runs."""
+
+    def __init__(self, fmu: Path, folder: str, gap: float, overtravel: float, minimum: float) -> None:
+        """Unpack it."""
+        self.description = read_model_description(fmu)
+        self.unzipped = extract(fmu, folder)
+        self.references = {variable.name: variable.valueReference for variable in self.description.modelVariables}
+        self.gap, self.overtravel, self.minimum = gap, overtravel, minimum
+
+    def real(self, fmu: Any, *names: str) -> list[float]:  # noqa: ANN401
+        """Give variables by name."""
+        values: list[float] = fmu.getReal([self.references[name] for name in names])
+        return values
+
+    def run(self, speed: float, damping: float, sample: float | None = None) -> tuple[Outcome, Array]:
+        """Make and break (m/s, s); give also rows of time, force (N) and indentation (m) at every step.
+
+        Steps are the pieces of the course, cut into shorter ones where a sample time (s) is given.
+        """
+        course_ = course(self.gap, self.overtravel, speed)
+        time = course_.time
+        if sample:
+            time = np.union1d(time, np.arange(0, time[-1], sample))
+            time = time[np.diff(time, prepend=-1) > 1e-9]
+        position = np.interp(time, course_.time, course_.position)
+        back = course_.time[course_.back]
+        fmu = instantiate_fmu(self.unzipped, self.description, "CoSimulation")
+        fmu.setupExperiment(startTime=0.0)
+        values = {
+            "contact.overtravel": -self.gap,
+            "contact.damping": damping,
+            "effects.axialForce": NO_AXIAL_FORCE,
+            "chatter.minimumDuration": self.minimum,
+        }
+        apply_start_values(fmu, self.description, values)
+        fmu.enterInitializationMode()
+        fmu.exitInitializationMode()
+        support = [self.references["support.displacement"]]
+        rows = [[0.0, *self.real(fmu, "contact.force", "contact.indentation")]]
+        touch, made, largest = -1.0, (0, 0.0, 0.0), 0.0
+        for (begin, end), (here, there) in zip(itertools.pairwise(time), itertools.pairwise(position), strict=True):
+            if begin >= back and made[0] == 0:
+                count = fmu.getInteger([self.references["chatter.count"]])[0]
+                made = (count, *self.real(fmu, "contact.lastClosing", "chatter.totalInterruption"))
+            fmu.setReal(support, [here])
+            fmu.setRealInputDerivatives(support, [1], [(there - here) / (end - begin)])
+            fmu.doStep(begin, end - begin)
+            force, indentation, closing, most = self.real(
+                fmu, "contact.force", "contact.indentation", "contact.lastClosing", "step.maximumForce"
+            )
+            touch = closing if touch < 0 else touch
+            largest = max(largest, most)
+            rows.append([end, force, indentation])
+        broken = fmu.getInteger([self.references["chatter.count"]])[0]
+        opening = self.real(fmu, "contact.lastOpening")[0]
+        fmu.terminate()
+        fmu.freeInstance()
+        count, closing, interrupted = made
+        # The gap before the first touch is an interruption too, and so is the one after the last separation.
+        bounces = count - 1
+        outcome = Outcome(
+            speed,
+            damping,
+            touch,
+            bounces,
+            closing - touch if bounces else 0.0,
+            interrupted - touch if bounces else 0.0,
+            largest,
+            opening - back,
+            broken - count - 1,
+        )
+        return outcome, np.array(rows)
+
+
+def edges(centres: list[float]) -> Array:
+    """Give the edges of cells at equal ratios."""
+    ratio = (centres[1] / centres[0]) ** 0.5
+    return np.append(np.array(centres) / ratio, centres[-1] * ratio)
+
+
+def draw_map(axes: Axes, outcomes: list[Outcome], values: list[float], title: str) -> None:
+    """Draw values over speed and damping: numbers of bounces in as many colours, times (s) on a logarithmic scale."""
+    speeds = sorted({outcome.speed for outcome in outcomes})
+    dampings = sorted({outcome.damping for outcome in outcomes})
+    grid = np.array(values).reshape(len(speeds), len(dampings)).T
+    counts = grid.dtype.kind == "i"
+    most = max(int(grid.max()), 1)
+    norm = BoundaryNorm(np.arange(most + 2) - 0.5, 256) if counts else LogNorm()
+    shown = grid if counts else np.ma.masked_equal(1e6 * grid, 0)
+    axes.set_facecolor("#E5E5E5")
+    mesh = axes.pcolormesh(1e3 * edges(speeds), 1e6 * edges(dampings), shown, cmap="cividis", norm=norm)
+    bar = axes.figure.colorbar(mesh, ax=axes, pad=0.02)
+    if counts:
+        bar.set_ticks([float(tick) for tick in range(0, most + 1, 1 + most // 10)])
+        bar.ax.minorticks_off()
+    else:
+        bar.set_label("µs")
+        bar.ax.yaxis.set_major_formatter("{x:g}")
+    axes.set(
+        xscale="log", yscale="log", xlabel="speed of the actuator [mm/s]", ylabel="contact damping [µs]", title=title
+    )
+
+
+def draw(path: Path, contact: Contact, outcomes: list[Outcome], shown: Outcome, rows: Array) -> None:
+    """Draw the courses of one make and break, and the maps."""
+    figure, ((make, count, length), (open_, delay, again)) = plt.subplots(2, 3, figsize=(14, 8), layout="constrained")
+    time, force, indentation = rows.T
+    since = 1e6 * (time - shown.first_touch)
+    near = (since > -40) & (since < max(250, 1.5e6 * shown.bounce_time))
+    make.plot(since[near], force[near], color=BLUE, label="contact force")
+    make.fill_between(
+        since[near], 0, 1, where=force[near] <= 0, color=RED, alpha=0.2, transform=make.get_xaxis_transform(), lw=0
+    )
+    make.fill_between([], [], color=RED, alpha=0.2, label="open")
+    make.set(xlabel="time after the first touch [µs]", ylabel="contact force [N]", title="Make")
+    back = course(contact.gap, contact.overtravel, shown.speed)
+    since = 1e3 * (time - back.time[back.back])
+    last = 1e3 * shown.break_time
+    near = (since > last - 2) & (since < last + 4)
+    open_.plot(since[near], -1e6 * indentation[near], color=BLUE, label="gap between the contacts")
+    open_.axvline(last, color=RED, linestyle="--", label="last separation")
+    open_.set(xlabel="time after the actuator starts back [ms]", ylabel="gap [µm]", title="Break")
+    for axes in (make, open_):
+        axes.legend(fontsize="small", frameon=False)
+    draw_map(count, outcomes, [outcome.bounces for outcome in outcomes], "Make: number of bounces")
+    draw_map(length, outcomes, [outcome.bounce_time for outcome in outcomes], "Make: bounce time (grey: none)")
+    draw_map(again, outcomes, [outcome.break_bounces for outcome in outcomes], "Break: number of bounces")
+    dampings = sorted({outcome.damping for outcome in outcomes})
+    for damping, colour in zip(
+        (dampings[0], dampings[len(dampings) // 2], dampings[-1]), (BLUE, ORANGE, RED), strict=True
+    ):
+        line = [outcome for outcome in outcomes if outcome.damping == damping]
+        speeds = [1e3 * outcome.speed for outcome in line]
+        delay.plot(
+            speeds, [1e3 * o.break_time for o in line], ".-", color=colour, label=f"damping {1e6 * damping:.3g} µs"
+        )
+    speeds_ = np.array(sorted({outcome.speed for outcome in outcomes}))
+    passing = 1.5 * contact.overtravel / speeds_
+    delay.plot(1e3 * speeds_, 1e3 * passing, color=GREY, linestyle="--", label="actuator passes the spring's rest")
+    delay.set(xscale="log", yscale="log", xlabel="speed of the actuator [mm/s]", ylabel="break time [ms]")
+    delay.set_title("Break: from the actuator's start to the last separation")
+    delay.legend(fontsize="small", frameon=False)
+    for axes in (make, open_, delay):
+        axes.grid(alpha=0.3)
+    for axes in (count, length, delay, again):
+        axes.xaxis.set_major_formatter("{x:g}")
+    for axes in (count, length, again, delay):
+        axes.yaxis.set_major_formatter("{x:g}")
+    for axes in (count, length, again):
+        axes.plot(1e3 * shown.speed, 1e6 * shown.damping, "x", color="white", markersize=8, markeredgewidth=2)
+    figure.suptitle(
+        f"Relay contact, gap {1e6 * contact.gap:g} µm, overtravel {1e6 * contact.overtravel:g} µm. Left, and crosses: "
+        f"{1e3 * shown.speed:g} mm/s, contact damping {1e6 * shown.damping:g} µs. "
+        f"A bounce is an interruption of {1e6 * contact.minimum:g} µs or more."
+    )
+    figure.savefig(path, dpi=130)
+    plt.close(figure)
+
+
+def arguments() -> argparse.Namespace:
+    """Read the command line."""
+    parser = argparse.ArgumentParser(description=str(__doc__).splitlines()[0], epilog="Takes about half a minute.")
+    add = parser.add_argument
+    add("--fmu", type=Path, default=ROOT / "dist" / "RelayContact.fmu", help="the component")
+    add("--out", type=Path, default=ROOT / "out", help="folder for the tables and the figure")
+    add("--quick", action="store_true", help="short form: 6 speeds and 4 dampings instead of 24 and 13")
+    limits = {
+        "gap": (20.0, 1.0, 5000.0, "µm", "gap before the make"),
+        "overtravel": (200.0, 10.0, 5000.0, "µm", "travel after the first touch"),
+        "minimum": (1.0, 0.01, 1000.0, "µs", "shortest interruption that counts as a bounce"),
+        "speed": (60.0, 1.0, 500.0, "mm/s", "speed of the courses shown"),
+        "damping": (1.0, 0.0, 1000.0, "µs", "contact damping of the courses shown"),
+    }
+    for name, (value, low, high, unit, text) in limits.items():
+        add(f"--{name}", type=float, default=value, help=f"{text}, {unit} ({low:g} to {high:g}; default {value:g})")
+    given = parser.parse_args()
+    for name, (_, low, high, unit, _) in limits.items():
+        if not low <= getattr(given, name) <= high:
+            parser.error(f"--{name} {getattr(given, name):g}: must be from {low:g} to {high:g} {unit}")
+    return given
+
+
+def main() -> int:
+    """Run the map."""
+    given = arguments()
+    if not given.fmu.is_file():
+        print(f"{given.fmu} is missing: build it with `cargo xtask fmu`", file=sys.stderr)
+        return 1
+    speeds = 1e-3 * np.geomspace(5, 400, 6 if given.quick else 24)
+    dampings = 1e-6 * np.geomspace(0.1, 100, 4 if given.quick else 13)
+    with TemporaryDirectory() as folder:
+        contact = Contact(given.fmu, folder, 1e-6 * given.gap, 1e-6 * given.overtravel, 1e-6 * given.minimum)
+        shown, rows = contact.run(1e-3 * given.speed, 1e-6 * given.damping, sample=2e-6)
+        outcomes = []
+        bar = tqdm(list(itertools.product(speeds, dampings)), unit="make and break")
+        for speed, damping in bar:
+            bar.set_description(f"{1e3 * speed:5.1f} mm/s, {1e6 * damping:6.2f} µs", refresh=False)
+            outcomes.append(contact.run(float(speed), float(damping))[0])
+    given.out.mkdir(parents=True, exist_ok=True)
+    paths = [given.out / name for name in ("closing-bounce.csv", "closing-bounce-course.csv", "closing-bounce.png")]
+    write: dict[str, Any] = {"delimiter": ",", "comments": "", "fmt": "%.12g"}
+    np.savetxt(paths[0], [astuple(outcome) for outcome in [shown, *outcomes]], header=COLUMNS, **write)
+    np.savetxt(paths[1], rows, header="time [s],contact.force [N],contact.indentation [m]", **write)
+    draw(paths[2], contact, outcomes, shown, rows)
+    print(f"{given.speed:g} mm/s, contact damping {given.damping:g} µs")
+    print(
+        f"make: first touch {1e6 * shown.first_touch:.3f} µs after the start, largest force {shown.largest_force:.2f} N"
+    )
+    bounced = f"bounce time {1e6 * shown.bounce_time:.2f} µs, open {1e6 * shown.open_time:.2f} µs"
+    print(f"make: bounces {shown.bounces}, {bounced}")
+    print(f"break: bounces {shown.break_bounces}, last separation after {1e3 * shown.break_time:.3f} ms")
+    most = max(outcomes, key=lambda outcome: outcome.bounce_time)
+    where = f"{1e3 * most.speed:.3g} mm/s, {1e6 * most.damping:.3g} µs"
+    calm = sum(outcome.bounces == 0 for outcome in outcomes)
+    print(
+        f"map: longest bounce time {1e6 * most.bounce_time:.1f} µs at {where}; no bounce in {calm} of {len(outcomes)}"
+    )
+    print(*paths, sep="\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

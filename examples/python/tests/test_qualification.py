@@ -1,0 +1,130 @@
+"""Sweep and shock against the exact linear beam, a second nonlinear solution and closed forms."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import Run, is_picture, table
+
+import beam
+
+G = 9.80665
+Row = dict[str, float]
+
+
+def response(frequency: float, preload: float) -> float:
+    """Give the amplitude of the force (N) for 1 m/s2: beam, rivet and linear contact, exactly."""
+    omega = 2 * np.pi * frequency
+    bending = beam.BENDING * (1 + 1j * omega * beam.DAMPING)
+    contact = (6 * beam.MODULUS**2 * beam.RADIUS * preload) ** (1 / 3) * (1 + 1j * omega * beam.DAMPING)
+    wave = (beam.LINE_MASS * omega**2 / bending) ** 0.25
+    x, one = wave * beam.LENGTH, 1 / omega**2  # one: deflection of a beam without stiffness
+    # Deflection: one + c . (cosh, sinh, cos, sin).
+    cosh, sinh, cos, sin = np.cosh(x), np.sinh(x), np.cos(x), np.sin(x)
+    tip = np.array([cosh, sinh, cos, sin])
+    held = contact - beam.TIP_MASS * omega**2  # EI w''' = m (w_tt + a) - F, F = -contact w
+    third = bending * wave**3 * np.array([sinh, cosh, sin, -cos]) - held * tip
+    matrix = np.array([[1, 0, 1, 0], [0, 1, 0, 1], [cosh, sinh, -cos, -sin], third])
+    c = np.linalg.solve(matrix, np.array([-one, 0, 0, beam.TIP_MASS + held * one]))
+    return float(abs(contact * (one + c @ tip)))
+
+
+def rows(path: Path) -> dict[tuple[str, str], list[Row]]:
+    """Read the bins of each sweep."""
+    found: dict[tuple[str, str], list[Row]] = {}
+    for row in table(path):
+        key = row.pop("test"), row.pop("direction")
+        found.setdefault(key, []).append({name: float(value) for name, value in row.items()})
+    return found
+
+
+def verdicts(printed: str) -> dict[str, list[str]]:
+    """Give the lines of the table by test."""
+    lines = [line for line in printed.splitlines() if line.startswith(("method 2", "MIL-PRF"))]
+    return {line[:15].strip(): line[52:].split() for line in lines if "pass " in line or "FAIL " in line}
+
+
+def test_sweep_and_shock(run: Run, tmp_path: Path) -> None:
+    printed = verdicts(run("qualification"))
+    assert [line[0] for line in printed.values()] == ["pass", "FAIL", "FAIL"]
+    assert is_picture(tmp_path / "qualification.png")
+    shock = np.array([[float(v) for v in row.values()] for row in table(tmp_path / "qualification-shock.csv")])
+    preload = shock[0, 1]
+    sweeps = rows(tmp_path / "qualification.csv")
+    force_like_exact_beam(sweeps, preload)
+    thirty_g(sweeps, printed["MIL-PRF-28776"], preload)
+    shocked(shock, printed["method 213 A"], preload)
+
+
+def force_like_exact_beam(sweeps: dict[tuple[str, str], list[Row]], preload: float) -> None:
+    """Compare the least force in each bin with the exact linear beam's."""
+    # Lesser of g and stroke, m/s2.
+    levels = {"method 204 A": (10 * G, 0.762e-3), "MIL-PRF-28776": (30 * G, 2.475e-3)}
+    for (name, way), bins in sweeps.items():
+        limit, stroke = levels[name]
+        ratio = (bins[1]["frequency [Hz]"] / bins[0]["frequency [Hz]"]) ** 0.5
+        for index, row in enumerate(bins):
+            frequency = row["frequency [Hz]"]
+            # Below, a bin may be shorter than a period; the last bins downwards have the sudden start in them.
+            if frequency < 20 or (way == "down" and index > len(bins) - 5):
+                continue
+            edges = [frequency / ratio, frequency, frequency * ratio]
+            amplitudes = [response(f, preload) * min(limit, stroke * (2 * np.pi * f) ** 2) for f in edges]
+            least, most = preload - max(amplitudes), preload - min(amplitudes)
+            if most > 0.05 * preload:
+                # Hertz's stiffness changes with the force; the spring feels 1/4655 of it: 1e-3 of the preload.
+                assert least - 1e-3 * preload < row["step.minimumForce [N]"] < most + 1e-3 * preload, (name, way, row)
+
+
+def thirty_g(sweeps: dict[tuple[str, str], list[Row]], printed: list[str], preload: float) -> None:
+    """Compare threshold, number and length of interruptions."""
+    longest, weakest, margin = float(printed[2]) * 1e-6, float(printed[6]), float(printed[8])
+    threshold = min(preload / response(f, preload) / G for f in np.arange(1100, 1300, 1.0))
+    assert 1150 < weakest < 1230
+    # A sine is below zero for 10 us where it is (10 us omega)^2 / 8 = 7e-4 higher than one that touches it; a contact
+    # that opens stays open for longer; 1e-4 each for the bisection and the printed digits.
+    assert threshold * (1 - 1e-4) < 30 * margin < threshold * (1 + 7e-4 + 2e-4), (threshold, margin)
+    for way in ("up", "down"):
+        bins = sweeps["MIL-PRF-28776", way]
+        open_ = [row for row in bins if row["interruptions"] > 0]
+        assert len(open_) > 5
+        # One in each period: at a frequency f, f times the 75 ms of a bin, at the ends of the range fewer.
+        for row in open_[1:-1]:
+            assert abs(row["interruptions"] - row["frequency [Hz]"] * 30 / len(bins)) < 2, row
+        assert all(10e-6 <= row["mean interruption [s]"] <= 1.001 * longest for row in open_)
+    # A second solution, vibrated for nine periods: of the start, 1e-9 is left. Its overtravel is such that it has the
+    # same preload without the axial force: 3e-4 of it change the length by 2 %.
+    bins = sweeps["MIL-PRF-28776", "up"]
+    omega = 2 * np.pi * max(bins, key=lambda row: row["mean interruption [s]"])["frequency [Hz]"]
+    at_rest = beam.simulate(np.array([0, 1e-9]), -2e-4, beam.DAMPING).force[0]
+    other = beam.simulate(
+        np.array([0, 9 * 2 * np.pi / omega]),
+        -2e-4 * preload / at_rest,
+        beam.DAMPING,
+        acceleration=lambda time: 30 * G * float(np.sin(omega * time)),
+        max_step=5e-6,
+    )
+    # The sweep of 60 s lags by some 1/10000, which the root of the excess over the threshold makes 1 %.
+    assert np.isclose(longest, other.closed[-1] - other.opened[len(other.closed) - 1], rtol=0.015)
+
+
+def shocked(shock: np.ndarray[tuple[int, int], np.dtype[np.float64]], printed: list[str], preload: float) -> None:
+    """Compare the shock with that on a spring without vibration of its own."""
+    time, pressing, pulling = shock.T
+    peak = beam.CARRIED * 50 * G
+    # The pulse has 45 Hz, the spring 1355 Hz: its own vibration, 45/1355 of the peak at first, dies away.
+    assert np.isclose(pressing.max() - preload, peak, rtol=0.01)
+    # Before it opens the spring is linear: what one direction adds the other takes.
+    before = time < time[np.argmax(pulling < 0.05 * preload)]
+    assert before.sum() > 300
+    assert np.max(np.abs(pressing + pulling - 2 * preload)[before]) < 1e-3 * preload
+    assert printed[-2] == "pulling"
+    assert np.isclose(float(printed[-1]), preload / peak, rtol=0.01)
+    # The sampled course is without force as long as the monitor says, to the two samples.
+    open_time = np.sum(pulling < beam.THRESHOLD_FORCE) * 1e-5
+    assert abs(open_time - 1e-3 * float(printed[2])) < 3e-5
+
+
+def test_wrong_frequencies_are_refused(run: Run) -> None:
+    with pytest.raises(AssertionError, match="--frequencies 500 10: from 1e-3 to 1e6 Hz, the first below the second"):
+        run("qualification", "--frequencies", "500", "10")
