@@ -364,22 +364,24 @@ def draw_tolerances(table: pa.Table, study: Study, path: Path) -> None:
         )
         print(f"for longer than 10 us, {100 * test.statistic:.2f} %, with 95 % confidence {bounds}")
         label = f"{acceleration / GRAVITY:.3g} g"
-        below = np.arange(1, len(values) + 1) / len(values)
-        left.step(
-            1e6 * np.maximum(values, 1e-7), 100 * below, where="post", color=COLOURS[i % len(COLOURS)], label=label
-        )
+        # From zero at the left, where the contacts without interruption are, to all at the right.
+        across = np.concatenate(([1e-7], np.maximum(values, 1e-7), [1.0]))
+        below = np.concatenate(([0.0], np.arange(1, len(values) + 1) / max(1, len(values)), [1.0]))
+        left.step(1e6 * across, 100 * below, where="post", color=COLOURS[i % len(COLOURS)], label=label)
     left.axvline(1e6 * LIMIT, color="#666666", linestyle=":", label="10 µs")
-    left.set(xscale="log", xlim=(0.5, None), ylim=(0, 101))
+    left.set(xscale="log", xlim=(0.5, 2e6 * max(LIMIT, np.nanmax(longest, initial=0.0))), ylim=(-2, 102))
     left.set(xlabel="longest interruption [µs]; left of the scale: none", ylabel="contacts with at most this [%]")
     left.set_title(f"Longest interruption at {study.settings['frequency']:g} Hz", fontsize="medium")
     share, low, high = 100 * np.array(shares).T
     right.errorbar(accelerations, share, [share - low, high - share], color=COLOURS[0], marker="o", capsize=4)
     right.set(xlabel="base acceleration [m/s²]", ylabel="contacts that open for longer than 10 µs [%]", ylim=(-2, 102))
     right.axvline(STANDARD, color="#D55E00", linestyle="--", label="30 g, MIL-PRF-28776")
+    in_g = right.secondary_xaxis("top", functions=(lambda a: a / GRAVITY, lambda a: a * GRAVITY))
+    in_g.set_xlabel("base acceleration [g]")
     right.set_title(f"Share of {study.settings['samples']} contacts, 95 % confidence", fontsize="medium")
     for axes in (left, right):
         axes.grid(alpha=0.3)
-        axes.legend(fontsize="small")
+        axes.legend(fontsize="small", loc="center left")
     figure.savefig(path, dpi=130)
     plt.close(figure)
 
