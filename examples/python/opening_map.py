@@ -7,8 +7,9 @@ their start values. The standard deviations are assumptions to show the method: 
 
 Each simulation shakes the contact from rest with a sine until least and greatest force and interrupted time repeat from
 period to period, and measures the two periods that follow. An interruption is a stretch above 60 Ohm
-(chatter.resistanceThreshold). A simulation that the component refuses, for a parameter out of range say, does not end
-the study: its row has NaN and the component's message, and the summary tells of it. Others may be fine, and be hours.
+(chatter.resistanceThreshold); one that does not end counts with the two periods. A simulation that the component
+refuses, for a parameter out of range say, does not end a study of perhaps hours: its row has NaN and the component's
+message, and the summary tells of it.
 
 The component travels with the work: its bytes go to every worker, also to one that starts later, and are unpacked and
 instantiated once per process. A worker needs Dask and FMPy, neither this file nor a common file system. Real cluster:
@@ -154,8 +155,8 @@ class Contact(WorkerPlugin):
             resistance, force, now = self.get("contact.resistance", "step.minimumForce", "chatter.totalInterruption")
             current, lasted, total, least = current + now - total, now - total, now, min(least, force)
             longest = max(longest, current)
-            begins, begun = self.begun() > begun, self.begun()
-            current = 0.0 if resistance <= threshold else lasted if begins else current
+            last_begun, begun = begun, self.begun()
+            current = 0.0 if resistance <= threshold else lasted if begun > last_begun else current
         return longest, least, (begun - before) / WATCHED, settled, ""
 
     def begun(self) -> int:
@@ -210,8 +211,12 @@ class Study:
 
     def points(self, chunk: int) -> list[Point]:
         """Give the points of a chunk."""
+        return [self.point(index) for index in self.places(chunk)]
+
+    def places(self, chunk: int) -> range:
+        """Tell which points a chunk has."""
         size: int = self.settings["chunk"]
-        return [self.point(index) for index in range(chunk * size, min((chunk + 1) * size, self.count))]
+        return range(self.count)[chunk * size : (chunk + 1) * size]
 
     def path(self, chunk: int) -> Path:
         """Tell where a chunk's results are."""
@@ -269,14 +274,14 @@ def run(
 
 def work(client: Client, contact: str, study: Study, todo: list[int]) -> None:
     """Simulate what is not finished, with a progress bar, and tell the throughput."""
-    start, busy, count = time.perf_counter(), 0.0, 0
-    bar = tqdm(total=study.count, initial=study.count - sum(len(study.points(c)) for c in todo), unit="simulation")
-    with bar:
+    start, busy, count, cores = time.perf_counter(), 0.0, 0, 1
+    before = study.count - sum(len(study.places(chunk)) for chunk in todo)
+    with tqdm(total=study.count, initial=before, unit="simulation") as bar:
         for chunk, rows, seconds in run(client, contact, study, todo):
             study.write(chunk, rows)
-            busy, count = busy + seconds, count + len(rows)
+            busy, count, cores = busy + seconds, count + len(rows), max(cores, sum(client.nthreads().values()))
             bar.update(len(rows))
-    elapsed, cores = time.perf_counter() - start, sum(client.nthreads().values())
+    elapsed = time.perf_counter() - start
     print(f"{count} simulations in {elapsed:.1f} s on {cores} workers: {count / elapsed:.0f} per second,", end=" ")
     print(f"{count / busy:.0f} per second and core at work; at work {100 * busy / elapsed / cores:.0f} % of the time")
 
@@ -303,7 +308,7 @@ def boundary(accelerations: NDArray[np.float64], longest: NDArray[np.float64]) -
 
 
 def draw_map(table: pa.Table, study: Study, unit: str, path: Path) -> None:
-    """Draw a map for each value of the parameter, and their boundaries together; print the most sensitive points."""
+    """Draw a map for each value of the parameter, and the boundaries together; print where they are lowest."""
     values, frequencies, accelerations = (np.array(axis, dtype=float) for axis in study.axes)
     longest = table["longest_interruption"].to_numpy().reshape(len(values), len(frequencies), len(accelerations))
     columns = 2 if len(values) < 4 else 3
@@ -336,6 +341,7 @@ def draw_map(table: pa.Table, study: Study, unit: str, path: Path) -> None:
         axes.axhline(STANDARD, color="#D55E00", linestyle="--", linewidth=1.2, label="30 g, MIL-PRF-28776")
         axes.set(xscale="log", xlim=frequencies[[0, -1]], ylim=accelerations[[0, -1]])
         axes.set(xlabel="frequency [Hz]", ylabel="base acceleration [m/s²]")
+        axes.xaxis.set_major_formatter("{x:g}")
         axes.legend(fontsize="small", loc="upper left")
         in_g = axes.secondary_yaxis("right", functions=(lambda a: a / GRAVITY, lambda a: a * GRAVITY))
         in_g.set_ylabel("base acceleration [g]")
@@ -369,7 +375,7 @@ def draw_tolerances(table: pa.Table, study: Study, path: Path) -> None:
         below = np.concatenate(([0.0], np.arange(1, len(values) + 1) / max(1, len(values)), [1.0]))
         left.step(1e6 * across, 100 * below, where="post", color=COLOURS[i % len(COLOURS)], label=label)
     left.axvline(1e6 * LIMIT, color="#666666", linestyle=":", label="10 µs")
-    left.set(xscale="log", xlim=(0.5, 2e6 * max(LIMIT, np.nanmax(longest, initial=0.0))), ylim=(-2, 102))
+    left.set(xscale="log", xlim=(0.5, 1e7 * max(LIMIT, np.nanmax(longest, initial=0.0))), ylim=(-2, 102))
     left.set(xlabel="longest interruption [µs]; left of the scale: none", ylabel="contacts with at most this [%]")
     left.set_title(f"Longest interruption at {study.settings['frequency']:g} Hz", fontsize="medium")
     share, low, high = 100 * np.array(shares).T
@@ -381,7 +387,8 @@ def draw_tolerances(table: pa.Table, study: Study, path: Path) -> None:
     right.set_title(f"Share of {study.settings['samples']} contacts, 95 % confidence", fontsize="medium")
     for axes in (left, right):
         axes.grid(alpha=0.3)
-        axes.legend(fontsize="small", loc="center left")
+    left.legend(fontsize="small", loc="center right")
+    right.legend(fontsize="small", loc="upper left")
     figure.savefig(path, dpi=130)
     plt.close(figure)
 
@@ -415,6 +422,8 @@ def arguments() -> argparse.Namespace:
         axis = getattr(given, name)
         if axis and not (min(axis) > 0 and sorted(set(axis)) == axis):
             parser.error(f"--{name} are positive and rising")
+    if given.study == "tolerances" and len(given.frequencies or [0]) > 1:
+        parser.error("--frequencies: the tolerances take one")
     return given
 
 
@@ -432,8 +441,8 @@ def settings(given: argparse.Namespace, contact: str, description: Any) -> dict[
     return same | {
         "tolerances": dict(zip(TOLERANCES, zip(means, given.deviations, strict=True), strict=True)),
         "frequency": (given.frequencies or [1250.0])[0],
-        "accelerations": given.accelerations or [round(g * GRAVITY, 1) for g in (24, 27, 30, 33, 36)],
-        "samples": given.samples or (60 if few else 4000),
+        "accelerations": given.accelerations or [round(g * GRAVITY, 1) for g in (26, 28, 29, 30, 31, 32, 34)],
+        "samples": given.samples or (60 if few else 3000),
         "seed": given.seed,
     }
 
