@@ -68,7 +68,7 @@ SINE = 2  # of effects.excitation
 CHANGE = 1e-4  # part by which two periods may differ and count as the same
 PATIENCE = 200  # periods after which the motion counts as not periodic
 WATCHED = 2  # periods, so that an interruption over the end of one is seen whole
-PIECES = 32  # of a watched period: two interruptions are told apart if this part of a period is between them
+PIECES = 32  # of a watched period: two interruptions with less of a period between them count as one
 TOLERANCES = {"contact.overtravel": 10e-6, "contact.curvatureRadius": 1.1e-3, "contact.damping": 12e-6}
 # Colours of Okabe and Ito, told apart also by the colour-blind.
 COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#000000")
@@ -145,19 +145,17 @@ class Contact(WorkerPlugin):
                 settled = number + 1
                 break
             last = this
-        begun = self.begun()
-        start, before, current, longest = (number + 1) * period, begun, 0.0, 0.0
+        begun, start, step, current, longest = self.begun(), (number + 1) * period, period / PIECES, 0.0, 0.0
         for piece in range(WATCHED * PIECES):
             if settled and this[2] == 0.0:
                 break  # periodic and never interrupted
-            step = period / PIECES
             fmu.doStep(start + piece * step, step)
             resistance, force, now = self.get("contact.resistance", "step.minimumForce", "chatter.totalInterruption")
-            current, lasted, total, least = current + now - total, now - total, now, min(least, force)
+            current, total, least = current + now - total, now, min(least, force)
             longest = max(longest, current)
-            last_begun, begun = begun, self.begun()
-            current = 0.0 if resistance <= threshold else lasted if begun > last_begun else current
-        return longest, least, (begun - before) / WATCHED, settled, ""
+            if resistance <= threshold:
+                current = 0.0
+        return longest, least, (self.begun() - begun) / WATCHED, settled, ""
 
     def begun(self) -> int:
         """Count the interruptions that have begun."""
