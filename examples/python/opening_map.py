@@ -163,11 +163,11 @@ class Contact(WorkerPlugin):
 
 
 def simulate(contact: str, number: int, points: list[Point]) -> tuple[int, list[Row], float]:
-    """Simulate a chunk, on a worker; give its number, the results and the seconds it took."""
+    """Simulate a chunk, on a worker; give its number, the results and the seconds of a core it took."""
     plugin: Any = get_worker().plugins[contact]
     with plugin.lock:
-        start = time.perf_counter()
-        return number, [plugin.row(point) for point in points], time.perf_counter() - start
+        start = time.thread_time()
+        return number, [plugin.row(point) for point in points], time.thread_time() - start
 
 
 class Study:
@@ -281,20 +281,26 @@ def work(client: Client, contact: str, study: Study, todo: list[int]) -> None:
             bar.update(len(rows))
     elapsed = time.perf_counter() - start
     print(f"{count} simulations in {elapsed:.1f} s on {cores} workers: {count / elapsed:.0f} per second,", end=" ")
-    print(f"{count / busy:.0f} per second and core at work; at work {100 * busy / elapsed / cores:.0f} % of the time")
+    print(f"{count / busy:.0f} per second of a core; they simulated {100 * busy / elapsed / cores:.0f} % of the time")
 
 
 def scaling(client: Client, contact: str, study: Study, pieces: int) -> None:
-    """Simulate the same piece of the study on 1, 2, ... workers and print the throughput; nothing is kept."""
+    """Simulate the same piece of the study on 1, 2, ... workers and print the throughput; nothing is kept.
+
+    Where the efficiency falls and what a second of a core does stays, the machine has no more free cores.
+    """
     chunks = sorted({round(i) for i in np.linspace(0, study.chunks - 1, pieces)})
     addresses, first = sorted(client.nthreads()), 0.0
-    print("workers  simulations/s  per worker  efficiency")
+    print("workers  simulations/s  /s and worker  efficiency  /s of a core")
     for number in range(1, len(addresses) + 1):
-        start = time.perf_counter()
-        count = sum(len(rows) for _, rows, _ in run(client, contact, study, chunks, addresses[:number]))
+        start, count, busy = time.perf_counter(), 0, 0.0
+        for _, rows, seconds in run(client, contact, study, chunks, addresses[:number]):
+            count, busy = count + len(rows), busy + seconds
         rate = count / (time.perf_counter() - start)
         first = first or rate
-        print(f"{number:7} {rate:14.0f} {rate / number:11.0f} {100 * rate / number / first:9.0f} %")
+        print(
+            f"{number:7} {rate:14.0f} {rate / number:14.0f} {100 * rate / number / first:9.0f} % {count / busy:13.0f}"
+        )
 
 
 def boundary(accelerations: NDArray[np.float64], longest: NDArray[np.float64]) -> NDArray[np.float64]:
