@@ -352,6 +352,7 @@ def page(path: Path, sweeps: list[Sweep], shocks: dict[str, Shock], outcomes: li
         axes.set_xscale("log")
         axes.set_xlim(0.9 * ends[0], 1.1 * ends[1])
         axes.xaxis.set_major_formatter("{x:g}")
+        axes.tick_params(labelbottom=axes is length)
     for (way, hit), colour in zip(shocks.items(), (GREEN, ORANGE), strict=True):
         note = f", interrupted for {1e3 * hit.longest:.2f} ms" if hit.count else ""
         below.plot(1e3 * hit.time, 100 * hit.force, color=colour, label=way + note)

@@ -92,7 +92,7 @@ fn importers(component: &Path) -> Result<()> {
 fn pytest(folder: &str, component: &Path) -> Result<()> {
     commands::run(
         python::python()
-            .args(["-m", "pytest", "--quiet", folder])
+            .args(["-m", "pytest", "--quiet", "-rs", folder])
             .env("RELAY_CONTACT_FMU", component),
     )
 }
