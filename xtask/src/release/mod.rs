@@ -1,0 +1,3 @@
+//! The component for all platforms in one archive.
+
+pub mod platform;
