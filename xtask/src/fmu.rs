@@ -8,6 +8,7 @@ use anyhow::{Context, Result, bail};
 use cargo_metadata::{Metadata, MetadataCommand};
 use relay_contact::{C_HEADER, MODEL_DESCRIPTION};
 
+use crate::bill;
 use crate::commands::{cargo, command, output, root, run};
 use crate::documentation;
 use crate::licences;
@@ -82,7 +83,10 @@ fn files(metadata: &Metadata, library: Vec<u8>) -> Result<Files> {
             documentation::page()?.into_bytes(),
         ),
     ]);
-    for (path, text) in licences::texts(metadata)? {
+    let (rustc, this_machine) = (Path::new("rustc"), &[]);
+    let bill = bill::text(metadata, rustc, this_machine)?;
+    files.insert("documentation/sbom.cdx.json".to_owned(), bill.into_bytes());
+    for (path, text) in licences::texts(metadata, rustc, this_machine)? {
         files.insert(format!("documentation/licenses/{path}"), text);
     }
     Ok(files)
@@ -112,9 +116,12 @@ mod tests {
     #[test]
     fn documentation_and_licences_are_the_same_bytes_every_time() -> Result<()> {
         let metadata = MetadataCommand::new().current_dir(root()).exec()?;
-        let first = licences::texts(&metadata)?;
+        let first = licences::texts(&metadata, Path::new("rustc"), &[])?;
         assert!(first.contains_key("LICENSE-MIT") && first.keys().any(|path| path.starts_with("nalgebra-")));
-        assert_eq!(pack(&first)?, pack(&licences::texts(&metadata)?)?);
+        assert_eq!(
+            pack(&first)?,
+            pack(&licences::texts(&metadata, Path::new("rustc"), &[])?)?
+        );
         assert_eq!(documentation::page()?, documentation::page()?);
         Ok(())
     }

@@ -1,23 +1,27 @@
 //! The licence texts of everything that is linked into the component.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fs;
+use std::io::ErrorKind;
 use std::path::Path;
 
 use anyhow::{Context, Result, bail};
-use cargo_metadata::{Metadata, Package};
+use cargo_metadata::Metadata;
 
-use crate::commands::{cargo, command, output, root};
+use crate::commands::{command, output, root};
+use crate::linked::{COMPONENT, graph, package};
 use crate::package::Files;
 
-/// Texts by path below `documentation/licenses/`: ours, a folder for each crate, and the Rust standard library's.
-pub fn texts(metadata: &Metadata) -> Result<Files> {
+/// Texts by path below `documentation/licenses/`: ours, a folder for each crate, and the Rust standard library's, which is
+/// that of the compiler `rustc`; `targets` are as for [`graph`].
+pub fn texts(metadata: &Metadata, rustc: &Path, targets: &[&str]) -> Result<Files> {
     let mut files = Files::new();
     for name in ["LICENSE-MIT", "LICENSE-APACHE"] {
         let text = fs::read(root().join(name)).with_context(|| format!("cannot read {name}"))?;
         files.insert(name.to_owned(), text);
     }
-    for package in linked(metadata)? {
+    for crate_ in graph(targets)?.keys().filter(|(name, _)| name != COMPONENT) {
+        let package = package(metadata, crate_)?;
         let folder = format!("{}-{}", package.name, package.version);
         let texts = licence_files(
             package
@@ -33,48 +37,36 @@ pub fn texts(metadata: &Metadata) -> Result<Files> {
             files.insert(format!("{folder}/{name}"), text);
         }
     }
-    let sysroot = output(command("rustc").args(["--print", "sysroot"]))?;
-    let standard = Path::new(sysroot.trim()).join("share/doc/rust/COPYRIGHT-library.html");
-    match fs::read(&standard) {
-        Ok(text) => {
-            files.insert("rust-standard-library/COPYRIGHT-library.html".to_owned(), text);
-        }
-        Err(error) => eprintln!(
-            "licence of the Rust standard library left out, {}: {error}",
-            standard.display()
-        ),
+    if let Some((name, text)) = standard_library(rustc)? {
+        files.insert(format!("rust-standard-library/{name}"), text);
     }
     Ok(files)
 }
 
-/// The crates linked into the library. `cargo tree` is asked because, unlike `cargo metadata`, it resolves features
-/// for this one package.
-fn linked(metadata: &Metadata) -> Result<Vec<&Package>> {
-    let tree = output(cargo().args([
-        "tree",
-        "--package=relay-contact",
-        "--edges=normal,no-proc-macro",
-        "--prefix=none",
-        "--format={p}",
-    ]))?;
-    let names: BTreeSet<(&str, &str)> = tree
-        .lines()
-        .filter_map(|line| {
-            let mut words = line.split(' ');
-            Some((words.next()?, words.next()?.strip_prefix('v')?))
-        })
-        .collect();
-    names
-        .into_iter()
-        .filter(|(name, _)| *name != "relay-contact")
-        .map(|(name, version)| {
-            metadata
-                .packages
-                .iter()
-                .find(|package| package.name.as_str() == name && package.version.to_string() == version)
-                .with_context(|| format!("cargo metadata does not know {name} {version}"))
-        })
-        .collect()
+/// The licence text of the standard library, where rustup or Debian's packages put it below the compiler's folder.
+fn standard_library(rustc: &Path) -> Result<Option<(String, Vec<u8>)>> {
+    let sysroot = output(command(rustc).args(["--print", "sysroot"]))?;
+    let documentation = Path::new(sysroot.trim()).join("share/doc");
+    let places = [
+        "rust/COPYRIGHT-library.html",
+        "libstd-rust-web-dev/copyright",
+        "libstd-rust-dev/copyright",
+    ];
+    for place in places {
+        let path = documentation.join(place);
+        let name = path.file_name().context("a text without a name")?.to_string_lossy();
+        match fs::read(&path) {
+            Ok(text) => return Ok(Some((name.into_owned(), text))),
+            Err(error) if error.kind() == ErrorKind::NotFound => {}
+            Err(error) => return Err(error).with_context(|| format!("cannot read {}", path.display())),
+        }
+    }
+    eprintln!(
+        "licence of the Rust standard library left out: {} has none of {}",
+        documentation.display(),
+        places.join(", ")
+    );
+    Ok(None)
 }
 
 /// The files of a crate's top folder whose name says that they are about its licence.
@@ -90,4 +82,18 @@ fn licence_files(folder: &Path) -> Result<BTreeMap<String, Vec<u8>>> {
         }
     }
     Ok(files)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The Rust of this machine comes with its documentation or with that of the Debian packages.
+    #[test]
+    fn the_licence_of_the_standard_library_is_found() -> Result<()> {
+        let (name, text) = standard_library(Path::new("rustc"))?.context("no licence of the standard library")?;
+        assert!(name.to_lowercase().starts_with("copyright"));
+        assert!(String::from_utf8(text)?.contains("Apache"));
+        Ok(())
+    }
 }

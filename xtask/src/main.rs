@@ -1,6 +1,7 @@
 //! The project's tasks: `cargo xtask --help`.
 
 mod accuracy;
+mod bill;
 mod commands;
 mod demo;
 mod documentation;
@@ -9,8 +10,11 @@ mod fmu;
 mod html;
 mod importers;
 mod licences;
+mod linked;
 mod package;
 mod python;
+#[allow(dead_code)]
+mod release;
 mod report;
 mod run_scene;
 mod scene;

@@ -1,0 +1,67 @@
+//! Libraries for Windows.
+
+use std::collections::BTreeSet;
+
+use anyhow::{Context, Result};
+use goblin::pe::PE;
+use goblin::pe::header::COFF_MACHINE_X86_64;
+
+use super::Report;
+
+/// Those that every Windows has.
+const LIBRARIES: [&str; 9] = [
+    "kernel32.dll",
+    "ntdll.dll",
+    "msvcrt.dll",
+    "api-ms-win-crt-*",
+    "userenv.dll",
+    "ws2_32.dll",
+    "bcryptprimitives.dll",
+    "api-ms-win-core-synch-*",
+    "advapi32.dll",
+];
+
+/// The oldest Windows that the Rust standard library runs on: what a library asks for may not be newer.
+const WINDOWS: [u16; 2] = [10, 0];
+
+pub fn check(report: &mut Report, bytes: &[u8]) -> Result<()> {
+    let pe = PE::parse(bytes).context("not a Windows file")?;
+    let processor = match pe.header.coff_header.machine {
+        COFF_MACHINE_X86_64 => "x86_64",
+        _ => "another processor",
+    };
+    report.kind("Windows", pe.is_lib, processor);
+    let unnamed = || "one without a name".to_owned();
+    let exported: BTreeSet<_> = pe
+        .exports
+        .iter()
+        .map(|export| export.name.map_or_else(unnamed, str::to_owned))
+        .collect();
+    report.exports(&exported);
+    let optional = pe.header.optional_header.context("a Windows file without its header")?;
+    let mut imported: BTreeSet<_> = pe.libraries.iter().map(|name| name.to_lowercase()).collect();
+    if optional.data_directories.get_delay_import_descriptor().is_some() {
+        imported.insert("some at first use".to_owned());
+    }
+    report.only(
+        "imported libraries",
+        &imported.into_iter().collect::<Vec<_>>(),
+        &LIBRARIES,
+    );
+    let asked = optional.windows_fields;
+    let system = [
+        asked.major_operating_system_version,
+        asked.minor_operating_system_version,
+    ];
+    let subsystem = [asked.major_subsystem_version, asked.minor_subsystem_version];
+    report.add(
+        "Windows version",
+        format!(
+            "{}.{}, subsystem {}.{}",
+            system[0], system[1], subsystem[0], subsystem[1]
+        ),
+        format!("up to {}.{}", WINDOWS[0], WINDOWS[1]),
+        system.max(subsystem) <= WINDOWS,
+    );
+    Ok(())
+}
