@@ -1,3 +1,4 @@
 //! The component for all platforms in one archive.
 
 pub mod platform;
+pub mod trial;
