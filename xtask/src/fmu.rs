@@ -19,12 +19,13 @@ use crate::package::{Files, pack};
 pub fn build() -> Result<PathBuf> {
     let metadata = MetadataCommand::new().current_dir(root()).exec()?;
     build_library(&metadata)?;
-    let (_, prefix, extension) = platform()?;
+    let (folder, prefix, extension) = platform()?;
     let name = format!("{prefix}relay_contact.{extension}");
     let library = read(&metadata.target_directory.as_std_path().join("release").join(&name))?;
     write("include/relay_contact.h", C_HEADER.as_bytes())?;
     write(&format!("lib/{name}"), &library)?;
-    write("RelayContact.fmu", &pack(&files(&metadata, library)?)?)
+    let files = files(&metadata, [(folder, extension, library)], Path::new("rustc"), &[])?;
+    write("RelayContact.fmu", &pack(&files)?)
 }
 
 /// Writes a file in `dist` and gives its path.
@@ -35,9 +36,18 @@ fn write(name: &str, contents: &[u8]) -> Result<PathBuf> {
     Ok(path)
 }
 
+/// Cargo's arguments that build the shared library. It alone, as only then it is optimised across crates.
+pub const CARGO_RUSTC: [&str; 5] = [
+    "rustc",
+    "--release",
+    "--package=relay-contact",
+    "--lib",
+    "--crate-type=cdylib",
+];
+
 fn build_library(metadata: &Metadata) -> Result<()> {
     let mut build = cargo();
-    build.args(["build", "--release", "--package=relay-contact", "--lib"]);
+    build.args(CARGO_RUSTC);
     // Cargo takes rustc's flags from one place alone, so ours go where the user's are.
     let given = |name, separator: char| {
         let flags = env::var(name).ok()?;
@@ -60,7 +70,7 @@ fn build_library(metadata: &Metadata) -> Result<()> {
 
 /// Flags that keep the folders of this machine out of the library: without them its messages of panics name their
 /// source files by whole path.
-fn path_flags(metadata: &Metadata) -> Vec<String> {
+pub fn path_flags(metadata: &Metadata) -> Vec<String> {
     let foreign = metadata.packages.iter().filter(|package| package.source.is_some());
     let crates: BTreeSet<_> = foreign
         .filter_map(|package| package.manifest_path.parent()?.parent())
@@ -72,21 +82,28 @@ fn path_flags(metadata: &Metadata) -> Vec<String> {
     crates.chain([project]).collect()
 }
 
-fn files(metadata: &Metadata, library: Vec<u8>) -> Result<Files> {
-    let (folder, _, extension) = platform()?;
+/// What is in the archive: libraries come with folder and extension. `rustc` is the compiler whose standard library they
+/// have, `targets` are their platforms as it calls them, this machine's where there are none.
+pub fn files<'a>(
+    metadata: &Metadata,
+    libraries: impl IntoIterator<Item = (&'a str, &'a str, Vec<u8>)>,
+    rustc: &Path,
+    targets: &[&str],
+) -> Result<Files> {
     let mut files = Files::from([
         ("modelDescription.xml".to_owned(), MODEL_DESCRIPTION.as_bytes().to_vec()),
-        (format!("binaries/{folder}/RelayContact.{extension}"), library),
         ("model.png".to_owned(), read(&root().join("docs/model.png"))?),
         (
             "documentation/index.html".to_owned(),
             documentation::page()?.into_bytes(),
         ),
     ]);
-    let (rustc, this_machine) = (Path::new("rustc"), &[]);
-    let bill = bill::text(metadata, rustc, this_machine)?;
+    for (folder, extension, library) in libraries {
+        files.insert(format!("binaries/{folder}/RelayContact.{extension}"), library);
+    }
+    let bill = bill::text(metadata, rustc, targets)?;
     files.insert("documentation/sbom.cdx.json".to_owned(), bill.into_bytes());
-    for (path, text) in licences::texts(metadata, rustc, this_machine)? {
+    for (path, text) in licences::texts(metadata, rustc, targets)? {
         files.insert(format!("documentation/licenses/{path}"), text);
     }
     Ok(files)

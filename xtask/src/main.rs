@@ -13,7 +13,6 @@ mod licences;
 mod linked;
 mod package;
 mod python;
-#[allow(dead_code)]
 mod release;
 mod report;
 mod run_scene;
@@ -61,6 +60,8 @@ enum Task {
     Valgrind,
     /// Count the instructions of a communication step, through C and in the library alone (needs valgrind)
     Instructions,
+    /// Build the component for all platforms and pack it as dist/release/RelayContact.fmu
+    Release(release::Arguments),
     /// Run every check and test
     Test,
 }
@@ -77,6 +78,7 @@ fn main() -> ExitCode {
         Task::Importers => test::importers_alone(),
         Task::Valgrind => valgrind::run(),
         Task::Instructions => valgrind::instructions(),
+        Task::Release(arguments) => release::run(&arguments),
         Task::Test => test::run(),
     };
     match outcome {

@@ -1,5 +1,6 @@
 //! The Python environment `.venv`, with exactly what `requirements.txt` lists.
 
+use std::env::consts::EXE_SUFFIX;
 use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
@@ -65,6 +66,23 @@ pub fn libclang() -> Result<PathBuf> {
     let code = "import clang, pathlib; print(pathlib.Path(clang.__path__[0]) / 'native')";
     let path = output(python().args(["-c", code]))?;
     Ok(PathBuf::from(path.trim()))
+}
+
+/// zig and cargo-zigbuild, which only the release needs: `prepare` leaves out what requirements.txt marks so.
+pub fn zig() -> Result<(PathBuf, PathBuf)> {
+    const MARK: &str = "; extra == 'release'";
+    prepare()?;
+    let requirements = fs::read_to_string(root().join("requirements.txt")).context("cannot read requirements.txt")?;
+    let wanted = requirements.lines().filter_map(|line| line.strip_suffix(MARK));
+    let progress = ProgressBar::new_spinner().with_message("installing zig (Python package of requirements.txt)");
+    progress.enable_steady_tick(Duration::from_millis(100));
+    let pip = ["-m", "pip", "install", "--disable-pip-version-check", "--quiet"];
+    output(python().args(pip).args(wanted.map(str::trim)))?;
+    progress.finish_and_clear();
+    let code = "import pathlib, ziglang; print(pathlib.Path(ziglang.__path__[0]))";
+    let zig = PathBuf::from(output(python().args(["-c", code]))?.trim()).join(format!("zig{EXE_SUFFIX}"));
+    let zigbuild = interpreter().with_file_name(format!("cargo-zigbuild{EXE_SUFFIX}"));
+    Ok((zig, zigbuild))
 }
 
 /// The machine's Python 3, if it can make environments.

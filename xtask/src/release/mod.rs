@@ -1,6 +1,128 @@
 //! The component for all platforms in one archive.
 
+pub mod build;
 pub mod check;
 pub mod platform;
 pub mod sums;
+pub mod tools;
+pub mod trial;
 pub mod universal;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use cargo_metadata::{Metadata, MetadataCommand};
+use clap::builder::PossibleValuesParser;
+
+use crate::commands::root;
+use crate::fmu;
+use crate::package::{Files, pack};
+use platform::{PLATFORMS, Platform};
+use tools::Tools;
+use trial::Outcome;
+
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Only these platforms
+    #[arg(value_parser = PossibleValuesParser::new(PLATFORMS.map(|platform| platform.folder)))]
+    platforms: Vec<String>,
+}
+
+/// Builds, checks and tries the libraries, and writes `dist/release/RelayContact.fmu` with `SHA256SUMS` beside it. A platform
+/// that cannot be built is left out, and the command fails in the end.
+pub fn run(arguments: &Arguments) -> Result<()> {
+    let metadata = MetadataCommand::new().current_dir(root()).exec()?;
+    let tools = Tools::find()?;
+    let asked = |platform: &&Platform| {
+        arguments.platforms.is_empty() || arguments.platforms.iter().any(|name| name == platform.folder)
+    };
+    let mut release = Release {
+        metadata: &metadata,
+        tools: &tools,
+        built: BTreeMap::new(),
+    };
+    let (mut libraries, mut lines, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
+    for platform in PLATFORMS.iter().filter(asked) {
+        println!("== {}", platform.folder);
+        match release.platform(platform) {
+            Ok((library, outcome)) => {
+                lines.push(format!("{:15} {:7} bytes  {outcome}", platform.folder, library.len()));
+                libraries.push((platform, library));
+            }
+            Err(error) => {
+                println!("{error:#}");
+                lines.push(format!("{:15} LEFT OUT, see above", platform.folder));
+                left_out.push(platform.folder);
+            }
+        }
+    }
+    if libraries.is_empty() {
+        bail!("no platform could be built");
+    }
+    let targets: Vec<_> = libraries.iter().flat_map(|(platform, _)| platform.targets.iter().copied()).collect();
+    let binaries = libraries
+        .iter()
+        .map(|(platform, library)| (platform.folder, platform.extension, library.clone()));
+    let files = fmu::files(&metadata, binaries, &tools.rustc, &targets)?;
+    write(&Files::from([("RelayContact.fmu".to_owned(), pack(&files)?)]))?;
+    println!("== dist/release/RelayContact.fmu\n{}", lines.join("\n"));
+    if !left_out.is_empty() {
+        bail!("the archive lacks {}", left_out.join(", "));
+    }
+    Ok(())
+}
+
+struct Release<'a> {
+    metadata: &'a Metadata,
+    tools: &'a Tools,
+    /// Libraries by what rustc calls their platforms.
+    built: BTreeMap<&'static str, Vec<u8>>,
+}
+
+impl Release<'_> {
+    /// The library of a platform, checked, and how it was tried.
+    fn platform(&mut self, platform: &Platform) -> Result<(Vec<u8>, Outcome)> {
+        let mut parts = Vec::new();
+        for target in platform.targets {
+            if !self.built.contains_key(target) {
+                let library = build::library(target, self.tools, self.metadata)?;
+                self.built.insert(target, library);
+            }
+            parts.extend(self.built.get(target).cloned());
+        }
+        let library = match parts.as_slice() {
+            [one] => one.clone(),
+            several => universal::join(several)?,
+        };
+        let private = check::private_folders(self.metadata, &self.tools.rustc)?;
+        let findings = check::library(platform, &library, &private)?;
+        for finding in &findings {
+            println!("{finding}");
+        }
+        check::demand(platform.folder, &findings)?;
+        let path = self.folder().join(platform.folder).join(format!("RelayContact.{}", platform.extension));
+        fs::create_dir_all(path.parent().unwrap_or(Path::new(".")))?;
+        fs::write(&path, &library).with_context(|| format!("cannot write {}", path.display()))?;
+        let outcome = trial::run(platform, &path, &self.tools.zig)?;
+        println!("{outcome}");
+        Ok((library, outcome))
+    }
+
+    fn folder(&self) -> PathBuf {
+        build::folder(self.metadata).join("libraries")
+    }
+}
+
+/// Writes files and their checksums to `dist/release`.
+fn write(files: &Files) -> Result<()> {
+    let folder = root().join("dist/release");
+    fs::create_dir_all(&folder)?;
+    let sums = Files::from([("SHA256SUMS".to_owned(), sums::text(files).into_bytes())]);
+    for (name, contents) in files.iter().chain(&sums) {
+        let path = folder.join(name);
+        fs::write(&path, contents).with_context(|| format!("cannot write {}", path.display()))?;
+    }
+    Ok(())
+}

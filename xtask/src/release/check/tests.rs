@@ -9,7 +9,7 @@ use super::tiny::Tiny;
 use super::*;
 
 const LINUX: [&str; 2] = ["x86_64-unknown-linux-gnu", "aarch64-unknown-linux-gnu"];
-const WINDOWS: &str = "x86_64-pc-windows-gnu";
+const WINDOWS: &str = "x86_64-pc-windows-gnullvm";
 const MACOS: [&str; 2] = ["x86_64-apple-darwin", "aarch64-apple-darwin"];
 
 /// A library that passes every check.

@@ -1,0 +1,82 @@
+//! Builds the library for any platform on this machine.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use cargo_metadata::Metadata;
+
+use super::tools::{Tools, lld};
+use crate::commands::{cargo, command, run};
+use crate::fmu;
+
+/// Oldest C library of Linux, and oldest macOS, on which the libraries load.
+const GLIBC: &str = "2.17";
+const MACOS: &str = "11.0";
+
+/// Where all of it is built.
+pub fn folder(metadata: &Metadata) -> PathBuf {
+    metadata.target_directory.as_std_path().join("platforms")
+}
+
+/// Builds the library for `target`, the platform as rustc calls it. The standard library is compiled with it, without what
+/// prints backtraces: that would be an eighth of the size.
+pub fn library(target: &str, tools: &Tools, metadata: &Metadata) -> Result<Vec<u8>> {
+    let folder = folder(metadata);
+    let mut flags = fmu::path_flags(metadata);
+    flags.push(format!("--remap-path-prefix={}=rust", tools.sources.display()));
+    let mut build = if target.contains("apple") {
+        flags.extend(apple_flags(&lld(&tools.rustc)?));
+        let mut build = cargo();
+        build.env("SDKROOT", sdk(&tools.zig, &folder)?);
+        // The linker strips: rustc would ask for a program that is not there.
+        build.env("MACOSX_DEPLOYMENT_TARGET", MACOS).env("CARGO_PROFILE_RELEASE_STRIP", "none");
+        build
+    } else {
+        let mut build = command(&tools.zigbuild);
+        build.env("CARGO_ZIGBUILD_ZIG_PATH", &tools.zig);
+        build
+    };
+    build.args(fmu::CARGO_RUSTC);
+    build.args(["-Zbuild-std=std,panic_unwind", "-Zbuild-std-features="]);
+    let version = if target.contains("linux") { format!(".{GLIBC}") } else { String::new() };
+    build.arg(format!("--target={target}{version}")).arg("--target-dir").arg(&folder);
+    // Of the user's flags none: the same archive everywhere.
+    build.env("CARGO_ENCODED_RUSTFLAGS", flags.join("\x1f")).env_remove("RUSTC_WRAPPER");
+    build.env("RUSTC", &tools.rustc).env("RUSTC_BOOTSTRAP", "1");
+    run(&mut build)?;
+    let release = folder.join(target).join("release");
+    for name in ["librelay_contact.so", "relay_contact.dll", "librelay_contact.dylib"] {
+        let path = release.join(name);
+        if path.exists() {
+            return fs::read(&path).with_context(|| format!("cannot read {}", path.display()));
+        }
+    }
+    bail!("cargo built no library in {}", release.display())
+}
+
+fn apple_flags(lld: &Path) -> Vec<String> {
+    let linker = [
+        format!("-Clinker={}", lld.display()),
+        "-Zunstable-options".to_owned(),
+        "-Clinker-flavor=darwin-lld".to_owned(),
+    ];
+    // Symbols that are not exported go; so does libiconv, which the standard library names and nothing uses.
+    let arguments = ["-install_name", "@rpath/RelayContact.dylib", "-dead_strip_dylibs", "-x", "-S"];
+    linker.into_iter().chain(arguments.map(|argument| format!("-Clink-arg={argument}"))).collect()
+}
+
+/// A folder that stands for the SDK of macOS: the list of what its system library exports, as zig has it.
+fn sdk(zig: &Path, folder: &Path) -> Result<PathBuf> {
+    let path = zig.with_file_name("lib").join("libc/darwin/libSystem.tbd");
+    let text = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
+    // A processor that this linker does not know yet.
+    let text = text.replace("arm64e.x1-", "arm64e-");
+    let sdk = folder.join("MacOSX.sdk");
+    let libraries = sdk.join("usr/lib");
+    fs::create_dir_all(&libraries)?;
+    for name in ["System", "c", "m", "iconv"] {
+        fs::write(libraries.join(format!("lib{name}.tbd")), &text)?;
+    }
+    Ok(sdk)
+}
