@@ -140,6 +140,7 @@ mod tests {
             pack(&licences::texts(&metadata, Path::new("rustc"), &[])?)?
         );
         assert_eq!(documentation::page()?, documentation::page()?);
+        assert!(files(&metadata, Vec::new())?.contains_key("documentation/sbom.cdx.json"));
         Ok(())
     }
 }

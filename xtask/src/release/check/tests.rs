@@ -306,6 +306,11 @@ fn a_universal_library_has_each_processor_once_and_all_checks() -> Result<()> {
     assert_eq!(failed(&joined)?, ["aarch64-apple-darwin: exported symbols"]);
     assert!(failed(&libraries[0]).is_err());
 
+    // Both entries of the header tell the first one's processor.
+    let mut twice = join(&libraries)?;
+    twice.copy_within(8..12, 28);
+    assert_eq!(failed(&twice)?, ["universal: libraries"]);
+
     // Everything 16 bytes further: each entry of the header is 20 bytes, its place at the third word.
     let mut shifted = join(&libraries)?;
     shifted.splice(0x1000..0x1000, [0; 16]);
