@@ -24,13 +24,20 @@ pub fn folder(metadata: &Metadata) -> PathBuf {
 pub fn library(target: &str, tools: &Tools, metadata: &Metadata) -> Result<Vec<u8>> {
     let folder = folder(metadata);
     let mut flags = fmu::path_flags(metadata);
-    flags.push(format!("--remap-path-prefix={}=rust", tools.sources.display()));
+    flags.extend(
+        tools
+            .sources
+            .iter()
+            .map(|folder| format!("--remap-path-prefix={}=rust", folder.display())),
+    );
     let mut build = if target.contains("apple") {
         flags.extend(apple_flags(&lld(&tools.rustc)?));
         let mut build = cargo();
         build.env("SDKROOT", sdk(&tools.zig, &folder)?);
         // The linker strips: rustc would ask for a program that is not there.
-        build.env("MACOSX_DEPLOYMENT_TARGET", MACOS).env("CARGO_PROFILE_RELEASE_STRIP", "none");
+        build
+            .env("MACOSX_DEPLOYMENT_TARGET", MACOS)
+            .env("CARGO_PROFILE_RELEASE_STRIP", "none");
         build
     } else {
         let mut build = command(&tools.zigbuild);
@@ -39,10 +46,19 @@ pub fn library(target: &str, tools: &Tools, metadata: &Metadata) -> Result<Vec<u
     };
     build.args(fmu::CARGO_RUSTC);
     build.args(["-Zbuild-std=std,panic_unwind", "-Zbuild-std-features="]);
-    let version = if target.contains("linux") { format!(".{GLIBC}") } else { String::new() };
-    build.arg(format!("--target={target}{version}")).arg("--target-dir").arg(&folder);
+    let version = if target.contains("linux") {
+        format!(".{GLIBC}")
+    } else {
+        String::new()
+    };
+    build
+        .arg(format!("--target={target}{version}"))
+        .arg("--target-dir")
+        .arg(&folder);
     // Of the user's flags none: the same archive everywhere.
-    build.env("CARGO_ENCODED_RUSTFLAGS", flags.join("\x1f")).env_remove("RUSTC_WRAPPER");
+    build
+        .env("CARGO_ENCODED_RUSTFLAGS", flags.join("\x1f"))
+        .env_remove("RUSTC_WRAPPER");
     build.env("RUSTC", &tools.rustc).env("RUSTC_BOOTSTRAP", "1");
     run(&mut build)?;
     let release = folder.join(target).join("release");
@@ -62,8 +78,17 @@ fn apple_flags(lld: &Path) -> Vec<String> {
         "-Clinker-flavor=darwin-lld".to_owned(),
     ];
     // Symbols that are not exported go; so does libiconv, which the standard library names and nothing uses.
-    let arguments = ["-install_name", "@rpath/RelayContact.dylib", "-dead_strip_dylibs", "-x", "-S"];
-    linker.into_iter().chain(arguments.map(|argument| format!("-Clink-arg={argument}"))).collect()
+    let arguments = [
+        "-install_name",
+        "@rpath/RelayContact.dylib",
+        "-dead_strip_dylibs",
+        "-x",
+        "-S",
+    ];
+    linker
+        .into_iter()
+        .chain(arguments.map(|argument| format!("-Clink-arg={argument}")))
+        .collect()
 }
 
 /// A folder that stands for the SDK of macOS: the list of what its system library exports, as zig has it.

@@ -61,11 +61,17 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     if libraries.is_empty() {
         bail!("no platform could be built");
     }
-    let targets: Vec<_> = libraries.iter().flat_map(|(platform, _)| platform.targets.iter().copied()).collect();
+    let targets: Vec<_> = libraries
+        .iter()
+        .flat_map(|(platform, _)| platform.targets.iter().copied())
+        .collect();
     let binaries = libraries
         .iter()
         .map(|(platform, library)| (platform.folder, platform.extension, library.clone()));
-    let files = fmu::files(&metadata, binaries, &tools.rustc, &targets)?;
+    let mut files = fmu::files(&metadata, binaries, &tools.rustc, &targets)?;
+    for (path, text) in tools.licences()? {
+        files.insert(format!("documentation/licenses/{path}"), text);
+    }
     write(&Files::from([("RelayContact.fmu".to_owned(), pack(&files)?)]))?;
     println!("== dist/release/RelayContact.fmu\n{}", lines.join("\n"));
     if !left_out.is_empty() {
@@ -102,7 +108,10 @@ impl Release<'_> {
             println!("{finding}");
         }
         check::demand(platform.folder, &findings)?;
-        let path = self.folder().join(platform.folder).join(format!("RelayContact.{}", platform.extension));
+        let path = self
+            .folder()
+            .join(platform.folder)
+            .join(format!("RelayContact.{}", platform.extension));
         fs::create_dir_all(path.parent().unwrap_or(Path::new(".")))?;
         fs::write(&path, &library).with_context(|| format!("cannot write {}", path.display()))?;
         let outcome = trial::run(platform, &path, &self.tools.zig)?;

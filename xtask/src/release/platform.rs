@@ -12,9 +12,29 @@ pub struct Platform {
 
 /// All of them.
 pub const PLATFORMS: [Platform; 5] = [
-    Platform { folder: "linux64", extension: "so", targets: &["x86_64-unknown-linux-gnu"] },
-    Platform { folder: "aarch64-linux", extension: "so", targets: &["aarch64-unknown-linux-gnu"] },
-    Platform { folder: "win64", extension: "dll", targets: &["x86_64-pc-windows-gnullvm"] },
-    Platform { folder: "darwin64", extension: "dylib", targets: &["x86_64-apple-darwin", "aarch64-apple-darwin"] },
-    Platform { folder: "aarch64-darwin", extension: "dylib", targets: &["aarch64-apple-darwin"] },
+    Platform {
+        folder: "linux64",
+        extension: "so",
+        targets: &["x86_64-unknown-linux-gnu"],
+    },
+    Platform {
+        folder: "aarch64-linux",
+        extension: "so",
+        targets: &["aarch64-unknown-linux-gnu"],
+    },
+    Platform {
+        folder: "win64",
+        extension: "dll",
+        targets: &["x86_64-pc-windows-gnullvm"],
+    },
+    Platform {
+        folder: "darwin64",
+        extension: "dylib",
+        targets: &["x86_64-apple-darwin", "aarch64-apple-darwin"],
+    },
+    Platform {
+        folder: "aarch64-darwin",
+        extension: "dylib",
+        targets: &["aarch64-apple-darwin"],
+    },
 ];

@@ -1,23 +1,29 @@
 //! What the builds for all platforms need.
 
+use std::env::consts::EXE_SUFFIX;
+use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 
 use crate::commands::{command, output};
+use crate::package::Files;
 use crate::python;
 
 /// Programs and files that were found.
 pub struct Tools {
     /// A Rust compiler that comes with the sources of its standard library: they are compiled for each platform.
     pub rustc: PathBuf,
-    /// Those sources.
-    pub sources: PathBuf,
+    /// Their folder, by its two names: where it is below the compiler, and where that leads on Debian.
+    pub sources: [PathBuf; 2],
     /// Compiles and links C for Linux and Windows.
     pub zig: PathBuf,
     /// Has cargo link by zig.
     pub zigbuild: PathBuf,
 }
+
+/// Licences of what zig links into libraries, below its folder: its own parts, LLVM's, and for Windows those of MinGW.
+const ZIG_LICENCES: [&str; 3] = ["LICENSE", "lib/libunwind/LICENSE.TXT", "lib/libc/mingw/COPYING"];
 
 impl Tools {
     /// Finds a compiler, and installs zig into `.venv`.
@@ -35,22 +41,36 @@ impl Tools {
             zigbuild,
         })
     }
+
+    /// Licence texts of what zig links into libraries, by path below `documentation/licenses/`.
+    pub fn licences(&self) -> Result<Files> {
+        let text = |name: &str| {
+            let path = self.zig.with_file_name(name);
+            let text = fs::read(&path).with_context(|| format!("cannot read {}", path.display()))?;
+            Ok((format!("zig/{}", name.replace('/', "-")), text))
+        };
+        ZIG_LICENCES.into_iter().map(text).collect()
+    }
 }
 
 /// The compiler itself, not rustup's stand-in for it, and the sources, where it has them.
-fn with_sources(rustc: &str) -> Option<(PathBuf, PathBuf)> {
-    let sysroot = sysroot(Path::new(rustc))?;
-    // Debian's is a link, and the compiler names the files by where it leads.
-    let sources = sysroot.join("lib/rustlib/src/rust").canonicalize().ok()?;
-    let rustc = sysroot.join("bin").join(format!("rustc{}", std::env::consts::EXE_SUFFIX));
-    sources.join("library/Cargo.toml").exists().then_some((rustc, sources))
+fn with_sources(rustc: &str) -> Option<(PathBuf, [PathBuf; 2])> {
+    let sysroot = output(command(rustc).args(["--print", "sysroot"])).ok()?;
+    let sysroot = Path::new(sysroot.trim());
+    let sources = sysroot.join("lib/rustlib/src/rust");
+    let rustc = sysroot.join("bin").join(format!("rustc{EXE_SUFFIX}"));
+    let leads_to = sources.canonicalize().ok()?;
+    sources
+        .join("library/Cargo.toml")
+        .exists()
+        .then_some((rustc, [sources, leads_to]))
 }
 
 /// Links for macOS. It comes with rustup's toolchains; Debian's have none.
 pub fn lld(rustc: &Path) -> Result<PathBuf> {
     let found = [rustc, Path::new("rustc")].into_iter().find_map(|rustc| {
         let libraries = output(command(rustc).args(["--print", "target-libdir"])).ok()?;
-        let name = format!("rust-lld{}", std::env::consts::EXE_SUFFIX);
+        let name = format!("rust-lld{}", EXE_SUFFIX);
         let lld = Path::new(libraries.trim()).parent()?.join("bin").join(name);
         lld.exists().then_some(lld)
     });
@@ -58,9 +78,4 @@ pub fn lld(rustc: &Path) -> Result<PathBuf> {
         bail!("rust-lld is missing, which links for macOS: it comes with the toolchains of rustup");
     };
     Ok(lld)
-}
-
-fn sysroot(rustc: &Path) -> Option<PathBuf> {
-    let sysroot = output(command(rustc).args(["--print", "sysroot"])).ok()?;
-    Some(PathBuf::from(sysroot.trim()))
 }
