@@ -22,6 +22,8 @@ pub fn compile(source: &str) -> PathBuf {
     let compiler = Command::new("cc")
         .args([
             "-std=c99",
+            // Rust rounds every operation; C may fuse a product and a sum, as clang does on Arm.
+            "-ffp-contract=off",
             "-Wall",
             "-Wextra",
             "-Wpedantic",
