@@ -26,9 +26,6 @@ const ARM: &str = "/usr/aarch64-linux-gnu";
 /// What Wine can be called; the last is Debian's `wine64` without the package `wine`.
 const WINE: [&str; 3] = ["wine", "wine64", "/usr/lib/wine/wine64"];
 
-/// Compiler for Windows.
-const MINGW: &str = "x86_64-w64-mingw32-gcc";
-
 /// What became of a trial; one that failed is an error.
 #[derive(Debug)]
 pub enum Outcome {
@@ -76,7 +73,7 @@ impl Display for Closeness {
     }
 }
 
-/// Tries the library of a platform. An Arm Linux other than this machine needs the compiler of `zig`.
+/// Tries the library of a platform. Programs for other machines than this one are compiled by `zig`.
 ///
 /// # Errors
 /// A program that does not compile, does not run, or runs wrongly; a force that differs by more than the tolerance.
@@ -95,7 +92,7 @@ pub fn run(platform: &Platform, library: &Path, zig: &Path) -> Result<Outcome> {
 enum Runner {
     Native,
     Qemu { zig: PathBuf },
-    Wine { wine: &'static str },
+    Wine { zig: PathBuf, wine: &'static str },
 }
 
 impl Runner {
@@ -116,8 +113,10 @@ impl Runner {
             "win64" => {
                 let wine = WINE.into_iter().find(|wine| is_there(wine));
                 let wine = wine.ok_or_else(|| missing("Wine", "wine64"))?;
-                needed(MINGW, "gcc-mingw-w64-x86-64")?;
-                Ok(Self::Wine { wine })
+                Ok(Self::Wine {
+                    zig: zig.to_owned(),
+                    wine,
+                })
             }
             "linux64" => Err("it runs on 64-bit x86 Linux alone".to_owned()),
             _ => Err("it runs on macOS alone".to_owned()),
@@ -125,15 +124,14 @@ impl Runner {
     }
 
     fn compiler(&self) -> Command {
-        match self {
-            Self::Native => command("cc"),
-            Self::Qemu { zig } => {
-                let mut compiler = command(zig);
-                compiler.args(["cc", "-target", "aarch64-linux-gnu.2.17"]);
-                compiler
-            }
-            Self::Wine { .. } => command(MINGW),
-        }
+        let (zig, target) = match self {
+            Self::Native => return command("cc"),
+            Self::Qemu { zig } => (zig, "aarch64-linux-gnu.2.17"),
+            Self::Wine { zig, .. } => (zig, "x86_64-windows-gnu"),
+        };
+        let mut compiler = command(zig);
+        compiler.args(["cc", "-target", target]);
+        compiler
     }
 
     fn start(&self, program: &Path) -> Command {
@@ -144,7 +142,7 @@ impl Runner {
                 start.args(["-L", ARM]).arg(program);
                 start
             }
-            Self::Wine { wine } => {
+            Self::Wine { wine, .. } => {
                 let mut start = command(wine);
                 start
                     .arg(program)
