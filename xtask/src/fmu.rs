@@ -122,7 +122,9 @@ fn platform() -> Result<(&'static str, &'static str, &'static str)> {
     } else if cfg!(target_os = "macos") {
         Ok(("darwin64", "lib", "dylib"))
     } else {
-        bail!("FMI 2.0 has no name for this platform; it knows 64-bit x86 Linux and Windows, and macOS")
+        bail!(
+            "importers on this platform look for no library of its own: FMI 2.0 names 64-bit x86 Linux and Windows, and macOS"
+        )
     }
 }
 

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use cargo_metadata::Metadata;
 
+use super::check::declared;
 use super::tools::{Tools, lld};
 use crate::commands::{cargo, command, run};
 use crate::fmu;
@@ -30,6 +31,9 @@ pub fn library(target: &str, tools: &Tools, metadata: &Metadata) -> Result<Vec<u
             .iter()
             .map(|folder| format!("--remap-path-prefix={}=rust", folder.display())),
     );
+    if target.contains("windows") {
+        flags.push(format!("-Clink-arg={}", exports(&folder)?.display()));
+    }
     let mut build = if target.contains("apple") {
         flags.extend(apple_flags(&lld(&tools.rustc)?));
         let mut build = cargo();
@@ -89,6 +93,16 @@ fn apple_flags(lld: &Path) -> Vec<String> {
         .into_iter()
         .chain(arguments.map(|argument| format!("-Clink-arg={argument}")))
         .collect()
+}
+
+/// A file that names what the library exports: without one zig exports everything, as MinGW's linkers do.
+fn exports(folder: &Path) -> Result<PathBuf> {
+    let path = folder.join("exports.def");
+    let names = declared().into_iter().map(|name| format!("    {name}\n"));
+    fs::create_dir_all(folder)?;
+    fs::write(&path, format!("EXPORTS\n{}", names.collect::<String>()))
+        .with_context(|| format!("cannot write {}", path.display()))?;
+    Ok(path)
 }
 
 /// A folder that stands for the SDK of macOS: the list of what its system library exports, as zig has it.

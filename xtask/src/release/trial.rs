@@ -149,8 +149,8 @@ impl Runner {
                     .env("WINEPREFIX", root().join("target/wine"))
                     .env("WINEARCH", "win64")
                     .env("WINEDEBUG", "-all")
-                    // The stand-in beside the program; and no offer to download what is not needed.
-                    .env("WINEDLLOVERRIDES", "bcryptprimitives=n,b;mscoree,mshtml=");
+                    // No offer to download what is not needed.
+                    .env("WINEDLLOVERRIDES", "mscoree,mshtml=");
                 start
             }
         }
@@ -208,9 +208,6 @@ impl Trial {
         for name in [&trial.library, &linked] {
             fs::copy(library, trial.folder.join(name))
                 .with_context(|| format!("cannot copy {} to {}", library.display(), trial.folder.display()))?;
-        }
-        if matches!(trial.runner, Runner::Wine { .. }) {
-            trial.compile("bcryptprimitives", "dll", &["-shared"])?;
         }
         Ok(trial)
     }

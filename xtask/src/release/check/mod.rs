@@ -229,7 +229,7 @@ fn processor(target: &str) -> &str {
 }
 
 /// The functions that the C header declares.
-fn declared() -> BTreeSet<String> {
+pub fn declared() -> BTreeSet<String> {
     let code = C_HEADER.lines().filter(|line| !line.trim_start().starts_with('*'));
     code.filter_map(|line| {
         let (before, _) = line.split_once('(')?;
