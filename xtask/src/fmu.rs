@@ -142,7 +142,7 @@ mod tests {
             pack(&licences::texts(&metadata, Path::new("rustc"), &[])?)?
         );
         assert_eq!(documentation::page()?, documentation::page()?);
-        assert!(files(&metadata, Vec::new())?.contains_key("documentation/sbom.cdx.json"));
+        assert!(files(&metadata, [], Path::new("rustc"), &[])?.contains_key("documentation/sbom.cdx.json"));
         Ok(())
     }
 }

@@ -70,7 +70,7 @@ fn with_sources(rustc: &str) -> Option<(PathBuf, [PathBuf; 2])> {
 pub fn lld(rustc: &Path) -> Result<PathBuf> {
     let found = [rustc, Path::new("rustc")].into_iter().find_map(|rustc| {
         let libraries = output(command(rustc).args(["--print", "target-libdir"])).ok()?;
-        let name = format!("rust-lld{}", EXE_SUFFIX);
+        let name = format!("rust-lld{EXE_SUFFIX}");
         let lld = Path::new(libraries.trim()).parent()?.join("bin").join(name);
         lld.exists().then_some(lld)
     });
