@@ -88,11 +88,11 @@ fn importers(component: &Path) -> Result<()> {
     stage("importers", importers::table)
 }
 
-/// The Python tests of a folder, with the component.
-fn pytest(folder: &str, component: &Path) -> Result<()> {
+/// The Python tests of a folder or file, with the component.
+pub fn pytest(tests: &str, component: &Path) -> Result<()> {
     commands::run(
         python::python()
-            .args(["-m", "pytest", "--quiet", "-rs", folder])
+            .args(["-m", "pytest", "--quiet", "-rs", tests])
             .env("RELAY_CONTACT_FMU", component),
     )
 }

@@ -17,8 +17,8 @@ use cargo_metadata::{Metadata, MetadataCommand};
 use clap::builder::PossibleValuesParser;
 
 use crate::commands::root;
-use crate::fmu;
 use crate::package::{Files, pack};
+use crate::{fmu, test};
 use platform::{PLATFORMS, Platform};
 use tools::Tools;
 use trial::Outcome;
@@ -72,7 +72,15 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     for (path, text) in tools.licences()? {
         files.insert(format!("documentation/licenses/{path}"), text);
     }
-    write(&Files::from([("RelayContact.fmu".to_owned(), pack(&files)?)]))?;
+    let archive = write(pack(&files)?)?;
+    println!("== FMPy");
+    if libraries.iter().any(|(platform, _)| trial::is_host(platform)) {
+        for tests in ["test_validate.py", "test_check_values.py", "test_paper.py"] {
+            test::pytest(&format!("conformance/python/{tests}"), &archive)?;
+        }
+    } else {
+        println!("NOT RUN, the archive has no library for this machine");
+    }
     println!("== dist/release/RelayContact.fmu\n{}", lines.join("\n"));
     if !left_out.is_empty() {
         bail!("the archive lacks {}", left_out.join(", "));
@@ -124,14 +132,15 @@ impl Release<'_> {
     }
 }
 
-/// Writes files and their checksums to `dist/release`.
-fn write(files: &Files) -> Result<()> {
+/// Writes the archive and its checksum to `dist/release`; gives its path.
+fn write(archive: Vec<u8>) -> Result<PathBuf> {
     let folder = root().join("dist/release");
     fs::create_dir_all(&folder)?;
-    let sums = Files::from([("SHA256SUMS".to_owned(), sums::text(files).into_bytes())]);
-    for (name, contents) in files.iter().chain(&sums) {
+    let archive = Files::from([("RelayContact.fmu".to_owned(), archive)]);
+    let sums = Files::from([("SHA256SUMS".to_owned(), sums::text(&archive).into_bytes())]);
+    for (name, contents) in archive.iter().chain(&sums) {
         let path = folder.join(name);
         fs::write(&path, contents).with_context(|| format!("cannot write {}", path.display()))?;
     }
-    Ok(())
+    Ok(folder.join("RelayContact.fmu"))
 }

@@ -158,7 +158,7 @@ impl Runner {
 }
 
 /// Whether this machine is one of the platform.
-fn is_host(platform: &Platform) -> bool {
+pub fn is_host(platform: &Platform) -> bool {
     let system = if OS == "macos" { "darwin" } else { OS };
     let mut targets = platform.targets.iter();
     targets.any(|target| target.starts_with(ARCH) && target.contains(system))
