@@ -32,6 +32,7 @@ def column(name: str) -> list[float]:
 def record(importer: str, version: str, task: str, difference: float | None = None, result: str = "passed") -> None:
     """Write a row of the table; `difference` is the largest in the contact force from our own run, N."""
     row = {"importer": importer, "version": version, "task": task, "result": result, "difference": difference}
+    FOLDER.mkdir(parents=True, exist_ok=True)
     (FOLDER / f"{importer}, {task}.json").write_text(json.dumps(row))
 
 
