@@ -3,10 +3,10 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use cargo_metadata::Metadata;
 
-use super::check::declared;
+use super::check::{declared, without_time};
 use super::tools::{Tools, lld};
 use crate::commands::{cargo, command, run};
 use crate::fmu;
@@ -66,13 +66,18 @@ pub fn library(target: &str, tools: &Tools, metadata: &Metadata) -> Result<Vec<u
     build.env("RUSTC", &tools.rustc).env("RUSTC_BOOTSTRAP", "1");
     run(&mut build)?;
     let release = folder.join(target).join("release");
-    for name in ["librelay_contact.so", "relay_contact.dll", "librelay_contact.dylib"] {
-        let path = release.join(name);
-        if path.exists() {
-            return fs::read(&path).with_context(|| format!("cannot read {}", path.display()));
-        }
+    let names = ["librelay_contact.so", "relay_contact.dll", "librelay_contact.dylib"];
+    let path = names
+        .map(|name| release.join(name))
+        .into_iter()
+        .find(|path| path.exists());
+    let path = path.with_context(|| format!("cargo built no library in {}", release.display()))?;
+    let library = fs::read(&path).with_context(|| format!("cannot read {}", path.display()))?;
+    if target.contains("windows") {
+        without_time(library)
+    } else {
+        Ok(library)
     }
-    bail!("cargo built no library in {}", release.display())
 }
 
 fn apple_flags(lld: &Path) -> Vec<String> {

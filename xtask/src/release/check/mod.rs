@@ -17,6 +17,8 @@ use cargo_metadata::Metadata;
 use goblin::mach::MultiArch;
 use relay_contact::{C_HEADER, variables};
 
+pub use pe::without_time;
+
 use super::platform::Platform;
 use crate::commands::{command, output};
 

@@ -63,5 +63,20 @@ pub fn check(report: &mut Report, bytes: &[u8]) -> Result<()> {
         format!("up to {}.{}", WINDOWS[0], WINDOWS[1]),
         system.max(subsystem) <= WINDOWS,
     );
+    let time = pe.header.coff_header.time_date_stamp;
+    report.add("time of linking", format!("{time}"), "0".to_owned(), time == 0);
     Ok(())
+}
+
+/// Sets the time of linking to zero, so that the same source gives the same bytes.
+pub fn without_time(mut library: Vec<u8>) -> Result<Vec<u8>> {
+    const TIME: usize = 8; // after the processor's number and that of the sections
+    let header = PE::parse(&library)
+        .context("not a Windows file")?
+        .header
+        .dos_header
+        .pe_pointer as usize;
+    let time = library.get_mut(header + TIME..header + TIME + 4);
+    time.context("a Windows file without its header")?.fill(0);
+    Ok(library)
 }

@@ -194,6 +194,18 @@ fn a_missing_or_wrong_signature_fails() -> Result<()> {
 }
 
 #[test]
+fn a_time_of_linking_fails_and_can_be_taken_out() -> Result<()> {
+    let mut dated = good(WINDOWS);
+    dated.arguments.push("/timestamp:5".to_owned());
+    let dated = dated.bytes()?;
+    assert_eq!(failed(WINDOWS, &dated)?, ["time of linking"]);
+    let timeless = super::without_time(dated.clone())?;
+    assert_eq!(failed(WINDOWS, &timeless)?, [""; 0]);
+    assert_eq!(timeless.len(), dated.len());
+    Ok(())
+}
+
+#[test]
 fn another_processor_or_a_program_fails() -> Result<()> {
     for targets in [LINUX, MACOS] {
         assert_eq!(failed(targets[1], &good(targets[0]).bytes()?)?, ["kind"]);

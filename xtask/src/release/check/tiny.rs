@@ -120,7 +120,7 @@ impl Tiny {
         let arm = self.target.starts_with("aarch64");
         match self.format() {
             BinaryFormat::Elf => vec!["-flavor", "gnu", "-shared"],
-            BinaryFormat::Coff => vec!["-flavor", "link", "/dll", "/noentry"],
+            BinaryFormat::Coff => vec!["-flavor", "link", "/dll", "/noentry", "/timestamp:0"],
             _ => vec![
                 "-flavor",
                 "darwin",
