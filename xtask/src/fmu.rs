@@ -29,7 +29,7 @@ pub fn build() -> Result<PathBuf> {
 }
 
 /// Writes a file in `dist` and gives its path.
-fn write(name: &str, contents: &[u8]) -> Result<PathBuf> {
+pub fn write(name: &str, contents: &[u8]) -> Result<PathBuf> {
     let path = root().join("dist").join(name);
     fs::create_dir_all(path.parent().context("a file without a folder")?)?;
     fs::write(&path, contents).with_context(|| format!("cannot write {}", path.display()))?;
@@ -109,7 +109,7 @@ pub fn files<'a>(
     Ok(files)
 }
 
-fn read(path: &Path) -> Result<Vec<u8>> {
+pub fn read(path: &Path) -> Result<Vec<u8>> {
     fs::read(path).with_context(|| format!("cannot read {}", path.display()))
 }
 

@@ -8,7 +8,7 @@ use std::path::Path;
 use anyhow::{Context, Result, bail};
 use cargo_metadata::Metadata;
 
-use crate::commands::{command, output, root};
+use crate::commands::{root, sysroot};
 use crate::linked::{COMPONENT, graph, package};
 use crate::package::Files;
 
@@ -45,8 +45,7 @@ pub fn texts(metadata: &Metadata, rustc: &Path, targets: &[&str]) -> Result<File
 
 /// The licence text of the standard library, where rustup or Debian's packages put it below the compiler's folder.
 fn standard_library(rustc: &Path) -> Result<Option<(String, Vec<u8>)>> {
-    let sysroot = output(command(rustc).args(["--print", "sysroot"]))?;
-    let documentation = Path::new(sysroot.trim()).join("share/doc");
+    let documentation = sysroot(rustc)?.join("share/doc");
     let places = [
         "rust/COPYRIGHT-library.html",
         "libstd-rust-web-dev/copyright",

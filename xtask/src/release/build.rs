@@ -72,7 +72,7 @@ pub fn library(target: &str, tools: &Tools, metadata: &Metadata) -> Result<Vec<u
         .into_iter()
         .find(|path| path.exists());
     let path = path.with_context(|| format!("cargo built no library in {}", release.display()))?;
-    let library = fs::read(&path).with_context(|| format!("cannot read {}", path.display()))?;
+    let library = fmu::read(&path)?;
     if target.contains("windows") {
         without_time(library)
     } else {

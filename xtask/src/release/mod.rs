@@ -10,7 +10,7 @@ pub mod universal;
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
 use cargo_metadata::{Metadata, MetadataCommand};
@@ -41,6 +41,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let mut release = Release {
         metadata: &metadata,
         tools: &tools,
+        private: check::private_folders(&metadata, &tools.rustc)?,
         built: BTreeMap::new(),
     };
     let (mut libraries, mut lines, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
@@ -72,7 +73,10 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     for (path, text) in tools.licences()? {
         files.insert(format!("documentation/licenses/{path}"), text);
     }
-    let archive = write(pack(&files)?)?;
+    let packed = pack(&files)?;
+    let archive = fmu::write("release/RelayContact.fmu", &packed)?;
+    let sums = sums::text(&Files::from([("RelayContact.fmu".to_owned(), packed)]));
+    fmu::write("release/SHA256SUMS", sums.as_bytes())?;
     println!("== FMPy");
     if libraries.iter().any(|(platform, _)| trial::is_host(platform)) {
         for tests in ["test_validate.py", "test_check_values.py", "test_paper.py"] {
@@ -91,6 +95,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 struct Release<'a> {
     metadata: &'a Metadata,
     tools: &'a Tools,
+    /// Folders of this machine whose paths no library may hold.
+    private: Vec<PathBuf>,
     /// Libraries by what rustc calls their platforms.
     built: BTreeMap<&'static str, Vec<u8>>,
 }
@@ -110,37 +116,17 @@ impl Release<'_> {
             [one] => one.clone(),
             several => universal::join(several)?,
         };
-        let private = check::private_folders(self.metadata, &self.tools.rustc)?;
-        let findings = check::library(platform, &library, &private)?;
+        let findings = check::library(platform, &library, &self.private)?;
         for finding in &findings {
             println!("{finding}");
         }
         check::demand(platform.folder, &findings)?;
-        let path = self
-            .folder()
-            .join(platform.folder)
-            .join(format!("RelayContact.{}", platform.extension));
-        fs::create_dir_all(path.parent().unwrap_or(Path::new(".")))?;
+        let folder = build::folder(self.metadata).join("libraries").join(platform.folder);
+        fs::create_dir_all(&folder)?;
+        let path = folder.join(format!("RelayContact.{}", platform.extension));
         fs::write(&path, &library).with_context(|| format!("cannot write {}", path.display()))?;
         let outcome = trial::run(platform, &path, &self.tools.zig)?;
         println!("{outcome}");
         Ok((library, outcome))
     }
-
-    fn folder(&self) -> PathBuf {
-        build::folder(self.metadata).join("libraries")
-    }
-}
-
-/// Writes the archive and its checksum to `dist/release`; gives its path.
-fn write(archive: Vec<u8>) -> Result<PathBuf> {
-    let folder = root().join("dist/release");
-    fs::create_dir_all(&folder)?;
-    let archive = Files::from([("RelayContact.fmu".to_owned(), archive)]);
-    let sums = Files::from([("SHA256SUMS".to_owned(), sums::text(&archive).into_bytes())]);
-    for (name, contents) in archive.iter().chain(&sums) {
-        let path = folder.join(name);
-        fs::write(&path, contents).with_context(|| format!("cannot write {}", path.display()))?;
-    }
-    Ok(folder.join("RelayContact.fmu"))
 }

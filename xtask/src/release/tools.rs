@@ -1,14 +1,13 @@
 //! What the builds for all platforms need.
 
 use std::env::consts::EXE_SUFFIX;
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 
-use crate::commands::{command, output};
+use crate::commands::{command, output, sysroot};
 use crate::package::Files;
-use crate::python;
+use crate::{fmu, python};
 
 /// Programs and files that were found.
 pub struct Tools {
@@ -45,8 +44,7 @@ impl Tools {
     /// Licence texts of what zig links into libraries, by path below `documentation/licenses/`.
     pub fn licences(&self) -> Result<Files> {
         let text = |name: &str| {
-            let path = self.zig.with_file_name(name);
-            let text = fs::read(&path).with_context(|| format!("cannot read {}", path.display()))?;
+            let text = fmu::read(&self.zig.with_file_name(name))?;
             Ok((format!("zig/{}", name.replace('/', "-")), text))
         };
         ZIG_LICENCES.into_iter().map(text).collect()
@@ -55,8 +53,7 @@ impl Tools {
 
 /// The compiler itself, not rustup's stand-in for it, and the sources, where it has them.
 fn with_sources(rustc: &str) -> Option<(PathBuf, [PathBuf; 2])> {
-    let sysroot = output(command(rustc).args(["--print", "sysroot"])).ok()?;
-    let sysroot = Path::new(sysroot.trim());
+    let sysroot = sysroot(rustc).ok()?;
     let sources = sysroot.join("lib/rustlib/src/rust");
     let rustc = sysroot.join("bin").join(format!("rustc{EXE_SUFFIX}"));
     let leads_to = sources.canonicalize().ok()?;

@@ -20,7 +20,7 @@ use relay_contact::{C_HEADER, variables};
 pub use pe::without_time;
 
 use super::platform::Platform;
-use crate::commands::{command, output};
+use crate::commands::sysroot;
 
 /// Every library is smaller, in bytes; each one of a universal library.
 const SIZE: usize = 1_000_000;
@@ -85,8 +85,7 @@ pub fn library(platform: &Platform, bytes: &[u8], private: &[PathBuf]) -> Result
 /// Folders that differ from machine to machine: of the project, of its build, of the compiler `rustc`, of cargo and of the
 /// user.
 pub fn private_folders(metadata: &Metadata, rustc: &Path) -> Result<Vec<PathBuf>> {
-    let sysroot = output(command(rustc).args(["--print", "sysroot"]))?;
-    let compiler = Path::new(sysroot.trim()).join("lib").join("rustlib");
+    let compiler = sysroot(rustc)?.join("lib").join("rustlib");
     let project = [&metadata.workspace_root, &metadata.target_directory].map(Into::into);
     let user = ["HOME", "USERPROFILE", "CARGO_HOME", "RUSTUP_HOME"]
         .into_iter()

@@ -1,17 +1,18 @@
 //! Small libraries for every platform, linked on any machine: what the checks are tried on.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::{env, fs};
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use object::write::{Object, Relocation, Symbol, SymbolSection};
 use object::{
     Architecture, BinaryFormat, Endianness, RelocationEncoding, RelocationFlags, RelocationKind, SectionKind,
     SymbolFlags, SymbolKind, SymbolScope,
 };
 
-use crate::commands::{command, output};
+use crate::commands::output;
+use crate::release::tools::lld;
 
 /// What to put into a library.
 #[derive(Clone)]
@@ -40,7 +41,7 @@ impl Tiny {
     /// Links it, and before it the libraries it imports from, each with one function.
     fn link(&self, folder: &Path, name: &str) -> Result<PathBuf> {
         let mut functions = Vec::new();
-        let mut linker = linker()?;
+        let mut linker = linker();
         linker.current_dir(folder).args(self.flavour());
         for (number, (library, version)) in self.imports.iter().enumerate() {
             let function = format!("imported{number}");
@@ -176,10 +177,6 @@ impl Tiny {
 }
 
 /// The linker that comes with Rust, or that of LLVM.
-fn linker() -> Result<Command> {
-    let found = output(command("rustc").args(["--print", "target-libdir"]))?;
-    let name = format!("rust-lld{}", env::consts::EXE_SUFFIX);
-    let folder = Path::new(found.trim()).parent().context("rustc has no folder")?;
-    let linker = folder.join("bin").join(name);
-    Ok(Command::new(if linker.exists() { linker } else { "lld".into() }))
+fn linker() -> Command {
+    Command::new(lld(Path::new("rustc")).unwrap_or_else(|_| "lld".into()))
 }
