@@ -14,10 +14,10 @@ use std::{env, fs};
 use indicatif::{ProgressBar, ProgressStyle};
 use relay_contact::harmonic;
 use relay_contact::inputs::Inputs;
+use relay_contact::integrator::motion::Course;
+use relay_contact::integrator::workspace::Workspace;
 use relay_contact::model::{Model, State};
 use relay_contact::scene::Scene;
-use relay_contact::transient::dense::Course;
-use relay_contact::transient::workspace::Workspace;
 use relay_contact::variables::ExcitationKind;
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;

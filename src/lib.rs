@@ -45,6 +45,7 @@
 
 pub mod beam;
 pub mod chatter;
+pub mod closed_loop;
 pub mod contact;
 pub mod electrical;
 pub mod error;
@@ -53,13 +54,13 @@ pub mod fmi2;
 pub mod harmonic;
 pub mod input_table;
 pub mod inputs;
+pub mod integrator;
 pub mod math;
 pub mod model;
 pub mod preload;
 pub mod scene;
 pub mod scene_file;
 pub mod simulation;
-pub mod transient;
 pub mod variables;
 
 /// Whether this build lacks the effects that reach into the steps of the integrator: `effects.contactDamping`, `.chatter`,

@@ -3,11 +3,11 @@
 use crate::chatter::Summary;
 use crate::error::{SceneError, StepError};
 use crate::inputs::Inputs;
+use crate::integrator::events::log::Event;
+use crate::integrator::motion::Course;
+use crate::integrator::workspace::Workspace;
 use crate::model::{Model, State};
 use crate::scene::Scene;
-use crate::transient::dense::Course;
-use crate::transient::events::Event;
-use crate::transient::workspace::Workspace;
 use crate::variables::{BooleanOutput, Group, IntegerOutput, RealOutput, Variable};
 
 /// A simulation from its preload onwards.

@@ -3,9 +3,9 @@
 #![allow(clippy::unwrap_used)]
 
 use relay_contact::inputs::Inputs;
+use relay_contact::integrator::events::log::Event;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
-use relay_contact::transient::events::Event;
 use relay_contact::variables::{BooleanOutput, ExcitationKind, IntegerOutput, RealOutput};
 
 fn shaken(amplitude: f64, tolerance: f64) -> Scene {

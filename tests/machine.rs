@@ -1,11 +1,11 @@
 //! The kernel of a step in its two compilations: the same results but for rounding.
 
 use relay_contact::inputs::Inputs;
+use relay_contact::integrator::motion::Course;
+use relay_contact::integrator::workspace::Workspace;
+use relay_contact::math::simd::Machine;
 use relay_contact::model::Model;
 use relay_contact::scene::Scene;
-use relay_contact::transient::dense::Course;
-use relay_contact::transient::machine::Machine;
-use relay_contact::transient::workspace::Workspace;
 use relay_contact::variables::ExcitationKind;
 
 /// Contact force after each communication step, N.

@@ -21,9 +21,9 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::beam::galerkin::Space;
 use crate::beam::section::Section;
+use crate::integrator::collocation::coefficients::Modal;
 use crate::model::{MAX_MODES, Mode, ModeState};
 use crate::preload::Preload;
-use crate::transient::coefficients::Modal;
 
 /// Axial force that a tip deflection `y` (m) causes, N: `N = (3 E I y / L^3) sin(3 y / (2 L))`.
 ///

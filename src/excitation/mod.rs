@@ -17,10 +17,10 @@ use crate::excitation::random::Random;
 use crate::excitation::sine::Sine;
 use crate::excitation::sweep::LogSweep;
 use crate::excitation::window::Window;
+use crate::integrator::collocation::polynomial::Nodal;
+use crate::math::nodal::scaled;
+use crate::math::simd::Machine;
 use crate::scene::{Excitation, Scene};
-use crate::transient::collocation::Nodal;
-use crate::transient::machine::Machine;
-use crate::transient::vector::scaled;
 use crate::variables::ExcitationKind;
 
 /// Base accelerations over a step, m/s2.

@@ -8,10 +8,10 @@ use std::f64::consts::TAU;
 
 use crate::excitation::window::Window;
 use crate::excitation::{Accelerations, Rotation};
+use crate::integrator::collocation::polynomial::Nodal;
+use crate::math::nodal::add;
+use crate::math::simd::{Arithmetic, Machine, Separate, compiled_for};
 use crate::scene::Excitation;
-use crate::transient::collocation::Nodal;
-use crate::transient::machine::{Arithmetic, Machine, Separate, compiled_for};
-use crate::transient::vector::add;
 
 /// How many.
 pub const SINES: usize = 256;
@@ -196,7 +196,7 @@ impl SplitMix64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::transient::machine::Fused;
+    use crate::math::simd::Fused;
 
     #[test]
     fn numbers_are_those_of_the_published_generator() {

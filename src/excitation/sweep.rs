@@ -7,8 +7,8 @@ use std::f64::consts::TAU;
 
 use crate::excitation::window::Window;
 use crate::excitation::{Accelerations, turned};
+use crate::integrator::collocation::polynomial::Nodal;
 use crate::scene::Excitation;
-use crate::transient::collocation::Nodal;
 
 /// Exponent up to which the turns are counted as those of a sine and more.
 const SMALL: f64 = 0.5;

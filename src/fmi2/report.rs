@@ -2,9 +2,9 @@
 
 use super::logger::{Category, Logger};
 use super::types::fmi2OK;
+use crate::math::simd::Machine;
 use crate::model::Model;
 use crate::simulation::Simulation;
-use crate::transient::machine::Machine;
 
 /// How a scene is simulated.
 pub(super) fn model(logger: &Logger, model: &Model) {

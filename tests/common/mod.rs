@@ -6,11 +6,11 @@ use relay_contact::contact::law::Law;
 use relay_contact::contact::linear::Linear;
 use relay_contact::error::StepError;
 use relay_contact::inputs::Inputs;
+use relay_contact::integrator::motion::Course;
+use relay_contact::integrator::workspace::Workspace;
 use relay_contact::model::{Mode, Model, State};
 use relay_contact::preload::Preload;
 use relay_contact::scene::Scene;
-use relay_contact::transient::dense::Course;
-use relay_contact::transient::workspace::Workspace;
 
 /// A model with its state.
 pub struct Rig {

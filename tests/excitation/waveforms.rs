@@ -3,9 +3,9 @@
 use std::f64::consts::TAU;
 
 use relay_contact::excitation::Turns;
+use relay_contact::integrator::collocation::polynomial::{Collocation, LONG, SHORT};
+use relay_contact::math::simd::Machine;
 use relay_contact::scene::Scene;
-use relay_contact::transient::collocation::{Collocation, LONG, SHORT};
-use relay_contact::transient::machine::Machine;
 use relay_contact::variables::ExcitationKind;
 
 use crate::{G, closed_form, every_waveform, excited, generator, half_sine, limited, phased, random, sweep};

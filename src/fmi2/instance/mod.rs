@@ -12,9 +12,9 @@ use super::states::{Function, State};
 use super::types::fmi2Status;
 use crate::error::SceneError;
 use crate::inputs::Inputs;
+use crate::integrator::motion::Course;
 use crate::scene::Scene;
 use crate::simulation::Simulation;
-use crate::transient::dense::Course;
 
 /// Tolerances of the experiment above are lowered to this one, the largest that `solver.tolerance` allows.
 const LARGEST_TOLERANCE: f64 = 0.1;

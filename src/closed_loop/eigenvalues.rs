@@ -1,0 +1,238 @@
+//! The zeros of the secular equation where beam and contact are damped differently.
+//!
+//! All at once by Ehrlich's and Aberth's iteration (O. Aberth, Mathematics of Computation 27 (1973) 339) on the
+//! characteristic polynomial `f = s prod p_i`, `s` the secular function, which is never multiplied out.
+
+use nalgebra::Complex;
+
+use crate::closed_loop::eigenvectors::{Number, Pair, Problem, Root};
+
+/// Relative distance within which two real zeros are a close pair.
+const CLOSE: f64 = 1e-1;
+/// The same among those that crowd at `-1 / beta`.
+const CROWDED: f64 = 1e-2;
+/// Imaginary part, relative to the zero, below which it is taken for one of a close pair, or real.
+const REAL: f64 = 1e-4;
+/// Rounds before the search is given up.
+const ROUNDS: usize = 100;
+/// Terms of the power series about a close pair.
+const TERMS: usize = 12;
+
+type Zero = Root<Complex<f64>>;
+
+/// The zeros in pairs, from the zeros without damping, each with the square of its mode's tip displacement.
+pub fn pairs(problem: &Problem, undamped: &[(f64, f64)]) -> Option<Vec<Pair>> {
+    let mut zeros: Vec<Zero> = undamped.iter().flat_map(|mode| first_guess(problem, *mode)).collect();
+    let mut settled = vec![false; zeros.len()];
+    for _ in 0..ROUNDS {
+        for (n, settled) in settled.iter_mut().enumerate().filter(|(_, settled)| !**settled) {
+            let zero = *zeros.get(n)?;
+            let newton = newton(problem, &zero);
+            let others = zeros.iter().enumerate().filter(|(other, _)| *other != n);
+            let repulsion: Complex<f64> = others.map(|(_, other)| 1.0 / difference(problem, &zero, other)).sum();
+            // Never further than the zero is from those around it, or it may be lost.
+            let change = newton / (1.0 - newton * repulsion);
+            let reach = 0.5 * zero.value.norm();
+            let change = if change.norm() > reach {
+                change * (reach / change.norm())
+            } else {
+                change
+            };
+            // On a pole, to rounding: the zero is there.
+            let change = if change.is_finite() { change } else { Complex::default() };
+            let beam = zero.beam - change * problem.stiffness_damping;
+            let contact = zero.contact - change * problem.contact_damping;
+            *zeros.get_mut(n)? = at(problem, zero.value - change, beam, contact);
+            *settled = change.norm() <= 1e-14 * resolution(problem, &zero);
+        }
+        if settled.iter().all(|settled| *settled) {
+            break;
+        }
+    }
+    paired(problem, zeros)
+}
+
+/// The pair of a mode whose damping is what that of beam and contact does to it alone.
+fn first_guess(problem: &Problem, (nu, tip): (f64, f64)) -> [Zero; 2] {
+    let excess = problem.contact_damping - problem.stiffness_damping;
+    let damping = problem.mass_damping + problem.stiffness_damping * nu + problem.contact_stiffness * excess * tip;
+    let half = Complex::new(-0.5 * damping.max(0.0), 0.0);
+    let w = (half * half - nu).sqrt();
+    let fast = half - w;
+    [(fast, -0.03), (nu / fast, 0.03)].map(|(value, part)| {
+        let contact = value * problem.contact_damping + 1.0;
+        let beam = -value * (value + (damping.max(0.0) - problem.stiffness_damping * nu)) / nu;
+        let zero = at(problem, value, beam, contact);
+        // Off the real axis, or two real zeros could never become complex ones; to either side, or equal ones could not
+        // part.
+        let aside = Complex::new(0.0, part * resolution(problem, &zero));
+        let beam = zero.beam + aside * problem.stiffness_damping;
+        at(problem, value + aside, beam, contact + aside * problem.contact_damping)
+    })
+}
+
+/// The zero, its three parts in accord to all digits: `beam` and `contact` count where they are small.
+fn at(problem: &Problem, value: Complex<f64>, beam: Complex<f64>, contact: Complex<f64>) -> Zero {
+    let (beta, beta_c) = (problem.stiffness_damping, problem.contact_damping);
+    let is_small = |part: Complex<f64>| part.norm() < 0.5;
+    let direct = (value * beta + 1.0, value * beta_c + 1.0);
+    let beam = if is_small(direct.0) { beam } else { direct.0 };
+    let contact = if is_small(direct.0) {
+        (beam * beta_c + (beta - beta_c)) / beta
+    } else if is_small(direct.1) {
+        contact
+    } else {
+        direct.1
+    };
+    Zero { value, beam, contact }
+}
+
+/// The distance that counts as large at the zero: its own size, or less where it is close to `-1 / beta` or `-1 /
+/// beta_c`.
+fn resolution(problem: &Problem, zero: &Zero) -> f64 {
+    let size = zero.value.norm();
+    let size = size.min(zero.beam.norm() / problem.stiffness_damping);
+    size.min(zero.contact.norm() / problem.contact_damping)
+}
+
+fn difference(problem: &Problem, a: &Zero, b: &Zero) -> Complex<f64> {
+    let beta = problem.stiffness_damping;
+    if a.beam.norm() + b.beam.norm() < beta * (a.value.norm() + b.value.norm()) {
+        (a.beam - b.beam) / beta
+    } else {
+        a.value - b.value
+    }
+}
+
+/// f / f', the step of Newton's method.
+fn newton(problem: &Problem, zero: &Zero) -> Complex<f64> {
+    let l = zero.value;
+    let own = l * (l + problem.mass_damping);
+    let none = Complex::new(0.0, 0.0);
+    let (mut sum, mut slope, mut poles) = (none, none, none);
+    for (omega, tip) in &problem.modes {
+        let inverse = 1.0 / (own + zero.beam * *omega);
+        let growth = (l * 2.0 + (problem.mass_damping + problem.stiffness_damping * omega)) * inverse;
+        let part = inverse * (tip * tip);
+        sum += part;
+        slope -= part * growth;
+        poles += growth;
+    }
+    let k = problem.contact_stiffness;
+    let secular = zero.contact * sum * k + 1.0;
+    secular / ((sum * problem.contact_damping + zero.contact * slope) * k + secular * poles)
+}
+
+/// Puts the zeros together in pairs.
+fn paired(problem: &Problem, zeros: Vec<Zero>) -> Option<Vec<Pair>> {
+    let mut pairs = Vec::with_capacity(zeros.len() / 2);
+    let mut real = Vec::new();
+    let mut lower = 0_usize;
+    for zero in zeros {
+        let imaginary = zero.value.im / resolution(problem, &zero);
+        if imaginary > REAL {
+            let Complex { re, im } = zero.value;
+            let value = Number::new(re, 1.0, -im * im);
+            pairs.push(Pair::Close(Root {
+                value,
+                beam: Number::new(zero.beam.re, problem.stiffness_damping, -im * im),
+                contact: Number::new(zero.contact.re, problem.contact_damping, -im * im),
+            }));
+        } else if imaginary < -REAL {
+            lower += 1;
+        } else {
+            real.push(zero);
+        }
+    }
+    if lower != pairs.len() || real.len() % 2 != 0 {
+        return None;
+    }
+    real.sort_by(|a, b| b.value.re.total_cmp(&a.value.re).then(b.beam.re.total_cmp(&a.beam.re)));
+    let mut single: Vec<Root<f64>> = Vec::new();
+    let mut rest = real.as_slice();
+    while let [a, others @ ..] = rest {
+        rest = others;
+        let close = if a.beam.norm() < 0.1 { CROWDED } else { CLOSE };
+        if let [b, beyond @ ..] = others
+            && difference(problem, a, b).norm() < close * resolution(problem, a)
+        {
+            rest = beyond;
+            pairs.push(close_pair(problem, a, b));
+        } else {
+            single.push(Root {
+                value: a.value.re,
+                beam: a.beam.re,
+                contact: a.contact.re,
+            });
+        }
+    }
+    // The slowest with the fastest, as the two of a strongly damped mode are.
+    let (slow, fast) = single.split_at(single.len() / 2);
+    pairs.extend(
+        slow.iter()
+            .zip(fast.iter().rev())
+            .map(|(slow, fast)| Pair::Apart(*slow, *fast)),
+    );
+    Some(pairs)
+}
+
+/// Two zeros so close that each alone is known to half the digits: what is known to all digits is the quadratic that
+/// has both as zeros, a factor of the secular function's power series about their middle.
+fn close_pair(problem: &Problem, a: &Zero, b: &Zero) -> Pair {
+    let centre = Zero {
+        value: Complex::from(f64::midpoint(a.value.re, b.value.re)),
+        beam: Complex::from(f64::midpoint(a.beam.re, b.beam.re)),
+        contact: Complex::from(f64::midpoint(a.contact.re, b.contact.re)),
+    };
+    let series = series(problem, &centre);
+    let half = 0.5 * difference(problem, a, b);
+    // x^2 + p x + q, which leaves the other factor.
+    let (mut p, mut q) = (0.0, -(half * half).re);
+    for _ in 0..TERMS {
+        let mut factor = [0.0; TERMS];
+        let (mut above, mut above2) = (0.0, 0.0);
+        for (entry, coefficient) in factor.iter_mut().zip(series.iter().skip(2)).rev() {
+            *entry = coefficient - p * above - q * above2;
+            (above, above2) = (*entry, above);
+        }
+        let [first, second, ..] = factor;
+        let [constant, linear, ..] = series;
+        q = constant / first;
+        p = (linear - q * second) / first;
+    }
+    let square = 0.25 * p * p - q;
+    let shift = -0.5 * p;
+    let about = |value: Complex<f64>, slope: f64| Number::new(value.re + shift * slope, slope, square);
+    Pair::Close(Root {
+        value: about(centre.value, 1.0),
+        beam: about(centre.beam, problem.stiffness_damping),
+        contact: about(centre.contact, problem.contact_damping),
+    })
+}
+
+/// Coefficients of the secular function about a real point.
+fn series(problem: &Problem, centre: &Zero) -> [f64; TERMS + 2] {
+    let l = centre.value.re;
+    let mut sum = [0.0; TERMS + 2];
+    for (omega, tip) in &problem.modes {
+        let p = l * (l + problem.mass_damping) + omega * centre.beam.re;
+        let slope = 2.0 * l + problem.mass_damping + problem.stiffness_damping * omega;
+        let (mut below2, mut below) = (0.0, tip * tip / p);
+        for entry in &mut sum {
+            *entry += below;
+            (below2, below) = (below, -(slope * below + below2) / p);
+        }
+    }
+    let contact = problem.contact_stiffness * centre.contact.re;
+    let rate = problem.contact_stiffness * problem.contact_damping;
+    let mut below = 0.0;
+    for entry in &mut sum {
+        let own = *entry;
+        *entry = contact * own + rate * below;
+        below = own;
+    }
+    if let Some(constant) = sum.first_mut() {
+        *constant += 1.0;
+    }
+    sum
+}

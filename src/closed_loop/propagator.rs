@@ -1,0 +1,105 @@
+//! Exact motion of the oscillators of beam and linear contact over a step: everything of it that depends on the length of
+//! the step alone, kept for lengths that come again.
+//!
+//! A step is as long as it is to the last bit. Over a length that is merged with another one within rounding, as
+//! collocation steps may be, the motion would be behind or ahead of its communication point by that rounding, and nothing in
+//! an exact step takes it back: in a ringing without damping the lags of a million steps would add up. Nor does
+//! merging save much. An importer that gets the lengths as differences of times hands over multiples of the spacing of
+//! floating-point numbers there, so no more than two or three different ones while time does not double.
+
+use std::f64::consts::TAU;
+
+use nalgebra::Complex;
+
+use crate::closed_loop::oscillator::{Coordinates, Oscillator, set};
+use crate::excitation::{self, Generator};
+use crate::math::free_motion::FreeMotion;
+use crate::model::MAX_MODES;
+
+/// How many lengths are kept.
+const KEPT: usize = 8;
+
+/// The motion over a step.
+#[derive(Clone, Debug)]
+pub struct Propagator {
+    /// Free motion of each oscillator: displacement and velocity at the end per displacement and velocity at the start.
+    pub(crate) x_from_x: [f64; MAX_MODES],
+    pub(crate) x_from_v: [f64; MAX_MODES],
+    pub(crate) v_from_x: [f64; MAX_MODES],
+    pub(crate) v_from_v: [f64; MAX_MODES],
+    /// Motion from rest under the generator with unit amplitude: per sine and per cosine of its phase at the start.
+    pub(crate) from_sine: Coordinates,
+    pub(crate) from_cosine: Coordinates,
+}
+
+impl Propagator {
+    const ZERO: Self = Self {
+        x_from_x: [0.0; MAX_MODES],
+        x_from_v: [0.0; MAX_MODES],
+        v_from_x: [0.0; MAX_MODES],
+        v_from_v: [0.0; MAX_MODES],
+        from_sine: [0.0; 2 * MAX_MODES],
+        from_cosine: [0.0; 2 * MAX_MODES],
+    };
+
+    /// Computes what belongs to the length (s) in place.
+    fn fill(&mut self, length: f64, oscillators: &[Oscillator], generator: &Generator) {
+        let count = oscillators.len();
+        let generated = generator.frequency().map(|frequency| {
+            let turn = Complex::from_polar(1.0, TAU * excitation::turned(frequency, length));
+            (frequency, turn)
+        });
+        let from_x = self.x_from_x.iter_mut().zip(&mut self.v_from_x);
+        let from_v = self.x_from_v.iter_mut().zip(&mut self.v_from_v);
+        for (n, (oscillator, (from_x, from_v))) in oscillators.iter().zip(from_x.zip(from_v)).enumerate() {
+            let free = FreeMotion::new(oscillator.omega_squared, oscillator.damping, length);
+            (*from_x.0, *from_x.1) = (free.q_from_q, free.v_from_q);
+            (*from_v.0, *from_v.1) = (free.q_from_v, free.v_from_v);
+            if let Some((frequency, turn)) = generated {
+                let driven = oscillator.loaded(oscillator.driven_from_rest(&free, frequency, turn, length));
+                set(&mut self.from_sine, n, count, driven.map(|motion| motion.re));
+                set(&mut self.from_cosine, n, count, driven.map(|motion| motion.im));
+            }
+        }
+    }
+}
+
+/// The last lengths with their motions. What is kept never changes a result, only the time it takes.
+#[derive(Clone, Debug)]
+pub struct Propagators {
+    /// s; 0: none yet.
+    lengths: [f64; KEPT],
+    motions: Vec<Propagator>,
+    /// The one to make room next.
+    oldest: usize,
+}
+
+impl Propagators {
+    /// The motion over the length (s).
+    pub(crate) fn over(
+        &mut self,
+        length: f64,
+        oscillators: &[Oscillator],
+        generator: &Generator,
+    ) -> Option<&Propagator> {
+        let known = self.lengths.iter().position(|known| *known == length);
+        let place = known.unwrap_or(self.oldest);
+        let motion = self.motions.get_mut(place)?;
+        if known.is_none() {
+            motion.fill(length, oscillators, generator);
+            *self.lengths.get_mut(place)? = length;
+            self.oldest = (place + 1) % KEPT;
+        }
+        Some(motion)
+    }
+}
+
+impl Default for Propagators {
+    fn default() -> Self {
+        Self {
+            lengths: [0.0; KEPT],
+            motions: vec![Propagator::ZERO; KEPT],
+            oldest: 0,
+        }
+    }
+}

@@ -1,0 +1,317 @@
+//! A step where the axial force follows the deflection ([`Feedback`]): loads on all modes that follow from all of them.
+//!
+//! The loads are polynomials through the nodes, as the contact force is, and weak against the stiffness of the modes
+//! over a step. So they are found by iteration: the motion under the forces known, the loads in it, the contact forces
+//! under those loads. What the polynomials of the loads miss at the start goes into the estimate of the error as what
+//! that of the base acceleration misses does. A step in which the loads do not settle is too long.
+//!
+//! In violent motion the axial force may exceed the buckling load for a while: the beam then moves away from where it is,
+//! until the sine in the law of the axial force turns to tension. That is followed like any other motion, in shorter steps.
+
+use crate::beam::axial::Feedback;
+use crate::excitation::drive::Drive;
+use crate::integrator::collocation::coefficients::{ErrorColumn, Modal, ModeColumns, StepCoefficients};
+use crate::integrator::collocation::newton::Solution;
+use crate::integrator::collocation::polynomial::{Collocation, Nodal};
+use crate::integrator::collocation::step::{LANES, Outside, Source, Trial, end_of_modes, loads_on_modes};
+use crate::math::nodal::{add, add_columns, dot};
+use crate::math::simd::{Arithmetic, compiled_for};
+use crate::model::{MAX_MODES, ModeStates, Model, State};
+
+/// Rounds before a step is judged too long.
+const ROUNDS: u32 = 8;
+
+/// Rounding of the loads, relative to them.
+const ROUNDING: f64 = 1e-13;
+
+/// A value at each node for each mode.
+type NodalModes<const S: usize> = [Nodal<S>; MAX_MODES];
+
+impl Model {
+    /// [`Model::trial`] with the axial force that follows the deflection.
+    pub(crate) fn axial_trial<const S: usize>(
+        &self,
+        axial: &Feedback,
+        state: &State,
+        (drive, source): (&Drive, Source<S>),
+        coefficients: (&StepCoefficients<S>, &Collocation<S>),
+        end_modes: &mut ModeStates,
+    ) -> Option<Trial<S>> {
+        compiled_for!(self.machine, A =>
+            self.axial_compute::<S, A>(axial, state, (drive, source), coefficients, end_modes))
+    }
+
+    #[inline(always)]
+    fn axial_compute<const S: usize, A: Arithmetic>(
+        &self,
+        axial: &Feedback,
+        state: &State,
+        (drive, source): (&Drive, Source<S>),
+        (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
+        end_modes: &mut ModeStates,
+    ) -> Option<Trial<S>> {
+        let outside = self.outside::<S, A>(state, drive, step, collocation);
+        let start = axial.loads(&self.modes, &state.modes);
+        let (tolerance, mut forces) = match source {
+            Source::Law(newton) if state.closed => (newton, self.predicted_forces::<S, A>(state, step, collocation)),
+            Source::Law(newton) => (newton, [-self.preload.force; S]),
+            Source::Given(forces) => (0.0, forces),
+        };
+        let mut loads: NodalModes<S> = start.map(|load| [load; S]);
+        let mut iterations = 0;
+        let mut solved: Option<Solution<S>> = None;
+        for _ in 0..ROUNDS {
+            let motion = self.motion_of_modes::<S, A>(state, step, &forces, &outside.accelerations, &loads);
+            let mut next = [[0.0; S]; MAX_MODES];
+            self.set_loads::<S, A>(axial, &motion, &mut next);
+            let (change, size) = self.force_of_change(&loads, &next);
+            if let Some(mut solution) = solved.take_if(|_| change <= tolerance + ROUNDING * size) {
+                solution.iterations = iterations;
+                let error = self.load_error::<S, A>(&outside, &start, &loads, (step, collocation));
+                let outside = self.with_loads::<S, A>(&outside, step, &loads);
+                let tip = end_of_modes::<S, A>(
+                    state,
+                    step,
+                    self.modes.len(),
+                    #[inline(always)]
+                    |first, lanes| {
+                        loads_on_modes::<S, A>(&step.end, first, &solution.forces, &outside.accelerations, lanes);
+                        for (i, load) in loads.iter().skip(first).take(LANES).enumerate() {
+                            for (lanes, load) in lanes.iter_mut().zip(load) {
+                                lanes.iter_mut().skip(i).take(1).for_each(|lane| *lane += load);
+                            }
+                        }
+                    },
+                    end_modes,
+                );
+                // The contact answers to what is missed of all loads together.
+                let outside = Outside {
+                    error: &error,
+                    missed: 1.0,
+                    ..outside
+                };
+                return Some(self.judged::<S, A>(state, drive, (step, collocation), &solution, &outside, tip));
+            }
+            loads = next;
+            let solution = match source {
+                Source::Law(newton) if state.closed => {
+                    let error = self.load_error::<S, A>(&outside, &start, &loads, (step, collocation));
+                    let outside = Outside {
+                        error: &error,
+                        missed: 1.0,
+                        ..self.with_loads::<S, A>(&outside, step, &loads)
+                    };
+                    self.closed_forces::<S, A>(step, &outside, forces, newton)?
+                }
+                _ => Solution::given(forces),
+            };
+            iterations += solution.iterations;
+            forces = solution.forces;
+            solved = Some(solution);
+        }
+        None
+    }
+
+    /// The modes at the nodes under contact forces, base acceleration and the loads.
+    #[inline(always)]
+    fn motion_of_modes<const S: usize, A: Arithmetic>(
+        &self,
+        state: &State,
+        step: &StepCoefficients<S>,
+        forces: &Nodal<S>,
+        accelerations: &Nodal<S>,
+        loads: &NodalModes<S>,
+    ) -> NodalModes<S> {
+        let mut motion = [[0.0; S]; MAX_MODES];
+        let modes = self.modes.iter().zip(&state.modes).zip(&step.columns).zip(loads);
+        for (q, (((mode, at), columns), load)) in motion.iter_mut().zip(modes) {
+            let mut load = *load;
+            add::<S, A>(&mut load, mode.tip, forces);
+            add::<S, A>(&mut load, -mode.participation, accelerations);
+            add::<S, A>(q, at.q, &columns.q_from_q);
+            add::<S, A>(q, at.v, &columns.q_from_v);
+            add_columns::<S, A>(q, &columns.load.displacement, &load);
+        }
+        motion
+    }
+
+    /// Sets the loads on the modes in their motion at the nodes.
+    #[inline(always)]
+    fn set_loads<const S: usize, A: Arithmetic>(
+        &self,
+        axial: &Feedback,
+        motion: &NodalModes<S>,
+        loads: &mut NodalModes<S>,
+    ) {
+        let count = self.modes.len();
+        let mut tip = [0.0; S];
+        for (mode, q) in self.modes.iter().zip(motion) {
+            add::<S, A>(&mut tip, mode.tip, q);
+        }
+        let change = tip.map(|y| axial.change(y));
+        // Several rows at once, which do not wait for one another.
+        let blocks = loads.chunks_exact_mut(LANES).zip(axial.slopes.chunks_exact(LANES));
+        for (block, (loads, slopes)) in blocks.enumerate().take(count.div_ceil(LANES)) {
+            let mut sums = [[0.0; S]; LANES];
+            for (row, q) in axial.geometric.iter().zip(motion) {
+                for (sum, entry) in sums
+                    .iter_mut()
+                    .zip(row.chunks_exact(LANES).nth(block).unwrap_or_default())
+                {
+                    add::<S, A>(sum, *entry, q);
+                }
+            }
+            for ((load, sum), slope) in loads.iter_mut().zip(&sums).zip(slopes) {
+                for ((load, sum), change) in load.iter_mut().zip(sum).zip(&change) {
+                    *load = change * (slope + sum);
+                }
+            }
+        }
+    }
+
+    /// The force on the tip that would bend the spring as much as the difference of the loads, and as much as the loads,
+    /// N: the largest over the nodes.
+    #[inline(always)]
+    fn force_of_change<const S: usize>(&self, loads: &NodalModes<S>, next: &NodalModes<S>) -> (f64, f64) {
+        let (mut change, mut size, mut unit) = ([0.0; S], [0.0; S], f64::MIN_POSITIVE);
+        for ((mode, load), next) in self.modes.iter().zip(loads).zip(next) {
+            let compliance = 1.0 / mode.omega_squared;
+            unit += mode.tip * mode.tip * compliance;
+            for (((change, size), load), next) in change.iter_mut().zip(&mut size).zip(load).zip(next) {
+                *change += (next - load) * (next - load) * compliance;
+                *size += next * next * compliance;
+            }
+        }
+        // Not `max`, which would hide what is not a number.
+        let root = |values: Nodal<S>| {
+            values
+                .iter()
+                .fold(0.0, |most, value| if most >= *value { most } else { *value })
+        };
+        ((root(change) / unit).sqrt(), (root(size) / unit).sqrt())
+    }
+
+    /// The indentation without contact force, with the loads.
+    #[inline(always)]
+    fn with_loads<'a, const S: usize, A: Arithmetic>(
+        &self,
+        outside: &Outside<'a, S>,
+        step: &StepCoefficients<S>,
+        loads: &NodalModes<S>,
+    ) -> Outside<'a, S> {
+        let mut with = outside.clone();
+        for ((mode, columns), load) in self.modes.iter().zip(&step.columns).zip(loads) {
+            let ModeColumns { load: columns, .. } = columns;
+            let load = load.map(|load| -mode.tip * load);
+            add_columns::<S, A>(&mut with.free, &columns.displacement, &load);
+            add_columns::<S, A>(&mut with.free_rate, &columns.velocity, &load);
+        }
+        with
+    }
+
+    /// What the polynomials of base acceleration and loads miss at the start makes of the indentation.
+    #[inline(always)]
+    fn load_error<const S: usize, A: Arithmetic>(
+        &self,
+        outside: &Outside<S>,
+        start: &Modal,
+        loads: &NodalModes<S>,
+        (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
+    ) -> ErrorColumn<S> {
+        let mut error = ErrorColumn {
+            displacement: outside.error.displacement.map(|d| outside.missed * d),
+            velocity: outside.error.velocity.map(|r| outside.missed * r),
+        };
+        let modes = self.modes.iter().zip(&step.columns).zip(start).zip(loads);
+        for (((mode, columns), start), load) in modes {
+            let missed = -mode.tip * (start - dot::<S, A>(load, &collocation.at_start));
+            add::<S, A>(&mut error.displacement, missed, &columns.error.displacement);
+            add::<S, A>(&mut error.velocity, missed, &columns.error.velocity);
+        }
+        error
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integrator::collocation::coefficients::Cache;
+    use crate::integrator::collocation::polynomial::LONG;
+    use crate::model::ModeState;
+    use crate::scene::Scene;
+    use crate::variables::AxialForceKind;
+
+    /// A spring bent by half its length against a soft contact, without damping, pushed at the tip.
+    fn pushed() -> (Model, State) {
+        let mut scene = Scene::default();
+        scene.effects.axial_force = AxialForceKind::FromDeflection;
+        scene.contact.overtravel = 8e-3;
+        scene.contact.curvature_radius = 1e-4;
+        scene.contact.moving.youngs_modulus = 1e8;
+        scene.contact.fixed.youngs_modulus = 1e8;
+        scene.contact.damping = 0.0;
+        scene.beam.stiffness_damping = 0.0;
+        scene.solver.modes = 4;
+        let model = Model::new(&scene, 0.0).unwrap();
+        let mut state = model.initial_state(0.0);
+        for (at, mode) in state.modes.iter_mut().zip(&model.modes) {
+            at.v = 0.5 * mode.participation;
+            state.indentation_rate -= mode.tip * at.v;
+        }
+        (model, state)
+    }
+
+    #[test]
+    fn energy_changes_by_the_work_of_the_axial_force() {
+        for source in [Source::Law(1e-12), Source::Given([0.3; LONG])] {
+            let (model, mut state) = pushed();
+            let mut cache = Cache::<LONG>::new(&model);
+            let (mut most, mut wrong) = (0.0_f64, 0.0_f64);
+            let start = model.energy(&state.modes, 0.0);
+            let length = 1e-5;
+            let collocation = Collocation::<LONG>::new();
+            let axial = model.axial.as_ref().unwrap();
+            for _ in 0..100 {
+                let mut end = [ModeState::default(); MAX_MODES];
+                let mut moved = |length| {
+                    let (step, collocation) = cache.get(length, true, &model);
+                    let drive = Drive::default();
+                    let trial = model.trial(&state, &drive, step, collocation, source, &mut end);
+                    (trial.unwrap(), end)
+                };
+                // By steps to the nodes: the work is the integral of the power, by the Radau quadrature.
+                let powers = collocation.nodes.map(|node| {
+                    let (_, modes) = moved(node * length);
+                    let loads = axial.loads(&model.modes, &modes);
+                    loads.iter().zip(&modes).map(|(load, at)| load * at.v).sum()
+                });
+                let work = length * collocation.mean(&powers);
+                let (trial, end) = moved(length);
+                let (mut before, after) = (
+                    model.energy(&state.modes, state.indentation),
+                    model.energy(&end, trial.indentation),
+                );
+                if let Source::Given([force, ..]) = source {
+                    // The tip goes against the contact's energy and is pushed by the force instead.
+                    let contact = |d| model.law.energy_above_tangent(model.preload.indentation, d);
+                    before += contact(trial.indentation) - contact(state.indentation);
+                    before -= force * (trial.indentation - state.indentation);
+                }
+                wrong = wrong.max((after - before - work).abs());
+                most = most.max(work.abs());
+                state.modes = end;
+                state.indentation = trial.indentation;
+                state.indentation_rate = trial.rate;
+                if let Source::Law(_) = source {
+                    state.force = model
+                        .law
+                        .force(model.preload.indentation + trial.indentation, trial.rate);
+                }
+            }
+            assert!(most > 1e-3 * start, "{most:e} of {start:e} J");
+            // The fastest mode turns by x = 1.3 in a step: of its motion the polynomials of degree 8 miss x^9 / 9!, some
+            // 1e-5, at most, and of its work in the mean the square of that.
+            assert!(wrong < 1e-8 * most, "{wrong:e} of {most:e} J");
+        }
+    }
+}

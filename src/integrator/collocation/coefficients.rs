@@ -1,0 +1,284 @@
+//! Everything of a step that depends on its length alone, and a cache of it.
+
+use crate::excitation::Turns;
+use crate::integrator::collocation::modal_response::ModeOverStep;
+use crate::integrator::collocation::polynomial::{Collocation, Nodal};
+use crate::integrator::collocation::response::{Pair, Sum};
+use crate::integrator::collocation::shapes::Table;
+use crate::math::free_motion::FreeMotion;
+use crate::math::nodal::{add, scaled};
+use crate::math::simd::{Arithmetic, compiled_for};
+use crate::model::{MAX_MODES, Mode, Model};
+
+/// How a mode moves the tip over a step, at the nodes: the rows carry the factor of the mode's tip displacement.
+#[derive(Clone, Copy, Debug)]
+pub struct NodeRows<const S: usize> {
+    /// Tip displacement at the nodes per initial q, and per initial v.
+    pub tip_from_q: Nodal<S>,
+    /// See [`NodeRows::tip_from_q`].
+    pub tip_from_v: Nodal<S>,
+    /// Tip velocity at the nodes per initial q, and per initial v.
+    pub rate_from_q: Nodal<S>,
+    /// See [`NodeRows::rate_from_q`].
+    pub rate_from_v: Nodal<S>,
+}
+
+/// A value for each mode; those beyond the modes in use are zero.
+pub type Modal = [f64; MAX_MODES];
+
+/// How the modes end a step, mode by mode so that several are computed at once.
+#[derive(Clone, Copy, Debug)]
+pub struct EndRows<const S: usize> {
+    /// q and v at the end per initial q and v, and per load at each node.
+    pub q_from_q: Modal,
+    /// See [`EndRows::q_from_q`].
+    pub q_from_v: Modal,
+    /// See [`EndRows::q_from_q`].
+    pub v_from_q: Modal,
+    /// See [`EndRows::q_from_q`].
+    pub v_from_v: Modal,
+    /// See [`EndRows::q_from_q`].
+    pub q_from_load: [Modal; S],
+    /// See [`EndRows::q_from_q`].
+    pub v_from_load: [Modal; S],
+    /// Load per force on the tip, and tip displacement per q.
+    pub tip: Modal,
+    /// Load per base acceleration.
+    pub participation: Modal,
+}
+
+impl<const S: usize> EndRows<S> {
+    const ZERO: Self = Self {
+        q_from_q: [0.0; MAX_MODES],
+        q_from_v: [0.0; MAX_MODES],
+        v_from_q: [0.0; MAX_MODES],
+        v_from_v: [0.0; MAX_MODES],
+        q_from_load: [[0.0; MAX_MODES]; S],
+        v_from_load: [[0.0; MAX_MODES]; S],
+        tip: [0.0; MAX_MODES],
+        participation: [0.0; MAX_MODES],
+    };
+
+    #[expect(clippy::indexing_slicing, reason = "no model has more modes than there is room for")]
+    fn set(&mut self, i: usize, mode: &Mode, free: &FreeMotion, q_from_load: &Nodal<S>, v_from_load: &Nodal<S>) {
+        self.q_from_q[i] = free.q_from_q;
+        self.q_from_v[i] = free.q_from_v;
+        self.v_from_q[i] = free.v_from_q;
+        self.v_from_v[i] = free.v_from_v;
+        for (row, load) in self.q_from_load.iter_mut().zip(q_from_load) {
+            row[i] = *load;
+        }
+        for (row, load) in self.v_from_load.iter_mut().zip(v_from_load) {
+            row[i] = *load;
+        }
+        self.tip[i] = mode.tip;
+        self.participation[i] = mode.participation;
+    }
+}
+
+/// Displacement and velocity of the tip at the nodes per unit of the load at a node, one load after the other.
+#[derive(Clone, Copy, Debug)]
+pub struct TipColumns<const S: usize> {
+    /// Displacement.
+    pub displacement: [Nodal<S>; S],
+    /// Velocity.
+    pub velocity: [Nodal<S>; S],
+}
+
+/// Displacement and velocity of the tip at the nodes per unit of the shape of the error estimate.
+#[derive(Clone, Copy, Debug)]
+pub struct ErrorColumn<const S: usize> {
+    /// Displacement.
+    pub displacement: Nodal<S>,
+    /// Velocity.
+    pub velocity: Nodal<S>,
+}
+
+/// How one mode moves over a step, at the nodes.
+#[derive(Clone, Copy, Debug)]
+pub struct ModeColumns<const S: usize> {
+    /// Displacement per initial q, and per initial v.
+    pub q_from_q: Nodal<S>,
+    /// See [`ModeColumns::q_from_q`].
+    pub q_from_v: Nodal<S>,
+    /// Displacement and velocity per load on the mode.
+    pub load: TipColumns<S>,
+    /// Displacement and velocity per load on the mode that the nodal polynomial misses.
+    pub error: ErrorColumn<S>,
+}
+
+/// The coefficients of a step of one length.
+#[derive(Clone, Debug)]
+pub struct StepCoefficients<const S: usize> {
+    /// The length, s.
+    pub length: f64,
+    /// How the modes move the tip, mode by mode.
+    pub modes: Vec<NodeRows<S>>,
+    /// How the modes move, where there are loads on each of them; else empty.
+    pub columns: Vec<ModeColumns<S>>,
+    /// How the modes end.
+    pub end: EndRows<S>,
+    /// Per force on the tip.
+    pub force: TipColumns<S>,
+    /// Per base acceleration acting on the modes as `participation`.
+    pub acceleration: TipColumns<S>,
+    /// Of the generator.
+    pub turns: Turns<S>,
+    /// Per force on the tip that the nodal polynomial misses.
+    pub force_error: ErrorColumn<S>,
+    /// Per base acceleration that the nodal polynomial misses.
+    pub acceleration_error: ErrorColumn<S>,
+}
+
+impl<const S: usize> TipColumns<S> {
+    const ZERO: Self = Self {
+        displacement: [[0.0; S]; S],
+        velocity: [[0.0; S]; S],
+    };
+}
+
+impl<const S: usize> ErrorColumn<S> {
+    const ZERO: Self = Self {
+        displacement: [0.0; S],
+        velocity: [0.0; S],
+    };
+}
+
+impl<const S: usize> StepCoefficients<S> {
+    /// Room for the model, no length yet.
+    fn empty(model: &Model) -> Self {
+        let mode = NodeRows {
+            tip_from_q: [0.0; S],
+            tip_from_v: [0.0; S],
+            rate_from_q: [0.0; S],
+            rate_from_v: [0.0; S],
+        };
+        Self {
+            length: 0.0,
+            modes: vec![mode; model.modes.len()],
+            columns: vec![
+                ModeColumns {
+                    q_from_q: [0.0; S],
+                    q_from_v: [0.0; S],
+                    load: TipColumns::ZERO,
+                    error: ErrorColumn::ZERO,
+                };
+                if model.axial().is_some() { model.modes.len() } else { 0 }
+            ],
+            end: EndRows::ZERO,
+            force: TipColumns::ZERO,
+            acceleration: TipColumns::ZERO,
+            turns: Turns::room(&model.generator),
+            force_error: ErrorColumn::ZERO,
+            acceleration_error: ErrorColumn::ZERO,
+        }
+    }
+
+    /// Computes the coefficients of the length in place.
+    fn fill(&mut self, length: f64, model: &Model, collocation: &Collocation<S>) {
+        compiled_for!(model.machine, A => self.compute::<A>(length, model, collocation));
+    }
+
+    #[inline(always)]
+    fn compute<A: Arithmetic>(&mut self, length: f64, model: &Model, collocation: &Collocation<S>) {
+        let (h, shapes) = (length, &collocation.shapes);
+        self.length = length;
+        self.turns
+            .fill(&model.generator, model.machine, length, &collocation.nodes);
+        let (mut force, mut acceleration) = (Sum::<S>::ZERO, Sum::<S>::ZERO);
+        for (i, (mode, step)) in model.modes.iter().zip(&mut self.modes).enumerate() {
+            let tip = mode.tip;
+            let mode_over_step = ModeOverStep::new(mode.omega_squared, mode.damping, h);
+            let response = mode_over_step.response::<S, A>(&collocation.nodes, shapes);
+            force.add::<A>(tip * tip, &response);
+            acceleration.add::<A>(tip * mode.participation, &response);
+
+            let Pair { q, v } = &response.impulse;
+            step.tip_from_v = scaled(q, tip * h);
+            step.rate_from_v = scaled(v, tip);
+            step.tip_from_q = scaled(v, tip);
+            add::<S, A>(&mut step.tip_from_q, tip * mode.damping * h, q);
+            step.rate_from_q = scaled(q, -tip * mode.omega_squared * h);
+
+            let end = FreeMotion::new(mode.omega_squared, mode.damping, h);
+            let loads = response.at_end::<A>(shapes);
+            self.end
+                .set(i, mode, &end, &scaled(&loads.q, h * h), &scaled(&loads.v, h));
+            if let Some(columns) = self.columns.get_mut(i) {
+                let mut alone = Sum::ZERO;
+                alone.add::<A>(1.0, &response);
+                columns.q_from_v = scaled(q, h);
+                columns.q_from_q = *v;
+                add::<S, A>(&mut columns.q_from_q, mode.damping * h, q);
+                (columns.load, columns.error) = in_seconds(alone.at_nodes::<A>(shapes), h);
+            }
+        }
+        (self.force, self.force_error) = in_seconds(force.at_nodes::<A>(shapes), h);
+        (self.acceleration, self.acceleration_error) = in_seconds(acceleration.at_nodes::<A>(shapes), h);
+    }
+}
+
+/// Tables in units of the step length `h` (s) as columns in seconds.
+fn in_seconds<const S: usize>(tables: Pair<Table<S>>, h: f64) -> (TipColumns<S>, ErrorColumn<S>) {
+    let Pair { mut q, mut v } = tables;
+    for (q, v) in q.nodal.iter_mut().zip(&mut v.nodal) {
+        (*q, *v) = (scaled(q, h * h), scaled(v, h));
+    }
+    let columns = TipColumns {
+        displacement: q.nodal,
+        velocity: v.nodal,
+    };
+    let error = ErrorColumn {
+        displacement: scaled(&q.error, h * h),
+        velocity: scaled(&v.error, h),
+    };
+    (columns, error)
+}
+
+/// Coefficients by step length. What is in the cache never changes a result, only the time it takes.
+#[derive(Clone, Debug)]
+pub struct Cache<const S: usize> {
+    collocation: Collocation<S>,
+    /// For lengths that come again, each in the slot that its bits tell.
+    slots: Vec<StepCoefficients<S>>,
+    /// For the last of the others.
+    other: StepCoefficients<S>,
+}
+
+/// Slots for step lengths that come again, a power of two.
+const SLOTS: usize = 32;
+
+impl<const S: usize> Cache<S> {
+    /// For the model.
+    pub fn new(model: &Model) -> Self {
+        Self {
+            collocation: Collocation::new(),
+            slots: vec![StepCoefficients::empty(model); SLOTS],
+            other: StepCoefficients::empty(model),
+        }
+    }
+
+    /// The polynomials.
+    pub fn collocation(&self) -> &Collocation<S> {
+        &self.collocation
+    }
+
+    /// The coefficients of the length for the model; `recurring` says whether to keep them for later.
+    pub fn get(&mut self, length: f64, recurring: bool, model: &Model) -> (&StepCoefficients<S>, &Collocation<S>) {
+        let Self {
+            collocation,
+            slots,
+            other,
+        } = self;
+        // Halvings of a length come to lie beside each other, those of another length (Fibonacci hashing) elsewhere.
+        let bits = length.to_bits();
+        let (exponent, mantissa) = (bits >> 52, bits << 12);
+        let elsewhere = mantissa.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> (64 - SLOTS.ilog2());
+        let slot = usize::try_from(exponent + elsewhere).unwrap_or_default() % SLOTS;
+        let entry = slots.get_mut(slot).filter(|_| recurring).unwrap_or(other);
+        if entry.length.to_bits() != length.to_bits() {
+            entry.fill(length, model, collocation);
+        }
+        (entry, collocation)
+    }
+}

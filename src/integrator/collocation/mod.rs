@@ -1,0 +1,10 @@
+//! One step, in which the contact force is a polynomial through Radau nodes.
+
+pub mod axial_force;
+pub mod coefficients;
+pub mod modal_response;
+pub mod newton;
+pub mod polynomial;
+pub mod response;
+pub mod shapes;
+pub mod step;

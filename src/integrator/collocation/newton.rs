@@ -1,0 +1,274 @@
+//! Newton's method for the nodal forces on the closed branch: the forces of the law at the motion that they give.
+
+use crate::BARE;
+use crate::integrator::collocation::coefficients::{ErrorColumn, StepCoefficients};
+use crate::integrator::collocation::polynomial::{Collocation, Nodal};
+use crate::integrator::collocation::step::{Outside, Slopes};
+use crate::math::nodal::{add_columns, end, scaled};
+use crate::math::simd::Arithmetic;
+use crate::model::{Model, State};
+
+/// Rounding of the motion at the nodes, relative to what it would be without contact force.
+const MOTION_ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// A pivot this small would multiply the rounding by its inverse in each elimination.
+const SMALL_PIVOT: f64 = 0.1;
+
+/// Newton iterations before a step is judged too long.
+const ITERATIONS: u64 = 12;
+
+/// The nodal forces of a step.
+pub(crate) struct Solution<const S: usize> {
+    /// Deviation from the preload force, N.
+    pub(crate) forces: Nodal<S>,
+    /// Spent on them.
+    pub(crate) iterations: u64,
+    /// Displacement and velocity of the tip at the end per force that the polynomial misses at the start.
+    pub(crate) by_force: (f64, f64),
+    /// The same per what is missed of the other loads.
+    pub(crate) by_load: (f64, f64),
+    /// Of the law.
+    pub(crate) slopes: Slopes,
+}
+
+impl<const S: usize> Solution<S> {
+    /// Forces that do not depend on the motion.
+    pub(crate) fn given(forces: Nodal<S>) -> Self {
+        Self {
+            forces,
+            iterations: 0,
+            by_force: (0.0, 0.0),
+            by_load: (0.0, 0.0),
+            slopes: Slopes::default(),
+        }
+    }
+
+    /// Of the law at the last iterate, whose greatest stiffness and damping are given; `force_error` is the nodal forces
+    /// that the error of the force causes, `load_error` what the error of the other loads does without contact and the
+    /// nodal forces that it causes. Their effects at the end are formed.
+    #[inline(always)]
+    fn new(
+        step: &StepCoefficients<S>,
+        forces: Nodal<S>,
+        iterations: u64,
+        (stiffness, damping): (f64, f64),
+        force_error: &Nodal<S>,
+        load_error: (&ErrorColumn<S>, &Nodal<S>),
+    ) -> Self {
+        let last = |columns: &[Nodal<S>; S], loads: &Nodal<S>| {
+            let entries = columns.iter().filter_map(|column| column.last());
+            entries.zip(loads).map(|(entry, load)| entry * load).sum::<f64>()
+        };
+        let tip = |error: &ErrorColumn<S>, loads: &Nodal<S>| {
+            (
+                end(&error.displacement) - last(&step.force.displacement, loads),
+                end(&error.velocity) - last(&step.force.velocity, loads),
+            )
+        };
+        let steady = [1.0; S];
+        let gain = stiffness * last(&step.force.displacement, &steady) + damping * last(&step.force.velocity, &steady);
+        Self {
+            forces,
+            iterations,
+            by_force: tip(&step.force_error, force_error),
+            by_load: tip(load_error.0, load_error.1),
+            slopes: Slopes {
+                stiffness,
+                damping,
+                gain: gain.max(0.0),
+            },
+        }
+    }
+}
+
+impl Model {
+    /// The nodal forces as those of the last step predict them.
+    #[inline(always)]
+    pub(crate) fn predicted_forces<const S: usize, A: Arithmetic>(
+        &self,
+        state: &State,
+        step: &StepCoefficients<S>,
+        collocation: &Collocation<S>,
+    ) -> Nodal<S> {
+        if state.last_step > 0.0 {
+            collocation.predict::<A>(&state.predictions, step.length / state.last_step)
+        } else {
+            [state.force - self.preload.force; S]
+        }
+    }
+
+    /// The nodal forces, from those guessed, which differ from the law's by at most `newton` (N) or rounding; `None`
+    /// where the iteration does not converge. A contact that does not damp is spared the velocities.
+    #[inline(always)]
+    pub(crate) fn closed_forces<const S: usize, A: Arithmetic>(
+        &self,
+        step: &StepCoefficients<S>,
+        outside: &Outside<S>,
+        guess: Nodal<S>,
+        newton: f64,
+    ) -> Option<Solution<S>> {
+        if self.law.damping() > 0.0 && !BARE {
+            self.iterated::<S, A, true>(step, outside, guess, newton)
+        } else {
+            self.iterated::<S, A, false>(step, outside, guess, newton)
+        }
+    }
+
+    /// [`Model::closed_forces`] of a law that damps, or of one that does not.
+    #[inline(always)]
+    fn iterated<const S: usize, A: Arithmetic, const DAMPED: bool>(
+        &self,
+        step: &StepCoefficients<S>,
+        outside: &Outside<S>,
+        guess: Nodal<S>,
+        newton: f64,
+    ) -> Option<Solution<S>> {
+        let Outside {
+            free, free_rate, error, ..
+        } = outside;
+        let mut forces = guess;
+        let d0 = self.preload.indentation;
+        let greatest = |values: &Nodal<S>| values.iter().fold(0.0_f64, |greatest, value| greatest.max(value.abs()));
+        let (farthest, fastest) = (greatest(free), greatest(free_rate));
+        let mut by_errors = None;
+        for iterations in 0..=ITERATIONS {
+            let (indentations, rates) = if DAMPED {
+                at_nodes::<S, A>(step, free, free_rate, &forces)
+            } else {
+                (displaced::<S, A>(free, &step.force.displacement, &forces), [0.0; S])
+            };
+            let mut residual = forces;
+            let (mut stiffness, mut damping) = ([0.0; S], [0.0; S]);
+            for ((((residual, stiffness), damping), d), rate) in residual
+                .iter_mut()
+                .zip(&mut stiffness)
+                .zip(&mut damping)
+                .zip(&indentations)
+                .zip(&rates)
+            {
+                let law = self.law.closed_branch(d0 + d, *rate);
+                *residual -= law.force - self.preload.force;
+                (*stiffness, *damping) = (law.stiffness, law.damping);
+            }
+            // The motion has to obey the law, not only the nodal forces to be right: on a stiff contact they hardly
+            // depend on it. What rounding leaves of the motion is all that can be asked.
+            let rounding = MOTION_ROUNDING * (greatest(&stiffness) * farthest + greatest(&damping) * fastest);
+            if let Some((by_force, by_load)) = by_errors.filter(|_| greatest(&residual) <= newton.max(rounding)) {
+                return Some(Solution::new(
+                    step,
+                    forces,
+                    iterations,
+                    (greatest(&stiffness), greatest(&damping)),
+                    &by_force,
+                    (error, &by_load),
+                ));
+            }
+            // The derivative of the residuals by each nodal force.
+            let mut jacobian = step.force.displacement;
+            for (column, velocity) in jacobian.iter_mut().zip(&step.force.velocity) {
+                *column = react::<S, A, DAMPED>(column, velocity, &stiffness, &damping);
+            }
+            let answer = |error: &ErrorColumn<S>| {
+                react::<S, A, DAMPED>(&error.displacement, &error.velocity, &stiffness, &damping)
+            };
+            let by_force = answer(&step.force_error);
+            let by_load = answer(error);
+            let [correction, by_force, by_load] = solve::<S, 3, A>(jacobian, [residual, by_force, by_load])?;
+            for (force, correction) in forces.iter_mut().zip(&correction) {
+                *force -= correction;
+            }
+            by_errors = Some((by_force, by_load));
+        }
+        None
+    }
+}
+
+/// Solves `(1 + A) x = b` for several `b`, `A` column by column, by Gauss-Jordan elimination, whose inner loops run
+/// down columns; rows are exchanged only where a pivot is small, which happens in violent steps alone. `None` where the
+/// matrix is singular.
+#[expect(
+    clippy::indexing_slicing,
+    reason = "every index runs over the fixed size of the arrays"
+)]
+#[inline(always)]
+fn solve<const S: usize, const R: usize, A: Arithmetic>(
+    mut a: [Nodal<S>; S],
+    mut right: [Nodal<S>; R],
+) -> Option<[Nodal<S>; R]> {
+    for (k, column) in a.iter_mut().enumerate() {
+        column[k] += 1.0;
+    }
+    for p in 0..S {
+        if a[p][p].abs() < SMALL_PIVOT {
+            let largest = (p..S).max_by(|i, j| a[p][*i].abs().total_cmp(&a[p][*j].abs()))?;
+            for column in a.iter_mut().chain(&mut right) {
+                column.swap(p, largest);
+            }
+        }
+        let pivot = a[p];
+        let inverse = 1.0 / pivot[p];
+        // Two loops, not a chain: that may be left out of line, compiled for any processor.
+        for column in a.iter_mut().skip(p + 1) {
+            eliminate::<S, A>(column, p, &pivot, inverse);
+        }
+        for column in &mut right {
+            eliminate::<S, A>(column, p, &pivot, inverse);
+        }
+    }
+    right.iter().flatten().all(|x| x.is_finite()).then_some(right)
+}
+
+/// Takes row `p` of a column out of the rows below and above it, and divides it by its pivot.
+#[expect(
+    clippy::indexing_slicing,
+    reason = "every index runs over the fixed size of the arrays"
+)]
+#[inline(always)]
+fn eliminate<const S: usize, A: Arithmetic>(column: &mut Nodal<S>, p: usize, pivot: &Nodal<S>, inverse: f64) {
+    let share = column[p] * inverse;
+    for k in 0..S {
+        column[k] = A::mul_add(-pivot[k], share, column[k]);
+    }
+    column[p] = share;
+}
+
+/// Forces of the law at the nodes that belong to displacements and velocities of the tip.
+#[inline(always)]
+fn react<const S: usize, A: Arithmetic, const DAMPED: bool>(
+    displacement: &Nodal<S>,
+    velocity: &Nodal<S>,
+    stiffness: &Nodal<S>,
+    damping: &Nodal<S>,
+) -> Nodal<S> {
+    let mut forces = *displacement;
+    for (((force, velocity), stiffness), damping) in forces.iter_mut().zip(velocity).zip(stiffness).zip(damping) {
+        *force = if DAMPED {
+            A::mul_add(*stiffness, *force, damping * velocity)
+        } else {
+            stiffness * *force
+        };
+    }
+    forces
+}
+
+/// Indentation and its velocity at the nodes under the nodal forces.
+#[inline(always)]
+pub(crate) fn at_nodes<const S: usize, A: Arithmetic>(
+    step: &StepCoefficients<S>,
+    free: &Nodal<S>,
+    free_rate: &Nodal<S>,
+    forces: &Nodal<S>,
+) -> (Nodal<S>, Nodal<S>) {
+    (
+        displaced::<S, A>(free, &step.force.displacement, forces),
+        displaced::<S, A>(free_rate, &step.force.velocity, forces),
+    )
+}
+
+/// What is at the nodes without contact force, and what of it is left under the nodal forces.
+#[inline(always)]
+fn displaced<const S: usize, A: Arithmetic>(free: &Nodal<S>, columns: &[Nodal<S>; S], forces: &Nodal<S>) -> Nodal<S> {
+    let mut left = *free;
+    add_columns::<S, A>(&mut left, columns, &scaled(forces, -1.0));
+    left
+}

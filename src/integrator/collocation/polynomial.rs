@@ -1,0 +1,276 @@
+//! The polynomial in time that stands for contact force and base acceleration within a step.
+//!
+//! A step has `S` Radau nodes, the last at its end, so that the contact force there obeys the contact law exactly,
+//! however stiff its damping is (Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.5): eight for
+//! long steps, four where a short one is wanted (a communication step of a microsecond, the time just after a blow).
+
+use crate::integrator::collocation::shapes::Shapes;
+use crate::math::legendre;
+use crate::math::nodal::{add, dot, scaled};
+use crate::math::simd::{Arithmetic, Machine, Separate, compiled_for};
+use serde::{Deserialize, Serialize};
+
+/// Nodes of a short step.
+pub const SHORT: usize = 4;
+/// Nodes of a long step.
+pub const LONG: usize = 8;
+/// Largest number of load shapes: one for each node, one for the error estimate.
+pub const MAX_SHAPES: usize = LONG + 1;
+
+/// A value at each node.
+pub type Nodal<const S: usize> = [f64; S];
+
+/// Points at which a nodal polynomial is looked at where it comes near zero.
+const LOOKS: u32 = 32;
+
+/// The golden section.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
+/// Share of its greatest value above which a nodal polynomial stays between its nodes if it does at them.
+const NEAR: f64 = 0.25;
+
+/// Nodes that a flat prediction goes through.
+const FLAT: usize = 4;
+
+/// A polynomial through the nodes of a step, by its coefficients about the end: it predicts the next step.
+pub type Prediction = [f64; LONG + 1];
+
+/// Two predictions of the force over the next step, one through all nodes and one through the last few, and which of
+/// the two was the better one last time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Predictions {
+    steep: Prediction,
+    flat: Prediction,
+    use_flat: bool,
+}
+
+impl Predictions {
+    /// The polynomial through the start and all nodes of the step they are from.
+    pub fn through_all(&self) -> &Prediction {
+        &self.steep
+    }
+
+    /// Whether all numbers are finite.
+    pub fn is_finite(&self) -> bool {
+        self.steep.iter().chain(&self.flat).all(|number| number.is_finite())
+    }
+}
+
+/// The polynomials of a step with `S` nodes.
+#[derive(Clone, Debug)]
+pub struct Collocation<const S: usize> {
+    /// Nodes on [0, 1], ascending.
+    pub nodes: Nodal<S>,
+    /// The load shapes: the Lagrange polynomials of the nodes, and the polynomial of degree S that vanishes at the
+    /// nodes and is 1 at the start.
+    pub shapes: Shapes<S>,
+    /// Lagrange polynomials at the start of the step.
+    pub at_start: Nodal<S>,
+    /// Mean of the Lagrange polynomials over the step: the weights of the Radau quadrature.
+    weights: Nodal<S>,
+    /// Row by row the coefficients of y^0, y^1, ..., `y = x - 1`, of the polynomial that is 1 at the start (the first
+    /// row) or at one of the nodes, and 0 at the others.
+    steep: Vec<Prediction>,
+    /// The same with the last nodes alone, which long extrapolation suits better.
+    flat: Vec<Prediction>,
+}
+
+impl<const S: usize> Collocation<S> {
+    /// The nodes and shapes.
+    pub fn new() -> Self {
+        let mut nodes = [0.0; S];
+        for (node, x) in nodes.iter_mut().zip(legendre::radau(S)) {
+            *node = f64::midpoint(1.0, x);
+        }
+        // Expanded about the instant, whose coefficients of `(x - at)^m` times m! are the derivatives.
+        let derivatives_at = |at: f64| -> Vec<_> {
+            let vanishing = nodes
+                .iter()
+                .fold(one(), |shape, node| times(shape, -1.0 / node, (node - at) / node));
+            let through_nodes = lagrange::<MAX_SHAPES>(&nodes.map(|node| node - at));
+            through_nodes
+                .into_iter()
+                .chain([vanishing])
+                .map(by_factorials)
+                .collect()
+        };
+        let mut weights = [0.0; S];
+        for (weight, shape) in weights.iter_mut().zip(lagrange::<MAX_SHAPES>(&nodes)) {
+            *weight = shape.iter().enumerate().map(|(m, c)| c / (m + 1) as f64).sum();
+        }
+        let mut at_start = [0.0; S];
+        for (start, shape) in at_start.iter_mut().zip(derivatives_at(0.0)) {
+            *start = shape.first().copied().unwrap_or_default();
+        }
+        let about_end: Vec<_> = [-1.0].into_iter().chain(nodes.iter().map(|node| node - 1.0)).collect();
+        let steep = lagrange(&about_end);
+        let flat = lagrange(about_end.get(S + 1 - FLAT..).unwrap_or_default());
+        Self {
+            nodes,
+            shapes: Shapes::new(&nodes, derivatives_at),
+            at_start,
+            weights,
+            steep,
+            flat,
+        }
+    }
+
+    /// The nodal polynomial through `values`, at `x` (in steps).
+    pub fn interpolate(&self, values: &Nodal<S>, x: f64) -> f64 {
+        let mut sum = 0.0;
+        for (value, &own) in values.iter().zip(&self.nodes) {
+            let others = self.nodes.iter().filter(|&&node| node != own);
+            sum += value * others.map(|node| (x - node) / (own - node)).product::<f64>();
+        }
+        sum
+    }
+
+    /// Whether the nodal polynomial through `values`, which was `start` where the step begins, may reach zero within it.
+    pub fn comes_near_zero(start: f64, values: &Nodal<S>) -> bool {
+        let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let highest = values.iter().copied().fold(start, f64::max);
+        lowest <= NEAR * highest
+    }
+
+    /// Where in the step (in steps) the nodal polynomial through `values` is first seen below zero, before the place
+    /// `until`: at one of the looks, or at the lowest place about the lowest of them. It is not looked at before the first
+    /// node, where it extrapolates and is no evidence.
+    pub fn first_dip(&self, values: &Nodal<S>, until: f64) -> Option<f64> {
+        let value = |x: f64| self.interpolate(values, x);
+        let look = 1.0 / f64::from(LOOKS);
+        let first = self.nodes.first().copied().unwrap_or_default();
+        let between = (1..LOOKS).map(|k| f64::from(k) * look).filter(|x| *x > first);
+        let looks = [first].into_iter().chain(between).chain([1.0]);
+        if let Some(dip) = looks.clone().take_while(|x| *x < until).find(|x| value(*x) < 0.0) {
+            return Some(dip);
+        }
+        // By golden section.
+        let lowest = looks.min_by(|a, b| value(*a).total_cmp(&value(*b))).unwrap_or_default();
+        let (mut a, mut b) = ((lowest - look).max(first), (lowest + look).min(1.0));
+        for _ in 0..25 {
+            let (c, d) = (b - GOLDEN * (b - a), a + GOLDEN * (b - a));
+            (a, b) = if value(c) < value(d) { (a, d) } else { (c, b) };
+        }
+        let bottom = f64::midpoint(a, b);
+        (bottom < until && value(bottom) < 0.0).then_some(bottom)
+    }
+
+    /// Mean over the step of the nodal polynomial through `values`.
+    pub fn mean(&self, values: &Nodal<S>) -> f64 {
+        dot::<S, Separate>(values, &self.weights)
+    }
+
+    /// The predictions from the values at the start and at the nodes of a step, after those that led to it, which held
+    /// for a step `ratio` times as long as the one before.
+    pub fn predictions(
+        &self,
+        machine: Machine,
+        start: f64,
+        values: &Nodal<S>,
+        before: &Predictions,
+        ratio: f64,
+    ) -> Predictions {
+        compiled_for!(machine, A => self.compute::<A>(start, values, before, ratio))
+    }
+
+    #[inline(always)]
+    fn compute<A: Arithmetic>(&self, start: f64, values: &Nodal<S>, before: &Predictions, ratio: f64) -> Predictions {
+        let wrong = |prediction| {
+            let predicted = self.evaluate::<A>(prediction, ratio);
+            let errors = predicted.iter().zip(values).map(|(a, b)| (a - b).abs());
+            errors.fold(0.0_f64, |worst, error| if error > worst { error } else { worst })
+        };
+        Predictions {
+            steep: combine::<A>(&self.steep, [start].iter().chain(values)),
+            flat: combine::<A>(&self.flat, values.iter().skip(S - FLAT)),
+            use_flat: ratio > 0.0 && wrong(&before.flat) < wrong(&before.steep),
+        }
+    }
+
+    /// The polynomial through the values at the start and at the nodes, about the end.
+    pub fn through(&self, start: f64, values: &Nodal<S>) -> Prediction {
+        combine::<Separate>(&self.steep, [start].iter().chain(values))
+    }
+
+    /// Values predicted at the nodes of a step `ratio` times as long as the one the predictions are from.
+    #[inline(always)]
+    pub fn predict<A: Arithmetic>(&self, predictions: &Predictions, ratio: f64) -> Nodal<S> {
+        self.evaluate::<A>(
+            if predictions.use_flat {
+                &predictions.flat
+            } else {
+                &predictions.steep
+            },
+            ratio,
+        )
+    }
+
+    #[inline(always)]
+    fn evaluate<A: Arithmetic>(&self, prediction: &Prediction, ratio: f64) -> Nodal<S> {
+        let at = scaled(&self.nodes, ratio);
+        let mut values = [0.0; S];
+        for coefficient in prediction.iter().rev() {
+            for (value, y) in values.iter_mut().zip(&at) {
+                *value = A::mul_add(*value, *y, *coefficient);
+            }
+        }
+        values
+    }
+}
+
+impl<const S: usize> Default for Collocation<S> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Coefficients of the polynomials that are 1 at one of the points and 0 at the others.
+fn lagrange<const N: usize>(points: &[f64]) -> Vec<[f64; N]> {
+    points
+        .iter()
+        .map(|own| {
+            let others = points.iter().filter(|point| *point != own);
+            others.fold(one(), |shape, point| {
+                times(shape, 1.0 / (own - point), -point / (own - point))
+            })
+        })
+        .collect()
+}
+
+/// The polynomial that takes the values, of a basis of those that are 1 at one of their places.
+#[inline(always)]
+fn combine<'a, A: Arithmetic>(basis: &[Prediction], values: impl Iterator<Item = &'a f64>) -> Prediction {
+    let mut sum = [0.0; LONG + 1];
+    for (value, polynomial) in values.zip(basis) {
+        add::<{ LONG + 1 }, A>(&mut sum, *value, polynomial);
+    }
+    sum
+}
+
+fn one<const N: usize>() -> [f64; N] {
+    let mut shape = [0.0; N];
+    if let Some(first) = shape.first_mut() {
+        *first = 1.0;
+    }
+    shape
+}
+
+/// The polynomial times `a x + b`.
+fn times<const N: usize>(shape: [f64; N], a: f64, b: f64) -> [f64; N] {
+    let mut below = 0.0;
+    shape.map(|coefficient| {
+        let value = b * coefficient + a * below;
+        below = coefficient;
+        value
+    })
+}
+
+/// Coefficients of `x^m / m!` instead of `x^m`.
+fn by_factorials(mut shape: [f64; MAX_SHAPES]) -> [f64; MAX_SHAPES] {
+    let mut factorial = 1.0;
+    for (m, coefficient) in shape.iter_mut().enumerate() {
+        *coefficient *= factorial;
+        factorial *= (m + 1) as f64;
+    }
+    shape
+}

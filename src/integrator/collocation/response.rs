@@ -1,0 +1,173 @@
+//! What modes make of a load whose course over a step is a combination of the load shapes: factors of the shapes'
+//! integrals and derivatives, and free motions that fade ([`crate::integrator::collocation::modal_response`]). The factors of many modes add up
+//! before they meet the shapes.
+
+use crate::integrator::collocation::polynomial::{MAX_SHAPES, Nodal};
+use crate::integrator::collocation::shapes::{Row, Shapes, TERMS, Table};
+use crate::math::nodal::{add, end};
+use crate::math::simd::Arithmetic;
+
+/// Displacement and velocity, in units of the step length.
+#[derive(Clone, Copy, Debug)]
+pub struct Pair<T> {
+    /// Displacement.
+    pub q: T,
+    /// Velocity.
+    pub v: T,
+}
+
+/// Combinations of the n-fold integrals (n = 1, 2, ...) and the m-th derivatives (m = 0, 1, ...) of the load shapes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Combination {
+    /// Factors of the integrals.
+    pub(crate) integrals: Pair<[f64; TERMS]>,
+    /// How many of them count.
+    pub(crate) terms: usize,
+    /// Factors of the derivatives.
+    pub(crate) derivatives: Pair<[f64; MAX_SHAPES]>,
+}
+
+impl Combination {
+    pub(crate) const ZERO: Self = Self {
+        integrals: Pair {
+            q: [0.0; TERMS],
+            v: [0.0; TERMS],
+        },
+        terms: 0,
+        derivatives: Pair {
+            q: [0.0; MAX_SHAPES],
+            v: [0.0; MAX_SHAPES],
+        },
+    };
+}
+
+/// A free motion that takes away what a combination has at the start.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fading<const S: usize> {
+    /// What there is at the start, for each shape.
+    pub(crate) start: Row<S>,
+    /// How it fades down to the nodes.
+    pub(crate) fade: Pair<Nodal<S>>,
+}
+
+/// The response of one mode to the load shapes and to an initial velocity.
+#[derive(Clone, Copy, Debug)]
+pub struct Response<const S: usize> {
+    pub(crate) combination: Combination,
+    /// None, one for a fast root, or two for a pair of them.
+    pub(crate) fading: [Option<Fading<S>>; 2],
+    /// The free motion per initial velocity at the nodes.
+    pub impulse: Pair<Nodal<S>>,
+}
+
+/// The responses of many modes to the load shapes, added up.
+#[derive(Clone, Copy, Debug)]
+pub struct Sum<const S: usize> {
+    combination: Combination,
+    /// What has faded at the nodes.
+    faded: Pair<Table<S>>,
+}
+
+impl<const S: usize> Response<S> {
+    /// Per load on the oscillator with each of the nodal shapes, at the end of the step.
+    #[inline(always)]
+    pub fn at_end<A: Arithmetic>(&self, shapes: &Shapes<S>) -> Pair<Nodal<S>> {
+        let (mut q, mut v) = ([0.0; S], [0.0; S]);
+        let Combination {
+            integrals,
+            terms,
+            derivatives,
+        } = &self.combination;
+        let factors = integrals.q.iter().zip(&integrals.v).take(*terms);
+        for ((for_q, for_v), values) in factors.zip(&shapes.end_integrals) {
+            add::<S, A>(&mut q, *for_q, values);
+            add::<S, A>(&mut v, *for_v, values);
+        }
+        if self.fading[0].is_some() {
+            let factors = derivatives.q.iter().zip(&derivatives.v);
+            for ((for_q, for_v), values) in factors.zip(&shapes.end_derivatives) {
+                add::<S, A>(&mut q, *for_q, values);
+                add::<S, A>(&mut v, *for_v, values);
+            }
+        }
+        for fading in self.fading.iter().flatten() {
+            add::<S, A>(&mut q, -end(&fading.fade.q), &fading.start.nodal);
+            add::<S, A>(&mut v, -end(&fading.fade.v), &fading.start.nodal);
+        }
+        Pair { q, v }
+    }
+}
+
+impl<const S: usize> Sum<S> {
+    /// Of no modes.
+    pub const ZERO: Self = Self {
+        combination: Combination::ZERO,
+        faded: Pair {
+            q: Table::ZERO,
+            v: Table::ZERO,
+        },
+    };
+
+    /// Adds `weight` times a response.
+    #[inline(always)]
+    pub fn add<A: Arithmetic>(&mut self, weight: f64, response: &Response<S>) {
+        let Combination {
+            integrals,
+            terms,
+            derivatives,
+        } = &mut self.combination;
+        let from = &response.combination;
+        *terms = from.terms.max(*terms);
+        let add_up = |to: &mut [f64], from: &[f64], count: usize| {
+            for (to, from) in to.iter_mut().zip(from).take(count) {
+                *to = A::mul_add(weight, *from, *to);
+            }
+        };
+        add_up(&mut integrals.q, &from.integrals.q, from.terms);
+        add_up(&mut integrals.v, &from.integrals.v, from.terms);
+        if response.fading[0].is_some() {
+            add_up(&mut derivatives.q, &from.derivatives.q, S + 1);
+            add_up(&mut derivatives.v, &from.derivatives.v, S + 1);
+        }
+        for fading in response.fading.iter().flatten() {
+            let Pair { q, v } = &fading.fade;
+            for ((to_q, to_v), start) in self
+                .faded
+                .q
+                .nodal
+                .iter_mut()
+                .zip(&mut self.faded.v.nodal)
+                .zip(&fading.start.nodal)
+            {
+                add::<S, A>(to_q, weight * start, q);
+                add::<S, A>(to_v, weight * start, v);
+            }
+            add::<S, A>(&mut self.faded.q.error, weight * fading.start.error, q);
+            add::<S, A>(&mut self.faded.v.error, weight * fading.start.error, v);
+        }
+    }
+
+    /// At the nodes.
+    #[inline(always)]
+    pub fn at_nodes<A: Arithmetic>(&self, shapes: &Shapes<S>) -> Pair<Table<S>> {
+        let Combination {
+            integrals,
+            terms,
+            derivatives,
+        } = &self.combination;
+        let (mut q, mut v) = (Table::ZERO, Table::ZERO);
+        let factors = integrals.q.iter().zip(&integrals.v).take(*terms);
+        for ((for_q, for_v), table) in factors.zip(&shapes.integrals) {
+            q.add::<A>(*for_q, table);
+            v.add::<A>(*for_v, table);
+        }
+        let factors = derivatives.q.iter().zip(&derivatives.v);
+        for ((for_q, for_v), table) in factors.zip(&shapes.derivatives) {
+            q.add::<A>(*for_q, table);
+            v.add::<A>(*for_v, table);
+        }
+        q.add::<A>(-1.0, &self.faded.q);
+        v.add::<A>(-1.0, &self.faded.v);
+        Pair { q, v }
+    }
+}

@@ -1,0 +1,172 @@
+//! Integrals and derivatives of the load shapes of a step: the Lagrange polynomials of its nodes, and the polynomial of
+//! one degree more that vanishes at the nodes and is 1 at the start, which the error estimate uses.
+
+use crate::integrator::collocation::polynomial::{MAX_SHAPES, Nodal};
+use crate::math::legendre;
+use crate::math::nodal::{add, end};
+use crate::math::simd::Arithmetic;
+
+/// Most terms of a power series: `7^n / n!` is below rounding from there on ([`crate::integrator::collocation::modal_response`]).
+pub const TERMS: usize = 48;
+
+/// Points of the quadrature for the integrals; later ones than it is exact for are small.
+const POINTS: usize = 20;
+
+/// A value at every node for every load shape.
+#[derive(Clone, Copy, Debug)]
+pub struct Table<const S: usize> {
+    /// Of the Lagrange polynomials, one after the other.
+    pub nodal: [Nodal<S>; S],
+    /// Of the polynomial that vanishes at the nodes.
+    pub error: Nodal<S>,
+}
+
+/// A value for every load shape at one instant.
+#[derive(Clone, Copy, Debug)]
+pub struct Row<const S: usize> {
+    /// See [`Table::nodal`].
+    pub nodal: Nodal<S>,
+    /// See [`Table::error`].
+    pub error: f64,
+}
+
+/// What the load shapes look like in units of the step length.
+#[derive(Clone, Debug)]
+pub struct Shapes<const S: usize> {
+    /// `x^n / n!` at the nodes, n = 0, 1, ...
+    pub powers: Vec<Nodal<S>>,
+    /// n-fold integrals from the start, n = 1, 2, ...
+    pub integrals: Vec<Table<S>>,
+    /// Those of the Lagrange polynomials up to the end of the step.
+    pub end_integrals: Vec<Nodal<S>>,
+    /// m-th derivatives, m = 0, ..., S.
+    pub derivatives: Vec<Table<S>>,
+    /// Those of the Lagrange polynomials at the end of the step.
+    pub end_derivatives: Vec<Nodal<S>>,
+    /// Those at the start of the step.
+    pub start_derivatives: Vec<Row<S>>,
+}
+
+impl<const S: usize> Table<S> {
+    /// All zero.
+    pub const ZERO: Self = Self {
+        nodal: [[0.0; S]; S],
+        error: [0.0; S],
+    };
+
+    /// Adds `factor` times another table.
+    #[inline(always)]
+    pub fn add<A: Arithmetic>(&mut self, factor: f64, values: &Self) {
+        for (sum, values) in self.nodal.iter_mut().zip(&values.nodal) {
+            add::<S, A>(sum, factor, values);
+        }
+        add::<S, A>(&mut self.error, factor, &values.error);
+    }
+
+    fn columns_mut(&mut self) -> impl Iterator<Item = &mut Nodal<S>> {
+        self.nodal.iter_mut().chain([&mut self.error])
+    }
+
+    /// The Lagrange polynomials at the last node.
+    fn end(&self) -> Nodal<S> {
+        self.nodal.map(|column| end(&column))
+    }
+}
+
+impl<const S: usize> Shapes<S> {
+    /// For the nodes on [0, 1] and the shapes' derivatives (m = 0, ..., S) at an instant, shape by shape.
+    pub fn new(nodes: &Nodal<S>, derivatives_at: impl Fn(f64) -> Vec<[f64; MAX_SHAPES]>) -> Self {
+        let mut power = [1.0; S];
+        let powers = (0..=TERMS).map(|n| {
+            let now = power;
+            for (power, x) in power.iter_mut().zip(nodes) {
+                *power *= x / (n + 1) as f64;
+            }
+            now
+        });
+        let integrals = integrals(nodes);
+        let start = rows(&derivatives_at(0.0));
+        let at_nodes = nodes.map(|x| rows(&derivatives_at(x)));
+        let derivatives: Vec<_> = (0..=S).map(|m| table(&at_nodes, m)).collect();
+        Self {
+            powers: powers.collect(),
+            end_integrals: integrals.iter().map(Table::end).collect(),
+            integrals,
+            end_derivatives: derivatives.iter().map(Table::end).collect(),
+            derivatives,
+            start_derivatives: start,
+        }
+    }
+}
+
+/// `n`-fold integrals by Cauchy's formula, `(x - s)^(n-1) / (n-1)!` times the shape from 0 to x, and Gauss quadrature.
+fn integrals<const S: usize>(nodes: &Nodal<S>) -> Vec<Table<S>> {
+    let mut tables = vec![(Table::<S>::ZERO, Table::<S>::ZERO); TERMS];
+    let points: Vec<_> = legendre::gauss(POINTS).collect();
+    for (i, &x) in nodes.iter().enumerate() {
+        for (point, weight) in &points {
+            let s = x * f64::midpoint(1.0, *point);
+            let values: Vec<f64> = shape_values(nodes, s).collect();
+            let mut kernel = 0.5 * weight * x;
+            for (n, (table, sizes)) in tables.iter_mut().enumerate() {
+                for ((column, size), value) in table.columns_mut().zip(sizes.columns_mut()).zip(&values) {
+                    if let (Some(sum), Some(size)) = (column.get_mut(i), size.get_mut(i)) {
+                        *sum += kernel * value;
+                        *size += (kernel * value).abs();
+                    }
+                }
+                kernel *= (x - s) / (n + 1) as f64;
+            }
+        }
+    }
+    tables
+        .into_iter()
+        .map(|(table, sizes)| significant(table, sizes))
+        .collect()
+}
+
+/// The shapes at `s`.
+fn shape_values<const S: usize>(nodes: &Nodal<S>, s: f64) -> impl Iterator<Item = f64> {
+    let lagrange = nodes.map(|own| {
+        let others = nodes.iter().filter(|node| **node != own);
+        others.map(|node| (s - node) / (own - node)).product::<f64>()
+    });
+    let vanishing = nodes.iter().map(|node| 1.0 - s / node).product();
+    lagrange.into_iter().chain([vanishing])
+}
+
+/// Derivatives of one order after the other, from those shape by shape.
+fn rows<const S: usize>(shapes: &[[f64; MAX_SHAPES]]) -> Vec<Row<S>> {
+    let row = |m: usize| {
+        let mut values = shapes.iter().filter_map(|shape| shape.get(m)).copied();
+        Row {
+            nodal: [0.0; S].map(|_| values.next().unwrap_or_default()),
+            error: values.next().unwrap_or_default(),
+        }
+    };
+    (0..=S).map(row).collect()
+}
+
+/// The m-th row of every node.
+fn table<const S: usize>(at_nodes: &[Vec<Row<S>>; S], m: usize) -> Table<S> {
+    let mut table = Table::ZERO;
+    for (i, row) in at_nodes.iter().filter_map(|rows| rows.get(m)).enumerate() {
+        let values = row.nodal.iter().chain([&row.error]);
+        for (column, value) in table.columns_mut().zip(values) {
+            column.iter_mut().skip(i).take(1).for_each(|entry| *entry = *value);
+        }
+    }
+    table
+}
+
+/// What cancels down to rounding is nothing.
+fn significant<const S: usize>(mut table: Table<S>, mut sizes: Table<S>) -> Table<S> {
+    for (column, sizes) in table.columns_mut().zip(sizes.columns_mut()) {
+        for (value, size) in column.iter_mut().zip(sizes) {
+            if value.abs() <= 16.0 * f64::EPSILON * *size {
+                *value = 0.0;
+            }
+        }
+    }
+    table
+}

@@ -1,0 +1,362 @@
+//! One step on trial: the nodal contact forces ([`crate::integrator::collocation::newton`]), the motion they give, and an estimate of their
+//! error.
+
+use crate::excitation::drive::Drive;
+use crate::integrator::collocation::coefficients::{EndRows, ErrorColumn, Modal, StepCoefficients};
+use crate::integrator::collocation::newton::{Solution, at_nodes};
+use crate::integrator::collocation::polynomial::{Collocation, Nodal};
+use crate::math::nodal::{add, add_columns, add_products, dot, end};
+use crate::math::simd::{Arithmetic, compiled_for};
+use crate::model::{ModeStates, Model, State};
+
+/// Where the contact force of a step comes from.
+#[derive(Clone, Copy, Debug)]
+pub enum Source<const S: usize> {
+    /// The law at the nodes while the contact is closed, met by Newton's method to this, N; nothing while it is open.
+    Law(f64),
+    /// This at the nodes, as deviation from the preload force, N.
+    Given(Nodal<S>),
+}
+
+/// A step computed but not yet taken.
+#[derive(Clone, Copy, Debug)]
+pub struct Trial<const S: usize> {
+    /// Nodal forces as deviation from the preload force, N.
+    pub forces: Nodal<S>,
+    /// Indentation at the nodes as deviation from the preload, m.
+    pub indentations: Nodal<S>,
+    /// Its velocity at the nodes, m/s.
+    pub rates: Nodal<S>,
+    /// Displacement of the fixed contact at the end, m.
+    pub support: f64,
+    /// Indentation at the end as deviation from the preload, m.
+    pub indentation: f64,
+    /// Its velocity at the end, m/s.
+    pub rate: f64,
+    /// Estimate of the error this step adds to the contact force, N.
+    pub error: f64,
+    /// Error below which it says nothing, being lost in rounding, N.
+    pub rounding: f64,
+    /// Contact force that the polynomial misses at the start, N.
+    pub missed: f64,
+    /// Newton iterations spent.
+    pub iterations: u64,
+    /// Of the law.
+    pub slopes: Slopes,
+}
+
+/// What acts on the tip in a step besides the contact force.
+#[derive(Clone)]
+pub(crate) struct Outside<'a, const S: usize> {
+    /// Base acceleration at the nodes, m/s2.
+    pub(crate) accelerations: Nodal<S>,
+    /// Indentation at the nodes without contact force, as deviation from the preload, m.
+    pub(crate) free: Nodal<S>,
+    /// Its velocity, m/s.
+    pub(crate) free_rate: Nodal<S>,
+    /// What the nodal polynomials miss of it at the start, m/s2 where it is the base acceleration.
+    pub(crate) missed: f64,
+    /// Displacement and velocity of the fixed contact relative to the tip per what is missed.
+    pub(crate) error: &'a ErrorColumn<S>,
+}
+
+/// The loads on [`LANES`] modes at the nodes.
+pub(crate) type LaneLoads<const S: usize> = [[f64; LANES]; S];
+
+/// How the law answers within a step; nothing where the force does not depend on the motion.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Slopes {
+    /// Greatest stiffness at the nodes, N/m.
+    pub stiffness: f64,
+    /// Greatest damping at the nodes, N s/m.
+    pub damping: f64,
+    /// Change of the law's force at the end, at these, per force on the tip throughout the step.
+    pub gain: f64,
+}
+
+/// Rounding of a contact force, relative to it.
+const ROUNDING: f64 = 1e-13;
+
+/// Roundings in a sum over the modes.
+const ROUNDINGS: f64 = 4.0;
+
+/// Mean over a step of what the nodal polynomial misses of the square root of time from its start, over what it misses
+/// at the start.
+const KINKED: f64 = 0.015;
+
+/// Steps from a kink beyond which it is not felt.
+const FAR: f64 = 20.0;
+
+impl Model {
+    /// The step from `state` with the given coefficients, on the branch the state is on, with the modes at its end in
+    /// `end_modes`; `None` where Newton's method does not converge.
+    pub fn trial<const S: usize>(
+        &self,
+        state: &State,
+        drive: &Drive,
+        step: &StepCoefficients<S>,
+        collocation: &Collocation<S>,
+        source: Source<S>,
+        end_modes: &mut ModeStates,
+    ) -> Option<Trial<S>> {
+        if let Some(axial) = self.axial() {
+            return self.axial_trial(axial, state, (drive, source), (step, collocation), end_modes);
+        }
+        compiled_for!(self.machine, A => self.compute::<S, A>(state, drive, step, collocation, source, end_modes))
+    }
+
+    /// [`Model::trial`] for a machine.
+    #[inline(always)]
+    fn compute<const S: usize, A: Arithmetic>(
+        &self,
+        state: &State,
+        drive: &Drive,
+        step: &StepCoefficients<S>,
+        collocation: &Collocation<S>,
+        source: Source<S>,
+        end_modes: &mut ModeStates,
+    ) -> Option<Trial<S>> {
+        let outside = self.outside::<S, A>(state, drive, step, collocation);
+        let solution = match source {
+            Source::Law(newton) if state.closed => {
+                let guess = self.predicted_forces::<S, A>(state, step, collocation);
+                self.closed_forces::<S, A>(step, &outside, guess, newton)?
+            }
+            Source::Law(_) => Solution::given([-self.preload.force; S]),
+            Source::Given(forces) => Solution::given(forces),
+        };
+        let tip = end_of_modes::<S, A>(
+            state,
+            step,
+            self.modes.len(),
+            #[inline(always)]
+            |first, loads| {
+                loads_on_modes::<S, A>(&step.end, first, &solution.forces, &outside.accelerations, loads);
+            },
+            end_modes,
+        );
+        Some(self.judged::<S, A>(state, drive, (step, collocation), &solution, &outside, tip))
+    }
+
+    /// What acts on the tip besides the contact force.
+    #[inline(always)]
+    pub(crate) fn outside<'a, const S: usize, A: Arithmetic>(
+        &self,
+        state: &State,
+        drive: &Drive,
+        step: &'a StepCoefficients<S>,
+        collocation: &Collocation<S>,
+    ) -> Outside<'a, S> {
+        let h = step.length;
+        let generated = self.generator.over_step(self.machine, state.time, &step.turns);
+        let driven = drive.acceleration(state.time);
+        let mut accelerations = generated.nodes;
+        add::<S, A>(&mut accelerations, drive.jerk * h, &collocation.nodes);
+        for acceleration in &mut accelerations {
+            *acceleration += driven;
+        }
+
+        let mut free = [state.support; S];
+        add::<S, A>(&mut free, drive.support_rate * h, &collocation.nodes);
+        let mut free_rate = [drive.support_rate; S];
+        // A sum of its own for q and v each: they do not wait for one another.
+        let [mut from_q, mut from_v, mut rate_from_q, mut rate_from_v] = [[0.0; S]; 4];
+        for (mode, row) in state.modes.iter().zip(&step.modes) {
+            add::<S, A>(&mut from_q, mode.q, &row.tip_from_q);
+            add::<S, A>(&mut from_v, mode.v, &row.tip_from_v);
+            add::<S, A>(&mut rate_from_q, mode.q, &row.rate_from_q);
+            add::<S, A>(&mut rate_from_v, mode.v, &row.rate_from_v);
+        }
+        subtract(&mut free, &from_q, &from_v);
+        subtract(&mut free_rate, &rate_from_q, &rate_from_v);
+        add_columns::<S, A>(&mut free, &step.acceleration.displacement, &accelerations);
+        add_columns::<S, A>(&mut free_rate, &step.acceleration.velocity, &accelerations);
+        Outside {
+            missed: driven + generated.start - dot::<S, A>(&accelerations, &collocation.at_start),
+            error: &step.acceleration_error,
+            accelerations,
+            free,
+            free_rate,
+        }
+    }
+
+    /// The trial, once the nodal forces are found and with them displacement and velocity of the tip at the end.
+    #[inline(always)]
+    pub(crate) fn judged<const S: usize, A: Arithmetic>(
+        &self,
+        state: &State,
+        drive: &Drive,
+        (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
+        solution: &Solution<S>,
+        outside: &Outside<S>,
+        (tip, tip_rate): (f64, f64),
+    ) -> Trial<S> {
+        let Solution { forces, iterations, .. } = *solution;
+        let (indentations, rates) = at_nodes::<S, A>(step, &outside.free, &outside.free_rate, &forces);
+        let support = state.support + drive.support_rate * step.length;
+        let (indentation, rate) = (support - tip, drive.support_rate - tip_rate);
+
+        let largest = forces.iter().fold(f64::MIN_POSITIVE, |largest, force| {
+            largest.max((self.preload.force + force).abs())
+        });
+        let missed = if state.closed {
+            state.force - self.preload.force - dot::<S, A>(&forces, &collocation.at_start)
+        } else {
+            0.0
+        };
+        let error = self.error(state, step, solution, missed, outside, largest);
+        Trial {
+            forces,
+            indentations,
+            rates,
+            support,
+            indentation,
+            rate,
+            error,
+            rounding: ROUNDING * largest.max(self.preload.force),
+            missed: missed.abs(),
+            iterations,
+            slopes: solution.slopes,
+        }
+    }
+
+    /// Estimate of what a step adds to the error of the contact force, N.
+    ///
+    /// At the nodes the polynomials are right; what they miss at the start tells how much of the shape that vanishes at
+    /// the nodes they lack. What that does to the nodal forces is known to first order ([`Solution`]). Modes slow
+    /// against the step hardly feel it at the end (the shape is orthogonal to polynomials of low degree); they see an
+    /// error of twice the order, about three times the square of what is missed (an impact of a free mass on a Hertz
+    /// contact). Just after a touch or a jump the force is no polynomial of any degree, and they see more.
+    ///
+    /// `missed` (N) is what the force's polynomial misses at the start, `largest` (N) the largest nodal force.
+    #[inline(always)]
+    fn error<const S: usize>(
+        &self,
+        state: &State,
+        step: &StepCoefficients<S>,
+        solution: &Solution<S>,
+        missed: f64,
+        outside: &Outside<S>,
+        largest: f64,
+    ) -> f64 {
+        if state.closed {
+            let (by_force, by_load) = (solution.by_force, solution.by_load);
+            let wrong_d = by_load.0 * outside.missed - by_force.0 * missed;
+            let wrong_r = by_load.1 * outside.missed - by_force.1 * missed;
+            let fast = (solution.slopes.stiffness * wrong_d).abs() + (solution.slopes.damping * wrong_r).abs();
+            let elapsed = state.time - state.last_kink;
+            let kinked = if elapsed < FAR * step.length {
+                KINKED * missed.abs() * analytic::<S>(elapsed / step.length)
+            } else {
+                0.0
+            };
+            let slow = 3.0 * missed * missed / largest + kinked;
+            fast + slow * solution.slopes.gain / (1.0 + solution.slopes.gain)
+        } else {
+            let last = |values: &Nodal<S>| (end(values) * outside.missed).abs();
+            let rows = outside.error;
+            let wrong = last(&rows.displacement) + self.law.damping() * last(&rows.velocity);
+            self.law.tangent_stiffness(self.force_scale) * wrong
+        }
+    }
+
+    /// Whether the error of a step from `state` is what the rounding of the sums over the modes makes of the contact
+    /// force. After a blow the velocities of the modes are large and their sum at the tip is small.
+    pub(crate) fn is_rounding<const S: usize>(&self, state: &State, trial: &Trial<S>) -> bool {
+        let (mut displacement, mut velocity) = (0.0, 0.0);
+        for (mode, at) in self.modes.iter().zip(&state.modes) {
+            displacement += (mode.tip * at.q).abs();
+            velocity += (mode.tip * at.v).abs();
+        }
+        // The force at the first node reacts upon itself over the time up to it alone, some 1 / S^2 of the step.
+        let reaction = 1.0 + trial.slopes.gain / (S * S) as f64;
+        let Slopes { stiffness, damping, .. } = trial.slopes;
+        trial.error <= ROUNDINGS * f64::EPSILON * (stiffness * displacement + damping * velocity) / reaction
+    }
+}
+
+/// How much less of a root of time its quadrature with `S` nodes misses, over what the nodal polynomial misses, where
+/// its branch point lies `distance` steps before the step: the polynomial converges with the power `S` of the size of
+/// the ellipse in which the root is analytic, the quadrature with the power `2 S - 1` (L. N. Trefethen, Approximation
+/// Theory and Approximation Practice, 2013, chapters 8 and 19).
+fn analytic<const S: usize>(distance: f64) -> f64 {
+    let ellipse = 1.0 + 2.0 * distance + 2.0 * (distance * (distance + 1.0)).sqrt();
+    (1..S).fold(1.0, |product, _| product / ellipse)
+}
+
+/// Modes computed at once.
+pub(crate) const LANES: usize = 4;
+
+/// The loads of forces and base acceleration on the modes from `first` on.
+#[inline(always)]
+#[expect(
+    clippy::indexing_slicing,
+    reason = "the room for the modes is a whole number of lanes"
+)]
+pub(crate) fn loads_on_modes<const S: usize, A: Arithmetic>(
+    rows: &EndRows<S>,
+    first: usize,
+    forces: &Nodal<S>,
+    accelerations: &Nodal<S>,
+    loads: &mut LaneLoads<S>,
+) {
+    let tips = &rows.tip[first..first + LANES];
+    let participations = &rows.participation[first..first + LANES];
+    for ((load, force), acceleration) in loads.iter_mut().zip(forces).zip(accelerations) {
+        for ((load, tip), participation) in load.iter_mut().zip(tips).zip(participations) {
+            *load = A::mul_add(*tip, *force, -participation * acceleration);
+        }
+    }
+}
+
+/// The modes in use at the end of a step, into `ends`; `loads` gives those on the modes from a first one on. Returns
+/// displacement and velocity of the tip.
+#[inline(always)]
+#[expect(
+    clippy::indexing_slicing,
+    reason = "the room for the modes is a whole number of lanes"
+)]
+pub(crate) fn end_of_modes<const S: usize, A: Arithmetic>(
+    state: &State,
+    step: &StepCoefficients<S>,
+    modes: usize,
+    loads_from: impl Fn(usize, &mut LaneLoads<S>),
+    ends: &mut ModeStates,
+) -> (f64, f64) {
+    let rows = &step.end;
+    let (mut tip, mut tip_rate) = ([0.0; LANES], [0.0; LANES]);
+    let lanes = |values: &Modal, first: usize| -> [f64; LANES] { std::array::from_fn(|i| values[first + i]) };
+    for first in (0..modes).step_by(LANES) {
+        let starts = &state.modes[first..first + LANES];
+        let (start_q, start_v): ([f64; LANES], [f64; LANES]) = (
+            std::array::from_fn(|i| starts[i].q),
+            std::array::from_fn(|i| starts[i].v),
+        );
+        let tips = lanes(&rows.tip, first);
+        let mut loads = [[0.0; LANES]; S];
+        loads_from(first, &mut loads);
+        let (mut q, mut v) = ([0.0; LANES], [0.0; LANES]);
+        add_products::<LANES, A>(&mut q, &lanes(&rows.q_from_q, first), &start_q);
+        add_products::<LANES, A>(&mut q, &lanes(&rows.q_from_v, first), &start_v);
+        add_products::<LANES, A>(&mut v, &lanes(&rows.v_from_q, first), &start_q);
+        add_products::<LANES, A>(&mut v, &lanes(&rows.v_from_v, first), &start_v);
+        for (node, load) in loads.iter().enumerate() {
+            add_products::<LANES, A>(&mut q, &lanes(&rows.q_from_load[node], first), load);
+            add_products::<LANES, A>(&mut v, &lanes(&rows.v_from_load[node], first), load);
+        }
+        add_products::<LANES, A>(&mut tip, &tips, &q);
+        add_products::<LANES, A>(&mut tip_rate, &tips, &v);
+        for (end, (q, v)) in ends[first..first + LANES].iter_mut().zip(q.iter().zip(&v)) {
+            (end.q, end.v) = (*q, *v);
+        }
+    }
+    (tip.iter().sum(), tip_rate.iter().sum())
+}
+
+/// Takes away both.
+#[inline(always)]
+fn subtract<const S: usize>(values: &mut Nodal<S>, a: &Nodal<S>, b: &Nodal<S>) {
+    for ((value, a), b) in values.iter_mut().zip(a).zip(b) {
+        *value -= a + b;
+    }
+}

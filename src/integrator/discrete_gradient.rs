@@ -1,0 +1,168 @@
+//! The step that cannot fail, for where the collocation cannot go on.
+//!
+//! The contact force is constant over the step: the discrete gradient of the elastic energy between its ends, and a
+//! damping force that opposes the way between them (O. Gonzalez, J. Nonlinear Sci. 6 (1996) 449). With exact modes the
+//! energy is kept exactly without damping and never made with damping, however long the step, and the contact opens and
+//! closes within it by itself. The indentation at the end falls linearly with the constant force, and the force grows
+//! with it: one monotone scalar equation between brackets.
+
+use crate::error::{StepError, StepErrorCause};
+use crate::integrator::collocation::polynomial::SHORT;
+use crate::integrator::collocation::step::{Source, Trial};
+use crate::integrator::grid::Target;
+use crate::integrator::step_control::{Advice, Integration};
+use crate::integrator::workspace::Room;
+use crate::math::nodal::end;
+use crate::math::roots;
+
+/// Steps given up in succession before one has to do.
+pub(crate) const REFUSALS: u32 = 40;
+
+impl Integration<'_> {
+    /// Takes the step to the target with a constant force.
+    pub(crate) fn fall_back(&mut self, target: &Target) -> Result<Advice, StepError> {
+        let trial = self
+            .constant_step(target)
+            .ok_or_else(|| self.error(StepErrorCause::NotFinite))?;
+        let mean = self.model.preload.force + end(&trial.forces);
+        self.take(&trial, target)?;
+        let d = self.model.preload.indentation + trial.indentation;
+        let mut length = target.length;
+        let closed = self.model.engagement(trial.indentation, trial.rate) > 0.0;
+        if closed != self.state.closed {
+            length = self.switch(closed);
+        }
+        if closed {
+            // The velocity at the end is that of a tip under a constant force: where the contact is nearly a rigid
+            // dashpot the law makes too much of it.
+            let law = self.model.law.closed_branch(d, trial.rate);
+            let rigid = law.damping * self.model.mobility() * target.length > 1.0;
+            self.state.force = if rigid { mean } else { law.force };
+        }
+        // It predicts nothing.
+        self.state.last_step = 0.0;
+        Ok(Advice {
+            taken: true,
+            growth: 2.0,
+            length,
+        })
+    }
+
+    /// The step to the target with a constant force.
+    fn constant_step(&mut self, target: &Target) -> Option<Trial<SHORT>> {
+        let Self {
+            model,
+            state,
+            workspace,
+            drive,
+            ..
+        } = self;
+        let mut trials = 0;
+        let (cache, end, _) = Room::<SHORT>::parts(*workspace);
+        let (step, collocation) = cache.get(target.length, target.recurring, model);
+        let preload = model.preload;
+        let from = preload.indentation + state.indentation;
+        let mut under = |force: f64| {
+            trials += 1;
+            let source = Source::Given([force - preload.force; SHORT]);
+            model.trial(state, drive, step, collocation, source, end)
+        };
+        let wanted = |trial: &Trial<SHORT>| {
+            let speed = (trial.indentation - state.indentation) / target.length;
+            model
+                .law
+                .mean_force(from, preload.indentation + trial.indentation, speed)
+        };
+        // Under no force the indentation asks for the most; under that force, for less.
+        let most = Some(wanted(&under(0.0)?)).filter(|most| most.is_finite())?;
+        let mut excess = |force: f64| under(force).map_or(f64::NAN, |trial| force - wanted(&trial));
+        let bracket = ((0.0, -most), (most, excess(most)));
+        let force = roots::between(excess, bracket.0, bracket.1, 0.0).unwrap_or(most);
+        let trial = under(force);
+        workspace.work += trials;
+        trial
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::excitation::drive::Drive;
+    use crate::integrator::grid::Progress;
+    use crate::integrator::workspace::Workspace;
+    use crate::model::{Model, State};
+    use crate::scene::Scene;
+
+    /// The specimen with a gap and without beam damping, thrown at the contact.
+    fn thrown(contact_damping: f64) -> (Model, State) {
+        let mut scene = Scene::default();
+        scene.beam.stiffness_damping = 0.0;
+        scene.contact.damping = contact_damping;
+        scene.contact.overtravel = -1e-5;
+        let model = Model::new(&scene, 0.0).unwrap();
+        let mut state = model.initial_state(0.0);
+        for (at, mode) in state.modes.iter_mut().zip(&model.modes) {
+            at.v = -0.1 * mode.participation;
+            state.indentation_rate -= mode.tip * at.v;
+        }
+        (model, state)
+    }
+
+    /// Takes steps with a constant force alone; energies after each, and how often the contact closed.
+    fn energies(model: &Model, state: &mut State, step: f64, count: u32) -> (Vec<f64>, u32) {
+        let mut workspace = Workspace::new(model);
+        let (mut closings, mut last) = (0, -1.0);
+        let energies = (0..count).map(|k| {
+            let mut integration = Integration {
+                model,
+                state,
+                workspace: &mut workspace,
+                drive: Drive::default(),
+                progress: Progress::over(step * f64::from(k), step),
+                span: None,
+                extremes: None,
+                tolerance: 1e-6,
+                allowed: 1e-8,
+                refusals: 0,
+                conserves: false,
+            };
+            let target = integration.progress.target(step, integration.state.time, None);
+            integration.fall_back(&target).unwrap();
+            closings += u32::from(state.last_closing > last);
+            last = state.last_closing;
+            model.energy(&state.modes, state.indentation)
+        });
+        let energies = energies.collect();
+        (energies, closings)
+    }
+
+    #[test]
+    fn energy_is_kept_without_damping_and_never_made_with_it() {
+        // The contact lasts some microseconds.
+        for step in [1e-8, 1e-6, 1e-5, 1e-4] {
+            for damping in [0.0, 1e-7, 8e-5, 1.0] {
+                let (model, mut state) = thrown(damping);
+                let start = model.energy(&state.modes, state.indentation);
+                let (energies, closings) = energies(&model, &mut state, step, 20_000);
+                assert!(closings > 0, "{step} s, {damping} s");
+                let mut before = start;
+                for (k, energy) in energies.into_iter().enumerate() {
+                    // Each step rounds displacement and velocity of each mode, sums of two products and a load.
+                    let rounding = 4.0 * f64::EPSILON * model.modes.len() as f64 * start;
+                    let made = energy - before;
+                    assert!(
+                        made <= rounding,
+                        "{step} s, {damping} s, step {k}: {made:e} J of {start:e} J made"
+                    );
+                    if damping == 0.0 {
+                        assert!(made >= -rounding, "{step} s, step {k}: {made:e} J of {start:e} J lost");
+                    }
+                    before = energy;
+                }
+                if damping > 0.0 {
+                    assert!(before < start, "{step} s, {damping} s");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,276 @@
+//! The balance of the energy (`effects.energy`): what was put in since initialisation, less what is stored, less what
+//! was dissipated. Positive: the integration has lost energy; negative: it has made some.
+//!
+//! Put in are the works of the base acceleration `a` and of the moving fixed contact (displacement `u`). Stored are the
+//! kinetic and strain energy of the beam and the elastic energy `V` of the contact. Dissipated is `D_b` in the beam and,
+//! in the contact, the work of `F_d`, the force of the law less its elastic part `V'(d)`. Where damping makes the force
+//! vanish before the surfaces part, `F_d = -V'(d)`: the energy left in the overlap does no work and is dissipated.
+//!
+//! A step moves the tip by a force `F_p`, a polynomial, and for that force the motion of the modes is exact. So for
+//! the beam, with the preload force `F_0` and `E_b = sum (v_i^2 + omega_i^2 q_i^2) / 2`, both about the preload,
+//!
+//! ```text
+//! change of E_b + D_b = work of a + integral of (F_p - F_0) (u' - d') dt
+//! ```
+//!
+//! holds in each step, whatever `F_p` is. In the balance the works of the base and of the fixed contact, `D_b` and
+//! `E_b` cancel. What is left is the contact,
+//!
+//! ```text
+//! balance = integral of (F_p - F_d) d' dt - change of V = integral of (F_p - F) d' dt,
+//! ```
+//!
+//! the work of the force by which the polynomial misses the law `F` at the motion it gives. At the nodes it misses
+//! nothing, so a quadrature there would see nothing; the motion is therefore computed once more in two halves of the
+//! step, from the same start under the same `F_p` and the base acceleration at more instants, and the integral taken by
+//! the Radau quadratures of both, with eight nodes each. The end of that motion is not the one that the step has taken:
+//! where their energies differ, the step has made or lost the difference, by its polynomial of the base acceleration,
+//! by an impulse that it gave, or by a mistake in it. That counts too.
+//!
+//! So the balance tells of the integration in time. It says nothing on the number of modes, and nothing on the exact
+//! solution of a single mode, which it relies on. A contact at rest and an exact step of the linear scene add nothing
+//! to it: one does not move, the other has no polynomial, its motion obeys the law at every instant to rounding.
+//!
+//! The balance is drawn up at the ends of the integrator's steps: at a communication point inside a step it is that of
+//! the step's start.
+//!
+//! A force wrong by `e` over a way `s` of the tip is worth `e s` at most. That is what to hold the balance against: the
+//! tolerance times the force scale times the way.
+
+use crate::BARE;
+use crate::integrator::collocation::polynomial::LONG;
+use crate::integrator::collocation::step::{Source, Trial};
+use crate::integrator::grid::Target;
+use crate::integrator::step_control::Integration;
+use crate::integrator::workspace::{Room, Workspace};
+use crate::model::State;
+
+impl Integration<'_> {
+    /// What the energy above that of the preload is at the end of a step about to be taken, if the step neither loses
+    /// nor makes any, J; nothing where nobody asks for it.
+    pub(crate) fn energy_due<const S: usize>(&mut self, trial: &Trial<S>, target: &Target) -> Option<f64>
+    where
+        Workspace: Room<S>,
+    {
+        if BARE || !self.model.scene.effects.energy {
+            return None;
+        }
+        let half = 0.5 * target.length;
+        let nodes = self.collocation::<LONG>().nodes;
+        let polynomial = self.collocation::<S>();
+        let halves =
+            [0.0, 0.5].map(|start| nodes.map(|node| polynomial.interpolate(&trial.forces, start + 0.5 * node)));
+        let Self {
+            model, state, drive, ..
+        } = self;
+        let (cache, _, end) = Room::<LONG>::parts(self.workspace);
+        let (step, collocation) = cache.get(half, target.recurring, model);
+        let mut at: State = **state;
+        let mut work = 0.0;
+        for forces in halves {
+            let motion = model.trial(&at, drive, step, collocation, Source::Given(forces), end)?;
+            let mut powers = forces;
+            for ((power, d), rate) in powers.iter_mut().zip(&motion.indentations).zip(&motion.rates) {
+                let d = model.preload.indentation + d;
+                *power = (*power - (model.law.force(d, *rate) - model.law.force(d, 0.0))) * rate;
+            }
+            work += half * collocation.mean(&powers);
+            at.time += half;
+            at.modes = *end;
+            at.support = motion.support;
+            at.indentation = motion.indentation;
+        }
+        Some(if state.closed {
+            model.energy(&at.modes, state.indentation) + work
+        } else {
+            // Without force what leaves the contact is dissipated.
+            model.energy(&at.modes, at.indentation)
+        })
+    }
+
+    /// Enters a step just taken, at whose end the energy was to be `due` (J).
+    pub(crate) fn balance(&mut self, due: Option<f64>) {
+        if let Some(due) = due {
+            let Self { model, state, .. } = self;
+            state.energy_balance += due - model.energy(&state.modes, state.indentation);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::SVector;
+
+    use super::*;
+    use crate::excitation::drive::Drive;
+    use crate::inputs::Inputs;
+    use crate::integrator::collocation::polynomial::{Collocation, LONG, SHORT};
+    use crate::integrator::grid::Progress;
+    use crate::integrator::step_control::Steps;
+    use crate::model::{ModeStates, Model};
+    use crate::scene::Scene;
+    use crate::variables::ExcitationKind;
+
+    const MODES: usize = 6;
+    type Along = SVector<f64, { 2 * MODES + 2 }>;
+
+    /// The specimen under way: shaken by the generator and by the input, which grows, with the fixed contact
+    /// moving.
+    fn moving() -> (Model, State, Drive) {
+        let mut scene = Scene::default();
+        scene.effects.excitation = ExcitationKind::Sine;
+        scene.effects.energy = true;
+        scene.excitation.amplitude = 300.0;
+        scene.excitation.phase = 0.3;
+        scene.solver.modes = i32::try_from(MODES).unwrap();
+        let model = Model::new(&scene, 0.0).unwrap();
+        let mut state = model.initial_state(0.0);
+        let inputs = Inputs {
+            base_acceleration: 20.0,
+            base_acceleration_rate: 1e5,
+            ..Inputs::default()
+        };
+        let drive = Drive::new(&inputs, 0.0, 1e-3, -2e-8);
+        let steps = Steps::Exactly { time: 0.0, size: 4e-4 };
+        let mut workspace = Workspace::new(&model);
+        model.advance(&mut state, &mut workspace, drive, steps, None).unwrap();
+        state.energy_balance = 0.0;
+        (model, state, drive)
+    }
+
+    /// What a step of `length` (s) that was changed adds to the balance, J.
+    fn balance<const S: usize>(
+        model: &Model,
+        state: &mut State,
+        drive: Drive,
+        length: f64,
+        change: impl FnOnce(&mut Trial<S>, &mut ModeStates),
+    ) -> (f64, Trial<S>)
+    where
+        Workspace: Room<S>,
+    {
+        let mut workspace = Workspace::new(model);
+        let mut integration = Integration {
+            model,
+            progress: Progress::over(state.time, length),
+            state,
+            workspace: &mut workspace,
+            drive,
+            span: None,
+            extremes: None,
+            tolerance: 1e-6,
+            allowed: 1e-9,
+            refusals: 0,
+            conserves: false,
+        };
+        let target = integration.progress.target(length, integration.state.time, None);
+        let mut trial = integration.attempt::<S>(&target).unwrap();
+        change(&mut trial, Room::<S>::parts(integration.workspace).1);
+        integration.take(&trial, &target).unwrap();
+        (state.energy_balance, trial)
+    }
+
+    /// The same, with every work, energy and loss summed up along the motion under the force of the step, integrated by
+    /// the classical Runge-Kutta method, J.
+    #[expect(clippy::indexing_slicing, reason = "as many entries as the modes need")]
+    fn summed<const S: usize>(
+        model: &Model,
+        start: &State,
+        end: &State,
+        drive: Drive,
+        length: f64,
+        trial: &Trial<S>,
+    ) -> f64 {
+        const STEPS: u32 = 20_000;
+        let collocation = Collocation::<S>::new();
+        // Displacement and velocity of each mode in turn, energy put in, energy dissipated.
+        let rates = |t: f64, y: &Along| {
+            let force = collocation.interpolate(&trial.forces, t / length);
+            let base = drive.acceleration(start.time + t) + model.generator.phasor(start.time + t).0;
+            let (mut d, mut rate) = (start.support + drive.support_rate * t, drive.support_rate);
+            let mut slope = Along::zeros();
+            for (i, mode) in model.modes.iter().enumerate() {
+                let (q, v) = (y[2 * i], y[2 * i + 1]);
+                slope[2 * i] = v;
+                slope[2 * i + 1] =
+                    mode.tip * force - mode.participation * base - mode.damping * v - mode.omega_squared * q;
+                d -= mode.tip * q;
+                rate -= mode.tip * v;
+                slope[2 * MODES] -= base * mode.participation * v;
+                slope[2 * MODES + 1] += mode.damping * v * v;
+            }
+            let d = model.preload.indentation + d;
+            slope[2 * MODES] += (model.preload.force + force) * drive.support_rate;
+            slope[2 * MODES + 1] += (model.law.force(d, rate) - model.law.force(d, 0.0)) * rate;
+            slope
+        };
+        let mut y = Along::zeros();
+        for (i, at) in start.modes.iter().take(MODES).enumerate() {
+            (y[2 * i], y[2 * i + 1]) = (at.q, at.v);
+        }
+        let h = length / f64::from(STEPS);
+        for k in 0..STEPS {
+            let t = f64::from(k) * h;
+            let a = rates(t, &y);
+            let b = rates(t + 0.5 * h, &(y + a * (0.5 * h)));
+            let c = rates(t + 0.5 * h, &(y + b * (0.5 * h)));
+            let d = rates(t + h, &(y + c * h));
+            y += (a + (b + c) * 2.0 + d) * (h / 6.0);
+        }
+        let stored =
+            |state: &State| model.energy(&state.modes, state.indentation) + model.preload.force * state.support;
+        y[2 * MODES] - y[2 * MODES + 1] - (stored(end) - stored(start))
+    }
+
+    #[test]
+    fn a_step_is_balanced_as_the_sum_of_its_works_and_losses_is() {
+        // With four nodes, and far longer than the error allows, so that there is something to balance.
+        for length in [6e-5, 1.2e-4, 2.4e-4] {
+            let (model, start, drive) = moving();
+            let mut end = start;
+            let (entered, trial) = balance::<SHORT>(&model, &mut end, drive, length, |_, _| ());
+            let sum = summed(&model, &start, &end, drive, length, &trial);
+            // What the polynomial misses at the start sets the modes swinging for about a microsecond, which the nodes
+            // of the halves do not follow.
+            assert!(
+                (entered - sum).abs() < 0.1 * sum.abs(),
+                "{length} s: entered {entered:e} J, summed {sum:e} J"
+            );
+        }
+    }
+
+    #[test]
+    fn a_wrong_force_shows_in_the_balance() {
+        let (model, start, drive) = moving();
+        let mut end = start;
+        let wrong = 1e-6;
+        let (entered, trial) = balance::<LONG>(&model, &mut end, drive, 6e-5, |trial, _| {
+            trial.forces = trial.forces.map(|force| force + wrong);
+        });
+        let sum = summed(&model, &start, &end, drive, 6e-5, &trial);
+        assert!(
+            (entered - sum).abs() < 1e-3 * sum.abs(),
+            "entered {entered:e} J, summed {sum:e} J"
+        );
+        // More than the wrong force itself is worth: the tip it leads astray meets other forces of the law.
+        let worth = wrong * (end.indentation - start.indentation).abs();
+        assert!(entered.abs() > worth, "entered {entered:e} J, worth {worth:e} J");
+    }
+
+    #[test]
+    fn a_wrong_motion_shows_in_the_balance() {
+        let (model, start, drive) = moving();
+        let mut end = start;
+        let mut made = 0.0;
+        let (entered, _) = balance::<LONG>(&model, &mut end, drive, 6e-5, |_, modes| {
+            let first = modes.first_mut().unwrap();
+            let due = first.v;
+            first.v *= 1.0 + 1e-6;
+            made = 0.5 * (first.v * first.v - due * due);
+        });
+        assert!(
+            (entered + made).abs() < 1e-3 * made,
+            "entered {entered:e} J, made {made:e} J"
+        );
+    }
+}

@@ -1,0 +1,143 @@
+//! The contact opens or closes, or the force jumps: where a step has to end because of it, and how the next one begins.
+
+pub mod closing;
+pub mod log;
+pub mod opening;
+
+use crate::error::StepError;
+use crate::integrator::collocation::step::Trial;
+use crate::integrator::events::log::Event;
+use crate::integrator::step_control::{Advice, Integration};
+use crate::integrator::workspace::{Room, Workspace};
+
+/// A step that ends before it was meant to.
+pub(crate) struct Cut {
+    /// Its length, s.
+    pub(crate) length: f64,
+    /// Whether the contact opens or closes at its end.
+    pub(crate) switches: bool,
+}
+
+impl Integration<'_> {
+    /// Where in the step (in steps) the contact first looks as if it switched.
+    pub(crate) fn first_suspect<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> Option<f64>
+    where
+        Workspace: Room<S>,
+    {
+        if self.state.closed {
+            self.first_open(trial)
+        } else {
+            self.first_near(trial, length)
+        }
+    }
+
+    /// Where the step of `length` seconds has to end, which looks suspect after the part `suspect` of it; `None` where
+    /// it may go on to its end.
+    pub(crate) fn cut<const S: usize>(&mut self, suspect: f64, trial: &Trial<S>, length: f64) -> Option<Cut>
+    where
+        Workspace: Room<S>,
+    {
+        if self.state.closed {
+            self.release::<S>(suspect * length, length)
+        } else {
+            self.touchdown(trial, length)
+        }
+    }
+
+    /// The step that ends at the cut, taken or rejected, in place of one whose length wanted was `wanted` (s) and which
+    /// may have grown by `growth`.
+    pub(crate) fn end_at<const S: usize>(&mut self, cut: &Cut, growth: f64, wanted: f64) -> Result<Advice, StepError>
+    where
+        Workspace: Room<S>,
+    {
+        if cut.length <= 0.0 {
+            // Nothing of the step is left: the contact switches now.
+            let length = self.switch(!self.state.closed);
+            return Ok(self.reject(length));
+        }
+        let target = self.progress.cut(cut.length, self.state.time + cut.length);
+        let attempt = self.attempt::<S>(&target);
+        let Some(trial) = attempt.filter(|trial| self.is_acceptable(self.relative_error(trial, &target), &target))
+        else {
+            // What the law does close to the event may be too much for one step up to it.
+            if self.is_shortest(&target) {
+                return self.fall_back(&target);
+            }
+            return Ok(self.reject(0.5 * target.length));
+        };
+        self.take(&trial, &target)?;
+        if cut.switches {
+            return Ok(Advice {
+                taken: true,
+                // The steps find their length anew from here; this one tells nothing of it.
+                growth: f64::INFINITY,
+                length: self.switch(!self.state.closed),
+            });
+        }
+        Ok(Advice::after(target.length, wanted, growth))
+    }
+
+    /// The contact opens or closes at the instant of the state; the step to take next.
+    pub(crate) fn switch(&mut self, closed: bool) -> f64 {
+        self.state.closed = closed;
+        self.workspace.events.record(Event {
+            time: self.state.time,
+            closes: closed,
+        });
+        self.state.force = 0.0;
+        self.state.last_step = 0.0;
+        if closed {
+            self.state.last_kink = self.state.time;
+            self.state.last_closing = self.state.time;
+            self.first_closed_step()
+        } else {
+            self.state.last_opening = self.state.time;
+            0.1 * self.model.first_step(self.state.time)
+        }
+    }
+
+    /// A new velocity of the fixed contact changes the dissipative force at once.
+    pub(crate) fn set_support_rate(&mut self) {
+        let jump = self.drive.support_rate - self.state.support_rate;
+        if jump == 0.0 {
+            return;
+        }
+        self.state.support_rate += jump;
+        self.state.indentation_rate += jump;
+        let d = self.model.preload.indentation + self.state.indentation;
+        let force = self.model.law.force(d, self.state.indentation_rate);
+        let closed = self
+            .model
+            .engagement(self.state.indentation, self.state.indentation_rate)
+            > 0.0;
+        if closed != self.state.closed {
+            self.switch(closed);
+        }
+        self.state.force = force;
+        self.state.last_kink = self.state.time;
+        self.state.last_step = 0.0;
+        let next = self.first_closed_step();
+        self.state.short_step = self.state.short_step.min(next);
+        self.state.long_step = self.state.long_step.min(next);
+    }
+
+    /// First step after the surfaces meet, s. The dissipative force starts as the square root of time, which no
+    /// polynomial follows: the step is chosen so short that what it misses moves the contact by less than a step's
+    /// share of the error.
+    fn first_closed_step(&self) -> f64 {
+        let Self { model, state, .. } = self;
+        let d = model.preload.indentation + state.indentation;
+        let speed = state.indentation_rate.abs();
+        let mobility = model.mobility();
+        let mut h = model.first_step(state.time);
+        for _ in 0..40 {
+            let law = model.law.closed_branch(d + speed * h, state.indentation_rate);
+            let gain = mobility * h * (law.damping + 0.5 * h * law.stiffness.abs());
+            if 0.1 * (law.force - state.force).abs() * gain / (1.0 + gain) <= self.allowed {
+                break;
+            }
+            h *= 0.5;
+        }
+        h
+    }
+}

@@ -1,0 +1,65 @@
+//! The contact opens: the instant within a step at which the force reaches zero.
+
+use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::collocation::step::Trial;
+use crate::integrator::events::Cut;
+use crate::integrator::step_control::Integration;
+use crate::integrator::workspace::{Room, Workspace};
+use crate::math::roots;
+
+impl Integration<'_> {
+    /// Where the step of `length` seconds has to end because the contact opens, which it has done after `latest`
+    /// seconds if it does at all.
+    pub(crate) fn release<const S: usize>(&mut self, latest: f64, length: f64) -> Option<Cut>
+    where
+        Workspace: Room<S>,
+    {
+        let model = self.model;
+        let engagement =
+            |trial: Option<Trial<S>>| trial.map_or(f64::NAN, |trial| model.engagement(trial.indentation, trial.rate));
+        let end = engagement(self.probe(latest));
+        if end > 0.0 {
+            // The polynomial dips below zero, the force does not: the next step starts here, where it is lowest.
+            return (latest < length).then_some(Cut {
+                length: latest,
+                switches: false,
+            });
+        }
+        // The contact is closed at the start; just after a touch rounding could hide it.
+        let start = model
+            .engagement(self.state.indentation, self.state.indentation_rate)
+            .max(f64::MIN_POSITIVE);
+        let resolution = self.resolution();
+        let length = roots::between(|at| engagement(self.probe(at)), (0.0, start), (latest, end), resolution);
+        Some(Cut {
+            length: length.unwrap_or(latest),
+            switches: true,
+        })
+    }
+
+    /// Where in the step (in steps) the contact first looks open: a node or the end with no force left, or a place
+    /// where the polynomial through the nodes dips below zero between them.
+    pub(crate) fn first_open<const S: usize>(&mut self, trial: &Trial<S>) -> Option<f64>
+    where
+        Workspace: Room<S>,
+    {
+        let preload = self.model.preload;
+        let model = self.model;
+        let start = self.state.force;
+        let collocation = self.collocation::<S>();
+        let open = |d: f64, rate: f64| model.engagement(d, rate) <= 0.0;
+        let node = collocation
+            .nodes
+            .iter()
+            .zip(trial.indentations.iter().zip(&trial.rates))
+            .find(|(_, (d, rate))| open(**d, **rate))
+            .map(|(node, _)| *node);
+        let sure = node.or_else(|| open(trial.indentation, trial.rate).then_some(1.0));
+
+        let forces = trial.forces.map(|force| preload.force + force);
+        if sure.is_none() && (model.law.never_opens() || !Collocation::comes_near_zero(start, &forces)) {
+            return None;
+        }
+        collocation.first_dip(&forces, sure.unwrap_or(f64::INFINITY)).or(sure)
+    }
+}

@@ -1,0 +1,51 @@
+//! Arithmetic on the values at the nodes of a step, inlined into whatever is compiled for the processor
+//! ([`crate::math::simd`]).
+
+use crate::integrator::collocation::polynomial::Nodal;
+use crate::math::simd::Arithmetic;
+
+/// The values times `factor`.
+#[inline(always)]
+pub fn scaled<const S: usize>(values: &Nodal<S>, factor: f64) -> Nodal<S> {
+    let mut values = *values;
+    for value in &mut values {
+        *value *= factor;
+    }
+    values
+}
+
+/// The value at the last node, the end of the step.
+#[inline(always)]
+pub fn end<const S: usize>(values: &Nodal<S>) -> f64 {
+    values.last().copied().unwrap_or_default()
+}
+
+/// Adds `factor` times the values.
+#[inline(always)]
+pub fn add<const S: usize, A: Arithmetic>(sum: &mut Nodal<S>, factor: f64, values: &Nodal<S>) {
+    for (sum, value) in sum.iter_mut().zip(values) {
+        *sum = A::mul_add(factor, *value, *sum);
+    }
+}
+
+/// Scalar product of two sets of nodal values.
+#[inline(always)]
+pub fn dot<const S: usize, A: Arithmetic>(a: &Nodal<S>, b: &Nodal<S>) -> f64 {
+    a.iter().zip(b).fold(0.0, |sum, (a, b)| A::mul_add(*a, *b, sum))
+}
+
+/// Adds the products of the values.
+#[inline(always)]
+pub fn add_products<const N: usize, A: Arithmetic>(sum: &mut [f64; N], a: &[f64; N], b: &[f64; N]) {
+    for ((sum, a), b) in sum.iter_mut().zip(a).zip(b) {
+        *sum = A::mul_add(*a, *b, *sum);
+    }
+}
+
+/// Adds the columns, each times its load.
+#[inline(always)]
+pub fn add_columns<const S: usize, A: Arithmetic>(values: &mut Nodal<S>, columns: &[Nodal<S>; S], loads: &Nodal<S>) {
+    for (column, load) in columns.iter().zip(loads) {
+        add::<S, A>(values, *load, column);
+    }
+}
