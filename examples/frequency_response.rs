@@ -16,8 +16,9 @@ use relay_contact::harmonic;
 use relay_contact::inputs::Inputs;
 use relay_contact::integrator::motion::Course;
 use relay_contact::integrator::workspace::Workspace;
-use relay_contact::model::{Model, State};
+use relay_contact::model::Model;
 use relay_contact::scene::Scene;
+use relay_contact::state::State;
 use relay_contact::variables::ExcitationKind;
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;

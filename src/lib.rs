@@ -52,15 +52,14 @@ pub mod error;
 pub mod excitation;
 pub mod fmi2;
 pub mod harmonic;
-pub mod input_table;
 pub mod inputs;
 pub mod integrator;
 pub mod math;
 pub mod model;
 pub mod preload;
 pub mod scene;
-pub mod scene_file;
 pub mod simulation;
+pub mod state;
 pub mod variables;
 
 /// Whether this build lacks the effects that reach into the steps of the integrator: `effects.contactDamping`, `.chatter`,

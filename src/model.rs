@@ -4,6 +4,10 @@ use crate::BARE;
 use crate::beam::axial::Feedback;
 use crate::beam::characteristic;
 use crate::beam::galerkin::Space;
+use crate::beam::mode::MAX_MODES;
+use crate::beam::mode::Mode;
+use crate::beam::mode::ModeState;
+use crate::beam::mode::ModeStates;
 use crate::beam::section::Section;
 use crate::chatter::{Criterion, Interruptions};
 use crate::contact::hertz::Hertz;
@@ -11,31 +15,14 @@ use crate::contact::law::Law;
 use crate::contact::linear::Linear;
 use crate::electrical::Path;
 use crate::error::SceneError;
-use crate::excitation::Generator;
-use crate::integrator::collocation::polynomial::Predictions;
+use crate::excitation::generator::Generator;
 use crate::integrator::exact_step::ClosedLoop;
+use crate::math::prediction::Predictions;
 use crate::math::simd::Machine;
 use crate::preload::Preload;
 use crate::scene::Scene;
+use crate::state::State;
 use crate::variables::{AxialForceKind, ContactLawKind, RealParameter};
-use serde::{Deserialize, Serialize};
-use serde_big_array::BigArray;
-
-/// Largest number of modes: a multiple of four, the modes a step computes at once.
-pub const MAX_MODES: usize = 40;
-
-/// One damped mode of the cantilever without contact, of modal mass 1 kg.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mode {
-    /// omega_i^2, 1/s2.
-    pub omega_squared: f64,
-    /// c_i = alpha + beta omega_i^2, 1/s (Machines 2025, 13(1), 52, eq. (22)).
-    pub damping: f64,
-    /// Tip displacement T_i, 1/sqrt(kg).
-    pub tip: f64,
-    /// Load per base acceleration g_i, sqrt(kg).
-    pub participation: f64,
-}
 
 /// Everything that stays the same during a simulation.
 #[derive(Clone, Debug)]
@@ -68,119 +55,6 @@ pub struct Model {
     pub criterion: Option<Criterion>,
     /// What the steps are computed with.
     pub machine: Machine,
-}
-
-/// Displacement and velocity of a mode, as deviation from the preload.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct ModeState {
-    /// m sqrt(kg).
-    pub q: f64,
-    /// m sqrt(kg) / s.
-    pub v: f64,
-}
-
-/// Room for the states of all modes; those in use come first.
-pub type ModeStates = [ModeState; MAX_MODES];
-
-/// The motion at an instant.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct State {
-    /// Time, s.
-    pub time: f64,
-    /// The modes.
-    #[serde(with = "BigArray")]
-    pub modes: ModeStates,
-    /// Displacement of the fixed contact since the preload, m.
-    pub support: f64,
-    /// Its velocity over the last communication step, m/s.
-    pub support_rate: f64,
-    /// Indentation minus preload indentation, m.
-    pub indentation: f64,
-    /// Velocity of the indentation, m/s.
-    pub indentation_rate: f64,
-    /// Contact force, N.
-    pub force: f64,
-    /// Whether the contact force is positive.
-    pub closed: bool,
-    /// Instant at which the force last reached zero, s; -1: not yet.
-    pub last_opening: f64,
-    /// Instant at which the force last left zero, s; -1: not yet.
-    pub last_closing: f64,
-    /// Instant at which the force last left zero or jumped, s: after it, it moves like a root of time for a while.
-    pub last_kink: f64,
-    /// Longest step with few nodes that the error estimate allows, s.
-    pub short_step: f64,
-    /// Longest step with many nodes that the error estimate allows, s.
-    pub long_step: f64,
-    /// Force over the last step, as deviation from the preload force, N: it predicts that of the next.
-    pub predictions: Predictions,
-    /// Length of the step they belong to, s; 0: none.
-    pub last_step: f64,
-    /// Energy that the steps so far have made and not yet returned, J, where nothing dissipates.
-    pub energy_surplus: f64,
-    /// Energy put in less stored less dissipated since initialisation, J, where that is asked for.
-    pub energy_balance: f64,
-    /// Interruptions so far.
-    pub interruptions: Interruptions,
-    /// Accepted steps.
-    pub steps: u64,
-    /// Steps discarded and repeated shorter.
-    pub rejected_steps: u64,
-    /// Newton iterations.
-    pub iterations: u64,
-}
-
-impl State {
-    /// Whether every number is one that a simulation can have come to.
-    pub fn is_sound(&self) -> bool {
-        let Self {
-            time,
-            modes,
-            support,
-            support_rate,
-            indentation,
-            indentation_rate,
-            force,
-            closed: _,
-            last_opening,
-            last_closing,
-            last_kink,
-            short_step,
-            long_step,
-            predictions,
-            last_step,
-            energy_surplus,
-            energy_balance,
-            interruptions,
-            steps: _,
-            rejected_steps: _,
-            iterations: _,
-        } = self;
-        let numbers = [
-            time,
-            support,
-            support_rate,
-            indentation,
-            indentation_rate,
-            force,
-            last_opening,
-            last_closing,
-            last_kink,
-            last_step,
-            energy_surplus,
-            energy_balance,
-        ];
-        let positive = |step: &f64| step.is_finite() && *step > 0.0;
-        numbers.into_iter().all(|number| number.is_finite())
-            && modes.iter().all(|mode| mode.q.is_finite() && mode.v.is_finite())
-            && predictions.is_finite()
-            && interruptions.is_sound(*time)
-            && positive(short_step)
-            && positive(long_step)
-            && [last_opening, last_closing, last_kink]
-                .iter()
-                .all(|event| **event <= time.max(-1.0))
-    }
 }
 
 impl Model {

@@ -4,9 +4,9 @@
 //! of the cantilever under the axial force `N`, which itself may follow from `y`. The unknown is the indentation `d`,
 //! because `s - y` would lose four digits of it.
 
-use crate::beam::axial;
 use crate::beam::section::Section;
 use crate::beam::statics::Statics;
+use crate::beam::statics::axial_force_from_deflection;
 use crate::contact::hertz::Hertz;
 use crate::error::SceneError;
 use crate::math::roots;
@@ -39,7 +39,7 @@ impl Preload {
         let gravity = scene.environment.gravity;
         let axial = |y: f64| match scene.effects.axial_force {
             AxialForceKind::None => 0.0,
-            AxialForceKind::FromPreload | AxialForceKind::FromDeflection => axial::from_deflection(section, y),
+            AxialForceKind::FromPreload | AxialForceKind::FromDeflection => axial_force_from_deflection(section, y),
             AxialForceKind::Prescribed => scene.beam.axial_force,
         };
         let limit = section.buckling_load();

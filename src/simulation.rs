@@ -6,8 +6,9 @@ use crate::inputs::Inputs;
 use crate::integrator::events::log::Event;
 use crate::integrator::motion::Course;
 use crate::integrator::workspace::Workspace;
-use crate::model::{Model, State};
+use crate::model::Model;
 use crate::scene::Scene;
+use crate::state::State;
 use crate::variables::{BooleanOutput, Group, IntegerOutput, RealOutput, Variable};
 
 /// A simulation from its preload onwards.

@@ -6,7 +6,7 @@ use relay_contact::electrical::Path;
 use relay_contact::error::SceneError;
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
-use relay_contact::scene_file::SceneFile;
+use relay_contact::scene::file::SceneFile;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{
     AxialForceKind, ContactLawKind, ExcitationKind, IntegerOutput, RealOutput, ResistanceKind,

@@ -7,7 +7,7 @@ use std::{env, fs, process};
 
 use relay_contact::error::SceneError;
 use relay_contact::inputs::Inputs;
-use relay_contact::scene_file::SceneFile;
+use relay_contact::scene::file::SceneFile;
 
 const HEAD: &str = "stop = 1\ncommunicationStep = 1e-3\noutputs = []\n";
 

@@ -6,7 +6,7 @@ use std::fs;
 use relay_contact::error::SceneError;
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
-use relay_contact::scene_file::SceneFile;
+use relay_contact::scene::file::SceneFile;
 use relay_contact::variables::{ExcitationKind, RealInput, RealParameter};
 
 const HEAD: &str = "stop = 1\ncommunicationStep = 1e-3\noutputs = []\n";

@@ -20,18 +20,10 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::beam::galerkin::Space;
+use crate::beam::mode::Modal;
+use crate::beam::mode::{MAX_MODES, Mode, ModeState};
 use crate::beam::section::Section;
-use crate::integrator::collocation::coefficients::Modal;
-use crate::model::{MAX_MODES, Mode, ModeState};
 use crate::preload::Preload;
-
-/// Axial force that a tip deflection `y` (m) causes, N: `N = (3 E I y / L^3) sin(3 y / (2 L))`.
-///
-/// Machines 2025, 13(1), 52, eq. (9). At the specimen it is 3 mN and shifts the first frequency by 0.025 Hz; it does
-/// not explain the shift of 43 Hz published there.
-pub fn from_deflection(section: &Section, y: f64) -> f64 {
-    section.tip_stiffness() * y * (1.5 * y / section.length).sin()
-}
 
 /// The axial force that follows the deflection at all times, as a load on the modes.
 #[derive(Clone, Debug)]

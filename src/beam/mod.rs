@@ -3,5 +3,6 @@
 pub mod axial;
 pub mod characteristic;
 pub mod galerkin;
+pub mod mode;
 pub mod section;
 pub mod statics;

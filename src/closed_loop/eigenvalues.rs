@@ -1,13 +1,16 @@
-//! The zeros of the secular equation where beam and contact are damped differently.
+//! The zeros of the secular equation ([`super::problem`]), in pairs.
 //!
-//! All at once by Ehrlich's and Aberth's iteration (O. Aberth, Mathematics of Computation 27 (1973) 339) on the
+//! Without damping, and where beam and contact have the same damping time, each lies between two known poles. Where they are
+//! damped differently all are found at once by Ehrlich's and Aberth's iteration (O. Aberth, Mathematics of Computation 27 (1973) 339) on the
 //! characteristic polynomial `f = s prod p_i`, `s` the secular function, which is never multiplied out.
 
 use nalgebra::Complex;
 
-use crate::closed_loop::eigenvectors::{Number, Pair, Problem, Root};
+use crate::closed_loop::problem::{Number, Pair, Problem, Root};
+use crate::math::roots;
 
-/// Relative distance within which two real zeros are a close pair.
+/// Distance of two real zeros over their size, and half their distance over their mean where it is known in closed form, within
+/// which they are a close pair.
 const CLOSE: f64 = 1e-1;
 /// The same among those that crowd at `-1 / beta`.
 const CROWDED: f64 = 1e-2;
@@ -20,8 +23,93 @@ const TERMS: usize = 12;
 
 type Zero = Root<Complex<f64>>;
 
+/// The zeros, a pair for each mode; `None` where they cannot be told apart.
+pub fn pairs(problem: &Problem) -> Option<Vec<Pair>> {
+    let undamped = undamped(problem)?;
+    if problem.contact_damping == problem.stiffness_damping {
+        return Some(undamped.iter().map(|(nu, _)| damped_pair(problem, *nu)).collect());
+    }
+    damped_differently(problem, &undamped)
+}
+
+/// The zeros without damping, each `-l^2` with the square of its mode's tip displacement (modal mass 1 kg).
+///
+/// They interlace with the omega_i^2. Each is sought as distance from the nearest of these, which keeps all digits
+/// of it.
+fn undamped(problem: &Problem) -> Option<Vec<(f64, f64)>> {
+    let softness = 1.0 / problem.contact_stiffness;
+    let total: f64 = problem.modes.iter().map(|(_, tip)| tip * tip).sum();
+    let rest = |pole: f64, distance: f64| {
+        let others = problem.modes.iter().filter(|(omega, _)| *omega != pole);
+        others
+            .map(|(omega, tip)| tip * tip / ((omega - pole) - distance))
+            .sum::<f64>()
+            + softness
+    };
+    let mut found = Vec::with_capacity(problem.modes.len());
+    for (n, &(low, tip)) in problem.modes.iter().enumerate() {
+        let next = problem.modes.get(n + 1);
+        let gap = next.map_or(problem.contact_stiffness * total, |(high, _)| 0.5 * (high - low));
+        let left = |distance: f64| distance * rest(low, distance) - tip * tip;
+        let (pole, pole_tip, distance) = match next {
+            Some(&(high, tip)) if left(gap) < 0.0 => {
+                let right = |distance: f64| distance * rest(high, distance) - tip * tip;
+                (high, tip, roots::bracketed(right, -gap, 0.0)?)
+            }
+            _ => (low, tip, roots::bracketed(left, 0.0, gap * (1.0 + 1e-9))?),
+        };
+        // A mode of unit contact force has q_i = T_i / (omega_i^2 - nu), its tip moves by 1 / k.
+        let mass: f64 = problem
+            .modes
+            .iter()
+            .map(|(omega, tip)| {
+                let p = if *omega == pole {
+                    -distance
+                } else {
+                    (omega - pole) - distance
+                };
+                (tip / p).powi(2)
+            })
+            .sum();
+        if pole_tip == 0.0 || !mass.is_finite() {
+            return None;
+        }
+        found.push((pole + distance, softness * softness / mass));
+    }
+    Some(found)
+}
+
+/// The pair of a mode whose damping is the beam's.
+fn damped_pair(problem: &Problem, nu: f64) -> Pair {
+    let mean = -0.5 * (problem.mass_damping + problem.stiffness_damping * nu);
+    let square = mean * mean - nu;
+    let w = square.max(0.0).sqrt();
+    if w > CLOSE * mean.abs() {
+        let fast = mean - w;
+        let slow = nu / fast;
+        // l (l + alpha) + nu h = 0.
+        let root = |value: f64| {
+            let beam = -value * (value + problem.mass_damping) / nu;
+            Root {
+                value,
+                beam,
+                contact: beam,
+            }
+        };
+        Pair::Apart(root(slow), root(fast))
+    } else {
+        let value = Number::new(mean, 1.0, square);
+        let beam = value * problem.stiffness_damping + 1.0;
+        Pair::Close(Root {
+            value,
+            beam,
+            contact: beam,
+        })
+    }
+}
+
 /// The zeros in pairs, from the zeros without damping, each with the square of its mode's tip displacement.
-pub fn pairs(problem: &Problem, undamped: &[(f64, f64)]) -> Option<Vec<Pair>> {
+fn damped_differently(problem: &Problem, undamped: &[(f64, f64)]) -> Option<Vec<Pair>> {
     let mut zeros: Vec<Zero> = undamped.iter().flat_map(|mode| first_guess(problem, *mode)).collect();
     let mut settled = vec![false; zeros.len()];
     for _ in 0..ROUNDS {

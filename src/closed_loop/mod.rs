@@ -3,4 +3,5 @@
 pub mod eigenvalues;
 pub mod eigenvectors;
 pub mod oscillator;
+pub mod problem;
 pub mod propagator;

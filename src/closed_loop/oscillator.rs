@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use nalgebra::Complex;
 
+use crate::beam::mode::MAX_MODES;
 use crate::math::free_motion::FreeMotion;
-use crate::model::MAX_MODES;
 
 /// Displacements of the oscillators, then their velocities; or displacement and velocity of mode after mode.
 pub type Coordinates = [f64; 2 * MAX_MODES];

@@ -11,10 +11,11 @@ use std::f64::consts::TAU;
 
 use nalgebra::Complex;
 
+use crate::beam::mode::MAX_MODES;
 use crate::closed_loop::oscillator::{Coordinates, Oscillator, set};
-use crate::excitation::{self, Generator};
+use crate::excitation::generator::Generator;
+use crate::excitation::waveform::turned;
 use crate::math::free_motion::FreeMotion;
-use crate::model::MAX_MODES;
 
 /// How many lengths are kept.
 const KEPT: usize = 8;
@@ -46,7 +47,7 @@ impl Propagator {
     fn fill(&mut self, length: f64, oscillators: &[Oscillator], generator: &Generator) {
         let count = oscillators.len();
         let generated = generator.frequency().map(|frequency| {
-            let turn = Complex::from_polar(1.0, TAU * excitation::turned(frequency, length));
+            let turn = Complex::from_polar(1.0, TAU * turned(frequency, length));
             (frequency, turn)
         });
         let from_x = self.x_from_x.iter_mut().zip(&mut self.v_from_x);

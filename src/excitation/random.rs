@@ -6,9 +6,9 @@
 
 use std::f64::consts::TAU;
 
+use crate::excitation::waveform::{Accelerations, Rotation};
 use crate::excitation::window::Window;
-use crate::excitation::{Accelerations, Rotation};
-use crate::integrator::collocation::polynomial::Nodal;
+use crate::math::nodal::Nodal;
 use crate::math::nodal::add;
 use crate::math::simd::{Arithmetic, Machine, Separate, compiled_for};
 use crate::scene::Excitation;

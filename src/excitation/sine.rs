@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use crate::excitation::waveform::{limited_amplitude, turned};
 use crate::excitation::window::Window;
-use crate::excitation::{limited_amplitude, turned};
 use crate::scene::Excitation;
 
 /// `A sin(2 pi f tau + phase)`, `tau = t - t0`, within its window.

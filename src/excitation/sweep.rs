@@ -5,9 +5,9 @@
 
 use std::f64::consts::TAU;
 
+use crate::excitation::waveform::{Accelerations, turned};
 use crate::excitation::window::Window;
-use crate::excitation::{Accelerations, turned};
-use crate::integrator::collocation::polynomial::Nodal;
+use crate::math::nodal::Nodal;
 use crate::scene::Excitation;
 
 /// Exponent up to which the turns are counted as those of a sine and more.

@@ -1,11 +1,12 @@
 //! A step on trial, and whether its error is one that a step may have.
 
 use crate::integrator::budget::work;
-use crate::integrator::collocation::polynomial::{Collocation, SHORT};
+use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::step::{Source, Trial};
 use crate::integrator::grid::Target;
 use crate::integrator::step_control::Integration;
 use crate::integrator::workspace::{Room, Workspace};
+use crate::math::nodal::SHORT;
 
 /// Error of the contact force within a step, per force that its polynomial misses at the start.
 pub(crate) const INSIDE: f64 = 0.3;

@@ -7,11 +7,11 @@
 //! with it: one monotone scalar equation between brackets.
 
 use crate::error::{StepError, StepErrorCause};
-use crate::integrator::collocation::polynomial::SHORT;
 use crate::integrator::collocation::step::{Source, Trial};
 use crate::integrator::grid::Target;
 use crate::integrator::step_control::{Advice, Integration};
 use crate::integrator::workspace::Room;
+use crate::math::nodal::SHORT;
 use crate::math::nodal::end;
 use crate::math::roots;
 
@@ -90,8 +90,9 @@ mod tests {
     use crate::excitation::drive::Drive;
     use crate::integrator::grid::Progress;
     use crate::integrator::workspace::Workspace;
-    use crate::model::{Model, State};
+    use crate::model::Model;
     use crate::scene::Scene;
+    use crate::state::State;
 
     /// The specimen with a gap and without beam damping, thrown at the contact.
     fn thrown(contact_damping: f64) -> (Model, State) {

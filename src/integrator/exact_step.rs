@@ -8,16 +8,19 @@
 //! solution, which cannot be large as every oscillator has a stiffness. The generator's sine is taken as response from
 //! rest, which stays right at a resonance without damping.
 
-use crate::closed_loop::eigenvectors::{EigenPair, Problem};
+use crate::beam::mode::{MAX_MODES, Mode};
+use crate::closed_loop::eigenvectors::EigenPair;
 use crate::closed_loop::oscillator::{Coordinates, Oscillator, set};
+use crate::closed_loop::problem::Problem;
 use crate::closed_loop::propagator::Propagators;
 use crate::contact::law::Law;
 use crate::contact::linear::Linear;
-use crate::excitation::Generator;
 use crate::excitation::drive::Drive;
+use crate::excitation::generator::Generator;
 use crate::math::simd::{Arithmetic, Machine, compiled_for};
-use crate::model::{MAX_MODES, Mode, Model, State};
+use crate::model::Model;
 use crate::scene::Scene;
+use crate::state::State;
 
 /// Largest error of taking the motion of a single mode apart and putting it together again, relative to its amplitude.
 /// High modes lose most, and move least: the contact force is then right to some 1e-13 of its scale.

@@ -1,17 +1,20 @@
 //! What is watched inside steps: extremes of the contact force, and where it passes the force of an interruption.
 
+use crate::math::prediction::value_and_slope;
 use serde::{Deserialize, Serialize};
 
 use crate::BARE;
 use crate::chatter::Criterion;
 use crate::error::StepError;
-use crate::integrator::collocation::polynomial::{Collocation, Prediction, SHORT};
+use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::events::Cut;
 use crate::integrator::grid::Target;
 use crate::integrator::step_control::{Advice, Integration};
 use crate::integrator::workspace::{Room, Workspace};
 use crate::math::nodal;
+use crate::math::nodal::SHORT;
+use crate::math::prediction::Prediction;
 use crate::math::roots;
 use crate::model::Model;
 
@@ -69,14 +72,6 @@ impl Extremes {
         }
         self.add(value(to));
     }
-}
-
-/// A polynomial and its derivative (Horner's rule).
-pub(crate) fn value_and_slope(coefficients: &Prediction, y: f64) -> (f64, f64) {
-    let terms = coefficients.iter().rev();
-    terms.fold((0.0, 0.0), |(value, slope), coefficient| {
-        (value * y + coefficient, slope * y + value)
-    })
 }
 
 impl Integration<'_> {

@@ -7,16 +7,19 @@
 //! point, exactly, from the start of the step.
 
 use crate::BARE;
+use crate::beam::mode::MAX_MODES;
 use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
 use crate::inputs::Inputs;
 use crate::integrator::budget::Budget;
-use crate::integrator::collocation::polynomial::Prediction;
 use crate::integrator::events::log::Event;
-use crate::integrator::extremes::{Extremes, value_and_slope};
+use crate::integrator::extremes::Extremes;
 use crate::integrator::step_control::Steps;
 use crate::integrator::workspace::Workspace;
-use crate::model::{MAX_MODES, Model, State};
+use crate::math::prediction::Prediction;
+use crate::math::prediction::value_and_slope;
+use crate::model::Model;
+use crate::state::State;
 use serde::{Deserialize, Serialize};
 
 /// How many of the integrator's steps a communication step has to be long for the integrator to end one with it.

@@ -1,7 +1,8 @@
 //! A contact at rest stays at rest until what drives it changes: nothing is integrated meanwhile.
 
 use crate::excitation::drive::Drive;
-use crate::model::{Model, State};
+use crate::model::Model;
+use crate::state::State;
 
 /// Change of the contact force, in tolerances, that a contact at rest may still have before it.
 const UNREST: f64 = 1e-2;

@@ -5,7 +5,6 @@ use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
 use crate::integrator::attempt::{INSIDE, reach};
 use crate::integrator::budget::{Budget, work};
-use crate::integrator::collocation::polynomial::{LONG, SHORT};
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::discrete_gradient::REFUSALS;
 use crate::integrator::extremes::Extremes;
@@ -13,7 +12,9 @@ use crate::integrator::grid::{Progress, Target};
 use crate::integrator::motion::Span;
 use crate::integrator::workspace::{Room, Workspace};
 use crate::math::nodal;
-use crate::model::{Model, State};
+use crate::math::nodal::{LONG, SHORT};
+use crate::model::Model;
+use crate::state::State;
 
 /// Spacing of floating-point numbers at an instant, in first steps, with which the motion can be followed.
 const COARSEST: f64 = 0.1;

@@ -1,10 +1,11 @@
 //! Room for the steps, made once, so that no step allocates.
 
+use crate::beam::mode::{MAX_MODES, ModeState, ModeStates};
 use crate::closed_loop::propagator::Propagators;
 use crate::integrator::collocation::coefficients::Cache;
-use crate::integrator::collocation::polynomial::{LONG, SHORT};
 use crate::integrator::events::log::Events;
-use crate::model::{MAX_MODES, ModeState, ModeStates, Model};
+use crate::math::nodal::{LONG, SHORT};
+use crate::model::Model;
 
 /// Scratch of the steps. Nothing in it changes a result, only the time it takes.
 #[derive(Clone, Debug)]

@@ -3,5 +3,6 @@
 pub mod free_motion;
 pub mod legendre;
 pub mod nodal;
+pub mod prediction;
 pub mod roots;
 pub mod simd;

@@ -1,8 +1,16 @@
-//! Arithmetic on the values at the nodes of a step, inlined into whatever is compiled for the processor
+//! Values at the nodes of a step, and the arithmetic on them, which is inlined into whatever is compiled for the processor
 //! ([`crate::math::simd`]).
 
-use crate::integrator::collocation::polynomial::Nodal;
 use crate::math::simd::Arithmetic;
+
+/// Nodes of a short step.
+pub const SHORT: usize = 4;
+
+/// Nodes of a long step.
+pub const LONG: usize = 8;
+
+/// A value at each node.
+pub type Nodal<const S: usize> = [f64; S];
 
 /// The values times `factor`.
 #[inline(always)]

@@ -5,7 +5,7 @@
 
 use crate::common::{Rig, compose, oscillator};
 use crate::{digits, penalty};
-use relay_contact::excitation::Generator;
+use relay_contact::excitation::generator::Generator;
 use relay_contact::excitation::sine::Sine;
 use relay_contact::excitation::window::Window;
 use relay_contact::inputs::Inputs;

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 use crate::common::Rig;
 use relay_contact::contact::law::Law;
 use relay_contact::contact::linear::Linear;
-use relay_contact::excitation::Generator;
+use relay_contact::excitation::generator::Generator;
 use relay_contact::excitation::sine::Sine;
 use relay_contact::excitation::window::Window;
 use relay_contact::harmonic;

@@ -1,6 +1,7 @@
 //! What the tests of the integrator share: a model under way, also one put together from modes without a beam, its energy,
 //! and what is given to it.
 
+use relay_contact::beam::mode::Mode;
 use relay_contact::contact::hertz::Hertz;
 use relay_contact::contact::law::Law;
 use relay_contact::contact::linear::Linear;
@@ -8,9 +9,10 @@ use relay_contact::error::StepError;
 use relay_contact::inputs::Inputs;
 use relay_contact::integrator::motion::Course;
 use relay_contact::integrator::workspace::Workspace;
-use relay_contact::model::{Mode, Model, State};
+use relay_contact::model::Model;
 use relay_contact::preload::Preload;
 use relay_contact::scene::Scene;
+use relay_contact::state::State;
 
 /// A model with its state.
 pub struct Rig {

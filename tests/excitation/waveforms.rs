@@ -2,8 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use relay_contact::excitation::Turns;
-use relay_contact::integrator::collocation::polynomial::{Collocation, LONG, SHORT};
+use relay_contact::excitation::generator::Turns;
+use relay_contact::integrator::collocation::polynomial::Collocation;
+use relay_contact::math::nodal::{LONG, SHORT};
 use relay_contact::math::simd::Machine;
 use relay_contact::scene::Scene;
 use relay_contact::variables::ExcitationKind;

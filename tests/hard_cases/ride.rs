@@ -1,8 +1,9 @@
 //! A scene driven through segments of base acceleration and support displacement, and the properties kept on the way.
 
 use crate::common::Rig;
+use relay_contact::beam::mode::{MAX_MODES, Mode};
 use relay_contact::inputs::Inputs;
-use relay_contact::model::{MAX_MODES, Mode, Model};
+use relay_contact::model::Model;
 use relay_contact::scene::Scene;
 
 /// Tip displacement per impulse of the mode that measures the impulse of the contact force: too heavy to move.

@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
 use relay_contact::scene::choices;
-use relay_contact::scene_file::SceneFile;
+use relay_contact::scene::file::SceneFile;
 use relay_contact::variables::{Group, VARIABLES};
 
 use crate::commands::root;

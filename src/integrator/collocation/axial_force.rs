@@ -9,14 +9,19 @@
 //! until the sine in the law of the axial force turns to tension. That is followed like any other motion, in shorter steps.
 
 use crate::beam::axial::Feedback;
+use crate::beam::mode::Modal;
+use crate::beam::mode::{MAX_MODES, ModeStates};
 use crate::excitation::drive::Drive;
-use crate::integrator::collocation::coefficients::{ErrorColumn, Modal, ModeColumns, StepCoefficients};
+use crate::integrator::collocation::coefficients::{ErrorColumn, ModeColumns, StepCoefficients};
+use crate::integrator::collocation::newton::Outside;
 use crate::integrator::collocation::newton::Solution;
-use crate::integrator::collocation::polynomial::{Collocation, Nodal};
-use crate::integrator::collocation::step::{LANES, Outside, Source, Trial, end_of_modes, loads_on_modes};
+use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::collocation::step::{LANES, Source, Trial, end_of_modes, loads_on_modes};
+use crate::math::nodal::Nodal;
 use crate::math::nodal::{add, add_columns, dot};
 use crate::math::simd::{Arithmetic, compiled_for};
-use crate::model::{MAX_MODES, ModeStates, Model, State};
+use crate::model::Model;
+use crate::state::State;
 
 /// Rounds before a step is judged too long.
 const ROUNDS: u32 = 8;
@@ -235,9 +240,9 @@ impl Model {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::beam::mode::ModeState;
     use crate::integrator::collocation::coefficients::Cache;
-    use crate::integrator::collocation::polynomial::LONG;
-    use crate::model::ModeState;
+    use crate::math::nodal::LONG;
     use crate::scene::Scene;
     use crate::variables::AxialForceKind;
 

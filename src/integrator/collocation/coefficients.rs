@@ -1,14 +1,17 @@
 //! Everything of a step that depends on its length alone, and a cache of it.
 
-use crate::excitation::Turns;
+use crate::beam::mode::Modal;
+use crate::beam::mode::{MAX_MODES, Mode};
+use crate::excitation::generator::Turns;
 use crate::integrator::collocation::modal_response::ModeOverStep;
-use crate::integrator::collocation::polynomial::{Collocation, Nodal};
+use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::response::{Pair, Sum};
 use crate::integrator::collocation::shapes::Table;
 use crate::math::free_motion::FreeMotion;
+use crate::math::nodal::Nodal;
 use crate::math::nodal::{add, scaled};
 use crate::math::simd::{Arithmetic, compiled_for};
-use crate::model::{MAX_MODES, Mode, Model};
+use crate::model::Model;
 
 /// How a mode moves the tip over a step, at the nodes: the rows carry the factor of the mode's tip displacement.
 #[derive(Clone, Copy, Debug)]
@@ -22,9 +25,6 @@ pub struct NodeRows<const S: usize> {
     /// See [`NodeRows::rate_from_q`].
     pub rate_from_v: Nodal<S>,
 }
-
-/// A value for each mode; those beyond the modes in use are zero.
-pub type Modal = [f64; MAX_MODES];
 
 /// How the modes end a step, mode by mode so that several are computed at once.
 #[derive(Clone, Copy, Debug)]

@@ -2,11 +2,12 @@
 
 use crate::BARE;
 use crate::integrator::collocation::coefficients::{ErrorColumn, StepCoefficients};
-use crate::integrator::collocation::polynomial::{Collocation, Nodal};
-use crate::integrator::collocation::step::{Outside, Slopes};
+use crate::integrator::collocation::polynomial::Collocation;
+use crate::math::nodal::Nodal;
 use crate::math::nodal::{add_columns, end, scaled};
 use crate::math::simd::Arithmetic;
-use crate::model::{Model, State};
+use crate::model::Model;
+use crate::state::State;
 
 /// Rounding of the motion at the nodes, relative to what it would be without contact force.
 const MOTION_ROUNDING: f64 = 4.0 * f64::EPSILON;
@@ -16,6 +17,32 @@ const SMALL_PIVOT: f64 = 0.1;
 
 /// Newton iterations before a step is judged too long.
 const ITERATIONS: u64 = 12;
+
+/// What acts on the tip in a step besides the contact force.
+#[derive(Clone)]
+pub(crate) struct Outside<'a, const S: usize> {
+    /// Base acceleration at the nodes, m/s2.
+    pub(crate) accelerations: Nodal<S>,
+    /// Indentation at the nodes without contact force, as deviation from the preload, m.
+    pub(crate) free: Nodal<S>,
+    /// Its velocity, m/s.
+    pub(crate) free_rate: Nodal<S>,
+    /// What the nodal polynomials miss of it at the start, m/s2 where it is the base acceleration.
+    pub(crate) missed: f64,
+    /// Displacement and velocity of the fixed contact relative to the tip per what is missed.
+    pub(crate) error: &'a ErrorColumn<S>,
+}
+
+/// How the law answers within a step; nothing where the force does not depend on the motion.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Slopes {
+    /// Greatest stiffness at the nodes, N/m.
+    pub stiffness: f64,
+    /// Greatest damping at the nodes, N s/m.
+    pub damping: f64,
+    /// Change of the law's force at the end, at these, per force on the tip throughout the step.
+    pub gain: f64,
+}
 
 /// The nodal forces of a step.
 pub(crate) struct Solution<const S: usize> {

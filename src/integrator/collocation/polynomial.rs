@@ -4,21 +4,15 @@
 //! however stiff its damping is (Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.5): eight for
 //! long steps, four where a short one is wanted (a communication step of a microsecond, the time just after a blow).
 
+use crate::integrator::collocation::shapes::MAX_SHAPES;
 use crate::integrator::collocation::shapes::Shapes;
 use crate::math::legendre;
+use crate::math::nodal::LONG;
+use crate::math::nodal::Nodal;
 use crate::math::nodal::{add, dot, scaled};
+use crate::math::prediction::Prediction;
+use crate::math::prediction::Predictions;
 use crate::math::simd::{Arithmetic, Machine, Separate, compiled_for};
-use serde::{Deserialize, Serialize};
-
-/// Nodes of a short step.
-pub const SHORT: usize = 4;
-/// Nodes of a long step.
-pub const LONG: usize = 8;
-/// Largest number of load shapes: one for each node, one for the error estimate.
-pub const MAX_SHAPES: usize = LONG + 1;
-
-/// A value at each node.
-pub type Nodal<const S: usize> = [f64; S];
 
 /// Points at which a nodal polynomial is looked at where it comes near zero.
 const LOOKS: u32 = 32;
@@ -31,30 +25,6 @@ const NEAR: f64 = 0.25;
 
 /// Nodes that a flat prediction goes through.
 const FLAT: usize = 4;
-
-/// A polynomial through the nodes of a step, by its coefficients about the end: it predicts the next step.
-pub type Prediction = [f64; LONG + 1];
-
-/// Two predictions of the force over the next step, one through all nodes and one through the last few, and which of
-/// the two was the better one last time.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Predictions {
-    steep: Prediction,
-    flat: Prediction,
-    use_flat: bool,
-}
-
-impl Predictions {
-    /// The polynomial through the start and all nodes of the step they are from.
-    pub fn through_all(&self) -> &Prediction {
-        &self.steep
-    }
-
-    /// Whether all numbers are finite.
-    pub fn is_finite(&self) -> bool {
-        self.steep.iter().chain(&self.flat).all(|number| number.is_finite())
-    }
-}
 
 /// The polynomials of a step with `S` nodes.
 #[derive(Clone, Debug)]

@@ -1,8 +1,9 @@
 //! Integrals and derivatives of the load shapes of a step: the Lagrange polynomials of its nodes, and the polynomial of
 //! one degree more that vanishes at the nodes and is 1 at the start, which the error estimate uses.
 
-use crate::integrator::collocation::polynomial::{MAX_SHAPES, Nodal};
 use crate::math::legendre;
+use crate::math::nodal::LONG;
+use crate::math::nodal::Nodal;
 use crate::math::nodal::{add, end};
 use crate::math::simd::Arithmetic;
 
@@ -11,6 +12,9 @@ pub const TERMS: usize = 48;
 
 /// Points of the quadrature for the integrals; later ones than it is exact for are small.
 const POINTS: usize = 20;
+
+/// Largest number of load shapes: one for each node, one for the error estimate.
+pub const MAX_SHAPES: usize = LONG + 1;
 
 /// A value at every node for every load shape.
 #[derive(Clone, Copy, Debug)]

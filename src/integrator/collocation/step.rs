@@ -1,13 +1,19 @@
 //! One step on trial: the nodal contact forces ([`crate::integrator::collocation::newton`]), the motion they give, and an estimate of their
 //! error.
 
+use crate::beam::mode::Modal;
+use crate::beam::mode::ModeStates;
 use crate::excitation::drive::Drive;
-use crate::integrator::collocation::coefficients::{EndRows, ErrorColumn, Modal, StepCoefficients};
+use crate::integrator::collocation::coefficients::{EndRows, StepCoefficients};
+use crate::integrator::collocation::newton::Outside;
+use crate::integrator::collocation::newton::Slopes;
 use crate::integrator::collocation::newton::{Solution, at_nodes};
-use crate::integrator::collocation::polynomial::{Collocation, Nodal};
+use crate::integrator::collocation::polynomial::Collocation;
+use crate::math::nodal::Nodal;
 use crate::math::nodal::{add, add_columns, add_products, dot, end};
 use crate::math::simd::{Arithmetic, compiled_for};
-use crate::model::{ModeStates, Model, State};
+use crate::model::Model;
+use crate::state::State;
 
 /// Where the contact force of a step comes from.
 #[derive(Clone, Copy, Debug)]
@@ -45,34 +51,8 @@ pub struct Trial<const S: usize> {
     pub slopes: Slopes,
 }
 
-/// What acts on the tip in a step besides the contact force.
-#[derive(Clone)]
-pub(crate) struct Outside<'a, const S: usize> {
-    /// Base acceleration at the nodes, m/s2.
-    pub(crate) accelerations: Nodal<S>,
-    /// Indentation at the nodes without contact force, as deviation from the preload, m.
-    pub(crate) free: Nodal<S>,
-    /// Its velocity, m/s.
-    pub(crate) free_rate: Nodal<S>,
-    /// What the nodal polynomials miss of it at the start, m/s2 where it is the base acceleration.
-    pub(crate) missed: f64,
-    /// Displacement and velocity of the fixed contact relative to the tip per what is missed.
-    pub(crate) error: &'a ErrorColumn<S>,
-}
-
 /// The loads on [`LANES`] modes at the nodes.
 pub(crate) type LaneLoads<const S: usize> = [[f64; LANES]; S];
-
-/// How the law answers within a step; nothing where the force does not depend on the motion.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Slopes {
-    /// Greatest stiffness at the nodes, N/m.
-    pub stiffness: f64,
-    /// Greatest damping at the nodes, N s/m.
-    pub damping: f64,
-    /// Change of the law's force at the end, at these, per force on the tip throughout the step.
-    pub gain: f64,
-}
 
 /// Rounding of a contact force, relative to it.
 const ROUNDING: f64 = 1e-13;

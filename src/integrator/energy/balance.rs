@@ -38,12 +38,12 @@
 //! tolerance times the force scale times the way.
 
 use crate::BARE;
-use crate::integrator::collocation::polynomial::LONG;
 use crate::integrator::collocation::step::{Source, Trial};
 use crate::integrator::grid::Target;
 use crate::integrator::step_control::Integration;
 use crate::integrator::workspace::{Room, Workspace};
-use crate::model::State;
+use crate::math::nodal::LONG;
+use crate::state::State;
 
 impl Integration<'_> {
     /// What the energy above that of the preload is at the end of a step about to be taken, if the step neither loses
@@ -102,12 +102,14 @@ mod tests {
     use nalgebra::SVector;
 
     use super::*;
+    use crate::beam::mode::ModeStates;
     use crate::excitation::drive::Drive;
     use crate::inputs::Inputs;
-    use crate::integrator::collocation::polynomial::{Collocation, LONG, SHORT};
+    use crate::integrator::collocation::polynomial::Collocation;
     use crate::integrator::grid::Progress;
     use crate::integrator::step_control::Steps;
-    use crate::model::{ModeStates, Model};
+    use crate::math::nodal::{LONG, SHORT};
+    use crate::model::Model;
     use crate::scene::Scene;
     use crate::variables::ExcitationKind;
 

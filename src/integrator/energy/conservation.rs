@@ -5,8 +5,8 @@
 //! What else a step makes of it is its error, and is returned by a small impulse on the tip in this step or in later
 //! ones, so that nothing adds up over any number of impacts.
 
-use crate::excitation::Generator;
 use crate::excitation::drive::Drive;
+use crate::excitation::generator::Generator;
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::step_control::Integration;
 use crate::integrator::workspace::{Room, Workspace};

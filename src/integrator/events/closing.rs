@@ -5,13 +5,13 @@
 //! highest point clears zero by more than that error there is no touch; elsewhere the interval is halved. Modes that
 //! swing within the interval unseen count with their amplitudes.
 
-use crate::integrator::collocation::polynomial::LONG;
+use crate::beam::mode::Mode;
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::events::Cut;
 use crate::integrator::step_control::Integration;
 use crate::integrator::workspace::{Room, Workspace};
+use crate::math::nodal::LONG;
 use crate::math::roots;
-use crate::model::Mode;
 
 /// Halvings before an interval counts as an instant.
 const DEPTH: u32 = 40;

@@ -1,7 +1,7 @@
 //! What an effect changes in the scenes.
 
 use anyhow::Result;
-use relay_contact::scene_file::SceneFile;
+use relay_contact::scene::file::SceneFile;
 use relay_contact::variables::RealOutput;
 
 use super::list::{Effect, Settings};

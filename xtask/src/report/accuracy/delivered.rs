@@ -1,7 +1,7 @@
 //! What the component delivers at a tolerance: errors against a finer run of its own, and the time it takes.
 
 use anyhow::{Context, Result};
-use relay_contact::scene_file::SceneFile;
+use relay_contact::scene::file::SceneFile;
 use relay_contact::variables::{IntegerOutput, RealOutput};
 
 use crate::run_scene::RunScene;

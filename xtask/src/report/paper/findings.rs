@@ -3,7 +3,6 @@
 use std::f64::consts::{PI, TAU};
 
 use anyhow::Result;
-use relay_contact::beam::axial;
 use relay_contact::variables::AxialForceKind;
 
 use super::super::content::{Block, Figure, Style};
@@ -95,7 +94,7 @@ fn literal_figure(results: &Results) -> Figure {
 fn axial_force(results: &Results) -> Result<Vec<Block>> {
     let model = &results.specimen;
     let without = runs::model(&runs::spring(15.5e-3, 0.2e-3, AxialForceKind::None))?;
-    let force = axial::from_deflection(&model.section, model.preload.deflection);
+    let force = relay_contact::beam::statics::axial_force_from_deflection(&model.section, model.preload.deflection);
     let buckling = model.section.buckling_load();
     let shift = without.frequency - model.frequency;
     let published = paper::WITHOUT_PRESTRESS - paper::WITH_PRESTRESS;

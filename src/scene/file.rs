@@ -15,6 +15,9 @@
 //! file = "closing.csv"        # further inputs over time, beside this file: see `input_table`
 //! ```
 
+use crate::scene::names::Role;
+use crate::scene::names::list;
+use crate::scene::names::variable;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::str::FromStr;
@@ -25,10 +28,10 @@ use toml::Spanned;
 use toml::de::ValueDeserializer;
 
 use crate::error::SceneError;
-use crate::input_table::InputTable;
 use crate::inputs::Inputs;
+use crate::scene::input_table::InputTable;
 use crate::scene::{Scene, choices};
-use crate::variables::{Group, VARIABLES, Variable};
+use crate::variables::{Group, Variable};
 
 /// A scene file as read and checked: every name known, every value inside its range.
 #[derive(Clone, Debug)]
@@ -275,57 +278,6 @@ impl SceneFile {
     }
 }
 
-/// What a name may stand for at a place of the file.
-#[derive(Clone, Copy)]
-pub(crate) enum Role {
-    Parameter,
-    Input,
-    Settable,
-    Output,
-}
-
-impl Role {
-    fn covers(self, variable: &Variable) -> bool {
-        match variable.group {
-            Group::RealParameter(_)
-            | Group::IntegerParameter(_)
-            | Group::BooleanParameter(_)
-            | Group::EnumerationParameter(_) => matches!(self, Self::Parameter | Self::Settable),
-            Group::RealInput(_) => matches!(self, Self::Input | Self::Settable),
-            Group::RealOutput(_) | Group::IntegerOutput(_) | Group::BooleanOutput(_) => matches!(self, Self::Output),
-        }
-    }
-
-    fn noun(self) -> &'static str {
-        match self {
-            Self::Parameter => "parameter",
-            Self::Input => "input",
-            Self::Settable => "parameter or input",
-            Self::Output => "output",
-        }
-    }
-}
-
-/// The variable of this name, or the error with the three names that come nearest.
-pub(crate) fn variable(role: Role, name: &str) -> Result<&'static Variable, SceneError> {
-    let variables = VARIABLES.iter().filter(|variable| role.covers(variable));
-    if let Some(variable) = variables.clone().find(|variable| variable.name == name) {
-        return Ok(variable);
-    }
-    // A user may have left out the group, so the last word counts as much as the whole.
-    let likeness = |known: &str| {
-        let word = known.rsplit('.').next().unwrap_or(known);
-        strsim::jaro_winkler(name, known).max(strsim::jaro_winkler(name, word))
-    };
-    let mut names: Vec<_> = variables.map(|variable| variable.name).collect();
-    names.sort_by(|a, b| likeness(b).total_cmp(&likeness(a)));
-    Err(SceneError::UnknownName {
-        name: name.to_owned(),
-        what: role.noun(),
-        nearest: list(names.into_iter().take(3)),
-    })
-}
-
 /// The table of inputs that the key `file` names.
 fn input_table(folder: &Path, value: &Value) -> Result<InputTable, SceneError> {
     match value {
@@ -369,10 +321,6 @@ fn wrong_type(name: &str, value: &Value, allowed: &'static str) -> SceneError {
         value,
         allowed,
     }
-}
-
-fn list(names: impl Iterator<Item = &'static str>) -> String {
-    names.collect::<Vec<_>>().join(", ")
 }
 
 /// Gives an error the line of its place.

@@ -16,7 +16,7 @@ use csv::{ReaderBuilder, StringRecord, Trim};
 use crate::error::SceneError;
 use crate::inputs::Inputs;
 use crate::scene::check_range;
-use crate::scene_file::{Role, variable};
+use crate::scene::names::{Role, variable};
 use crate::variables::{Group, RealInput};
 
 /// The courses of some inputs; empty: of none.

@@ -1,0 +1,34 @@
+//! The damped modes of the cantilever without contact, and their motion.
+
+use serde::{Deserialize, Serialize};
+
+/// Largest number of modes: a multiple of four, the modes a step computes at once.
+pub const MAX_MODES: usize = 40;
+
+/// A value for each mode; those beyond the modes in use are zero.
+pub type Modal = [f64; MAX_MODES];
+
+/// One damped mode of the cantilever without contact, of modal mass 1 kg.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mode {
+    /// omega_i^2, 1/s2.
+    pub omega_squared: f64,
+    /// c_i = alpha + beta omega_i^2, 1/s (Machines 2025, 13(1), 52, eq. (22)).
+    pub damping: f64,
+    /// Tip displacement T_i, 1/sqrt(kg).
+    pub tip: f64,
+    /// Load per base acceleration g_i, sqrt(kg).
+    pub participation: f64,
+}
+
+/// Displacement and velocity of a mode, as deviation from the preload.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ModeState {
+    /// m sqrt(kg).
+    pub q: f64,
+    /// m sqrt(kg) / s.
+    pub v: f64,
+}
+
+/// Room for the states of all modes; those in use come first.
+pub type ModeStates = [ModeState; MAX_MODES];

@@ -1,0 +1,215 @@
+//! The base acceleration that a scene asks for, whichever waveform it has.
+
+use std::f64::consts::TAU;
+
+use crate::BARE;
+use crate::error::SceneError;
+use crate::excitation::random::{self, Random};
+use crate::excitation::sine::Sine;
+use crate::excitation::sweep::LogSweep;
+use crate::excitation::waveform::{Accelerations, Rotation};
+use crate::excitation::window::Window;
+use crate::math::nodal::Nodal;
+use crate::math::nodal::scaled;
+use crate::math::simd::Machine;
+use crate::scene::Scene;
+use crate::variables::ExcitationKind;
+
+/// What a generator needs to know of a step and depends on its length alone.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Turns<const S: usize> {
+    /// Nothing.
+    None,
+    /// How far a sine turns.
+    Sine(Rotation<S>),
+    /// When the nodes are, s from the start of the step.
+    LogSweep(Nodal<S>),
+    /// How far each of many sines turns.
+    Random(Box<[Rotation<S>]>),
+}
+
+impl<const S: usize> Turns<S> {
+    /// Room for what the generator needs.
+    pub fn room(generator: &Generator) -> Self {
+        match generator {
+            Generator::None => Self::None,
+            Generator::Sine(_) => Self::Sine(Rotation::ZERO),
+            Generator::LogSweep(_) => Self::LogSweep([0.0; S]),
+            Generator::Random(_) => Self::Random(vec![Rotation::ZERO; random::SINES].into()),
+        }
+    }
+
+    /// Computes in place what belongs to a step of `length` seconds with these nodes.
+    pub fn fill(&mut self, generator: &Generator, machine: Machine, length: f64, nodes: &Nodal<S>) {
+        match (generator, self) {
+            (Generator::Sine(sine), Self::Sine(rotation)) => {
+                let angles = scaled(nodes, TAU * sine.frequency * length);
+                (rotation.sin, rotation.cos) = (angles.map(f64::sin), angles.map(f64::cos));
+            }
+            (Generator::LogSweep(_), Self::LogSweep(times)) => *times = scaled(nodes, length),
+            (Generator::Random(random), Self::Random(rotations)) => {
+                random.turn(machine, &scaled(nodes, length), rotations);
+            }
+            _ => {}
+        }
+    }
+}
+
+/// The generator a scene asks for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Generator {
+    /// No acceleration.
+    None,
+    /// A sine, or one half wave of it.
+    Sine(Sine),
+    /// A sine whose frequency grows or falls exponentially.
+    LogSweep(LogSweep),
+    /// A sum of sines of equal power.
+    Random(Box<Random>),
+}
+
+impl Generator {
+    /// The generator of the scene.
+    ///
+    /// # Errors
+    /// [`SceneError::NoBand`] for a random acceleration without a band of frequencies.
+    pub fn new(scene: &Scene) -> Result<Self, SceneError> {
+        let excitation = &scene.excitation;
+        let shakes = match scene.effects.excitation {
+            ExcitationKind::None => false,
+            ExcitationKind::Random => excitation.spectral_density > 0.0,
+            _ => excitation.amplitude > 0.0,
+        };
+        Ok(match scene.effects.excitation {
+            ExcitationKind::Random if excitation.end_frequency <= excitation.frequency => {
+                return Err(SceneError::NoBand {
+                    frequency: excitation.frequency,
+                    end_frequency: excitation.end_frequency,
+                });
+            }
+            _ if !shakes => Self::None,
+            ExcitationKind::None => Self::None,
+            ExcitationKind::Sine => Self::Sine(Sine::new(excitation)),
+            ExcitationKind::HalfSine => Self::Sine(Sine::half(excitation)),
+            ExcitationKind::LogSweep => Self::LogSweep(LogSweep::new(excitation)),
+            ExcitationKind::Random => Self::Random(Box::new(Random::new(excitation))),
+        })
+    }
+
+    /// The acceleration of the generator's course at an instant (s) within its window, m/s2.
+    fn value(&self, time: f64) -> f64 {
+        match self {
+            Self::None => 0.0,
+            Self::Sine(sine) => sine.phasor(time).0,
+            Self::LogSweep(sweep) => sweep.value(time),
+            Self::Random(random) => random.value(time),
+        }
+    }
+
+    fn window(&self) -> Option<Window> {
+        match self {
+            Self::None => None,
+            Self::Sine(sine) => Some(sine.window),
+            Self::LogSweep(sweep) => Some(sweep.window),
+            Self::Random(random) => Some(random.window),
+        }
+    }
+
+    /// Acceleration at an instant (s), m/s2: where it jumps, that which follows.
+    pub fn acceleration(&self, time: f64) -> f64 {
+        if self.is_active(time) { self.value(time) } else { 0.0 }
+    }
+
+    /// Acceleration at an instant (s) as it has been reached, m/s2: where it jumps, that which was before.
+    pub fn acceleration_before(&self, time: f64) -> f64 {
+        let active = self.window().is_some_and(|window| window.is_open_before(time));
+        if active { self.value(time) } else { 0.0 }
+    }
+
+    /// Sine and cosine of the generator's phase at `time`, times its amplitude: none where it is not a sine.
+    pub(crate) fn phasor(&self, time: f64) -> (f64, f64) {
+        match self {
+            Self::Sine(sine) if sine.window.is_open_after(time) => sine.phasor(time),
+            _ => (0.0, 0.0),
+        }
+    }
+
+    /// The one frequency of the generator, where it has one, Hz.
+    pub(crate) fn frequency(&self) -> Option<f64> {
+        match self {
+            Self::Sine(sine) => Some(sine.frequency),
+            _ => None,
+        }
+    }
+
+    /// Whether linear motion under it is known in closed form: under a sine, or nothing.
+    pub(crate) fn is_harmonic(&self) -> bool {
+        matches!(self, Self::None | Self::Sine(_))
+    }
+
+    /// Accelerations over a step that begins at `time` (s) and has the given turns. A step goes over none of the breaks
+    /// that [`Generator::next_break`] tells.
+    #[inline(always)]
+    pub fn over_step<const S: usize>(&self, machine: Machine, time: f64, turns: &Turns<S>) -> Accelerations<S> {
+        let mut nodes = [0.0; S];
+        let start = match (self, turns) {
+            (Self::None, _) => 0.0,
+            (Self::Sine(_), Turns::Sine(rotation)) => {
+                let (sin, cos) = self.phasor(time);
+                for ((node, to_sin), to_cos) in nodes.iter_mut().zip(&rotation.sin).zip(&rotation.cos) {
+                    *node = sin * to_cos + cos * to_sin;
+                }
+                sin
+            }
+            _ if BARE => 0.0,
+            _ => self.over_step_out_of_line(machine, time, turns, &mut nodes),
+        };
+        Accelerations { start, nodes }
+    }
+
+    /// [`Generator::over_step`] of the generators that take their time, kept out of the kernel of a step: the acceleration at
+    /// the start, and those at the nodes in place of zeros.
+    #[inline(never)]
+    fn over_step_out_of_line<const S: usize>(
+        &self,
+        machine: Machine,
+        time: f64,
+        turns: &Turns<S>,
+        nodes: &mut Nodal<S>,
+    ) -> f64 {
+        let found = match (self, turns) {
+            (Self::LogSweep(sweep), Turns::LogSweep(times)) if self.is_active(time) => sweep.over_step(time, times),
+            (Self::Random(random), Turns::Random(rotations)) if self.is_active(time) => {
+                random.over_step(machine, time, rotations)
+            }
+            _ => return 0.0,
+        };
+        *nodes = found.nodes;
+        found.start
+    }
+
+    /// Whether there is an acceleration at `time` (s) or just after it.
+    pub fn is_active(&self, time: f64) -> bool {
+        self.window().is_some_and(|window| window.is_open_after(time))
+    }
+
+    /// The next instant after `time` at which the acceleration or its rate is not smooth, s.
+    pub fn next_break(&self, time: f64) -> Option<f64> {
+        match self {
+            Self::None => None,
+            Self::Sine(sine) => sine.window.next_end(time),
+            Self::LogSweep(sweep) => sweep.next_break(time),
+            Self::Random(random) => random.window.next_end(time),
+        }
+    }
+
+    /// Longest step from `time` on within which the acceleration cannot turn unseen, a quarter of its shortest period, s.
+    pub fn longest_step(&self, time: f64) -> f64 {
+        match self {
+            Self::Sine(sine) if sine.window.is_open_after(time) => 0.25 / sine.frequency,
+            Self::LogSweep(sweep) if sweep.window.is_open_after(time) => sweep.longest_step(time),
+            Self::Random(random) if random.window.is_open_after(time) => 0.25 / random.highest,
+            _ => f64::INFINITY,
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! The names that may stand in a scene file or a table of inputs.
+
+use crate::error::SceneError;
+use crate::variables::{Group, VARIABLES, Variable};
+
+/// What a name may stand for at a place of the file.
+#[derive(Clone, Copy)]
+pub(crate) enum Role {
+    Parameter,
+    Input,
+    Settable,
+    Output,
+}
+
+impl Role {
+    fn covers(self, variable: &Variable) -> bool {
+        match variable.group {
+            Group::RealParameter(_)
+            | Group::IntegerParameter(_)
+            | Group::BooleanParameter(_)
+            | Group::EnumerationParameter(_) => matches!(self, Self::Parameter | Self::Settable),
+            Group::RealInput(_) => matches!(self, Self::Input | Self::Settable),
+            Group::RealOutput(_) | Group::IntegerOutput(_) | Group::BooleanOutput(_) => matches!(self, Self::Output),
+        }
+    }
+
+    fn noun(self) -> &'static str {
+        match self {
+            Self::Parameter => "parameter",
+            Self::Input => "input",
+            Self::Settable => "parameter or input",
+            Self::Output => "output",
+        }
+    }
+}
+
+/// The variable of this name, or the error with the three names that come nearest.
+pub(crate) fn variable(role: Role, name: &str) -> Result<&'static Variable, SceneError> {
+    let variables = VARIABLES.iter().filter(|variable| role.covers(variable));
+    if let Some(variable) = variables.clone().find(|variable| variable.name == name) {
+        return Ok(variable);
+    }
+    // A user may have left out the group, so the last word counts as much as the whole.
+    let likeness = |known: &str| {
+        let word = known.rsplit('.').next().unwrap_or(known);
+        strsim::jaro_winkler(name, known).max(strsim::jaro_winkler(name, word))
+    };
+    let mut names: Vec<_> = variables.map(|variable| variable.name).collect();
+    names.sort_by(|a, b| likeness(b).total_cmp(&likeness(a)));
+    Err(SceneError::UnknownName {
+        name: name.to_owned(),
+        what: role.noun(),
+        nearest: list(names.into_iter().take(3)),
+    })
+}
+
+/// Names with commas between them.
+pub(crate) fn list(names: impl Iterator<Item = &'static str>) -> String {
+    names.collect::<Vec<_>>().join(", ")
+}

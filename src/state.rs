@@ -1,0 +1,109 @@
+//! All that moves: the numbers that change during a simulation, plain and of fixed size, so that saving them is a copy.
+
+use serde::{Deserialize, Serialize};
+use serde_big_array::BigArray;
+
+use crate::beam::mode::ModeStates;
+use crate::chatter::Interruptions;
+use crate::math::prediction::Predictions;
+
+/// The motion at an instant.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct State {
+    /// Time, s.
+    pub time: f64,
+    /// The modes.
+    #[serde(with = "BigArray")]
+    pub modes: ModeStates,
+    /// Displacement of the fixed contact since the preload, m.
+    pub support: f64,
+    /// Its velocity over the last communication step, m/s.
+    pub support_rate: f64,
+    /// Indentation minus preload indentation, m.
+    pub indentation: f64,
+    /// Velocity of the indentation, m/s.
+    pub indentation_rate: f64,
+    /// Contact force, N.
+    pub force: f64,
+    /// Whether the contact force is positive.
+    pub closed: bool,
+    /// Instant at which the force last reached zero, s; -1: not yet.
+    pub last_opening: f64,
+    /// Instant at which the force last left zero, s; -1: not yet.
+    pub last_closing: f64,
+    /// Instant at which the force last left zero or jumped, s: after it, it moves like a root of time for a while.
+    pub last_kink: f64,
+    /// Longest step with few nodes that the error estimate allows, s.
+    pub short_step: f64,
+    /// Longest step with many nodes that the error estimate allows, s.
+    pub long_step: f64,
+    /// Force over the last step, as deviation from the preload force, N: it predicts that of the next.
+    pub predictions: Predictions,
+    /// Length of the step they belong to, s; 0: none.
+    pub last_step: f64,
+    /// Energy that the steps so far have made and not yet returned, J, where nothing dissipates.
+    pub energy_surplus: f64,
+    /// Energy put in less stored less dissipated since initialisation, J, where that is asked for.
+    pub energy_balance: f64,
+    /// Interruptions so far.
+    pub interruptions: Interruptions,
+    /// Accepted steps.
+    pub steps: u64,
+    /// Steps discarded and repeated shorter.
+    pub rejected_steps: u64,
+    /// Newton iterations.
+    pub iterations: u64,
+}
+
+impl State {
+    /// Whether every number is one that a simulation can have come to.
+    pub fn is_sound(&self) -> bool {
+        let Self {
+            time,
+            modes,
+            support,
+            support_rate,
+            indentation,
+            indentation_rate,
+            force,
+            closed: _,
+            last_opening,
+            last_closing,
+            last_kink,
+            short_step,
+            long_step,
+            predictions,
+            last_step,
+            energy_surplus,
+            energy_balance,
+            interruptions,
+            steps: _,
+            rejected_steps: _,
+            iterations: _,
+        } = self;
+        let numbers = [
+            time,
+            support,
+            support_rate,
+            indentation,
+            indentation_rate,
+            force,
+            last_opening,
+            last_closing,
+            last_kink,
+            last_step,
+            energy_surplus,
+            energy_balance,
+        ];
+        let positive = |step: &f64| step.is_finite() && *step > 0.0;
+        numbers.into_iter().all(|number| number.is_finite())
+            && modes.iter().all(|mode| mode.q.is_finite() && mode.v.is_finite())
+            && predictions.is_finite()
+            && interruptions.is_sound(*time)
+            && positive(short_step)
+            && positive(long_step)
+            && [last_opening, last_closing, last_kink]
+                .iter()
+                .all(|event| **event <= time.max(-1.0))
+    }
+}
