@@ -3,6 +3,7 @@
 use crate::chatter::Summary;
 use crate::error::{SceneError, StepError};
 use crate::inputs::Inputs;
+use crate::integrator::communication_step;
 use crate::integrator::events::log::Event;
 use crate::integrator::motion::Course;
 use crate::integrator::workspace::Workspace;
@@ -43,8 +44,14 @@ impl Simulation {
     /// # Errors
     /// A [`StepError`]; the state is then what it was before the call.
     pub fn step(&mut self, inputs: &Inputs, time: f64, step_size: f64) -> Result<(), StepError> {
-        self.model
-            .step(&mut self.course, &mut self.workspace, inputs, time, step_size)
+        communication_step::step(
+            &self.model,
+            &mut self.course,
+            &mut self.workspace,
+            inputs,
+            time,
+            step_size,
+        )
     }
 
     /// As it stood in another simulation of the same scene, which began with the fixed contact displaced by

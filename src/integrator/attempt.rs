@@ -1,11 +1,16 @@
 //! A step on trial, and whether its error is one that a step may have.
 
-use crate::integrator::budget::work;
-use crate::integrator::collocation::polynomial::Collocation;
+use crate::error::StepError;
+use crate::error::StepErrorCause;
+use crate::integrator::collocation::step::is_rounding;
+use crate::integrator::collocation::step::trial;
 use crate::integrator::collocation::step::{Source, Trial};
 use crate::integrator::grid::Target;
-use crate::integrator::step_control::Integration;
+use crate::integrator::integration::Advice;
+use crate::integrator::integration::Integration;
+use crate::integrator::workspace::work;
 use crate::integrator::workspace::{Room, Workspace};
+use crate::math::nodal;
 use crate::math::nodal::SHORT;
 
 /// Error of the contact force within a step, per force that its polynomial misses at the start.
@@ -29,7 +34,7 @@ impl Integration<'_> {
         let (ratio, inside) = (trial.error / self.allowed.max(trial.rounding), trial.missed * inside);
         // Not `max`, which would hide what is not a number.
         let ratio = if ratio < inside { inside } else { ratio };
-        if ratio > 1.0 && self.model.is_rounding(self.state, trial) {
+        if ratio > 1.0 && is_rounding(self.model, self.state, trial) {
             0.0
         } else {
             ratio
@@ -39,16 +44,6 @@ impl Integration<'_> {
     /// Whether a step to the target may have this error: what is allowed, and any where it cannot be shorter.
     pub(crate) fn is_acceptable(&self, ratio: f64, target: &Target) -> bool {
         ratio <= 1.0 || self.is_shortest(target) && ratio.is_finite()
-    }
-
-    /// Whether the step is as short as steps get: half of it would be too short.
-    pub(crate) fn is_shortest(&self, target: &Target) -> bool {
-        target.length <= 2.0 * self.shortest()
-    }
-
-    /// Length below which no step is wanted, s.
-    pub(crate) fn shortest(&self) -> f64 {
-        8.0 * self.resolution()
     }
 
     /// The step to the target, with the modes at its end kept for [`Integration::take`].
@@ -78,21 +73,71 @@ impl Integration<'_> {
         let (step, collocation) = cache.get(length, recurring, self.model);
         let source = Source::Law(NEWTON * self.allowed);
         let modes = if kept { end } else { probe };
-        self.model
-            .trial(self.state, &self.drive, step, collocation, source, modes)
+        trial(self.model, self.state, &self.drive, step, collocation, source, modes)
     }
 
-    /// Difference between instants that cannot be told apart, s.
-    pub(crate) fn resolution(&self) -> f64 {
-        f64::EPSILON * (self.progress.start.abs() + self.progress.size)
+    /// Gives up a step; the next one is to have the length.
+    pub(crate) fn reject(&mut self, length: f64) -> Advice {
+        self.state.rejected_steps += 1;
+        self.refusals += 1;
+        Advice {
+            taken: false,
+            growth: 1.0,
+            length,
+        }
     }
 
-    /// The polynomials of the steps.
-    pub(crate) fn collocation<const S: usize>(&mut self) -> &Collocation<S>
+    /// The trial becomes the state, if it is finite.
+    pub(crate) fn take<const S: usize>(&mut self, trial: &Trial<S>, target: &Target) -> Result<(), StepError>
     where
         Workspace: Room<S>,
     {
-        self.workspace.parts().0.collocation()
+        if !(trial.indentation.is_finite() && trial.rate.is_finite()) {
+            return Err(self.error(StepErrorCause::NotFinite));
+        }
+        let due = self.energy_due(trial, target);
+        if due.is_some() {
+            // The step once more, in halves.
+            self.workspace.work += work(target.recurring) + 1;
+        }
+        self.enter(trial, target.length);
+        let Self { model, state, .. } = self;
+        let (cache, end, _) = Room::<S>::parts(self.workspace);
+        let collocation = cache.collocation();
+        let ratio = if state.last_step > 0.0 {
+            target.length / state.last_step
+        } else {
+            0.0
+        };
+        let start = state.force - model.preload.force;
+        state.predictions = collocation.predictions(model.machine, start, &trial.forces, &state.predictions, ratio);
+        if let Some((_, span)) = &mut self.span {
+            span.good = INSIDE * trial.missed <= self.tolerance;
+            span.indentation = collocation.through(state.indentation, &trial.indentations);
+            span.rate = collocation.through(state.indentation_rate, &trial.rates);
+            span.force = *state.predictions.through_all();
+        }
+        for ((mode, end), _) in state.modes.iter_mut().zip(end).zip(&model.modes) {
+            *mode = *end;
+        }
+        state.time = target.time;
+        state.support = trial.support;
+        state.indentation = trial.indentation;
+        state.indentation_rate = trial.rate;
+        if state.closed {
+            state.force = model.law.without_pull(model.preload.force + nodal::end(&trial.forces));
+        }
+        if let Some(extremes) = &mut self.extremes {
+            extremes.add_course(model, state.closed, state.predictions.through_all(), -1.0, 0.0);
+        }
+        state.last_step = target.length;
+        state.steps += 1;
+        state.iterations += trial.iterations;
+        self.progress.done = target.done;
+        self.refusals = 0;
+        self.settle(target.length);
+        self.balance(due);
+        Ok(())
     }
 }
 

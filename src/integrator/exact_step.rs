@@ -1,399 +1,122 @@
-//! Exact steps of any length where beam and contact are linear.
-//!
-//! With the contact as a spring and damper at the tip, the eigenvalues of the motion come in pairs
-//! ([`crate::closed_loop::eigenvectors`]), each a damped oscillator of its own ([`crate::closed_loop::oscillator`]) that is propagated exactly ([`crate::closed_loop::propagator`]). A step
-//! goes from the cantilever's modes to these oscillators, moves them, and comes back.
-//!
-//! Constant and linear loads (base acceleration held or linear, fixed contact moving linearly) are taken out by a particular
-//! solution, which cannot be large as every oscillator has a stiffness. The generator's sine is taken as response from
-//! rest, which stays right at a resonance without damping.
+//! One exact step, of any length, where beam and contact are linear and the contact stays closed.
 
-use crate::beam::mode::{MAX_MODES, Mode};
-use crate::closed_loop::eigenvectors::EigenPair;
-use crate::closed_loop::oscillator::{Coordinates, Oscillator, set};
-use crate::closed_loop::problem::Problem;
+use crate::beam::mode::MAX_MODES;
+use crate::closed_loop::closed_loop::{ClosedLoop, Steady};
+use crate::closed_loop::oscillator::Coordinates;
 use crate::closed_loop::propagator::Propagators;
 use crate::contact::law::Law;
 use crate::contact::linear::Linear;
 use crate::excitation::drive::Drive;
-use crate::excitation::generator::Generator;
-use crate::math::simd::{Arithmetic, Machine, compiled_for};
 use crate::model::Model;
-use crate::scene::Scene;
 use crate::state::State;
 
-/// Largest error of taking the motion of a single mode apart and putting it together again, relative to its amplitude.
-/// High modes lose most, and move least: the contact force is then right to some 1e-13 of its scale.
-const ROUNDING: f64 = 1e-10;
-
-/// Beam and linear contact as uncoupled oscillators.
-#[derive(Clone, Debug)]
-pub struct ClosedLoop {
-    contact: Linear,
-    oscillators: Vec<Oscillator>,
-    /// What each oscillator's displacement, then velocity, is in the modes.
-    to_modes: Columns,
-    /// What each mode's displacement and velocity is in the oscillators.
-    to_oscillators: Columns,
-    /// Motion under unit base acceleration and under one that grows with time, at its start.
-    acceleration: Coordinates,
-    jerk: Coordinates,
-    /// The same under force on the tip.
-    force: Coordinates,
-    growth: Coordinates,
-    /// Steady motion under the generator with unit amplitude, per sine and per cosine of its phase.
-    steady: [Coordinates; 2],
-}
-
-/// A square matrix, column after column, with columns of zeros up to a multiple of four.
-#[derive(Clone, Debug)]
-struct Columns {
-    size: usize,
-    entries: Vec<f64>,
-}
-
-impl Columns {
-    fn new(size: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
-        let entries = (0..size * size.next_multiple_of(4))
-            .map(|n| {
-                if n < size * size {
-                    entry(n % size, n / size)
-                } else {
-                    0.0
-                }
-            })
-            .collect();
-        Self { size, entries }
+/// Takes the communication step from the state's time over `size` seconds in one exact step, or several where
+/// the generator starts or ends in it; `false`, with the state unchanged, where that cannot be done: the motion is not linear,
+/// or the contact may open.
+pub(crate) fn step_exactly(
+    model: &Model,
+    state: &mut State,
+    propagators: &mut Propagators,
+    drive: &Drive,
+    size: f64,
+) -> bool {
+    let (Some(closed_loop), Law::Linear(law)) = (&model.closed_loop, &model.law) else {
+        return false;
+    };
+    let expected = Linear {
+        bonded: law.bonded,
+        ..closed_loop.contact
+    };
+    let longest = model.scene.solver.maximum_step;
+    // A model's parts can be exchanged after it was made.
+    let own = *law == expected && model.modes.len() == closed_loop.oscillators.len();
+    if !own || !(state.closed || law.bonded) || (longest > 0.0 && size > longest) {
+        return false;
     }
-
-    fn times(&self, machine: Machine, factors: &Coordinates) -> Coordinates {
-        compiled_for!(machine, A => self.compute::<A>(factors))
-    }
-
-    /// Four columns at a time, so that the sums are seldom loaded and stored.
-    #[inline(always)]
-    fn compute<A: Arithmetic>(&self, factors: &Coordinates) -> Coordinates {
-        let mut sums = [0.0; 2 * MAX_MODES];
-        for (columns, factors) in self.entries.chunks_exact(4 * self.size).zip(factors.chunks_exact(4)) {
-            let (a, columns) = columns.split_at(self.size);
-            let (b, columns) = columns.split_at(self.size);
-            let (c, d) = columns.split_at(self.size);
-            if let [p, q, r, s] = factors {
-                for ((((sum, a), b), c), d) in sums.iter_mut().zip(a).zip(b).zip(c).zip(d) {
-                    *sum += A::mul_add(*a, *p, b * q) + A::mul_add(*c, *r, d * s);
-                }
-            }
-        }
-        sums
-    }
-}
-
-impl ClosedLoop {
-    /// Of the modes and the contact of the scene; `None` where the eigenvectors cannot be told apart to all digits.
-    pub fn new(scene: &Scene, modes: &[Mode], contact: Linear, generator: &Generator) -> Option<Self> {
-        let problem = Problem {
-            modes: modes.iter().map(|mode| (mode.omega_squared, mode.tip)).collect(),
-            mass_damping: scene.beam.mass_damping,
-            stiffness_damping: scene.beam.stiffness_damping,
-            contact_stiffness: contact.stiffness,
-            contact_damping: contact.damping,
-        };
-        let pairs = problem.solve()?;
-        let count = pairs.len();
-        // What a load on the modes is for an oscillator.
-        let load = |pair: &EigenPair, of_mode: fn(&Mode) -> f64| {
-            let parts = pair.components.iter().zip(modes);
-            parts.fold([0.0, 0.0], |[kick, push], (component, mode)| {
-                let ([_, x], [_, x_rate]) = (component.x, component.x_rate);
-                [kick + x * of_mode(mode), push + x_rate * of_mode(mode)]
-            })
-        };
-        let oscillators: Vec<Oscillator> = pairs
-            .iter()
-            .map(|pair| Oscillator {
-                omega_squared: pair.omega_squared,
-                damping: pair.damping,
-                load: load(pair, |mode| -mode.participation),
-                push: load(pair, |mode| mode.tip),
-                apart: pair.apart,
-                force: pair.force,
-            })
-            .collect();
-        let component = |pair: usize, mode: usize| pairs.get(pair % count)?.components.get(mode / 2);
-        let pick = |values: [f64; 2], n: usize| values.get(n).copied().unwrap_or(f64::NAN);
-        let right = |mode: usize, x: usize| {
-            component(x, mode).map_or(f64::NAN, |part| {
-                pick(if mode.is_multiple_of(2) { part.q } else { part.v }, x / count)
-            })
-        };
-        let left = |x: usize, mode: usize| {
-            component(x, mode).map_or(f64::NAN, |part| {
-                pick(if x < count { part.x } else { part.x_rate }, mode % 2)
-            })
-        };
-        let mut closed_loop = Self {
-            contact,
-            to_modes: Columns::new(2 * count, right),
-            to_oscillators: Columns::new(2 * count, left),
-            oscillators,
-            acceleration: [0.0; 2 * MAX_MODES],
-            jerk: [0.0; 2 * MAX_MODES],
-            force: [0.0; 2 * MAX_MODES],
-            growth: [0.0; 2 * MAX_MODES],
-            steady: [[0.0; 2 * MAX_MODES]; 2],
-        };
-        for (n, oscillator) in closed_loop.oscillators.iter().enumerate() {
-            let Oscillator { load, push, .. } = *oscillator;
-            set(&mut closed_loop.acceleration, n, count, oscillator.at_rest(load));
-            set(&mut closed_loop.jerk, n, count, oscillator.at_ramp(load));
-            set(&mut closed_loop.force, n, count, oscillator.at_rest(push));
-            set(&mut closed_loop.growth, n, count, oscillator.at_ramp(push));
-            if let Some(frequency) = generator.frequency() {
-                let steady = oscillator.loaded(oscillator.steady(frequency));
-                let [per_sine, per_cosine] = &mut closed_loop.steady;
-                set(per_sine, n, count, steady.map(|motion| motion.re));
-                set(per_cosine, n, count, steady.map(|motion| motion.im));
-            }
-        }
-        closed_loop.is_exact(modes).then_some(closed_loop)
-    }
-
-    /// Whether the motion of each mode alone survives being taken apart and put together again, and the oscillators
-    /// move with the contact force they stand for.
-    fn is_exact(&self, modes: &[Mode]) -> bool {
-        let scales: Vec<f64> = modes.iter().flat_map(|mode| [mode.omega_squared.sqrt(), 1.0]).collect();
-        let survives = scales.iter().enumerate().all(|(n, scale)| {
-            let mut motion = [0.0; 2 * MAX_MODES];
-            if let Some(entry) = motion.get_mut(n) {
-                *entry = 1.0 / scale;
-            }
-            let again = self.to_modes.times(
-                Machine::Portable,
-                &self.to_oscillators.times(Machine::Portable, &motion),
-            );
-            let motions = again.iter().zip(&motion).zip(&scales);
-            motions
-                .map(|((again, motion), scale)| (again - motion) * scale)
-                .all(|error| error.abs() < ROUNDING)
-        });
-        let Linear { stiffness, damping, .. } = self.contact;
-        // Contact force of a motion of the modes less the force it should have, and the size of what was added up.
-        let missed = |motion: &[f64], expected: f64| {
-            modes.iter().zip(motion.chunks_exact(2)).fold(
-                (expected, expected.abs()),
-                |(missed, size), (mode, motion)| {
-                    let [spring, damper] = match motion {
-                        [q, v] => [q, &(damping * v)].map(|length| stiffness * mode.tip * length),
-                        _ => [f64::NAN; 2],
-                    };
-                    (missed + (spring + damper), size + (spring.abs() + damper.abs()))
-                },
-            )
-        };
-        let columns = || self.to_modes.entries.chunks_exact(self.to_modes.size);
-        let pairs = columns().zip(columns().skip(modes.len()));
-        survives
-            && self.oscillators.iter().zip(pairs).all(|(oscillator, (at_x, at_v))| {
-                let [(x, x_size), (v, v_size)] = [missed(at_x, oscillator.force[0]), missed(at_v, oscillator.force[1])];
-                let frequency = oscillator.omega_squared.sqrt();
-                let size = x_size + frequency * v_size;
-                x.abs() < ROUNDING * size && frequency * v.abs() < ROUNDING * size
-            })
-    }
-
-    /// Takes the state over `length` seconds in one step; `false`, with the state unchanged, where the contact may
-    /// open.
-    fn advance(
-        &self,
-        model: &Model,
-        state: &mut State,
-        propagators: &mut Propagators,
-        drive: &Drive,
-        length: f64,
-    ) -> bool {
-        let Linear { stiffness, damping, .. } = self.contact;
-        let count = self.oscillators.len();
-        let mut motion = [0.0; 2 * MAX_MODES];
-        for (pair, mode) in motion.chunks_exact_mut(2).zip(state.modes.iter().take(count)) {
-            if let [q, v] = pair {
-                (*q, *v) = (mode.q, mode.v);
-            }
-        }
-        let mut free = self.to_oscillators.times(model.machine, &motion);
-        let growth = stiffness * drive.support_rate;
-        let mut steady = Steady {
-            acceleration: drive.acceleration(state.time),
-            jerk: drive.jerk,
-            force: stiffness * state.support + damping * growth,
-            growth,
-        };
-        self.add_particular(&mut free, &steady, -1.0);
-        let (sine, cosine) = model.generator.phasor(state.time);
-        if state.interruptions.in_progress() {
+    let end = state.time + size;
+    let Some(corner) = model.generator.next_break(state.time).filter(|corner| *corner < end) else {
+        if !advance(closed_loop, model, state, propagators, drive, size) {
             return false;
         }
-        // Above no force, or that of an interruption.
-        let least = model.criterion.map_or(0.0, |criterion| criterion.force);
-        let watched = !model.law.never_opens() || least > 0.0;
-        if watched && least >= self.least_force(model, &free, &steady, (sine, cosine), length) {
-            return false;
-        }
-        let Some(propagator) = propagators.over(length, &self.oscillators, &model.generator) else {
-            return false;
-        };
-        let (x, v) = free.split_at(count);
-        let mut moved = [0.0; 2 * MAX_MODES];
-        let (x_end, v_end) = moved.split_at_mut(count);
-        let steps = propagator.x_from_x.iter().zip(&propagator.x_from_v);
-        for (((end, x), v), (from_x, from_v)) in x_end.iter_mut().zip(x).zip(v).zip(steps) {
-            *end = from_x * x + from_v * v;
-        }
-        let steps = propagator.v_from_x.iter().zip(&propagator.v_from_v);
-        for (((end, x), v), (from_x, from_v)) in v_end.iter_mut().zip(x).zip(v).zip(steps) {
-            *end = from_x * x + from_v * v;
-        }
-        steady.acceleration += drive.jerk * length;
-        steady.force += growth * length;
-        self.add_particular(&mut moved, &steady, 1.0);
-        for ((end, from_sine), from_cosine) in moved.iter_mut().zip(&propagator.from_sine).zip(&propagator.from_cosine)
-        {
-            *end += sine * from_sine + cosine * from_cosine;
-        }
-        let motion = self.to_modes.times(model.machine, &moved);
-
-        let support = state.support + drive.support_rate * length;
-        let (mut indentation, mut rate) = (support, drive.support_rate);
-        for (pair, mode) in motion.chunks_exact(2).zip(&model.modes) {
-            if let [q, v] = pair {
-                indentation -= mode.tip * q;
-                rate -= mode.tip * v;
-            }
-        }
-        if !(indentation.is_finite() && rate.is_finite()) {
-            return false;
-        }
-        for (mode, pair) in state.modes.iter_mut().zip(motion.chunks_exact(2)).take(count) {
-            if let [q, v] = pair {
-                (mode.q, mode.v) = (*q, *v);
-            }
-        }
-        state.support = support;
-        state.support_rate = drive.support_rate;
-        state.indentation = indentation;
-        state.indentation_rate = rate;
-        state.force = model.law.force(model.preload.indentation + indentation, rate);
-        state.last_step = 0.0;
-        state.steps += 1;
-        true
-    }
-
-    fn add_particular(&self, motion: &mut Coordinates, steady: &Steady, sign: f64) {
-        let (a, j) = (sign * steady.acceleration, sign * steady.jerk);
-        let (f, g) = (sign * steady.force, sign * steady.growth);
-        let count = 2 * self.oscillators.len();
-        let by_base = self.acceleration.iter().zip(&self.jerk);
-        let by_tip = self.force.iter().zip(&self.growth);
-        let columns = by_base.zip(by_tip);
-        for (motion, ((acceleration, jerk), (force, growth))) in motion.iter_mut().zip(columns).take(count) {
-            *motion += a * acceleration + j * jerk + f * force + g * growth;
-        }
-    }
-
-    /// A force (N) below which that of the contact does not fall over a step that begins with the free motion.
-    fn least_force(
-        &self,
-        model: &Model,
-        free: &Coordinates,
-        steady: &Steady,
-        (sine, cosine): (f64, f64),
-        length: f64,
-    ) -> f64 {
-        let count = self.oscillators.len();
-        let [per_sine, per_cosine] = &self.steady;
-        let mut transient = *free;
-        for ((x, per_sine), per_cosine) in transient.iter_mut().zip(per_sine).zip(per_cosine) {
-            *x -= sine * per_sine + cosine * per_cosine;
-        }
-        let (x, v) = transient.split_at(count);
-        let motions = self.oscillators.iter().zip(x.iter().zip(v));
-        let swing: f64 = motions
-            .map(|(oscillator, (x, v))| oscillator.largest_force(*x, *v))
-            .sum();
-        let force = |motion: &Coordinates| {
-            let (x, v) = motion.split_at(count);
-            let motions = self.oscillators.iter().zip(x.iter().zip(v));
-            motions
-                .map(|(oscillator, (x, v))| oscillator.force[0] * x + oscillator.force[1] * v)
-                .sum::<f64>()
-        };
-        let [per_sine, per_cosine] = self.steady.each_ref().map(force);
-        let swing = swing + sine.hypot(cosine) * per_sine.hypot(per_cosine);
-        let start = steady.force
-            + steady.acceleration * force(&self.acceleration)
-            + steady.jerk * force(&self.jerk)
-            + steady.force * force(&self.force)
-            + steady.growth * force(&self.growth);
-        let grown = steady.growth * (1.0 + force(&self.force)) + steady.jerk * force(&self.acceleration);
-        let end = start + grown * length;
-        model.preload.force + start.min(end) - swing
-    }
-}
-
-/// What the motion would settle to without the generator.
-#[derive(Clone, Copy, Debug)]
-struct Steady {
-    /// Base acceleration at the start of the step, m/s2.
-    acceleration: f64,
-    /// Its rate, m/s3.
-    jerk: f64,
-    /// Force on the tip at rest at the start of the step, N.
-    force: f64,
-    /// Its rate, N/s.
-    growth: f64,
-}
-
-impl Model {
-    /// Takes the communication step from the state's time over `size` seconds in one exact step, or several where
-    /// the generator starts or ends in it; `false`, with the state unchanged, where that cannot be done: the motion is not linear,
-    /// or the contact may open.
-    pub(crate) fn step_exactly(
-        &self,
-        state: &mut State,
-        propagators: &mut Propagators,
-        drive: &Drive,
-        size: f64,
-    ) -> bool {
-        let (Some(closed_loop), Law::Linear(law)) = (&self.closed_loop, &self.law) else {
-            return false;
-        };
-        let expected = Linear {
-            bonded: law.bonded,
-            ..closed_loop.contact
-        };
-        let longest = self.scene.solver.maximum_step;
-        // A model's parts can be exchanged after it was made.
-        let own = *law == expected && self.modes.len() == closed_loop.oscillators.len();
-        if !own || !(state.closed || law.bonded) || (longest > 0.0 && size > longest) {
-            return false;
-        }
-        let end = state.time + size;
-        let Some(corner) = self.generator.next_break(state.time).filter(|corner| *corner < end) else {
-            if !closed_loop.advance(self, state, propagators, drive, size) {
-                return false;
-            }
+        state.time = end;
+        return true;
+    };
+    let saved = *state;
+    let first = corner - state.time;
+    if advance(closed_loop, model, state, propagators, drive, first) {
+        state.time = corner;
+        if step_exactly(model, state, propagators, drive, size - first) {
             state.time = end;
             return true;
-        };
-        let saved = *state;
-        let first = corner - state.time;
-        if closed_loop.advance(self, state, propagators, drive, first) {
-            state.time = corner;
-            if self.step_exactly(state, propagators, drive, size - first) {
-                state.time = end;
-                return true;
-            }
         }
-        *state = saved;
-        false
     }
+    *state = saved;
+    false
+}
+
+/// Takes the state over `length` seconds in one step; `false`, with the state unchanged, where the contact may
+/// open.
+fn advance(
+    closed_loop: &ClosedLoop,
+    model: &Model,
+    state: &mut State,
+    propagators: &mut Propagators,
+    drive: &Drive,
+    length: f64,
+) -> bool {
+    let Linear { stiffness, damping, .. } = closed_loop.contact;
+    let count = closed_loop.oscillators.len();
+    let mut motion = [0.0; 2 * MAX_MODES];
+    for (pair, mode) in motion.chunks_exact_mut(2).zip(state.modes.iter().take(count)) {
+        if let [q, v] = pair {
+            (*q, *v) = (mode.q, mode.v);
+        }
+    }
+    let growth = stiffness * drive.support_rate;
+    let steady = Steady {
+        acceleration: drive.acceleration(state.time),
+        jerk: drive.jerk,
+        force: stiffness * state.support + damping * growth,
+        growth,
+    };
+    let free = closed_loop.free_motion(model.machine, &motion, &steady);
+    let phasor = model.generator.phasor(state.time);
+    if state.interruptions.in_progress() {
+        return false;
+    }
+    // Above no force, or that of an interruption.
+    let least = model.criterion.map_or(0.0, |criterion| criterion.force);
+    let watched = !model.law.never_opens() || least > 0.0;
+    if watched && least >= closed_loop.least_force(model.preload.force, &free, &steady, phasor, length) {
+        return false;
+    }
+    let Some(propagator) = propagators.over(length, &closed_loop.oscillators, &model.generator) else {
+        return false;
+    };
+    let motion: Coordinates = closed_loop.moved(model.machine, propagator, &free, &steady.after(length), phasor);
+
+    let support = state.support + drive.support_rate * length;
+    let (mut indentation, mut rate) = (support, drive.support_rate);
+    for (pair, mode) in motion.chunks_exact(2).zip(&model.modes) {
+        if let [q, v] = pair {
+            indentation -= mode.tip * q;
+            rate -= mode.tip * v;
+        }
+    }
+    if !(indentation.is_finite() && rate.is_finite()) {
+        return false;
+    }
+    for (mode, pair) in state.modes.iter_mut().zip(motion.chunks_exact(2)).take(count) {
+        if let [q, v] = pair {
+            (mode.q, mode.v) = (*q, *v);
+        }
+    }
+    state.support = support;
+    state.support_rate = drive.support_rate;
+    state.indentation = indentation;
+    state.indentation_rate = rate;
+    state.force = model.law.force(model.preload.indentation + indentation, rate);
+    state.last_step = 0.0;
+    state.steps += 1;
+    true
 }

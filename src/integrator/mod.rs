@@ -35,14 +35,15 @@
 //!   differently.
 
 pub mod attempt;
-pub mod budget;
 pub mod collocation;
+pub mod communication_step;
 pub mod discrete_gradient;
 pub mod energy;
 pub mod events;
 pub mod exact_step;
 pub mod extremes;
 pub mod grid;
+pub mod integration;
 pub mod motion;
 pub mod rest;
 pub mod step_control;

@@ -6,24 +6,15 @@
 //! is read from the step's polynomial. An input that changes meanwhile takes the motion back to the communication
 //! point, exactly, from the start of the step.
 
-use crate::BARE;
 use crate::beam::mode::MAX_MODES;
-use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
-use crate::inputs::Inputs;
-use crate::integrator::budget::Budget;
 use crate::integrator::events::log::Event;
 use crate::integrator::extremes::Extremes;
-use crate::integrator::step_control::Steps;
-use crate::integrator::workspace::Workspace;
-use crate::math::prediction::Prediction;
+use crate::integrator::integration::Span;
 use crate::math::prediction::value_and_slope;
 use crate::model::Model;
 use crate::state::State;
 use serde::{Deserialize, Serialize};
-
-/// How many of the integrator's steps a communication step has to be long for the integrator to end one with it.
-const MANY_STEPS: f64 = 4.0;
 
 /// Everything that moves: the motion around a communication point. Plain numbers: saving it is a copy.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -35,31 +26,18 @@ pub struct Course {
     /// See [`Course::current`].
     pub current_rate: f64,
     /// Length of the last communication step, s.
-    size: f64,
+    pub(crate) size: f64,
     /// Extremes of the contact force in it, but for what lies in [`Course::span`] inside which it ends, N; none where all
     /// of it does or nobody asks.
-    extremes: Option<Extremes>,
+    pub(crate) extremes: Option<Extremes>,
     /// What drove the contact over it.
-    drive: Drive,
+    pub(crate) drive: Drive,
     /// The motion at the communication point, or before it where the integrator is ahead.
-    start: State,
+    pub(crate) start: State,
     /// Where the integrator is.
-    end: State,
+    pub(crate) end: State,
     /// The tip in between.
-    span: Span,
-}
-
-/// The tip over a step: polynomials about its end, in steps. Deviations from the preload.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Span {
-    /// Whether they are within the tolerance; just after a blow no polynomial is.
-    pub good: bool,
-    /// Contact force, N.
-    pub force: Prediction,
-    /// Indentation, m.
-    pub indentation: Prediction,
-    /// Its velocity, m/s.
-    pub rate: Prediction,
+    pub(crate) span: Span,
 }
 
 /// The tip at a communication point.
@@ -149,7 +127,7 @@ impl Course {
     }
 
     /// Whether the communication point lies inside a step of the integrator: how far before its end, in steps.
-    fn inside(&self) -> Option<f64> {
+    pub(crate) fn inside(&self) -> Option<f64> {
         let from_end = self.time - self.end.time;
         (from_end < 0.0).then(|| from_end / self.length())
     }
@@ -192,7 +170,7 @@ impl Course {
     }
 
     /// Adds what the force does in the span between two instants (s), of which the first may lie before it.
-    fn add_span(&self, extremes: &mut Extremes, model: &Model, from: f64, to: f64) {
+    pub(crate) fn add_span(&self, extremes: &mut Extremes, model: &Model, from: f64, to: f64) {
         let at = |time: f64| ((time - self.end.time) / self.length()).clamp(-1.0, 0.0);
         extremes.add_course(model, self.start.closed, &self.span.force, at(from), at(to));
     }
@@ -233,162 +211,5 @@ impl Course {
             },
             acceleration,
         }
-    }
-}
-
-impl Model {
-    /// Advances over the communication step from `time` to `time + size` (s) with inputs that are held or change linearly.
-    ///
-    /// # Errors
-    /// A [`StepError`]; the course then stands where it did.
-    pub fn step(
-        &self,
-        course: &mut Course,
-        workspace: &mut Workspace,
-        inputs: &Inputs,
-        time: f64,
-        size: f64,
-    ) -> Result<(), StepError> {
-        if self.scene.effects.extremes && !BARE {
-            self.step_by::<true>(course, workspace, inputs, (time, size))
-        } else {
-            self.step_by::<false>(course, workspace, inputs, (time, size))
-        }
-    }
-
-    /// [`Model::step`], with the extremes or without.
-    fn step_by<const EXTREMES: bool>(
-        &self,
-        course: &mut Course,
-        workspace: &mut Workspace,
-        inputs: &Inputs,
-        (time, size): (f64, f64),
-    ) -> Result<(), StepError> {
-        let until = time + size;
-        if !(size > 0.0 && size.is_finite() && until.is_finite()) {
-            return Err(StepError {
-                time,
-                cause: StepErrorCause::StepSize,
-            });
-        }
-        // Where a point comes early by more than the step is long, time stands still.
-        let until = until.max(course.time);
-        // Lengths that differ by the rounding of time are one, but for exact steps.
-        let size = if self.closed_loop.is_none() && (size - course.size).abs() <= f64::EPSILON * until.abs() {
-            course.size
-        } else {
-            size
-        };
-        let since = course.time;
-        workspace.events.forget_until(since);
-        // The fixed contact moves linearly to where the input leads.
-        let support = inputs.support_displacement_after(size) - self.initial_support;
-        let drive = Drive::new(inputs, time, size, support - course.state().support);
-        let steady = drive.continues(&course.drive) && self.closed_loop.is_none();
-        let ahead = course.time < course.end.time;
-        // Nothing is integrated: what is read of the step is computed when it is read.
-        let inside = steady && until < course.end.time;
-        let mut extremes = (EXTREMES && !inside).then(|| Extremes::at(course.tip(self).force));
-        let reach = course.end.short_step.max(course.end.long_step);
-        if steady && (ahead || size < reach || size < MANY_STEPS * reach && size != course.size) {
-            if !inside {
-                let left = until - course.end.time;
-                if left < MANY_STEPS * reach {
-                    self.go_ahead(course, workspace, until, extremes.as_mut())?;
-                } else {
-                    let (mut end, time) = (course.end, course.end.time);
-                    let steps = Steps::Exactly { time, size: left };
-                    if let Some(extremes) = &mut extremes {
-                        course.add_span(extremes, self, since, time);
-                    }
-                    self.advance(&mut end, workspace, course.drive, steps, extremes.as_mut())?;
-                    end.time = until;
-                    (course.start, course.end) = (end, end);
-                }
-            }
-        } else {
-            let before = ahead.then_some((course.start, course.end));
-            if ahead {
-                course.end = self.state(course, workspace)?;
-                course.start = course.end;
-                workspace.events.forget_after(since);
-            }
-            let steps = Steps::Exactly { time, size };
-            if let Err(error) = self.advance(&mut course.end, workspace, drive, steps, extremes.as_mut()) {
-                (course.start, course.end) = before.unwrap_or((course.start, course.start));
-                workspace.events.forget_after(since);
-                return Err(error);
-            }
-            course.end.support = support;
-            course.end.time = until;
-            course.start = course.end;
-            course.drive = drive;
-        }
-        course.size = size;
-        if EXTREMES {
-            course.extremes = extremes;
-        }
-        course.time = until;
-        course.current = inputs.contact_current_after(size);
-        course.current_rate = inputs.contact_current_rate;
-        Ok(())
-    }
-
-    /// The whole motion at the communication point.
-    ///
-    /// # Errors
-    /// A [`StepError`] where it cannot be found.
-    pub fn state(&self, course: &Course, workspace: &mut Workspace) -> Result<State, StepError> {
-        let mut state = *course.state();
-        let (time, size) = (state.time, course.time - state.time);
-        if size > 0.0 {
-            let steps = Steps::Exactly { time, size };
-            self.advance(&mut state, workspace, course.drive, steps, None)?;
-        }
-        Ok(state)
-    }
-
-    /// Advances the integrator by its own steps until it is at `time` (s) or ahead of it. Extremes are those up to the
-    /// end of the last step that lies before.
-    fn go_ahead(
-        &self,
-        course: &mut Course,
-        workspace: &mut Workspace,
-        time: f64,
-        mut extremes: Option<&mut Extremes>,
-    ) -> Result<(), StepError> {
-        let since = course.time;
-        let mut ahead = *course;
-        if let Some(extremes) = &mut extremes
-            && since < ahead.end.time
-        {
-            ahead.add_span(extremes, self, since, ahead.end.time);
-            extremes.add(ahead.end.force);
-        }
-        let budget = Budget::new(workspace, time - since);
-        while ahead.end.time < time {
-            budget.check(workspace, ahead.end.time)?;
-            ahead.start = ahead.end;
-            let steps = Steps::Own {
-                until: time,
-                span: &mut ahead.span,
-            };
-            self.advance(&mut ahead.end, workspace, ahead.drive, steps, None)?;
-            if let Some(extremes) = &mut extremes
-                && ahead.end.time <= time
-            {
-                ahead.add_span(extremes, self, since, ahead.end.time);
-                extremes.add(ahead.end.force);
-            }
-        }
-        if ahead.end.time > time && !ahead.span.good {
-            ahead.end = ahead.start;
-            workspace.events.forget_after(ahead.end.time);
-            let (start, size) = (ahead.end.time, time - ahead.end.time);
-            let steps = Steps::Exactly { time: start, size };
-            self.advance(&mut ahead.end, workspace, ahead.drive, steps, extremes)?;
-        }
-        *course = ahead;
-        Ok(())
     }
 }

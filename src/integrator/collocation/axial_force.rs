@@ -15,7 +15,11 @@ use crate::excitation::drive::Drive;
 use crate::integrator::collocation::coefficients::{ErrorColumn, ModeColumns, StepCoefficients};
 use crate::integrator::collocation::newton::Outside;
 use crate::integrator::collocation::newton::Solution;
+use crate::integrator::collocation::newton::closed_forces;
+use crate::integrator::collocation::newton::predicted_forces;
 use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::collocation::step::judged;
+use crate::integrator::collocation::step::outside;
 use crate::integrator::collocation::step::{LANES, Source, Trial, end_of_modes, loads_on_modes};
 use crate::math::nodal::Nodal;
 use crate::math::nodal::{add, add_columns, dot};
@@ -32,209 +36,215 @@ const ROUNDING: f64 = 1e-13;
 /// A value at each node for each mode.
 type NodalModes<const S: usize> = [Nodal<S>; MAX_MODES];
 
-impl Model {
-    /// [`Model::trial`] with the axial force that follows the deflection.
-    pub(crate) fn axial_trial<const S: usize>(
-        &self,
-        axial: &Feedback,
-        state: &State,
-        (drive, source): (&Drive, Source<S>),
-        coefficients: (&StepCoefficients<S>, &Collocation<S>),
-        end_modes: &mut ModeStates,
-    ) -> Option<Trial<S>> {
-        compiled_for!(self.machine, A =>
-            self.axial_compute::<S, A>(axial, state, (drive, source), coefficients, end_modes))
-    }
+/// [`trial`] with the axial force that follows the deflection.
+pub(crate) fn axial_trial<const S: usize>(
+    model: &Model,
+    axial: &Feedback,
+    state: &State,
+    (drive, source): (&Drive, Source<S>),
+    coefficients: (&StepCoefficients<S>, &Collocation<S>),
+    end_modes: &mut ModeStates,
+) -> Option<Trial<S>> {
+    compiled_for!(model.machine, A =>
+        axial_compute::<S, A>(model, axial, state, (drive, source), coefficients, end_modes))
+}
 
-    #[inline(always)]
-    fn axial_compute<const S: usize, A: Arithmetic>(
-        &self,
-        axial: &Feedback,
-        state: &State,
-        (drive, source): (&Drive, Source<S>),
-        (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
-        end_modes: &mut ModeStates,
-    ) -> Option<Trial<S>> {
-        let outside = self.outside::<S, A>(state, drive, step, collocation);
-        let start = axial.loads(&self.modes, &state.modes);
-        let (tolerance, mut forces) = match source {
-            Source::Law(newton) if state.closed => (newton, self.predicted_forces::<S, A>(state, step, collocation)),
-            Source::Law(newton) => (newton, [-self.preload.force; S]),
-            Source::Given(forces) => (0.0, forces),
-        };
-        let mut loads: NodalModes<S> = start.map(|load| [load; S]);
-        let mut iterations = 0;
-        let mut solved: Option<Solution<S>> = None;
-        for _ in 0..ROUNDS {
-            let motion = self.motion_of_modes::<S, A>(state, step, &forces, &outside.accelerations, &loads);
-            let mut next = [[0.0; S]; MAX_MODES];
-            self.set_loads::<S, A>(axial, &motion, &mut next);
-            let (change, size) = self.force_of_change(&loads, &next);
-            if let Some(mut solution) = solved.take_if(|_| change <= tolerance + ROUNDING * size) {
-                solution.iterations = iterations;
-                let error = self.load_error::<S, A>(&outside, &start, &loads, (step, collocation));
-                let outside = self.with_loads::<S, A>(&outside, step, &loads);
-                let tip = end_of_modes::<S, A>(
-                    state,
-                    step,
-                    self.modes.len(),
-                    #[inline(always)]
-                    |first, lanes| {
-                        loads_on_modes::<S, A>(&step.end, first, &solution.forces, &outside.accelerations, lanes);
-                        for (i, load) in loads.iter().skip(first).take(LANES).enumerate() {
-                            for (lanes, load) in lanes.iter_mut().zip(load) {
-                                lanes.iter_mut().skip(i).take(1).for_each(|lane| *lane += load);
-                            }
+#[inline(always)]
+fn axial_compute<const S: usize, A: Arithmetic>(
+    model: &Model,
+    axial: &Feedback,
+    state: &State,
+    (drive, source): (&Drive, Source<S>),
+    (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
+    end_modes: &mut ModeStates,
+) -> Option<Trial<S>> {
+    let outside = outside::<S, A>(model, state, drive, step, collocation);
+    let start = axial.loads(&model.modes, &state.modes);
+    let (tolerance, mut forces) = match source {
+        Source::Law(newton) if state.closed => (newton, predicted_forces::<S, A>(model, state, step, collocation)),
+        Source::Law(newton) => (newton, [-model.preload.force; S]),
+        Source::Given(forces) => (0.0, forces),
+    };
+    let mut loads: NodalModes<S> = start.map(|load| [load; S]);
+    let mut iterations = 0;
+    let mut solved: Option<Solution<S>> = None;
+    for _ in 0..ROUNDS {
+        let motion = motion_of_modes::<S, A>(model, state, step, &forces, &outside.accelerations, &loads);
+        let mut next = [[0.0; S]; MAX_MODES];
+        set_loads::<S, A>(model, axial, &motion, &mut next);
+        let (change, size) = force_of_change(model, &loads, &next);
+        if let Some(mut solution) = solved.take_if(|_| change <= tolerance + ROUNDING * size) {
+            solution.iterations = iterations;
+            let error = load_error::<S, A>(model, &outside, &start, &loads, (step, collocation));
+            let outside = with_loads::<S, A>(model, &outside, step, &loads);
+            let tip = end_of_modes::<S, A>(
+                state,
+                step,
+                model.modes.len(),
+                #[inline(always)]
+                |first, lanes| {
+                    loads_on_modes::<S, A>(&step.end, first, &solution.forces, &outside.accelerations, lanes);
+                    for (i, load) in loads.iter().skip(first).take(LANES).enumerate() {
+                        for (lanes, load) in lanes.iter_mut().zip(load) {
+                            lanes.iter_mut().skip(i).take(1).for_each(|lane| *lane += load);
                         }
-                    },
-                    end_modes,
-                );
-                // The contact answers to what is missed of all loads together.
+                    }
+                },
+                end_modes,
+            );
+            // The contact answers to what is missed of all loads together.
+            let outside = Outside {
+                error: &error,
+                missed: 1.0,
+                ..outside
+            };
+            return Some(judged::<S, A>(
+                model,
+                state,
+                drive,
+                (step, collocation),
+                &solution,
+                &outside,
+                tip,
+            ));
+        }
+        loads = next;
+        let solution = match source {
+            Source::Law(newton) if state.closed => {
+                let error = load_error::<S, A>(model, &outside, &start, &loads, (step, collocation));
                 let outside = Outside {
                     error: &error,
                     missed: 1.0,
-                    ..outside
+                    ..with_loads::<S, A>(model, &outside, step, &loads)
                 };
-                return Some(self.judged::<S, A>(state, drive, (step, collocation), &solution, &outside, tip));
+                closed_forces::<S, A>(model, step, &outside, forces, newton)?
             }
-            loads = next;
-            let solution = match source {
-                Source::Law(newton) if state.closed => {
-                    let error = self.load_error::<S, A>(&outside, &start, &loads, (step, collocation));
-                    let outside = Outside {
-                        error: &error,
-                        missed: 1.0,
-                        ..self.with_loads::<S, A>(&outside, step, &loads)
-                    };
-                    self.closed_forces::<S, A>(step, &outside, forces, newton)?
-                }
-                _ => Solution::given(forces),
-            };
-            iterations += solution.iterations;
-            forces = solution.forces;
-            solved = Some(solution);
-        }
-        None
-    }
-
-    /// The modes at the nodes under contact forces, base acceleration and the loads.
-    #[inline(always)]
-    fn motion_of_modes<const S: usize, A: Arithmetic>(
-        &self,
-        state: &State,
-        step: &StepCoefficients<S>,
-        forces: &Nodal<S>,
-        accelerations: &Nodal<S>,
-        loads: &NodalModes<S>,
-    ) -> NodalModes<S> {
-        let mut motion = [[0.0; S]; MAX_MODES];
-        let modes = self.modes.iter().zip(&state.modes).zip(&step.columns).zip(loads);
-        for (q, (((mode, at), columns), load)) in motion.iter_mut().zip(modes) {
-            let mut load = *load;
-            add::<S, A>(&mut load, mode.tip, forces);
-            add::<S, A>(&mut load, -mode.participation, accelerations);
-            add::<S, A>(q, at.q, &columns.q_from_q);
-            add::<S, A>(q, at.v, &columns.q_from_v);
-            add_columns::<S, A>(q, &columns.load.displacement, &load);
-        }
-        motion
-    }
-
-    /// Sets the loads on the modes in their motion at the nodes.
-    #[inline(always)]
-    fn set_loads<const S: usize, A: Arithmetic>(
-        &self,
-        axial: &Feedback,
-        motion: &NodalModes<S>,
-        loads: &mut NodalModes<S>,
-    ) {
-        let count = self.modes.len();
-        let mut tip = [0.0; S];
-        for (mode, q) in self.modes.iter().zip(motion) {
-            add::<S, A>(&mut tip, mode.tip, q);
-        }
-        let change = tip.map(|y| axial.change(y));
-        // Several rows at once, which do not wait for one another.
-        let blocks = loads.chunks_exact_mut(LANES).zip(axial.slopes.chunks_exact(LANES));
-        for (block, (loads, slopes)) in blocks.enumerate().take(count.div_ceil(LANES)) {
-            let mut sums = [[0.0; S]; LANES];
-            for (row, q) in axial.geometric.iter().zip(motion) {
-                for (sum, entry) in sums
-                    .iter_mut()
-                    .zip(row.chunks_exact(LANES).nth(block).unwrap_or_default())
-                {
-                    add::<S, A>(sum, *entry, q);
-                }
-            }
-            for ((load, sum), slope) in loads.iter_mut().zip(&sums).zip(slopes) {
-                for ((load, sum), change) in load.iter_mut().zip(sum).zip(&change) {
-                    *load = change * (slope + sum);
-                }
-            }
-        }
-    }
-
-    /// The force on the tip that would bend the spring as much as the difference of the loads, and as much as the loads,
-    /// N: the largest over the nodes.
-    #[inline(always)]
-    fn force_of_change<const S: usize>(&self, loads: &NodalModes<S>, next: &NodalModes<S>) -> (f64, f64) {
-        let (mut change, mut size, mut unit) = ([0.0; S], [0.0; S], f64::MIN_POSITIVE);
-        for ((mode, load), next) in self.modes.iter().zip(loads).zip(next) {
-            let compliance = 1.0 / mode.omega_squared;
-            unit += mode.tip * mode.tip * compliance;
-            for (((change, size), load), next) in change.iter_mut().zip(&mut size).zip(load).zip(next) {
-                *change += (next - load) * (next - load) * compliance;
-                *size += next * next * compliance;
-            }
-        }
-        // Not `max`, which would hide what is not a number.
-        let root = |values: Nodal<S>| {
-            values
-                .iter()
-                .fold(0.0, |most, value| if most >= *value { most } else { *value })
+            _ => Solution::given(forces),
         };
-        ((root(change) / unit).sqrt(), (root(size) / unit).sqrt())
+        iterations += solution.iterations;
+        forces = solution.forces;
+        solved = Some(solution);
     }
+    None
+}
 
-    /// The indentation without contact force, with the loads.
-    #[inline(always)]
-    fn with_loads<'a, const S: usize, A: Arithmetic>(
-        &self,
-        outside: &Outside<'a, S>,
-        step: &StepCoefficients<S>,
-        loads: &NodalModes<S>,
-    ) -> Outside<'a, S> {
-        let mut with = outside.clone();
-        for ((mode, columns), load) in self.modes.iter().zip(&step.columns).zip(loads) {
-            let ModeColumns { load: columns, .. } = columns;
-            let load = load.map(|load| -mode.tip * load);
-            add_columns::<S, A>(&mut with.free, &columns.displacement, &load);
-            add_columns::<S, A>(&mut with.free_rate, &columns.velocity, &load);
-        }
-        with
+/// The modes at the nodes under contact forces, base acceleration and the loads.
+#[inline(always)]
+fn motion_of_modes<const S: usize, A: Arithmetic>(
+    model: &Model,
+    state: &State,
+    step: &StepCoefficients<S>,
+    forces: &Nodal<S>,
+    accelerations: &Nodal<S>,
+    loads: &NodalModes<S>,
+) -> NodalModes<S> {
+    let mut motion = [[0.0; S]; MAX_MODES];
+    let modes = model.modes.iter().zip(&state.modes).zip(&step.columns).zip(loads);
+    for (q, (((mode, at), columns), load)) in motion.iter_mut().zip(modes) {
+        let mut load = *load;
+        add::<S, A>(&mut load, mode.tip, forces);
+        add::<S, A>(&mut load, -mode.participation, accelerations);
+        add::<S, A>(q, at.q, &columns.q_from_q);
+        add::<S, A>(q, at.v, &columns.q_from_v);
+        add_columns::<S, A>(q, &columns.load.displacement, &load);
     }
+    motion
+}
 
-    /// What the polynomials of base acceleration and loads miss at the start makes of the indentation.
-    #[inline(always)]
-    fn load_error<const S: usize, A: Arithmetic>(
-        &self,
-        outside: &Outside<S>,
-        start: &Modal,
-        loads: &NodalModes<S>,
-        (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
-    ) -> ErrorColumn<S> {
-        let mut error = ErrorColumn {
-            displacement: outside.error.displacement.map(|d| outside.missed * d),
-            velocity: outside.error.velocity.map(|r| outside.missed * r),
-        };
-        let modes = self.modes.iter().zip(&step.columns).zip(start).zip(loads);
-        for (((mode, columns), start), load) in modes {
-            let missed = -mode.tip * (start - dot::<S, A>(load, &collocation.at_start));
-            add::<S, A>(&mut error.displacement, missed, &columns.error.displacement);
-            add::<S, A>(&mut error.velocity, missed, &columns.error.velocity);
-        }
-        error
+/// Sets the loads on the modes in their motion at the nodes.
+#[inline(always)]
+fn set_loads<const S: usize, A: Arithmetic>(
+    model: &Model,
+    axial: &Feedback,
+    motion: &NodalModes<S>,
+    loads: &mut NodalModes<S>,
+) {
+    let count = model.modes.len();
+    let mut tip = [0.0; S];
+    for (mode, q) in model.modes.iter().zip(motion) {
+        add::<S, A>(&mut tip, mode.tip, q);
     }
+    let change = tip.map(|y| axial.change(y));
+    // Several rows at once, which do not wait for one another.
+    let blocks = loads.chunks_exact_mut(LANES).zip(axial.slopes.chunks_exact(LANES));
+    for (block, (loads, slopes)) in blocks.enumerate().take(count.div_ceil(LANES)) {
+        let mut sums = [[0.0; S]; LANES];
+        for (row, q) in axial.geometric.iter().zip(motion) {
+            for (sum, entry) in sums
+                .iter_mut()
+                .zip(row.chunks_exact(LANES).nth(block).unwrap_or_default())
+            {
+                add::<S, A>(sum, *entry, q);
+            }
+        }
+        for ((load, sum), slope) in loads.iter_mut().zip(&sums).zip(slopes) {
+            for ((load, sum), change) in load.iter_mut().zip(sum).zip(&change) {
+                *load = change * (slope + sum);
+            }
+        }
+    }
+}
+
+/// The force on the tip that would bend the spring as much as the difference of the loads, and as much as the loads,
+/// N: the largest over the nodes.
+#[inline(always)]
+fn force_of_change<const S: usize>(model: &Model, loads: &NodalModes<S>, next: &NodalModes<S>) -> (f64, f64) {
+    let (mut change, mut size, mut unit) = ([0.0; S], [0.0; S], f64::MIN_POSITIVE);
+    for ((mode, load), next) in model.modes.iter().zip(loads).zip(next) {
+        let compliance = 1.0 / mode.omega_squared;
+        unit += mode.tip * mode.tip * compliance;
+        for (((change, size), load), next) in change.iter_mut().zip(&mut size).zip(load).zip(next) {
+            *change += (next - load) * (next - load) * compliance;
+            *size += next * next * compliance;
+        }
+    }
+    // Not `max`, which would hide what is not a number.
+    let root = |values: Nodal<S>| {
+        values
+            .iter()
+            .fold(0.0, |most, value| if most >= *value { most } else { *value })
+    };
+    ((root(change) / unit).sqrt(), (root(size) / unit).sqrt())
+}
+
+/// The indentation without contact force, with the loads.
+#[inline(always)]
+fn with_loads<'a, const S: usize, A: Arithmetic>(
+    model: &Model,
+    outside: &Outside<'a, S>,
+    step: &StepCoefficients<S>,
+    loads: &NodalModes<S>,
+) -> Outside<'a, S> {
+    let mut with = outside.clone();
+    for ((mode, columns), load) in model.modes.iter().zip(&step.columns).zip(loads) {
+        let ModeColumns { load: columns, .. } = columns;
+        let load = load.map(|load| -mode.tip * load);
+        add_columns::<S, A>(&mut with.free, &columns.displacement, &load);
+        add_columns::<S, A>(&mut with.free_rate, &columns.velocity, &load);
+    }
+    with
+}
+
+/// What the polynomials of base acceleration and loads miss at the start makes of the indentation.
+#[inline(always)]
+fn load_error<const S: usize, A: Arithmetic>(
+    model: &Model,
+    outside: &Outside<S>,
+    start: &Modal,
+    loads: &NodalModes<S>,
+    (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
+) -> ErrorColumn<S> {
+    let mut error = ErrorColumn {
+        displacement: outside.error.displacement.map(|d| outside.missed * d),
+        velocity: outside.error.velocity.map(|r| outside.missed * r),
+    };
+    let modes = model.modes.iter().zip(&step.columns).zip(start).zip(loads);
+    for (((mode, columns), start), load) in modes {
+        let missed = -mode.tip * (start - dot::<S, A>(load, &collocation.at_start));
+        add::<S, A>(&mut error.displacement, missed, &columns.error.displacement);
+        add::<S, A>(&mut error.velocity, missed, &columns.error.velocity);
+    }
+    error
 }
 
 #[cfg(test)]
@@ -281,7 +291,7 @@ mod tests {
                 let mut moved = |length| {
                     let (step, collocation) = cache.get(length, true, &model);
                     let drive = Drive::default();
-                    let trial = model.trial(&state, &drive, step, collocation, source, &mut end);
+                    let trial = trial(model, &state, &drive, step, collocation, source, &mut end);
                     (trial.unwrap(), end)
                 };
                 // By steps to the nodes: the work is the integral of the power, by the Radau quadrature.

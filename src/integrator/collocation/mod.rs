@@ -5,6 +5,6 @@ pub mod coefficients;
 pub mod modal_response;
 pub mod newton;
 pub mod polynomial;
-pub mod response;
 pub mod shapes;
 pub mod step;
+pub mod superposition;

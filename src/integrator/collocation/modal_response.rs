@@ -6,9 +6,9 @@
 //! parts); where it is fast, of the shape's derivatives (the motion that follows the load) and a free motion that takes
 //! away what this has at the start. A strongly overdamped mode with one fast and one slow root is one of each.
 
-use crate::integrator::collocation::response::{Combination, Fading, Pair, Response};
 use crate::integrator::collocation::shapes::MAX_SHAPES;
 use crate::integrator::collocation::shapes::{Row, Shapes, TERMS};
+use crate::integrator::collocation::superposition::{Combination, Fading, Pair, Response};
 use crate::math::free_motion::FreeMotion;
 use crate::math::nodal::Nodal;
 use crate::math::nodal::{add, scaled};
@@ -253,8 +253,8 @@ impl ModeOverStep {
 mod tests {
     use super::*;
     use crate::integrator::collocation::polynomial::Collocation;
-    use crate::integrator::collocation::response::Sum;
     use crate::integrator::collocation::shapes::Table;
+    use crate::integrator::collocation::superposition::Sum;
     use crate::math::legendre;
     use crate::math::simd::Separate;
 

@@ -108,106 +108,103 @@ impl<const S: usize> Solution<S> {
     }
 }
 
-impl Model {
-    /// The nodal forces as those of the last step predict them.
-    #[inline(always)]
-    pub(crate) fn predicted_forces<const S: usize, A: Arithmetic>(
-        &self,
-        state: &State,
-        step: &StepCoefficients<S>,
-        collocation: &Collocation<S>,
-    ) -> Nodal<S> {
-        if state.last_step > 0.0 {
-            collocation.predict::<A>(&state.predictions, step.length / state.last_step)
-        } else {
-            [state.force - self.preload.force; S]
-        }
+/// The nodal forces as those of the last step predict them.
+#[inline(always)]
+pub(crate) fn predicted_forces<const S: usize, A: Arithmetic>(
+    model: &Model,
+    state: &State,
+    step: &StepCoefficients<S>,
+    collocation: &Collocation<S>,
+) -> Nodal<S> {
+    if state.last_step > 0.0 {
+        collocation.predict::<A>(&state.predictions, step.length / state.last_step)
+    } else {
+        [state.force - model.preload.force; S]
     }
+}
 
-    /// The nodal forces, from those guessed, which differ from the law's by at most `newton` (N) or rounding; `None`
-    /// where the iteration does not converge. A contact that does not damp is spared the velocities.
-    #[inline(always)]
-    pub(crate) fn closed_forces<const S: usize, A: Arithmetic>(
-        &self,
-        step: &StepCoefficients<S>,
-        outside: &Outside<S>,
-        guess: Nodal<S>,
-        newton: f64,
-    ) -> Option<Solution<S>> {
-        if self.law.damping() > 0.0 && !BARE {
-            self.iterated::<S, A, true>(step, outside, guess, newton)
-        } else {
-            self.iterated::<S, A, false>(step, outside, guess, newton)
-        }
+/// The nodal forces, from those guessed, which differ from the law's by at most `newton` (N) or rounding; `None`
+/// where the iteration does not converge. A contact that does not damp is spared the velocities.
+#[inline(always)]
+pub(crate) fn closed_forces<const S: usize, A: Arithmetic>(
+    model: &Model,
+    step: &StepCoefficients<S>,
+    outside: &Outside<S>,
+    guess: Nodal<S>,
+    newton: f64,
+) -> Option<Solution<S>> {
+    if model.law.damping() > 0.0 && !BARE {
+        iterated::<S, A, true>(model, step, outside, guess, newton)
+    } else {
+        iterated::<S, A, false>(model, step, outside, guess, newton)
     }
+}
 
-    /// [`Model::closed_forces`] of a law that damps, or of one that does not.
-    #[inline(always)]
-    fn iterated<const S: usize, A: Arithmetic, const DAMPED: bool>(
-        &self,
-        step: &StepCoefficients<S>,
-        outside: &Outside<S>,
-        guess: Nodal<S>,
-        newton: f64,
-    ) -> Option<Solution<S>> {
-        let Outside {
-            free, free_rate, error, ..
-        } = outside;
-        let mut forces = guess;
-        let d0 = self.preload.indentation;
-        let greatest = |values: &Nodal<S>| values.iter().fold(0.0_f64, |greatest, value| greatest.max(value.abs()));
-        let (farthest, fastest) = (greatest(free), greatest(free_rate));
-        let mut by_errors = None;
-        for iterations in 0..=ITERATIONS {
-            let (indentations, rates) = if DAMPED {
-                at_nodes::<S, A>(step, free, free_rate, &forces)
-            } else {
-                (displaced::<S, A>(free, &step.force.displacement, &forces), [0.0; S])
-            };
-            let mut residual = forces;
-            let (mut stiffness, mut damping) = ([0.0; S], [0.0; S]);
-            for ((((residual, stiffness), damping), d), rate) in residual
-                .iter_mut()
-                .zip(&mut stiffness)
-                .zip(&mut damping)
-                .zip(&indentations)
-                .zip(&rates)
-            {
-                let law = self.law.closed_branch(d0 + d, *rate);
-                *residual -= law.force - self.preload.force;
-                (*stiffness, *damping) = (law.stiffness, law.damping);
-            }
-            // The motion has to obey the law, not only the nodal forces to be right: on a stiff contact they hardly
-            // depend on it. What rounding leaves of the motion is all that can be asked.
-            let rounding = MOTION_ROUNDING * (greatest(&stiffness) * farthest + greatest(&damping) * fastest);
-            if let Some((by_force, by_load)) = by_errors.filter(|_| greatest(&residual) <= newton.max(rounding)) {
-                return Some(Solution::new(
-                    step,
-                    forces,
-                    iterations,
-                    (greatest(&stiffness), greatest(&damping)),
-                    &by_force,
-                    (error, &by_load),
-                ));
-            }
-            // The derivative of the residuals by each nodal force.
-            let mut jacobian = step.force.displacement;
-            for (column, velocity) in jacobian.iter_mut().zip(&step.force.velocity) {
-                *column = react::<S, A, DAMPED>(column, velocity, &stiffness, &damping);
-            }
-            let answer = |error: &ErrorColumn<S>| {
-                react::<S, A, DAMPED>(&error.displacement, &error.velocity, &stiffness, &damping)
-            };
-            let by_force = answer(&step.force_error);
-            let by_load = answer(error);
-            let [correction, by_force, by_load] = solve::<S, 3, A>(jacobian, [residual, by_force, by_load])?;
-            for (force, correction) in forces.iter_mut().zip(&correction) {
-                *force -= correction;
-            }
-            by_errors = Some((by_force, by_load));
+/// [`closed_forces`] of a law that damps, or of one that does not.
+#[inline(always)]
+fn iterated<const S: usize, A: Arithmetic, const DAMPED: bool>(
+    model: &Model,
+    step: &StepCoefficients<S>,
+    outside: &Outside<S>,
+    guess: Nodal<S>,
+    newton: f64,
+) -> Option<Solution<S>> {
+    let Outside {
+        free, free_rate, error, ..
+    } = outside;
+    let mut forces = guess;
+    let d0 = model.preload.indentation;
+    let greatest = |values: &Nodal<S>| values.iter().fold(0.0_f64, |greatest, value| greatest.max(value.abs()));
+    let (farthest, fastest) = (greatest(free), greatest(free_rate));
+    let mut by_errors = None;
+    for iterations in 0..=ITERATIONS {
+        let (indentations, rates) = if DAMPED {
+            at_nodes::<S, A>(step, free, free_rate, &forces)
+        } else {
+            (displaced::<S, A>(free, &step.force.displacement, &forces), [0.0; S])
+        };
+        let mut residual = forces;
+        let (mut stiffness, mut damping) = ([0.0; S], [0.0; S]);
+        for ((((residual, stiffness), damping), d), rate) in residual
+            .iter_mut()
+            .zip(&mut stiffness)
+            .zip(&mut damping)
+            .zip(&indentations)
+            .zip(&rates)
+        {
+            let law = model.law.closed_branch(d0 + d, *rate);
+            *residual -= law.force - model.preload.force;
+            (*stiffness, *damping) = (law.stiffness, law.damping);
         }
-        None
+        // The motion has to obey the law, not only the nodal forces to be right: on a stiff contact they hardly
+        // depend on it. What rounding leaves of the motion is all that can be asked.
+        let rounding = MOTION_ROUNDING * (greatest(&stiffness) * farthest + greatest(&damping) * fastest);
+        if let Some((by_force, by_load)) = by_errors.filter(|_| greatest(&residual) <= newton.max(rounding)) {
+            return Some(Solution::new(
+                step,
+                forces,
+                iterations,
+                (greatest(&stiffness), greatest(&damping)),
+                &by_force,
+                (error, &by_load),
+            ));
+        }
+        // The derivative of the residuals by each nodal force.
+        let mut jacobian = step.force.displacement;
+        for (column, velocity) in jacobian.iter_mut().zip(&step.force.velocity) {
+            *column = react::<S, A, DAMPED>(column, velocity, &stiffness, &damping);
+        }
+        let answer =
+            |error: &ErrorColumn<S>| react::<S, A, DAMPED>(&error.displacement, &error.velocity, &stiffness, &damping);
+        let by_force = answer(&step.force_error);
+        let by_load = answer(error);
+        let [correction, by_force, by_load] = solve::<S, 3, A>(jacobian, [residual, by_force, by_load])?;
+        for (force, correction) in forces.iter_mut().zip(&correction) {
+            *force -= correction;
+        }
+        by_errors = Some((by_force, by_load));
     }
+    None
 }
 
 /// Solves `(1 + A) x = b` for several `b`, `A` column by column, by Gauss-Jordan elimination, whose inner loops run

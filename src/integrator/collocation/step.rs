@@ -4,9 +4,12 @@
 use crate::beam::mode::Modal;
 use crate::beam::mode::ModeStates;
 use crate::excitation::drive::Drive;
+use crate::integrator::collocation::axial_force::axial_trial;
 use crate::integrator::collocation::coefficients::{EndRows, StepCoefficients};
 use crate::integrator::collocation::newton::Outside;
 use crate::integrator::collocation::newton::Slopes;
+use crate::integrator::collocation::newton::closed_forces;
+use crate::integrator::collocation::newton::predicted_forces;
 use crate::integrator::collocation::newton::{Solution, at_nodes};
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::math::nodal::Nodal;
@@ -67,192 +70,198 @@ const KINKED: f64 = 0.015;
 /// Steps from a kink beyond which it is not felt.
 const FAR: f64 = 20.0;
 
-impl Model {
-    /// The step from `state` with the given coefficients, on the branch the state is on, with the modes at its end in
-    /// `end_modes`; `None` where Newton's method does not converge.
-    pub fn trial<const S: usize>(
-        &self,
-        state: &State,
-        drive: &Drive,
-        step: &StepCoefficients<S>,
-        collocation: &Collocation<S>,
-        source: Source<S>,
-        end_modes: &mut ModeStates,
-    ) -> Option<Trial<S>> {
-        if let Some(axial) = self.axial() {
-            return self.axial_trial(axial, state, (drive, source), (step, collocation), end_modes);
+/// The step from `state` with the given coefficients, on the branch the state is on, with the modes at its end in
+/// `end_modes`; `None` where Newton's method does not converge.
+pub fn trial<const S: usize>(
+    model: &Model,
+    state: &State,
+    drive: &Drive,
+    step: &StepCoefficients<S>,
+    collocation: &Collocation<S>,
+    source: Source<S>,
+    end_modes: &mut ModeStates,
+) -> Option<Trial<S>> {
+    if let Some(axial) = model.axial() {
+        return axial_trial(model, axial, state, (drive, source), (step, collocation), end_modes);
+    }
+    compiled_for!(model.machine, A => compute::<S, A>(model, state, drive, step, collocation, source, end_modes))
+}
+
+/// [`trial`] for a machine.
+#[inline(always)]
+fn compute<const S: usize, A: Arithmetic>(
+    model: &Model,
+    state: &State,
+    drive: &Drive,
+    step: &StepCoefficients<S>,
+    collocation: &Collocation<S>,
+    source: Source<S>,
+    end_modes: &mut ModeStates,
+) -> Option<Trial<S>> {
+    let outside = outside::<S, A>(model, state, drive, step, collocation);
+    let solution = match source {
+        Source::Law(newton) if state.closed => {
+            let guess = predicted_forces::<S, A>(model, state, step, collocation);
+            closed_forces::<S, A>(model, step, &outside, guess, newton)?
         }
-        compiled_for!(self.machine, A => self.compute::<S, A>(state, drive, step, collocation, source, end_modes))
+        Source::Law(_) => Solution::given([-model.preload.force; S]),
+        Source::Given(forces) => Solution::given(forces),
+    };
+    let tip = end_of_modes::<S, A>(
+        state,
+        step,
+        model.modes.len(),
+        #[inline(always)]
+        |first, loads| {
+            loads_on_modes::<S, A>(&step.end, first, &solution.forces, &outside.accelerations, loads);
+        },
+        end_modes,
+    );
+    Some(judged::<S, A>(
+        model,
+        state,
+        drive,
+        (step, collocation),
+        &solution,
+        &outside,
+        tip,
+    ))
+}
+
+/// What acts on the tip besides the contact force.
+#[inline(always)]
+pub(crate) fn outside<'a, const S: usize, A: Arithmetic>(
+    model: &Model,
+    state: &State,
+    drive: &Drive,
+    step: &'a StepCoefficients<S>,
+    collocation: &Collocation<S>,
+) -> Outside<'a, S> {
+    let h = step.length;
+    let generated = model.generator.over_step(model.machine, state.time, &step.turns);
+    let driven = drive.acceleration(state.time);
+    let mut accelerations = generated.nodes;
+    add::<S, A>(&mut accelerations, drive.jerk * h, &collocation.nodes);
+    for acceleration in &mut accelerations {
+        *acceleration += driven;
     }
 
-    /// [`Model::trial`] for a machine.
-    #[inline(always)]
-    fn compute<const S: usize, A: Arithmetic>(
-        &self,
-        state: &State,
-        drive: &Drive,
-        step: &StepCoefficients<S>,
-        collocation: &Collocation<S>,
-        source: Source<S>,
-        end_modes: &mut ModeStates,
-    ) -> Option<Trial<S>> {
-        let outside = self.outside::<S, A>(state, drive, step, collocation);
-        let solution = match source {
-            Source::Law(newton) if state.closed => {
-                let guess = self.predicted_forces::<S, A>(state, step, collocation);
-                self.closed_forces::<S, A>(step, &outside, guess, newton)?
-            }
-            Source::Law(_) => Solution::given([-self.preload.force; S]),
-            Source::Given(forces) => Solution::given(forces),
-        };
-        let tip = end_of_modes::<S, A>(
-            state,
-            step,
-            self.modes.len(),
-            #[inline(always)]
-            |first, loads| {
-                loads_on_modes::<S, A>(&step.end, first, &solution.forces, &outside.accelerations, loads);
-            },
-            end_modes,
-        );
-        Some(self.judged::<S, A>(state, drive, (step, collocation), &solution, &outside, tip))
+    let mut free = [state.support; S];
+    add::<S, A>(&mut free, drive.support_rate * h, &collocation.nodes);
+    let mut free_rate = [drive.support_rate; S];
+    // A sum of its own for q and v each: they do not wait for one another.
+    let [mut from_q, mut from_v, mut rate_from_q, mut rate_from_v] = [[0.0; S]; 4];
+    for (mode, row) in state.modes.iter().zip(&step.modes) {
+        add::<S, A>(&mut from_q, mode.q, &row.tip_from_q);
+        add::<S, A>(&mut from_v, mode.v, &row.tip_from_v);
+        add::<S, A>(&mut rate_from_q, mode.q, &row.rate_from_q);
+        add::<S, A>(&mut rate_from_v, mode.v, &row.rate_from_v);
     }
-
-    /// What acts on the tip besides the contact force.
-    #[inline(always)]
-    pub(crate) fn outside<'a, const S: usize, A: Arithmetic>(
-        &self,
-        state: &State,
-        drive: &Drive,
-        step: &'a StepCoefficients<S>,
-        collocation: &Collocation<S>,
-    ) -> Outside<'a, S> {
-        let h = step.length;
-        let generated = self.generator.over_step(self.machine, state.time, &step.turns);
-        let driven = drive.acceleration(state.time);
-        let mut accelerations = generated.nodes;
-        add::<S, A>(&mut accelerations, drive.jerk * h, &collocation.nodes);
-        for acceleration in &mut accelerations {
-            *acceleration += driven;
-        }
-
-        let mut free = [state.support; S];
-        add::<S, A>(&mut free, drive.support_rate * h, &collocation.nodes);
-        let mut free_rate = [drive.support_rate; S];
-        // A sum of its own for q and v each: they do not wait for one another.
-        let [mut from_q, mut from_v, mut rate_from_q, mut rate_from_v] = [[0.0; S]; 4];
-        for (mode, row) in state.modes.iter().zip(&step.modes) {
-            add::<S, A>(&mut from_q, mode.q, &row.tip_from_q);
-            add::<S, A>(&mut from_v, mode.v, &row.tip_from_v);
-            add::<S, A>(&mut rate_from_q, mode.q, &row.rate_from_q);
-            add::<S, A>(&mut rate_from_v, mode.v, &row.rate_from_v);
-        }
-        subtract(&mut free, &from_q, &from_v);
-        subtract(&mut free_rate, &rate_from_q, &rate_from_v);
-        add_columns::<S, A>(&mut free, &step.acceleration.displacement, &accelerations);
-        add_columns::<S, A>(&mut free_rate, &step.acceleration.velocity, &accelerations);
-        Outside {
-            missed: driven + generated.start - dot::<S, A>(&accelerations, &collocation.at_start),
-            error: &step.acceleration_error,
-            accelerations,
-            free,
-            free_rate,
-        }
+    subtract(&mut free, &from_q, &from_v);
+    subtract(&mut free_rate, &rate_from_q, &rate_from_v);
+    add_columns::<S, A>(&mut free, &step.acceleration.displacement, &accelerations);
+    add_columns::<S, A>(&mut free_rate, &step.acceleration.velocity, &accelerations);
+    Outside {
+        missed: driven + generated.start - dot::<S, A>(&accelerations, &collocation.at_start),
+        error: &step.acceleration_error,
+        accelerations,
+        free,
+        free_rate,
     }
+}
 
-    /// The trial, once the nodal forces are found and with them displacement and velocity of the tip at the end.
-    #[inline(always)]
-    pub(crate) fn judged<const S: usize, A: Arithmetic>(
-        &self,
-        state: &State,
-        drive: &Drive,
-        (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
-        solution: &Solution<S>,
-        outside: &Outside<S>,
-        (tip, tip_rate): (f64, f64),
-    ) -> Trial<S> {
-        let Solution { forces, iterations, .. } = *solution;
-        let (indentations, rates) = at_nodes::<S, A>(step, &outside.free, &outside.free_rate, &forces);
-        let support = state.support + drive.support_rate * step.length;
-        let (indentation, rate) = (support - tip, drive.support_rate - tip_rate);
+/// The trial, once the nodal forces are found and with them displacement and velocity of the tip at the end.
+#[inline(always)]
+pub(crate) fn judged<const S: usize, A: Arithmetic>(
+    model: &Model,
+    state: &State,
+    drive: &Drive,
+    (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
+    solution: &Solution<S>,
+    outside: &Outside<S>,
+    (tip, tip_rate): (f64, f64),
+) -> Trial<S> {
+    let Solution { forces, iterations, .. } = *solution;
+    let (indentations, rates) = at_nodes::<S, A>(step, &outside.free, &outside.free_rate, &forces);
+    let support = state.support + drive.support_rate * step.length;
+    let (indentation, rate) = (support - tip, drive.support_rate - tip_rate);
 
-        let largest = forces.iter().fold(f64::MIN_POSITIVE, |largest, force| {
-            largest.max((self.preload.force + force).abs())
-        });
-        let missed = if state.closed {
-            state.force - self.preload.force - dot::<S, A>(&forces, &collocation.at_start)
+    let largest = forces.iter().fold(f64::MIN_POSITIVE, |largest, force| {
+        largest.max((model.preload.force + force).abs())
+    });
+    let missed = if state.closed {
+        state.force - model.preload.force - dot::<S, A>(&forces, &collocation.at_start)
+    } else {
+        0.0
+    };
+    let error = error(model, state, step, solution, missed, outside, largest);
+    Trial {
+        forces,
+        indentations,
+        rates,
+        support,
+        indentation,
+        rate,
+        error,
+        rounding: ROUNDING * largest.max(model.preload.force),
+        missed: missed.abs(),
+        iterations,
+        slopes: solution.slopes,
+    }
+}
+
+/// Estimate of what a step adds to the error of the contact force, N.
+///
+/// At the nodes the polynomials are right; what they miss at the start tells how much of the shape that vanishes at
+/// the nodes they lack. What that does to the nodal forces is known to first order ([`Solution`]). Modes slow
+/// against the step hardly feel it at the end (the shape is orthogonal to polynomials of low degree); they see an
+/// error of twice the order, about three times the square of what is missed (an impact of a free mass on a Hertz
+/// contact). Just after a touch or a jump the force is no polynomial of any degree, and they see more.
+///
+/// `missed` (N) is what the force's polynomial misses at the start, `largest` (N) the largest nodal force.
+#[inline(always)]
+fn error<const S: usize>(
+    model: &Model,
+    state: &State,
+    step: &StepCoefficients<S>,
+    solution: &Solution<S>,
+    missed: f64,
+    outside: &Outside<S>,
+    largest: f64,
+) -> f64 {
+    if state.closed {
+        let (by_force, by_load) = (solution.by_force, solution.by_load);
+        let wrong_d = by_load.0 * outside.missed - by_force.0 * missed;
+        let wrong_r = by_load.1 * outside.missed - by_force.1 * missed;
+        let fast = (solution.slopes.stiffness * wrong_d).abs() + (solution.slopes.damping * wrong_r).abs();
+        let elapsed = state.time - state.last_kink;
+        let kinked = if elapsed < FAR * step.length {
+            KINKED * missed.abs() * analytic::<S>(elapsed / step.length)
         } else {
             0.0
         };
-        let error = self.error(state, step, solution, missed, outside, largest);
-        Trial {
-            forces,
-            indentations,
-            rates,
-            support,
-            indentation,
-            rate,
-            error,
-            rounding: ROUNDING * largest.max(self.preload.force),
-            missed: missed.abs(),
-            iterations,
-            slopes: solution.slopes,
-        }
+        let slow = 3.0 * missed * missed / largest + kinked;
+        fast + slow * solution.slopes.gain / (1.0 + solution.slopes.gain)
+    } else {
+        let last = |values: &Nodal<S>| (end(values) * outside.missed).abs();
+        let rows = outside.error;
+        let wrong = last(&rows.displacement) + model.law.damping() * last(&rows.velocity);
+        model.law.tangent_stiffness(model.force_scale) * wrong
     }
+}
 
-    /// Estimate of what a step adds to the error of the contact force, N.
-    ///
-    /// At the nodes the polynomials are right; what they miss at the start tells how much of the shape that vanishes at
-    /// the nodes they lack. What that does to the nodal forces is known to first order ([`Solution`]). Modes slow
-    /// against the step hardly feel it at the end (the shape is orthogonal to polynomials of low degree); they see an
-    /// error of twice the order, about three times the square of what is missed (an impact of a free mass on a Hertz
-    /// contact). Just after a touch or a jump the force is no polynomial of any degree, and they see more.
-    ///
-    /// `missed` (N) is what the force's polynomial misses at the start, `largest` (N) the largest nodal force.
-    #[inline(always)]
-    fn error<const S: usize>(
-        &self,
-        state: &State,
-        step: &StepCoefficients<S>,
-        solution: &Solution<S>,
-        missed: f64,
-        outside: &Outside<S>,
-        largest: f64,
-    ) -> f64 {
-        if state.closed {
-            let (by_force, by_load) = (solution.by_force, solution.by_load);
-            let wrong_d = by_load.0 * outside.missed - by_force.0 * missed;
-            let wrong_r = by_load.1 * outside.missed - by_force.1 * missed;
-            let fast = (solution.slopes.stiffness * wrong_d).abs() + (solution.slopes.damping * wrong_r).abs();
-            let elapsed = state.time - state.last_kink;
-            let kinked = if elapsed < FAR * step.length {
-                KINKED * missed.abs() * analytic::<S>(elapsed / step.length)
-            } else {
-                0.0
-            };
-            let slow = 3.0 * missed * missed / largest + kinked;
-            fast + slow * solution.slopes.gain / (1.0 + solution.slopes.gain)
-        } else {
-            let last = |values: &Nodal<S>| (end(values) * outside.missed).abs();
-            let rows = outside.error;
-            let wrong = last(&rows.displacement) + self.law.damping() * last(&rows.velocity);
-            self.law.tangent_stiffness(self.force_scale) * wrong
-        }
+/// Whether the error of a step from `state` is what the rounding of the sums over the modes makes of the contact
+/// force. After a blow the velocities of the modes are large and their sum at the tip is small.
+pub(crate) fn is_rounding<const S: usize>(model: &Model, state: &State, trial: &Trial<S>) -> bool {
+    let (mut displacement, mut velocity) = (0.0, 0.0);
+    for (mode, at) in model.modes.iter().zip(&state.modes) {
+        displacement += (mode.tip * at.q).abs();
+        velocity += (mode.tip * at.v).abs();
     }
-
-    /// Whether the error of a step from `state` is what the rounding of the sums over the modes makes of the contact
-    /// force. After a blow the velocities of the modes are large and their sum at the tip is small.
-    pub(crate) fn is_rounding<const S: usize>(&self, state: &State, trial: &Trial<S>) -> bool {
-        let (mut displacement, mut velocity) = (0.0, 0.0);
-        for (mode, at) in self.modes.iter().zip(&state.modes) {
-            displacement += (mode.tip * at.q).abs();
-            velocity += (mode.tip * at.v).abs();
-        }
-        // The force at the first node reacts upon itself over the time up to it alone, some 1 / S^2 of the step.
-        let reaction = 1.0 + trial.slopes.gain / (S * S) as f64;
-        let Slopes { stiffness, damping, .. } = trial.slopes;
-        trial.error <= ROUNDINGS * f64::EPSILON * (stiffness * displacement + damping * velocity) / reaction
-    }
+    // The force at the first node reacts upon itself over the time up to it alone, some 1 / S^2 of the step.
+    let reaction = 1.0 + trial.slopes.gain / (S * S) as f64;
+    let Slopes { stiffness, damping, .. } = trial.slopes;
+    trial.error <= ROUNDINGS * f64::EPSILON * (stiffness * displacement + damping * velocity) / reaction
 }
 
 /// How much less of a root of time its quadrature with `S` nodes misses, over what the nodal polynomial misses, where

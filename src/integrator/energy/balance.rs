@@ -38,9 +38,10 @@
 //! tolerance times the force scale times the way.
 
 use crate::BARE;
+use crate::integrator::collocation::step;
 use crate::integrator::collocation::step::{Source, Trial};
 use crate::integrator::grid::Target;
-use crate::integrator::step_control::Integration;
+use crate::integrator::integration::Integration;
 use crate::integrator::workspace::{Room, Workspace};
 use crate::math::nodal::LONG;
 use crate::state::State;
@@ -68,7 +69,7 @@ impl Integration<'_> {
         let mut at: State = **state;
         let mut work = 0.0;
         for forces in halves {
-            let motion = model.trial(&at, drive, step, collocation, Source::Given(forces), end)?;
+            let motion = step::trial(model, &at, drive, step, collocation, Source::Given(forces), end)?;
             let mut powers = forces;
             for ((power, d), rate) in powers.iter_mut().zip(&motion.indentations).zip(&motion.rates) {
                 let d = model.preload.indentation + d;
@@ -107,7 +108,7 @@ mod tests {
     use crate::inputs::Inputs;
     use crate::integrator::collocation::polynomial::Collocation;
     use crate::integrator::grid::Progress;
-    use crate::integrator::step_control::Steps;
+    use crate::integrator::integration::Steps;
     use crate::math::nodal::{LONG, SHORT};
     use crate::model::Model;
     use crate::scene::Scene;

@@ -8,24 +8,22 @@
 use crate::excitation::drive::Drive;
 use crate::excitation::generator::Generator;
 use crate::integrator::collocation::step::Trial;
-use crate::integrator::step_control::Integration;
+use crate::integrator::integration::Integration;
 use crate::integrator::workspace::{Room, Workspace};
 use crate::model::Model;
 
 /// Share of the tolerance that the contact force may be wrong by to return energy.
 const RETURNED: f64 = 0.05;
 
-impl Model {
-    /// Whether nothing dissipates, and the work done on the motion is known.
-    pub(crate) fn conserves(&self, drive: &Drive) -> bool {
-        let undamped = self.modes.iter().all(|mode| mode.damping == 0.0);
-        // An axial force that follows the deflection has no potential.
-        undamped
-            && self.axial().is_none()
-            && self.law.damping() == 0.0
-            && self.generator == Generator::None
-            && drive.jerk == 0.0
-    }
+/// Whether nothing dissipates, and the work done on the motion is known.
+pub(crate) fn conserves(model: &Model, drive: &Drive) -> bool {
+    let undamped = model.modes.iter().all(|mode| mode.damping == 0.0);
+    // An axial force that follows the deflection has no potential.
+    undamped
+        && model.axial().is_none()
+        && model.law.damping() == 0.0
+        && model.generator == Generator::None
+        && drive.jerk == 0.0
 }
 
 impl Integration<'_> {

@@ -8,7 +8,7 @@
 use crate::beam::mode::Mode;
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::events::Cut;
-use crate::integrator::step_control::Integration;
+use crate::integrator::integration::Integration;
 use crate::integrator::workspace::{Room, Workspace};
 use crate::math::nodal::LONG;
 use crate::math::roots;

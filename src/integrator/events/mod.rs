@@ -1,13 +1,14 @@
 //! The contact opens or closes, or the force jumps: where a step has to end because of it, and how the next one begins.
 
 pub mod closing;
+pub mod interruption;
 pub mod log;
 pub mod opening;
 
 use crate::error::StepError;
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::events::log::Event;
-use crate::integrator::step_control::{Advice, Integration};
+use crate::integrator::integration::{Advice, Integration};
 use crate::integrator::workspace::{Room, Workspace};
 
 /// A step that ends before it was meant to.

@@ -3,7 +3,7 @@
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::events::Cut;
-use crate::integrator::step_control::Integration;
+use crate::integrator::integration::Integration;
 use crate::integrator::workspace::{Room, Workspace};
 use crate::math::roots;
 

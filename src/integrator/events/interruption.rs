@@ -1,0 +1,138 @@
+//! An interruption begins or ends: where the contact force passes that of the threshold resistance inside a step.
+use crate::BARE;
+use crate::chatter::Criterion;
+use crate::error::StepError;
+use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::collocation::step::Trial;
+use crate::integrator::events::Cut;
+use crate::integrator::grid::Target;
+use crate::integrator::integration::Advice;
+use crate::integrator::integration::Integration;
+use crate::integrator::workspace::Room;
+use crate::integrator::workspace::Workspace;
+use crate::math::nodal::SHORT;
+use crate::math::{nodal, roots};
+
+/// Places in a step at which the force is looked for clearly on its old side of the threshold.
+const PLACES: u32 = 8;
+
+impl Integration<'_> {
+    /// Where in a step of the closed contact (in steps) the force first passes that of an interruption, where it does.
+    pub(crate) fn first_passage<const S: usize>(&mut self, trial: &Trial<S>) -> Option<f64>
+    where
+        Workspace: Room<S>,
+    {
+        let criterion = self.model.criterion.filter(|_| !BARE)?;
+        if !self.state.closed {
+            return None;
+        }
+        let excess = trial.forces.map(|force| self.excess(&criterion, force));
+        let start = self.excess(&criterion, self.state.force - self.model.preload.force);
+        if !Collocation::comes_near_zero(start, &excess) {
+            return None;
+        }
+        self.collocation::<S>().first_dip(&excess, f64::INFINITY)
+    }
+
+    /// How far a force, as deviation from the preload force, is on the side of the threshold on which it was, N.
+    fn excess(&self, criterion: &Criterion, force: f64) -> f64 {
+        let above = self.model.preload.force + force - criterion.force;
+        if self.state.interruptions.in_progress() {
+            -above
+        } else {
+            above
+        }
+    }
+
+    /// The same after a step of `length` seconds, N.
+    fn excess_after<const S: usize>(&mut self, criterion: &Criterion, length: f64) -> f64
+    where
+        Workspace: Room<S>,
+    {
+        let trial = self.probe::<S>(length);
+        trial.map_or(f64::NAN, |trial| self.excess(criterion, nodal::end(&trial.forces)))
+    }
+
+    /// Ends the step at the passage that shows after the part `passed` of it; nothing where it may go on to its end.
+    pub(crate) fn pass<const S: usize>(
+        &mut self,
+        passed: f64,
+        target: &Target,
+        growth: f64,
+        wanted: f64,
+    ) -> Result<Option<Advice>, StepError>
+    where
+        Workspace: Room<S>,
+    {
+        let model = self.model;
+        let Some(criterion) = &model.criterion else {
+            return Ok(None);
+        };
+        let latest = passed * target.length;
+        if S != SHORT {
+            // Events are located in short steps; long ones end before.
+            return Ok(Some(self.reject(0.9 * latest)));
+        }
+        let cut_at = |length| Cut {
+            length,
+            switches: false,
+        };
+        let end = self.excess_after::<S>(criterion, latest);
+        if end > 0.0 {
+            // The polynomial passes, the force does not: the next step starts here.
+            return (latest < target.length)
+                .then(|| self.end_at::<S>(&cut_at(latest), growth, wanted))
+                .transpose();
+        }
+        let start = self.excess(criterion, self.state.force - model.preload.force);
+        let resolution = self.resolution();
+        // Where an interruption has just begun or ended, rounding may show the force where it was before: it is then taken
+        // from where it is clearly beyond.
+        let clear = if start > 0.0 {
+            Some((0.0, start))
+        } else {
+            (1..PLACES).find_map(|k| {
+                let at = latest * f64::from(k) / f64::from(PLACES);
+                let excess = self.excess_after::<S>(criterion, at);
+                (excess > 0.0).then_some((at, excess))
+            })
+        };
+        let length = clear.and_then(|clear| {
+            let excess = |at| self.excess_after::<S>(criterion, at);
+            roots::between(excess, clear, (latest, end), resolution)
+        });
+        let length = match length {
+            Some(length) if length > resolution => length,
+            _ if self.state.interruptions.turned_at(self.state.time) && start <= 0.0 => {
+                // It never was beyond, or for less than can be told: it has turned back by the end of this piece.
+                return self.end_at::<S>(&cut_at(latest), growth, wanted).map(Some);
+            }
+            _ => {
+                // Nothing of the step is left.
+                self.state.interruptions.turn(criterion, self.state.time);
+                return Ok(Some(self.reject(target.length)));
+            }
+        };
+        let advice = self.end_at::<S>(&cut_at(length), growth, wanted)?;
+        if advice.taken {
+            self.state.interruptions.turn(criterion, self.state.time);
+        }
+        Ok(Some(advice))
+    }
+
+    /// Notes the contact force as it is now, and an interruption that begins or ends with it.
+    pub(crate) fn note_force(&mut self) {
+        if let Some(extremes) = &mut self.extremes {
+            extremes.add(self.state.force);
+        }
+        let Some(criterion) = self.model.criterion.as_ref().filter(|_| !BARE) else {
+            return;
+        };
+        let state = &mut *self.state;
+        if !state.interruptions.turned_at(state.time)
+            && (state.force < criterion.force) != state.interruptions.in_progress()
+        {
+            state.interruptions.turn(criterion, state.time);
+        }
+    }
+}
