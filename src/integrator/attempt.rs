@@ -2,9 +2,10 @@
 
 use crate::error::StepError;
 use crate::error::StepErrorCause;
+use crate::integrator::collocation::newton::Source;
+use crate::integrator::collocation::step::Trial;
 use crate::integrator::collocation::step::is_rounding;
 use crate::integrator::collocation::step::trial;
-use crate::integrator::collocation::step::{Source, Trial};
 use crate::integrator::grid::Target;
 use crate::integrator::integration::Advice;
 use crate::integrator::integration::Integration;
@@ -73,7 +74,7 @@ impl Integration<'_> {
         let (step, collocation) = cache.get(length, recurring, self.model);
         let source = Source::Law(NEWTON * self.allowed);
         let modes = if kept { end } else { probe };
-        trial(self.model, self.state, &self.drive, step, collocation, source, modes)
+        trial(self.model, self.state, &self.drive, (step, collocation), source, modes)
     }
 
     /// Gives up a step; the next one is to have the length.

@@ -7,8 +7,9 @@
 //! with it: one monotone scalar equation between brackets.
 
 use crate::error::{StepError, StepErrorCause};
+use crate::integrator::collocation::newton::Source;
+use crate::integrator::collocation::step::Trial;
 use crate::integrator::collocation::step::trial;
-use crate::integrator::collocation::step::{Source, Trial};
 use crate::integrator::grid::Target;
 use crate::integrator::integration::{Advice, Integration};
 use crate::integrator::workspace::Room;
@@ -66,7 +67,7 @@ impl Integration<'_> {
         let mut under = |force: f64| {
             trials += 1;
             let source = Source::Given([force - preload.force; SHORT]);
-            trial(model, state, drive, step, collocation, source, end)
+            trial(model, state, drive, (step, collocation), source, end)
         };
         let wanted = |trial: &Trial<SHORT>| {
             let speed = (trial.indentation - state.indentation) / target.length;

@@ -4,6 +4,9 @@
 #[cfg(target_arch = "x86_64")]
 use fearless_simd::Avx2;
 
+/// Numbers that a kernel computes side by side.
+pub const LANES: usize = 4;
+
 /// What the kernel of a step is compiled for.
 #[derive(Clone, Copy, Debug)]
 pub enum Machine {

@@ -9,21 +9,16 @@
 //! until the sine in the law of the axial force turns to tension. That is followed like any other motion, in shorter steps.
 
 use crate::beam::axial::Feedback;
+use crate::beam::mode::MAX_MODES;
 use crate::beam::mode::Modal;
-use crate::beam::mode::{MAX_MODES, ModeStates};
-use crate::excitation::drive::Drive;
 use crate::integrator::collocation::coefficients::{ErrorColumn, ModeColumns, StepCoefficients};
 use crate::integrator::collocation::newton::Outside;
-use crate::integrator::collocation::newton::Solution;
-use crate::integrator::collocation::newton::closed_forces;
-use crate::integrator::collocation::newton::predicted_forces;
+use crate::integrator::collocation::newton::{Solution, Source, closed_forces, first_forces};
 use crate::integrator::collocation::polynomial::Collocation;
-use crate::integrator::collocation::step::judged;
-use crate::integrator::collocation::step::outside;
-use crate::integrator::collocation::step::{LANES, Source, Trial, end_of_modes, loads_on_modes};
 use crate::math::nodal::Nodal;
 use crate::math::nodal::{add, add_columns, dot};
-use crate::math::simd::{Arithmetic, compiled_for};
+use crate::math::simd::Arithmetic;
+use crate::math::simd::LANES;
 use crate::model::Model;
 use crate::state::State;
 
@@ -34,90 +29,58 @@ const ROUNDS: u32 = 8;
 const ROUNDING: f64 = 1e-13;
 
 /// A value at each node for each mode.
-type NodalModes<const S: usize> = [Nodal<S>; MAX_MODES];
+pub(crate) type NodalModes<const S: usize> = [Nodal<S>; MAX_MODES];
 
-/// [`trial`] with the axial force that follows the deflection.
-pub(crate) fn axial_trial<const S: usize>(
-    model: &Model,
-    axial: &Feedback,
-    state: &State,
-    (drive, source): (&Drive, Source<S>),
-    coefficients: (&StepCoefficients<S>, &Collocation<S>),
-    end_modes: &mut ModeStates,
-) -> Option<Trial<S>> {
-    compiled_for!(model.machine, A =>
-        axial_compute::<S, A>(model, axial, state, (drive, source), coefficients, end_modes))
+/// The loads that belong to the motion, with the contact forces under them.
+pub(crate) struct Settled<const S: usize> {
+    /// The contact forces.
+    pub(crate) solution: Solution<S>,
+    /// The loads on the modes at the nodes.
+    pub(crate) loads: NodalModes<S>,
+    /// What the polynomials of base acceleration and loads miss at the start makes of the indentation.
+    pub(crate) error: ErrorColumn<S>,
 }
 
+/// Finds the loads, with the contact forces under them; `None` where they do not settle.
 #[inline(always)]
-fn axial_compute<const S: usize, A: Arithmetic>(
+pub(crate) fn settle<const S: usize, A: Arithmetic>(
     model: &Model,
     axial: &Feedback,
     state: &State,
-    (drive, source): (&Drive, Source<S>),
     (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
-    end_modes: &mut ModeStates,
-) -> Option<Trial<S>> {
-    let outside = outside::<S, A>(model, state, drive, step, collocation);
+    source: Source<S>,
+    free: &Outside<S>,
+) -> Option<Settled<S>> {
     let start = axial.loads(&model.modes, &state.modes);
-    let (tolerance, mut forces) = match source {
-        Source::Law(newton) if state.closed => (newton, predicted_forces::<S, A>(model, state, step, collocation)),
-        Source::Law(newton) => (newton, [-model.preload.force; S]),
-        Source::Given(forces) => (0.0, forces),
+    let tolerance = match source {
+        Source::Law(newton) => newton,
+        Source::Given(_) => 0.0,
     };
+    let mut forces = first_forces::<S, A>(model, state, step, collocation, source);
     let mut loads: NodalModes<S> = start.map(|load| [load; S]);
     let mut iterations = 0;
     let mut solved: Option<Solution<S>> = None;
     for _ in 0..ROUNDS {
-        let motion = motion_of_modes::<S, A>(model, state, step, &forces, &outside.accelerations, &loads);
+        let motion = motion_of_modes::<S, A>(model, state, step, &forces, &free.accelerations, &loads);
         let mut next = [[0.0; S]; MAX_MODES];
         set_loads::<S, A>(model, axial, &motion, &mut next);
         let (change, size) = force_of_change(model, &loads, &next);
-        if let Some(mut solution) = solved.take_if(|_| change <= tolerance + ROUNDING * size) {
+        let settled = change <= tolerance + ROUNDING * size;
+        if let Some(mut solution) = solved.take_if(|_| settled) {
             solution.iterations = iterations;
-            let error = load_error::<S, A>(model, &outside, &start, &loads, (step, collocation));
-            let outside = with_loads::<S, A>(model, &outside, step, &loads);
-            let tip = end_of_modes::<S, A>(
-                state,
-                step,
-                model.modes.len(),
-                #[inline(always)]
-                |first, lanes| {
-                    loads_on_modes::<S, A>(&step.end, first, &solution.forces, &outside.accelerations, lanes);
-                    for (i, load) in loads.iter().skip(first).take(LANES).enumerate() {
-                        for (lanes, load) in lanes.iter_mut().zip(load) {
-                            lanes.iter_mut().skip(i).take(1).for_each(|lane| *lane += load);
-                        }
-                    }
-                },
-                end_modes,
-            );
-            // The contact answers to what is missed of all loads together.
-            let outside = Outside {
-                error: &error,
-                missed: 1.0,
-                ..outside
-            };
-            return Some(judged::<S, A>(
-                model,
-                state,
-                drive,
-                (step, collocation),
-                &solution,
-                &outside,
-                tip,
-            ));
+            let error = load_error::<S, A>(model, free, &start, &loads, (step, collocation));
+            return Some(Settled { solution, loads, error });
         }
         loads = next;
         let solution = match source {
             Source::Law(newton) if state.closed => {
-                let error = load_error::<S, A>(model, &outside, &start, &loads, (step, collocation));
-                let outside = Outside {
+                let error = load_error::<S, A>(model, free, &start, &loads, (step, collocation));
+                let free = Outside {
                     error: &error,
                     missed: 1.0,
-                    ..with_loads::<S, A>(model, &outside, step, &loads)
+                    ..with_loads::<S, A>(model, free, step, &loads)
                 };
-                closed_forces::<S, A>(model, step, &outside, forces, newton)?
+                closed_forces::<S, A>(model, step, &free, forces, newton)?
             }
             _ => Solution::given(forces),
         };
@@ -209,7 +172,7 @@ fn force_of_change<const S: usize>(model: &Model, loads: &NodalModes<S>, next: &
 
 /// The indentation without contact force, with the loads.
 #[inline(always)]
-fn with_loads<'a, const S: usize, A: Arithmetic>(
+pub(crate) fn with_loads<'a, const S: usize, A: Arithmetic>(
     model: &Model,
     outside: &Outside<'a, S>,
     step: &StepCoefficients<S>,
@@ -291,7 +254,7 @@ mod tests {
                 let mut moved = |length| {
                     let (step, collocation) = cache.get(length, true, &model);
                     let drive = Drive::default();
-                    let trial = trial(model, &state, &drive, step, collocation, source, &mut end);
+                    let trial = trial(model, &state, &drive, (step, collocation), source, &mut end);
                     (trial.unwrap(), end)
                 };
                 // By steps to the nodes: the work is the integral of the power, by the Radau quadrature.

@@ -18,6 +18,15 @@ const SMALL_PIVOT: f64 = 0.1;
 /// Newton iterations before a step is judged too long.
 const ITERATIONS: u64 = 12;
 
+/// Where the contact force of a step comes from.
+#[derive(Clone, Copy, Debug)]
+pub enum Source<const S: usize> {
+    /// The law at the nodes while the contact is closed, met by Newton's method to this, N; nothing while it is open.
+    Law(f64),
+    /// This at the nodes, as deviation from the preload force, N.
+    Given(Nodal<S>),
+}
+
 /// What acts on the tip in a step besides the contact force.
 #[derive(Clone)]
 pub(crate) struct Outside<'a, const S: usize> {
@@ -110,7 +119,7 @@ impl<const S: usize> Solution<S> {
 
 /// The nodal forces as those of the last step predict them.
 #[inline(always)]
-pub(crate) fn predicted_forces<const S: usize, A: Arithmetic>(
+fn predicted_forces<const S: usize, A: Arithmetic>(
     model: &Model,
     state: &State,
     step: &StepCoefficients<S>,
@@ -120,6 +129,22 @@ pub(crate) fn predicted_forces<const S: usize, A: Arithmetic>(
         collocation.predict::<A>(&state.predictions, step.length / state.last_step)
     } else {
         [state.force - model.preload.force; S]
+    }
+}
+
+/// The nodal forces to begin with: of the source where it gives them, or as those of the last step predict them.
+#[inline(always)]
+pub(crate) fn first_forces<const S: usize, A: Arithmetic>(
+    model: &Model,
+    state: &State,
+    step: &StepCoefficients<S>,
+    collocation: &Collocation<S>,
+    source: Source<S>,
+) -> Nodal<S> {
+    match source {
+        Source::Law(_) if state.closed => predicted_forces::<S, A>(model, state, step, collocation),
+        Source::Law(_) => [-model.preload.force; S],
+        Source::Given(forces) => forces,
     }
 }
 

@@ -1,31 +1,23 @@
 //! One step on trial: the nodal contact forces ([`crate::integrator::collocation::newton`]), the motion they give, and an estimate of their
 //! error.
 
+use crate::beam::axial::Feedback;
 use crate::beam::mode::Modal;
 use crate::beam::mode::ModeStates;
 use crate::excitation::drive::Drive;
-use crate::integrator::collocation::axial_force::axial_trial;
+use crate::integrator::collocation::axial_force::{self, Settled};
 use crate::integrator::collocation::coefficients::{EndRows, StepCoefficients};
 use crate::integrator::collocation::newton::Outside;
 use crate::integrator::collocation::newton::Slopes;
-use crate::integrator::collocation::newton::closed_forces;
-use crate::integrator::collocation::newton::predicted_forces;
 use crate::integrator::collocation::newton::{Solution, at_nodes};
+use crate::integrator::collocation::newton::{Source, closed_forces, first_forces};
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::math::nodal::Nodal;
 use crate::math::nodal::{add, add_columns, add_products, dot, end};
+use crate::math::simd::LANES;
 use crate::math::simd::{Arithmetic, compiled_for};
 use crate::model::Model;
 use crate::state::State;
-
-/// Where the contact force of a step comes from.
-#[derive(Clone, Copy, Debug)]
-pub enum Source<const S: usize> {
-    /// The law at the nodes while the contact is closed, met by Newton's method to this, N; nothing while it is open.
-    Law(f64),
-    /// This at the nodes, as deviation from the preload force, N.
-    Given(Nodal<S>),
-}
 
 /// A step computed but not yet taken.
 #[derive(Clone, Copy, Debug)]
@@ -55,7 +47,7 @@ pub struct Trial<const S: usize> {
 }
 
 /// The loads on [`LANES`] modes at the nodes.
-pub(crate) type LaneLoads<const S: usize> = [[f64; LANES]; S];
+type LaneLoads<const S: usize> = [[f64; LANES]; S];
 
 /// Rounding of a contact force, relative to it.
 const ROUNDING: f64 = 1e-13;
@@ -71,49 +63,91 @@ const KINKED: f64 = 0.015;
 const FAR: f64 = 20.0;
 
 /// The step from `state` with the given coefficients, on the branch the state is on, with the modes at its end in
-/// `end_modes`; `None` where Newton's method does not converge.
+/// `end_modes`; `None` where Newton's method does not converge, or the axial force.
 pub fn trial<const S: usize>(
     model: &Model,
     state: &State,
     drive: &Drive,
-    step: &StepCoefficients<S>,
-    collocation: &Collocation<S>,
+    coefficients: (&StepCoefficients<S>, &Collocation<S>),
     source: Source<S>,
     end_modes: &mut ModeStates,
 ) -> Option<Trial<S>> {
-    if let Some(axial) = model.axial() {
-        return axial_trial(model, axial, state, (drive, source), (step, collocation), end_modes);
+    match model.axial() {
+        None => {
+            compiled_for!(model.machine, A => compute::<S, A>(model, state, drive, coefficients, source, end_modes))
+        }
+        Some(axial) => compiled_for!(model.machine, A =>
+            compute_with_axial_force::<S, A>(model, axial, state, drive, coefficients, source, end_modes)),
     }
-    compiled_for!(model.machine, A => compute::<S, A>(model, state, drive, step, collocation, source, end_modes))
 }
 
-/// [`trial`] for a machine.
+/// [`trial`] with the constant axial force, which the modes hold.
 #[inline(always)]
 fn compute<const S: usize, A: Arithmetic>(
     model: &Model,
     state: &State,
     drive: &Drive,
-    step: &StepCoefficients<S>,
-    collocation: &Collocation<S>,
+    (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
     source: Source<S>,
     end_modes: &mut ModeStates,
 ) -> Option<Trial<S>> {
-    let outside = outside::<S, A>(model, state, drive, step, collocation);
+    let free = outside::<S, A>(model, state, drive, step, collocation);
+    let guess = first_forces::<S, A>(model, state, step, collocation, source);
     let solution = match source {
-        Source::Law(newton) if state.closed => {
-            let guess = predicted_forces::<S, A>(model, state, step, collocation);
-            closed_forces::<S, A>(model, step, &outside, guess, newton)?
-        }
-        Source::Law(_) => Solution::given([-model.preload.force; S]),
-        Source::Given(forces) => Solution::given(forces),
+        Source::Law(newton) if state.closed => closed_forces::<S, A>(model, step, &free, guess, newton)?,
+        _ => Solution::given(guess),
     };
     let tip = end_of_modes::<S, A>(
         state,
         step,
         model.modes.len(),
         #[inline(always)]
-        |first, loads| {
-            loads_on_modes::<S, A>(&step.end, first, &solution.forces, &outside.accelerations, loads);
+        |first, lanes| loads_on_modes::<S, A>(&step.end, first, &solution.forces, &free.accelerations, lanes),
+        end_modes,
+    );
+    Some(judged::<S, A>(
+        model,
+        state,
+        drive,
+        (step, collocation),
+        &solution,
+        &free,
+        tip,
+    ))
+}
+
+/// [`trial`] with the axial force that follows the deflection, as loads on the modes.
+#[inline(always)]
+fn compute_with_axial_force<const S: usize, A: Arithmetic>(
+    model: &Model,
+    axial: &Feedback,
+    state: &State,
+    drive: &Drive,
+    (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
+    source: Source<S>,
+    end_modes: &mut ModeStates,
+) -> Option<Trial<S>> {
+    let free = outside::<S, A>(model, state, drive, step, collocation);
+    let Settled { solution, loads, error } =
+        axial_force::settle::<S, A>(model, axial, state, (step, collocation), source, &free)?;
+    // The contact answers to what is missed of all loads together.
+    let free = Outside {
+        error: &error,
+        missed: 1.0,
+        ..axial_force::with_loads::<S, A>(model, &free, step, &loads)
+    };
+    let tip = end_of_modes::<S, A>(
+        state,
+        step,
+        model.modes.len(),
+        #[inline(always)]
+        |first, lanes| {
+            loads_on_modes::<S, A>(&step.end, first, &solution.forces, &free.accelerations, lanes);
+            for (i, load) in loads.iter().skip(first).take(LANES).enumerate() {
+                for (lanes, load) in lanes.iter_mut().zip(load) {
+                    lanes.iter_mut().skip(i).take(1).for_each(|lane| *lane += load);
+                }
+            }
         },
         end_modes,
     );
@@ -123,14 +157,14 @@ fn compute<const S: usize, A: Arithmetic>(
         drive,
         (step, collocation),
         &solution,
-        &outside,
+        &free,
         tip,
     ))
 }
 
 /// What acts on the tip besides the contact force.
 #[inline(always)]
-pub(crate) fn outside<'a, const S: usize, A: Arithmetic>(
+fn outside<'a, const S: usize, A: Arithmetic>(
     model: &Model,
     state: &State,
     drive: &Drive,
@@ -172,7 +206,7 @@ pub(crate) fn outside<'a, const S: usize, A: Arithmetic>(
 
 /// The trial, once the nodal forces are found and with them displacement and velocity of the tip at the end.
 #[inline(always)]
-pub(crate) fn judged<const S: usize, A: Arithmetic>(
+fn judged<const S: usize, A: Arithmetic>(
     model: &Model,
     state: &State,
     drive: &Drive,
@@ -273,16 +307,13 @@ fn analytic<const S: usize>(distance: f64) -> f64 {
     (1..S).fold(1.0, |product, _| product / ellipse)
 }
 
-/// Modes computed at once.
-pub(crate) const LANES: usize = 4;
-
 /// The loads of forces and base acceleration on the modes from `first` on.
 #[inline(always)]
 #[expect(
     clippy::indexing_slicing,
     reason = "the room for the modes is a whole number of lanes"
 )]
-pub(crate) fn loads_on_modes<const S: usize, A: Arithmetic>(
+fn loads_on_modes<const S: usize, A: Arithmetic>(
     rows: &EndRows<S>,
     first: usize,
     forces: &Nodal<S>,
@@ -305,7 +336,7 @@ pub(crate) fn loads_on_modes<const S: usize, A: Arithmetic>(
     clippy::indexing_slicing,
     reason = "the room for the modes is a whole number of lanes"
 )]
-pub(crate) fn end_of_modes<const S: usize, A: Arithmetic>(
+fn end_of_modes<const S: usize, A: Arithmetic>(
     state: &State,
     step: &StepCoefficients<S>,
     modes: usize,

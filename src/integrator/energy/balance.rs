@@ -38,8 +38,9 @@
 //! tolerance times the force scale times the way.
 
 use crate::BARE;
+use crate::integrator::collocation::newton::Source;
 use crate::integrator::collocation::step;
-use crate::integrator::collocation::step::{Source, Trial};
+use crate::integrator::collocation::step::Trial;
 use crate::integrator::grid::Target;
 use crate::integrator::integration::Integration;
 use crate::integrator::workspace::{Room, Workspace};
@@ -69,7 +70,7 @@ impl Integration<'_> {
         let mut at: State = **state;
         let mut work = 0.0;
         for forces in halves {
-            let motion = step::trial(model, &at, drive, step, collocation, Source::Given(forces), end)?;
+            let motion = step::trial(model, &at, drive, (step, collocation), Source::Given(forces), end)?;
             let mut powers = forces;
             for ((power, d), rate) in powers.iter_mut().zip(&motion.indentations).zip(&motion.rates) {
                 let d = model.preload.indentation + d;
