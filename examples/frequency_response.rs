@@ -76,12 +76,19 @@ fn settle(acceleration: f64, frequency: f64, from: Option<&State>) -> Result<Per
     for period in 0..PATIENCE {
         let last = (least, most);
         let (time, until) = (course.time, start + f64::from(period + 1) / frequency);
-        model.step(&mut course, &mut workspace, &Inputs::default(), time, until - time)?;
+        relay_contact::integrator::communication_step::step(
+            &model,
+            &mut course,
+            &mut workspace,
+            &Inputs::default(),
+            time,
+            until - time,
+        )?;
         let extremes = course.extremes(&model);
         (least, most) = (extremes.least, extremes.greatest);
         let changed = (least - last.0).abs().max((most - last.1).abs());
         if changed < PERIODIC * model.preload.force {
-            let end = model.state(&course, &mut workspace)?;
+            let end = relay_contact::integrator::communication_step::state(&model, &course, &mut workspace)?;
             let opens = end.last_opening > end.time - 1.0 / frequency;
             return Ok(Period {
                 least,

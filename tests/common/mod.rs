@@ -7,6 +7,7 @@ use relay_contact::contact::law::Law;
 use relay_contact::contact::linear::Linear;
 use relay_contact::error::StepError;
 use relay_contact::inputs::Inputs;
+use relay_contact::integrator::communication_step;
 use relay_contact::integrator::motion::Course;
 use relay_contact::integrator::workspace::Workspace;
 use relay_contact::model::Model;
@@ -58,8 +59,8 @@ impl Rig {
             workspace,
         } = self;
         let start = course.time;
-        model.step(course, workspace, inputs, start, time - start)?;
-        *state = model.state(course, workspace)?;
+        communication_step::step(model, course, workspace, inputs, start, time - start)?;
+        *state = communication_step::state(model, course, workspace)?;
         Ok(())
     }
 

@@ -214,6 +214,7 @@ fn load_error<const S: usize, A: Arithmetic>(
 mod tests {
     use super::*;
     use crate::beam::mode::ModeState;
+    use crate::excitation::drive::Drive;
     use crate::integrator::collocation::coefficients::Cache;
     use crate::math::nodal::LONG;
     use crate::scene::Scene;
@@ -254,7 +255,14 @@ mod tests {
                 let mut moved = |length| {
                     let (step, collocation) = cache.get(length, true, &model);
                     let drive = Drive::default();
-                    let trial = trial(model, &state, &drive, (step, collocation), source, &mut end);
+                    let trial = crate::integrator::collocation::step::trial(
+                        &model,
+                        &state,
+                        &drive,
+                        (step, collocation),
+                        source,
+                        &mut end,
+                    );
                     (trial.unwrap(), end)
                 };
                 // By steps to the nodes: the work is the integral of the power, by the Radau quadrature.

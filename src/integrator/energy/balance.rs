@@ -137,7 +137,7 @@ mod tests {
         let drive = Drive::new(&inputs, 0.0, 1e-3, -2e-8);
         let steps = Steps::Exactly { time: 0.0, size: 4e-4 };
         let mut workspace = Workspace::new(&model);
-        model.advance(&mut state, &mut workspace, drive, steps, None).unwrap();
+        crate::integrator::step_control::advance(&model, &mut state, &mut workspace, drive, steps, None).unwrap();
         state.energy_balance = 0.0;
         (model, state, drive)
     }
