@@ -14,7 +14,7 @@ use std::{env, fs};
 use indicatif::{ProgressBar, ProgressStyle};
 use relay_contact::harmonic;
 use relay_contact::inputs::Inputs;
-use relay_contact::integrator::motion::Course;
+use relay_contact::integrator::motion::Motion;
 use relay_contact::integrator::workspace::Workspace;
 use relay_contact::model::Model;
 use relay_contact::scene::Scene;
@@ -70,7 +70,7 @@ impl Period {
 fn settle(acceleration: f64, frequency: f64, from: Option<&State>) -> Result<Period> {
     let start = from.map_or(0.0, |state| state.time);
     let model = Model::new(&shaken(acceleration, frequency, start), 0.0)?;
-    let mut course = Course::new(from.copied().unwrap_or(model.initial_state(0.0)));
+    let mut course = Motion::new(from.copied().unwrap_or(model.initial_state(0.0)));
     let mut workspace = Workspace::new(&model);
     let (mut least, mut most) = (f64::NAN, f64::NAN);
     for period in 0..PATIENCE {

@@ -6,7 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::electrical::Path;
+use crate::electrical::ElectricalContact;
 use crate::scene::Scene;
 
 /// What counts as an interruption.
@@ -20,8 +20,8 @@ pub struct Criterion {
 
 impl Criterion {
     /// Of the scene, if it asks for interruptions and there can be any.
-    pub fn new(scene: &Scene, path: &Path) -> Option<Self> {
-        let force = path.force_at(scene.chatter.resistance_threshold);
+    pub fn new(scene: &Scene, electrical: &ElectricalContact) -> Option<Self> {
+        let force = electrical.force_at(scene.chatter.resistance_threshold);
         (scene.effects.chatter && force > 0.0).then_some(Self {
             force,
             minimum_duration: scene.chatter.minimum_duration,

@@ -14,7 +14,7 @@ const LORENZ: f64 = 2.45e-8;
 
 /// How current finds its way through the contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Path {
+pub struct ElectricalContact {
     /// Resistance of the constriction at 1 N, Ohm.
     coefficient: f64,
     /// It falls with this power of the force.
@@ -25,7 +25,7 @@ pub struct Path {
     open: f64,
 }
 
-impl Path {
+impl ElectricalContact {
     /// Of the scene, if it asks for a resistance.
     pub fn new(scene: &Scene) -> Option<Self> {
         let resistance = &scene.resistance;
@@ -125,14 +125,14 @@ mod tests {
 
     #[test]
     fn published_values() {
-        let path = Path::new(&scene(ResistanceKind::PowerLaw)).unwrap();
+        let electrical = ElectricalContact::new(&scene(ResistanceKind::PowerLaw)).unwrap();
         // The power law at the ends of the published waveform, 34.25 and 63.9 mOhm.
-        assert!((1.0 / path.conductance(0.200_149) - 34.252e-3).abs() < 1e-6);
-        assert!((1.0 / path.conductance(0.103_905) - 63.90e-3).abs() < 1e-4);
-        let holm = Path::new(&scene(ResistanceKind::Holm)).unwrap();
+        assert!((1.0 / electrical.conductance(0.200_149) - 34.252e-3).abs() < 1e-6);
+        assert!((1.0 / electrical.conductance(0.103_905) - 63.90e-3).abs() < 1e-4);
+        let holm = ElectricalContact::new(&scene(ResistanceKind::Holm)).unwrap();
         // (2.2e-8 / 2) sqrt(pi 0.785e9 / 0.152) by hand.
         assert!((1.0 / holm.conductance(0.152) - 1.401e-3).abs() < 1e-6);
-        assert!(Path::new(&scene(ResistanceKind::None)).is_none());
+        assert!(ElectricalContact::new(&scene(ResistanceKind::None)).is_none());
     }
 
     #[test]
@@ -141,39 +141,39 @@ mod tests {
             for film in [0.0, 0.5] {
                 let mut scene = scene(kind);
                 scene.resistance.film = film;
-                let path = Path::new(&scene).unwrap();
+                let electrical = ElectricalContact::new(&scene).unwrap();
                 for threshold in [1.0, 60.0, 1e6, 9e8] {
-                    let force = path.force_at(threshold);
-                    let found = 1.0 / path.conductance(force);
+                    let force = electrical.force_at(threshold);
+                    let found = 1.0 / electrical.conductance(force);
                     assert!(
                         (found / threshold - 1.0).abs() < 1e-9,
                         "{kind:?} {film} {threshold}: {found}"
                     );
                 }
-                assert_eq!(path.force_at(1e9), 0.0);
-                assert_eq!(path.force_at(2e9), 0.0);
+                assert_eq!(electrical.force_at(1e9), 0.0);
+                assert_eq!(electrical.force_at(2e9), 0.0);
             }
         }
         let mut filmed = scene(ResistanceKind::PowerLaw);
         filmed.resistance.film = 100.0;
-        assert_eq!(Path::new(&filmed).unwrap().force_at(60.0), f64::INFINITY);
+        assert_eq!(ElectricalContact::new(&filmed).unwrap().force_at(60.0), f64::INFINITY);
     }
 
     #[test]
     fn the_melting_voltage_gives_the_melting_temperature() {
         let scene = scene(ResistanceKind::PowerLaw);
-        let path = Path::new(&scene).unwrap();
+        let electrical = ElectricalContact::new(&scene).unwrap();
         // 0.37 V: sqrt(298.15^2 + 0.37^2 / (4 2.45e-8)) = 1218.9 K, near the melting point of silver (1235 K).
-        assert!((path.temperature(&scene, 0.15, 1e3) - 1218.9).abs() < 0.1);
-        assert_eq!(path.temperature(&scene, 0.15, 0.0), 298.15);
-        assert_eq!(path.temperature(&scene, 0.0, 1e3), 298.15);
+        assert!((electrical.temperature(&scene, 0.15, 1e3) - 1218.9).abs() < 0.1);
+        assert_eq!(electrical.temperature(&scene, 0.15, 0.0), 298.15);
+        assert_eq!(electrical.temperature(&scene, 0.0, 1e3), 298.15);
         // Below it the derivatives are the slopes.
         let (force, current, step) = (0.15, -3.0, 1e-6);
-        let slopes = path.temperature_slopes(&scene, force, current);
-        let by_force =
-            path.temperature(&scene, force + step, current) - path.temperature(&scene, force - step, current);
-        let by_current =
-            path.temperature(&scene, force, current - step) - path.temperature(&scene, force, current + step);
+        let slopes = electrical.temperature_slopes(&scene, force, current);
+        let by_force = electrical.temperature(&scene, force + step, current)
+            - electrical.temperature(&scene, force - step, current);
+        let by_current = electrical.temperature(&scene, force, current - step)
+            - electrical.temperature(&scene, force, current + step);
         assert!((by_force / (2.0 * step) / slopes.0 - 1.0).abs() < 1e-6, "{slopes:?}");
         assert!((by_current / (2.0 * step) / slopes.1 - 1.0).abs() < 1e-6, "{slopes:?}");
     }

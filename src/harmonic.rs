@@ -57,9 +57,9 @@ pub fn response(model: &Model, omega: f64) -> Response {
 /// The resistance is far from linear in the force: an amplitude of a third of the preload force makes it swing by 47 %
 /// upwards and 24 % downwards (power law). For its extremes take the conductance at the extremes of the force.
 pub fn resistance_amplitude(model: &Model, force_amplitude: f64) -> f64 {
-    model.path.map_or(0.0, |path| {
+    model.electrical.map_or(0.0, |electrical| {
         let force = model.preload.force;
-        path.conductance_slope(force) * path.conductance(force).powi(-2) * force_amplitude
+        electrical.conductance_slope(force) * electrical.conductance(force).powi(-2) * force_amplitude
     })
 }
 

@@ -14,11 +14,11 @@ use crate::closed_loop::closed_loop::ClosedLoop;
 use crate::contact::hertz::Hertz;
 use crate::contact::law::Law;
 use crate::contact::linear::Linear;
-use crate::electrical::Path;
+use crate::electrical::ElectricalContact;
 use crate::error::SceneError;
 use crate::excitation::generator::Generator;
 use crate::math::prediction::Predictions;
-use crate::math::simd::Machine;
+use crate::math::simd::Simd;
 use crate::preload::Preload;
 use crate::scene::Scene;
 use crate::state::State;
@@ -50,11 +50,11 @@ pub struct Model {
     /// Lowest natural frequency with the contact as a spring, from the exact characteristic equation, Hz.
     pub frequency: f64,
     /// What current sees of it.
-    pub path: Option<Path>,
+    pub electrical: Option<ElectricalContact>,
     /// What counts as an interruption, where they are asked for.
     pub criterion: Option<Criterion>,
     /// What the steps are computed with.
-    pub machine: Machine,
+    pub simd: Simd,
 }
 
 impl Model {
@@ -116,11 +116,13 @@ impl Model {
             .or(frequency)
             .map_or(0.0, |omega| omega / std::f64::consts::TAU);
         let generator = Generator::new(scene)?;
-        let path = Path::new(scene);
-        if scene.effects.chatter && path.is_none() {
+        let electrical = ElectricalContact::new(scene);
+        if scene.effects.chatter && electrical.is_none() {
             return Err(SceneError::NoResistance);
         }
-        let criterion = path.as_ref().and_then(|path| Criterion::new(scene, path));
+        let criterion = electrical
+            .as_ref()
+            .and_then(|electrical| Criterion::new(scene, electrical));
         let closed_loop = match law {
             Law::Linear(contact) if generator.is_harmonic() && axial.is_none() && !scene.effects.extremes => {
                 ClosedLoop::new(scene, &modes, contact, &generator)
@@ -139,9 +141,9 @@ impl Model {
             initial_support: support,
             force_scale: preload.force.max(reference),
             frequency,
-            path,
+            electrical,
             criterion,
-            machine: Machine::detect(),
+            simd: Simd::detect(),
         })
     }
 

@@ -35,7 +35,7 @@ impl Preload {
     /// [`SceneError::Buckled`] where the axial force reaches the buckling load of the cantilever.
     pub fn new(scene: &Scene, section: &Section, hertz: &Hertz, support: f64) -> Result<Self, SceneError> {
         let statics = Statics::new(section);
-        let reach = scene.contact.overtravel + support;
+        let total_overtravel = scene.contact.overtravel + support;
         let gravity = scene.environment.gravity;
         let axial = |y: f64| match scene.effects.axial_force {
             AxialForceKind::None => 0.0,
@@ -59,30 +59,30 @@ impl Preload {
         };
 
         let alone = free_deflection(&statics, gravity, &axial);
-        if reach <= alone {
+        if total_overtravel <= alone {
             let axial_force = axial(alone);
             check(axial_force)?;
             return Ok(Self {
                 force: 0.0,
-                indentation: reach - alone,
+                indentation: total_overtravel - alone,
                 contact_stiffness: 0.0,
                 deflection: alone,
                 axial_force,
             });
         }
         let residual = |d: f64| {
-            let n = axial(reach - d);
-            let spring = (reach - d - statics.gravity_compliance(n) * gravity) / statics.tip_compliance(n);
+            let n = axial(total_overtravel - d);
+            let spring = (total_overtravel - d - statics.gravity_compliance(n) * gravity) / statics.tip_compliance(n);
             hertz.elastic_force(d) - spring
         };
         // Without a sign change the spring gives no force against the contact: it has buckled under its own deflection.
-        let Some(indentation) = roots::bracketed(residual, 0.0, reach - alone) else {
-            return Err(check(axial(reach)).err().unwrap_or(SceneError::NotFinite {
+        let Some(indentation) = roots::bracketed(residual, 0.0, total_overtravel - alone) else {
+            return Err(check(axial(total_overtravel)).err().unwrap_or(SceneError::NotFinite {
                 name: RealOutput::PreloadIndentation.variable().name,
                 value: residual(0.0),
             }));
         };
-        let deflection = reach - indentation;
+        let deflection = total_overtravel - indentation;
         let axial_force = axial(deflection);
         check(axial_force)?;
         Ok(Self {

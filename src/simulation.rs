@@ -5,7 +5,7 @@ use crate::error::{SceneError, StepError};
 use crate::inputs::Inputs;
 use crate::integrator::communication_step;
 use crate::integrator::events::log::Event;
-use crate::integrator::motion::Course;
+use crate::integrator::motion::Motion;
 use crate::integrator::workspace::Workspace;
 use crate::model::Model;
 use crate::scene::Scene;
@@ -16,7 +16,7 @@ use crate::variables::{BooleanOutput, Group, IntegerOutput, RealOutput, Variable
 #[derive(Clone, Debug)]
 pub struct Simulation {
     model: Model,
-    course: Course,
+    motion: Motion,
     workspace: Workspace,
 }
 
@@ -27,12 +27,12 @@ impl Simulation {
     /// A [`SceneError`] where the scene cannot be simulated.
     pub fn new(scene: &Scene, inputs: &Inputs, start_time: f64) -> Result<Self, SceneError> {
         let model = Model::new(scene, inputs.support_displacement)?;
-        let mut course = Course::new(model.initial_state(start_time));
-        course.current = inputs.contact_current;
+        let mut motion = Motion::new(model.initial_state(start_time));
+        motion.current = inputs.contact_current;
         let workspace = Workspace::new(&model);
         Ok(Self {
             model,
-            course,
+            motion,
             workspace,
         })
     }
@@ -46,7 +46,7 @@ impl Simulation {
     pub fn step(&mut self, inputs: &Inputs, time: f64, step_size: f64) -> Result<(), StepError> {
         communication_step::step(
             &self.model,
-            &mut self.course,
+            &mut self.motion,
             &mut self.workspace,
             inputs,
             time,
@@ -59,28 +59,28 @@ impl Simulation {
     ///
     /// # Errors
     /// A [`SceneError`] where the scene cannot be simulated.
-    pub fn resume(scene: &Scene, initial_support: f64, course: &Course) -> Result<Self, SceneError> {
+    pub fn resume(scene: &Scene, initial_support: f64, motion: &Motion) -> Result<Self, SceneError> {
         let model = Model::new(scene, initial_support)?;
         let workspace = Workspace::new(&model);
         let mut simulation = Self {
             model,
-            course: *course,
+            motion: *motion,
             workspace,
         };
-        simulation.go_on_from(course);
+        simulation.go_on_from(motion);
         Ok(simulation)
     }
 
     /// All that moves: with the scene and the initial displacement of the fixed contact, all there is to save.
-    pub fn course(&self) -> &Course {
-        &self.course
+    pub fn motion(&self) -> &Motion {
+        &self.motion
     }
 
     /// Goes on from where a simulation of the same model stood.
-    pub fn go_on_from(&mut self, course: &Course) {
-        self.course = *course;
+    pub fn go_on_from(&mut self, motion: &Motion) {
+        self.motion = *motion;
         self.workspace.events.forget_after(f64::NEG_INFINITY);
-        if let Some(event) = course.event_ahead() {
+        if let Some(event) = motion.event_ahead() {
             self.workspace.events.record(event);
         }
     }
@@ -89,12 +89,12 @@ impl Simulation {
     /// were. None after the motion was taken from elsewhere.
     pub fn events(&self) -> (impl Iterator<Item = &Event>, u64) {
         let events = &self.workspace.events;
-        (events.until(self.course.time), events.left_out)
+        (events.until(self.motion.time), events.left_out)
     }
 
     /// The instant reached, s.
     pub fn time(&self) -> f64 {
-        self.course.time
+        self.motion.time
     }
 
     /// The model.
@@ -104,28 +104,28 @@ impl Simulation {
 
     /// The last state that the integrator has reached, at or before [`Simulation::time`].
     pub fn state(&self) -> &State {
-        self.course.state()
+        self.motion.state()
     }
 
     /// A real output or calculated parameter, in its SI unit.
     pub fn real(&self, output: RealOutput) -> f64 {
-        let Self { model, course, .. } = self;
-        let (state, tip) = (course.state(), || course.tip(model));
-        let conductance = || model.path.map(|path| path.conductance(tip().force));
-        let extremes = || model.scene.effects.extremes.then(|| course.extremes(model));
+        let Self { model, motion, .. } = self;
+        let (state, tip) = (motion.state(), || motion.tip(model));
+        let conductance = || model.electrical.map(|electrical| electrical.conductance(tip().force));
+        let extremes = || model.scene.effects.extremes.then(|| motion.extremes(model));
         match output {
             RealOutput::ContactForce => tip().force,
             RealOutput::ContactConductance => conductance().unwrap_or_default(),
             RealOutput::ContactResistance => conductance().map_or(0.0, |conductance| 1.0 / conductance),
-            RealOutput::ContactVoltage => conductance().map_or(0.0, |conductance| course.current / conductance),
-            RealOutput::ContactTemperature => match model.path.filter(|_| model.scene.effects.heating) {
-                Some(path) => path.temperature(&model.scene, tip().force, course.current),
+            RealOutput::ContactVoltage => conductance().map_or(0.0, |conductance| motion.current / conductance),
+            RealOutput::ContactTemperature => match model.electrical.filter(|_| model.scene.effects.heating) {
+                Some(electrical) => electrical.temperature(&model.scene, tip().force, motion.current),
                 None => model.scene.environment.temperature,
             },
             RealOutput::StepMinimumForce => extremes().map_or(0.0, |extremes| extremes.least),
             RealOutput::StepMaximumForce => extremes().map_or(0.0, |extremes| extremes.greatest),
-            RealOutput::StepMaximumResistance => match (extremes(), &model.path) {
-                (Some(extremes), Some(path)) => 1.0 / path.conductance(extremes.least),
+            RealOutput::StepMaximumResistance => match (extremes(), &model.electrical) {
+                (Some(extremes), Some(electrical)) => 1.0 / electrical.conductance(extremes.least),
                 _ => 0.0,
             },
             RealOutput::ChatterLongestInterruption => self.interruptions().longest,
@@ -147,14 +147,17 @@ impl Simulation {
     /// Rate of a continuous output at the communication point, as it has been reached, in its SI unit per second; `None`
     /// for outputs that are not continuous. At the start nothing moves.
     pub fn rate(&self, output: RealOutput) -> Option<f64> {
-        let Self { model, course, .. } = self;
-        let rates = || course.tip_rates(model);
+        let Self { model, motion, .. } = self;
+        let rates = || motion.tip_rates(model);
         // Conductance and its rate.
         let conducting = || {
-            let force = course.tip(model).force;
-            model
-                .path
-                .map(|path| (path.conductance(force), path.conductance_slope(force) * rates().force))
+            let force = motion.tip(model).force;
+            model.electrical.map(|electrical| {
+                (
+                    electrical.conductance(force),
+                    electrical.conductance_slope(force) * rates().force,
+                )
+            })
         };
         Some(match output {
             RealOutput::ContactForce => rates().force,
@@ -163,17 +166,17 @@ impl Simulation {
                 conducting().map_or(0.0, |(conductance, rate)| -rate / conductance.powi(2))
             }
             RealOutput::ContactVoltage => conducting().map_or(0.0, |(conductance, rate)| {
-                (course.current_rate - course.current / conductance * rate) / conductance
+                (motion.current_rate - motion.current / conductance * rate) / conductance
             }),
-            RealOutput::ContactTemperature => match model.path.filter(|_| model.scene.effects.heating) {
-                Some(path) => {
-                    let force = course.tip(model).force;
-                    let (by_force, by_current) = path.temperature_slopes(&model.scene, force, course.current);
-                    by_force * rates().force + by_current * course.current.signum() * course.current_rate
+            RealOutput::ContactTemperature => match model.electrical.filter(|_| model.scene.effects.heating) {
+                Some(electrical) => {
+                    let force = motion.tip(model).force;
+                    let (by_force, by_current) = electrical.temperature_slopes(&model.scene, force, motion.current);
+                    by_force * rates().force + by_current * motion.current.signum() * motion.current_rate
                 }
                 None => 0.0,
             },
-            RealOutput::ContactIndentation => course.tip(model).rate,
+            RealOutput::ContactIndentation => motion.tip(model).rate,
             RealOutput::TipDisplacement => self.real(RealOutput::TipVelocity),
             RealOutput::TipVelocity => -rates().acceleration,
             RealOutput::ContactLastOpening
@@ -225,7 +228,7 @@ impl Simulation {
     /// A Boolean output.
     pub fn boolean(&self, output: BooleanOutput) -> bool {
         match output {
-            BooleanOutput::ContactClosed => self.course.tip(&self.model).force > 0.0,
+            BooleanOutput::ContactClosed => self.motion.tip(&self.model).force > 0.0,
         }
     }
 }

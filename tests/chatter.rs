@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-use relay_contact::electrical::Path;
+use relay_contact::electrical::ElectricalContact;
 use relay_contact::error::SceneError;
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
@@ -175,7 +175,7 @@ fn what_no_interruption_can_be_is_none() {
     scene.effects.chatter = false;
     assert_eq!(interruptions(&scene, 1e-3, 5e-3), (0, 0.0, 0.0));
     scene.effects.resistance = ResistanceKind::None;
-    assert!(Path::new(&scene).is_none());
+    assert!(ElectricalContact::new(&scene).is_none());
     assert_eq!(interruptions(&scene, 1e-3, 5e-3), (0, 0.0, 0.0));
     scene.effects.chatter = true;
     assert!(matches!(
@@ -234,7 +234,7 @@ fn extremes_are_those_of_the_course_inside_the_step() {
                         "{at}: {greatest} {high} {turn}"
                     );
                     let worst = simulation.real(RealOutput::StepMaximumResistance);
-                    let path = simulation.model().path.unwrap();
+                    let path = simulation.model().electrical.unwrap();
                     assert_eq!(worst, 1.0 / path.conductance(least));
                 }
             }
@@ -278,7 +278,7 @@ fn interruptions_of_microseconds_begin_and_end() {
         simulation
     };
     let least = course(&scene).real(RealOutput::StepMinimumForce);
-    let path = Path::new(&scene).unwrap();
+    let path = ElectricalContact::new(&scene).unwrap();
     let mut growth = Vec::new();
     for k in 1..=300 {
         let duration = 3e-8 * f64::from(k);
@@ -301,7 +301,7 @@ fn interruptions_of_microseconds_begin_and_end() {
 fn an_interruption_that_hardly_is_one_comes_to_an_end() {
     let mut scene = shaken(98.0);
     scene.chatter.minimum_duration = 0.0;
-    let path = Path::new(&scene).unwrap();
+    let path = ElectricalContact::new(&scene).unwrap();
     let mut least = f64::INFINITY;
     for k in 0..400 {
         // From a force that is never reached to one below which it stays for microseconds.

@@ -15,7 +15,7 @@ use crate::closed_loop::problem::Problem;
 use crate::closed_loop::propagator::Propagator;
 use crate::contact::linear::Linear;
 use crate::excitation::generator::Generator;
-use crate::math::simd::{Arithmetic, Machine, compiled_for};
+use crate::math::simd::{Arithmetic, Simd, compiled_for};
 use crate::scene::Scene;
 
 /// Largest error of taking the motion of a single mode apart and putting it together again, relative to its amplitude.
@@ -62,8 +62,8 @@ impl Columns {
         Self { size, entries }
     }
 
-    fn times(&self, machine: Machine, factors: &Coordinates) -> Coordinates {
-        compiled_for!(machine, A => self.compute::<A>(factors))
+    fn times(&self, simd: Simd, factors: &Coordinates) -> Coordinates {
+        compiled_for!(simd, A => self.compute::<A>(factors))
     }
 
     /// Four columns at a time, so that the sums are seldom loaded and stored.
@@ -163,10 +163,9 @@ impl ClosedLoop {
             if let Some(entry) = motion.get_mut(n) {
                 *entry = 1.0 / scale;
             }
-            let again = self.to_modes.times(
-                Machine::Portable,
-                &self.to_oscillators.times(Machine::Portable, &motion),
-            );
+            let again = self
+                .to_modes
+                .times(Simd::Portable, &self.to_oscillators.times(Simd::Portable, &motion));
             let motions = again.iter().zip(&motion).zip(&scales);
             motions
                 .map(|((again, motion), scale)| (again - motion) * scale)
@@ -199,8 +198,8 @@ impl ClosedLoop {
 
     /// The motion of the oscillators about the particular solution, from that of the modes: displacement and velocity of
     /// each, mode after mode.
-    pub(crate) fn free_motion(&self, machine: Machine, modes: &Coordinates, steady: &Steady) -> Coordinates {
-        let mut free = self.to_oscillators.times(machine, modes);
+    pub(crate) fn free_motion(&self, simd: Simd, modes: &Coordinates, steady: &Steady) -> Coordinates {
+        let mut free = self.to_oscillators.times(simd, modes);
         self.add_particular(&mut free, steady, -1.0);
         free
     }
@@ -209,7 +208,7 @@ impl ClosedLoop {
     /// `phasor` is sine and cosine of the generator's phase at the start, times its amplitude.
     pub(crate) fn moved(
         &self,
-        machine: Machine,
+        simd: Simd,
         propagator: &Propagator,
         free: &Coordinates,
         steady: &Steady,
@@ -232,7 +231,7 @@ impl ClosedLoop {
         {
             *end += sine * from_sine + cosine * from_cosine;
         }
-        self.to_modes.times(machine, &moved)
+        self.to_modes.times(simd, &moved)
     }
 
     fn add_particular(&self, motion: &mut Coordinates, steady: &Steady, sign: f64) {

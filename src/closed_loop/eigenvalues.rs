@@ -120,9 +120,9 @@ fn damped_differently(problem: &Problem, undamped: &[(f64, f64)]) -> Option<Vec<
             let repulsion: Complex<f64> = others.map(|(_, other)| 1.0 / difference(problem, &zero, other)).sum();
             // Never further than the zero is from those around it, or it may be lost.
             let change = newton / (1.0 - newton * repulsion);
-            let reach = 0.5 * zero.value.norm();
-            let change = if change.norm() > reach {
-                change * (reach / change.norm())
+            let farthest = 0.5 * zero.value.norm();
+            let change = if change.norm() > farthest {
+                change * (farthest / change.norm())
             } else {
                 change
             };

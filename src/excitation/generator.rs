@@ -11,7 +11,7 @@ use crate::excitation::waveform::{Accelerations, Rotation};
 use crate::excitation::window::Window;
 use crate::math::nodal::Nodal;
 use crate::math::nodal::scaled;
-use crate::math::simd::Machine;
+use crate::math::simd::Simd;
 use crate::scene::Scene;
 use crate::variables::ExcitationKind;
 
@@ -40,7 +40,7 @@ impl<const S: usize> Turns<S> {
     }
 
     /// Computes in place what belongs to a step of `length` seconds with these nodes.
-    pub fn fill(&mut self, generator: &Generator, machine: Machine, length: f64, nodes: &Nodal<S>) {
+    pub fn fill(&mut self, generator: &Generator, simd: Simd, length: f64, nodes: &Nodal<S>) {
         match (generator, self) {
             (Generator::Sine(sine), Self::Sine(rotation)) => {
                 let angles = scaled(nodes, TAU * sine.frequency * length);
@@ -48,7 +48,7 @@ impl<const S: usize> Turns<S> {
             }
             (Generator::LogSweep(_), Self::LogSweep(times)) => *times = scaled(nodes, length),
             (Generator::Random(random), Self::Random(rotations)) => {
-                random.turn(machine, &scaled(nodes, length), rotations);
+                random.turn(simd, &scaled(nodes, length), rotations);
             }
             _ => {}
         }
@@ -150,7 +150,7 @@ impl Generator {
     /// Accelerations over a step that begins at `time` (s) and has the given turns. A step goes over none of the breaks
     /// that [`Generator::next_break`] tells.
     #[inline(always)]
-    pub fn over_step<const S: usize>(&self, machine: Machine, time: f64, turns: &Turns<S>) -> Accelerations<S> {
+    pub fn over_step<const S: usize>(&self, simd: Simd, time: f64, turns: &Turns<S>) -> Accelerations<S> {
         let mut nodes = [0.0; S];
         let start = match (self, turns) {
             (Self::None, _) => 0.0,
@@ -162,7 +162,7 @@ impl Generator {
                 sin
             }
             _ if BARE => 0.0,
-            _ => self.over_step_out_of_line(machine, time, turns, &mut nodes),
+            _ => self.over_step_out_of_line(simd, time, turns, &mut nodes),
         };
         Accelerations { start, nodes }
     }
@@ -172,7 +172,7 @@ impl Generator {
     #[inline(never)]
     fn over_step_out_of_line<const S: usize>(
         &self,
-        machine: Machine,
+        simd: Simd,
         time: f64,
         turns: &Turns<S>,
         nodes: &mut Nodal<S>,
@@ -180,7 +180,7 @@ impl Generator {
         let found = match (self, turns) {
             (Self::LogSweep(sweep), Turns::LogSweep(times)) if self.is_active(time) => sweep.over_step(time, times),
             (Self::Random(random), Turns::Random(rotations)) if self.is_active(time) => {
-                random.over_step(machine, time, rotations)
+                random.over_step(simd, time, rotations)
             }
             _ => return 0.0,
         };

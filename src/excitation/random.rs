@@ -10,7 +10,7 @@ use crate::excitation::waveform::{Accelerations, Rotation};
 use crate::excitation::window::Window;
 use crate::math::nodal::Nodal;
 use crate::math::nodal::add;
-use crate::math::simd::{Arithmetic, Machine, Separate, compiled_for};
+use crate::math::simd::{Arithmetic, Separate, Simd, compiled_for};
 use crate::scene::Excitation;
 
 /// How many.
@@ -66,8 +66,8 @@ impl Random {
 
     /// How far each sine turns in the times (s) after the start of a step, in place.
     #[inline(never)]
-    pub fn turn<const S: usize>(&self, machine: Machine, times: &Nodal<S>, rotations: &mut [Rotation<S>]) {
-        compiled_for!(machine, A => {
+    pub fn turn<const S: usize>(&self, simd: Simd, times: &Nodal<S>, rotations: &mut [Rotation<S>]) {
+        compiled_for!(simd, A => {
             for (node, time) in times.iter().enumerate() {
                 let (sin, cos) = phasors::<A>(&self.frequencies, *time, &[0.0; SINES]);
                 for (rotation, (sin, cos)) in rotations.iter_mut().zip(sin.iter().zip(&cos)) {
@@ -80,13 +80,8 @@ impl Random {
     }
 
     /// Accelerations over a step that begins at `time` (s), in which the sines turn like this.
-    pub fn over_step<const S: usize>(
-        &self,
-        machine: Machine,
-        time: f64,
-        rotations: &[Rotation<S>],
-    ) -> Accelerations<S> {
-        compiled_for!(machine, A => self.compute::<S, A>(time, rotations))
+    pub fn over_step<const S: usize>(&self, simd: Simd, time: f64, rotations: &[Rotation<S>]) -> Accelerations<S> {
+        compiled_for!(simd, A => self.compute::<S, A>(time, rotations))
     }
 
     #[inline(always)]

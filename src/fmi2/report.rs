@@ -2,7 +2,7 @@
 
 use super::logger::{Category, Logger};
 use super::types::fmi2OK;
-use crate::math::simd::Machine;
+use crate::math::simd::Simd;
 use crate::model::Model;
 use crate::simulation::Simulation;
 
@@ -15,10 +15,10 @@ pub(super) fn model(logger: &Logger, model: &Model) {
     };
     let tolerance = model.scene.solver.effective_tolerance();
     let error = tolerance * model.force_scale;
-    let machine = match model.machine {
-        Machine::Portable => "for any processor",
+    let machine = match model.simd {
+        Simd::Portable => "for any processor",
         #[cfg(target_arch = "x86_64")]
-        Machine::Avx2(_) => "for AVX2 and FMA",
+        Simd::Avx2(_) => "for AVX2 and FMA",
     };
     let text = format!(
         "fmi2ExitInitializationMode: {modes} modes, {steps}, compiled {machine}, tolerance {tolerance:e}, which is {error:e} N"

@@ -7,8 +7,8 @@ use crate::integrator::collocation::step::Trial;
 use crate::integrator::collocation::step::is_rounding;
 use crate::integrator::collocation::step::trial;
 use crate::integrator::grid::Target;
-use crate::integrator::integration::Advice;
 use crate::integrator::integration::Integration;
+use crate::integrator::integration::StepOutcome;
 use crate::integrator::workspace::work;
 use crate::integrator::workspace::{Room, Workspace};
 use crate::math::nodal;
@@ -25,8 +25,8 @@ impl Integration<'_> {
     /// Estimated error of a trial to the target, in errors allowed; none where it is rounding, which no shorter step
     /// makes smaller.
     pub(crate) fn relative_error<const S: usize>(&self, trial: &Trial<S>, target: &Target) -> f64 {
-        let looked_into = self.span.as_ref().is_some_and(|(until, _)| *until < target.time);
-        // Short steps may be wrong inside: `Span::good` then keeps them from being looked into.
+        let looked_into = self.dense.as_ref().is_some_and(|(until, _)| *until < target.time);
+        // Short steps may be wrong inside: `DenseOutput::good` then keeps them from being looked into.
         let inside = if looked_into && S != SHORT {
             INSIDE / self.tolerance
         } else {
@@ -78,10 +78,10 @@ impl Integration<'_> {
     }
 
     /// Gives up a step; the next one is to have the length.
-    pub(crate) fn reject(&mut self, length: f64) -> Advice {
+    pub(crate) fn reject(&mut self, length: f64) -> StepOutcome {
         self.state.rejected_steps += 1;
         self.refusals += 1;
-        Advice {
+        StepOutcome {
             taken: false,
             growth: 1.0,
             length,
@@ -111,12 +111,12 @@ impl Integration<'_> {
             0.0
         };
         let start = state.force - model.preload.force;
-        state.predictions = collocation.predictions(model.machine, start, &trial.forces, &state.predictions, ratio);
-        if let Some((_, span)) = &mut self.span {
-            span.good = INSIDE * trial.missed <= self.tolerance;
-            span.indentation = collocation.through(state.indentation, &trial.indentations);
-            span.rate = collocation.through(state.indentation_rate, &trial.rates);
-            span.force = *state.predictions.through_all();
+        state.predictions = collocation.predictions(model.simd, start, &trial.forces, &state.predictions, ratio);
+        if let Some((_, dense)) = &mut self.dense {
+            dense.good = INSIDE * trial.missed <= self.tolerance;
+            dense.indentation = collocation.through(state.indentation, &trial.indentations);
+            dense.rate = collocation.through(state.indentation_rate, &trial.rates);
+            dense.force = *state.predictions.through_all();
         }
         for ((mode, end), _) in state.modes.iter_mut().zip(end).zip(&model.modes) {
             *mode = *end;
@@ -134,7 +134,7 @@ impl Integration<'_> {
         state.last_step = target.length;
         state.steps += 1;
         state.iterations += trial.iterations;
-        self.progress.done = target.done;
+        self.grid.done = target.done;
         self.refusals = 0;
         self.settle(target.length);
         self.balance(due);
@@ -144,6 +144,6 @@ impl Integration<'_> {
 
 /// How many times as long a step could be that is wrong by `ratio` errors allowed: the error estimate grows with the
 /// power `S + 1` of the length.
-pub(crate) fn reach<const S: usize>(ratio: f64) -> f64 {
+pub(crate) fn step_factor<const S: usize>(ratio: f64) -> f64 {
     ratio.powf(-1.0 / (S as f64 + 1.0))
 }

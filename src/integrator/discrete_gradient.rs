@@ -11,7 +11,7 @@ use crate::integrator::collocation::newton::Source;
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::collocation::step::trial;
 use crate::integrator::grid::Target;
-use crate::integrator::integration::{Advice, Integration};
+use crate::integrator::integration::{Integration, StepOutcome};
 use crate::integrator::workspace::Room;
 use crate::math::nodal::SHORT;
 use crate::math::nodal::end;
@@ -22,7 +22,7 @@ pub(crate) const REFUSALS: u32 = 40;
 
 impl Integration<'_> {
     /// Takes the step to the target with a constant force.
-    pub(crate) fn fall_back(&mut self, target: &Target) -> Result<Advice, StepError> {
+    pub(crate) fn take_with_constant_force(&mut self, target: &Target) -> Result<StepOutcome, StepError> {
         let trial = self
             .constant_step(target)
             .ok_or_else(|| self.error(StepErrorCause::NotFinite))?;
@@ -43,7 +43,7 @@ impl Integration<'_> {
         }
         // It predicts nothing.
         self.state.last_step = 0.0;
-        Ok(Advice {
+        Ok(StepOutcome {
             taken: true,
             growth: 2.0,
             length,
@@ -90,7 +90,7 @@ impl Integration<'_> {
 mod tests {
     use super::*;
     use crate::excitation::drive::Drive;
-    use crate::integrator::grid::Progress;
+    use crate::integrator::grid::Grid;
     use crate::integrator::workspace::Workspace;
     use crate::model::Model;
     use crate::scene::Scene;
@@ -121,16 +121,16 @@ mod tests {
                 state,
                 workspace: &mut workspace,
                 drive: Drive::default(),
-                progress: Progress::over(step * f64::from(k), step),
-                span: None,
+                grid: Grid::over(step * f64::from(k), step),
+                dense: None,
                 extremes: None,
                 tolerance: 1e-6,
                 allowed: 1e-8,
                 refusals: 0,
                 conserves: false,
             };
-            let target = integration.progress.target(step, integration.state.time, None);
-            integration.fall_back(&target).unwrap();
+            let target = integration.grid.target(step, integration.state.time, None);
+            integration.take_with_constant_force(&target).unwrap();
             closings += u32::from(state.last_closing > last);
             last = state.last_closing;
             model.energy(&state.modes, state.indentation)

@@ -79,7 +79,7 @@ fn advance(
         force: stiffness * state.support + damping * growth,
         growth,
     };
-    let free = closed_loop.free_motion(model.machine, &motion, &steady);
+    let free = closed_loop.free_motion(model.simd, &motion, &steady);
     let phasor = model.generator.phasor(state.time);
     if state.interruptions.in_progress() {
         return false;
@@ -93,7 +93,7 @@ fn advance(
     let Some(propagator) = propagators.over(length, &closed_loop.oscillators, &model.generator) else {
         return false;
     };
-    let motion: Coordinates = closed_loop.moved(model.machine, propagator, &free, &steady.after(length), phasor);
+    let motion: Coordinates = closed_loop.moved(model.simd, propagator, &free, &steady.after(length), phasor);
 
     let support = state.support + drive.support_rate * length;
     let (mut indentation, mut rate) = (support, drive.support_rate);

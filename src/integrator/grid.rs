@@ -1,9 +1,9 @@
 //! Where a communication step stands. Integration steps end on halvings of it, or are free to be longer than it; either
 //! way their lengths, and with them their coefficients, come again.
 
-/// A communication step in progress.
+/// A communication step in grid.
 #[derive(Clone, Copy, Debug)]
-pub struct Progress {
+pub struct Grid {
     /// Start, s.
     pub start: f64,
     /// Length, s.
@@ -27,7 +27,7 @@ pub struct Target {
     pub time: f64,
 }
 
-impl Progress {
+impl Grid {
     /// At the start of the communication step from `start` by `size` (s).
     pub fn over(start: f64, size: f64) -> Self {
         Self {

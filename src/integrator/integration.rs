@@ -4,7 +4,7 @@ use crate::error::StepErrorCause;
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::extremes::Extremes;
-use crate::integrator::grid::Progress;
+use crate::integrator::grid::Grid;
 use crate::integrator::grid::Target;
 use crate::integrator::workspace::Room;
 use crate::integrator::workspace::Workspace;
@@ -19,9 +19,9 @@ pub(crate) struct Integration<'a> {
     pub(crate) state: &'a mut State,
     pub(crate) workspace: &'a mut Workspace,
     pub(crate) drive: Drive,
-    pub(crate) progress: Progress,
+    pub(crate) grid: Grid,
     /// The instant beyond which the step is looked into, s, and what the tip does in it.
-    pub(crate) span: Option<(f64, &'a mut Span)>,
+    pub(crate) dense: Option<(f64, &'a mut DenseOutput)>,
     /// Of the contact force, where they are asked for.
     pub(crate) extremes: Option<&'a mut Extremes>,
     /// Error allowed in the contact force, N.
@@ -36,7 +36,7 @@ pub(crate) struct Integration<'a> {
 
 /// The tip over a step: polynomials about its end, in steps. Deviations from the preload.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Span {
+pub(crate) struct DenseOutput {
     /// Whether they are within the tolerance; just after a blow no polynomial is.
     pub good: bool,
     /// Contact force, N.
@@ -58,17 +58,17 @@ pub(crate) enum Steps<'a> {
         size: f64,
     },
     /// By one step as long as the error allows, also within it where it goes beyond the instant `until` (s); what the
-    /// tip does in it goes to `span`.
+    /// tip does in it goes to `dense`.
     Own {
         /// s.
         until: f64,
         /// See [`Steps::Own`].
-        span: &'a mut Span,
+        dense: &'a mut DenseOutput,
     },
 }
 
 /// What a step says about the next.
-pub(crate) struct Advice {
+pub(crate) struct StepOutcome {
     /// Whether it was taken.
     pub(crate) taken: bool,
     /// How many times as long as this one it could have been.
@@ -77,7 +77,7 @@ pub(crate) struct Advice {
     pub(crate) length: f64,
 }
 
-impl Advice {
+impl StepOutcome {
     /// After a step of `length` seconds taken, where `wanted` seconds were wanted.
     pub(crate) fn after(length: f64, wanted: f64, growth: f64) -> Self {
         let next = growth.min(4.0) * length;
@@ -110,7 +110,7 @@ impl Integration<'_> {
 
     /// Difference between instants that cannot be told apart, s.
     pub(crate) fn resolution(&self) -> f64 {
-        f64::EPSILON * (self.progress.start.abs() + self.progress.size)
+        f64::EPSILON * (self.grid.start.abs() + self.grid.size)
     }
 
     /// The polynomials of the steps.

@@ -6,7 +6,7 @@
 //! - [`dense`]: a communication step, also where its end lies inside a step of the integrator; [`workspace`]: the room
 //!   for it, made once.
 //! - [`advance`]: integration steps one after the other; [`attempt`]: on trial, taken or rejected by an estimate of the
-//!   error of the force; [`progress`]: the grid they end on; [`budget`]: how many there may be; [`rest`]: a contact at
+//!   error of the force; [`grid`]: the grid they end on; [`budget`]: how many there may be; [`rest`]: a contact at
 //!   rest takes none.
 //! - [`switching`]: steps end where the contact opens ([`release`]) or closes ([`touchdown`]), and begin anew;
 //!   [`events`] keeps a list.

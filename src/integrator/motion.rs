@@ -10,7 +10,7 @@ use crate::beam::mode::MAX_MODES;
 use crate::excitation::drive::Drive;
 use crate::integrator::events::log::Event;
 use crate::integrator::extremes::Extremes;
-use crate::integrator::integration::Span;
+use crate::integrator::integration::DenseOutput;
 use crate::math::prediction::value_and_slope;
 use crate::model::Model;
 use crate::state::State;
@@ -18,16 +18,16 @@ use serde::{Deserialize, Serialize};
 
 /// Everything that moves: the motion around a communication point. Plain numbers: saving it is a copy.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Course {
+pub struct Motion {
     /// The communication point, s.
     pub time: f64,
     /// Current through the contact, A, and its rate over the last communication step, A/s.
     pub current: f64,
-    /// See [`Course::current`].
+    /// See [`Motion::current`].
     pub current_rate: f64,
     /// Length of the last communication step, s.
     pub(crate) size: f64,
-    /// Extremes of the contact force in it, but for what lies in [`Course::span`] inside which it ends, N; none where all
+    /// Extremes of the contact force in it, but for what lies in [`Motion::dense`] inside which it ends, N; none where all
     /// of it does or nobody asks.
     pub(crate) extremes: Option<Extremes>,
     /// What drove the contact over it.
@@ -37,7 +37,7 @@ pub struct Course {
     /// Where the integrator is.
     pub(crate) end: State,
     /// The tip in between.
-    pub(crate) span: Span,
+    pub(crate) dense: DenseOutput,
 }
 
 /// The tip at a communication point.
@@ -60,7 +60,7 @@ pub struct TipRates {
     pub acceleration: f64,
 }
 
-impl Course {
+impl Motion {
     /// From a state on.
     pub fn new(state: State) -> Self {
         Self {
@@ -72,7 +72,7 @@ impl Course {
             drive: Drive::default(),
             start: state,
             end: state,
-            span: Span::default(),
+            dense: DenseOutput::default(),
         }
     }
 
@@ -96,9 +96,9 @@ impl Course {
             drive,
             start,
             end,
-            span,
+            dense,
         } = self;
-        let polynomials = [&span.force, &span.indentation, &span.rate].into_iter().flatten();
+        let polynomials = [&dense.force, &dense.indentation, &dense.rate].into_iter().flatten();
         let numbers = [*time, *current, *current_rate, *size, drive.jerk, drive.support_rate];
         let extremes = extremes
             .iter()
@@ -132,7 +132,7 @@ impl Course {
         (from_end < 0.0).then(|| from_end / self.length())
     }
 
-    /// Length of the step that [`Course::span`] tells of, s.
+    /// Length of the step that [`Motion::dense`] tells of, s.
     fn length(&self) -> f64 {
         self.end.time - self.start.time
     }
@@ -148,15 +148,15 @@ impl Course {
             };
         };
         let at = |values| value_and_slope(values, y).0;
-        let force = model.preload.force + at(&self.span.force);
+        let force = model.preload.force + at(&self.dense.force);
         Tip {
             force: match state.closed {
                 true if model.law.never_opens() => force,
                 true => force.max(f64::MIN_POSITIVE),
                 false => 0.0,
             },
-            indentation: at(&self.span.indentation),
-            rate: at(&self.span.rate),
+            indentation: at(&self.dense.indentation),
+            rate: at(&self.dense.rate),
         }
     }
 
@@ -164,15 +164,15 @@ impl Course {
     pub fn extremes(&self, model: &Model) -> Extremes {
         let mut extremes = self.extremes.unwrap_or_else(|| Extremes::at(self.tip(model).force));
         if self.time < self.end.time {
-            self.add_span(&mut extremes, model, self.time - self.size, self.time);
+            self.add_dense(&mut extremes, model, self.time - self.size, self.time);
         }
         extremes
     }
 
-    /// Adds what the force does in the span between two instants (s), of which the first may lie before it.
-    pub(crate) fn add_span(&self, extremes: &mut Extremes, model: &Model, from: f64, to: f64) {
+    /// Adds what the force does in the dense between two instants (s), of which the first may lie before it.
+    pub(crate) fn add_dense(&self, extremes: &mut Extremes, model: &Model, from: f64, to: f64) {
         let at = |time: f64| ((time - self.end.time) / self.length()).clamp(-1.0, 0.0);
-        extremes.add_course(model, self.start.closed, &self.span.force, at(from), at(to));
+        extremes.add_course(model, self.start.closed, &self.dense.force, at(from), at(to));
     }
 
     /// How the tip changes at the communication point, as it has been reached: what changes there at once comes after.
@@ -184,8 +184,8 @@ impl Course {
         if let Some(y) = self.inside() {
             let slope = |values| value_and_slope(values, y).1 / self.length();
             return TipRates {
-                force: if state.closed { slope(&self.span.force) } else { 0.0 },
-                acceleration: slope(&self.span.rate),
+                force: if state.closed { slope(&self.dense.force) } else { 0.0 },
+                acceleration: slope(&self.dense.rate),
             };
         }
         let base = self.drive.acceleration(self.time) + model.generator.acceleration_before(self.time);

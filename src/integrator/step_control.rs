@@ -3,14 +3,14 @@
 use crate::BARE;
 use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
-use crate::integrator::attempt::reach;
+use crate::integrator::attempt::step_factor;
 use crate::integrator::discrete_gradient::REFUSALS;
 use crate::integrator::energy::conservation::conserves;
 use crate::integrator::exact_step::step_exactly;
 use crate::integrator::extremes::Extremes;
-use crate::integrator::grid::Progress;
-use crate::integrator::integration::Advice;
+use crate::integrator::grid::Grid;
 use crate::integrator::integration::Integration;
+use crate::integrator::integration::StepOutcome;
 use crate::integrator::integration::Steps;
 use crate::integrator::rest::rests_until;
 use crate::integrator::workspace::Budget;
@@ -55,18 +55,18 @@ pub(crate) fn advance(
     extremes: Option<&mut Extremes>,
 ) -> Result<(), StepError> {
     let tolerance = model.scene.solver.effective_tolerance() * model.force_scale;
-    let (progress, span) = match steps {
+    let (grid, dense) = match steps {
         Steps::Exactly { time, size } => {
             state.time = rests_until(model, state, &drive, tolerance, time + size).unwrap_or(time);
             let left = size - (state.time - time);
             if left <= 0.0 || step_exactly(model, state, &mut workspace.propagators, &drive, left) {
                 return Ok(());
             }
-            (Progress::over(state.time, left), None)
+            (Grid::over(state.time, left), None)
         }
-        Steps::Own { until, span } => {
+        Steps::Own { until, dense } => {
             let size = state.short_step.max(state.long_step);
-            (Progress::free(state.time, size), Some((until, span)))
+            (Grid::free(state.time, size), Some((until, dense)))
         }
     };
     Integration {
@@ -74,8 +74,8 @@ pub(crate) fn advance(
         state,
         workspace,
         drive,
-        progress,
-        span,
+        grid,
+        dense,
         extremes: extremes.filter(|_| !BARE),
         tolerance,
         allowed: SHARE * tolerance,
@@ -97,19 +97,19 @@ impl Integration<'_> {
         }
         self.set_support_rate();
         self.note_force();
-        let budget = Budget::new(self.workspace, self.progress.size);
-        while self.progress.done < 1.0 {
+        let budget = Budget::new(self.workspace, self.grid.size);
+        while self.grid.done < 1.0 {
             budget.check(self.workspace, self.state.time)?;
             self.advance()?;
             self.note_force();
-            let Progress { free, done, .. } = self.progress;
-            let end = self.progress.end();
+            let Grid { free, done, .. } = self.grid;
+            let end = self.grid.end();
             if !free
                 && done < 1.0
                 && let Some(until) = rests_until(self.model, self.state, &self.drive, self.tolerance, end)
             {
-                let target = self.progress.cut(until - self.state.time, until);
-                (self.state.time, self.progress.done) = (target.time, target.done);
+                let target = self.grid.cut(until - self.state.time, until);
+                (self.state.time, self.grid.done) = (target.time, target.done);
             }
         }
         Ok(())
@@ -117,7 +117,7 @@ impl Integration<'_> {
 
     /// One integration step, taken or rejected: with few nodes where they reach far enough, else with many.
     fn advance(&mut self) -> Result<(), StepError> {
-        let left = self.progress.left();
+        let left = self.grid.left();
         let short_step = self.state.short_step;
         // Just after a blow the force is no polynomial of high degree.
         let smooth = if self.state.last_closing < 0.0 {
@@ -128,24 +128,24 @@ impl Integration<'_> {
         let long_step = self.state.long_step.min(smooth);
         if self.tolerance <= LONG_FLOOR * self.model.force_scale || left <= short_step || long_step < WORTH * short_step
         {
-            let advice = self.advance_with::<SHORT>(short_step)?;
-            self.state.short_step = advice.length;
-            if advice.taken && advice.growth < GROWING {
-                self.state.long_step = self.state.long_step.max(2.0 * WORTH * advice.length);
+            let outcome = self.advance_with::<SHORT>(short_step)?;
+            self.state.short_step = outcome.length;
+            if outcome.taken && outcome.growth < GROWING {
+                self.state.long_step = self.state.long_step.max(2.0 * WORTH * outcome.length);
             }
         } else {
-            let advice = self.advance_with::<LONG>(long_step)?;
-            self.state.long_step = advice.length;
+            let outcome = self.advance_with::<LONG>(long_step)?;
+            self.state.long_step = outcome.length;
             // Where a long step is far shorter than it might be, a short one will do.
-            if advice.taken {
-                self.state.short_step = short_step.max(advice.growth * left.min(long_step) / LONGER);
+            if outcome.taken {
+                self.state.short_step = short_step.max(outcome.growth * left.min(long_step) / LONGER);
             }
         }
         Ok(())
     }
 
     /// One step of `S` nodes, taken or rejected, of `wanted` seconds or less.
-    fn advance_with<const S: usize>(&mut self, wanted: f64) -> Result<Advice, StepError>
+    fn advance_with<const S: usize>(&mut self, wanted: f64) -> Result<StepOutcome, StepError>
     where
         Workspace: Room<S>,
     {
@@ -153,7 +153,7 @@ impl Integration<'_> {
             .min(self.model.longest_step(self.state.time))
             .max(self.shortest());
         let corner = self.model.generator.next_break(self.state.time);
-        let target = self.progress.target(wanted, self.state.time, corner);
+        let target = self.grid.target(wanted, self.state.time, corner);
         let attempt = self.attempt::<S>(&target);
         let ratio = attempt
             .as_ref()
@@ -161,14 +161,14 @@ impl Integration<'_> {
         let Some(trial) = attempt.filter(|_| self.is_acceptable(ratio, &target)) else {
             // The law asks for what no polynomial follows: a constant force gets on.
             if self.state.closed && (self.is_shortest(&target) || self.refusals >= REFUSALS) {
-                return self.fall_back(&target);
+                return self.take_with_constant_force(&target);
             }
             if self.is_shortest(&target) {
                 return Err(self.error(StepErrorCause::NotFinite));
             }
             // Without an error estimate by the most, as nothing is known.
             let shrink = if ratio.is_finite() {
-                0.8 * reach::<S>(ratio)
+                0.8 * step_factor::<S>(ratio)
             } else {
                 0.0
             };
@@ -182,16 +182,16 @@ impl Integration<'_> {
         let growth = if ratio < 1e-7 {
             64.0
         } else {
-            (0.9 * reach::<S>(ratio)).clamp(0.5, 64.0)
+            (0.9 * step_factor::<S>(ratio)).clamp(0.5, 64.0)
         };
-        let suspect = self.first_suspect(&trial, target.length);
+        let candidate = self.first_event_candidate(&trial, target.length);
         if let Some(passed) = self.first_passage(&trial)
-            && suspect.is_none_or(|part| passed <= part)
-            && let Some(advice) = self.pass::<S>(passed, &target, growth, wanted)?
+            && candidate.is_none_or(|part| passed <= part)
+            && let Some(outcome) = self.stop_at_threshold::<S>(passed, &target, growth, wanted)?
         {
-            return Ok(advice);
+            return Ok(outcome);
         }
-        if let Some(part) = suspect {
+        if let Some(part) = candidate {
             if S != SHORT {
                 // Events are located in short steps; long ones end before.
                 return Ok(self.reject(0.9 * part * target.length));
@@ -201,6 +201,6 @@ impl Integration<'_> {
             }
         }
         self.take(&trial, &target)?;
-        Ok(Advice::after(target.length, wanted, growth))
+        Ok(StepOutcome::after(target.length, wanted, growth))
     }
 }

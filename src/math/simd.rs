@@ -9,7 +9,7 @@ pub const LANES: usize = 4;
 
 /// What the kernel of a step is compiled for.
 #[derive(Clone, Copy, Debug)]
-pub enum Machine {
+pub enum Simd {
     /// Any processor.
     Portable,
     /// This one has AVX2 and FMA, which the token proves.
@@ -17,7 +17,7 @@ pub enum Machine {
     Avx2(Avx2),
 }
 
-impl Machine {
+impl Simd {
     /// The best for this processor; any processor's where the feature `portable` is on.
     pub fn detect() -> Self {
         #[cfg(all(target_arch = "x86_64", not(feature = "portable")))]
@@ -57,17 +57,17 @@ impl Arithmetic for Fused {
     }
 }
 
-/// `compiled_for!(machine, A => body)`: the body in the compilation for the machine, whose [`Arithmetic`] it knows as
-/// `A`. Only what is inlined into the body is compiled for the machine.
+/// `compiled_for!(simd, A => body)`: the body in the compilation for the simd, whose [`Arithmetic`] it knows as
+/// `A`. Only what is inlined into the body is compiled for the simd.
 macro_rules! compiled_for {
-    ($machine:expr, $arithmetic:ident => $body:expr) => {
-        match $machine {
-            $crate::math::simd::Machine::Portable => {
+    ($simd:expr, $arithmetic:ident => $body:expr) => {
+        match $simd {
+            $crate::math::simd::Simd::Portable => {
                 type $arithmetic = $crate::math::simd::Separate;
                 $body
             }
             #[cfg(target_arch = "x86_64")]
-            $crate::math::simd::Machine::Avx2(token) => fearless_simd::Simd::vectorize(
+            $crate::math::simd::Simd::Avx2(token) => fearless_simd::Simd::vectorize(
                 token,
                 #[inline(always)]
                 || {

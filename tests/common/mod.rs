@@ -8,7 +8,7 @@ use relay_contact::contact::linear::Linear;
 use relay_contact::error::StepError;
 use relay_contact::inputs::Inputs;
 use relay_contact::integrator::communication_step;
-use relay_contact::integrator::motion::Course;
+use relay_contact::integrator::motion::Motion;
 use relay_contact::integrator::workspace::Workspace;
 use relay_contact::model::Model;
 use relay_contact::preload::Preload;
@@ -20,7 +20,7 @@ pub struct Rig {
     pub model: Model,
     /// The whole motion at the instant reached.
     pub state: State,
-    course: Course,
+    course: Motion,
     workspace: Workspace,
 }
 
@@ -30,7 +30,7 @@ impl Rig {
         let state = model.initial_state(0.0);
         Self {
             state,
-            course: Course::new(state),
+            course: Motion::new(state),
             workspace: Workspace::new(&model),
             model,
         }
@@ -47,7 +47,7 @@ impl Rig {
         let d = model.preload.indentation + state.indentation;
         state.force = model.law.force(d, state.indentation_rate);
         state.closed = model.engagement(state.indentation, state.indentation_rate) > 0.0;
-        self.course = Course::new(*state);
+        self.course = Motion::new(*state);
     }
 
     /// Advances to the instant `time` (s) with the inputs held.

@@ -12,7 +12,7 @@ use super::states::{Function, State};
 use super::types::fmi2Status;
 use crate::error::SceneError;
 use crate::inputs::Inputs;
-use crate::integrator::motion::Course;
+use crate::integrator::motion::Motion;
 use crate::scene::Scene;
 use crate::simulation::Simulation;
 
@@ -46,7 +46,7 @@ pub(super) struct Snapshot {
     inputs: Inputs,
     experiment: Experiment,
     /// Where the simulation stands, and the displacement of the fixed contact that it began with, m.
-    simulation: Option<(Course, f64)>,
+    simulation: Option<(Motion, f64)>,
     time: f64,
 }
 
@@ -66,7 +66,7 @@ impl Snapshot {
             && self.time >= start_time
             && self.time.is_finite()
             && simulation
-                .is_none_or(|(course, support)| course.is_sound() && course.time == self.time && support.is_finite())
+                .is_none_or(|(motion, support)| motion.is_sound() && motion.time == self.time && support.is_finite())
     }
 }
 
@@ -193,7 +193,7 @@ impl Instance {
             scene: self.scene,
             inputs: self.inputs,
             experiment: self.experiment,
-            simulation: simulation.map(|simulation| (*simulation.course(), simulation.model().initial_support)),
+            simulation: simulation.map(|simulation| (*simulation.motion(), simulation.model().initial_support)),
             time: self.time,
         }
     }
@@ -210,13 +210,13 @@ impl Instance {
         } = *snapshot;
         let wanted = experiment.scene(&scene);
         match (&mut self.simulation, simulation) {
-            (Some(present), Some((course, initial_support)))
+            (Some(present), Some((motion, initial_support)))
                 if present.model().scene == wanted && present.model().initial_support == initial_support =>
             {
-                present.go_on_from(&course);
+                present.go_on_from(&motion);
             }
-            (present, Some((course, initial_support))) => {
-                let resumed = Simulation::resume(&wanted, initial_support, &course);
+            (present, Some((motion, initial_support))) => {
+                let resumed = Simulation::resume(&wanted, initial_support, &motion);
                 *present = Some(resumed.map_err(Failure::Initialisation)?);
             }
             (present, None) => *present = None,

@@ -12,7 +12,7 @@ use crate::beam::axial::Feedback;
 use crate::beam::mode::MAX_MODES;
 use crate::beam::mode::Modal;
 use crate::integrator::collocation::coefficients::{ErrorColumn, ModeColumns, StepCoefficients};
-use crate::integrator::collocation::newton::Outside;
+use crate::integrator::collocation::newton::FreeResponse;
 use crate::integrator::collocation::newton::{Solution, Source, closed_forces, first_forces};
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::math::nodal::Nodal;
@@ -49,7 +49,7 @@ pub(crate) fn settle<const S: usize, A: Arithmetic>(
     state: &State,
     (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
     source: Source<S>,
-    free: &Outside<S>,
+    free: &FreeResponse<S>,
 ) -> Option<Settled<S>> {
     let start = axial.loads(&model.modes, &state.modes);
     let tolerance = match source {
@@ -75,7 +75,7 @@ pub(crate) fn settle<const S: usize, A: Arithmetic>(
         let solution = match source {
             Source::Law(newton) if state.closed => {
                 let error = load_error::<S, A>(model, free, &start, &loads, (step, collocation));
-                let free = Outside {
+                let free = FreeResponse {
                     error: &error,
                     missed: 1.0,
                     ..with_loads::<S, A>(model, free, step, &loads)
@@ -174,11 +174,11 @@ fn force_of_change<const S: usize>(model: &Model, loads: &NodalModes<S>, next: &
 #[inline(always)]
 pub(crate) fn with_loads<'a, const S: usize, A: Arithmetic>(
     model: &Model,
-    outside: &Outside<'a, S>,
+    free: &FreeResponse<'a, S>,
     step: &StepCoefficients<S>,
     loads: &NodalModes<S>,
-) -> Outside<'a, S> {
-    let mut with = outside.clone();
+) -> FreeResponse<'a, S> {
+    let mut with = free.clone();
     for ((mode, columns), load) in model.modes.iter().zip(&step.columns).zip(loads) {
         let ModeColumns { load: columns, .. } = columns;
         let load = load.map(|load| -mode.tip * load);
@@ -192,14 +192,14 @@ pub(crate) fn with_loads<'a, const S: usize, A: Arithmetic>(
 #[inline(always)]
 fn load_error<const S: usize, A: Arithmetic>(
     model: &Model,
-    outside: &Outside<S>,
+    free: &FreeResponse<S>,
     start: &Modal,
     loads: &NodalModes<S>,
     (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
 ) -> ErrorColumn<S> {
     let mut error = ErrorColumn {
-        displacement: outside.error.displacement.map(|d| outside.missed * d),
-        velocity: outside.error.velocity.map(|r| outside.missed * r),
+        displacement: free.error.displacement.map(|d| free.missed * d),
+        velocity: free.error.velocity.map(|r| free.missed * r),
     };
     let modes = model.modes.iter().zip(&step.columns).zip(start).zip(loads);
     for (((mode, columns), start), load) in modes {

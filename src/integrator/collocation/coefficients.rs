@@ -176,7 +176,7 @@ impl<const S: usize> StepCoefficients<S> {
 
     /// Computes the coefficients of the length in place.
     fn fill(&mut self, length: f64, model: &Model, collocation: &Collocation<S>) {
-        compiled_for!(model.machine, A => self.compute::<A>(length, model, collocation));
+        compiled_for!(model.simd, A => self.compute::<A>(length, model, collocation));
     }
 
     #[inline(always)]
@@ -184,7 +184,7 @@ impl<const S: usize> StepCoefficients<S> {
         let (h, shapes) = (length, &collocation.shapes);
         self.length = length;
         self.turns
-            .fill(&model.generator, model.machine, length, &collocation.nodes);
+            .fill(&model.generator, model.simd, length, &collocation.nodes);
         let (mut force, mut acceleration) = (Sum::<S>::ZERO, Sum::<S>::ZERO);
         for (i, (mode, step)) in model.modes.iter().zip(&mut self.modes).enumerate() {
             let tip = mode.tip;

@@ -29,7 +29,7 @@ pub enum Source<const S: usize> {
 
 /// What acts on the tip in a step besides the contact force.
 #[derive(Clone)]
-pub(crate) struct Outside<'a, const S: usize> {
+pub(crate) struct FreeResponse<'a, const S: usize> {
     /// Base acceleration at the nodes, m/s2.
     pub(crate) accelerations: Nodal<S>,
     /// Indentation at the nodes without contact force, as deviation from the preload, m.
@@ -44,7 +44,7 @@ pub(crate) struct Outside<'a, const S: usize> {
 
 /// How the law answers within a step; nothing where the force does not depend on the motion.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Slopes {
+pub struct Tangent {
     /// Greatest stiffness at the nodes, N/m.
     pub stiffness: f64,
     /// Greatest damping at the nodes, N s/m.
@@ -64,7 +64,7 @@ pub(crate) struct Solution<const S: usize> {
     /// The same per what is missed of the other loads.
     pub(crate) by_load: (f64, f64),
     /// Of the law.
-    pub(crate) slopes: Slopes,
+    pub(crate) tangent: Tangent,
 }
 
 impl<const S: usize> Solution<S> {
@@ -75,7 +75,7 @@ impl<const S: usize> Solution<S> {
             iterations: 0,
             by_force: (0.0, 0.0),
             by_load: (0.0, 0.0),
-            slopes: Slopes::default(),
+            tangent: Tangent::default(),
         }
     }
 
@@ -108,7 +108,7 @@ impl<const S: usize> Solution<S> {
             iterations,
             by_force: tip(&step.force_error, force_error),
             by_load: tip(load_error.0, load_error.1),
-            slopes: Slopes {
+            tangent: Tangent {
                 stiffness,
                 damping,
                 gain: gain.max(0.0),
@@ -154,14 +154,14 @@ pub(crate) fn first_forces<const S: usize, A: Arithmetic>(
 pub(crate) fn closed_forces<const S: usize, A: Arithmetic>(
     model: &Model,
     step: &StepCoefficients<S>,
-    outside: &Outside<S>,
+    free: &FreeResponse<S>,
     guess: Nodal<S>,
     newton: f64,
 ) -> Option<Solution<S>> {
     if model.law.damping() > 0.0 && !BARE {
-        iterated::<S, A, true>(model, step, outside, guess, newton)
+        iterated::<S, A, true>(model, step, free, guess, newton)
     } else {
-        iterated::<S, A, false>(model, step, outside, guess, newton)
+        iterated::<S, A, false>(model, step, free, guess, newton)
     }
 }
 
@@ -170,13 +170,13 @@ pub(crate) fn closed_forces<const S: usize, A: Arithmetic>(
 fn iterated<const S: usize, A: Arithmetic, const DAMPED: bool>(
     model: &Model,
     step: &StepCoefficients<S>,
-    outside: &Outside<S>,
+    free: &FreeResponse<S>,
     guess: Nodal<S>,
     newton: f64,
 ) -> Option<Solution<S>> {
-    let Outside {
+    let FreeResponse {
         free, free_rate, error, ..
-    } = outside;
+    } = free;
     let mut forces = guess;
     let d0 = model.preload.indentation;
     let greatest = |values: &Nodal<S>| values.iter().fold(0.0_f64, |greatest, value| greatest.max(value.abs()));

@@ -12,7 +12,7 @@ use crate::math::nodal::Nodal;
 use crate::math::nodal::{add, dot, scaled};
 use crate::math::prediction::Prediction;
 use crate::math::prediction::Predictions;
-use crate::math::simd::{Arithmetic, Machine, Separate, compiled_for};
+use crate::math::simd::{Arithmetic, Separate, Simd, compiled_for};
 
 /// Points at which a nodal polynomial is looked at where it comes near zero.
 const LOOKS: u32 = 32;
@@ -134,13 +134,13 @@ impl<const S: usize> Collocation<S> {
     /// for a step `ratio` times as long as the one before.
     pub fn predictions(
         &self,
-        machine: Machine,
+        simd: Simd,
         start: f64,
         values: &Nodal<S>,
         before: &Predictions,
         ratio: f64,
     ) -> Predictions {
-        compiled_for!(machine, A => self.compute::<A>(start, values, before, ratio))
+        compiled_for!(simd, A => self.compute::<A>(start, values, before, ratio))
     }
 
     #[inline(always)]

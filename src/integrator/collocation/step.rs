@@ -7,8 +7,8 @@ use crate::beam::mode::ModeStates;
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::axial_force::{self, Settled};
 use crate::integrator::collocation::coefficients::{EndRows, StepCoefficients};
-use crate::integrator::collocation::newton::Outside;
-use crate::integrator::collocation::newton::Slopes;
+use crate::integrator::collocation::newton::FreeResponse;
+use crate::integrator::collocation::newton::Tangent;
 use crate::integrator::collocation::newton::{Solution, at_nodes};
 use crate::integrator::collocation::newton::{Source, closed_forces, first_forces};
 use crate::integrator::collocation::polynomial::Collocation;
@@ -43,7 +43,7 @@ pub struct Trial<const S: usize> {
     /// Newton iterations spent.
     pub iterations: u64,
     /// Of the law.
-    pub slopes: Slopes,
+    pub tangent: Tangent,
 }
 
 /// The loads on [`LANES`] modes at the nodes.
@@ -74,9 +74,9 @@ pub fn trial<const S: usize>(
 ) -> Option<Trial<S>> {
     match model.axial() {
         None => {
-            compiled_for!(model.machine, A => compute::<S, A>(model, state, drive, coefficients, source, end_modes))
+            compiled_for!(model.simd, A => compute::<S, A>(model, state, drive, coefficients, source, end_modes))
         }
-        Some(axial) => compiled_for!(model.machine, A =>
+        Some(axial) => compiled_for!(model.simd, A =>
             compute_with_axial_force::<S, A>(model, axial, state, drive, coefficients, source, end_modes)),
     }
 }
@@ -91,7 +91,7 @@ fn compute<const S: usize, A: Arithmetic>(
     source: Source<S>,
     end_modes: &mut ModeStates,
 ) -> Option<Trial<S>> {
-    let free = outside::<S, A>(model, state, drive, step, collocation);
+    let free = free_response::<S, A>(model, state, drive, step, collocation);
     let guess = first_forces::<S, A>(model, state, step, collocation, source);
     let solution = match source {
         Source::Law(newton) if state.closed => closed_forces::<S, A>(model, step, &free, guess, newton)?,
@@ -127,11 +127,11 @@ fn compute_with_axial_force<const S: usize, A: Arithmetic>(
     source: Source<S>,
     end_modes: &mut ModeStates,
 ) -> Option<Trial<S>> {
-    let free = outside::<S, A>(model, state, drive, step, collocation);
+    let free = free_response::<S, A>(model, state, drive, step, collocation);
     let Settled { solution, loads, error } =
         axial_force::settle::<S, A>(model, axial, state, (step, collocation), source, &free)?;
     // The contact answers to what is missed of all loads together.
-    let free = Outside {
+    let free = FreeResponse {
         error: &error,
         missed: 1.0,
         ..axial_force::with_loads::<S, A>(model, &free, step, &loads)
@@ -164,15 +164,15 @@ fn compute_with_axial_force<const S: usize, A: Arithmetic>(
 
 /// What acts on the tip besides the contact force.
 #[inline(always)]
-fn outside<'a, const S: usize, A: Arithmetic>(
+fn free_response<'a, const S: usize, A: Arithmetic>(
     model: &Model,
     state: &State,
     drive: &Drive,
     step: &'a StepCoefficients<S>,
     collocation: &Collocation<S>,
-) -> Outside<'a, S> {
+) -> FreeResponse<'a, S> {
     let h = step.length;
-    let generated = model.generator.over_step(model.machine, state.time, &step.turns);
+    let generated = model.generator.over_step(model.simd, state.time, &step.turns);
     let driven = drive.acceleration(state.time);
     let mut accelerations = generated.nodes;
     add::<S, A>(&mut accelerations, drive.jerk * h, &collocation.nodes);
@@ -195,7 +195,7 @@ fn outside<'a, const S: usize, A: Arithmetic>(
     subtract(&mut free_rate, &rate_from_q, &rate_from_v);
     add_columns::<S, A>(&mut free, &step.acceleration.displacement, &accelerations);
     add_columns::<S, A>(&mut free_rate, &step.acceleration.velocity, &accelerations);
-    Outside {
+    FreeResponse {
         missed: driven + generated.start - dot::<S, A>(&accelerations, &collocation.at_start),
         error: &step.acceleration_error,
         accelerations,
@@ -212,11 +212,11 @@ fn judged<const S: usize, A: Arithmetic>(
     drive: &Drive,
     (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
     solution: &Solution<S>,
-    outside: &Outside<S>,
+    free: &FreeResponse<S>,
     (tip, tip_rate): (f64, f64),
 ) -> Trial<S> {
     let Solution { forces, iterations, .. } = *solution;
-    let (indentations, rates) = at_nodes::<S, A>(step, &outside.free, &outside.free_rate, &forces);
+    let (indentations, rates) = at_nodes::<S, A>(step, &free.free, &free.free_rate, &forces);
     let support = state.support + drive.support_rate * step.length;
     let (indentation, rate) = (support - tip, drive.support_rate - tip_rate);
 
@@ -228,7 +228,7 @@ fn judged<const S: usize, A: Arithmetic>(
     } else {
         0.0
     };
-    let error = error(model, state, step, solution, missed, outside, largest);
+    let error = error(model, state, step, solution, missed, free, largest);
     Trial {
         forces,
         indentations,
@@ -240,7 +240,7 @@ fn judged<const S: usize, A: Arithmetic>(
         rounding: ROUNDING * largest.max(model.preload.force),
         missed: missed.abs(),
         iterations,
-        slopes: solution.slopes,
+        tangent: solution.tangent,
     }
 }
 
@@ -260,14 +260,14 @@ fn error<const S: usize>(
     step: &StepCoefficients<S>,
     solution: &Solution<S>,
     missed: f64,
-    outside: &Outside<S>,
+    free: &FreeResponse<S>,
     largest: f64,
 ) -> f64 {
     if state.closed {
         let (by_force, by_load) = (solution.by_force, solution.by_load);
-        let wrong_d = by_load.0 * outside.missed - by_force.0 * missed;
-        let wrong_r = by_load.1 * outside.missed - by_force.1 * missed;
-        let fast = (solution.slopes.stiffness * wrong_d).abs() + (solution.slopes.damping * wrong_r).abs();
+        let wrong_d = by_load.0 * free.missed - by_force.0 * missed;
+        let wrong_r = by_load.1 * free.missed - by_force.1 * missed;
+        let fast = (solution.tangent.stiffness * wrong_d).abs() + (solution.tangent.damping * wrong_r).abs();
         let elapsed = state.time - state.last_kink;
         let kinked = if elapsed < FAR * step.length {
             KINKED * missed.abs() * analytic::<S>(elapsed / step.length)
@@ -275,10 +275,10 @@ fn error<const S: usize>(
             0.0
         };
         let slow = 3.0 * missed * missed / largest + kinked;
-        fast + slow * solution.slopes.gain / (1.0 + solution.slopes.gain)
+        fast + slow * solution.tangent.gain / (1.0 + solution.tangent.gain)
     } else {
-        let last = |values: &Nodal<S>| (end(values) * outside.missed).abs();
-        let rows = outside.error;
+        let last = |values: &Nodal<S>| (end(values) * free.missed).abs();
+        let rows = free.error;
         let wrong = last(&rows.displacement) + model.law.damping() * last(&rows.velocity);
         model.law.tangent_stiffness(model.force_scale) * wrong
     }
@@ -293,8 +293,8 @@ pub(crate) fn is_rounding<const S: usize>(model: &Model, state: &State, trial: &
         velocity += (mode.tip * at.v).abs();
     }
     // The force at the first node reacts upon itself over the time up to it alone, some 1 / S^2 of the step.
-    let reaction = 1.0 + trial.slopes.gain / (S * S) as f64;
-    let Slopes { stiffness, damping, .. } = trial.slopes;
+    let reaction = 1.0 + trial.tangent.gain / (S * S) as f64;
+    let Tangent { stiffness, damping, .. } = trial.tangent;
     trial.error <= ROUNDINGS * f64::EPSILON * (stiffness * displacement + damping * velocity) / reaction
 }
 

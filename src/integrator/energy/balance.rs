@@ -108,7 +108,7 @@ mod tests {
     use crate::excitation::drive::Drive;
     use crate::inputs::Inputs;
     use crate::integrator::collocation::polynomial::Collocation;
-    use crate::integrator::grid::Progress;
+    use crate::integrator::grid::Grid;
     use crate::integrator::integration::Steps;
     use crate::math::nodal::{LONG, SHORT};
     use crate::model::Model;
@@ -156,18 +156,18 @@ mod tests {
         let mut workspace = Workspace::new(model);
         let mut integration = Integration {
             model,
-            progress: Progress::over(state.time, length),
+            grid: Grid::over(state.time, length),
             state,
             workspace: &mut workspace,
             drive,
-            span: None,
+            dense: None,
             extremes: None,
             tolerance: 1e-6,
             allowed: 1e-9,
             refusals: 0,
             conserves: false,
         };
-        let target = integration.progress.target(length, integration.state.time, None);
+        let target = integration.grid.target(length, integration.state.time, None);
         let mut trial = integration.attempt::<S>(&target).unwrap();
         change(&mut trial, Room::<S>::parts(integration.workspace).1);
         integration.take(&trial, &target).unwrap();

@@ -49,7 +49,7 @@ impl Integration<'_> {
     }
 
     /// Where the step of free flight of `length` seconds has to end because the contact closes, if it does.
-    pub(crate) fn touchdown<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> Option<Cut>
+    pub(crate) fn closing<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> Option<Cut>
     where
         Workspace: Room<S>,
     {

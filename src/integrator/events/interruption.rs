@@ -6,8 +6,8 @@ use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::events::Cut;
 use crate::integrator::grid::Target;
-use crate::integrator::integration::Advice;
 use crate::integrator::integration::Integration;
+use crate::integrator::integration::StepOutcome;
 use crate::integrator::workspace::Room;
 use crate::integrator::workspace::Workspace;
 use crate::math::nodal::SHORT;
@@ -54,13 +54,13 @@ impl Integration<'_> {
     }
 
     /// Ends the step at the passage that shows after the part `passed` of it; nothing where it may go on to its end.
-    pub(crate) fn pass<const S: usize>(
+    pub(crate) fn stop_at_threshold<const S: usize>(
         &mut self,
         passed: f64,
         target: &Target,
         growth: f64,
         wanted: f64,
-    ) -> Result<Option<Advice>, StepError>
+    ) -> Result<Option<StepOutcome>, StepError>
     where
         Workspace: Room<S>,
     {
@@ -113,11 +113,11 @@ impl Integration<'_> {
                 return Ok(Some(self.reject(target.length)));
             }
         };
-        let advice = self.end_at::<S>(&cut_at(length), growth, wanted)?;
-        if advice.taken {
+        let outcome = self.end_at::<S>(&cut_at(length), growth, wanted)?;
+        if outcome.taken {
             self.state.interruptions.turn(criterion, self.state.time);
         }
-        Ok(Some(advice))
+        Ok(Some(outcome))
     }
 
     /// Notes the contact force as it is now, and an interruption that begins or ends with it.

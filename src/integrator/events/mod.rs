@@ -8,7 +8,7 @@ pub mod opening;
 use crate::error::StepError;
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::events::log::Event;
-use crate::integrator::integration::{Advice, Integration};
+use crate::integrator::integration::{Integration, StepOutcome};
 use crate::integrator::workspace::{Room, Workspace};
 
 /// A step that ends before it was meant to.
@@ -21,7 +21,7 @@ pub(crate) struct Cut {
 
 impl Integration<'_> {
     /// Where in the step (in steps) the contact first looks as if it switched.
-    pub(crate) fn first_suspect<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> Option<f64>
+    pub(crate) fn first_event_candidate<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> Option<f64>
     where
         Workspace: Room<S>,
     {
@@ -32,22 +32,27 @@ impl Integration<'_> {
         }
     }
 
-    /// Where the step of `length` seconds has to end, which looks suspect after the part `suspect` of it; `None` where
+    /// Where the step of `length` seconds has to end, which looks like an event after the part `candidate` of it; `None` where
     /// it may go on to its end.
-    pub(crate) fn cut<const S: usize>(&mut self, suspect: f64, trial: &Trial<S>, length: f64) -> Option<Cut>
+    pub(crate) fn cut<const S: usize>(&mut self, candidate: f64, trial: &Trial<S>, length: f64) -> Option<Cut>
     where
         Workspace: Room<S>,
     {
         if self.state.closed {
-            self.release::<S>(suspect * length, length)
+            self.opening::<S>(candidate * length, length)
         } else {
-            self.touchdown(trial, length)
+            self.closing(trial, length)
         }
     }
 
     /// The step that ends at the cut, taken or rejected, in place of one whose length wanted was `wanted` (s) and which
     /// may have grown by `growth`.
-    pub(crate) fn end_at<const S: usize>(&mut self, cut: &Cut, growth: f64, wanted: f64) -> Result<Advice, StepError>
+    pub(crate) fn end_at<const S: usize>(
+        &mut self,
+        cut: &Cut,
+        growth: f64,
+        wanted: f64,
+    ) -> Result<StepOutcome, StepError>
     where
         Workspace: Room<S>,
     {
@@ -56,26 +61,26 @@ impl Integration<'_> {
             let length = self.switch(!self.state.closed);
             return Ok(self.reject(length));
         }
-        let target = self.progress.cut(cut.length, self.state.time + cut.length);
+        let target = self.grid.cut(cut.length, self.state.time + cut.length);
         let attempt = self.attempt::<S>(&target);
         let Some(trial) = attempt.filter(|trial| self.is_acceptable(self.relative_error(trial, &target), &target))
         else {
             // What the law does close to the event may be too much for one step up to it.
             if self.is_shortest(&target) {
-                return self.fall_back(&target);
+                return self.take_with_constant_force(&target);
             }
             return Ok(self.reject(0.5 * target.length));
         };
         self.take(&trial, &target)?;
         if cut.switches {
-            return Ok(Advice {
+            return Ok(StepOutcome {
                 taken: true,
                 // The steps find their length anew from here; this one tells nothing of it.
                 growth: f64::INFINITY,
                 length: self.switch(!self.state.closed),
             });
         }
-        Ok(Advice::after(target.length, wanted, growth))
+        Ok(StepOutcome::after(target.length, wanted, growth))
     }
 
     /// The contact opens or closes at the instant of the state; the step to take next.

@@ -10,7 +10,7 @@ use crate::math::roots;
 impl Integration<'_> {
     /// Where the step of `length` seconds has to end because the contact opens, which it has done after `latest`
     /// seconds if it does at all.
-    pub(crate) fn release<const S: usize>(&mut self, latest: f64, length: f64) -> Option<Cut>
+    pub(crate) fn opening<const S: usize>(&mut self, latest: f64, length: f64) -> Option<Cut>
     where
         Workspace: Room<S>,
     {

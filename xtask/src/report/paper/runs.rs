@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use anyhow::{Context, Result};
-use relay_contact::electrical::Path;
+use relay_contact::electrical::ElectricalContact;
 use relay_contact::inputs::Inputs;
 use relay_contact::math::roots;
 use relay_contact::model::Model;
@@ -80,7 +80,7 @@ pub fn elastic_force(model: &Model, frequency: f64) -> f64 {
 
 /// Contact resistance of the specimen at a force (N), mOhm.
 pub fn resistance(force: f64) -> f64 {
-    Path::new(&Scene::default()).map_or(f64::NAN, |path| 1e3 / path.conductance(force))
+    ElectricalContact::new(&Scene::default()).map_or(f64::NAN, |path| 1e3 / path.conductance(force))
 }
 
 /// The periodic motion under the published vibration.
