@@ -158,7 +158,7 @@ fn run(amplitude: f64, count: u32) -> Result<Vec<[f64; 6]>, Failure> {
     for n in progress.wrap_iter(0..count) {
         let time = f64::from(n) * STEP;
         // A copy of all that moves, without allocation. It can be kept as long as wanted, and serialised by serde.
-        let saved = (*contact.course(), circuit);
+        let saved = (*contact.motion(), circuit);
         let before = switches(&contact);
         advance(&mut contact, &mut circuit, amplitude, time, STEP)?;
         if switches(&contact) != before {

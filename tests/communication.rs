@@ -190,7 +190,7 @@ fn events(size: u32, inputs: impl Fn(f64) -> Inputs) -> Vec<Event> {
         assert_eq!(left_out, 0);
         events.extend(list);
         if k % 11 == 0 {
-            let course = *simulation.course();
+            let course = *simulation.motion();
             simulation.go_on_from(&course);
             assert_eq!(simulation.events().0.count(), 0);
         }

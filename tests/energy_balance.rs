@@ -279,7 +279,7 @@ fn the_balance_belongs_to_the_communication_point() {
     let mut entries = Vec::new();
     for k in 0..end {
         if k == saved_at {
-            saved = Some(*simulation.course());
+            saved = Some(*simulation.motion());
         }
         entries.push(step(&mut simulation, k));
     }
