@@ -1,0 +1,101 @@
+//! Long runs: what is small in a step must not add up.
+
+use anyhow::{Result, ensure};
+use relay_contact::inputs::Inputs;
+use relay_contact::model::Model;
+use relay_contact::scene::Scene;
+use relay_contact::simulation::Simulation;
+use relay_contact::variables::{ExcitationKind, RealOutput};
+
+use crate::case::{Case, Check, TWO_RUNS, closest, worst};
+use crate::ride::throw;
+use crate::rig::{Rig, undamped};
+
+pub const CASES: &[Case] = &[
+    Case::new(
+        "1000 contact cycles and more, no damping at all, 1 ms communication steps",
+        "nothing takes away what errors add; the contact rings at tens of kHz",
+        || Ok(vec![contact_cycles(1000, 1e-6, 1e-3)?]),
+    ),
+    Case::new(
+        "1000 contact cycles, no damping at all, 10 µs communication steps, tolerance 1e-4, 1e-6, 1e-8",
+        "nothing takes away what errors add; the contact rings at tens of kHz",
+        || {
+            let checks = [1e-4, 1e-6, 1e-8].map(|tolerance| contact_cycles(1000, tolerance, 1e-5));
+            Ok(closest(checks.into_iter().collect::<Result<Vec<_>>>()?))
+        },
+    ),
+    Case::new(
+        "A million contact cycles, no damping at all",
+        "nothing takes away what errors add; the contact rings at tens of kHz",
+        || Ok(vec![contact_cycles(1_000_000, 1e-6, 1e-5)?]),
+    )
+    .long(),
+    Case::new(
+        "98 m/s² at 1 kHz for 10⁵ communication steps of 1 µs",
+        "errors of steps add up to drift",
+        || Ok(vec![drift(100)?]),
+    ),
+    Case::new(
+        "98 m/s² at 1 kHz for 10⁷ communication steps of 1 µs",
+        "errors of steps add up to drift",
+        || Ok(vec![drift(10_000)?]),
+    )
+    .long(),
+];
+
+/// The published run for `periods` of the sine at 1000 communication steps each: the force at whole periods stays what it
+/// was once the start has died away.
+fn drift(periods: u32) -> Result<Check> {
+    let mut scene = Scene::default();
+    scene.effects.excitation = ExcitationKind::Sine;
+    let mut contact = Simulation::new(&scene, &Inputs::default(), 0.0)?;
+    let (mut settled, mut off) = (0.0, 0.0);
+    for period in 0..periods {
+        for step in 1..=1000 {
+            let (start, end) = (contact.time(), f64::from(period * 1000 + step) * 1e-6);
+            contact.step(&Inputs::default(), start, end - start)?;
+        }
+        let force = contact.real(RealOutput::ContactForce);
+        if period == 40 {
+            settled = force;
+        }
+        if period > 40 {
+            off = worst(off, (force - settled).abs());
+        }
+    }
+    ensure!(settled > 0.0, "the contact is open");
+    Ok(Check::new(
+        "the force at whole periods stays what it was at the 41st",
+        (off, 2e-6 * contact.model().force_scale),
+        "N",
+        TWO_RUNS,
+    ))
+}
+
+/// The specimen without damping, thrown so that it bounces until it has closed `cycles` times, with a communication step (s):
+/// energy made or lost, relative to the energy thrown in.
+fn contact_cycles(cycles: u32, tolerance: f64, step: f64) -> Result<Check> {
+    let mut scene = undamped();
+    scene.solver.tolerance = tolerance;
+    scene.solver.modes = 6;
+    let mut rig = Rig::new(Model::new(&scene, 0.0)?);
+    throw(&mut rig, 0.1);
+    let start = rig.energy();
+    let (mut closings, mut last, mut off, mut point) = (0, -1.0, 0.0, 0_u32);
+    while closings < cycles {
+        point += 1;
+        rig.run_to(&Inputs::default(), f64::from(point) * step)?;
+        off = worst(off, (rig.energy() / start - 1.0).abs());
+        if rig.state.last_closing > last {
+            last = rig.state.last_closing;
+            closings += 1;
+        }
+    }
+    Ok(Check::new(
+        "energy stays what was thrown in (part of it)",
+        (off, tolerance),
+        "",
+        "the tolerance",
+    ))
+}
