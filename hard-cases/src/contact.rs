@@ -53,7 +53,7 @@ pub const CASES: &[Case] = &[
     ),
     Case::new(
         "Impact at 10 m/s, no damping at all",
-        "a blow that excites every mode, and nothing takes the energy away",
+        "a blow of 600 N that excites every mode, and nothing takes the energy away",
         undamped_impact,
     ),
     Case::new(

@@ -21,7 +21,7 @@ pub const CASES: &[Case] = &[
     ),
     Case::new(
         "Shock of 10⁶ m/s² (100 000 g), 0.1 ms",
-        "the greatest force, then flight and blows",
+        "forces up to 150 N, then flight and blows",
         shock,
     ),
     Case::new(

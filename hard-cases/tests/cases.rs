@@ -1,6 +1,6 @@
 //! Each case of the list as a test of its name: `cargo test -p hard-cases --test cases stiffer`.
 //!
-//! The long ones, a million contact cycles and ten million steps, are left out of the default run:
+//! Long ones, a million contact cycles, are left out of the default run:
 //! `cargo test --release -p hard-cases --test cases -- --ignored`.
 
 use std::process::ExitCode;

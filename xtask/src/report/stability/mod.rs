@@ -24,7 +24,9 @@ pub fn sections(_: Arguments) -> Result<Vec<Section>> {
         bail!("hard cases:\n{}", broken.join("\n"));
     }
     let margins = kept.iter().flat_map(|(_, checks)| checks).map(Check::margin);
-    let (count, least) = margins.fold((0, f64::INFINITY), |(count, least), margin| (count + 1, least.min(margin)));
+    let (count, least) = margins.fold((0, f64::INFINITY), |(count, least), margin| {
+        (count + 1, least.min(margin))
+    });
     let text = format!(
         "{count} properties in {} scenes that break integrators, measured in this run; the report is not written where one is \
          not kept. Margin: how many times smaller the measured value is than what is allowed. In every scene that is shaken or \
@@ -62,7 +64,11 @@ pub fn sections(_: Arguments) -> Result<Vec<Section>> {
 /// The case is named in the first row only.
 fn rows(case: &Case, checks: &[Check]) -> Vec<Vec<String>> {
     let row = |(index, check): (usize, &Check)| {
-        let name = if index == 0 { [case.name, case.difficulty] } else { [""; 2] };
+        let name = if index == 0 {
+            [case.name, case.difficulty]
+        } else {
+            [""; 2]
+        };
         let margin = match check.margin() {
             f64::INFINITY => "exact".to_owned(),
             margin => format!("{margin:.1e}"),
