@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use anyhow::{Result, bail};
+use anyhow::{Result, ensure};
 
 /// A scene that breaks integrators, and what must hold in it.
 #[derive(Clone, Copy, Debug)]
@@ -11,60 +11,36 @@ pub struct Case {
     pub name: &'static str,
     /// What makes it hard.
     pub difficulty: &'static str,
-    /// Whether it takes minutes.
-    pub long: bool,
-    run: fn() -> Result<Vec<Check>>,
+    /// Simulates it and measures each property.
+    pub(crate) measure: fn() -> Result<Vec<Check>>,
 }
+
+/// A list of cases: `NAME: "case", "what makes it hard" => checks; ...`.
+macro_rules! cases {
+    ($list:ident: $($name:literal, $difficulty:literal => $checks:expr;)*) => {
+        pub const $list: &[$crate::case::Case] = &[$($crate::case::Case {
+            name: $name,
+            difficulty: $difficulty,
+            measure: || $checks,
+        }),*];
+    };
+}
+pub(crate) use cases;
 
 impl Case {
-    pub(crate) const fn new(name: &'static str, difficulty: &'static str, run: fn() -> Result<Vec<Check>>) -> Self {
-        Self {
-            name,
-            difficulty,
-            long: false,
-            run,
-        }
-    }
-
-    pub(crate) const fn long(self) -> Self {
-        Self { long: true, ..self }
-    }
-
-    /// Simulates the case and measures each property.
+    /// The properties, all of them kept.
     ///
     /// # Errors
-    /// Where the simulation itself fails: a step that cannot be taken, a number that is not finite, a contact that pulls,
-    /// more integration steps than the case allows.
-    pub fn measure(&self) -> Result<Vec<Check>> {
-        (self.run)()
-    }
-
-    /// As [`Case::measure`].
-    ///
-    /// # Errors
-    /// Also where a property is not kept.
+    /// Where one is not kept or the simulation itself fails: a step that cannot be taken, a number that is not finite, a
+    /// contact that pulls, more integration steps than the case allows.
     pub fn keeps_its_properties(&self) -> Result<Vec<Check>> {
-        let checks = self.measure()?;
-        let broken: Vec<_> = checks.iter().filter(|check| !check.is_kept()).collect();
-        if broken.is_empty() {
-            return Ok(checks);
-        }
-        let broken: Vec<_> = broken.into_iter().map(Check::to_string).collect();
-        bail!("{}: {}", self.name, broken.join("; "))
+        let checks = (self.measure)()?;
+        let broken = checks.iter().filter(|check| !check.is_kept());
+        let broken: Vec<_> = broken.map(Check::to_string).collect();
+        ensure!(broken.is_empty(), "{}: {}", self.name, broken.join("; "));
+        Ok(checks)
     }
 }
-
-/// The bound of an exact property.
-const EXACT: &str = "exact";
-
-/// The bound of the difference of two simulations.
-pub(crate) const TWO_RUNS: &str = "two runs, each within the tolerance";
-
-/// The bound of the number of integration steps.
-pub(crate) const WORK: &str = "the work stays bounded";
-
-/// The bound of the energy.
-pub(crate) const FORCE_ERROR_TIMES_PATH: &str = "force error times path of the tip";
 
 /// A property and how well it is kept.
 #[derive(Clone, Debug)]
@@ -97,9 +73,31 @@ impl Check {
         }
     }
 
-    /// A property that allows no deviation.
+    /// No deviation is allowed.
     pub(crate) fn exact(property: &'static str, measured: f64, unit: &'static str) -> Self {
-        Self::new(property, (measured, 0.0), unit, EXACT)
+        Self::new(property, (measured, 0.0), unit, "exact")
+    }
+
+    /// A result is as right as the tolerance says.
+    pub(crate) fn tolerance(property: &'static str, measured: f64, allowed: f64, unit: &'static str) -> Self {
+        Self::new(property, (measured, allowed), unit, "the tolerance")
+    }
+
+    /// Two simulations differ in the force by at most twice the tolerance (N).
+    pub(crate) fn two_runs(property: &'static str, difference: f64, tolerance: f64) -> Self {
+        let reason = "two runs, each within the tolerance";
+        Self::new(property, (difference, 2.0 * tolerance), "N", reason)
+    }
+
+    /// A force wrong by the tolerance along the path of the tip makes or loses energy (J).
+    pub(crate) fn energy(property: &'static str, measured: f64, allowed: f64) -> Self {
+        Self::new(property, (measured, allowed), "J", "force error × path of the tip")
+    }
+
+    /// The work is bounded.
+    pub(crate) fn steps(measured: u64, allowed: u64) -> Self {
+        let counts = (measured as f64, allowed as f64);
+        Self::new("integration steps", counts, "", "bounded work")
     }
 
     /// False also for what is not a number.
@@ -140,16 +138,18 @@ impl fmt::Display for Check {
 }
 
 /// Of each property, measured in several simulations, the check with the least margin.
-pub(crate) fn closest(checks: impl IntoIterator<Item = Check>) -> Vec<Check> {
+pub(crate) fn closest(simulations: impl IntoIterator<Item = Result<Vec<Check>>>) -> Result<Vec<Check>> {
     let mut closest: Vec<Check> = Vec::new();
-    for check in checks {
-        match closest.iter_mut().find(|other| other.property == check.property) {
-            Some(other) if check.margin() < other.margin() => *other = check,
-            Some(_) => {}
-            None => closest.push(check),
+    for checks in simulations {
+        for check in checks? {
+            match closest.iter_mut().find(|other| other.property == check.property) {
+                Some(other) if check.margin() < other.margin() => *other = check,
+                Some(_) => {}
+                None => closest.push(check),
+            }
         }
     }
-    closest
+    Ok(closest)
 }
 
 /// The larger deviation; what is not a number stays.
@@ -167,7 +167,7 @@ mod tests {
         assert!(check(0.0).is_kept() && check(1e-9).is_kept());
         assert!(!check(1.1e-9).is_kept() && !check(f64::NAN).is_kept());
         assert!(worst(worst(1.0, f64::NAN), 2.0).is_nan());
-        let found = closest([0.0, f64::NAN, 1e-9].map(check));
-        assert!(matches!(&found[..], [one] if one.measured.is_nan()));
+        let found = closest([0.0, f64::NAN, 1e-9].map(|measured| Ok(vec![check(measured)])));
+        assert!(matches!(&found.unwrap()[..], [one] if one.measured.is_nan()));
     }
 }

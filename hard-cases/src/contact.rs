@@ -1,82 +1,50 @@
-//! Extreme contacts, and blows on them.
+//! Extreme contacts, and impacts on them.
 
 use anyhow::{Result, ensure};
 use relay_contact::inputs::Inputs;
+use relay_contact::model::Model;
 use relay_contact::scene::Scene;
 use relay_contact::variables::ContactLawKind;
 
-use crate::case::{Case, Check, FORCE_ERROR_TIMES_PATH, WORK, closest, worst};
+use crate::case::{Check, cases, closest, worst};
 use crate::energy_balance::{balances, square};
 use crate::ride::{Ride, Segment, throw};
 use crate::rig::{Rig, compose, hertz, oscillator, undamped};
-use relay_contact::model::Model;
 
-pub const CASES: &[Case] = &[
-    Case::new(
-        "Contact 100 times stiffer",
-        "it rings at ever higher frequencies",
-        || shaken(with_stiffness(100.0)),
-    ),
-    Case::new(
-        "Contact 100 times softer",
-        "it is pressed in 21 times as far, beyond what a tangent tells",
-        || shaken(with_stiffness(0.01)),
-    ),
-    Case::new("Contact without damping", "only the spring takes energy out", || {
-        Ride::shaken(with_damping(0.0)).checks()
-    }),
+cases! { CASES:
+    "Contact 100 times stiffer", "it rings at ever higher frequencies"
+        => shaken(with_stiffness(100.0));
+    "Contact 100 times softer", "indentation 21 times as deep: far from the linearised contact"
+        => shaken(with_stiffness(0.01));
+    "Contact without damping", "only the spring dissipates"
+        => Ride::shaken(with_damping(0.0)).checks();
     // Times the tangent stiffness of 3.5e6 N/m on some milligrams: an eigenvalue beyond -1e9 1/s.
-    Case::new(
-        "Overdamped contact",
-        "contact damping of 1 s: an eigenvalue beyond −10⁹ 1/s, stiff beyond any explicit step",
-        || shaken(with_damping(1.0)),
-    ),
-    Case::new(
-        "Linearised and bonded contact, damped and undamped",
-        "the bonded contact pulls; events that the Hertz contact has do not occur",
-        linear_laws,
-    ),
-    Case::new(
-        "Neither gap nor overtravel",
-        "the contact opens and closes from a preload of zero",
-        || Ride::shaken(with_overtravel(0.0)).checks(),
-    ),
-    Case::new(
-        "Impact at 10 m/s, damped contact and spring",
-        "a blow that excites every mode",
-        || impact(8.063e-5),
-    ),
-    Case::new(
-        "Impact at 10 m/s, undamped contact",
-        "a blow that excites every mode",
-        || impact(0.0),
-    ),
-    Case::new(
-        "Impact at 10 m/s, no damping at all",
-        "a blow of 600 N that excites every mode, and nothing takes the energy away",
-        undamped_impact,
-    ),
-    Case::new(
-        "Blow on a contact without damping",
-        "flight, touch, blow and release in one communication step; the force starts as a power 3/2",
-        || restitution(0.0, 1.0),
-    ),
-    Case::new(
-        "Blow on a damped contact",
-        "flight, touch, blow and release in one communication step; the force starts as a power 3/2",
-        || restitution(0.3, 0.623_642_991_4),
-    ),
-    Case::new(
-        "Spring pressed against the contact across a gap of 10 µm",
-        "weakly damped: it bounces until it lies still",
-        pressed,
-    ),
-    Case::new(
-        "A mass bouncing to rest under its weight, in one communication step and in 50 000",
-        "ever more impacts in ever less time: event after event without end",
-        accumulating,
-    ),
-];
+    "Overdamped contact", "contact damping of 1 s: an eigenvalue beyond −10⁹ 1/s, stiff beyond any explicit step"
+        => shaken(with_damping(1.0));
+    "Linearised and bonded contact, damped and undamped",
+        "constant stiffness, and the bonded contact also pulls"
+        => linear_laws();
+    "Neither gap nor overtravel", "the contact opens and closes from a preload of zero"
+        => Ride::shaken(with_overtravel(0.0)).checks();
+    "Impact at 10 m/s, damped contact and spring", "the impact excites every mode"
+        => impact(8.063e-5);
+    "Impact at 10 m/s, undamped contact", "the impact excites every mode"
+        => impact(0.0);
+    "Impact at 10 m/s, no damping at all",
+        "600 N that excite every mode, and nothing dissipates"
+        => undamped_impact();
+    "Impact of a mass on a contact without damping",
+        "flight, impact and release in one communication step; the force starts as a power 3/2"
+        => restitution(0.0, 1.0);
+    "Impact of a mass on a damped contact",
+        "flight, impact and release in one communication step; the force starts as a power 3/2"
+        => restitution(0.3, 0.623_642_991_4);
+    "Spring pressed against the contact across a gap of 10 µm", "weakly damped: it bounces until it rests"
+        => pressed();
+    "A mass bouncing to rest under its weight, in one communication step and in 50 000",
+        "more and more impacts in less and less time"
+        => accumulating();
+}
 
 fn with_stiffness(factor: f64) -> Scene {
     let mut scene = Scene::default();
@@ -104,15 +72,17 @@ fn shaken(scene: Scene) -> Result<Vec<Check>> {
 }
 
 fn linear_laws() -> Result<Vec<Check>> {
-    let mut checks = Vec::new();
-    for law in [ContactLawKind::Linearised, ContactLawKind::Bonded] {
-        for damping in [0.0, 8.063e-5] {
-            let mut scene = with_damping(damping);
-            scene.effects.contact_law = law;
-            checks.extend(Ride::shaken(scene).checks()?);
-        }
-    }
-    Ok(closest(checks))
+    let laws = [
+        (ContactLawKind::Linearised, 0.0),
+        (ContactLawKind::Linearised, 8.063e-5),
+        (ContactLawKind::Bonded, 0.0),
+        (ContactLawKind::Bonded, 8.063e-5),
+    ];
+    closest(laws.map(|(law, damping)| {
+        let mut scene = with_damping(damping);
+        scene.effects.contact_law = law;
+        Ride::shaken(scene).checks()
+    }))
 }
 
 fn impact(damping: f64) -> Result<Vec<Check>> {
@@ -140,8 +110,8 @@ fn undamped_impact() -> Result<Vec<Check>> {
     }
     // Rounding: the last of thirteen digits of it.
     let allowed = scene.solver.effective_tolerance() * rig.model.force_scale * path + 1e-13 * start;
-    let property = "energy stays what was thrown in";
-    Ok(vec![Check::new(property, (off, allowed), "J", FORCE_ERROR_TIMES_PATH)])
+    let property = "the energy put in is kept";
+    Ok(vec![Check::energy(property, off, allowed)])
 }
 
 /// Unit mass on a Hertzian contact of unit stiffness at unit speed, with the damping of Kuwabara and Kono. Without damping
@@ -192,18 +162,11 @@ fn accumulating() -> Result<Vec<Check>> {
         last = fine.state.last_closing;
     }
     ensure!(closings > 5, "only {closings} impacts");
-    let checks = [&coarse, &fine].into_iter().flat_map(|rig| {
+    closest([&coarse, &fine].map(|rig| {
         let off = (rig.state.force - mass * weight).abs();
-        let steps = (rig.state.steps as f64, 99_999.0);
-        [
-            Check::new(
-                "at the end the force is the weight",
-                (off, 1e-6 * mass * weight),
-                "N",
-                "the tolerance",
-            ),
-            Check::new("integration steps", steps, "", WORK),
-        ]
-    });
-    Ok(closest(checks))
+        Ok(vec![
+            Check::tolerance("at the end the force is the weight", off, 1e-6 * mass * weight, "N"),
+            Check::steps(rig.state.steps, 99_999),
+        ])
+    }))
 }

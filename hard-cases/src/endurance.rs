@@ -7,36 +7,25 @@ use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ExcitationKind, RealOutput};
 
-use crate::case::{Case, Check, TWO_RUNS, closest, worst};
+use crate::case::{Check, cases, closest, worst};
 use crate::ride::throw;
 use crate::rig::{Rig, undamped};
 
-pub const CASES: &[Case] = &[
-    Case::new(
-        "1000 contact cycles and more, no damping at all, 1 ms communication steps",
-        "nothing takes away what errors add; the contact rings at tens of kHz",
-        || Ok(vec![contact_cycles(1000, 1e-6, 1e-3)?]),
-    ),
-    Case::new(
-        "1000 contact cycles, no damping at all, 10 µs communication steps, tolerance 1e-4, 1e-6, 1e-8",
-        "nothing takes away what errors add; the contact rings at tens of kHz",
-        || {
-            let checks = [1e-4, 1e-6, 1e-8].map(|tolerance| contact_cycles(1000, tolerance, 1e-5));
-            Ok(closest(checks.into_iter().collect::<Result<Vec<_>>>()?))
-        },
-    ),
-    Case::new(
-        "A million contact cycles, no damping at all",
-        "nothing takes away what errors add; the contact rings at tens of kHz",
-        || Ok(vec![contact_cycles(1_000_000, 1e-6, 1e-5)?]),
-    )
-    .long(),
-    Case::new(
-        "98 m/s² at 1 kHz for 10⁷ communication steps of 1 µs",
-        "errors of steps add up to drift",
-        drift,
-    ),
-];
+cases! { CASES:
+    "1000 contact cycles and more, no damping at all, 1 ms communication steps",
+        "no damping removes the energy that errors add; the contact rings at tens of kHz"
+        => contact_cycles(1000, 1e-6, 1e-3);
+    "1000 contact cycles, no damping at all, 10 µs communication steps, tolerance 1e-4, 1e-6, 1e-8",
+        "no damping removes the energy that errors add; the contact rings at tens of kHz"
+        => closest([1e-4, 1e-6, 1e-8].map(|tolerance| contact_cycles(1000, tolerance, 1e-5)));
+    "98 m/s² at 1 kHz for 10⁷ communication steps of 1 µs", "errors of steps add up to drift"
+        => drift();
+}
+
+cases! { LONG:
+    "A million contact cycles, no damping at all", "no damping removes the energy that errors add; the contact rings at tens of kHz"
+        => contact_cycles(1_000_000, 1e-6, 1e-5);
+}
 
 /// The published run for 10 000 periods of the sine at 1000 communication steps each: the force at whole periods stays what it
 /// was once the start has died away.
@@ -59,17 +48,13 @@ fn drift() -> Result<Vec<Check>> {
         }
     }
     ensure!(settled > 0.0, "the contact is open");
-    Ok(vec![Check::new(
-        "the force at whole periods stays what it was at the 41st",
-        (off, 2e-6 * contact.model().force_scale),
-        "N",
-        TWO_RUNS,
-    )])
+    let property = "the force at whole periods stays what it was at the 41st";
+    Ok(vec![Check::two_runs(property, off, 1e-6 * contact.model().force_scale)])
 }
 
 /// The specimen without damping, thrown so that it bounces until it has closed `cycles` times, with a communication step (s):
 /// energy made or lost, relative to the energy thrown in.
-fn contact_cycles(cycles: u32, tolerance: f64, step: f64) -> Result<Check> {
+fn contact_cycles(cycles: u32, tolerance: f64, step: f64) -> Result<Vec<Check>> {
     let mut scene = undamped();
     scene.solver.tolerance = tolerance;
     scene.solver.modes = 6;
@@ -86,10 +71,6 @@ fn contact_cycles(cycles: u32, tolerance: f64, step: f64) -> Result<Check> {
             closings += 1;
         }
     }
-    Ok(Check::new(
-        "energy stays what was thrown in (part of it)",
-        (off, tolerance),
-        "",
-        "the tolerance",
-    ))
+    let property = "the energy put in is kept (relative)";
+    Ok(vec![Check::tolerance(property, off, tolerance, "")])
 }

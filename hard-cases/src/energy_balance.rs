@@ -6,7 +6,7 @@ use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::RealOutput;
 
-use crate::case::{Check, FORCE_ERROR_TIMES_PATH, worst};
+use crate::case::{Check, worst};
 
 /// Communication step, s.
 const STEP: f64 = 1e-6;
@@ -32,12 +32,7 @@ pub(crate) fn balances(mut scene: Scene, stop: f64, acceleration: impl Fn(f64) -
     }
     let allowed = scene.solver.effective_tolerance() * contact.model().force_scale * path;
     Ok(vec![
-        Check::new(
-            "energy in = stored + dissipated",
-            (off, allowed),
-            "J",
-            FORCE_ERROR_TIMES_PATH,
-        ),
+        Check::energy("energy in = stored + dissipated", off, allowed),
         Check::exact("the contact never pulls", pull, "N"),
     ])
 }

@@ -1,35 +1,24 @@
 //! Extreme accelerations. A jump at a communication point is in every [`Ride::shaken`].
 
+use anyhow::Result;
 use relay_contact::scene::Scene;
 use relay_contact::variables::ExcitationKind;
 
-use anyhow::Result;
-
-use crate::case::{Case, Check};
+use crate::case::{Check, cases};
 use crate::contact::with_damping;
 use crate::energy_balance::balances;
 use crate::ride::{Ride, Segment};
 
-pub const CASES: &[Case] = &[
-    Case::new("Base acceleration of ±10 000 g", "flight and blows", || {
-        shaken_by_ten_thousand_g(8.063e-5)
-    }),
-    Case::new(
-        "Base acceleration of ±10 000 g, undamped contact",
-        "flight and blows on a contact that gives back all energy",
-        || shaken_by_ten_thousand_g(0.0),
-    ),
-    Case::new(
-        "Shock of 10⁶ m/s² (100 000 g), 0.1 ms",
-        "forces up to 150 N, then flight and blows",
-        shock,
-    ),
-    Case::new(
-        "A jump of the base acceleration every 10 µs",
-        "each excites every mode anew",
-        jumps,
-    ),
-];
+cases! { CASES:
+    "Base acceleration of ±10 000 g", "flight and impacts"
+        => shaken_by_ten_thousand_g(8.063e-5);
+    "Base acceleration of ±10 000 g, undamped contact", "flight and impacts on a contact that gives back all energy"
+        => shaken_by_ten_thousand_g(0.0);
+    "Shock of 10⁶ m/s² (100 000 g), 0.1 ms", "forces up to 150 N, then flight and impacts"
+        => shock();
+    "A jump of the base acceleration every 10 µs", "each excites every mode anew"
+        => jumps();
+}
 
 fn shaken_by_ten_thousand_g(damping: f64) -> Result<Vec<Check>> {
     let wave = [98_066.5, -98_066.5, 98_066.5, 0.0];

@@ -11,37 +11,26 @@ use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::ExcitationKind;
 
-use crate::case::{Case, Check};
+use crate::case::{Check, cases};
 use crate::ride::throw;
 use crate::rig::{Rig, compose, oscillator};
 
-pub const CASES: &[Case] = &[
-    Case::new(
-        "Chatter at 41 g in communication steps of 1 µs to 10 ms",
-        "a step of 10 ms holds all openings and closings at once, one of 1 µs a part of a blow",
-        communication_steps,
-    ),
-    Case::new(
-        "Communication points exactly at openings and closings, and 10⁻¹⁵ and 10⁻¹² s beside",
-        "an event at the end of a step is easily lost, or met twice",
-        points_at_events,
-    ),
-    Case::new(
-        "Grazing: a throw that overlaps or misses by 10⁻², 10⁻⁶, 10⁻⁹ of the gap",
-        "the force does not change sign where a touch is sought by its sign",
-        grazing_mass,
-    ),
-    Case::new(
-        "Grazing spring: overlaps of 10⁻², 10⁻⁴, 10⁻⁶ and misses of 10⁻², 10⁻⁶, 10⁻¹² of the gap",
-        "four modes, one communication step: the top of the flight lies anywhere within it",
-        grazing_spring,
-    ),
-    Case::new(
-        "Very stiff contact, 10¹⁰ N/m",
-        "a contact of 1 µs in a communication step of 1 ms",
-        stiff_contact,
-    ),
-];
+cases! { CASES:
+    "Chatter at 41 g in communication steps of 1 µs to 10 ms",
+        "a step of 10 ms contains all openings and closings, a step of 1 µs only part of an impact"
+        => communication_steps();
+    "Communication points at openings and closings, and 10⁻¹⁵ and 10⁻¹² s before and after",
+        "an event at the end of a step is easily lost or counted twice"
+        => points_at_events();
+    "Grazing: a throw that overlaps or misses by 10⁻², 10⁻⁶, 10⁻⁹ of the gap",
+        "where the surfaces only graze, the gap hardly changes sign, which is what a search looks for"
+        => grazing_mass();
+    "Grazing spring: overlaps of 10⁻², 10⁻⁴, 10⁻⁶ and misses of 10⁻², 10⁻⁶, 10⁻¹² of the gap",
+        "four modes: the closest approach lies anywhere within the one communication step"
+        => grazing_spring();
+    "Very stiff contact, 10¹⁰ N/m", "a contact of 1 µs in a communication step of 1 ms"
+        => stiff_contact();
+}
 
 /// Length of the chatter runs, s.
 const STOP: f64 = 0.01;
@@ -75,11 +64,13 @@ fn difference(found: &[f64], expected: &[f64]) -> f64 {
 }
 
 fn same_instants(differences: impl IntoIterator<Item = f64>) -> Vec<Check> {
+    let difference = differences.into_iter().fold(0.0, f64::max);
+    let property = "the same openings and closings at the same instants";
     vec![Check::new(
-        "the same openings and closings at the same instants",
-        (differences.into_iter().fold(0.0, f64::max), 1e-9),
+        property,
+        (difference, 1e-9),
         "s",
-        "instants are promised to this",
+        "accuracy promised for instants",
     )]
 }
 
@@ -109,11 +100,8 @@ fn grazes(touches: impl Fn(f64) -> Result<bool>, excesses: [f64; 6]) -> Result<V
     for excess in excesses {
         wrong += u32::from(touches(excess)? != (excess > 0.0));
     }
-    Ok(vec![Check::exact(
-        "a touch is met, a miss is not (wrong answers of 6)",
-        f64::from(wrong),
-        "",
-    )])
+    let property = "touches are found, misses are none (wrong answers of 6)";
+    Ok(vec![Check::exact(property, f64::from(wrong), "")])
 }
 
 /// A mass on a spring, thrown at a contact that it just reaches or just misses: it gets `speed / omega` far.
@@ -196,22 +184,16 @@ fn stiff_contact() -> Result<Vec<Check>> {
     rig.run_to(&Inputs::default(), 1e-3)?;
     let lasted = rig.state.last_opening - rig.state.last_closing;
     let exact = PI * (mass / stiffness).sqrt();
+    let duration = (
+        (lasted / exact - 1.0).abs(),
+        10.0 * tolerance + 1e-3 * f64::EPSILON / exact,
+    );
+    let rounding = "error of the force and rounding of an instant of 1 ms";
     let back = rig.state.modes.first().context("no mode")?.v / mass.sqrt();
+    let speed = ((back / speed - 1.0).abs(), tolerance * PI);
+    let impulse = "impulse of the force error over the momentum";
     Ok(vec![
-        Check::new(
-            "it lasts π √(m/k) (part of it)",
-            (
-                (lasted / exact - 1.0).abs(),
-                10.0 * tolerance + 1e-3 * f64::EPSILON / exact,
-            ),
-            "",
-            "error of the force and rounding of an instant of 1 ms",
-        ),
-        Check::new(
-            "the speed comes back whole (part of it)",
-            ((back / speed - 1.0).abs(), tolerance * PI),
-            "",
-            "impulse of the force error over the momentum",
-        ),
+        Check::new("the contact lasts π √(m/k) (relative)", duration, "", rounding),
+        Check::new("the speed comes back whole (relative)", speed, "", impulse),
     ])
 }

@@ -1,8 +1,8 @@
 //! Scenes that break integrators, each with the properties that must hold in it: one list, which the tests of this crate run
 //! case by case, and the report prints with the margins.
 //!
-//! [`ride`]: a scene driven by hand, and the properties that every scene keeps;   [`case`]: a case, and a measured value beside its bound.
-//! Cases: [`contact`], [`spring`], [`excitation`], [`support`] (a fixed contact that moves), [`instants`] (of opening and
+//! [`case`]: a case, and a measured value beside its bound;   [`ride`]: a scene with prescribed motions, and the properties that
+//! every scene keeps;   [`energy_balance`]: the component's own account of the energy.   Cases: [`contact`], [`spring`], [`excitation`], [`support`] (a fixed contact that moves), [`instants`] (of opening and
 //! closing), [`solver`] (tolerances, numbers of modes, communication steps), [`endurance`].
 //!
 //! Bounds are what theory leaves: a contact force wrong by the tolerance makes at most that force times the path of the tip in
@@ -24,7 +24,7 @@ mod support;
 
 use case::Case;
 
-/// All cases.
+/// Cases that take seconds.
 pub const CASES: &[&[Case]] = &[
     contact::CASES,
     spring::CASES,
@@ -34,3 +34,6 @@ pub const CASES: &[&[Case]] = &[
     solver::CASES,
     endurance::CASES,
 ];
+
+/// Cases that take minutes.
+pub const LONG_CASES: &[Case] = endurance::LONG;

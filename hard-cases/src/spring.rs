@@ -9,71 +9,46 @@ use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::AxialForceKind;
 
-use crate::case::{Case, Check};
+use crate::case::{Check, cases};
 use crate::ride::{Ride, Segment};
 use crate::rig::undamped;
 
-pub const CASES: &[Case] = &[
-    Case::new("Spring without damping", "only the contact takes energy out", || {
-        with_damping(0.0)
-    }),
-    Case::new(
-        "Spring with damping of 10 ms",
-        "all but the slowest modes are overdamped",
-        || with_damping(1e-2),
-    ),
-    Case::new(
-        "System without damping, shaken",
-        "nothing takes away what errors add",
-        || Ride::shaken(undamped()).checks(),
-    ),
-    Case::new(
-        "System without damping, thrown at the contact at 4 m/s",
-        "nothing takes away what errors add",
-        thrown,
-    ),
-    Case::new(
-        "System without damping, pushed by 10 nm steps at tolerance 1e-10",
-        "from rest the energy of the motion gives no measure for its rounding",
-        pushed,
-    ),
-    Case::new(
-        "Spring without rivet",
-        "nothing holds back the high modes at the tip",
-        || {
+cases! { CASES:
+    "Spring without damping", "only the contact dissipates"
+        => with_damping(0.0);
+    "Spring with damping of 10 ms", "every mode is overdamped"
+        => with_damping(1e-2);
+    "System without damping, shaken", "no damping removes the energy that errors add"
+        => Ride::shaken(undamped()).checks();
+    "System without damping, thrown at the contact at 4 m/s", "no damping removes the energy that errors add"
+        => thrown();
+    "System without damping, pushed by some 10 nm, tolerance 1e-10",
+        "from rest the energy gives no scale for rounding errors"
+        => pushed();
+    "Spring without rivet", "without its mass the high modes move the tip most"
+        => {
             let mut scene = Scene::default();
             scene.tip.mass = 0.0;
             Ride::shaken(scene).checks()
-        },
-    ),
-    Case::new(
-        "Short light spring without damping, pushed within the tolerance",
-        "modes above a gigahertz that need not be resolved, in 1000 integration steps",
-        pushed_within_tolerance,
-    ),
-    Case::new(
-        "Axial force at 0.999 of the buckling load",
-        "the spring alone has almost no stiffness left",
-        || Ride::shaken(pressed(0.999 * buckling_load())).checks(),
-    ),
-    Case::new(
-        "Axial force a millionth below the buckling load",
-        "the spring has almost no stiffness left",
-        || {
+        };
+    "Short light spring without damping, pushed within the tolerance",
+        "modes above a gigahertz, which need not be resolved: at most 1000 integration steps"
+        => pushed_within_tolerance();
+    "Axial force at 0.999 of the buckling load", "the spring alone has almost no stiffness left"
+        => Ride::shaken(pressed(0.999 * buckling_load())).checks();
+    "Axial force a millionth below the buckling load", "the spring has almost no stiffness left"
+        => {
             let refused = limit(0.999_999 * buckling_load())?.is_some();
             Ok(vec![Check::exact(
                 "simulated (times refused)",
                 f64::from(u8::from(refused)),
                 "",
             )])
-        },
-    ),
-    Case::new(
-        "Axial force a millionth above the buckling load, and up to 10⁶ N",
-        "the contact may open, and the spring alone buckles",
-        buckling,
-    ),
-];
+        };
+    "Axial force a millionth above the buckling load, and up to 10⁶ N",
+        "the contact may open, and the spring alone would buckle"
+        => buckling();
+}
 
 fn with_damping(damping: f64) -> Result<Vec<Check>> {
     let mut scene = Scene::default();
@@ -149,7 +124,7 @@ fn buckling() -> Result<Vec<Check>> {
         );
     }
     Ok(vec![Check::new(
-        "refused, and the limit named is π² E I / (4 L²) (part of it)",
+        "refused, and the limit named is π² E I / (4 L²) (relative)",
         ((named / exact - 1.0).abs(), 12.0 * f64::EPSILON),
         "",
         "a dozen roundings",

@@ -5,18 +5,19 @@
 
 use std::process::ExitCode;
 
-use hard_cases::CASES;
 use hard_cases::case::Case;
+use hard_cases::{CASES, LONG_CASES};
 use libtest_mimic::{Arguments, Failed, Trial, run};
 
+fn trial(case: &'static Case) -> Trial {
+    Trial::test(case.name, || match case.keeps_its_properties() {
+        Ok(_) => Ok(()),
+        Err(error) => Err(Failed::from(format!("{error:#}"))),
+    })
+}
+
 fn main() -> ExitCode {
-    let trial = |case: &'static Case| {
-        let test = move || match case.keeps_its_properties() {
-            Ok(_) => Ok(()),
-            Err(error) => Err(Failed::from(format!("{error:#}"))),
-        };
-        Trial::test(case.name, test).with_ignored_flag(case.long)
-    };
-    let trials = CASES.iter().copied().flatten().map(trial).collect();
+    let long = LONG_CASES.iter().map(|case| trial(case).with_ignored_flag(true));
+    let trials = CASES.iter().copied().flatten().map(trial).chain(long).collect();
     run(&Arguments::from_args(), trials).exit_code()
 }
