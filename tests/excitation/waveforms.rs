@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use relay_contact::excitation::generator::Turns;
 use relay_contact::integrator::collocation::polynomial::Collocation;
 use relay_contact::math::nodal::{LONG, SHORT};
-use relay_contact::math::simd::Machine;
+use relay_contact::math::simd::Simd;
 use relay_contact::scene::Scene;
 use relay_contact::variables::ExcitationKind;
 
@@ -50,7 +50,7 @@ fn nodes_agree_with_direct_evaluation() {
         };
         // The rounding of time to each side, in radians, and some of the sums.
         let allowed = largest * (2.0 * TAU * highest * f64::EPSILON * (time + length) + 1e-13);
-        for machine in [Machine::Portable, Machine::detect()] {
+        for machine in [Simd::Portable, Simd::detect()] {
             turns.fill(&generator, machine, length, &nodes);
             let found = generator.over_step(machine, time, &turns);
             let start = generator.acceleration(time);

@@ -1,13 +1,9 @@
 //! The project's tasks: `cargo xtask --help`.
 
-mod accuracy;
 mod bill;
 mod commands;
 mod demo;
-mod documentation;
-mod effects;
 mod fmu;
-mod html;
 mod importers;
 mod licences;
 mod linked;
@@ -15,12 +11,8 @@ mod package;
 mod python;
 mod release;
 mod report;
-mod run_scene;
 mod scene;
-mod ssv;
-mod summary;
 mod test;
-mod threads;
 mod valgrind;
 
 use std::process::ExitCode;
@@ -43,16 +35,20 @@ enum Task {
     /// Build the component and pack it as dist/RelayContact.fmu
     Fmu,
     /// Run a scene, write what it looks at to out/scenes/NAME.csv and .png, and tell what happened
-    Scene(scene::Arguments),
+    #[command(disable_help_flag = true)]
+    Scene(report::Arguments),
     /// Write each scene as a parameter set for SSP tools, out/ssv/NAME.ssv
     Ssv,
     /// Build the component, run the published 1 kHz case under FMPy, compare and plot
     Demo,
     /// Measure what accuracy costs, beside other integrators; rewrite docs/accuracy.csv, its figures and its tables
-    Accuracy(accuracy::Arguments),
+    #[command(disable_help_flag = true)]
+    Accuracy(report::Arguments),
     /// Measure what each effect costs and changes; rewrite docs/effects.md
-    Effects(effects::Arguments),
+    #[command(disable_help_flag = true)]
+    Effects(report::Arguments),
     /// Run what the report shows and write out/report/index.html
+    #[command(disable_help_flag = true)]
     Report(report::Arguments),
     /// Test the component under other people's importers and print the table of what they did
     Importers,
@@ -66,18 +62,21 @@ enum Task {
     Test,
 }
 
+/// No arguments.
+const NONE: [&str; 0] = [];
+
 fn main() -> ExitCode {
     let outcome = match Arguments::parse().task {
         Task::Fmu => fmu::build().map(|path| println!("{}", path.display())),
-        Task::Scene(arguments) => scene::run(&arguments),
-        Task::Ssv => ssv::write().map(|paths| paths.iter().for_each(|path| println!("{}", path.display()))),
+        Task::Scene(arguments) => report::run("scene", &arguments),
+        Task::Ssv => report::start("ssv", NONE),
         Task::Demo => demo::run(),
-        Task::Accuracy(arguments) => accuracy::run(&arguments),
-        Task::Effects(arguments) => effects::run(&arguments),
-        Task::Report(arguments) => report::run(arguments),
+        Task::Accuracy(arguments) => report::run("accuracy", &arguments),
+        Task::Effects(arguments) => report::run("effects", &arguments),
+        Task::Report(arguments) => report::report(&arguments),
         Task::Importers => test::importers_alone(),
         Task::Valgrind => valgrind::run(),
-        Task::Instructions => valgrind::instructions(),
+        Task::Instructions => report::start("instructions", NONE),
         Task::Release(arguments) => release::run(&arguments),
         Task::Test => test::run(),
     };

@@ -8,10 +8,10 @@ use std::time::Instant;
 use anyhow::Result;
 
 use crate::commands::{self, cargo};
-use crate::{effects, fmu, importers, python, report, valgrind};
+use crate::{fmu, importers, python, report, valgrind};
 
 /// Folders and files with Python in them.
-const PYTHON: [&str; 4] = ["examples/python", "conformance/python", "docs", "xtask/browser"];
+const PYTHON: [&str; 4] = ["examples/python", "conformance/python", "docs", "report/browser"];
 
 /// Runs all stages; the first that fails ends it.
 pub fn run() -> Result<()> {
@@ -34,7 +34,7 @@ pub fn run() -> Result<()> {
     })?;
     if valgrind::is_installed() {
         stage("valgrind", valgrind::run)?;
-        stage("what is off costs nothing", effects::what_is_off)?;
+        stage("what is off costs nothing", report::what_is_off)?;
     } else {
         println!("== valgrind, what is off costs nothing: NOT RUN, {}", valgrind::MISSING);
     }

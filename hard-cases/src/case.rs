@@ -1,0 +1,173 @@
+//! A case, and a measured value beside its bound.
+
+use std::fmt;
+
+use anyhow::{Result, ensure};
+
+/// A scene that breaks integrators, and what must hold in it.
+#[derive(Clone, Copy, Debug)]
+pub struct Case {
+    /// What is simulated.
+    pub name: &'static str,
+    /// What makes it hard.
+    pub difficulty: &'static str,
+    /// Simulates it and measures each property.
+    pub(crate) measure: fn() -> Result<Vec<Check>>,
+}
+
+/// A list of cases: `NAME: "case", "what makes it hard" => checks; ...`.
+macro_rules! cases {
+    ($list:ident: $($name:literal, $difficulty:literal => $checks:expr;)*) => {
+        pub const $list: &[$crate::case::Case] = &[$($crate::case::Case {
+            name: $name,
+            difficulty: $difficulty,
+            measure: || $checks,
+        }),*];
+    };
+}
+pub(crate) use cases;
+
+impl Case {
+    /// The properties, all of them kept.
+    ///
+    /// # Errors
+    /// Where one is not kept or the simulation itself fails: a step that cannot be taken, a number that is not finite, a
+    /// contact that pulls, more integration steps than the case allows.
+    pub fn keeps_its_properties(&self) -> Result<Vec<Check>> {
+        let checks = (self.measure)()?;
+        let broken = checks.iter().filter(|check| !check.is_kept());
+        let broken: Vec<_> = broken.map(Check::to_string).collect();
+        ensure!(broken.is_empty(), "{}: {}", self.name, broken.join("; "));
+        Ok(checks)
+    }
+}
+
+/// A property and how well it is kept.
+#[derive(Clone, Debug)]
+pub struct Check {
+    /// What must hold.
+    pub property: &'static str,
+    /// Deviation from it, at most `allowed` where the property is kept.
+    pub measured: f64,
+    /// The bound.
+    pub allowed: f64,
+    /// Unit of both; empty for a pure number.
+    pub unit: &'static str,
+    /// Where the bound comes from.
+    pub reason: &'static str,
+}
+
+impl Check {
+    pub(crate) fn new(
+        property: &'static str,
+        (measured, allowed): (f64, f64),
+        unit: &'static str,
+        reason: &'static str,
+    ) -> Self {
+        Self {
+            property,
+            measured,
+            allowed,
+            unit,
+            reason,
+        }
+    }
+
+    /// No deviation is allowed.
+    pub(crate) fn exact(property: &'static str, measured: f64, unit: &'static str) -> Self {
+        Self::new(property, (measured, 0.0), unit, "exact")
+    }
+
+    /// A result is as right as the tolerance says.
+    pub(crate) fn tolerance(property: &'static str, measured: f64, allowed: f64, unit: &'static str) -> Self {
+        Self::new(property, (measured, allowed), unit, "the tolerance")
+    }
+
+    /// Two simulations differ in the force by at most twice the tolerance (N).
+    pub(crate) fn two_runs(property: &'static str, difference: f64, tolerance: f64) -> Self {
+        let reason = "two runs, each within the tolerance";
+        Self::new(property, (difference, 2.0 * tolerance), "N", reason)
+    }
+
+    /// A force wrong by the tolerance along the path of the tip makes or loses energy (J).
+    pub(crate) fn energy(property: &'static str, measured: f64, allowed: f64) -> Self {
+        Self::new(property, (measured, allowed), "J", "force error × path of the tip")
+    }
+
+    /// The work is bounded.
+    pub(crate) fn steps(measured: u64, allowed: u64) -> Self {
+        let counts = (measured as f64, allowed as f64);
+        Self::new("integration steps", counts, "", "bounded work")
+    }
+
+    /// False also for what is not a number.
+    pub fn is_kept(&self) -> bool {
+        self.measured <= self.allowed
+    }
+
+    /// How many times smaller the measured value is than the bound: infinite where the property is kept exactly, 0 for what is
+    /// not a number.
+    pub fn margin(&self) -> f64 {
+        match self.measured {
+            0.0 => f64::INFINITY,
+            measured if measured.is_nan() => 0.0,
+            measured => self.allowed / measured,
+        }
+    }
+
+    /// An amount in the unit of the check.
+    pub fn amount(&self, value: f64) -> String {
+        let digits = if value == 0.0 {
+            "0".to_owned()
+        } else {
+            format!("{value:.1e}")
+        };
+        format!("{digits} {}", self.unit).trim_end().to_owned()
+    }
+}
+
+impl fmt::Display for Check {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let (measured, allowed) = (self.amount(self.measured), self.amount(self.allowed));
+        write!(
+            f,
+            "{}: measured {measured}, allowed {allowed} ({})",
+            self.property, self.reason
+        )
+    }
+}
+
+/// Of each property, measured in several simulations, the check with the least margin.
+pub(crate) fn closest(simulations: impl IntoIterator<Item = Result<Vec<Check>>>) -> Result<Vec<Check>> {
+    let mut closest: Vec<Check> = Vec::new();
+    for checks in simulations {
+        for check in checks? {
+            match closest.iter_mut().find(|other| other.property == check.property) {
+                Some(other) if check.margin() < other.margin() => *other = check,
+                Some(_) => {}
+                None => closest.push(check),
+            }
+        }
+    }
+    Ok(closest)
+}
+
+/// The larger deviation; what is not a number stays.
+pub(crate) fn worst(a: f64, b: f64) -> f64 {
+    if b.is_nan() || b > a { b } else { a }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_number_or_too_much_is_not_kept() {
+        let check = |measured| Check::new("", (measured, 1e-9), "s", "");
+        assert!(check(0.0).is_kept() && check(1e-9).is_kept());
+        assert!(!check(1.1e-9).is_kept() && !check(f64::NAN).is_kept());
+        assert!(worst(worst(1.0, f64::NAN), 2.0).is_nan());
+        let found = closest([0.0, f64::NAN, 1e-9].map(|measured| Ok(vec![check(measured)])));
+        assert!(matches!(&found.unwrap()[..], [one] if one.measured.is_nan()));
+    }
+}

@@ -1,0 +1,172 @@
+//! Extreme contacts, and impacts on them.
+
+use anyhow::{Result, ensure};
+use relay_contact::inputs::Inputs;
+use relay_contact::model::Model;
+use relay_contact::scene::Scene;
+use relay_contact::variables::ContactLawKind;
+
+use crate::case::{Check, cases, closest, worst};
+use crate::energy_balance::{balances, square};
+use crate::ride::{Ride, Segment, throw};
+use crate::rig::{Rig, compose, hertz, oscillator, undamped};
+
+cases! { CASES:
+    "Contact 100 times stiffer", "it rings at ever higher frequencies"
+        => shaken(with_stiffness(100.0));
+    "Contact 100 times softer", "indentation 21 times as deep: far from the linearised contact"
+        => shaken(with_stiffness(0.01));
+    "Contact without damping", "only the spring dissipates"
+        => Ride::shaken(with_damping(0.0)).checks();
+    // Times the tangent stiffness of 3.5e6 N/m on some milligrams: an eigenvalue beyond -1e9 1/s.
+    "Overdamped contact", "contact damping of 1 s: an eigenvalue beyond −10⁹ 1/s, stiff beyond any explicit step"
+        => shaken(with_damping(1.0));
+    "Linearised and bonded contact, damped and undamped",
+        "constant stiffness, and the bonded contact also pulls"
+        => linear_laws();
+    "Neither gap nor overtravel", "the contact opens and closes from a preload of zero"
+        => Ride::shaken(with_overtravel(0.0)).checks();
+    "Impact at 10 m/s, damped contact and spring", "the impact excites every mode"
+        => impact(8.063e-5);
+    "Impact at 10 m/s, undamped contact", "the impact excites every mode"
+        => impact(0.0);
+    "Impact at 10 m/s, no damping at all",
+        "600 N that excite every mode, and nothing dissipates"
+        => undamped_impact();
+    "Impact of a mass on a contact without damping",
+        "flight, impact and release in one communication step; the force starts as a power 3/2"
+        => restitution(0.0, 1.0);
+    "Impact of a mass on a damped contact",
+        "flight, impact and release in one communication step; the force starts as a power 3/2"
+        => restitution(0.3, 0.623_642_991_4);
+    "Spring pressed against the contact across a gap of 10 µm", "weakly damped: it bounces until it rests"
+        => pressed();
+    "A mass bouncing to rest under its weight, in one communication step and in 50 000",
+        "more and more impacts in less and less time"
+        => accumulating();
+}
+
+fn with_stiffness(factor: f64) -> Scene {
+    let mut scene = Scene::default();
+    scene.contact.moving.youngs_modulus *= factor;
+    scene.contact.fixed.youngs_modulus *= factor;
+    scene
+}
+
+pub(crate) fn with_damping(damping: f64) -> Scene {
+    let mut scene = Scene::default();
+    scene.contact.damping = damping;
+    scene
+}
+
+pub(crate) fn with_overtravel(overtravel: f64) -> Scene {
+    let mut scene = Scene::default();
+    scene.contact.overtravel = overtravel;
+    scene
+}
+
+fn shaken(scene: Scene) -> Result<Vec<Check>> {
+    let mut checks = Ride::shaken(scene).checks()?;
+    checks.extend(balances(scene, 1.5e-3, square)?);
+    Ok(checks)
+}
+
+fn linear_laws() -> Result<Vec<Check>> {
+    let laws = [
+        (ContactLawKind::Linearised, 0.0),
+        (ContactLawKind::Linearised, 8.063e-5),
+        (ContactLawKind::Bonded, 0.0),
+        (ContactLawKind::Bonded, 8.063e-5),
+    ];
+    closest(laws.map(|(law, damping)| {
+        let mut scene = with_damping(damping);
+        scene.effects.contact_law = law;
+        Ride::shaken(scene).checks()
+    }))
+}
+
+fn impact(damping: f64) -> Result<Vec<Check>> {
+    let mut scene = with_damping(damping);
+    scene.contact.overtravel = -1e-4;
+    Ride {
+        speed: -10.0,
+        ..Ride::new(scene, [Segment::accelerated(1e-4, 0.0); 3])
+    }
+    .checks()
+}
+
+fn undamped_impact() -> Result<Vec<Check>> {
+    let mut scene = undamped();
+    scene.contact.overtravel = -1e-4;
+    let mut rig = Rig::new(Model::new(&scene, 0.0)?);
+    throw(&mut rig, -10.0);
+    let start = rig.energy();
+    let (mut off, mut path) = (0.0, 0.0);
+    for point in 1..=300_u32 {
+        let before = rig.state.indentation;
+        rig.run_to(&Inputs::default(), f64::from(point) * 1e-6)?;
+        path += (rig.state.indentation - before).abs();
+        off = worst(off, (rig.energy() - start).abs());
+    }
+    // Rounding: the last of thirteen digits of it.
+    let allowed = scene.solver.effective_tolerance() * rig.model.force_scale * path + 1e-13 * start;
+    let property = "the energy put in is kept";
+    Ok(vec![Check::energy(property, off, allowed)])
+}
+
+/// Unit mass on a Hertzian contact of unit stiffness at unit speed, with the damping of Kuwabara and Kono. Without damping
+/// the speed comes back whole; else as in Ramirez, Poeschel, Brilliantov, Schwager, Phys. Rev. E 60 (1999) 4465, with the
+/// digits of a Runge-Kutta method in a variable in which the equation is smooth.
+fn restitution(damping: f64, exact: f64) -> Result<Vec<Check>> {
+    let tolerance = 1e-8;
+    let mut rig = Rig::new(compose(
+        &[oscillator(1.0, 0.0)],
+        hertz(1.0, damping),
+        0.5,
+        tolerance,
+        1.0,
+    ));
+    rig.launch(&[-1.0]);
+    rig.run_to(&Inputs::default(), 20.0)?;
+    let off = (-rig.state.indentation_rate - exact).abs();
+    Ok(vec![Check::new(
+        "coefficient of restitution as in the literature, or 1 (tolerance 1e-8)",
+        (off, 4.0 * tolerance + 1e-10),
+        "",
+        "impulse of the force error over less than 4 s of contact; ten digits are published",
+    )])
+}
+
+fn pressed() -> Result<Vec<Check>> {
+    let mut scene = with_overtravel(-1e-5);
+    scene.contact.damping = 1e-6;
+    scene.beam.stiffness_damping = 1e-6;
+    Ride::new(scene, [Segment::accelerated(2e-3, 300.0); 3]).checks()
+}
+
+fn accumulating() -> Result<Vec<Check>> {
+    let (mass, weight) = (1e-4, 100.0);
+    let model = compose(&[oscillator(mass, 0.0)], hertz(9.3e9, 1e-6), 1e-6, 1e-6, mass * weight);
+    let mut coarse = Rig::new(model.clone());
+    let mut fine = Rig::new(model);
+    let inputs = Inputs {
+        base_acceleration: weight,
+        ..Inputs::default()
+    };
+    coarse.run_to(&inputs, 0.05)?;
+    let (mut closings, mut last) = (0, -1.0);
+    for point in 1..=50_000 {
+        fine.run_to(&inputs, 1e-6 * f64::from(point))?;
+        ensure!(fine.state.force >= 0.0 && fine.state.indentation.is_finite());
+        closings += u32::from(fine.state.last_closing > last);
+        last = fine.state.last_closing;
+    }
+    ensure!(closings > 5, "only {closings} impacts");
+    closest([&coarse, &fine].map(|rig| {
+        let off = (rig.state.force - mass * weight).abs();
+        Ok(vec![
+            Check::tolerance("at the end the force is the weight", off, 1e-6 * mass * weight, "N"),
+            Check::steps(rig.state.steps, 99_999),
+        ])
+    }))
+}

@@ -1,0 +1,199 @@
+//! Openings and closings: found wherever the communication points are, none missed, none made up.
+
+use std::f64::consts::PI;
+
+use anyhow::{Context, Result};
+use relay_contact::contact::law::Law;
+use relay_contact::contact::linear::Linear;
+use relay_contact::inputs::Inputs;
+use relay_contact::model::Model;
+use relay_contact::scene::Scene;
+use relay_contact::simulation::Simulation;
+use relay_contact::variables::ExcitationKind;
+
+use crate::case::{Check, cases};
+use crate::ride::throw;
+use crate::rig::{Rig, compose, oscillator};
+
+cases! { CASES:
+    "Chatter at 41 g in communication steps of 1 µs to 10 ms",
+        "a step of 10 ms contains all openings and closings, a step of 1 µs only part of an impact"
+        => communication_steps();
+    "Communication points at openings and closings, and 10⁻¹⁵ and 10⁻¹² s before and after",
+        "an event at the end of a step is easily lost or counted twice"
+        => points_at_events();
+    "Grazing: a throw that overlaps or misses by 10⁻², 10⁻⁶, 10⁻⁹ of the gap",
+        "where the surfaces only graze, the gap hardly changes sign, which is what a search looks for"
+        => grazing_mass();
+    "Grazing spring: overlaps of 10⁻², 10⁻⁴, 10⁻⁶ and misses of 10⁻², 10⁻⁶, 10⁻¹² of the gap",
+        "four modes: the closest approach lies anywhere within the one communication step"
+        => grazing_spring();
+    "Very stiff contact, 10¹⁰ N/m", "a contact of 1 µs in a communication step of 1 ms"
+        => stiff_contact();
+}
+
+/// Length of the chatter runs, s.
+const STOP: f64 = 0.01;
+
+/// Openings and closings, s, of the specimen at 400 m/s2 and 1 kHz, with communication points at the instants.
+fn events(points: impl IntoIterator<Item = f64>) -> Result<Vec<f64>> {
+    let mut scene = Scene::default();
+    scene.effects.excitation = ExcitationKind::Sine;
+    scene.excitation.amplitude = 400.0;
+    let mut contact = Simulation::new(&scene, &Inputs::default(), 0.0)?;
+    let mut events = Vec::new();
+    for point in points {
+        let time = contact.time();
+        contact.step(&Inputs::default(), time, point - time)?;
+        events.extend(contact.events().0.map(|event| event.time));
+    }
+    Ok(events)
+}
+
+fn equal(count: u32) -> impl Iterator<Item = f64> {
+    (1..=count).map(move |point| STOP * f64::from(point) / f64::from(count))
+}
+
+/// Largest difference, s; infinite where there are more or fewer of them.
+fn difference(found: &[f64], expected: &[f64]) -> f64 {
+    if found.len() != expected.len() || expected.is_empty() {
+        return f64::INFINITY;
+    }
+    let differences = found.iter().zip(expected).map(|(a, b)| (a - b).abs());
+    differences.fold(0.0, f64::max)
+}
+
+fn same_instants(differences: impl IntoIterator<Item = f64>) -> Vec<Check> {
+    let difference = differences.into_iter().fold(0.0, f64::max);
+    let property = "the same openings and closings at the same instants";
+    vec![Check::new(
+        property,
+        (difference, 1e-9),
+        "s",
+        "accuracy promised for instants",
+    )]
+}
+
+fn communication_steps() -> Result<Vec<Check>> {
+    let expected = events(equal(1))?;
+    let mut differences = Vec::new();
+    for count in [10, 100, 1000, 10_000] {
+        differences.push(difference(&events(equal(count))?, &expected));
+    }
+    Ok(same_instants(differences))
+}
+
+fn points_at_events() -> Result<Vec<Check>> {
+    let expected = events(equal(1))?;
+    // Each event at a communication point; then a point just before and just after each.
+    let mut differences = vec![difference(&events(expected.iter().copied().chain([STOP]))?, &expected)];
+    for aside in [1e-15, 1e-12] {
+        let around = expected.iter().flat_map(|event| [event - aside, event + aside]);
+        differences.push(difference(&events(around.chain([STOP]))?, &expected));
+    }
+    Ok(same_instants(differences))
+}
+
+/// Whether each throw, with its excess over the speed that just reaches the contact, touches as expected.
+fn grazes(touches: impl Fn(f64) -> Result<bool>, excesses: [f64; 6]) -> Result<Vec<Check>> {
+    let mut wrong = 0;
+    for excess in excesses {
+        wrong += u32::from(touches(excess)? != (excess > 0.0));
+    }
+    let property = "touches are found, misses are none (wrong answers of 6)";
+    Ok(vec![Check::exact(property, f64::from(wrong), "")])
+}
+
+/// A mass on a spring, thrown at a contact that it just reaches or just misses: it gets `speed / omega` far.
+fn grazing_mass() -> Result<Vec<Check>> {
+    let (gap, omega) = (1e-5, 1e4);
+    let touches = |excess: f64| {
+        let mode = oscillator(1.0, omega * omega);
+        let mut rig = Rig::new(compose(&[mode], pushing(1e6), gap, 1e-6, 1.0));
+        rig.launch(&[-gap * omega * (1.0 + excess)]);
+        // Three quarters of a period: once there.
+        rig.run_to(&Inputs::default(), 1.5 * PI / omega)?;
+        Ok(rig.state.last_closing > 0.0)
+    };
+    grazes(touches, [1e-2, 1e-6, 1e-9, -1e-9, -1e-6, -1e-2])
+}
+
+/// A spring thrown at a contact it just reaches, or just misses, within one long communication step.
+fn grazing_spring() -> Result<Vec<Check>> {
+    let (gap, duration) = (1e-5, 1.7e-3);
+    let mut scene = Scene::default();
+    scene.beam.stiffness_damping = 0.0;
+    scene.contact.overtravel = -gap;
+    scene.solver.modes = 4;
+    let thrown = |scene: &Scene, speed: f64| -> Result<Rig> {
+        let mut rig = Rig::new(Model::new(scene, 0.0)?);
+        throw(&mut rig, -speed);
+        Ok(rig)
+    };
+    let thrown_until = |scene: &Scene, speed: f64, time: f64| -> Result<_> {
+        let mut rig = thrown(scene, speed)?;
+        rig.run_to(&Inputs::default(), time)?;
+        Ok(rig.state)
+    };
+    // How far a throw with 1 m/s goes: free motion, so it goes with the speed.
+    let mut far = scene;
+    far.contact.overtravel = -5e-3;
+    let mut rig = thrown(&far, 1.0)?;
+    let (mut nearest, mut highest) = (0.0, 0.0);
+    for time in (1..1700).map(|microsecond| 1e-6 * f64::from(microsecond)) {
+        rig.run_to(&Inputs::default(), time)?;
+        if rig.state.indentation > highest {
+            (nearest, highest) = (time, rig.state.indentation);
+        }
+    }
+    let (mut before, mut after) = (nearest - 2e-6, nearest + 2e-6);
+    for _ in 0..40 {
+        let middle = f64::midpoint(before, after);
+        if thrown_until(&far, 1.0, middle)?.indentation_rate > 0.0 {
+            before = middle;
+        } else {
+            after = middle;
+        }
+    }
+    let highest = thrown_until(&far, 1.0, before)?.indentation;
+    let touches = |excess: f64| {
+        let state = thrown_until(&scene, gap / highest * (1.0 + excess), duration)?;
+        Ok(state.last_closing > 0.0)
+    };
+    grazes(touches, [1e-2, 1e-4, 1e-6, -1e-12, -1e-6, -1e-2])
+}
+
+/// A linear contact that only pushes, of a stiffness (N/m).
+fn pushing(stiffness: f64) -> Law {
+    Law::Linear(Linear {
+        stiffness,
+        damping: 0.0,
+        offset: 0.0,
+        bonded: false,
+    })
+}
+
+/// 1 g on a contact of 1e10 N/m: half a period of it, all within one communication step a thousand times longer.
+fn stiff_contact() -> Result<Vec<Check>> {
+    let (mass, stiffness, speed) = (1e-3_f64, 1e10, 1.0);
+    let greatest = speed * (mass * stiffness).sqrt();
+    let tolerance = 1e-9;
+    let model = compose(&[oscillator(mass, 0.0)], pushing(stiffness), 1e-6, tolerance, greatest);
+    let mut rig = Rig::new(model);
+    rig.launch(&[-speed * mass.sqrt()]);
+    rig.run_to(&Inputs::default(), 1e-3)?;
+    let lasted = rig.state.last_opening - rig.state.last_closing;
+    let exact = PI * (mass / stiffness).sqrt();
+    let duration = (
+        (lasted / exact - 1.0).abs(),
+        10.0 * tolerance + 1e-3 * f64::EPSILON / exact,
+    );
+    let rounding = "error of the force and rounding of an instant of 1 ms";
+    let back = rig.state.modes.first().context("no mode")?.v / mass.sqrt();
+    let speed = ((back / speed - 1.0).abs(), tolerance * PI);
+    let impulse = "impulse of the force error over the momentum";
+    Ok(vec![
+        Check::new("the contact lasts π √(m/k) (relative)", duration, "", rounding),
+        Check::new("the speed comes back whole (relative)", speed, "", impulse),
+    ])
+}

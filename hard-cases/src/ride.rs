@@ -1,0 +1,242 @@
+//! A scene with prescribed base acceleration and motion of the fixed contact, and the properties that every scene keeps.
+//!
+//! Every number stays finite, the contact never pulls (bonded excepted), no energy is made, the work is bounded, and the force
+//! does not depend on the communication step.
+
+use anyhow::{Context, Result, bail};
+use relay_contact::beam::mode::{MAX_MODES, Mode};
+use relay_contact::inputs::Inputs;
+use relay_contact::model::Model;
+use relay_contact::scene::Scene;
+
+use crate::case::{Check, closest};
+use crate::rig::Rig;
+
+/// Tip displacement per impulse of the mode that measures the impulse of the contact force: too heavy to move.
+const METER: f64 = 1e-9;
+
+/// What happens over a stretch of time.
+#[derive(Clone, Copy, Debug)]
+pub struct Segment {
+    /// s.
+    pub duration: f64,
+    /// Base acceleration, held, m/s2.
+    pub acceleration: f64,
+    /// Displacement of the fixed contact at the end, reached linearly, m.
+    pub support: f64,
+}
+
+impl Segment {
+    /// The base is accelerated (m/s2) for a time (s).
+    pub fn accelerated(duration: f64, acceleration: f64) -> Self {
+        Self {
+            duration,
+            acceleration,
+            support: 0.0,
+        }
+    }
+
+    /// The fixed contact moves to a displacement (m) within a time (s).
+    pub fn moved(duration: f64, support: f64) -> Self {
+        Self {
+            duration,
+            acceleration: 0.0,
+            support,
+        }
+    }
+}
+
+/// A scene and what is done to it.
+#[derive(Clone, Debug)]
+pub struct Ride {
+    /// The scene.
+    pub scene: Scene,
+    /// Velocity of the whole spring at the start, m/s; negative toward the fixed contact.
+    pub speed: f64,
+    /// What happens, one after the other.
+    pub segments: Vec<Segment>,
+    /// Integration steps, taken and repeated, that must suffice.
+    pub steps: u64,
+}
+
+/// What came out.
+pub struct Outcome {
+    /// Force at the end of each segment, N.
+    pub(crate) forces: Vec<f64>,
+    /// Longest rise of the energy over what was put in, J.
+    made: f64,
+    /// Energy at the start, also that of the preload, and all work, taken positive, J.
+    throughput: f64,
+    /// Path of the indentation and of the fixed contact, m.
+    path: f64,
+    pub(crate) rig: Rig,
+}
+
+impl Ride {
+    /// A scene that starts at rest.
+    pub(crate) fn new(scene: Scene, segments: impl Into<Vec<Segment>>) -> Self {
+        Self {
+            scene,
+            speed: 0.0,
+            segments: segments.into(),
+            steps: 100_000,
+        }
+    }
+
+    /// The scene with a square wave of base acceleration, which jumps at communication points and opens the contact of the
+    /// specimen.
+    pub(crate) fn shaken(scene: Scene) -> Self {
+        let wave = [500.0, -500.0, 500.0, -500.0, 0.0];
+        Self::new(scene, wave.map(|acceleration| Segment::accelerated(3e-4, acceleration)))
+    }
+
+    /// Simulates it with each segment in `parts` communication steps.
+    ///
+    /// # Errors
+    /// Where it cannot be simulated, at a communication point a number is not finite or the contact pulls, or the integration
+    /// steps do not suffice.
+    pub fn run(&self, parts: u32) -> Result<Outcome> {
+        let mut model = Model::new(&self.scene, 0.0)?;
+        let metered = model.modes.len() < MAX_MODES;
+        if !metered && self.segments.iter().any(|segment| segment.support != 0.0) {
+            bail!("the work of the support cannot be measured with this many modes");
+        }
+        if metered {
+            let meter = Mode {
+                omega_squared: 0.0,
+                damping: 0.0,
+                tip: METER,
+                participation: 0.0,
+            };
+            model.modes.insert(0, meter);
+        }
+        let mut rig = Rig::new(model);
+        if self.speed != 0.0 {
+            throw(&mut rig, self.speed);
+        }
+        let (mut work, mut lowest, mut support, mut time) = (0.0, rig.energy(), 0.0, 0.0);
+        let mut outcome = Outcome {
+            forces: Vec::new(),
+            made: 0.0,
+            throughput: lowest + rig.model.preload.force * rig.model.preload.indentation.max(0.0),
+            path: 0.0,
+            rig,
+        };
+        for segment in &self.segments {
+            let size = segment.duration / f64::from(parts);
+            let rate = (segment.support - support) / segment.duration;
+            for part in 1..=parts {
+                let rig = &mut outcome.rig;
+                let (base_before, meter_before, before) = (base_work(rig), meter(rig), rig.state);
+                let inputs = Inputs {
+                    base_acceleration: segment.acceleration,
+                    support_displacement: if part == parts {
+                        segment.support
+                    } else {
+                        support + rate * size * f64::from(part)
+                    },
+                    ..Inputs::default()
+                };
+                rig.run_to(&inputs, time + size * f64::from(part))
+                    .with_context(|| format!("after {} integration steps", before.steps))?;
+                self.inspect(rig)?;
+                let base = segment.acceleration * (base_work(rig) - base_before);
+                let held = rate * (meter(rig) - meter_before);
+                work += base + held;
+                outcome.throughput += base.abs() + held.abs();
+                let fastest = before.indentation_rate.abs().max(rig.state.indentation_rate.abs());
+                let way = (rig.state.indentation - before.indentation).abs().max(fastest * size);
+                outcome.path += way + (rate * size).abs();
+                let balance = rig.energy() - work;
+                outcome.made = outcome.made.max(balance - lowest);
+                lowest = lowest.min(balance);
+            }
+            time += segment.duration;
+            support = segment.support;
+            outcome.forces.push(outcome.rig.state.force);
+        }
+        Ok(outcome)
+    }
+
+    /// What must hold at every communication point.
+    fn inspect(&self, Rig { model, state, .. }: &Rig) -> Result<()> {
+        let numbers = [
+            state.time,
+            state.indentation,
+            state.indentation_rate,
+            state.force,
+            state.support,
+        ];
+        let modal = state.modes.iter().flat_map(|mode| [mode.q, mode.v]);
+        if numbers.into_iter().chain(modal).any(|x| !x.is_finite()) {
+            bail!("not finite at {} s: {numbers:?}", state.time);
+        }
+        if state.force < 0.0 && !model.law.never_opens() {
+            bail!("the contact pulls at {} s: {:e} N", state.time, state.force);
+        }
+        if state.steps + state.rejected_steps > self.steps {
+            bail!("more than {} integration steps until {} s", self.steps, state.time);
+        }
+        Ok(())
+    }
+
+    /// The outcome with 64 communication steps in each segment, and the properties that every scene keeps, also with 1 and 7.
+    pub(crate) fn checked(&self) -> Result<(Outcome, Vec<Check>)> {
+        let fine = self.run(64)?;
+        let mut checks = vec![Ok(vec![fine.energy()])];
+        for parts in [1, 7] {
+            let coarse = self.run(parts)?;
+            checks.push(Ok(vec![coarse.energy(), fine.same_force(&coarse)]));
+        }
+        Ok((fine, closest(checks)?))
+    }
+
+    /// The properties that every scene keeps.
+    pub(crate) fn checks(&self) -> Result<Vec<Check>> {
+        Ok(self.checked()?.1)
+    }
+}
+
+impl Outcome {
+    /// Error allowed in the contact force, N.
+    fn force_error(&self) -> f64 {
+        self.rig.model.force_scale * self.rig.model.scene.solver.effective_tolerance()
+    }
+
+    /// No energy is made. A contact force wrong by the tolerance makes at most that force times the path of the tip; rounding,
+    /// the last of thirteen digits of what goes through.
+    pub fn energy(&self) -> Check {
+        let allowed = self.force_error() * self.path + 1e-13 * self.throughput;
+        Check::energy("no energy is made", self.made, allowed)
+    }
+
+    /// The forces at the ends of the segments are those of another simulation.
+    pub fn same_force(&self, other: &Self) -> Check {
+        let pairs = self.forces.iter().zip(&other.forces);
+        let difference = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let property = "the same force whatever the communication step";
+        Check::two_runs(property, difference, self.force_error())
+    }
+}
+
+/// Gives the whole spring a velocity, m/s.
+pub(crate) fn throw(rig: &mut Rig, speed: f64) {
+    let modes = rig.model.modes.iter();
+    let velocities: Vec<f64> = modes.map(|mode| speed * mode.participation).collect();
+    rig.launch(&velocities);
+}
+
+/// Impulse of the contact force above the preload force since the start, N s.
+fn meter(rig: &Rig) -> f64 {
+    rig.model
+        .modes
+        .first()
+        .filter(|mode| mode.tip == METER)
+        .map_or(0.0, |_| rig.state.modes[0].v / METER)
+}
+
+/// Work of one metre per second squared of base acceleration from the preload to here, J.
+fn base_work(rig: &Rig) -> f64 {
+    let pairs = rig.model.modes.iter().zip(&rig.state.modes);
+    -pairs.map(|(mode, at)| mode.participation * at.q).sum::<f64>()
+}

@@ -1,0 +1,157 @@
+//! Extreme settings of the solver, and extreme communication steps.
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use anyhow::{Result, ensure};
+use relay_contact::harmonic;
+use relay_contact::inputs::Inputs;
+use relay_contact::scene::{Scene, Solver};
+use relay_contact::simulation::Simulation;
+use relay_contact::variables::{ContactLawKind, ExcitationKind, IntegerOutput, RealOutput};
+
+use crate::case::{Check, cases, closest, worst};
+use crate::ride::{Ride, Segment};
+
+cases! { CASES:
+    "Tolerance 0.1", "the coarsest allowed"
+        => with_tolerance(0.1);
+    "Tolerance 10⁻¹²", "below the rounding floor: the smallest possible tolerance is used"
+        => {
+            let mut scene = Scene::default();
+            scene.solver.tolerance = 1e-12;
+            ensure!(scene.solver.effective_tolerance() == Solver::TOLERANCE_FLOOR);
+            with_tolerance(1e-12)
+        };
+    "Light spring thrown at 6.5 m/s, tolerance 10⁻¹⁰",
+        "the tolerance, relative to the preload, is below the rounding error of the impact force"
+        => below_rounding();
+    "1 mode", "the coarsest spring"
+        => with_modes(1);
+    "40 modes", "the highest oscillates above a megahertz"
+        => with_modes(40);
+    "Bonded contact, 1 to 2 s in one communication step, tolerance 0.1 to 1e-11, 1 to 40 modes",
+        "a thousand periods in a step, one mode or forty"
+        => linear();
+    "An hour at rest, in one communication step and in 3600", "rounding errors add up; nothing moves, so no step should be taken"
+        => hour_at_rest();
+    "5000 g for 50 µs in two communication steps, and in steps around a nanosecond",
+        "steps of 10⁻⁹ s: differences of nearly equal numbers everywhere"
+        => nanoseconds();
+    "98 m/s² at 1 kHz in communication steps of a second, against 10 µs",
+        "a thousand periods per step; errors of steps add up to drift"
+        => seconds();
+}
+
+fn force(contact: &Simulation) -> f64 {
+    contact.real(RealOutput::ContactForce)
+}
+
+fn with_tolerance(tolerance: f64) -> Result<Vec<Check>> {
+    let mut scene = Scene::default();
+    scene.solver.tolerance = tolerance;
+    Ride::shaken(scene).checks()
+}
+
+fn with_modes(modes: i32) -> Result<Vec<Check>> {
+    let mut scene = Scene::default();
+    scene.solver.modes = modes;
+    Ride::shaken(scene).checks()
+}
+
+fn below_rounding() -> Result<Vec<Check>> {
+    let mut scene = Scene::default();
+    scene.beam.width = 1e-4;
+    scene.tip.mass = 0.0;
+    scene.solver.tolerance = 1e-10;
+    let ride = Ride {
+        speed: -6.5,
+        steps: 300_000,
+        ..Ride::new(scene, [Segment::accelerated(1e-3, 0.0)])
+    };
+    let state = ride.run(4)?.rig.state;
+    Ok(vec![Check::steps(state.steps + state.rejected_steps, ride.steps)])
+}
+
+/// The bonded contact, shaken: F = F_0 + Re(-i A R(omega) exp(i omega t)) once the start has died away.
+fn linear() -> Result<Vec<Check>> {
+    let mut off = 0.0;
+    for (tolerance, modes) in [(1e-1, 1), (1e-2, 0), (1e-6, 0), (1e-11, 40)] {
+        let mut scene = Scene::default();
+        scene.effects.excitation = ExcitationKind::Sine;
+        scene.effects.contact_law = ContactLawKind::Bonded;
+        // Extremes are looked for inside steps; without them a step is exact.
+        scene.effects.extremes = false;
+        scene.effects.chatter = false;
+        scene.solver.tolerance = tolerance;
+        scene.solver.modes = modes;
+        for time in [1.0, 1.0001, 1.000_35, 2.0] {
+            let mut contact = Simulation::new(&scene, &Inputs::default(), 0.0)?;
+            contact.step(&Inputs::default(), 0.0, time)?;
+            let omega = TAU * scene.excitation.frequency;
+            let (amplitude, phase) = harmonic::response(contact.model(), omega).force.to_polar();
+            let swing = scene.excitation.amplitude * amplitude * (omega * time + phase - FRAC_PI_2).cos();
+            let exact = contact.real(RealOutput::PreloadForce) + swing;
+            off = worst(off, (force(&contact) - exact).abs() / contact.model().force_scale);
+        }
+    }
+    Ok(vec![Check::new(
+        "the force is that of the frequency domain (relative to the preload force)",
+        (off, 1e4 * PI * f64::EPSILON),
+        "",
+        "rounding of the phase of 2 s at 1 kHz and of the force",
+    )])
+}
+
+fn hour_at_rest() -> Result<Vec<Check>> {
+    let mut whole = Simulation::new(&Scene::default(), &Inputs::default(), 0.0)?;
+    let mut seconds = whole.clone();
+    let preload = whole.real(RealOutput::PreloadForce);
+    whole.step(&Inputs::default(), 0.0, 3600.0)?;
+    for second in 0..3600 {
+        seconds.step(&Inputs::default(), f64::from(second), 1.0)?;
+    }
+    let off = worst((force(&whole) - preload).abs(), (force(&seconds) - preload).abs());
+    let steps = whole.integer(IntegerOutput::SolverSteps) + seconds.integer(IntegerOutput::SolverSteps);
+    Ok(vec![
+        Check::exact("the force stays the preload force", off, "N"),
+        Check::exact("no integration step is taken", f64::from(steps), ""),
+    ])
+}
+
+/// The contact opens, flies, and closes again.
+fn nanoseconds() -> Result<Vec<Check>> {
+    let segments = [
+        Segment::accelerated(10e-6, -50_000.0),
+        Segment::accelerated(40e-6, 50_000.0),
+    ];
+    let ride = Ride::new(Scene::default(), segments);
+    let nanoseconds = ride.run(25_000)?;
+    ensure!(nanoseconds.rig.state.last_closing > 0.0, "it does not close again");
+    let compared = [1, 64].map(|parts| Ok(vec![nanoseconds.same_force(&ride.run(parts)?)]));
+    closest([ride.checks()].into_iter().chain(compared))
+}
+
+fn seconds() -> Result<Vec<Check>> {
+    let mut scene = Scene::default();
+    scene.effects.excitation = ExcitationKind::Sine;
+    let mut seconds = Simulation::new(&scene, &Inputs::default(), 0.0)?;
+    let mut fine = seconds.clone();
+    for step in 0..4000 {
+        fine.step(&Inputs::default(), f64::from(step) * 1e-5, 1e-5)?;
+    }
+    let mut off = 0.0;
+    for second in 0..3 {
+        seconds.step(&Inputs::default(), f64::from(second), 1.0)?;
+        off = worst(off, (force(&seconds) - force(&fine)).abs());
+    }
+    let tolerance = Solver::DEFAULT_TOLERANCE * fine.model().force_scale;
+    let steps = seconds.integer(IntegerOutput::SolverSteps).try_into()?;
+    Ok(vec![
+        Check::two_runs(
+            "after whole periods the same force, however long it has run",
+            off,
+            tolerance,
+        ),
+        Check::steps(steps, 999_999),
+    ])
+}

@@ -1,0 +1,132 @@
+//! Extreme springs.
+
+use std::f64::consts::PI;
+
+use anyhow::{Context, Result, ensure};
+use relay_contact::error::SceneError;
+use relay_contact::inputs::Inputs;
+use relay_contact::scene::Scene;
+use relay_contact::simulation::Simulation;
+use relay_contact::variables::AxialForceKind;
+
+use crate::case::{Check, cases};
+use crate::ride::{Ride, Segment};
+use crate::rig::undamped;
+
+cases! { CASES:
+    "Spring without damping", "only the contact dissipates"
+        => with_damping(0.0);
+    "Spring with damping of 10 ms", "every mode is overdamped"
+        => with_damping(1e-2);
+    "System without damping, shaken", "no damping removes the energy that errors add"
+        => Ride::shaken(undamped()).checks();
+    "System without damping, thrown at the contact at 4 m/s", "no damping removes the energy that errors add"
+        => thrown();
+    "System without damping, pushed by some 10 nm, tolerance 1e-10",
+        "from rest the energy gives no scale for rounding errors"
+        => pushed();
+    "Spring without rivet", "without its mass the high modes move the tip most"
+        => {
+            let mut scene = Scene::default();
+            scene.tip.mass = 0.0;
+            Ride::shaken(scene).checks()
+        };
+    "Short light spring without damping, pushed within the tolerance",
+        "modes above a gigahertz, which need not be resolved: at most 1000 integration steps"
+        => pushed_within_tolerance();
+    "Axial force at 0.999 of the buckling load", "the spring alone has almost no stiffness left"
+        => Ride::shaken(pressed(0.999 * buckling_load())).checks();
+    "Axial force a millionth below the buckling load", "the spring has almost no stiffness left"
+        => {
+            let refused = limit(0.999_999 * buckling_load())?.is_some();
+            Ok(vec![Check::exact(
+                "simulated (times refused)",
+                f64::from(u8::from(refused)),
+                "",
+            )])
+        };
+    "Axial force a millionth above the buckling load, and up to 10⁶ N",
+        "the contact may open, and the spring alone would buckle"
+        => buckling();
+}
+
+fn with_damping(damping: f64) -> Result<Vec<Check>> {
+    let mut scene = Scene::default();
+    scene.beam.stiffness_damping = damping;
+    Ride::shaken(scene).checks()
+}
+
+fn thrown() -> Result<Vec<Check>> {
+    let ride = Ride {
+        speed: -4.0,
+        ..Ride::new(undamped(), [Segment::accelerated(7.8e-5, 0.0)])
+    };
+    Ok(vec![ride.run(4)?.energy()])
+}
+
+fn pushed() -> Result<Vec<Check>> {
+    let mut scene = undamped();
+    scene.solver.tolerance = 1e-10;
+    Ride {
+        steps: 10_000,
+        ..Ride::new(scene, [3e-8, 6e-8, 4e-8].map(|support| Segment::moved(1e-5, support)))
+    }
+    .checks()
+}
+
+/// A push so weak that the force stays within the tolerance: there is nothing to resolve.
+fn pushed_within_tolerance() -> Result<Vec<Check>> {
+    let mut scene = Scene::default();
+    scene.beam.length = 1e-3;
+    scene.beam.density = 1.0;
+    scene.beam.stiffness_damping = 0.0;
+    scene.tip.mass = 0.0;
+    Ride {
+        steps: 1000,
+        ..Ride::new(scene, [Segment::accelerated(1e-5, 4.6)])
+    }
+    .checks()
+}
+
+/// `pi^2 E I / (4 L^2)`, N.
+fn buckling_load() -> f64 {
+    let beam = Scene::default().beam;
+    let bending_stiffness = beam.youngs_modulus * beam.width * beam.thickness.powi(3) / 12.0;
+    PI * PI * bending_stiffness / (4.0 * beam.length.powi(2))
+}
+
+fn pressed(axial_force: f64) -> Scene {
+    let mut scene = Scene::default();
+    scene.effects.axial_force = AxialForceKind::Prescribed;
+    scene.beam.axial_force = axial_force;
+    scene
+}
+
+/// The limit that is named where the axial force is refused.
+fn limit(axial_force: f64) -> Result<Option<f64>> {
+    match Simulation::new(&pressed(axial_force), &Inputs::default(), 0.0) {
+        Err(SceneError::Buckled { name, value, limit }) => {
+            ensure!(name == "beam.axialForce" && value == axial_force, "{name}, {value} N");
+            Ok(Some(limit))
+        }
+        Err(error) => Err(error.into()),
+        Ok(_) => Ok(None),
+    }
+}
+
+fn buckling() -> Result<Vec<Check>> {
+    let exact = buckling_load();
+    let named = limit(1.000_001 * exact)?.context("a spring beyond buckling is not refused")?;
+    for force in [named, 1.001 * named, 2.0 * named, 100.0 * named, 1e6] {
+        ensure!(
+            limit(force)? == Some(named),
+            "{force} N is not refused, or by another limit"
+        );
+    }
+    Ok(vec![Check::new(
+        "refused, and the limit named is π² E I / (4 L²) (relative)",
+        ((named / exact - 1.0).abs(), 12.0 * f64::EPSILON),
+        "",
+        "a dozen roundings",
+    )])
+}

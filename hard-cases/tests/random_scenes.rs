@@ -1,0 +1,182 @@
+//! Scenes drawn from the whole range of every parameter, shaken and pushed at random: each is refused with an error that
+//! says why, or runs and keeps the properties that every scene keeps.
+//!
+//! `PROPTEST_CASES=100000 cargo test --release -p hard-cases --test random_scenes` draws that many
+//! (`PROPTEST_RNG_SEED=...` draws others; `-- --include-ignored` asks for all properties).
+//!
+//! Ranges that span decades are drawn with a uniform logarithm. Most parameters keep their start value in a scene, so that
+//! scenes differ in a few things at a time, and a failure shrinks to those that matter.
+
+use hard_cases::ride::{Ride, Segment};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+use relay_contact::inputs::Inputs;
+use relay_contact::scene::{Scene, choices};
+use relay_contact::simulation::Simulation;
+use relay_contact::variables::{AxialForceKind, ExcitationKind, Group, ResistanceKind, VARIABLES, Variable};
+
+/// Longest communication step drawn, s. With the shortest oscillations of the stiffest scenes some 1e-8 s long it keeps the work within
+/// seconds.
+const LONGEST: f64 = 1e-3;
+
+/// Integration steps that are enough for a ride, taken and repeated: the high modes of an undamped spring 1 mm long want some
+/// millions in a millisecond.
+const ENOUGH: u64 = 10_000_000;
+
+/// A value of the range at `x` in [0, 1).
+fn within(variable: &Variable, x: f64) -> f64 {
+    let Variable { min, max, .. } = *variable;
+    if min < 0.0 {
+        let magnitude = |x: f64| max * 1e-10_f64.powf(1.0 - x);
+        return if x < 0.5 {
+            min / max * magnitude(1.0 - 2.0 * x)
+        } else {
+            magnitude(2.0 * x - 1.0)
+        };
+    }
+    let low = if min > 0.0 { min } else { 1e-12 * max };
+    match variable.unit {
+        _ if x < 0.1 => min,
+        _ if max < 100.0 * min => min + x * (max - min),
+        _ => low * (max / low).powf((x - 0.1) / 0.9),
+    }
+    .min(max)
+}
+
+/// The start values, but for the variables with a draw; no tolerance below `tightest`.
+fn scene(draws: &[Option<f64>], tightest: f64) -> Scene {
+    let mut scene = Scene::default();
+    for (variable, draw) in VARIABLES.iter().zip(draws) {
+        let Some(x) = *draw else { continue };
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 39")]
+        let pick = |count: usize| (x * count as f64) as u8;
+        // A bound itself may be refused: then the start value stays.
+        let _ = match variable.group {
+            Group::RealParameter(parameter) => scene.set_real(parameter, within(variable, x)),
+            Group::IntegerParameter(parameter) => scene.set_integer(parameter, i32::from(pick(40))),
+            Group::EnumerationParameter(parameter) => {
+                let choices = choices(parameter);
+                scene.set_enumeration(parameter, choices[usize::from(pick(choices.len()))].1)
+            }
+            _ => Ok(()),
+        };
+    }
+    if scene.solver.tolerance > 0.0 {
+        scene.solver.tolerance = scene.solver.tolerance.max(tightest);
+    }
+    // What the generator and an axial force that changes put in is not in the account of the energy.
+    scene.effects.excitation = ExcitationKind::None;
+    if scene.effects.axial_force == AxialForceKind::FromDeflection {
+        scene.effects.axial_force = AxialForceKind::FromPreload;
+    }
+    // Interruptions need a resistance.
+    scene.effects.chatter &= scene.effects.resistance != ResistanceKind::None;
+    scene
+}
+
+/// How fast the fixed contact moves at most, m/s.
+const FASTEST: f64 = 10.0;
+
+fn segment() -> impl Strategy<Value = Segment> {
+    // One in three moves the fixed contact.
+    let support = (-3.0..3.0_f64).prop_map(|x| {
+        let magnitude = 10_f64.powf(-9.0 + 6.5 * (x.abs() - 2.0));
+        if x.abs() < 2.0 { 0.0 } else { magnitude.copysign(x) }
+    });
+    let acceleration = (-1.0..1.0_f64).prop_map(|x| (10_f64.powf(7.0 * x.abs() - 2.0) - 1e-2).copysign(x));
+    (-7.0..LONGEST.log10(), acceleration, support).prop_map(|(duration, acceleration, support)| Segment {
+        duration: 10_f64.powf(duration),
+        acceleration,
+        support,
+    })
+}
+
+fn ride(tightest: f64) -> impl Strategy<Value = Ride> {
+    let draws = prop::collection::vec(prop::option::weighted(0.2, 0.0..1.0), VARIABLES.len());
+    let segments = prop::collection::vec(segment(), 1..20);
+    (draws, -8.0..1.0_f64, any::<bool>(), segments).prop_map(move |(draws, speed, thrown, mut segments)| {
+        let mut support = 0.0;
+        for segment in &mut segments {
+            let way = FASTEST * segment.duration;
+            segment.support = segment.support.clamp(support - way, support + way);
+            support = segment.support;
+        }
+        Ride {
+            scene: scene(&draws, tightest),
+            speed: if thrown { -10_f64.powf(speed) } else { 0.0 },
+            segments,
+            steps: ENOUGH,
+        }
+    })
+}
+
+/// The ride in few words: what differs from the start values, and what is done.
+fn summary(ride: &Ride) -> String {
+    let start = Scene::default();
+    let value = |scene: &Scene, variable: &Variable| match variable.group {
+        Group::RealParameter(parameter) => scene.real(parameter),
+        Group::IntegerParameter(parameter) => f64::from(scene.integer(parameter)),
+        Group::EnumerationParameter(parameter) => f64::from(scene.enumeration(parameter)),
+        _ => 0.0,
+    };
+    let different: Vec<String> = VARIABLES
+        .iter()
+        .filter(|variable| value(&ride.scene, variable) != value(&start, variable))
+        .map(|variable| format!("{} = {:e}", variable.name, value(&ride.scene, variable)))
+        .collect();
+    let Ride { speed, segments, .. } = ride;
+    format!("{different:?}, thrown with {speed:e} m/s, {segments:?}")
+}
+
+/// The same scenes on every run, unless `PROPTEST_RNG_SEED` says otherwise.
+fn config() -> ProptestConfig {
+    let config = ProptestConfig::default();
+    ProptestConfig {
+        failure_persistence: None,
+        max_shrink_iters: 300,
+        rng_seed: match config.rng_seed {
+            RngSeed::Random => RngSeed::Fixed(52),
+            given @ RngSeed::Fixed(_) => given,
+        },
+        ..config
+    }
+}
+
+fn is_refused(scene: &Scene) -> bool {
+    Simulation::new(scene, &Inputs::default(), 0.0).is_err()
+}
+
+proptest! {
+    #![proptest_config(config())]
+
+    #[test]
+    fn every_scene_is_refused_or_runs_and_makes_no_energy(ride in ride(1e-6)) {
+        if !is_refused(&ride.scene) {
+            match ride.run(4) {
+                Ok(outcome) => {
+                    let energy = outcome.energy();
+                    prop_assert!(energy.is_kept(), "{energy}: {}", summary(&ride));
+                }
+                Err(error) => prop_assert!(false, "{error:#}: {}", summary(&ride)),
+            }
+        }
+    }
+
+    #[test]
+    fn every_scene_at_any_tolerance_is_refused_or_runs(ride in ride(0.0)) {
+        if !is_refused(&ride.scene) && let Err(error) = ride.run(4) {
+            prop_assert!(false, "{error:#}: {}", summary(&ride));
+        }
+    }
+
+    // Without damping a bouncing contact is sensitive to its past, so that the errors of two runs grow apart.
+    #[test]
+    #[ignore = "one scene in two hundred, with blows some 1e4 times the force scale, differs by up to 30 times the tolerance"]
+    fn damped_scenes_do_not_depend_on_the_communication_step(ride in ride(1e-6)) {
+        let damped = ride.scene.beam.stiffness_damping.min(ride.scene.contact.damping) > 1e-6;
+        if let (true, (Ok(coarse), Ok(fine))) = (damped, (ride.run(1), ride.run(4))) {
+            let force = fine.same_force(&coarse);
+            prop_assert!(force.is_kept(), "{force}: {}", summary(&ride));
+        }
+    }
+}

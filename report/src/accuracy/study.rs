@@ -1,0 +1,32 @@
+//! What accuracy costs: measures, then draws the figures of `docs/accuracy.md`.
+
+use std::process::Command;
+
+use anyhow::Result;
+
+use crate::programs::{self, cargo};
+
+/// How much is measured.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Few settings, once each, into out/accuracy: to see that everything works
+    #[arg(long)]
+    quick: bool,
+}
+
+/// Measures into `docs/accuracy.csv` and the tables of `docs/accuracy.md`, and draws.
+pub fn run(arguments: &Arguments) -> Result<()> {
+    let folder = if arguments.quick { "out/accuracy" } else { "docs" };
+    let quick = arguments.quick.then_some("--quick");
+    programs::run(measurement().args(["--folder", folder]).args(quick))?;
+    programs::run(programs::python().args(["docs/accuracy.py", folder]))
+}
+
+/// The program that measures, to be given its arguments.
+pub fn measurement() -> Command {
+    let mut run = cargo();
+    run.args(["run", "--release", "--package=benches", "--bin=accuracy"])
+        // Its own, as the library is built here with other features.
+        .args(["--target-dir=target/benches", "--"]);
+    run
+}

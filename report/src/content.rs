@@ -1,0 +1,108 @@
+//! What the report says, before it is a page: sections of text, tables and figures.
+
+/// How much is run.
+#[derive(clap::Args, Clone, Copy, Default)]
+pub struct Arguments {
+    /// Fewer points and runs, to see that everything works
+    #[arg(long)]
+    pub quick: bool,
+    /// Also draw each figure small, as docs/report/FIGURE.png (needs Chromium)
+    #[arg(long)]
+    pub pictures: bool,
+    /// Only rewrite docs/validation.md
+    #[arg(long)]
+    pub docs: bool,
+}
+
+/// A section of the page.
+#[derive(Clone, Debug)]
+pub struct Section {
+    /// Its anchor.
+    pub id: &'static str,
+    pub title: &'static str,
+    /// The section in a sentence of Markdown, for the summary of the page; empty: it has no place there.
+    pub lead: String,
+    pub blocks: Vec<Block>,
+}
+
+/// What a section is made of.
+#[derive(Clone, Debug)]
+pub enum Block {
+    /// Paragraphs in Markdown.
+    Text(String),
+    Table(Table),
+    Figure(Figure),
+}
+
+/// A table; cells are Markdown, numbers with their digits.
+#[derive(Clone, Debug, Default)]
+pub struct Table {
+    pub caption: String,
+    pub columns: Vec<String>,
+    pub rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// Which columns hold numbers, for their alignment: every cell starts like one, or is empty or a dash.
+    pub fn numeric(&self) -> Vec<bool> {
+        let number = |cell: &String| {
+            let digits = cell.trim_start_matches(['*', '+', '-', '−', '±', '<', '>', '≤', '≥', '≈', ' ']);
+            digits.is_empty()
+                || digits == "–"
+                || digits == "—"
+                || digits.starts_with(|letter: char| letter.is_ascii_digit())
+        };
+        let columns = 0..self.columns.len();
+        columns
+            .map(|column| {
+                let mut cells = self.rows.iter().filter_map(|row| row.get(column)).peekable();
+                cells.peek().is_some() && cells.all(number)
+            })
+            .collect()
+    }
+}
+
+/// Curves over one pair of axes.
+#[derive(Clone, Debug)]
+pub struct Figure {
+    /// Its anchor, and the name of its picture.
+    pub id: &'static str,
+    pub title: String,
+    pub x: Axis,
+    pub y: Axis,
+    pub curves: Vec<Curve>,
+    /// What to see in it, in Markdown.
+    pub caption: String,
+}
+
+/// An axis.
+#[derive(Clone, Copy, Debug)]
+pub struct Axis {
+    pub label: &'static str,
+    /// Empty for a pure number.
+    pub unit: &'static str,
+    pub logarithmic: bool,
+}
+
+/// A curve, in the units of the axes.
+#[derive(Clone, Debug)]
+pub struct Curve {
+    pub name: String,
+    pub x: Vec<f64>,
+    pub y: Vec<f64>,
+    pub style: Style,
+    /// Which colour; curves that belong together have the same.
+    pub colour: usize,
+}
+
+/// How a curve is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Style {
+    Line,
+    Dashed,
+    /// Points alone: what is published or measured.
+    Markers,
+    LineAndMarkers,
+    /// The area below a curve.
+    Area,
+}

@@ -1,0 +1,63 @@
+//! Instructions and nanoseconds that a simulated millisecond takes.
+
+use anyhow::Result;
+
+use super::run_scene::{Changes, RunScene};
+
+/// Simulated in a run, s.
+pub const LENGTH: f64 = 0.1;
+
+/// Communication step of the minimal scene, s: a run of one tells what is spent before the steps.
+const STEP: f64 = 1e-5;
+
+const SCENE: &str = "scenes/minimal.toml";
+
+/// Per simulated millisecond.
+#[derive(Clone, Copy)]
+pub struct Cost {
+    /// Where they are counted.
+    pub instructions: Option<f64>,
+    pub nanoseconds: f64,
+}
+
+/// Builds for any processor, whose instructions are counted.
+pub struct Counter {
+    with_all: RunScene,
+    /// Without the effects that reach into the steps of the integrator.
+    bare: RunScene,
+}
+
+impl Counter {
+    /// Builds both.
+    pub fn build() -> Result<Self> {
+        Ok(Self {
+            with_all: RunScene::build_in("target/portable", &["--features=portable"])?,
+            bare: RunScene::build_in("target/bare", &["--features=bare"])?,
+        })
+    }
+
+    /// Instructions per simulated millisecond of the minimal scene with changes.
+    pub fn count(&self, changes: &Changes) -> Result<f64> {
+        instructions(&self.with_all, changes)
+    }
+
+    /// The same in both builds.
+    pub fn both(&self, changes: &Changes) -> Result<(f64, f64)> {
+        Ok((self.count(changes)?, instructions(&self.bare, changes)?))
+    }
+}
+
+/// Nanoseconds per simulated millisecond of the minimal scene with changes, in the usual build.
+pub fn nanoseconds(usual: &RunScene, changes: &Changes, runs: usize) -> Result<f64> {
+    usual.nanoseconds(SCENE, &until(changes, LENGTH), runs)
+}
+
+fn instructions(build: &RunScene, changes: &Changes) -> Result<f64> {
+    let counted = |stop| build.instructions(SCENE, &until(changes, stop));
+    Ok((counted(LENGTH)? - counted(STEP)?) / (1e3 * (LENGTH - STEP)))
+}
+
+fn until(changes: &Changes, stop: f64) -> Vec<(String, String)> {
+    let stop = [("stop".to_owned(), stop.to_string())];
+    changes.iter().cloned().chain(stop).collect()
+}

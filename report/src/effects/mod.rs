@@ -1,0 +1,209 @@
+//! What each effect costs and changes: `docs/effects.md`, and a section of the report.
+//!
+//! [`list`]: the effects;   [`cost`]: instructions and time of the minimal scene with each;   [`influence`]: what each changes
+//! in the scenes;   [`page`]: all that as tables.
+
+mod callgrind;
+mod cost;
+mod influence;
+mod list;
+mod page;
+pub mod run_scene;
+pub mod section;
+
+use std::fs;
+use std::path::PathBuf;
+
+use anyhow::{Context, Result, bail};
+use indicatif::{ProgressBar, ProgressStyle};
+
+pub use self::callgrind::instructions;
+use self::cost::{Cost, Counter};
+use self::influence::{Influence, influence};
+use self::list::{EFFECTS, Effect};
+use self::run_scene::RunScene;
+use crate::markdown::table as markdown_table;
+use crate::threads;
+
+/// Instructions that everything that is off may cost, of those of a build that does not have it.
+const ALLOWED: f64 = 0.01;
+
+/// Where to write.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The page to write
+    #[arg(long, default_value = "docs/effects.md")]
+    page: PathBuf,
+    /// Only check that what is off costs nothing
+    #[arg(long)]
+    off: bool,
+}
+
+/// How much is measured.
+#[derive(Clone, Copy)]
+pub struct Extent {
+    /// Runs of which the shortest is the time.
+    pub runs: usize,
+    /// Whether instructions are counted, where valgrind is there.
+    pub instructions: bool,
+    /// Whether the scenes are compared with and without each effect.
+    pub influence: bool,
+}
+
+/// All that was measured.
+pub struct Measurement {
+    extent: Extent,
+    minimal: Cost,
+    effects: Vec<Measured>,
+    off: Option<[Off; 2]>,
+}
+
+/// An effect, measured.
+struct Measured {
+    effect: &'static Effect,
+    cost: Cost,
+    /// Of what it is compared with.
+    base: Cost,
+    influence: Option<Influence>,
+}
+
+/// Instructions of the usual build and of one without what is off, per millisecond of a run.
+pub struct Off {
+    run: &'static str,
+    with: f64,
+    without: f64,
+}
+
+impl Off {
+    /// What is added, as a part.
+    fn more(&self) -> f64 {
+        self.with / self.without - 1.0
+    }
+}
+
+/// Measures and writes the page.
+pub fn run(arguments: &Arguments) -> Result<()> {
+    if arguments.off {
+        return what_is_off();
+    }
+    if !callgrind::is_installed() {
+        eprintln!(
+            "{}, so instructions are not counted: nanoseconds alone",
+            callgrind::MISSING
+        );
+    }
+    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} {msg}")?;
+    let progress = ProgressBar::no_length().with_style(style);
+    let extent = Extent {
+        runs: 15,
+        instructions: true,
+        influence: true,
+    };
+    let measurement = measure(extent, &progress)?;
+    progress.finish_and_clear();
+    let off = page::nothing(&measurement).unwrap_or_default();
+    fs::write(&arguments.page, page::page(&measurement))
+        .with_context(|| format!("cannot write {}", arguments.page.display()))?;
+    println!("{}\n{off}", markdown_table(&page::costs(&measurement)));
+    println!("{}", arguments.page.display());
+    check(measurement.off.as_ref())
+}
+
+/// Measures: first times, one after the other, then what does not depend on what else the machine does.
+pub fn measure(extent: Extent, progress: &ProgressBar) -> Result<Measurement> {
+    let usual = RunScene::build()?;
+    let counter = (extent.instructions && callgrind::is_installed())
+        .then(Counter::build)
+        .transpose()?;
+    progress.set_length(2 * EFFECTS.len() as u64 + 2);
+    let runs: Vec<Vec<(String, String)>> = [Vec::new()]
+        .into_iter()
+        .chain(EFFECTS.iter().map(list::changes))
+        .collect();
+    let mut times = Vec::new();
+    progress.set_message("times");
+    for changes in &runs {
+        times.push(cost::nanoseconds(&usual, changes, extent.runs)?);
+        progress.inc(1);
+    }
+    progress.set_message("instructions and influence");
+    let counts = threads::map(&runs, |changes| {
+        let count = counter.as_ref().map(|counter| counter.count(changes)).transpose();
+        progress.inc(1);
+        count
+    })?;
+    let costs: Vec<Cost> = times
+        .into_iter()
+        .zip(counts)
+        .map(|(nanoseconds, instructions)| Cost {
+            instructions,
+            nanoseconds,
+        })
+        .collect();
+    let influences = threads::map(EFFECTS, |effect| {
+        let compared = extent.influence && !effect.off.is_empty();
+        compared.then(|| influence(effect)).transpose()
+    })?;
+    let (minimal, costs) = costs.split_first().context("nothing measured")?;
+    let base = |effect: &Effect| match effect.beside {
+        Some(name) => {
+            let base = EFFECTS.iter().zip(costs).find(|(known, _)| known.name == name);
+            base.map(|(_, cost)| *cost)
+                .with_context(|| format!("{name}: no such effect"))
+        }
+        None => Ok(*minimal),
+    };
+    let effects = EFFECTS.iter().zip(costs).zip(influences);
+    let effects = effects
+        .map(|((effect, cost), influence)| {
+            Ok(Measured {
+                effect,
+                cost: *cost,
+                base: base(effect)?,
+                influence,
+            })
+        })
+        .collect::<Result<_>>()?;
+    Ok(Measurement {
+        extent,
+        minimal: *minimal,
+        effects,
+        off: counter.as_ref().map(off).transpose()?,
+    })
+}
+
+/// Checks what the effects that are off cost, and tells.
+pub fn what_is_off() -> Result<()> {
+    if !callgrind::is_installed() {
+        bail!(callgrind::MISSING);
+    }
+    let off = off(&Counter::build()?)?;
+    println!("{}", page::off(&off));
+    check(Some(&off))
+}
+
+/// What the effects that are off cost.
+fn off(counter: &Counter) -> Result<[Off; 2]> {
+    let count = |(run, amplitude): (&'static str, &str)| {
+        let changes = [("excitation.amplitude".to_owned(), amplitude.to_owned())];
+        let (with, without) = counter.both(&changes)?;
+        Ok::<_, anyhow::Error>(Off { run, with, without })
+    };
+    let (closed, opening) = (("closed contact, 98 m/s²", "98"), ("opening contact, 400 m/s²", "400"));
+    Ok([count(closed)?, count(opening)?])
+}
+
+/// An error where what is off costs too much.
+fn check(off: Option<&[Off; 2]>) -> Result<()> {
+    for off in off.into_iter().flatten() {
+        if off.more() > ALLOWED {
+            bail!(
+                "effects that are off cost {:+.2} % ({}), allowed is {} %",
+                100.0 * off.more(),
+                off.run,
+                100.0 * ALLOWED
+            );
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,175 @@
+//! What was measured, as tables, and `docs/effects.md` made of them.
+
+use std::fmt::Write;
+
+use super::cost::{Cost, LENGTH};
+use super::influence::{CLOSED, Influence, OPENING};
+use super::list::{self, MINIMAL};
+use super::{Measured, Measurement, Off};
+use crate::content::Table;
+use crate::markdown::table as markdown_table;
+
+/// What each effect costs.
+pub fn costs(measurement: &Measurement) -> Table {
+    let Measurement { minimal, effects, .. } = measurement;
+    let mut rows = vec![vec![
+        MINIMAL.to_owned(),
+        String::new(),
+        instructions(minimal),
+        String::new(),
+        format!("{:.0}", minimal.nanoseconds),
+        String::new(),
+    ]];
+    rows.extend(effects.iter().map(cost));
+    let columns = [
+        "effect",
+        "setting",
+        "instructions per ms",
+        "added",
+        "ns per ms",
+        "added",
+    ];
+    Table {
+        caption: format!(
+            "Per simulated millisecond of a run of {} ms in communication steps of 10 µs, each effect added alone to the scene \
+             with everything off that can be.",
+            LENGTH * 1e3
+        ),
+        columns: columns.map(str::to_owned).to_vec(),
+        rows,
+    }
+}
+
+fn cost(measured: &Measured) -> Vec<String> {
+    let Measured { effect, cost, base, .. } = measured;
+    let added = |now: f64, before: f64| format!("{:+.1} %", 100.0 * (now / before - 1.0));
+    let counted = match (cost.instructions, base.instructions) {
+        (Some(now), Some(before)) => added(now, before),
+        _ => String::new(),
+    };
+    let beside = effect.beside.map_or(String::new(), |name| format!(", beside {name}"));
+    vec![
+        format!("{}{beside}", effect.name),
+        list::code(effect.setting),
+        instructions(cost),
+        counted,
+        format!("{:.0}", cost.nanoseconds),
+        added(cost.nanoseconds, base.nanoseconds),
+    ]
+}
+
+fn instructions(cost: &Cost) -> String {
+    cost.instructions
+        .map_or("not counted".to_owned(), |count| format!("{count:.0}"))
+}
+
+/// What each effect changes in the scenes; none where that was not looked at.
+pub fn influences(measurement: &Measurement) -> Option<Table> {
+    let mut columns = vec!["effect".to_owned(), "against".to_owned()];
+    for name in CLOSED {
+        columns.push(format!("*{name}*: force, mN"));
+        columns.push("resistance, mΩ".to_owned());
+    }
+    columns.push(format!("*{OPENING}*: open without it, ms"));
+    columns.push("with it".to_owned());
+    let row = |measured: &Measured| {
+        let Influence { closed, open } = measured.influence.as_ref()?;
+        let mut row = vec![measured.effect.name.to_owned(), list::code(measured.effect.off)];
+        row.extend(closed.iter().flatten().map(|difference| amount(1e3 * difference)));
+        row.extend(open.iter().map(|time| format!("{:.3}", 1e3 * time)));
+        Some(row)
+    };
+    let rows: Vec<_> = measurement.effects.iter().filter_map(row).collect();
+    (!rows.is_empty()).then(|| Table {
+        caption: "Each on against off in three scenes: the largest difference of contact force and resistance at a communication \
+                  point, and where the contact opens, the time without force."
+            .to_owned(),
+        columns,
+        rows,
+    })
+}
+
+/// Two digits.
+fn amount(value: f64) -> String {
+    match value {
+        0.0 => "0".to_owned(),
+        value if (0.01..1e4).contains(&value) => {
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 3")]
+            let places = (1.0 - value.log10().floor()).clamp(0.0, 3.0) as usize;
+            format!("{value:.places$}")
+        }
+        value => format!("{value:.0e}"),
+    }
+}
+
+/// When each matters, a list.
+pub fn when(measurement: &Measurement) -> String {
+    measurement.effects.iter().fold(String::new(), |mut list, measured| {
+        let _ = writeln!(list, "- **{}**: {}", measured.effect.name, measured.effect.matters);
+        list
+    })
+}
+
+/// What the effects that are off cost, as a sentence and a list.
+pub fn off(off: &[Off; 2]) -> String {
+    let mut text = String::from(
+        "The component can be built without contact damping, chatter, extremes, energy balance, the axial force from the \
+         deflection and all excitations but the sine (feature `bare`). Instructions per millisecond of the minimal scene in \
+         the usual build, and in that one; `cargo xtask test` fails where it is more than 1 %:\n",
+    );
+    for off in off {
+        let _ = write!(
+            text,
+            "\n- {}: {:.0} and {:.0}, {:+.2} %",
+            off.run,
+            off.with,
+            off.without,
+            100.0 * off.more()
+        );
+    }
+    text
+}
+
+/// What instructions and times are, as a sentence.
+pub fn how(measurement: &Measurement) -> String {
+    let counted = if measurement.minimal.instructions.is_some() {
+        "Instructions are counted by valgrind in a build for any processor"
+    } else {
+        "Instructions were not counted in this run (that needs valgrind, and is left out of a quick one)"
+    };
+    format!(
+        "{counted}; nanoseconds are those of this machine, the shortest of {} runs.",
+        runs(measurement)
+    )
+}
+
+/// What the effects that are off cost, where that was measured.
+pub fn nothing(measurement: &Measurement) -> Option<String> {
+    measurement.off.as_ref().map(off)
+}
+
+/// How often each was timed.
+fn runs(measurement: &Measurement) -> usize {
+    measurement.extent.runs
+}
+
+/// `docs/effects.md`.
+pub fn page(measurement: &Measurement) -> String {
+    let (table, sentences) = (markdown_table(&costs(measurement)), when(measurement));
+    let changes = influences(measurement);
+    let caption = changes.as_ref().map_or("", |table| &table.caption);
+    let changed = changes.as_ref().map_or(String::new(), markdown_table);
+    let off = nothing(measurement).unwrap_or("Not measured.".to_owned());
+    format!(
+        "<!-- Written by cargo xtask effects. -->\n# What each effect costs and changes\n\n    cargo xtask effects\n\n\
+         runs [`scenes/minimal.toml`](../scenes/minimal.toml), in which everything is off that can be, and adds each effect \
+         alone. The run is {} ms long in communication steps of 10 µs; after each, the contact force is read, and what the \
+         effect is for. Instructions are counted by valgrind's callgrind in a build for any processor, nanoseconds taken on \
+         this machine in the usual build, the shortest of {} runs.\n\n{table}\n\n\
+         ## When each matters\n\n{sentences}\n\
+         {caption}\n\n{changed}\n\n\
+         ## What is off costs nothing\n\n{off}\n",
+        LENGTH * 1e3,
+        runs(measurement),
+    )
+}

@@ -1,0 +1,27 @@
+//! Tables.
+
+use maud::{Markup, html};
+
+use crate::content::Table;
+use crate::html::{inline_markdown, markdown};
+
+/// A table as HTML.
+pub fn table(table: &Table) -> Markup {
+    let numeric = table.numeric();
+    let class = |column: usize| numeric.get(column).is_some_and(|numeric| *numeric).then_some("number");
+    html! {
+        figure {
+            figcaption { (markdown(&table.caption)) }
+            div.scroll role="region" tabindex="0" aria-label=(table.caption) {
+                table {
+                    thead { tr { @for (column, name) in table.columns.iter().enumerate() {
+                        th scope="col" class=[class(column)] { (inline_markdown(name)) }
+                    } } }
+                    tbody { @for row in &table.rows { tr { @for (column, cell) in row.iter().enumerate() {
+                        td class=[class(column)] { (inline_markdown(cell)) }
+                    } } } }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! Two places where the publication's numbers do not follow from its formulas.
+
+use std::f64::consts::{PI, TAU};
+
+use anyhow::Result;
+use relay_contact::variables::AxialForceKind;
+
+use super::curves::{FORCE_AMPLITUDE, FREQUENCY, amplitudes, published};
+use super::published as paper;
+use super::results::Results;
+use super::runs;
+use super::table::{cells, number, significant, table};
+use crate::content::{Block, Figure, Style};
+
+/// The blocks of the section.
+pub fn blocks(results: &Results) -> Result<Vec<Block>> {
+    let mut blocks = damping(results)?;
+    blocks.extend(axial_force(results)?);
+    Ok(blocks)
+}
+
+/// The published beta taken literally.
+fn damping(results: &Results) -> Result<Vec<Block>> {
+    let beta = paper::BETAS[3];
+    let amplitudes: Vec<f64> = results.literal.iter().map(runs::Periodic::amplitude).collect();
+    let least = amplitudes.iter().fold(f64::INFINITY, |least, a| least.min(*a));
+    let greatest = amplitudes
+        .iter()
+        .fold(f64::NEG_INFINITY, |greatest, a| greatest.max(*a));
+    let omega = paper::ALPHA_PER_BETA.sqrt();
+    let first = results.specimen.frequency;
+    let text = format!(
+        "### The published stiffness coefficient cannot be meant as printed\n\n\
+         The publication damps with C = beta K and prints beta = {beta:.4e} s, which is 2 ζ/ω at 1000 Hz with a \"damping ratio\" \
+         ζ of 10 (eq. 15). With that number in SI units nothing resonates: the force amplitude is {} to {} cN from 250 to \
+         2000 Hz. The publication shows a resonance, 4.812 cN at 1000 Hz and 5.2 cN near 1250 Hz (Figs. 6 and 7).\n\n\
+         Its own relation between the two damping coefficients, alpha = 1610065 beta (eq. 33), should be alpha = beta ω² with ω the first \
+         angular frequency (eq. 32). The factor is the square of {}: near the first frequency in Hz ({}), not in rad/s ({}). \
+         So the coefficient seems to belong to frequencies in Hz, and in SI units it is smaller by 4 π²: {} s. That is a \
+         calibration which this supports, not a proof. With it the resonance is there.",
+        number(least, 3),
+        number(greatest, 3),
+        number(omega, 1),
+        number(first, 1),
+        number(TAU * first, 0),
+        format_args!("{:.3e}", beta / (4.0 * PI * PI)),
+    );
+    let mut rows = Vec::new();
+    for (run, literal) in results.ratio(paper::BEST)?.iter().zip(&results.literal) {
+        let published = if run.frequency == 1000.0 {
+            format!("{} cN", paper::FORCE_AMPLITUDE)
+        } else if run.frequency == 1250.0 {
+            format!("{} cN, the peak", paper::PEAKS[0].2)
+        } else {
+            String::new()
+        };
+        rows.push(cells(&[
+            &format!("{} Hz", run.frequency),
+            &published,
+            &format!("{} cN", number(literal.amplitude(), 3)),
+            &format!("{} cN", number(run.amplitude(), 3)),
+        ]));
+    }
+    let caption = format!("Force amplitude with beta = {beta:.4e} s as printed, and over 4 π²; 98 m/s²");
+    let columns = ["frequency", "published", "as printed", "over 4 π²"];
+    Ok(vec![
+        Block::Text(text),
+        table(&caption, &columns, rows),
+        Block::Figure(literal_figure(results)),
+    ])
+}
+
+fn literal_figure(results: &Results) -> Figure {
+    let mut curves = vec![amplitudes("beta as printed", &results.literal, Style::Dashed, 1)];
+    if let Some((_, runs)) = results.curves.iter().find(|(ratio, _)| *ratio == paper::BEST) {
+        curves.push(amplitudes("beta over 4 π²", runs, Style::Line, 0));
+    }
+    let points = [(1000.0, paper::FORCE_AMPLITUDE), (paper::PEAKS[0].1, paper::PEAKS[0].2)];
+    curves.push(published("ratio 10", points, 0));
+    Figure {
+        id: "finding-beta",
+        title: "The published beta as printed, and over 4 π²".to_owned(),
+        x: FREQUENCY,
+        y: FORCE_AMPLITUDE,
+        curves,
+        caption:
+            "As printed, damping is so strong that beam and contact creep: the same force at every frequency. The \
+                  published points lie on a resonance."
+                .to_owned(),
+    }
+}
+
+/// Equation 9.
+fn axial_force(results: &Results) -> Result<Vec<Block>> {
+    let model = &results.specimen;
+    let without = runs::model(&runs::spring(15.5e-3, 0.2e-3, AxialForceKind::None))?;
+    let force = relay_contact::beam::statics::axial_force_from_deflection(&model.section, model.preload.deflection);
+    let buckling = model.section.buckling_load();
+    let shift = without.frequency - model.frequency;
+    let published = paper::WITHOUT_PRESTRESS - paper::WITH_PRESTRESS;
+    let part = paper::WITH_PRESTRESS / paper::WITHOUT_PRESTRESS;
+    let needed = runs::axial_force_for(part * without.frequency)?;
+    let text = format!(
+        "### Equation 9 does not explain the published effect of prestress\n\n\
+         Eq. 9 gives the axial force from the tip's deflection, N = (3 E I y / L³) sin(3 y / (2 L)). At the specimen that is {} mN: the \
+         first frequency falls by {} Hz. The publication has {} Hz (1397.6 to 1354.5 Hz), {} times as much. To lower the frequency of \
+         this spring by the same part takes {} N, {} % of the load at which it buckles once the contact opens ({} N).\n\n\
+         The published shift comes from a three-dimensional model with friction, and its two frequencies also differ in how the \
+         contact is held: bonded in all directions with prestress, by one spring without. A flat contact without friction exerts \
+         no force along the spring at all. The component has eq. 9 because the publication does.",
+        number(1e3 * force, 2),
+        number(shift, 3),
+        number(published, 1),
+        number(published / shift, 0),
+        number(needed, 2),
+        number(100.0 * needed / buckling, 0),
+        number(buckling, 2),
+    );
+    let rows = vec![
+        cells(&[
+            "axial force by eq. 9",
+            &format!("{} N", significant(force)),
+            &format!("{} Hz", number(shift, 3)),
+        ]),
+        cells(&[
+            "axial force for the published part of the frequency",
+            &format!("{} N", significant(needed)),
+            &format!("{} Hz", number(without.frequency * (1.0 - part), 1)),
+        ]),
+    ];
+    let columns = ["", "axial force", "first frequency lower by"];
+    Ok(vec![
+        Block::Text(text),
+        table("Axial force and first frequency of the specimen", &columns, rows),
+    ])
+}

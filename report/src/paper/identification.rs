@@ -1,0 +1,108 @@
+//! How the unpublished parameters follow from published results: the table of `examples/identify`.
+
+use anyhow::{Context, Result, anyhow};
+use relay_contact::scene::Scene;
+
+use super::calculation::{Amplitude, PARAMETERS, Published, SOURCES, Specimen, precision, sensitivities};
+use super::table::{deviation, number, percent, table};
+use crate::content::Block;
+
+/// The blocks of the section.
+pub fn blocks() -> Result<Vec<Block>> {
+    let found = Specimen::identify(&Published::default()).map_err(|error| anyhow!(error))?;
+    let slopes = sensitivities().map_err(|error| anyhow!(error))?;
+    let precision = precision().map_err(|error| anyhow!(error))?;
+    let start = Specimen::of(&Scene::default());
+    let position = |symbol: &str| PARAMETERS.iter().position(|parameter| parameter.symbol == symbol);
+    let (width, rivet) = (
+        position("b").context("no width")?,
+        position("m").context("no rivet mass")?,
+    );
+    let elastic = Published {
+        amplitude: Amplitude::Elastic,
+        ..Published::default()
+    };
+    let elastic = Specimen::identify(&elastic).map_err(|error| anyhow!(error))?;
+    let text = format!(
+        "Width, thickness, rivet mass, camber radius and a usable damping are not published. They follow from published results by root \
+         finding on the library's own functions: `cargo run --release --example identify` does it again.\n\n\
+         Width and thickness are those of an equivalent uniform section, not of the real spring: {} mm of width on a spring of 15.5 mm \
+         would be a plate.\n\n\
+         The rivet mass is weakly determined: it rests on one force amplitude, and a first frequency that is 1 % higher would change it \
+         by {} (by the slope), half a digit of the static force by {} %. If the published force amplitude is that of the elastic part alone (see *Not reproduced*), it \
+         is {} mg. The damping is not found but a calibration (see *Findings*).",
+        number(found.values[width], 1),
+        percent(slopes[2][rivet]),
+        number(precision[0][rivet], 1),
+        number(elastic.values[rivet], 1),
+    );
+    let rows = PARAMETERS
+        .iter()
+        .zip(found.values)
+        .zip(start.values)
+        .map(|((parameter, found), start)| {
+            vec![
+                format!("{} {}", parameter.name, parameter.symbol),
+                parameter.from.to_owned(),
+                format!("{found:.*} {}", decimals(found), parameter.unit),
+                format!("{start:.*} {}", decimals(start), parameter.unit),
+                deviation(start, found),
+            ]
+        });
+    let columns = [
+        "parameter",
+        "follows from",
+        "identified",
+        "start value",
+        "off by rounding",
+    ];
+    let parameters = table("Identified parameters", &columns, rows.collect());
+
+    let matrix = |caption: &str, cell: &dyn Fn(usize, usize) -> String| {
+        let names = PARAMETERS.iter().map(|parameter| parameter.symbol);
+        let columns: Vec<_> = ["published result"].into_iter().chain(names).collect();
+        let rows = SOURCES.iter().enumerate().map(|(source, published)| {
+            let value = published.value;
+            let value = if (1e-2..1e5).contains(&value) {
+                format!("{value}")
+            } else {
+                format!("{value:e}")
+            };
+            let head = format!("{}: {value} {}, {}", published.name, published.unit, published.place);
+            [head]
+                .into_iter()
+                .chain((0..PARAMETERS.len()).map(|parameter| cell(source, parameter)))
+                .collect()
+        });
+        table(caption, &columns, rows.collect())
+    };
+    let sensitivity = matrix(
+        "Change of each parameter where a published result is 1 % higher, by the slope",
+        &|source, parameter| percent(slopes[source][parameter]),
+    );
+    let units = matrix(
+        "The same as derivatives: parameter per published result, in the units of both",
+        &|source, parameter| {
+            let slope = slopes[source][parameter] * found.values[parameter] / SOURCES[source].value;
+            if percent(slopes[source][parameter]) == "0.00 %" {
+                return "≈ 0".to_owned();
+            }
+            format!(
+                "{slope:.3e} {} per {}",
+                PARAMETERS[parameter].unit, SOURCES[source].unit
+            )
+        },
+    );
+    let digits = matrix(
+        "How far each parameter is uncertain because a published result is rounded: half of its last printed digit",
+        &|source, parameter| format!("±{} %", number(precision[source][parameter], 2)),
+    );
+    Ok(vec![Block::Text(text), parameters, sensitivity, units, digits])
+}
+
+/// Digits after the point for six significant ones.
+fn decimals(value: f64) -> usize {
+    #[allow(clippy::cast_possible_truncation)] // at most 308
+    let magnitude = value.abs().log10().floor() as i32;
+    usize::try_from(5 - magnitude).unwrap_or_default()
+}

@@ -1,0 +1,107 @@
+//! The publication beside the model.
+//!
+//! [`published`]: its numbers;   [`runs`], [`results`]: ours;   [`calculation`]: the identification, shared with its example.
+//! Sections, of blocks by [`comparison`], [`resistance`], [`figures`], [`responses`]; [`not_reproduced`] with [`displacement`],
+//! [`elastic`]; [`findings`]; [`identification`].   [`table`], [`curves`]: what these are made with;   [`spring`]: the motion
+//! between clamp and contact;   [`validation`]: the same as `docs/validation.md`.
+
+#[path = "../../../examples/identify/identification.rs"]
+mod calculation;
+mod comparison;
+mod curves;
+mod displacement;
+mod elastic;
+mod figures;
+mod findings;
+mod identification;
+mod not_reproduced;
+mod published;
+mod resistance;
+mod responses;
+mod results;
+mod runs;
+mod spring;
+mod table;
+#[cfg(test)]
+mod tests;
+pub mod validation;
+
+use anyhow::Result;
+
+use self::results::Results;
+use crate::content::Arguments;
+use crate::content::{Block, Section};
+
+/// The sections.
+pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
+    let results = Results::compute(arguments.quick)?;
+    let section = |id, title, lead, blocks| Section {
+        id,
+        title,
+        lead,
+        blocks,
+    };
+    let none = String::new;
+    Ok(vec![
+        section(
+            "paper",
+            "The publication reproduced",
+            lead(&results)?,
+            paper(&results, arguments.quick)?,
+        ),
+        section(
+            "not-reproduced",
+            "Not reproduced",
+            "the shift of the first frequency by prestress, short springs, displacements of the contact, and damping far from \
+             that of the specimen, each with its reason."
+                .to_owned(),
+            not_reproduced::blocks(&results)?,
+        ),
+        section("findings", "Findings", none(), findings::blocks(&results)?),
+        section("identification", "Identification", none(), identification::blocks()?),
+    ])
+}
+
+/// What the fitted parameters predict.
+fn lead(results: &Results) -> Result<String> {
+    let (low, high) = published::MEASURED_RESISTANCE;
+    let (ratio, frequency, peak) = published::PEAKS[0];
+    let at_1000 = results.at(published::BEST, 1000.0)?;
+    Ok(format!(
+        "fitted to the published static force, stiffness, first frequency and one force amplitude, the model gives a \
+         resistance of {:.1} to {:.1} mΩ under 98 m/s² at 1000 Hz (measured: {low} \
+         to {high} mΩ), and a greatest force amplitude of {:.2} cN at {frequency} Hz (published: {peak} cN).",
+        runs::resistance(at_1000.greatest),
+        runs::resistance(at_1000.least),
+        results.at(ratio, frequency)?.amplitude(),
+    ))
+}
+
+/// The publication's tables and figures beside ours.
+fn paper(results: &Results, quick: bool) -> Result<Vec<Block>> {
+    let [resistances, consistency] = resistance::resistances(results)?;
+    let [force, displacement] = figures::courses(results)?;
+    let [time, frequency] = figures::deviations(results)?;
+    Ok(vec![
+        comparison::introduction(),
+        comparison::statics(results)?,
+        Block::Figure(figures::frequencies(quick)?),
+        comparison::time_domain(results)?,
+        Block::Figure(force),
+        Block::Figure(displacement),
+        Block::Figure(responses::time_domain(results)),
+        comparison::grid(results)?,
+        comparison::displacements(results)?,
+        Block::Figure(responses::displacement(results)),
+        comparison::frequency_domain(results)?,
+        Block::Figure(responses::frequency_domain(results)?),
+        comparison::domains(results)?,
+        Block::Figure(responses::domains(results)?),
+        resistances,
+        consistency,
+        Block::Figure(figures::laws()?),
+        Block::Figure(figures::resistance_course(results)?),
+        Block::Figure(time),
+        Block::Figure(frequency),
+    ])
+}

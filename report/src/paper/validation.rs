@@ -1,0 +1,57 @@
+//! `docs/validation.md`: the sections of the publication as Markdown, checked to be current.
+
+use std::fs;
+use std::path::PathBuf;
+
+use anyhow::{Context, Result};
+
+use super::sections;
+use crate::content::Arguments;
+use crate::content::Section;
+use crate::markdown::markdown;
+use crate::programs::root;
+
+/// The sections of the page. Their numbers have fewer digits than differ from machine to machine.
+pub fn validation(arguments: Arguments) -> Result<Vec<Section>> {
+    sections(arguments)
+}
+
+fn path() -> PathBuf {
+    root().join("docs/validation.md")
+}
+
+/// Writes the page.
+pub fn write() -> Result<PathBuf> {
+    fs::write(path(), text()?).with_context(|| format!("cannot write {}", path().display()))?;
+    Ok(path())
+}
+
+/// The page. The curves are not in it, so they may be coarse.
+fn text() -> Result<String> {
+    let sections = validation(Arguments {
+        quick: true,
+        ..Arguments::default()
+    })?;
+    Ok(format!(
+        "<!-- Written by cargo xtask report --docs. -->\n# Validation\n\n    cargo xtask report --docs\n\nruns the model and writes this \
+         page: what the model's source publishes, beside what the component computes.\n\n{}",
+        markdown(&sections)
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_page_is_current() {
+        let text = text().unwrap();
+        let written = fs::read_to_string(path()).unwrap();
+        let different = text.lines().zip(written.lines()).find(|(now, then)| now != then);
+        assert_eq!(
+            different, None,
+            "now and in docs/validation.md: run cargo xtask report --docs"
+        );
+        assert_eq!(text.len(), written.len(), "run cargo xtask report --docs");
+    }
+}
