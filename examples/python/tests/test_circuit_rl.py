@@ -9,10 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import FMU, FOLDER, Run, is_picture, table
 from fmpy import simulate_fmu
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
+
+from conftest import FMU, FOLDER, Run, is_picture, table
 
 Array = NDArray[np.float64]
 SOURCE, LOAD, COIL, QUENCH, CAPACITOR = 6.0, 60.0, 1e-3, 47.0, 220e-9

@@ -8,10 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import FMU, FOLDER, Run, is_picture, table
 from fmpy import extract, instantiate_fmu, read_model_description
 from numpy.typing import NDArray
 from scipy.linalg import expm
+
+from conftest import FMU, FOLDER, Run, is_picture, table
 
 Array = NDArray[np.float64]
 SOURCE, LOAD, COIL, QUENCH, CAPACITOR = 6.0, 60.0, 1e-3, 47.0, 220e-9
