@@ -141,7 +141,7 @@ def draw(result: Result, study: Array, order: float, title: str, path: Path) -> 
     middle.set_ylabel("current [mA]")
     for axes in (above, middle):
         for number, (start, end) in enumerate(result.spans()):
-            label = None if number else "open, as the\ncomponent tells"
+            label = None if number else "contact open"
             axes.axvspan(1e3 * start, 1e3 * end, color=SKY, alpha=0.25, linewidth=0, label=label)
         axes.set_xlim(0, 1e3 * time[-1])
         axes.set_xlabel("time [ms]")

@@ -169,10 +169,11 @@ def draw_map(axes: Axes, outcomes: list[Outcome], values: list[float], title: st
     mesh = axes.pcolormesh(1e3 * edges(speeds), 1e6 * edges(dampings), shown, cmap="cividis", norm=norm)
     bar = axes.figure.colorbar(mesh, ax=axes, pad=0.02)
     if counts:
+        bar.set_label("bounces")
         bar.set_ticks([float(tick) for tick in range(0, most + 1, 1 + most // 10)])
         bar.ax.minorticks_off()
     else:
-        bar.set_label("µs")
+        bar.set_label("bounce time [µs]")
         bar.ax.yaxis.set_major_formatter("{x:g}")
     axes.set(
         xscale="log", yscale="log", xlabel="speed of the actuator [mm/s]", ylabel="contact damping [µs]", title=title
@@ -201,7 +202,7 @@ def draw(path: Path, relay: Relay, outcomes: list[Outcome], shown: Outcome, rows
     for axes in (make, open_):
         axes.legend(fontsize="small", frameon=False)
     draw_map(count, outcomes, [outcome.bounces for outcome in outcomes], "Make: number of bounces")
-    draw_map(length, outcomes, [outcome.bounce_time for outcome in outcomes], "Make: bounce time (grey: none)")
+    draw_map(length, outcomes, [outcome.bounce_time for outcome in outcomes], "Make: bounce time (grey: no bounce)")
     draw_map(again, outcomes, [outcome.break_bounces for outcome in outcomes], "Break: number of bounces")
     dampings = sorted({outcome.damping for outcome in outcomes})
     for damping, colour in zip(
@@ -214,7 +215,9 @@ def draw(path: Path, relay: Relay, outcomes: list[Outcome], shown: Outcome, rows
         )
     speeds_ = np.array(sorted({outcome.speed for outcome in outcomes}))
     passing = 1.5 * relay.overtravel / speeds_
-    delay.plot(1e3 * speeds_, 1e3 * passing, color=GREY, linestyle="--", label="actuator passes the spring's rest")
+    delay.plot(
+        1e3 * speeds_, 1e3 * passing, color=GREY, linestyle="--", label="actuator passes the spring's rest position"
+    )
     delay.set(xscale="log", yscale="log", xlabel="speed of the actuator [mm/s]", ylabel="break time [ms]")
     delay.set_title("Break: from the actuator's start to the last separation")
     delay.legend(fontsize="small", frameon=False)

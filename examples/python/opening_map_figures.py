@@ -54,8 +54,8 @@ def draw_map(table: pa.Table, parameter: str, scales: list[Any], unit: str, path
         least = int(np.nanargmin(edge))
         lowest, slowest = (f"{a:.1f} m/s2 ({a / GRAVITY:.1f} g)" for a in (edge[least], edge[0]))
         print(f"{label}: opens from {lowest} at {frequencies[least]:g} Hz, from {slowest} at {frequencies[0]:g} Hz")
-    figure.colorbar(mesh, ax=panels, label="longest interruption [µs]; white: none", shrink=0.6, extend="both")
-    last.set_title("opens for 10 µs, together", fontsize="medium")
+    figure.colorbar(mesh, ax=panels, label="longest interruption [µs] (white: none)", shrink=0.6, extend="both")
+    last.set_title("opens for 10 µs: all values", fontsize="medium")
     for axes in panels.flat[: len(values) + 1]:
         axes.axhline(STANDARD, color=RED, linestyle="--", linewidth=1.2, label="30 g, MIL-PRF-28776")
         axes.set(xscale="log", xlim=frequencies[[0, -1]], ylim=accelerations[[0, -1]])
@@ -93,7 +93,7 @@ def draw_tolerances(table: pa.Table, settings: dict[str, Any], path: Path) -> No
         left.step(1e6 * across, 100 * below, where="post", color=COLOURS[i % len(COLOURS)], label=label)
     left.axvline(1e6 * LIMIT, color=GREY, linestyle=":", label="10 µs")
     left.set(xscale="log", xlim=(0.5, 1e7 * max(LIMIT, np.nanmax(longest, initial=0.0))), ylim=(-2, 102))
-    left.set(xlabel="longest interruption [µs]; left of the scale: none", ylabel="contacts with at most this [%]")
+    left.set(xlabel="longest interruption [µs] (left edge: none)", ylabel="cumulative share of contacts [%]")
     left.set_title(f"Longest interruption at {settings['frequency']:g} Hz", fontsize="medium")
     share, low, high = 100 * np.array(shares).T
     right.errorbar(accelerations, share, [share - low, high - share], color=COLOURS[0], marker="o", capsize=4)

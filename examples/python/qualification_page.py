@@ -127,13 +127,13 @@ def page(path: Path, sweeps: list[Sweep], shocks: dict[str, Shock], outcomes: li
             length.plot(*peak, "o", color=colour, markersize=3)
             length.annotate(note, peak, (-8, -3), textcoords="offset points", ha="right", color=colour)
     level.legend(loc="upper left")
-    level.set(ylabel="level [g]", ylim=(0, None), title="Amplitude of the base acceleration")
-    force.set(ylabel="force [% of preload]", ylim=(-5, 105), title="Least contact force in each bin of frequency")
+    level.set(ylabel="acceleration [g]", ylim=(0, None), title="Amplitude of the base acceleration")
+    force.set(ylabel="force [% of preload]", ylim=(-5, 105), title="Least contact force in each frequency bin")
     length.axhline(1e6 * LIMIT, color=GREY, linestyle="--", label="limit, 10 µs")
     length.legend(loc="upper left")
-    length.set(ylim=(0, max(15.0, 1.25e6 * max(run.longest[0] for run in sweeps))), ylabel="interruption [µs]")
+    length.set(ylim=(0, max(15.0, 1.25e6 * max(run.longest[0] for run in sweeps))), ylabel="duration [µs]")
     length.set(
-        xlabel="frequency [Hz]", title="Interruptions that last 10 µs: mean in each bin of frequency, dot: longest"
+        xlabel="frequency [Hz]", title="Interruptions of 10 µs or more: mean in each frequency bin; dot: longest"
     )
     ends = min(run.frequency[0] for run in sweeps), max(run.frequency[-1] for run in sweeps)
     for axes in (level, force, length):

@@ -163,17 +163,21 @@ def instants(master: Master, stop: float) -> list[tuple[float, float]]:
     return [(start[a], start[b] if b < len(start) else stop) for a, b in zip(begins, ends, strict=True)]
 
 
-LOOKS = {"fixed": (BLACK, "o"), "adaptive": (ORANGE, "s"), "adaptive, told": (BLUE, "D")}
-"""Colours and markers."""
+LOOKS = {
+    "fixed": (BLACK, "o", "fixed steps"),
+    "adaptive": (ORANGE, "s", "adaptive"),
+    "adaptive, told": (BLUE, "D", "adaptive, with the instants of opening and closing"),
+}
+"""Colour, marker and label of each master."""
 
 
 def draw_work(runs: list[Run], path: Path) -> None:
     """Draw the error over the work."""
     figure, (left, right) = plt.subplots(1, 2, sharey=True, figsize=(10, 4.5), layout="constrained")
-    for method, (colour, marker) in LOOKS.items():
+    for method, (colour, marker, label) in LOOKS.items():
         chosen = [run for run in runs if run.method == method]
         errors = [1e3 * run.error for run in chosen]
-        left.loglog([run.master.work for run in chosen], errors, marker=marker, color=colour, label=method)
+        left.loglog([run.master.work for run in chosen], errors, marker=marker, color=colour, label=label)
         right.loglog([1e3 * run.master.seconds for run in chosen], errors, marker=marker, color=colour)
     left.set_xlabel("calls of doStep")
     right.set_xlabel("wall time [ms]")
@@ -182,7 +186,9 @@ def draw_work(runs: list[Run], path: Path) -> None:
         axes.xaxis.set_minor_formatter(NullFormatter())
         axes.grid(alpha=0.3, which="both")
     figure.legend(loc="outside lower center", ncols=3, frameon=False)
-    figure.suptitle("What accuracy costs: fixed communication steps against steps taken back", fontsize="medium")
+    figure.suptitle(
+        "Error over cost: fixed communication steps, and adaptive ones that can be repeated", fontsize="medium"
+    )
     save(figure, path)
 
 
@@ -193,9 +199,17 @@ def draw_steps(runs: list[Run], stop: float, path: Path) -> None:
     times: Array = np.linspace(0.0, 1.5 * PERIOD, 3000)
     for method, master in chosen.items():
         start, length, current, _, _ = np.array(master.rows).T
-        colour, marker = LOOKS[method]
+        colour, marker, label = LOOKS[method]
         above.plot(1e3 * times, 1e3 * master.currents(times), color=colour, linewidth=1)
-        above.plot(1e3 * start, 1e3 * current, linestyle="", marker=marker, markersize=4, color=colour, label=method)
+        above.plot(
+            1e3 * start,
+            1e3 * current,
+            linestyle="",
+            marker=marker,
+            markersize=4,
+            color=colour,
+            label=label.replace(", ", ",\n"),
+        )
         below.semilogy(1e3 * start, 1e6 * length, marker=marker, markersize=4, color=colour, linewidth=0.6)
     opening, closing = instants(chosen["adaptive, told"], stop)[0]
     for axes in (above, below):
@@ -206,7 +220,7 @@ def draw_steps(runs: list[Run], stop: float, path: Path) -> None:
     below.set_ylabel("communication step [µs]")
     below.set_xlabel("time [ms]")
     legend_beside(above)
-    figure.suptitle(f"Steps chosen around an opening at a tolerance of {SHOWN:g}", fontsize="medium")
+    figure.suptitle(f"Communication steps around an opening at a tolerance of {SHOWN:g}", fontsize="medium")
     figure.align_ylabels()
     save(figure, path)
 

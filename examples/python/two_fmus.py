@@ -182,11 +182,11 @@ def draw(run: Run, convergence: Array, shaken: str, path: Path) -> None:
     closings = instants(run, "contact.lastClosing")
     gaps = [(opening, min([*closings[closings > opening], end])) for opening in instants(run, "contact.lastOpening")]
     shown = [
-        ("table.acceleration", "acceleration\n[m/s²]", BLACK),
-        ("contact.force", "contact force\n[N]", BLUE),
-        ("contact.resistance", "resistance\n[Ω]", RED),
-        ("contact.voltage", "voltage\n[V]", GREEN),
-        ("contact.current", "current\n[A]", PURPLE),
+        ("table.acceleration", "base\nacceleration\n[m/s²]", BLACK),
+        ("contact.force", "contact\nforce\n[N]", BLUE),
+        ("contact.resistance", "contact\nresistance\n[Ω]", RED),
+        ("contact.voltage", "contact\nvoltage\n[V]", GREEN),
+        ("contact.current", "contact\ncurrent\n[A]", PURPLE),
     ]
     begin = gaps[-3][0] - 3e-4 if len(gaps) > 2 else 0.0
     rows = left.subplots(len(shown), 1, sharex=True)
@@ -199,20 +199,20 @@ def draw(run: Run, convergence: Array, shaken: str, path: Path) -> None:
     # A closing strikes with many times the preload: linear below 1 N, logarithmic above.
     rows[1].set_yscale("symlog", linthresh=1.0)
     rows[2].set_yscale("log")
-    rows[-1].set_xlabel("time [ms]    (shaded: the contact is open)")
+    rows[-1].set_xlabel("time [ms]")
     left.align_ylabels()
-    left.suptitle(f"Relay contact in a circuit with a quench, {shaken}", fontsize="medium")
+    left.suptitle(f"Relay contact in a circuit with a quench, {shaken} (shaded: open)", fontsize="medium")
 
     steps = 1e6 * convergence[:, 0]
-    late = ("openings late,\non the average [µs]", 1e6 * convergence[:, 1], BLUE)
-    difference = ("mean difference\nof the voltage [mV]", 1e3 * convergence[:, 2], GREEN)
+    late = ("mean delay of the openings [µs]", 1e6 * convergence[:, 1], BLUE)
+    difference = ("mean error of the contact voltage [mV]", 1e3 * convergence[:, 2], GREEN)
     for axes, (label, values, colour) in zip(right.subplots(2, 1), (late, difference), strict=True):
         axes.set(xlabel="communication step [µs]", ylabel=label)
         axes.grid(alpha=0.3)
         if not np.all(values > 0):
             axes.text(0.5, 0.5, "nothing to compare", ha="center", transform=axes.transAxes)
             continue
-        axes.plot(steps, values, color=colour, marker="o", label=f"measured, order {order(steps, values):.2f}")
+        axes.plot(steps, values, color=colour, marker="o", label=f"computed, order {order(steps, values):.2f}")
         first_order = steps * np.exp(np.mean(np.log(values / steps)))
         axes.plot(steps, first_order, color=GREY, linestyle=":", label="order 1")
         axes.set_xscale("log", base=2)

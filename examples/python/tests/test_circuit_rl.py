@@ -167,9 +167,10 @@ class Hidden(ctypes.CDLL):
         super().__init__(name, *arguments, **named)
 ctypes.CDLL = Hidden
 sys.argv = sys.argv[1:]
+sys.path.insert(0, sys.argv[0].rpartition("/")[0])
 runpy.run_path(sys.argv[0], run_name="__main__")
 """
-    script = str(FOLDER / "circuit_rl.py")
+    script = (FOLDER / "circuit_rl.py").as_posix()
     command = [sys.executable, "-c", hide, script, "--quick", "--fmu", str(FMU), *arguments]
     return subprocess.run(command, capture_output=True, text=True, check=False)
 

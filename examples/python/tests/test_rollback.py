@@ -149,12 +149,13 @@ def end(self, end=FMU2Slave.freeInstance):
     end(self)
 FMU2Slave.getFMUstate, FMU2Slave.freeFMUstate, FMU2Slave.freeInstance = get, free, end
 sys.argv = sys.argv[1:]
+sys.path.insert(0, sys.argv[0].rpartition("/")[0])
 try:
     runpy.run_path(sys.argv[0], run_name="__main__")
 finally:
     print("states:", all, most, len(alive))
 """
-    script = str(FOLDER / "rollback.py")
+    script = (FOLDER / "rollback.py").as_posix()
     command = [sys.executable, "-c", count, script, "--quick", "--fmu", str(FMU), "--out", str(tmp_path)]
     result = subprocess.run(command, capture_output=True, text=True, check=False, env=os.environ)
     assert result.returncode == 0, result.stderr
