@@ -122,7 +122,7 @@ def first_figure(rows: list[Row], path: Path) -> None:
         own = [row for row in rows if row["scene"] == scene]
         work_precision(axes, own, "force_error", "reference_force_error", (1e-13, 1.0))
         axes.set_title(title, fontsize=11)
-        axes.set_xlabel("largest error of the contact force / preload")
+        axes.set_xlabel("largest error of the contact force, relative to the preload [-]")
     for axes, scene in zip(panels[4:], ("chatter", "closing bounce"), strict=True):
         own = [row for row in rows if row["scene"] == scene]
         column = "opening_duration_error_us"
@@ -130,9 +130,9 @@ def first_figure(rows: list[Row], path: Path) -> None:
         axes.axvline(10, color="#D55E00", linestyle=":", linewidth=1.5)
         axes.text(8, 0.97, "10 µs ", ha="right", va="top", fontsize=8, transform=axes.get_xaxis_transform())
         axes.set_title(f"{scene}: durations of the openings", fontsize=11)
-        axes.set_xlabel("largest error of an opening's duration / µs")
+        axes.set_xlabel("largest error of an opening's duration [µs]")
     for row in grid:
-        row[0].set_ylabel("processor time per simulated second / s")
+        row[0].set_ylabel("processor time per simulated second [s]")
     handles = [
         Line2D([], [], color=color, marker=marker, linewidth=2.2 if name == "relay-contact" else 1.3, label=name)
         for name, (color, marker) in STYLES.items()
@@ -162,10 +162,10 @@ def second_figure(rows: list[Row], path: Path) -> None:
         x = [number(row, "value") for row in steps]
         steps_axes.loglog(x, [number(row, "force_error") for row in steps], **style)
     asked = [1e-12, 1e-1]
-    steps_axes.plot(asked, asked, color=GREY, linestyle="--", linewidth=1, label="error asked for")
-    modes_axes.set_xlabel("modes, at the smallest tolerance")
-    steps_axes.set_xlabel("tolerance, with 20 modes")
-    modes_axes.set_ylabel("largest error of the contact force / preload")
+    steps_axes.plot(asked, asked, color=GREY, linestyle="--", linewidth=1, label="requested error")
+    modes_axes.set_xlabel("number of modes, at the smallest tolerance [-]")
+    steps_axes.set_xlabel("tolerance, with 20 modes [-]")
+    modes_axes.set_ylabel("largest error of the contact force,\nrelative to the preload [-]")
     steps_axes.legend(fontsize=8, frameon=False)
     steps_axes.invert_xaxis()
     for axes in grid:

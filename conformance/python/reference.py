@@ -11,11 +11,13 @@ from math import pi, sin, sqrt
 from typing import Any
 
 import numpy as np
-from component import STARTS, Array, Values
 from numpy.polynomial.legendre import Legendre, leggauss
 from scipy.integrate import solve_ivp
 from scipy.linalg import eig, eigh, expm
 from scipy.optimize import brentq
+
+from component import STARTS
+from relay_contact import Array, Values
 
 Acceleration = Callable[[float], float]
 
@@ -58,11 +60,15 @@ class Reference:
         self.law, self.axial = get("effects.contactLaw"), get("effects.axialForce")
         self.gravity: float = get("environment.gravity")
         self.overtravel: float = get("contact.overtravel")
-        self.indentation: float = brentq(self._unbalance, 0.0, self.overtravel, xtol=1e-22, rtol=1e-15)
+        # Without overtravel there is a gap, and no preload.
+        self.indentation: float = min(self.overtravel, 0.0)
+        if self.overtravel > 0:
+            self.indentation = brentq(self._unbalance, 0.0, self.overtravel, xtol=1e-22, rtol=1e-15)
         self.deflection: float = self.overtravel - self.indentation
         self.axial_force = self.axial_force_at(self.deflection)
-        self.force: float = self.hertz * self.indentation**1.5
-        self.tangent: float = 1.5 * self.hertz * sqrt(self.indentation)
+        pressed = max(self.indentation, 0.0)
+        self.force: float = self.hertz * pressed**1.5
+        self.tangent: float = 1.5 * self.hertz * sqrt(pressed)
 
     @property
     def tip_stiffness(self) -> float:
@@ -73,6 +79,16 @@ class Reference:
     def force_scale(self) -> float:
         """What the tolerance is relative to, N."""
         return max(self.force, self.tip_stiffness * max(abs(self.overtravel), 1e-4))
+
+    @property
+    def carried_mass(self) -> float:
+        """What the contact carries of the spring under a constant acceleration, kg."""
+        return 0.375 * self.density * self.length + self.mass
+
+    def force_of_resistance(self, resistance: float) -> float:
+        """Contact force at which the contact has a resistance (Ohm) by the power law, N."""
+        conductance = 1 / resistance - 1 / self.values["resistance.open"]
+        return float((self.values["resistance.coefficient"] * conductance) ** (1 / self.values["resistance.exponent"]))
 
     def axial_force_at(self, deflection: float) -> float:
         """Axial force in the preload, N; eq. (9) where it comes from the deflection."""
@@ -197,27 +213,37 @@ class Reference:
             return 0.0, 0.0, 0.0
         return force, by_indentation, by_rate
 
-    def motion(self, acceleration: Acceleration, stop: float, tolerance: float) -> Callable[[float], float]:
-        """Contact force (N) as a function of time, from rest at 0, for any contact law and axial force."""
+    def motion(
+        self,
+        acceleration: Acceleration,
+        stop: float,
+        tolerance: float,
+        support_speed: float = 0.0,
+        max_step: float = np.inf,
+    ) -> Callable[[float], float]:
+        """Contact force (N) as a function of time, from rest at 0, for any contact law and axial force.
+
+        The fixed contact may come at a constant speed, m/s; the steps are limited where a blow could be stepped over.
+        """
         modes = self.modes()
         n, omega = len(modes.tip), np.sqrt(modes.omega_squared)
         preload = (modes.tip * self.force - modes.participation * self.gravity) / modes.omega_squared
         follows = self.axial == "FromDeflection"
 
-        def contact(motion: Array) -> tuple[float, float, float]:
-            indentation = self.indentation - modes.tip @ (motion[:n] / omega)
-            return self.law_force(float(indentation), -float(modes.tip @ motion[n:]))
+        def contact(time: float, motion: Array) -> tuple[float, float, float]:
+            indentation = self.indentation + support_speed * time - modes.tip @ (motion[:n] / omega)
+            return self.law_force(float(indentation), support_speed - float(modes.tip @ motion[n:]))
 
         def rates(time: float, motion: Array) -> Array:
             q = motion[:n] / omega
-            load = modes.tip * (contact(motion)[0] - self.force) - modes.participation * acceleration(time)
+            load = modes.tip * (contact(time, motion)[0] - self.force) - modes.participation * acceleration(time)
             if follows:
                 change = self.axial_force_at(self.deflection + float(modes.tip @ q)) - self.axial_force
                 load = load + change * modes.slopes @ (preload + q)
             return np.concatenate([omega * motion[n:], load - omega * motion[:n] - modes.damping * motion[n:]])
 
-        def jacobian(_time: float, motion: Array) -> Array:
-            _, by_indentation, by_rate = contact(motion)
+        def jacobian(time: float, motion: Array) -> Array:
+            _, by_indentation, by_rate = contact(time, motion)
             matrix = np.zeros((2 * n, 2 * n))
             matrix[:n, n:] = np.diag(omega)
             matrix[n:, :n] = -np.diag(omega) - by_indentation * np.outer(modes.tip, modes.tip / omega)
@@ -235,9 +261,10 @@ class Reference:
             rtol=tolerance,
             atol=tolerance * scale,
             dense_output=True,
+            max_step=max_step,
         )
         assert solution.success, solution.message
-        return lambda time: contact(solution.sol(time))[0]
+        return lambda time: contact(time, solution.sol(time))[0]
 
     def frequency_following(self) -> float:
         """Lowest natural frequency with the contact as a spring and the axial force following the deflection, Hz."""
@@ -248,3 +275,20 @@ class Reference:
         matrix = np.diag(modes.omega_squared)
         matrix = matrix + np.outer(self.tangent * modes.tip - slope * modes.slopes @ preload, modes.tip)
         return float(sqrt(np.min(eig(matrix, right=False).real))) / (2 * pi)
+
+
+def crossings(force: Callable[[float], float], limit: float, times: Array) -> tuple[Array, Array]:
+    """Give the instants at which a force falls to a limit and those at which it rises to it.
+
+    `times` are close enough to tell the instants apart.
+    """
+
+    def above(time: float) -> float:
+        return force(time) - limit
+
+    turns = np.diff([int(above(time) > 0) for time in times])
+
+    def located(turn: int) -> Array:
+        return np.array([brentq(above, times[n], times[n + 1], xtol=1e-13) for n in np.flatnonzero(turns == turn)])
+
+    return located(-1), located(1)

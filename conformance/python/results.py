@@ -3,10 +3,9 @@
 `cargo xtask test` writes the runs before these tests and prints the rows after them.
 """
 
-import csv
 import json
 
-from component import ROOT
+from relay_contact import ROOT, read_table
 
 FOLDER = ROOT / "out" / "conformance"
 # Two instances, wired together, with their parameters.
@@ -25,8 +24,7 @@ ROUNDING = 3e-11  # N
 
 def column(name: str) -> list[float]:
     """Give the values of a column of our own runs, one for each communication point."""
-    with (FOLDER / "reference.csv").open() as file:
-        return [float(row[name]) for row in csv.DictReader(file)]
+    return [float(value) for value in read_table(FOLDER / "reference.csv")[name]]
 
 
 def record(importer: str, version: str, task: str, difference: float | None = None, result: str = "passed") -> None:

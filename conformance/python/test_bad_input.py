@@ -2,18 +2,18 @@
 
 import math
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
-from component import Instance
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import fmi2Discard, fmi2Error
 
+from component import Instance
+
 
 @pytest.fixture
-def instance(tmp_path: Path) -> Iterator[Instance]:
+def instance() -> Iterator[Instance]:
     """Give a fresh instance."""
-    with Instance(tmp_path) as instance:
+    with Instance() as instance:
         yield instance
 
 
@@ -52,18 +52,18 @@ def test_value_out_of_range_is_discarded_and_the_instance_goes_on(
 
 def test_one_bad_value_discards_the_whole_call(instance: Instance) -> None:
     names = ["beam.length", "beam.thickness"]
-    references = [instance.references[name] for name in names]
-    before = instance.slave.getReal(references)
+    references = instance.references(*names)
+    before = instance.fmu.getReal(references)
     with pytest.raises(FMICallException) as raised:
-        instance.slave.setReal(references, [0.02, -1.0])
+        instance.fmu.setReal(references, [0.02, -1.0])
     assert raised.value.status == fmi2Discard
     assert_told(instance, "beam.thickness", "-1 m", "0.00001 to 0.005")
-    assert instance.slave.getReal(references) == before
+    assert instance.fmu.getReal(references) == before
 
 
 def test_unknown_choice_is_discarded(instance: Instance) -> None:
     with pytest.raises(FMICallException) as raised:
-        instance.choose("effects.excitation", 9)
+        instance.set("effects.excitation", 9)
     assert raised.value.status == fmi2Discard
     assert_told(instance, "effects.excitation", "9", "1 (None)", "2 (Sine)")
     instance.initialise()
@@ -87,7 +87,7 @@ def test_bad_input_between_steps_keeps_the_motion(instance: Instance) -> None:
 
 
 def test_axial_force_above_buckling_ends_initialisation_with_an_error(instance: Instance) -> None:
-    instance.choose("effects.axialForce", "Prescribed")
+    instance.set("effects.axialForce", "Prescribed")
     instance.set("beam.axialForce", 10.0)
     with pytest.raises(FMICallException) as raised:
         instance.initialise()
@@ -97,7 +97,7 @@ def test_axial_force_above_buckling_ends_initialisation_with_an_error(instance: 
 
 
 def test_axial_force_below_buckling_is_simulated(instance: Instance) -> None:
-    instance.choose("effects.axialForce", "Prescribed")
+    instance.set("effects.axialForce", "Prescribed")
     instance.set("beam.axialForce", 9.6)
     instance.initialise()
     instance.step(0.0, 1e-5)

@@ -5,7 +5,9 @@ The digits were computed by two independent implementations of the model. A valu
 
 import numpy as np
 import pytest
-from component import Array, Values, extremes, run
+
+from component import extremes, run
+from relay_contact import Array, Values
 
 TOLERANCE = 1e-8
 NO_AXIAL: Values = {"effects.axialForce": "None", "solver.tolerance": TOLERANCE}

@@ -1,8 +1,6 @@
 """Derivatives of inputs and outputs through FMPy, and the log of events."""
 
-from ctypes import c_double, c_int, c_uint
 from math import cos, pi, sin
-from pathlib import Path
 
 from component import Instance
 
@@ -12,25 +10,15 @@ STEP = 1e-5
 STEPS = 200
 
 
-def set_derivative(instance: Instance, name: str, value: float) -> None:
-    """Set the first derivative of an input."""
-    slave = instance.slave
-    reference = (c_uint * 1)(instance.references[name])
-    slave.fmi2SetRealInputDerivatives(slave.component, reference, 1, (c_int * 1)(1), (c_double * 1)(value))
-
-
 def derivative(instance: Instance, name: str) -> float:
     """Give the first derivative of an output."""
-    slave, value = instance.slave, (c_double * 1)()
-    reference = (c_uint * 1)(instance.references[name])
-    slave.fmi2GetRealOutputDerivatives(slave.component, reference, 1, (c_int * 1)(1), value)
-    return float(value[0])
+    return float(instance.fmu.getRealOutputDerivatives(instance.references(name), [1])[0])
 
 
-def test_derivatives_make_a_sampled_sine_right_to_the_second_order(tmp_path: Path) -> None:
+def test_derivatives_make_a_sampled_sine_right_to_the_second_order() -> None:
     """With a hundred steps a period the error falls from some pi / 100 to some (pi / 100)^2 of the amplitude."""
-    with Instance(tmp_path / "generated") as instance:
-        instance.choose("effects.excitation", "Sine")
+    with Instance() as instance:
+        instance.set("effects.excitation", "Sine")
         instance.set("excitation.amplitude", AMPLITUDE)
         instance.initialise(tolerance=1e-8)
         exact = []
@@ -39,24 +27,25 @@ def test_derivatives_make_a_sampled_sine_right_to_the_second_order(tmp_path: Pat
             exact.append(instance.get("contact.force"))
     swing = (max(exact) - min(exact)) / 2
     for order in (1, 2):
-        with Instance(tmp_path / str(order)) as instance:
+        with Instance() as instance:
             instance.initialise(tolerance=1e-8)
             worst = 0.0
             for step, force in enumerate(exact):
                 phase = OMEGA * step * STEP
                 instance.set("base.acceleration", AMPLITUDE * sin(phase))
                 if order == 2:
-                    set_derivative(instance, "base.acceleration", AMPLITUDE * OMEGA * cos(phase))
+                    rate = AMPLITUDE * OMEGA * cos(phase)
+                    instance.fmu.setRealInputDerivatives(instance.references("base.acceleration"), [1], [rate])
                 instance.step(step * STEP, STEP)
                 worst = max(worst, abs(instance.get("contact.force") - force))
         expected = (pi / 100) ** order
         assert 0.2 < worst / swing / expected < 5, f"{worst / swing} of the swing, some {expected} expected"
 
 
-def test_the_derivative_of_the_force_is_its_slope(tmp_path: Path) -> None:
+def test_the_derivative_of_the_force_is_its_slope() -> None:
     """Central differences over 10 us differ from a derivative by the square of that over the fastest period, 0.2 ms."""
-    with Instance(tmp_path) as instance:
-        instance.choose("effects.excitation", "Sine")
+    with Instance() as instance:
+        instance.set("effects.excitation", "Sine")
         instance.initialise(tolerance=1e-8)
         forces, rates = [], []
         for step in range(STEPS):
@@ -69,10 +58,10 @@ def test_the_derivative_of_the_force_is_its_slope(tmp_path: Path) -> None:
     assert worst < (2 * pi * STEP / 2e-4) ** 2 / 6 * steepest, f"{worst} N/s of {steepest} N/s"
 
 
-def test_openings_are_logged_with_their_instants(tmp_path: Path) -> None:
+def test_openings_are_logged_with_their_instants() -> None:
     """With logging on each event is a message, and nothing else is."""
-    with Instance(tmp_path) as instance:
-        instance.choose("effects.excitation", "Sine")
+    with Instance() as instance:
+        instance.set("effects.excitation", "Sine")
         instance.set("excitation.amplitude", 400.0)
         instance.initialise()
         instance.step(0.0, 1e-3)

@@ -5,6 +5,7 @@ from importlib.metadata import PackageNotFoundError, files, version
 from pathlib import Path
 
 import pytest
+
 from component import FMU
 from results import JUMP, STEP, SYSTEM, TOLERANCE, column, compare, record
 

@@ -5,8 +5,10 @@ from math import exp, log, pi, sin, sqrt
 
 import numpy as np
 import pytest
-from component import Array, Values, run
+
+from component import run
 from reference import Acceleration, Reference
+from relay_contact import Array, Values
 
 BONDED: Values = {"effects.contactLaw": "Bonded", "effects.axialForce": "None", "excitation.amplitude": 98.0}
 # With extremes watched the component integrates, without it takes exact steps where the generator is a sine.

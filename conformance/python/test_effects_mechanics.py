@@ -4,9 +4,11 @@ from math import sqrt, tan, tanh
 
 import numpy as np
 import pytest
-from component import Array, Values, run
-from reference import Reference
 from scipy.optimize import brentq
+
+from component import run
+from reference import Reference
+from relay_contact import Array, Values
 
 NO_AXIAL: Values = {"effects.axialForce": "None"}
 LAWS = ("Hertz", "Linearised", "Bonded")
@@ -39,7 +41,7 @@ def test_a_constant_acceleration_ends_in_the_equilibrium_of_the_law(law: str, ac
     result = run({**values, "solver.tolerance": tolerance}, 0.2, 1e-2, output)
     force, indentation = (result[name][-1] for name in output)
     reference = Reference(values)
-    inertia = (0.375 * reference.density * reference.length + reference.mass) * acceleration
+    inertia = reference.carried_mass * acceleration
 
     def spring(d: float) -> float:
         return reference.tip_stiffness * (reference.overtravel - d) + inertia
@@ -178,7 +180,7 @@ def test_gravity_is_a_constant_acceleration_that_belongs_to_the_preload(gravity:
     force, indentation = result["preload.force"][-1], result["preload.indentation"][-1]
     reference = Reference({**NO_AXIAL, "environment.gravity": gravity})
     assert force == pytest.approx(reference.force, rel=1e-12)
-    weight = (0.375 * reference.density * reference.length + reference.mass) * gravity
+    weight = reference.carried_mass * gravity
     spring = reference.tip_stiffness * (reference.overtravel - indentation)
     assert force == pytest.approx(spring + weight, rel=1e-11)
     # As an input it is not part of the preload, but ends there: the motion falls as exp(-2900 t).

@@ -1,14 +1,14 @@
 """What is read off the motion and leaves it as it is: resistance, heat, interruptions, extremes, energy."""
 
 from math import pi
-from pathlib import Path
 
 import numpy as np
 import pytest
-from component import Array, Instance, Values, run
 from fmpy.fmi1 import FMICallException
-from reference import Reference
-from scipy.optimize import brentq
+
+from component import Instance, run
+from reference import Reference, crossings
+from relay_contact import Array, Values
 
 SHAKEN: Values = {"effects.excitation": "Sine", "excitation.frequency": 1000.0, "effects.axialForce": "None"}
 # Pressed all the time, and open for a part of every period.
@@ -68,9 +68,9 @@ def test_without_resistance_its_outputs_are_zero_and_the_motion_is_the_same() ->
         assert (run({**PRESSED, **values}, 2e-3, 1e-5, output)["contact.force"] == force).all()
 
 
-def test_interruptions_need_a_resistance(tmp_path: Path) -> None:
-    with Instance(tmp_path) as instance:
-        instance.choose("effects.resistance", "None")
+def test_interruptions_need_a_resistance() -> None:
+    with Instance() as instance:
+        instance.set("effects.resistance", "None")
         with pytest.raises(FMICallException):
             instance.initialise()
         assert any("effects.chatter" in message for message in instance.messages)
@@ -147,9 +147,10 @@ def test_interruptions_are_those_of_a_fine_trace(minimum: float) -> None:
 def test_the_first_interruption_is_that_of_the_reference() -> None:
     tolerance, threshold, stop = 1e-8, 60.0, 1.1e-3
     values: Values = {**OPENING, "solver.tolerance": tolerance, "chatter.resistanceThreshold": threshold}
-    motion = Reference(values).motion(lambda time: 400 * np.sin(2 * pi * 1000 * time), stop, 1e-11)
-    limit = (7.4118e-3 / (1 / (1 / threshold - 1 / OPEN))) ** (1 / 0.9515)
-    opening, closing = (brentq(lambda t: motion(t) - limit, *span, xtol=1e-13) for span in ((6e-4, 8e-4), (9e-4, stop)))
+    reference = Reference(values)
+    motion = reference.motion(lambda time: 400 * np.sin(2 * pi * 1000 * time), stop, 1e-11)
+    limit = reference.force_of_resistance(threshold)
+    (opening,), (closing,) = crossings(motion, limit, np.linspace(0, stop, 1101))
     # Long communication steps do not matter.
     count, longest, total = (run(values, stop, stop, CHATTER)[name][-1] for name in CHATTER)
     assert count == 1

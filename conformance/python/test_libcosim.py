@@ -3,6 +3,7 @@
 from importlib.metadata import PackageNotFoundError, version
 
 import pytest
+
 from component import FMU
 from results import JUMP, STEP, SYSTEM, TOLERANCE, column, compare, record
 

@@ -3,9 +3,11 @@
 import zipfile
 
 import fmpy
-from component import FMU, ROOT
 from fmpy import read_model_description
 from fmpy.validation import validate_fmu
+
+from component import FMU
+from relay_contact import ROOT
 from results import record
 
 

@@ -19,34 +19,22 @@ inside the steps, and contact.lastClosing and contact.lastOpening are the instan
 reaches zero: the steps need not be short, and travel at a constant speed is one step.
 """
 
-import argparse
 import itertools
-import sys
 from dataclasses import astuple, dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import Any
 
-import matplotlib as mpl
-import numpy as np
-from fmpy import extract, read_model_description
-from fmpy.simulation import apply_start_values, instantiate_fmu
-from numpy.typing import NDArray
-from tqdm import tqdm
-
-mpl.use("Agg")
 import matplotlib.pyplot as plt
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, LogNorm
+from tqdm import tqdm
 
-ROOT = Path(__file__).resolve().parents[2]
+from common import BLUE, GREY, ORANGE, RED, parser, read_arguments, save, within, write_table
+from relay_contact import Array, Component, Values
+
 REST = 0.01  # s, the contact comes to rest within 1 ms
 PIECES = 1000  # of a parabola
 TOUCH = 1e-6  # s after the first touch, a step ends: no bounce is that short
-NO_AXIAL_FORCE = 2  # of effects.axialForce
-BLUE, ORANGE, RED, GREY = "#0072B2", "#E69F00", "#D55E00", "#666666"  # of Okabe and Ito
-
-Array = NDArray[np.float64]
 
 
 @dataclass
@@ -101,20 +89,15 @@ COLUMNS = (
 )
 
 
-class Contact:
-    """The component, and what is the same in all runs."""
+@dataclass
+class Relay:
+    """What is the same in all runs, SI units."""
 
-    def __init__(self, fmu: Path, folder: str, gap: float, overtravel: float, minimum: float) -> None:
-        """Unpack it."""
-        self.description = read_model_description(fmu)
-        self.unzipped = extract(fmu, folder)
-        self.references = {variable.name: variable.valueReference for variable in self.description.modelVariables}
-        self.gap, self.overtravel, self.minimum = gap, overtravel, minimum
-
-    def real(self, fmu: Any, *names: str) -> list[float]:  # noqa: ANN401
-        """Give variables by name."""
-        values: list[float] = fmu.getReal([self.references[name] for name in names])
-        return values
+    component: Component
+    gap: float
+    overtravel: float
+    minimum: float
+    """Shortest interruption that counts as a bounce."""
 
     def run(self, speed: float, damping: float, sample: float | None = None) -> tuple[Outcome, Array]:
         """Make and break (m/s, s); give also rows of time, force (N) and indentation (m) at every step.
@@ -128,37 +111,28 @@ class Contact:
             time = time[np.diff(time, prepend=-1) > 1e-9]
         position = np.interp(time, course_.time, course_.position)
         back = course_.time[course_.back]
-        fmu = instantiate_fmu(self.unzipped, self.description, "CoSimulation")
-        fmu.setupExperiment(startTime=0.0)
-        values = {
+        values: Values = {
             "contact.overtravel": -self.gap,
             "contact.damping": damping,
-            "effects.axialForce": NO_AXIAL_FORCE,
+            "effects.axialForce": "None",
             "chatter.minimumDuration": self.minimum,
         }
-        apply_start_values(fmu, self.description, values)
-        fmu.enterInitializationMode()
-        fmu.exitInitializationMode()
-        support = [self.references["support.displacement"]]
-        rows = [[0.0, *self.real(fmu, "contact.force", "contact.indentation")]]
         touch, made, largest = -1.0, (0, 0.0, 0.0), 0.0
-        for (begin, end), (here, there) in zip(itertools.pairwise(time), itertools.pairwise(position), strict=True):
-            if begin >= back and made[0] == 0:
-                count = fmu.getInteger([self.references["chatter.count"]])[0]
-                made = (count, *self.real(fmu, "contact.lastClosing", "chatter.totalInterruption"))
-            fmu.setReal(support, [here])
-            fmu.setRealInputDerivatives(support, [1], [(there - here) / (end - begin)])
-            fmu.doStep(begin, end - begin)
-            force, indentation, closing, most = self.real(
-                fmu, "contact.force", "contact.indentation", "contact.lastClosing", "step.maximumForce"
-            )
-            touch = closing if touch < 0 else touch
-            largest = max(largest, most)
-            rows.append([end, force, indentation])
-        broken = fmu.getInteger([self.references["chatter.count"]])[0]
-        opening = self.real(fmu, "contact.lastOpening")[0]
-        fmu.terminate()
-        fmu.freeInstance()
+        with self.component.started(values) as contact:
+            rows = [[0.0, *contact.real("contact.force", "contact.indentation")]]
+            for (begin, end), (here, there) in zip(itertools.pairwise(time), itertools.pairwise(position), strict=True):
+                if begin >= back and made[0] == 0:
+                    closing, interrupted = contact.real("contact.lastClosing", "chatter.totalInterruption")
+                    made = int(contact.get("chatter.count")), closing, interrupted
+                contact.change("support.displacement", here, there, end - begin)
+                contact.step(begin, end - begin)
+                force, indentation, closing, most = contact.real(
+                    "contact.force", "contact.indentation", "contact.lastClosing", "step.maximumForce"
+                )
+                touch = closing if touch < 0 else touch
+                largest = max(largest, most)
+                rows.append([end, force, indentation])
+            broken, opening = int(contact.get("chatter.count")), contact.get("contact.lastOpening")
         count, closing, interrupted = made
         # The gap before the first touch is an interruption too, and so is the one after the last separation.
         bounces = count - 1
@@ -195,17 +169,18 @@ def draw_map(axes: Axes, outcomes: list[Outcome], values: list[float], title: st
     mesh = axes.pcolormesh(1e3 * edges(speeds), 1e6 * edges(dampings), shown, cmap="cividis", norm=norm)
     bar = axes.figure.colorbar(mesh, ax=axes, pad=0.02)
     if counts:
+        bar.set_label("bounces")
         bar.set_ticks([float(tick) for tick in range(0, most + 1, 1 + most // 10)])
         bar.ax.minorticks_off()
     else:
-        bar.set_label("µs")
+        bar.set_label("bounce time [µs]")
         bar.ax.yaxis.set_major_formatter("{x:g}")
     axes.set(
         xscale="log", yscale="log", xlabel="speed of the actuator [mm/s]", ylabel="contact damping [µs]", title=title
     )
 
 
-def draw(path: Path, contact: Contact, outcomes: list[Outcome], shown: Outcome, rows: Array) -> None:
+def draw(path: Path, relay: Relay, outcomes: list[Outcome], shown: Outcome, rows: Array) -> None:
     """Draw the courses of one make and break, and the maps."""
     figure, ((make, count, length), (open_, delay, again)) = plt.subplots(2, 3, figsize=(14, 8), layout="constrained")
     time, force, indentation = rows.T
@@ -217,7 +192,7 @@ def draw(path: Path, contact: Contact, outcomes: list[Outcome], shown: Outcome, 
     )
     make.fill_between([], [], color=RED, alpha=0.2, label="open")
     make.set(xlabel="time after the first touch [µs]", ylabel="contact force [N]", title="Make")
-    back = course(contact.gap, contact.overtravel, shown.speed)
+    back = course(relay.gap, relay.overtravel, shown.speed)
     since = 1e3 * (time - back.time[back.back])
     last = 1e3 * shown.break_time
     near = (since > last - 2) & (since < last + 4)
@@ -227,7 +202,7 @@ def draw(path: Path, contact: Contact, outcomes: list[Outcome], shown: Outcome, 
     for axes in (make, open_):
         axes.legend(fontsize="small", frameon=False)
     draw_map(count, outcomes, [outcome.bounces for outcome in outcomes], "Make: number of bounces")
-    draw_map(length, outcomes, [outcome.bounce_time for outcome in outcomes], "Make: bounce time (grey: none)")
+    draw_map(length, outcomes, [outcome.bounce_time for outcome in outcomes], "Make: bounce time (grey: no bounce)")
     draw_map(again, outcomes, [outcome.break_bounces for outcome in outcomes], "Break: number of bounces")
     dampings = sorted({outcome.damping for outcome in outcomes})
     for damping, colour in zip(
@@ -239,8 +214,10 @@ def draw(path: Path, contact: Contact, outcomes: list[Outcome], shown: Outcome, 
             speeds, [1e3 * o.break_time for o in line], ".-", color=colour, label=f"damping {1e6 * damping:.3g} µs"
         )
     speeds_ = np.array(sorted({outcome.speed for outcome in outcomes}))
-    passing = 1.5 * contact.overtravel / speeds_
-    delay.plot(1e3 * speeds_, 1e3 * passing, color=GREY, linestyle="--", label="actuator passes the spring's rest")
+    passing = 1.5 * relay.overtravel / speeds_
+    delay.plot(
+        1e3 * speeds_, 1e3 * passing, color=GREY, linestyle="--", label="actuator passes the spring's rest position"
+    )
     delay.set(xscale="log", yscale="log", xlabel="speed of the actuator [mm/s]", ylabel="break time [ms]")
     delay.set_title("Break: from the actuator's start to the last separation")
     delay.legend(fontsize="small", frameon=False)
@@ -253,21 +230,17 @@ def draw(path: Path, contact: Contact, outcomes: list[Outcome], shown: Outcome, 
     for axes in (count, length, again):
         axes.plot(1e3 * shown.speed, 1e6 * shown.damping, "x", color="white", markersize=8, markeredgewidth=2)
     figure.suptitle(
-        f"Relay contact, gap {1e6 * contact.gap:g} µm, overtravel {1e6 * contact.overtravel:g} µm. Left, and crosses: "
+        f"Relay contact, gap {1e6 * relay.gap:g} µm, overtravel {1e6 * relay.overtravel:g} µm. Left, and crosses: "
         f"{1e3 * shown.speed:g} mm/s, contact damping {1e6 * shown.damping:g} µs. "
-        f"A bounce is an interruption of {1e6 * contact.minimum:g} µs or more."
+        f"A bounce is an interruption of {1e6 * relay.minimum:g} µs or more."
     )
-    figure.savefig(path, dpi=130)
-    plt.close(figure)
+    save(figure, path, dpi=130)
 
 
-def arguments() -> argparse.Namespace:
-    """Read the command line."""
-    parser = argparse.ArgumentParser(description=str(__doc__).splitlines()[0], epilog="Takes about half a minute.")
-    add = parser.add_argument
-    add("--fmu", type=Path, default=ROOT / "dist" / "RelayContact.fmu", help="the component")
-    add("--out", type=Path, default=ROOT / "out", help="folder for the tables and the figure")
-    add("--quick", action="store_true", help="short form: 6 speeds and 4 dampings instead of 24 and 13")
+def main() -> None:
+    """Run the map."""
+    line = parser(str(__doc__).splitlines()[0], epilog="Takes about half a minute.")
+    line.add_argument("--quick", action="store_true", help="6 speeds and 4 dampings instead of 24 and 13")
     limits = {
         "gap": (20.0, 1.0, 5000.0, "µm", "gap before the make"),
         "overtravel": (200.0, 10.0, 5000.0, "µm", "travel after the first touch"),
@@ -276,36 +249,22 @@ def arguments() -> argparse.Namespace:
         "damping": (1.0, 0.0, 1000.0, "µs", "contact damping of the courses shown"),
     }
     for name, (value, low, high, unit, text) in limits.items():
-        add(f"--{name}", type=float, default=value, help=f"{text}, {unit} ({low:g} to {high:g}; default {value:g})")
-    given = parser.parse_args()
-    for name, (_, low, high, unit, _) in limits.items():
-        if not low <= getattr(given, name) <= high:
-            parser.error(f"--{name} {getattr(given, name):g}: must be from {low:g} to {high:g} {unit}")
-    return given
-
-
-def main() -> int:
-    """Run the map."""
-    given = arguments()
-    if not given.fmu.is_file():
-        print(f"{given.fmu} is missing: build it with `cargo xtask fmu`", file=sys.stderr)
-        return 1
+        text += f" [{unit}], {low:g} to {high:g} (%(default)s)"
+        line.add_argument(f"--{name}", type=within(low, high, unit), default=value, help=text)
+    given = read_arguments(line)
     speeds = 1e-3 * np.geomspace(5, 400, 6 if given.quick else 24)
     dampings = 1e-6 * np.geomspace(0.1, 100, 4 if given.quick else 13)
-    with TemporaryDirectory() as folder:
-        contact = Contact(given.fmu, folder, 1e-6 * given.gap, 1e-6 * given.overtravel, 1e-6 * given.minimum)
-        shown, rows = contact.run(1e-3 * given.speed, 1e-6 * given.damping, sample=2e-6)
-        outcomes = []
-        bar = tqdm(list(itertools.product(speeds, dampings)), unit="make and break")
-        for speed, damping in bar:
-            bar.set_description(f"{1e3 * speed:5.1f} mm/s, {1e6 * damping:6.2f} µs", refresh=False)
-            outcomes.append(contact.run(float(speed), float(damping))[0])
-    given.out.mkdir(parents=True, exist_ok=True)
+    relay = Relay(Component(given.fmu), 1e-6 * given.gap, 1e-6 * given.overtravel, 1e-6 * given.minimum)
+    shown, rows = relay.run(1e-3 * given.speed, 1e-6 * given.damping, sample=2e-6)
+    outcomes = []
+    bar = tqdm(list(itertools.product(speeds, dampings)), unit="make and break")
+    for speed, damping in bar:
+        bar.set_description(f"{1e3 * speed:5.1f} mm/s, {1e6 * damping:6.2f} µs", refresh=False)
+        outcomes.append(relay.run(float(speed), float(damping))[0])
     paths = [given.out / name for name in ("closing-bounce.csv", "closing-bounce-course.csv", "closing-bounce.png")]
-    write: dict[str, Any] = {"delimiter": ",", "comments": "", "fmt": "%.12g"}
-    np.savetxt(paths[0], [astuple(outcome) for outcome in [shown, *outcomes]], header=COLUMNS, **write)
-    np.savetxt(paths[1], rows, header="time [s],contact.force [N],contact.indentation [m]", **write)
-    draw(paths[2], contact, outcomes, shown, rows)
+    write_table(paths[0], COLUMNS, [astuple(outcome) for outcome in [shown, *outcomes]])
+    write_table(paths[1], "time [s],contact.force [N],contact.indentation [m]", rows)
+    draw(paths[2], relay, outcomes, shown, rows)
     print(f"{given.speed:g} mm/s, contact damping {given.damping:g} µs")
     print(
         f"make: first touch {1e6 * shown.first_touch:.3f} µs after the start, largest force {shown.largest_force:.2f} N"
@@ -320,8 +279,7 @@ def main() -> int:
         f"map: longest bounce time {1e6 * most.bounce_time:.1f} µs at {where}; no bounce in {calm} of {len(outcomes)}"
     )
     print(*paths, sep="\n")
-    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

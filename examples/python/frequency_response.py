@@ -6,17 +6,13 @@ from collections import defaultdict
 from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
-
-mpl.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-# Colours of Okabe and Ito, told apart also by the colour-blind.
-COLOURS = ("#0072B2", "#E69F00", "#D55E00")
-GRAVITY = 9.80665  # m/s2
-GREY = "#666666"
+from common import BLUE, GRAVITY, GREY, ORANGE, RED, acceleration_in_g
+
+COLOURS = (BLUE, ORANGE, RED)
 
 # Label and look of each curve.
 STYLES: dict[str, tuple[str, dict[str, Any]]] = {
@@ -39,16 +35,6 @@ def read(path: Path) -> dict[str, Points]:
     return curves
 
 
-def in_gravities(acceleration: float) -> float:
-    """Give m/s2 in g."""
-    return acceleration / GRAVITY
-
-
-def in_metres(gravities: float) -> float:
-    """Give g in m/s2."""
-    return gravities * GRAVITY
-
-
 def response(axes: Axes, curves: dict[str, Points]) -> None:
     """Draw the amplitude of the force over the frequency; blows are so strong that the scale is logarithmic."""
     preload = 100 * curves["linear threshold"][0][2]
@@ -61,7 +47,7 @@ def response(axes: Axes, curves: dict[str, Points]) -> None:
             axes.plot([p[1] for p in points], [100 * p[2] for p in points], color=colour, **style)
     handles = [Line2D([], [], color="black", label=label, **style) for label, style in STYLES.values()]
     handles += [
-        Line2D([], [], color=colour, linewidth=5, label=f"{a:g} m/s² ({in_gravities(a):.1f} g)")
+        Line2D([], [], color=colour, linewidth=5, label=f"{a:g} m/s² ({a / GRAVITY:.1f} g)")
         for a, colour in reversed(list(zip(accelerations, COLOURS, strict=True)))
     ]
     axes.legend(handles=handles, loc="upper right", fontsize="small", frameon=False)
@@ -75,15 +61,14 @@ def thresholds(axes: Axes, curves: dict[str, Points]) -> None:
     """Draw the acceleration at which the contact opens over the frequency."""
     linear, nonlinear = curves["linear threshold"], curves["threshold"]
     frequencies, accelerations = [p[1] for p in linear], [p[0] for p in linear]
-    axes.fill_between(frequencies, accelerations, 1400, color="#D55E00", alpha=0.08, linewidth=0)
-    axes.plot(frequencies, accelerations, color="#0072B2", label="linear: force amplitude = preload")
-    dots: dict[str, Any] = {"color": "#D55E00", "marker": "o", "markersize": 5, "linestyle": "none"}
+    axes.fill_between(frequencies, accelerations, 1400, color=RED, alpha=0.08, linewidth=0)
+    axes.plot(frequencies, accelerations, color=BLUE, label="linear: force amplitude = preload")
+    dots: dict[str, Any] = {"color": RED, "marker": "o", "markersize": 5, "linestyle": "none"}
     axes.plot([p[1] for p in nonlinear], [p[0] for p in nonlinear], label="nonlinear: periodic motion opens", **dots)
     axes.text(1100, 750, "opens", color=GREY, ha="center")
     axes.text(1100, 150, "stays closed", color=GREY, ha="center")
     axes.set(xlabel="frequency [Hz]", ylabel="base acceleration [m/s²]", xlim=(0, 3050), ylim=(0, 1400))
-    in_g = axes.secondary_yaxis("right", functions=(in_gravities, in_metres))  # type: ignore[arg-type]
-    in_g.set_ylabel("base acceleration [g]")
+    acceleration_in_g(axes)
     axes.set_title("Vibration that opens the contact", fontsize="medium")
     axes.legend(fontsize="small", frameon=False)
 

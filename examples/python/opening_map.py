@@ -31,57 +31,33 @@ import argparse
 import difflib
 import hashlib
 import inspect
-import json
 import math
 import os
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from io import BytesIO
 from itertools import islice
 from pathlib import Path
 from typing import Any
 
 import dask
-import matplotlib as mpl
 import numpy as np
-import pyarrow as pa
-import pyarrow.csv
-import pyarrow.parquet as pq
 from distributed import Client, KilledWorker, WorkerPlugin, as_completed, get_worker
 from fmpy import extract, instantiate_fmu, read_model_description
 from fmpy.fmi1 import FMICallException
-from numpy.typing import NDArray
-from scipy.stats import binomtest
 from tqdm import tqdm
 
-mpl.use("Agg")
-import matplotlib.pyplot as plt
-from matplotlib.colors import LogNorm
+from common import GRAVITY, parser, read_arguments
+from opening_map_figures import draw_map, draw_tolerances
+from opening_map_study import TOLERANCES, Point, Row, Study
 
-ROOT = Path(__file__).resolve().parents[2]
-GRAVITY = 9.80665  # m/s2
-STANDARD = 30 * GRAVITY  # m/s2, vibration of relays after MIL-PRF-28776
-LIMIT = 10e-6  # s, MIL-STD-202 method 310
 SINE = 2  # of effects.excitation
 CHANGE = 1e-4  # part by which two periods may differ and count as the same
 PATIENCE = 200  # periods after which the motion counts as not periodic
 WATCHED = 2  # periods, so that an interruption over the end of one is seen whole
 PIECES = 32  # of a watched period: two interruptions with less of a period between them count as one
-TOLERANCES = {"contact.overtravel": 10e-6, "contact.curvatureRadius": 1.1e-3, "contact.damping": 12e-6}
-# Colours of Okabe and Ito, told apart also by the colour-blind.
-COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#000000")
-
-Point = dict[str, float]
-Row = tuple[float, float, float, int, str]
-RESULTS = [
-    ("longest_interruption", pa.float64()),
-    ("least_force", pa.float64()),
-    ("interruptions_per_period", pa.float64()),
-    ("periods_to_settle", pa.int64()),
-    ("message", pa.string()),
-]
 
 
 class Contact(WorkerPlugin):
@@ -170,88 +146,6 @@ def simulate(contact: str, number: int, points: list[Point]) -> tuple[int, list[
         return number, [plugin.row(point) for point in points], time.thread_time() - start
 
 
-class Study:
-    """What is simulated: points in a fixed order, cut into chunks, and the files of what is finished."""
-
-    def __init__(self, settings: dict[str, Any], out: Path) -> None:
-        """Lay out the points."""
-        self.settings = settings
-        text = json.dumps(settings, sort_keys=True)
-        self.folder = out / f"opening-{settings['study']}-{hashlib.sha256(text.encode()).hexdigest()[:16]}"
-        if settings["study"] == "map":
-            axes = [settings["values"], settings["frequencies"], settings["accelerations"]]
-            self.names = [settings["parameter"], "excitation.frequency", "excitation.amplitude"]
-        else:
-            axes = [range(settings["samples"]), settings["accelerations"]]
-            self.names = ["sample", *settings["tolerances"], "excitation.frequency", "excitation.amplitude"]
-        self.axes, self.count = axes, math.prod(len(axis) for axis in axes)
-        self.chunks = math.ceil(self.count / settings["chunk"])
-        # The size of a chunk is no part of the result.
-        note = json.dumps({key: value for key, value in settings.items() if key != "chunk"}, sort_keys=True)
-        versions = f"numpy {np.__version__}, pyarrow {pa.__version__}"
-        fields = [(name, pa.int64() if name == "sample" else pa.float64()) for name in self.names]
-        self.schema = pa.schema(fields + RESULTS, metadata={"study": note, "versions": versions})
-
-    def point(self, index: int) -> Point:
-        """Give a point by its place in the order: the same whatever the chunks are."""
-        place = np.unravel_index(index, [len(axis) for axis in self.axes])
-        values = [float(axis[i]) for axis, i in zip(self.axes, place, strict=True)]
-        if self.settings["study"] == "map":
-            return dict(zip(self.names, values, strict=True))
-        sample, acceleration = values
-        deviates = np.random.default_rng([self.settings["seed"], int(sample)]).standard_normal(len(TOLERANCES))
-        drawn = {
-            name: mean + deviation * float(deviate)
-            for (name, (mean, deviation)), deviate in zip(self.settings["tolerances"].items(), deviates, strict=True)
-        }
-        fixed = {"excitation.frequency": self.settings["frequency"], "excitation.amplitude": acceleration}
-        return {"sample": sample} | drawn | fixed
-
-    def points(self, chunk: int) -> list[Point]:
-        """Give the points of a chunk."""
-        return [self.point(index) for index in self.places(chunk)]
-
-    def places(self, chunk: int) -> range:
-        """Tell which points a chunk has."""
-        size: int = self.settings["chunk"]
-        return range(self.count)[chunk * size : (chunk + 1) * size]
-
-    def path(self, chunk: int) -> Path:
-        """Tell where a chunk's results are."""
-        return self.folder / f"chunk-{chunk:06}.parquet"
-
-    def finished(self, chunk: int) -> bool:
-        """Tell whether a chunk is there, whole and readable."""
-        try:
-            return bool(pq.read_table(self.path(chunk)).schema.equals(self.schema, check_metadata=True))
-        except (OSError, pa.ArrowException):
-            return False
-
-    def write(self, chunk: int, rows: list[Row]) -> None:
-        """Write the results of a chunk."""
-        whole = [tuple(point.values()) + row for point, row in zip(self.points(chunk), rows, strict=True)]
-        columns = [
-            pa.array(column, field.type) for column, field in zip(zip(*whole, strict=True), self.schema, strict=True)
-        ]
-        replace(self.path(chunk), lambda path: pq.write_table(pa.table(columns, schema=self.schema), path))
-
-    def combine(self, stem: Path) -> pa.Table:
-        """Join all chunks to one table, as Parquet and CSV."""
-        table = pa.concat_tables([pq.read_table(self.path(chunk)) for chunk in range(self.chunks)]).combine_chunks()
-        replace(stem.with_suffix(".parquet"), lambda path: pq.write_table(table, path))
-        plain = pyarrow.csv.WriteOptions(quoting_header="none")
-        replace(stem.with_suffix(".csv"), lambda path: pyarrow.csv.write_csv(table, path, plain))
-        return table
-
-
-def replace(path: Path, write: Callable[[Path], object]) -> None:
-    """Write a file under another name first: it is whole or not there."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(f"{path.name}.{os.getpid()}.part")
-    write(part)
-    part.replace(path)
-
-
 def run(
     client: Client, contact: str, study: Study, chunks: list[int], workers: list[str] | None = None
 ) -> Iterator[Any]:
@@ -303,131 +197,36 @@ def scaling(client: Client, contact: str, study: Study, pieces: int) -> None:
         )
 
 
-def boundary(accelerations: NDArray[np.float64], longest: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Give, for each row, the middle of the step in acceleration at which interruptions come to exceed the limit."""
-    opens = longest > LIMIT
-    index = np.where(opens.any(axis=1), opens.argmax(axis=1), -1)
-    middle = (accelerations[index] + accelerations[np.maximum(index - 1, 0)]) / 2
-    return np.where(index > 0, middle, np.nan)
-
-
-def draw_map(table: pa.Table, study: Study, unit: str, path: Path) -> None:
-    """Draw a map for each value of the parameter, and the boundaries together; print where they are lowest."""
-    values, frequencies, accelerations = (np.array(axis, dtype=float) for axis in study.axes)
-    longest = table["longest_interruption"].to_numpy().reshape(len(values), len(frequencies), len(accelerations))
-    columns = 2 if len(values) < 4 else 3
-    figure, panels = plt.subplots(
-        math.ceil((len(values) + 1) / columns),
-        columns,
-        figsize=(5.2 * columns, 7.6),
-        layout="constrained",
-        squeeze=False,
-    )
-    last = panels.flat[len(values)]
-    shades = LogNorm(10, 1e4)
-    for i, (value, axes) in enumerate(zip(values, panels.flat, strict=False)):
-        label, colour = f"{study.names[0]} = {value:g} {unit}", COLOURS[i % len(COLOURS)]
-        edge = boundary(accelerations, longest[i])
-        interrupted = np.ma.masked_less_equal(1e6 * longest[i].T, 0)
-        mesh = axes.pcolormesh(frequencies, accelerations, interrupted, norm=shades, cmap="viridis", shading="nearest")
-        axes.plot(frequencies, edge, color="black", linewidth=1.6, label="opens for 10 µs")
-        axes.set_title(label, fontsize="medium")
-        last.plot(frequencies, edge, color=colour, linewidth=1.6, label=label)
-        if not np.isfinite(edge).any():
-            print(f"{label}: no step from closed to open between {accelerations[0]:g} and {accelerations[-1]:g} m/s2")
-            continue
-        least = int(np.nanargmin(edge))
-        lowest, slowest = (f"{a:.1f} m/s2 ({a / GRAVITY:.1f} g)" for a in (edge[least], edge[0]))
-        print(f"{label}: opens from {lowest} at {frequencies[least]:g} Hz, from {slowest} at {frequencies[0]:g} Hz")
-    figure.colorbar(mesh, ax=panels, label="longest interruption [µs]; white: none", shrink=0.6, extend="both")
-    last.set_title("opens for 10 µs, together", fontsize="medium")
-    for axes in panels.flat[: len(values) + 1]:
-        axes.axhline(STANDARD, color="#D55E00", linestyle="--", linewidth=1.2, label="30 g, MIL-PRF-28776")
-        axes.set(xscale="log", xlim=frequencies[[0, -1]], ylim=accelerations[[0, -1]])
-        axes.set(xlabel="frequency [Hz]", ylabel="base acceleration [m/s²]")
-        axes.xaxis.set_major_formatter("{x:g}")
-        axes.legend(fontsize="small", loc="upper left")
-        in_g = axes.secondary_yaxis("right", functions=(lambda a: a / GRAVITY, lambda a: a * GRAVITY))
-        in_g.set_ylabel("base acceleration [g]")
-    for axes in panels.flat[len(values) + 1 :]:
-        axes.axis("off")
-    figure.suptitle("Vibration that opens the contact")
-    figure.savefig(path, dpi=130)
-    plt.close(figure)
-
-
-def draw_tolerances(table: pa.Table, study: Study, path: Path) -> None:
-    """Draw the distribution of the longest interruption, and the share beyond the limit; print the latter."""
-    accelerations = np.array(study.settings["accelerations"])
-    longest = table["longest_interruption"].to_numpy().reshape(-1, len(accelerations)).T
-    figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.8), layout="constrained")
-    shares = []
-    for i, (acceleration, all_values) in enumerate(zip(accelerations, longest, strict=True)):
-        values = np.sort(all_values[np.isfinite(all_values)])
-        test = binomtest(int(np.sum(values > LIMIT)), max(1, len(values)))
-        interval = test.proportion_ci(0.95, method="exact")
-        shares.append((test.statistic, interval.low, interval.high))
-        bounds = f"{100 * interval.low:.2f} to {100 * interval.high:.2f} %"
-        print(
-            f"{acceleration:.1f} m/s2 ({acceleration / GRAVITY:.1f} g): {test.k} of {len(values)} contacts open",
-            end=" ",
-        )
-        print(f"for longer than 10 us, {100 * test.statistic:.2f} %, with 95 % confidence {bounds}")
-        label = f"{acceleration / GRAVITY:.3g} g"
-        # From zero at the left, where the contacts without interruption are, to all at the right.
-        across = np.concatenate(([1e-7], np.maximum(values, 1e-7), [1.0]))
-        below = np.concatenate(([0.0], np.arange(1, len(values) + 1) / max(1, len(values)), [1.0]))
-        left.step(1e6 * across, 100 * below, where="post", color=COLOURS[i % len(COLOURS)], label=label)
-    left.axvline(1e6 * LIMIT, color="#666666", linestyle=":", label="10 µs")
-    left.set(xscale="log", xlim=(0.5, 1e7 * max(LIMIT, np.nanmax(longest, initial=0.0))), ylim=(-2, 102))
-    left.set(xlabel="longest interruption [µs]; left of the scale: none", ylabel="contacts with at most this [%]")
-    left.set_title(f"Longest interruption at {study.settings['frequency']:g} Hz", fontsize="medium")
-    share, low, high = 100 * np.array(shares).T
-    right.errorbar(accelerations, share, [share - low, high - share], color=COLOURS[0], marker="o", capsize=4)
-    right.set(xlabel="base acceleration [m/s²]", ylabel="contacts that open for longer than 10 µs [%]", ylim=(-2, 102))
-    right.axvline(STANDARD, color="#D55E00", linestyle="--", label="30 g, MIL-PRF-28776")
-    in_g = right.secondary_xaxis("top", functions=(lambda a: a / GRAVITY, lambda a: a * GRAVITY))
-    in_g.set_xlabel("base acceleration [g]")
-    right.set_title(f"Share of {study.settings['samples']} contacts, 95 % confidence", fontsize="medium")
-    for axes in (left, right):
-        axes.grid(alpha=0.3)
-    left.legend(fontsize="small", loc="center right")
-    right.legend(fontsize="small", loc="upper left")
-    figure.savefig(path, dpi=130)
-    plt.close(figure)
-
-
 def arguments() -> argparse.Namespace:
     """Read the command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--study", choices=["map", "tolerances"], default="map", help="default: map")
-    parser.add_argument("--fmu", type=Path, default=ROOT / "dist" / "RelayContact.fmu", help="the component")
-    parser.add_argument("--out", type=Path, default=ROOT / "out", help="folder for results")
-    parser.add_argument("--quick", action="store_true", help="fewer points: 10 s, not a minute, on two cores")
-    parser.add_argument("--workers", type=int, default=os.cpu_count(), help="processes of the local cluster")
-    parser.add_argument("--scheduler", metavar="ADDRESS", help="of a running Dask cluster, instead of a local one")
-    parser.add_argument("--chunk", type=int, default=50, help="simulations of a chunk, the piece a kill loses")
-    parser.add_argument("--scaling", action="store_true", help="only time a piece on 1, 2, ... workers")
-    parser.add_argument("--frequencies", type=float, nargs="+", help="map: Hz; tolerances: one, default 1250 Hz")
-    parser.add_argument("--accelerations", type=float, nargs="+", help="m/s2, rising")
-    parser.add_argument("--parameter", default="contact.overtravel", help="map: any real parameter of the component")
-    parser.add_argument("--values", type=float, nargs="+", default=[1.5e-4, 2e-4, 2.5e-4], help="map: its values, SI")
-    parser.add_argument("--samples", type=int, help="tolerances: contacts")
-    parser.add_argument("--seed", type=int, default=1, help="tolerances: of the random numbers")
+    line = parser(__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    add = line.add_argument
+    add("--study", choices=["map", "tolerances"], default="map", help="default: map")
+    add("--quick", action="store_true", help="fewer points: 10 s, not a minute, on two cores")
+    add("--workers", type=int, default=os.cpu_count(), help="processes of the local cluster")
+    add("--scheduler", metavar="ADDRESS", help="of a running Dask cluster, instead of a local one")
+    add("--chunk", type=int, default=50, help="simulations of a chunk, the piece a kill loses")
+    add("--scaling", action="store_true", help="only time a piece on 1, 2, ... workers")
+    add("--frequencies", type=float, nargs="+", help="map: Hz; tolerances: one, default 1250 Hz")
+    add("--accelerations", type=float, nargs="+", help="m/s2, rising")
+    add("--parameter", default="contact.overtravel", help="map: any real parameter of the component")
+    add("--values", type=float, nargs="+", default=[1.5e-4, 2e-4, 2.5e-4], help="map: its values, SI")
+    add("--samples", type=int, help="tolerances: contacts")
+    add("--seed", type=int, default=1, help="tolerances: of the random numbers")
     shown = ("OVERTRAVEL", "RADIUS", "DAMPING")
     text = "tolerances: standard deviations in m, m and s; default: %(default)s"
-    parser.add_argument("--deviations", type=float, nargs=3, default=[*TOLERANCES.values()], metavar=shown, help=text)
-    given = parser.parse_args()
+    add("--deviations", type=float, nargs=3, default=[*TOLERANCES.values()], metavar=shown, help=text)
+    given = read_arguments(line)
     if min(given.workers, given.chunk, 1 if given.samples is None else given.samples) < 1:
-        parser.error("--workers, --chunk and --samples are 1 or more")
+        line.error("--workers, --chunk and --samples are 1 or more")
     if given.seed < 0 or min(given.deviations) < 0:
-        parser.error("--seed and --deviations are 0 or more")
+        line.error("--seed and --deviations are 0 or more")
     for name in ("frequencies", "accelerations"):
         axis = getattr(given, name)
         if axis and not (min(axis) > 0 and sorted(set(axis)) == axis):
-            parser.error(f"--{name} are positive and rising")
+            line.error(f"--{name} are positive and rising")
     if given.study == "tolerances" and len(given.frequencies or [0]) > 1:
-        parser.error("--frequencies: the tolerances take one")
+        line.error("--frequencies: the tolerances take one")
     return given
 
 
@@ -454,9 +253,6 @@ def settings(given: argparse.Namespace, contact: str, description: Any) -> dict[
 def main() -> int:
     """Run the study, or what is left of it."""
     given = arguments()
-    if not given.fmu.is_file():
-        print(f"{given.fmu} is missing: build it with `cargo xtask fmu`", file=sys.stderr)
-        return 1
     fmu = given.fmu.read_bytes()
     description = read_model_description(BytesIO(fmu))
     real = [v for v in description.modelVariables if v.causality == "parameter" and v.type == "Real"]
@@ -498,9 +294,9 @@ def main() -> int:
     if wild:
         print(f"{wild} of {study.count} motions did not repeat within {PATIENCE} periods: measured as they were then")
     if given.study == "map":
-        draw_map(table, study, units[given.parameter], stem.with_suffix(".png"))
+        draw_map(table, study.names[0], study.axes, units[given.parameter], stem.with_suffix(".png"))
     else:
-        draw_tolerances(table, study, stem.with_suffix(".png"))
+        draw_tolerances(table, study.settings, stem.with_suffix(".png"))
     print(*(stem.with_suffix(suffix) for suffix in (".parquet", ".csv", ".png")), sep="\n")
     return 0
 

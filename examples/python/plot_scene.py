@@ -4,28 +4,38 @@ The figure stands beside the table, as a PNG file of the same name. Units are th
 """
 
 import argparse
-import re
 from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
-import matplotlib as mpl
-import numpy as np
-from numpy.typing import NDArray
-
-mpl.use("Agg")
 import matplotlib.pyplot as plt
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-ROOT = Path(__file__).resolve().parents[2]
-# Colours of Okabe and Ito, told apart also by the colour-blind.
-COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#E69F00"]
+from common import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, save
+from relay_contact import ROOT, Array, read_table
+
+COLOURS = [BLUE, RED, GREEN, PURPLE, BLACK, ORANGE]
 SIGNS = {"Ohm": "Ω", "mOhm": "mΩ", "um": "µm", "us": "µs", "degC": "°C", "m/s2": "m/s²"}
 # Beyond this ratio of greatest to least a logarithmic axis is used.
 DECADES = 1e3
-
-Array = NDArray[np.float64]
+# What the outputs are called in words, where it is not the words of their names.
+WORDS = {
+    "contact.lastOpening": "last opening",
+    "contact.lastClosing": "last closing",
+    "contact.indentation": "indentation\n(negative: gap)",
+    "tip.displacement": "deflection\nof the spring",
+    "tip.velocity": "velocity\nof the spring",
+    "step.minimumForce": "least contact force\nin a step",
+    "step.maximumForce": "greatest contact force\nin a step",
+    "step.maximumResistance": "greatest contact\nresistance in a step",
+    "chatter.count": "interruptions",
+    "chatter.longestInterruption": "longest\ninterruption",
+    "chatter.totalInterruption": "time interrupted",
+    "energy.balance": "energy balance",
+    "solver.rejectedSteps": "rejected\nsolver steps",
+}
 
 
 @dataclass
@@ -76,7 +86,7 @@ def panel(axes: Axes, time: Array, name: str, values: Array, unit: Unit | None, 
     if whole:
         axes.yaxis.set_major_locator(MaxNLocator(integer=True))
         axes.set_ylim(-0.1 * max(1.0, greatest), 1.1 * max(1.0, greatest))
-    words = re.sub(r"\.|(?<=[a-z])(?=[A-Z])", "\n", name)
+    words = WORDS.get(name, name.replace(".", "\n"))
     label = SIGNS.get(label, label)
     axes.set_ylabel(words + (f" [{label}]" if label not in ("", "1") else ""), fontsize="small")
     axes.grid(alpha=0.3)
@@ -84,8 +94,7 @@ def panel(axes: Axes, time: Array, name: str, values: Array, unit: Unit | None, 
 
 def draw(table: Path, title: str) -> Path:
     """Draw the table."""
-    names = table.read_text(encoding="utf-8").split("\n", 1)[0].split(",")
-    columns = dict(zip(names, np.loadtxt(table, delimiter=",", skiprows=1, ndmin=2).T, strict=True))
+    columns = read_table(table)
     time = columns.pop("time")
     known = units()
     scale, second = (1.0, "s") if time[-1] > 0.2 else (1e3, "ms")
@@ -107,8 +116,7 @@ def draw(table: Path, title: str) -> Path:
     grid[-1, 0].set_xlim(0, scale * time[-1])
     figure.align_ylabels()
     path = table.with_name(table.name.removesuffix(".csv") + ".png")
-    figure.savefig(path, dpi=130)
-    plt.close(figure)
+    save(figure, path, dpi=130)
     return path
 
 

@@ -1,13 +1,7 @@
 """An adaptive co-simulation master that takes steps back, around the contact and a circuit: what a step's error costs.
 
-The contact is the FMU, under FMPy, shaken by 400 m/s2 (41 g) at 1 kHz: it opens in every period. The circuit:
-
-    6 V --- R 60 Ohm --- L 1 mH ---+--- contact ------------------- 0 V
-                                   +--- Rq 47 Ohm --- Cq 220 nF --- 0 V
-
-With the load current i and the capacitor's voltage q: contact voltage v = (i + q / Rq) / (1 / Rc + 1 / Rq),
-L di/dt = V - R i - v, Rq Cq dq/dt = v - q: solved in closed form over a step, Rc held. Rq and Cq keep the voltage below
-the 12 V from which a contact draws arcs, which the component does not know.
+The contact is the FMU, under FMPy, shaken by 400 m/s2 (41 g) at 1 kHz: it opens in every period. The circuit is that
+of circuit.py, solved in closed form over a step, with the conductance of the contact held.
 
 A communication step: the component goes first, with the contact current of the start; the circuit follows with the
 mean of the contact's conductances at both ends. That is of second order where the conductance is smooth, but of first
@@ -28,82 +22,27 @@ The work is the number of doStep calls, those of rejected steps included. The er
 largest of instants 1 us apart, against the third master at a tolerance of 1e-8.
 """
 
-import argparse
-import shutil
 import sys
 import time as clock
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
-import matplotlib as mpl
+import matplotlib.pyplot as plt
 import numpy as np
-from fmpy import extract, instantiate_fmu, read_model_description
-from numpy.typing import NDArray
+from matplotlib.ticker import NullFormatter
 from tqdm import tqdm
 
-mpl.use("Agg")
-import matplotlib.pyplot as plt
-from matplotlib.ticker import NullFormatter
+from circuit import LOAD, PERIOD, SOURCE, closed_form, contact_voltage, shaken
+from common import BLACK, BLUE, ORANGE, SKY, legend_beside, parser, read_arguments, save, write_table
+from relay_contact import Array, Component, Contact
 
-ROOT = Path(__file__).resolve().parents[2]
-SOURCE, LOAD, COIL = 6.0, 60.0, 1e-3  # V, Ohm, H
-QUENCH, CAPACITOR = 47.0, 220e-9  # Ohm, F
 SCALE = np.array([SOURCE / LOAD, SOURCE])  # A and V: tolerances are relative to these
-PERIOD = 1e-3  # s, of the vibration
 SHORTEST, LONGEST = 1e-9, 1e-4  # s: the component locates its instants to 1 ns
 FIXED = [20e-6, 10e-6, 5e-6, 2e-6, 1e-6, 0.5e-6, 0.2e-6, 0.1e-6]  # s
 TOLERANCES = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7]
 REFERENCE = 1e-8
 SHOWN = 1e-4
 """Tolerance whose steps are drawn."""
-
-Array = NDArray[np.float64]
-
-
-def closed_form(conductance: Array, time: Array) -> tuple[Array, Array]:
-    """Give exp(A time) and the state at rest of the circuit, d(i, q)/dt = A ((i, q) - rest), at held conductances."""
-    a = 1 / (conductance + 1 / QUENCH)
-    load = np.stack([-(LOAD + a) / COIL, -a / QUENCH / COIL], axis=-1)
-    quench = np.stack([a / (QUENCH * CAPACITOR), (a / QUENCH - 1) / (QUENCH * CAPACITOR)], axis=-1)
-    matrix = np.stack([load, quench], axis=-2)
-    voltage = SOURCE / (LOAD * conductance + 1)
-    # The exponential of a matrix of two rows, by Cayley and Hamilton. Half the trace, half the eigenvalues' distance
-    # (the tiny number only keeps it from 0).
-    middle = np.trace(matrix, axis1=-2, axis2=-1) / 2
-    half = np.sqrt(middle**2 - np.linalg.det(matrix) + 0j) + 1e-30
-    even, odd = np.cosh(half * time) * np.exp(middle * time), np.sinh(half * time) / half * np.exp(middle * time)
-    shifted = matrix - middle[..., None, None] * np.eye(2)
-    exponential = (even[..., None, None] * np.eye(2) + odd[..., None, None] * shifted).real
-    return exponential, np.stack([voltage * conductance, voltage], axis=-1)
-
-
-class Contact:
-    """The component, initialised for the vibration."""
-
-    def __init__(self, folder: str, description: Any) -> None:  # noqa: ANN401
-        """Start it."""
-        self.references = {variable.name: variable.valueReference for variable in description.modelVariables}
-        self.fmu = instantiate_fmu(folder, description, fmi_type="CoSimulation")
-        self.fmu.setupExperiment(startTime=0.0)
-        choices, numbers = (
-            ["effects.excitation", "effects.axialForce"],
-            ["excitation.amplitude", "excitation.frequency"],
-        )
-        self.fmu.setInteger([self.references[name] for name in choices], [2, 2])  # Sine, None
-        self.fmu.setReal([self.references[name] for name in numbers], [400.0, 1 / PERIOD])
-        self.fmu.enterInitializationMode()
-        self.fmu.exitInitializationMode()
-
-    def get(self, *names: str) -> list[float]:
-        """Give outputs."""
-        values: list[float] = self.fmu.getReal([self.references[name] for name in names])
-        return values
-
-    def close(self) -> None:
-        """Release it."""
-        self.fmu.terminate()
-        self.fmu.freeInstance()
 
 
 @dataclass
@@ -128,11 +67,11 @@ class Master:
     def step(self, time: float, length: float, can_return: int) -> list[float]:
         """Take one communication step; give its row."""
         current, voltage = self.state
-        drop = (current + voltage / QUENCH) / (self.conductance + 1 / QUENCH)
-        self.contact.fmu.setReal([self.contact.references["contact.current"]], [self.conductance * drop])
+        drop = contact_voltage(current, voltage, self.conductance)
+        self.contact.set("contact.current", float(self.conductance * drop))
         self.contact.fmu.doStep(time, length, 1 - can_return)
         self.work += 1
-        (after,) = self.contact.get("contact.conductance")
+        after = self.contact.get("contact.conductance")
         mean = (self.conductance + after) / 2
         exponential, rest = closed_form(np.array(mean), np.array(length))
         self.state, self.conductance = rest + exponential @ (self.state - rest), after
@@ -148,10 +87,9 @@ class Master:
         return currents
 
 
-def begin(folder: str, description: Any) -> Master:  # noqa: ANN401
+def begin(contact: Contact) -> Master:
     """Give the pair in the steady state of the closed contact."""
-    contact = Contact(folder, description)
-    (conductance,) = contact.get("contact.conductance")
+    conductance = contact.get("contact.conductance")
     _, rest = closed_form(np.array(conductance), np.array(0.0))
     return Master(contact, rest, conductance)
 
@@ -178,7 +116,7 @@ def adapt(master: Master, stop: float, tolerance: float, told: bool) -> None:
             while True:
                 master.step(time, length, can_return=1)
                 whole = master.state
-                instants = [at for at in contact.get(*events) if time + SHORTEST < at < time + length - SHORTEST]
+                instants = [at for at in contact.real(*events) if time + SHORTEST < at < time + length - SHORTEST]
                 contact.fmu.setFMUstate(saved)
                 master.state, master.conductance = state, conductance
                 if told and instants:
@@ -225,17 +163,21 @@ def instants(master: Master, stop: float) -> list[tuple[float, float]]:
     return [(start[a], start[b] if b < len(start) else stop) for a, b in zip(begins, ends, strict=True)]
 
 
-LOOKS = {"fixed": ("#000000", "o"), "adaptive": ("#E69F00", "s"), "adaptive, told": ("#0072B2", "D")}
-"""Colours of Okabe and Ito, told apart also by the colour-blind, and markers."""
+LOOKS = {
+    "fixed": (BLACK, "o", "fixed steps"),
+    "adaptive": (ORANGE, "s", "adaptive"),
+    "adaptive, told": (BLUE, "D", "adaptive, with the instants of opening and closing"),
+}
+"""Colour, marker and label of each master."""
 
 
 def draw_work(runs: list[Run], path: Path) -> None:
     """Draw the error over the work."""
     figure, (left, right) = plt.subplots(1, 2, sharey=True, figsize=(10, 4.5), layout="constrained")
-    for method, (colour, marker) in LOOKS.items():
+    for method, (colour, marker, label) in LOOKS.items():
         chosen = [run for run in runs if run.method == method]
         errors = [1e3 * run.error for run in chosen]
-        left.loglog([run.master.work for run in chosen], errors, marker=marker, color=colour, label=method)
+        left.loglog([run.master.work for run in chosen], errors, marker=marker, color=colour, label=label)
         right.loglog([1e3 * run.master.seconds for run in chosen], errors, marker=marker, color=colour)
     left.set_xlabel("calls of doStep")
     right.set_xlabel("wall time [ms]")
@@ -244,9 +186,10 @@ def draw_work(runs: list[Run], path: Path) -> None:
         axes.xaxis.set_minor_formatter(NullFormatter())
         axes.grid(alpha=0.3, which="both")
     figure.legend(loc="outside lower center", ncols=3, frameon=False)
-    figure.suptitle("What accuracy costs: fixed communication steps against steps taken back", fontsize="medium")
-    figure.savefig(path, dpi=150)
-    plt.close(figure)
+    figure.suptitle(
+        "Error over cost: fixed communication steps, and adaptive ones that can be repeated", fontsize="medium"
+    )
+    save(figure, path)
 
 
 def draw_steps(runs: list[Run], stop: float, path: Path) -> None:
@@ -256,61 +199,58 @@ def draw_steps(runs: list[Run], stop: float, path: Path) -> None:
     times: Array = np.linspace(0.0, 1.5 * PERIOD, 3000)
     for method, master in chosen.items():
         start, length, current, _, _ = np.array(master.rows).T
-        colour, marker = LOOKS[method]
+        colour, marker, label = LOOKS[method]
         above.plot(1e3 * times, 1e3 * master.currents(times), color=colour, linewidth=1)
-        above.plot(1e3 * start, 1e3 * current, linestyle="", marker=marker, markersize=4, color=colour, label=method)
+        above.plot(
+            1e3 * start,
+            1e3 * current,
+            linestyle="",
+            marker=marker,
+            markersize=4,
+            color=colour,
+            label=label.replace(", ", ",\n"),
+        )
         below.semilogy(1e3 * start, 1e6 * length, marker=marker, markersize=4, color=colour, linewidth=0.6)
     opening, closing = instants(chosen["adaptive, told"], stop)[0]
     for axes in (above, below):
-        axes.axvspan(1e3 * opening, 1e3 * closing, color="#56B4E9", alpha=0.25, linewidth=0, label="contact open")
+        axes.axvspan(1e3 * opening, 1e3 * closing, color=SKY, alpha=0.25, linewidth=0, label="contact open")
         axes.set_xlim(1e3 * opening - 0.1, 1e3 * closing + 0.1)
         axes.grid(alpha=0.3)
     above.set_ylabel("load current [mA]")
     below.set_ylabel("communication step [µs]")
     below.set_xlabel("time [ms]")
-    above.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize="small", frameon=False)
-    figure.suptitle(f"Steps chosen around an opening at a tolerance of {SHOWN:g}", fontsize="medium")
+    legend_beside(above)
+    figure.suptitle(f"Communication steps around an opening at a tolerance of {SHOWN:g}", fontsize="medium")
     figure.align_ylabels()
-    figure.savefig(path, dpi=150)
-    plt.close(figure)
+    save(figure, path)
 
 
 def main() -> int:
     """Run the three masters over tolerances and steps."""
-    parser = argparse.ArgumentParser(
-        description="Adaptive master with FMU states. Takes half a minute, with --quick five seconds."
-    )
-    parser.add_argument("--fmu", type=Path, default=ROOT / "dist" / "RelayContact.fmu", help="the component")
-    parser.add_argument("--out", type=Path, default=ROOT / "out", help="folder for the tables and the figures")
-    parser.add_argument("--quick", action="store_true", help="2.5 ms instead of 10 ms, fixed steps down to 0.5 us only")
-    arguments = parser.parse_args()
-    if not arguments.fmu.is_file():
-        print(f"{arguments.fmu} is missing: build it with `cargo xtask fmu`", file=sys.stderr)
-        return 1
-    stop, lengths = (2.5 * PERIOD, FIXED[:-2]) if arguments.quick else (10 * PERIOD, FIXED)
-    description, folder = read_model_description(arguments.fmu), extract(str(arguments.fmu))
+    line = parser("Adaptive master with FMU states. Takes half a minute, with --quick five seconds.")
+    line.add_argument("--quick", action="store_true", help="2.5 ms instead of 10 ms, fixed steps down to 0.5 µs only")
+    given = read_arguments(line)
+    stop, lengths = (2.5 * PERIOD, FIXED[:-2]) if given.quick else (10 * PERIOD, FIXED)
+    component = Component(given.fmu)
     settings = [("adaptive, told", REFERENCE), *(("fixed", length) for length in lengths)]
     settings += [(method, tolerance) for method in ("adaptive", "adaptive, told") for tolerance in TOLERANCES]
     times: Array = np.linspace(0.0, stop, round(stop / 1e-6), endpoint=False)
     runs: list[Run] = []
-    try:
-        for method, setting in (bar := tqdm(settings, unit="run")):
-            bar.set_description(f"{method}, {setting:g}")
-            master = begin(folder, description)
+    for method, setting in (bar := tqdm(settings, unit="run")):
+        bar.set_description(f"{method}, {setting:g}")
+        with shaken(component) as contact:
+            master = begin(contact)
             if method == "fixed":
                 follow(master, [(index * setting, setting) for index in range(round(stop / setting))])
             else:
                 adapt(master, stop, setting, told=method == "adaptive, told")
-            master.contact.close()
-            runs.append(Run(method, setting, master))
-        exact = runs[0].master.currents(times)
-        # The accepted steps once more, never going back: nothing of what was taken back may be left in the result.
-        shown = next(run.master for run in runs if run.method == "adaptive, told" and run.setting == SHOWN)
-        again = begin(folder, description)
+        runs.append(Run(method, setting, master))
+    exact = runs[0].master.currents(times)
+    # The accepted steps once more, never going back: nothing of what was taken back may be left in the result.
+    shown = next(run.master for run in runs if run.method == "adaptive, told" and run.setting == SHOWN)
+    with shaken(component) as contact:
+        again = begin(contact)
         follow(again, [(row[0], row[1]) for row in shown.rows])
-        again.contact.close()
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
     same = again.rows == shown.rows and bool(np.array_equal(again.state, shown.state))
     print(f"{'master':15} {'setting':>10} {'doSteps':>8} {'taken back':>11} {'wall time':>10} {'largest error':>14}")
     for run in runs[1:]:
@@ -320,17 +260,15 @@ def main() -> int:
         print(f"{run.method:15} {setting:>10} {cost} {1e3 * run.error:11.5f} mA")
     print(f"the accepted steps again without going back: {'the same bits' if same else 'DIFFERENT RESULTS'}")
     print(f"FMU states not freed: {sum(run.master.states for run in runs)}")
-    arguments.out.mkdir(parents=True, exist_ok=True)
     names = ["rollback.csv", "rollback-steps.csv", "rollback.png", "rollback-steps.png"]
-    paths = [arguments.out / name for name in names]
+    paths = [given.out / name for name in names]
     with paths[0].open("w", encoding="utf-8") as file:
         file.write("master,setting,steps.done,steps.takenBack,wallTime,error.load.current\n")
         for run in runs[1:]:
             label, master = run.method.replace(",", ""), run.master
             values = f"{run.setting:g},{master.work},{master.rejected},{master.seconds:.6f},{run.error:.12g}"
             file.write(f"{label},{values}\n")
-    head = "time,step,load.current,capacitor.voltage,contact.conductance.mean"
-    np.savetxt(paths[1], np.array(shown.rows), delimiter=",", header=head, comments="", fmt="%.17g")
+    write_table(paths[1], "time,step,load.current,capacitor.voltage,contact.conductance.mean", shown.rows, digits=17)
     draw_work(runs[1:], paths[2])
     draw_steps(runs[1:], stop, paths[3])
     print(*paths, sep="\n")

@@ -34,25 +34,22 @@ A tool that is no Python program must load one: on Linux by LD_PRELOAD=libpython
 linked to none), on Windows by python3.dll in the PATH. PythonFMU has binaries for 64-bit x86 Linux and Windows.
 """
 
-import argparse
 import csv
 import platform
 import sys
-import tempfile
-import zipfile
-from collections.abc import Callable
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
-from xml.etree.ElementTree import Element, SubElement, indent, register_namespace, tostring
 
-import matplotlib as mpl
+import matplotlib.pyplot as plt
 import numpy as np
-from fmpy import extract, instantiate_fmu, read_model_description
-from fmpy.ssp.ssd import read_ssd
-from numpy.typing import NDArray
 from pythonfmu import FmuBuilder
 from tqdm import tqdm
-from two_fmus_bench import PARAMETERS, UNITS
+
+from common import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, parser, read_arguments, save, within, write_table
+from relay_contact import Array, Component, Contact
+from two_fmus_bench import PARAMETERS
+from two_fmus_system import WIRES, Fmus, Starts, write_system
 
 try:
     from libcosimpy.CosimExecution import CosimExecution
@@ -66,110 +63,31 @@ try:
 except (ImportError, OSError) as error:
     NO_LIBCOSIM = str(error)
 
-mpl.use("Agg")
-import matplotlib.pyplot as plt
-
-ROOT = Path(__file__).resolve().parents[2]
 BENCH = Path(__file__).with_name("two_fmus_bench.py")
 FINER = 8  # steps of the reference in a communication step
 
-# From instance and output to instance and input, with the unit. The first is the vibration.
-WIRES = [
-    ("bench", "table.acceleration", "contact", "base.acceleration", "m/s2"),
-    ("contact", "contact.resistance", "bench", "contact.resistance", "Ohm"),
-    ("bench", "contact.current", "contact", "contact.current", "A"),
-]
 RECORDED = [("bench", each) for each in ("table.acceleration", "contact.voltage", "contact.current")]
 RECORDED += [("contact", f"contact.{each}") for each in ("force", "resistance", "lastOpening", "lastClosing")]
 
-SSP = {
-    "ssd": "http://ssp-standard.org/SSP1/SystemStructureDescription",
-    "ssc": "http://ssp-standard.org/SSP1/SystemStructureCommon",
-    "ssv": "http://ssp-standard.org/SSP1/SystemStructureParameterValues",
-}
-
-Array = NDArray[np.float64]
-Fmus = dict[str, Path]  # the file of each instance
-Starts = dict[str, dict[str, float]]  # start values of each instance
 Run = dict[str, Array]  # time and what is recorded, SI units
 Bar = Any
-
-
-def write_system(path: Path, fmus: Fmus, starts: Starts) -> None:
-    """Write the FMUs, their wires and their start values as one file, and check it by the schema."""
-    for prefix, uri in SSP.items():
-        register_namespace(prefix, uri)
-
-    def add(parent: Element, tag: str, **attributes: str) -> Element:
-        prefix, name = tag.split(":")
-        return SubElement(parent, f"{{{SSP[prefix]}}}{name}", attributes)
-
-    root = Element(f"{{{SSP['ssd']}}}SystemStructureDescription", version="1.0", name="ContactOnTestBench")
-    system, units = add(root, "ssd:System", name="system"), add(root, "ssd:Units")
-    elements, connections = add(system, "ssd:Elements"), add(system, "ssd:Connections")
-    connectors, files = {}, {"SystemStructure.ssd": root}
-    kind = "application/x-fmu-sharedlibrary"
-    for name, fmu in fmus.items():
-        component = add(elements, "ssd:Component", name=name, type=kind, source=f"resources/{fmu.name}")
-        connectors[name] = add(component, "ssd:Connectors")
-        values = f"resources/{name}.ssv"
-        add(add(component, "ssd:ParameterBindings"), "ssd:ParameterBinding", source=values)
-        files[values] = Element(f"{{{SSP['ssv']}}}ParameterSet", version="1.0", name=name)
-        parameters = add(files[values], "ssv:Parameters")
-        for variable, start in starts[name].items():
-            add(add(parameters, "ssv:Parameter", name=variable), "ssv:Real", value=repr(start))
-    for source, output, sink, target, unit in WIRES:
-        add(add(connectors[source], "ssd:Connector", name=output, kind="output"), "ssc:Real", unit=unit)
-        add(add(connectors[sink], "ssd:Connector", name=target, kind="input"), "ssc:Real", unit=unit)
-        ends = {"startElement": source, "startConnector": output, "endElement": sink, "endConnector": target}
-        add(connections, "ssd:Connection", **ends)
-    for name, base in UNITS.items():
-        powers = {each: str(power) for each, power in base.items()}
-        add(add(units, "ssc:Unit", name=name), "ssc:BaseUnit", **powers)
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-        for file, element in files.items():
-            indent(element)
-            archive.writestr(file, tostring(element, encoding="UTF-8", xml_declaration=True))
-        for fmu in fmus.values():
-            archive.write(fmu, f"resources/{fmu.name}")
-    read_ssd(str(path), validate=True)
-
-
-class Instance:
-    """An FMU in FMPy, its variables known by name."""
-
-    def __init__(self, fmu: Path, folder: Path, starts: dict[str, float]) -> None:
-        """Instantiate the FMU, set its start values, enter initialization."""
-        description = read_model_description(str(fmu))
-        self.variables = {variable.name: variable for variable in description.modelVariables}
-        unpacked = extract(str(fmu), unzipdir=str(folder))
-        self.slave = instantiate_fmu(unpacked, description, fmi_type="CoSimulation")
-        self.slave.setupExperiment(startTime=0.0)
-        for name, value in starts.items():
-            self.set(name, value)
-        self.slave.enterInitializationMode()
-
-    def set(self, name: str, value: float) -> None:
-        """Set a variable; an enumeration by its number."""
-        variable = self.variables[name]
-        put = self.slave.setReal if variable.type == "Real" else self.slave.setInteger
-        put([variable.valueReference], [value])
-
-    def get(self, name: str) -> float:
-        """Give the value of a real variable."""
-        return float(self.slave.getReal([self.variables[name].valueReference])[0])
 
 
 def by_fmpy(fmus: Fmus, starts: Starts, time: Array, bar: Bar, generator: bool = False) -> Run:
     """Run the wired FMUs through the instants in FMPy; the contact shaken by its own generator if asked."""
     wires, rows = WIRES, []
+    sine: dict[str, float | str] = {}
     if generator:
-        bench = starts["bench"]
-        sine = {f"excitation.{each}": bench[f"table.{each}"] for each in ("amplitude", "frequency")}
-        starts = starts | {"contact": starts["contact"] | sine | {"effects.excitation": 2}}  # 2: Sine
+        sine = {f"excitation.{each}": starts["bench"][f"table.{each}"] for each in ("amplitude", "frequency")}
+        sine["effects.excitation"] = "Sine"
         wires = WIRES[1:]
-    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
-        instances = {name: Instance(fmu, Path(folder) / name, starts[name]) for name, fmu in fmus.items()}
+    with ExitStack() as stack:
+        instances = {name: stack.enter_context(Contact(Component(fmu))) for name, fmu in fmus.items()}
+        for name, instance in instances.items():
+            instance.fmu.setupExperiment(startTime=0.0)
+            for variable, value in (starts[name] | (sine if name == "contact" else {})).items():
+                instance.set(variable, value)
+            instance.fmu.enterInitializationMode()
 
         def carry() -> None:
             values = [instances[source].get(output) for source, output, *_ in wires]
@@ -181,17 +99,16 @@ def by_fmpy(fmus: Fmus, starts: Starts, time: Array, bar: Bar, generator: bool =
 
         carry()
         for instance in instances.values():
-            instance.slave.exitInitializationMode()
+            instance.fmu.exitInitializationMode()
         record()
         for now, length in zip(time[:-1].tolist(), np.diff(time).tolist(), strict=True):
             carry()
             for instance in instances.values():
-                instance.slave.doStep(currentCommunicationPoint=now, communicationStepSize=length)
+                instance.step(now, length)
             record()
             bar.update()
         for instance in instances.values():
-            instance.slave.terminate()
-            instance.slave.freeInstance()
+            instance.fmu.terminate()
     return as_run(time, rows)
 
 
@@ -264,49 +181,47 @@ def draw(run: Run, convergence: Array, shaken: str, path: Path) -> None:
     time, end = 1e3 * run["time"], run["time"][-1]
     closings = instants(run, "contact.lastClosing")
     gaps = [(opening, min([*closings[closings > opening], end])) for opening in instants(run, "contact.lastOpening")]
-    # Colours of Okabe and Ito, told apart also by the colour-blind.
     shown = [
-        ("table.acceleration", "acceleration\n[m/s²]", "#000000"),
-        ("contact.force", "contact force\n[N]", "#0072B2"),
-        ("contact.resistance", "resistance\n[Ω]", "#D55E00"),
-        ("contact.voltage", "voltage\n[V]", "#009E73"),
-        ("contact.current", "current\n[A]", "#CC79A7"),
+        ("table.acceleration", "base\nacceleration\n[m/s²]", BLACK),
+        ("contact.force", "contact\nforce\n[N]", BLUE),
+        ("contact.resistance", "contact\nresistance\n[Ω]", RED),
+        ("contact.voltage", "contact\nvoltage\n[V]", GREEN),
+        ("contact.current", "contact\ncurrent\n[A]", PURPLE),
     ]
     begin = gaps[-3][0] - 3e-4 if len(gaps) > 2 else 0.0
     rows = left.subplots(len(shown), 1, sharex=True)
     for axes, (name, label, colour) in zip(rows, shown, strict=True):
         axes.plot(time, run[name], color=colour, linewidth=1.2)
         for opening, closing in gaps:
-            axes.axvspan(1e3 * opening, 1e3 * closing, color="#E69F00", alpha=0.25, linewidth=0)
+            axes.axvspan(1e3 * opening, 1e3 * closing, color=ORANGE, alpha=0.25, linewidth=0)
         axes.set(ylabel=label, xlim=(1e3 * begin, 1e3 * end))
         axes.grid(alpha=0.3)
     # A closing strikes with many times the preload: linear below 1 N, logarithmic above.
     rows[1].set_yscale("symlog", linthresh=1.0)
     rows[2].set_yscale("log")
-    rows[-1].set_xlabel("time [ms]    (shaded: the contact is open)")
+    rows[-1].set_xlabel("time [ms]")
     left.align_ylabels()
-    left.suptitle(f"Relay contact in a circuit with a quench, {shaken}", fontsize="medium")
+    left.suptitle(f"Relay contact in a circuit with a quench, {shaken} (shaded: open)", fontsize="medium")
 
     steps = 1e6 * convergence[:, 0]
-    late = ("openings late,\non the average [µs]", 1e6 * convergence[:, 1], "#0072B2")
-    difference = ("mean difference\nof the voltage [mV]", 1e3 * convergence[:, 2], "#009E73")
+    late = ("mean delay of the openings [µs]", 1e6 * convergence[:, 1], BLUE)
+    difference = ("mean error of the contact voltage [mV]", 1e3 * convergence[:, 2], GREEN)
     for axes, (label, values, colour) in zip(right.subplots(2, 1), (late, difference), strict=True):
         axes.set(xlabel="communication step [µs]", ylabel=label)
         axes.grid(alpha=0.3)
         if not np.all(values > 0):
             axes.text(0.5, 0.5, "nothing to compare", ha="center", transform=axes.transAxes)
             continue
-        axes.plot(steps, values, color=colour, marker="o", label=f"measured, order {order(steps, values):.2f}")
+        axes.plot(steps, values, color=colour, marker="o", label=f"computed, order {order(steps, values):.2f}")
         first_order = steps * np.exp(np.mean(np.log(values / steps)))
-        axes.plot(steps, first_order, color="#666666", linestyle=":", label="order 1")
+        axes.plot(steps, first_order, color=GREY, linestyle=":", label="order 1")
         axes.set_xscale("log", base=2)
         axes.set_yscale("log", base=2)
         axes.xaxis.set_major_formatter("{x:g}")
         axes.yaxis.set_major_formatter("{x:g}")
         axes.legend(frameon=False)
     right.suptitle("Error of the coupling", fontsize="medium")
-    figure.savefig(path, dpi=150)
-    plt.close(figure)
+    save(figure, path)
 
 
 def write_tables(runs: dict[str, Run], convergence: Array, out: Path) -> None:
@@ -316,8 +231,7 @@ def write_tables(runs: dict[str, Run], convergence: Array, out: Path) -> None:
         table.writerow(["run", "time", *(name for _, name in RECORDED)])
         for name, run in runs.items():
             table.writerows([name, *row] for row in np.column_stack(list(run.values())).tolist())
-    head = "step,openings.late,voltage.meanDifference"
-    np.savetxt(out / "two-fmus-convergence.csv", convergence, delimiter=",", header=head, comments="", fmt="%.12g")
+    write_table(out / "two-fmus-convergence.csv", "step,openings.late,voltage.meanDifference", convergence)
 
 
 def summary(runs: dict[str, Run], convergence: Array) -> str:
@@ -343,37 +257,16 @@ def summary(runs: dict[str, Run], convergence: Array) -> str:
     return "\n".join(lines)
 
 
-def within(low: float, high: float) -> Callable[[str], float]:
-    """Give what reads a number in a range."""
-
-    def number(text: str) -> float:
-        value = float(text)
-        if not low <= value <= high:
-            raise argparse.ArgumentTypeError(f"{text} is not from {low:g} to {high:g}")
-        return value
-
-    return number
-
-
-def arguments() -> argparse.Namespace:
-    """Read the command line."""
-    parser = argparse.ArgumentParser(description="Couple the contact to a partner FMU (a quarter of a minute).")
-    add = parser.add_argument
-    add("--fmu", type=Path, default=ROOT / "dist" / "RelayContact.fmu", help="the component")
-    add("--out", type=Path, default=ROOT / "out", help="folder for all that is written")
-    add("--quick", action="store_true", help="4 periods from a step of 2 µs in place of 10 from 1 µs")
-    add("--amplitude", type=within(1, 1e4), default=400.0, help="of the table, 1 to 1e4 m/s2 (400)")
-    add("--frequency", type=within(100, 5000), default=1000.0, help="of the table, 100 to 5000 Hz (1000)")
-    add("--voltage", type=within(0.01, 100), default=6.0, help="of the source, 0.01 to 100 V (6)")
-    return parser.parse_args()
-
-
 def main() -> int:
     """Build the partner, run all, compare."""
-    given = arguments()
-    if not given.fmu.is_file():
-        print(f"{given.fmu} is missing: build it with `cargo xtask fmu`", file=sys.stderr)
-        return 1
+    line = parser("Couple the contact to a partner FMU (a quarter of a minute).")
+    add = line.add_argument
+    add("--quick", action="store_true", help="4 periods from a step of 2 µs in place of 10 from 1 µs")
+    wide, heard, mains = within(1, 1e4, "m/s2"), within(100, 5000, "Hz"), within(0.01, 100, "V")
+    add("--amplitude", type=wide, default=400.0, help="of the table [m/s2], 1 to 1e4 (%(default)s)")
+    add("--frequency", type=heard, default=1000.0, help="of the table [Hz], 100 to 5000 (%(default)s)")
+    add("--voltage", type=mains, default=6.0, help="of the source [V], 0.01 to 100 (%(default)s)")
+    given = read_arguments(line)
     if not FmuBuilder.has_binary() or platform.machine() not in ("x86_64", "AMD64"):
         print("PythonFMU has no binary for this machine: it needs 64-bit x86 Linux or Windows", file=sys.stderr)
         return 1
@@ -381,7 +274,6 @@ def main() -> int:
     coarsest = 2**halvings
     count = coarsest * round(1e9 * periods / given.frequency / nanoseconds / coarsest)
 
-    given.out.mkdir(parents=True, exist_ok=True)
     fmus = {"contact": given.fmu.resolve(), "bench": FmuBuilder.build_FMU(BENCH, dest=given.out).resolve()}
     bench = {name: start for name, _, start, _ in PARAMETERS}
     bench |= {"supply.voltage": given.voltage, "table.amplitude": given.amplitude, "table.frequency": given.frequency}

@@ -1,7 +1,6 @@
 """Runs an example as its user does."""
 
 import csv
-import os
 import subprocess
 import sys
 from collections.abc import Callable
@@ -9,8 +8,10 @@ from pathlib import Path
 
 import pytest
 
+from relay_contact import fmu_path
+
 FOLDER = Path(__file__).resolve().parents[1]
-FMU = Path(os.environ.get("RELAY_CONTACT_FMU", FOLDER.parents[1] / "dist" / "RelayContact.fmu"))
+FMU = fmu_path()
 
 Run = Callable[..., str]
 """Runs an example by its name with arguments; gives what it printed."""

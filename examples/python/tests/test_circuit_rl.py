@@ -9,10 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import FMU, FOLDER, Run, is_picture, table
 from fmpy import simulate_fmu
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
+
+from conftest import FMU, FOLDER, Run, is_picture, table
 
 Array = NDArray[np.float64]
 SOURCE, LOAD, COIL, QUENCH, CAPACITOR = 6.0, 60.0, 1e-3, 47.0, 220e-9
@@ -166,9 +167,10 @@ class Hidden(ctypes.CDLL):
         super().__init__(name, *arguments, **named)
 ctypes.CDLL = Hidden
 sys.argv = sys.argv[1:]
+sys.path.insert(0, sys.argv[0].rpartition("/")[0])
 runpy.run_path(sys.argv[0], run_name="__main__")
 """
-    script = str(FOLDER / "circuit_rl.py")
+    script = (FOLDER / "circuit_rl.py").as_posix()
     command = [sys.executable, "-c", hide, script, "--quick", "--fmu", str(FMU), *arguments]
     return subprocess.run(command, capture_output=True, text=True, check=False)
 

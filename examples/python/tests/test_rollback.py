@@ -8,10 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import FMU, FOLDER, Run, is_picture, table
 from fmpy import extract, instantiate_fmu, read_model_description
 from numpy.typing import NDArray
 from scipy.linalg import expm
+
+from conftest import FMU, FOLDER, Run, is_picture, table
 
 Array = NDArray[np.float64]
 SOURCE, LOAD, COIL, QUENCH, CAPACITOR = 6.0, 60.0, 1e-3, 47.0, 220e-9
@@ -148,12 +149,13 @@ def end(self, end=FMU2Slave.freeInstance):
     end(self)
 FMU2Slave.getFMUstate, FMU2Slave.freeFMUstate, FMU2Slave.freeInstance = get, free, end
 sys.argv = sys.argv[1:]
+sys.path.insert(0, sys.argv[0].rpartition("/")[0])
 try:
     runpy.run_path(sys.argv[0], run_name="__main__")
 finally:
     print("states:", all, most, len(alive))
 """
-    script = str(FOLDER / "rollback.py")
+    script = (FOLDER / "rollback.py").as_posix()
     command = [sys.executable, "-c", count, script, "--quick", "--fmu", str(FMU), "--out", str(tmp_path)]
     result = subprocess.run(command, capture_output=True, text=True, check=False, env=os.environ)
     assert result.returncode == 0, result.stderr

@@ -11,11 +11,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import Run, is_picture, table
 from fmpy.ssp.ssd import read_ssd
 from fmpy.validation import validate_fmu
 from numpy.typing import NDArray
 from scipy.linalg import expm
+
+from conftest import Run, is_picture, table
 
 if platform.machine() not in ("x86_64", "AMD64") or sys.platform == "darwin":
     pytest.skip("PythonFMU has no binary for this machine", allow_module_level=True)

@@ -1,0 +1,106 @@
+"""The circuit of circuit.py in ngspice, through its shared library.
+
+One `tran ... uic` analysis for each communication step, with the states as initial conditions: so the integrator of
+ngspice starts afresh after every jump of the contact's resistance. (One analysis with `stop`, `alter` and `resume`
+misses stops in ngspice 39.)
+"""
+
+import contextlib
+import ctypes
+import ctypes.util
+from collections import deque
+
+import numpy as np
+
+from circuit import CAPACITOR, COIL, LOAD, QUENCH, SOURCE, Course, contact_voltage
+from relay_contact import Array
+
+INNER_STEP, RELATIVE_TOLERANCE = 1e-7, 1e-7  # s, longest; 1
+LIBRARIES = ["libngspice.so.0", "libngspice.so", "libngspice.0.dylib", "libngspice.dylib", "ngspice.dll"]
+LIBRARIES += ["libngspice-0.dll", "/opt/homebrew/lib/libngspice.dylib"]
+
+
+class Vector(ctypes.Structure):
+    """A result of ngspice, as its shared library gives it."""
+
+    _fields_ = [("name", ctypes.c_char_p), ("type", ctypes.c_int), ("flags", ctypes.c_short)]
+    _fields_ += [("real", ctypes.POINTER(ctypes.c_double)), ("complex", ctypes.c_void_p), ("length", ctypes.c_int)]
+
+
+def load_library() -> ctypes.CDLL:
+    """Load ngspice's shared library; `OSError` where there is none."""
+    for name in [ctypes.util.find_library("ngspice"), *LIBRARIES]:
+        with contextlib.suppress(OSError):
+            if name:
+                return ctypes.CDLL(name)
+    raise OSError("ngspice's shared library is missing")
+
+
+class NgSpice:
+    """ngspice by its shared library."""
+
+    def __init__(self) -> None:
+        """Load the library and the circuit."""
+        self.library = load_library()
+        self.library.ngGet_Vec_Info.restype = ctypes.POINTER(Vector)
+        self.said: deque[str] = deque(maxlen=10)
+        # ngspice keeps these two functions: they must live as long as this object.
+        number, pointer = ctypes.c_int, ctypes.c_void_p
+        self.print = ctypes.CFUNCTYPE(number, ctypes.c_char_p, number, pointer)(self.hear)
+        self.quit = ctypes.CFUNCTYPE(number, number, ctypes.c_bool, ctypes.c_bool, number, pointer)(lambda *_: 0)
+        self.library.ngSpice_Init(self.print, None, self.quit, None, None, None, None)
+        lines = f"""relay contact
+            V1 supply 0 {SOURCE}
+            R1 supply coil {LOAD}
+            L1 coil contact {COIL} ic=0
+            RC contact 0 1
+            RQ contact quench {QUENCH}
+            CQ quench 0 {CAPACITOR} ic=0
+            .options method=trap reltol={RELATIVE_TOLERANCE} abstol=1e-13 vntol=1e-10
+            .end""".splitlines()
+        netlist = (ctypes.c_char_p * (len(lines) + 1))(*[line.strip().encode() for line in lines], None)
+        if self.library.ngSpice_Circ(netlist):
+            raise RuntimeError(f"ngspice refused the circuit: {' / '.join(self.said)}")
+
+    def hear(self, text: bytes, _library: int, _user: object) -> int:
+        """Keep what ngspice says, for errors."""
+        self.said.append(text.decode(errors="replace"))
+        return 0
+
+    def command(self, text: str) -> None:
+        """Have ngspice do something."""
+        if self.library.ngSpice_Command(text.encode()):
+            raise RuntimeError(f"ngspice refused `{text}`: {' / '.join(self.said)}")
+
+    def result(self, name: str) -> Array:
+        """Give a vector of the last analysis."""
+        vector = self.library.ngGet_Vec_Info(name.encode())
+        if not vector:
+            raise RuntimeError(f"ngspice gave no {name}: {' / '.join(self.said)}")
+        return np.ctypeslib.as_array(vector.contents.real, (vector.contents.length,)).copy()
+
+    def advance(self, start: tuple[float, float], resistance: float, step: float) -> Course:
+        """Step once."""
+        inner = min(INNER_STEP, step / 10)
+        for name, value in (("RC", resistance), ("@L1[ic]", start[0]), ("@CQ[ic]", start[1])):
+            self.command(f"alter {name} = {value!r}")
+        self.command(f"tran {inner!r} {step!r} 0 {inner!r} uic")
+        # What `uic` starts from is not a result, or not in every version.
+        late = self.result("time") > 0
+        time = np.append(0.0, self.result("time")[late])
+        current = np.append(start[0], self.result("l1#branch")[late])
+        capacitor = np.append(start[1], self.result("quench")[late])
+        self.command("destroy all")
+        if not abs(time[-1] - step) < 1e-9 * step:
+            raise RuntimeError(f"ngspice stopped {time[-1]} s into a step of {step} s: {' / '.join(self.said)}")
+        # Integrator and quadrature are both the trapezoidal rule. By Tellegen's theorem the powers of all branches, and
+        # the products of their changes, sum to zero; so the balance misses by a quarter of the sum of
+        # step * change of voltage * change of current over coil and capacitor, and no more. The first inner step is
+        # backward Euler, which misses half of step * change * value. Besides, ngspice iterates to its tolerance.
+        steps, weights = np.diff(time), np.convolve(np.diff(time), [0.5, 0.5])
+        drop = contact_voltage(current, capacitor, 1 / resistance)
+        coil, charging = np.diff(SOURCE - LOAD * current - drop), np.diff((drop - capacitor) / QUENCH)
+        error = steps @ np.abs(coil * np.diff(current) + charging * np.diff(capacitor)) / 4
+        error += steps[0] * (abs(coil[0] * current[0]) + abs(charging[0] * capacitor[0])) / 2
+        error += RELATIVE_TOLERANCE * SOURCE**2 / LOAD * step
+        return Course(time, current, capacitor, weights, float(error))

@@ -1,0 +1,108 @@
+"""The pictures of opening_map.py, and what they show in words."""
+
+import math
+from pathlib import Path
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pyarrow as pa
+from matplotlib.colors import LogNorm
+from scipy.stats import binomtest
+
+from common import BLACK, BLUE, GRAVITY, GREEN, GREY, ORANGE, PURPLE, RED, SKY, acceleration_in_g, save
+from relay_contact import Array
+
+STANDARD = 30 * GRAVITY  # m/s2, vibration of relays after MIL-PRF-28776
+LIMIT = 10e-6  # s, MIL-STD-202 method 310
+COLOURS = (BLUE, ORANGE, GREEN, PURPLE, RED, SKY, BLACK)
+
+
+def boundary(accelerations: Array, longest: Array) -> Array:
+    """Give, for each row, the middle of the step in acceleration at which interruptions come to exceed the limit."""
+    opens = longest > LIMIT
+    index = np.where(opens.any(axis=1), opens.argmax(axis=1), -1)
+    middle = (accelerations[index] + accelerations[np.maximum(index - 1, 0)]) / 2
+    return np.where(index > 0, middle, np.nan)
+
+
+def draw_map(table: pa.Table, parameter: str, scales: list[Any], unit: str, path: Path) -> None:
+    """Draw a map for each value of the parameter, and the boundaries together; print where they are lowest."""
+    values, frequencies, accelerations = (np.array(axis, dtype=float) for axis in scales)
+    longest = table["longest_interruption"].to_numpy().reshape(len(values), len(frequencies), len(accelerations))
+    columns = 2 if len(values) < 4 else 3
+    figure, panels = plt.subplots(
+        math.ceil((len(values) + 1) / columns),
+        columns,
+        figsize=(5.2 * columns, 7.6),
+        layout="constrained",
+        squeeze=False,
+    )
+    last = panels.flat[len(values)]
+    shades = LogNorm(10, 1e4)
+    for i, (value, axes) in enumerate(zip(values, panels.flat, strict=False)):
+        label, colour = f"{parameter} = {value:g} {unit}", COLOURS[i % len(COLOURS)]
+        edge = boundary(accelerations, longest[i])
+        interrupted = np.ma.masked_less_equal(1e6 * longest[i].T, 0)
+        mesh = axes.pcolormesh(frequencies, accelerations, interrupted, norm=shades, cmap="viridis", shading="nearest")
+        axes.plot(frequencies, edge, color="black", linewidth=1.6, label="opens for 10 µs")
+        axes.set_title(label, fontsize="medium")
+        last.plot(frequencies, edge, color=colour, linewidth=1.6, label=label)
+        if not np.isfinite(edge).any():
+            print(f"{label}: no step from closed to open between {accelerations[0]:g} and {accelerations[-1]:g} m/s2")
+            continue
+        least = int(np.nanargmin(edge))
+        lowest, slowest = (f"{a:.1f} m/s2 ({a / GRAVITY:.1f} g)" for a in (edge[least], edge[0]))
+        print(f"{label}: opens from {lowest} at {frequencies[least]:g} Hz, from {slowest} at {frequencies[0]:g} Hz")
+    figure.colorbar(mesh, ax=panels, label="longest interruption [µs] (white: none)", shrink=0.6, extend="both")
+    last.set_title("opens for 10 µs: all values", fontsize="medium")
+    for axes in panels.flat[: len(values) + 1]:
+        axes.axhline(STANDARD, color=RED, linestyle="--", linewidth=1.2, label="30 g, MIL-PRF-28776")
+        axes.set(xscale="log", xlim=frequencies[[0, -1]], ylim=accelerations[[0, -1]])
+        axes.set(xlabel="frequency [Hz]", ylabel="base acceleration [m/s²]")
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.legend(fontsize="small", loc="upper left")
+        acceleration_in_g(axes)
+    for axes in panels.flat[len(values) + 1 :]:
+        axes.axis("off")
+    figure.suptitle("Vibration that opens the contact")
+    save(figure, path, dpi=130)
+
+
+def draw_tolerances(table: pa.Table, settings: dict[str, Any], path: Path) -> None:
+    """Draw the distribution of the longest interruption, and the share beyond the limit; print the latter."""
+    accelerations = np.array(settings["accelerations"])
+    longest = table["longest_interruption"].to_numpy().reshape(-1, len(accelerations)).T
+    figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.8), layout="constrained")
+    shares = []
+    for i, (acceleration, all_values) in enumerate(zip(accelerations, longest, strict=True)):
+        values = np.sort(all_values[np.isfinite(all_values)])
+        test = binomtest(int(np.sum(values > LIMIT)), max(1, len(values)))
+        interval = test.proportion_ci(0.95, method="exact")
+        shares.append((test.statistic, interval.low, interval.high))
+        bounds = f"{100 * interval.low:.2f} to {100 * interval.high:.2f} %"
+        print(
+            f"{acceleration:.1f} m/s2 ({acceleration / GRAVITY:.1f} g): {test.k} of {len(values)} contacts open",
+            end=" ",
+        )
+        print(f"for longer than 10 us, {100 * test.statistic:.2f} %, with 95 % confidence {bounds}")
+        label = f"{acceleration / GRAVITY:.3g} g"
+        # From zero at the left, where the contacts without interruption are, to all at the right.
+        across = np.concatenate(([1e-7], np.maximum(values, 1e-7), [1.0]))
+        below = np.concatenate(([0.0], np.arange(1, len(values) + 1) / max(1, len(values)), [1.0]))
+        left.step(1e6 * across, 100 * below, where="post", color=COLOURS[i % len(COLOURS)], label=label)
+    left.axvline(1e6 * LIMIT, color=GREY, linestyle=":", label="10 µs")
+    left.set(xscale="log", xlim=(0.5, 1e7 * max(LIMIT, np.nanmax(longest, initial=0.0))), ylim=(-2, 102))
+    left.set(xlabel="longest interruption [µs] (left edge: none)", ylabel="cumulative share of contacts [%]")
+    left.set_title(f"Longest interruption at {settings['frequency']:g} Hz", fontsize="medium")
+    share, low, high = 100 * np.array(shares).T
+    right.errorbar(accelerations, share, [share - low, high - share], color=COLOURS[0], marker="o", capsize=4)
+    right.set(xlabel="base acceleration [m/s²]", ylabel="contacts that open for longer than 10 µs [%]", ylim=(-2, 102))
+    right.axvline(STANDARD, color=RED, linestyle="--", label="30 g, MIL-PRF-28776")
+    acceleration_in_g(right, vertical=False)
+    right.set_title(f"Share of {settings['samples']} contacts, 95 % confidence", fontsize="medium")
+    for axes in (left, right):
+        axes.grid(alpha=0.3)
+    left.legend(fontsize="small", loc="center right")
+    right.legend(fontsize="small", loc="upper left")
+    save(figure, path, dpi=130)
