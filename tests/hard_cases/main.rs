@@ -11,9 +11,6 @@
 
 #![allow(clippy::unwrap_used)]
 
-#[path = "../common/mod.rs"]
-mod common;
-
 mod campaign;
 mod contact;
 mod endurance;
@@ -21,3 +18,5 @@ mod excitation;
 mod ride;
 mod solver;
 mod spring;
+
+use testing::rig as common;

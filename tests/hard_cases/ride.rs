@@ -44,12 +44,6 @@ pub struct Outcome {
     pub rig: Rig,
 }
 
-impl std::fmt::Debug for Rig {
-    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        write!(f, "{:?}", self.state)
-    }
-}
-
 impl Ride {
     /// The scene with a square wave of base acceleration, which opens the specimen's contact.
     pub fn shaken(scene: Scene) -> Self {

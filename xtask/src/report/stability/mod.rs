@@ -7,15 +7,13 @@
 //! energy, and two runs within the tolerance differ by at most twice that.
 
 mod balance;
-#[allow(dead_code, reason = "shared with the tests, which use all of it")]
-#[path = "../../../../tests/common/mod.rs"]
-mod common;
 mod energy;
 mod instants;
 
 use std::fmt::Write;
 
 use anyhow::{Result, bail};
+use testing::rig as common;
 
 use super::Arguments;
 use super::content::{Block, Section, Table};
