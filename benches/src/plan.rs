@@ -3,7 +3,6 @@
 use std::rc::Rc;
 
 use anyhow::{Result, anyhow};
-use relay_contact::model::Model;
 use relay_contact::scene::Solver;
 
 use crate::component::Component;
@@ -88,7 +87,7 @@ fn own(problem: &Problem, quick: bool) -> Result<Vec<Case>> {
         let mut chosen = problem.model.scene;
         chosen.solver.modes = 0;
         chosen.solver.tolerance = setting.value();
-        let chosen = i32::try_from(Model::new(&chosen, 0.0)?.modes.len())?;
+        let chosen = scenes::modes_chosen(&chosen)?;
         cases.push(case(table::DELIVERED, problem.with_modes(chosen)?, setting));
         cases.push(case("steps", many.clone(), setting));
     }

@@ -44,6 +44,12 @@ impl Rig {
         }
     }
 
+    /// The same with a sine at the base from the instant 0 on: amplitude (m/s2) and frequency (Hz).
+    pub fn shaken(model: Model, amplitude: f64, frequency: f64) -> Self {
+        let generator = Generator::new(&shaken(amplitude, frequency)).expect("a sine");
+        Self::new(Model { generator, ..model })
+    }
+
     /// Sets the modal velocities at the start, in the order of the modes, and what follows from them.
     pub fn launch(&mut self, velocities: &[f64]) {
         let Self { model, state, .. } = self;
@@ -56,11 +62,6 @@ impl Rig {
         state.force = model.law.force(d, state.indentation_rate);
         state.closed = model.engagement(state.indentation, state.indentation_rate) > 0.0;
         self.course = Course::new(*state);
-    }
-
-    /// Shakes the base with a sine from the instant 0 on: amplitude (m/s2) and frequency (Hz).
-    pub fn shake(&mut self, amplitude: f64, frequency: f64) {
-        self.model.generator = Generator::new(&shaken(amplitude, frequency)).expect("a sine");
     }
 
     /// Lets a bonded contact open from here on.

@@ -19,8 +19,8 @@ const PUBLISHED: [(f64, f64); 4] = [
 fn touch_and_release() {
     let (mass, force) = (156.0, 3000.0);
     for tolerance in [1e-7, 1e-9, 1e-11] {
-        let mut rig = Rig::new(compose(&[oscillator(mass, 2e6)], stop(1e10), 1e-3, tolerance, force));
-        rig.shake(force / mass, 5.0);
+        let model = compose(&[oscillator(mass, 2e6)], stop(1e10), 1e-3, tolerance, force);
+        let mut rig = Rig::shaken(model, force / mass, 5.0);
         let mut found: Vec<(f64, f64)> = Vec::new();
         for k in 1..=2100 {
             rig.run_to(&Inputs::default(), f64::from(k) * 1e-4).unwrap();

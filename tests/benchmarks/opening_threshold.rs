@@ -23,8 +23,7 @@ fn model(law: ContactLawKind, tolerance: f64, frequency: f64) -> Model {
 /// The model shaken with the amplitude (m/s2) until nothing is left of the start: the slowest motion decays by more than
 /// 1e-13 in 40 ms.
 fn periodic(model: Model, amplitude: f64, frequency: f64) -> Rig {
-    let mut rig = Rig::new(model);
-    rig.shake(amplitude, frequency);
+    let mut rig = Rig::shaken(model, amplitude, frequency);
     rig.run_to(&Inputs::default(), (0.04 * frequency).ceil() / frequency)
         .unwrap();
     rig
