@@ -11,6 +11,9 @@ pub const DELIVERED: &str = "delivered";
 /// The part of a study in which all integrators work on the same modes.
 pub const PEERS: &str = "peers";
 
+/// Picks an error of a run; none where it has none.
+type Error = fn(&Measured) -> Option<f64>;
+
 /// All tables, with the machine and what failed.
 pub fn report(rows: &[Row]) -> String {
     let mut text = format!(
@@ -19,7 +22,6 @@ pub fn report(rows: &[Row]) -> String {
         crate::machine::description(),
         delivered(rows),
     );
-    type Error = fn(&Measured) -> Option<f64>;
     let force: Error = |run| Some(run.force_error);
     let instants: Error = |run| run.event_error;
     let of_force = (
