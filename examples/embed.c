@@ -207,7 +207,7 @@ static double number(int argc, char **argv, int at, const char *name, double oth
     }
     value = strtod(argv[at], &end);
     if (end == argv[at] || *end != '\0') {
-        fprintf(stderr, "%s = %s: wanted is a number\n%s", name, argv[at], usage);
+        fprintf(stderr, "%s = %s: expected a number\n%s", name, argv[at], usage);
         exit(2);
     }
     return value;

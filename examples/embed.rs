@@ -6,7 +6,7 @@
 //!
 //! Vibration: two machines of 900 and 1000 Hz beat, `a(t) = A sin(2 pi 950 t) sin(2 pi 50 t)`. Circuit: 6 V, a load of
 //! 60 Ohm and 1 mH, the contact, and across it a quench of 47 Ohm and 220 nF, without which the coil would drive an arc.
-//! The library knows no arcs: the summary tells whether the contact stayed below 12 V and 0.4 A.
+//! The library models no arcs: the summary says whether the contact stayed below 12 V and 0.4 A.
 //!
 //! Steps are 2 us long. One in which the contact opens or closes is taken back and done again in tenths, as the circuit
 //! sees the conductance at the ends of steps only. `embed.c` does the same in C and prints the same numbers.
@@ -146,7 +146,7 @@ fn run(amplitude: f64, count: u32) -> Result<Vec<[f64; 6]>, Failure> {
     let mut scene = Scene::default();
     scene.contact.overtravel = 0.19e-3;
     scene.chatter.minimum_duration = 5e-6;
-    scene.effects.extremes = false; // what is not read need not cost
+    scene.effects.extremes = false; // not read here
     let mut contact = Simulation::new(&scene, &Inputs::default(), 0.0)?;
     let mut circuit = Circuit::new(contact.real(RealOutput::ContactConductance));
 
@@ -219,7 +219,7 @@ fn job() -> Result<(), Failure> {
         return Ok(());
     }
     let number = |at: usize, name, default| {
-        let wrong = |text| Failure::Usage(format!("{name} = {text}: wanted is a number"));
+        let wrong = |text| Failure::Usage(format!("{name} = {text}: expected a number"));
         arguments
             .get(at)
             .map_or(Ok(default), |text| text.parse().map_err(|_| wrong(text)))
@@ -246,7 +246,7 @@ fn main() -> ExitCode {
         return ExitCode::SUCCESS;
     };
     eprintln!("{failure}");
-    // The kinds can be told apart, and what they hold be read: `Refused(SceneError::OutOfRange { name, allowed, .. })`.
+    // The kinds can be matched, with what they hold: `Refused(SceneError::OutOfRange { name, allowed, .. })`.
     ExitCode::from(match failure {
         Failure::Usage(_) => 2,
         Failure::Refused(_) | Failure::Stopped(_) | Failure::Table(..) => 1,

@@ -1,4 +1,4 @@
-//! Runs a scene file, with changes; prints what it looks at as it stands at the end, and what simulating a millisecond took.
+//! Runs a scene file, with changes; prints its outputs at the end, and the time taken per simulated millisecond.
 //!
 //!     cargo run --release --example run_scene -- scenes/paper-1khz.toml excitation.amplitude=400 stop=0.1
 
@@ -13,10 +13,10 @@ use relay_contact::simulation::Simulation;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = env::args().skip(1);
-    let path = arguments.next().ok_or("wanted is: FILE [NAME=VALUE...]")?;
+    let path = arguments.next().ok_or("usage: run_scene FILE [NAME=VALUE...]")?;
     let mut scene = SceneFile::read(Path::new(&path))?;
     for change in arguments {
-        let (name, value) = change.split_once('=').ok_or("wanted is NAME=VALUE")?;
+        let (name, value) = change.split_once('=').ok_or("expected NAME=VALUE")?;
         scene.set(name, value)?;
     }
 

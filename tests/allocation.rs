@@ -2,11 +2,10 @@
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
-use std::ffi::CString;
-use std::ptr;
 
-use relay_contact::fmi2::*;
-use relay_contact::variables::{ExcitationKind, GUID, Variable};
+use relay_contact::fmi2::fmi2OK;
+use relay_contact::variables::ExcitationKind;
+use testing::instance::Instance;
 
 /// The system's allocator, which counts what this thread asks for.
 struct Counting;
@@ -42,52 +41,22 @@ fn a_communication_step_allocates_nothing() {
 }
 
 fn check(excitation: i32) {
-    let guid = CString::new(GUID).unwrap();
-    let silent = fmi2CallbackFunctions {
-        logger: None,
-        allocateMemory: None,
-        freeMemory: None,
-        stepFinished: None,
-        componentEnvironment: ptr::null_mut(),
-    };
-    let references =
-        ["base.acceleration", "contact.current"].map(|name| Variable::by_name(name).unwrap().value_reference);
-    let outputs = ["contact.force", "contact.resistance"].map(|name| Variable::by_name(name).unwrap().value_reference);
-    let mut values = [f64::NAN; 2];
-    // SAFETY: pointers to what is declared here, with its length.
-    unsafe {
-        let c = fmi2Instantiate(
-            c"relay".as_ptr(),
-            fmi2CoSimulation,
-            guid.as_ptr(),
-            ptr::null(),
-            &raw const silent,
-            0,
-            0,
-        );
-        let kind = Variable::by_name("effects.excitation").unwrap().value_reference;
-        assert_eq!(fmi2SetInteger(c, &raw const kind, 1, &raw const excitation), fmi2OK);
-        let energy = Variable::by_name("effects.energy").unwrap().value_reference;
-        assert_eq!(fmi2SetBoolean(c, &raw const energy, 1, [fmi2True].as_ptr()), fmi2OK);
-        assert_eq!(fmi2EnterInitializationMode(c), fmi2OK);
-        assert_eq!(fmi2ExitInitializationMode(c), fmi2OK);
-        let before = COUNT.get();
-        assert!(before > 0, "nothing is counted");
-        for n in 0..1000 {
-            let time = f64::from(n) * 1e-5;
-            // A square wave of 204 g: the contact opens and bounces.
-            let acceleration = if n % 100 < 50 { 2000.0 } else { -2000.0 };
-            assert_eq!(
-                fmi2SetReal(c, references.as_ptr(), 2, [acceleration, 0.1].as_ptr()),
-                fmi2OK
-            );
-            assert_eq!(fmi2DoStep(c, time, 1e-5, fmi2True), fmi2OK);
-            assert_eq!(fmi2GetReal(c, outputs.as_ptr(), 2, values.as_mut_ptr()), fmi2OK);
-        }
-        assert_eq!(COUNT.get(), before, "allocated in a step");
-        let opening = Variable::by_name("contact.lastOpening").unwrap().value_reference;
-        assert_eq!(fmi2GetReal(c, &raw const opening, 1, values.as_mut_ptr()), fmi2OK);
-        assert!(values[0] > 0.0, "the contact never opened: events are not covered");
-        fmi2FreeInstance(c);
+    let contact = Instance::new();
+    assert_eq!(contact.set_integer("effects.excitation", excitation), fmi2OK);
+    assert_eq!(contact.set_boolean("effects.energy", true), fmi2OK);
+    contact.initialize();
+    let before = COUNT.get();
+    assert!(before > 0, "nothing is counted");
+    for n in 0..1000 {
+        let time = f64::from(n) * 1e-5;
+        // A square wave of 204 g: the contact opens and bounces.
+        let acceleration = if n % 100 < 50 { 2000.0 } else { -2000.0 };
+        let inputs = ["base.acceleration", "contact.current"];
+        assert_eq!(contact.set_reals(inputs, [acceleration, 0.1]), fmi2OK);
+        assert_eq!(contact.step(time, 1e-5), fmi2OK);
+        assert!(contact.real("contact.force").is_finite() && contact.real("contact.resistance").is_finite());
     }
+    assert_eq!(COUNT.get(), before, "allocated in a step");
+    let opening = contact.real("contact.lastOpening");
+    assert!(opening > 0.0, "the contact never opened: events are not covered");
 }

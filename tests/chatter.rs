@@ -1,23 +1,30 @@
-//! Interruptions and extremes: what is watched inside communication steps.
+//! Interruptions and extremes inside communication steps.
 
 #![allow(clippy::unwrap_used)]
 
-use relay_contact::electrical::ElectricalContact;
 use relay_contact::error::SceneError;
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::scene::file::SceneFile;
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{
-    AxialForceKind, ContactLawKind, ExcitationKind, IntegerOutput, RealOutput, ResistanceKind,
-};
+use relay_contact::variables::{AxialForceKind, ContactLawKind, IntegerOutput, RealOutput, ResistanceKind};
+use testing::scenes;
 
 fn shaken(amplitude: f64) -> Scene {
-    let mut scene = Scene::default();
-    scene.effects.excitation = ExcitationKind::Sine;
+    let mut scene = scenes::shaken(amplitude, 1000.0);
     scene.effects.axial_force = AxialForceKind::None;
-    scene.excitation.amplitude = amplitude;
     scene
+}
+
+/// Of the scene's contact under a force (N), Ohm.
+fn resistance(scene: &Scene, force: f64) -> f64 {
+    let resistance = &scene.resistance;
+    let closed = if force > 0.0 {
+        1.0 / (resistance.coefficient * force.powf(-resistance.exponent) + resistance.film)
+    } else {
+        0.0
+    };
+    1.0 / (closed + 1.0 / resistance.open)
 }
 
 /// Count, longest and total after `stop` seconds in communication steps of `size` seconds.
@@ -159,7 +166,7 @@ fn an_interruption_that_stands_at_the_start_begins_there_and_counts_while_it_goe
 }
 
 #[test]
-fn what_no_interruption_can_be_is_none() {
+fn without_a_threshold_that_can_be_crossed_there_is_no_interruption_or_one_without_end() {
     // Even an open contact conducts more than this.
     let mut scene = shaken(400.0);
     scene.chatter.resistance_threshold = 2e9;
@@ -170,12 +177,12 @@ fn what_no_interruption_can_be_is_none() {
     let (count, longest, total) = interruptions(&scene, 1e-3, 5e-3);
     assert_eq!((count, longest), (1, total));
     assert!((longest - 5e-3).abs() < 1e-15);
-    // Nobody asked.
+    // Switched off.
     let mut scene = shaken(400.0);
     scene.effects.chatter = false;
     assert_eq!(interruptions(&scene, 1e-3, 5e-3), (0, 0.0, 0.0));
     scene.effects.resistance = ResistanceKind::None;
-    assert!(ElectricalContact::new(&scene).is_none());
+    assert_eq!(scenes::at_rest(&scene, RealOutput::ContactConductance), 0.0);
     assert_eq!(interruptions(&scene, 1e-3, 5e-3), (0, 0.0, 0.0));
     scene.effects.chatter = true;
     assert!(matches!(
@@ -195,11 +202,7 @@ fn extremes_are_those_of_the_course_inside_the_step() {
         for amplitude in [98.0, 400.0] {
             let mut scene = shaken(amplitude);
             scene.effects.contact_law = law;
-            let tolerance = 1e-6
-                * Simulation::new(&scene, &Inputs::default(), 0.0)
-                    .unwrap()
-                    .model()
-                    .force_scale;
+            let tolerance = 1e-6 * scenes::force_scale(&scene);
             for (size, parts) in [(1e-3, 100_000), (1e-4, 10_000), (2.5e-5, 2500), (1e-6, 100)] {
                 let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
                 let mut fine = simulation.clone();
@@ -234,8 +237,7 @@ fn extremes_are_those_of_the_course_inside_the_step() {
                         "{at}: {greatest} {high} {turn}"
                     );
                     let worst = simulation.real(RealOutput::StepMaximumResistance);
-                    let path = simulation.model().electrical.unwrap();
-                    assert_eq!(worst, 1.0 / path.conductance(least));
+                    assert_eq!(worst, resistance(&scene, least));
                 }
             }
         }
@@ -278,13 +280,12 @@ fn interruptions_of_microseconds_begin_and_end() {
         simulation
     };
     let least = course(&scene).real(RealOutput::StepMinimumForce);
-    let path = ElectricalContact::new(&scene).unwrap();
     let mut growth = Vec::new();
     for k in 1..=300 {
         let duration = 3e-8 * f64::from(k);
         // About its minimum the force is F_min + c t^2, with about this c of its sine, N/s2.
         let force = least + 9.5e5 * (0.5 * duration).powi(2);
-        scene.chatter.resistance_threshold = 1.0 / path.conductance(force);
+        scene.chatter.resistance_threshold = resistance(&scene, force);
         let simulation = course(&scene);
         assert_eq!(simulation.integer(IntegerOutput::ChatterCount), 1, "{duration}");
         growth.push(simulation.real(RealOutput::ChatterTotalInterruption) / duration);
@@ -301,12 +302,11 @@ fn interruptions_of_microseconds_begin_and_end() {
 fn an_interruption_that_hardly_is_one_comes_to_an_end() {
     let mut scene = shaken(98.0);
     scene.chatter.minimum_duration = 0.0;
-    let path = ElectricalContact::new(&scene).unwrap();
     let mut least = f64::INFINITY;
     for k in 0..400 {
         // From a force that is never reached to one below which it stays for microseconds.
         let force = 0.1037 + 1e-6 * f64::from(k);
-        scene.chatter.resistance_threshold = 1.0 / path.conductance(force);
+        scene.chatter.resistance_threshold = resistance(&scene, force);
         let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
         for period in 0..6 {
             simulation

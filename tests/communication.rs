@@ -6,12 +6,11 @@ use relay_contact::inputs::Inputs;
 use relay_contact::integrator::events::log::Event;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{BooleanOutput, ExcitationKind, IntegerOutput, RealOutput};
+use relay_contact::variables::{BooleanOutput, IntegerOutput, RealOutput};
+use testing::scenes;
 
 fn shaken(amplitude: f64, tolerance: f64) -> Scene {
-    let mut scene = Scene::default();
-    scene.effects.excitation = ExcitationKind::Sine;
-    scene.excitation.amplitude = amplitude;
+    let mut scene = scenes::shaken(amplitude, 1000.0);
     scene.solver.tolerance = tolerance;
     scene
 }
@@ -38,7 +37,6 @@ fn motion(scene: &Scene, size: u32, inputs: impl Fn(f64) -> Inputs) -> Vec<[f64;
 }
 
 fn check(scene: &Scene, size: u32, inputs: impl Fn(f64) -> Inputs + Copy) {
-    let model = Simulation::new(scene, &Inputs::default(), 0.0).unwrap().model().clone();
     let exact = {
         let mut scene = *scene;
         scene.solver.tolerance = 1e-10;
@@ -46,8 +44,8 @@ fn check(scene: &Scene, size: u32, inputs: impl Fn(f64) -> Inputs + Copy) {
     };
     // A force wrong by the tolerance belongs to an indentation wrong by that over the stiffness, and where the contact is open to
     // a spring bent wrongly; its velocity changes with the period of the beam's third mode at the fastest.
-    let force = model.scene.solver.tolerance * model.force_scale;
-    let way = force / model.section.tip_stiffness();
+    let force = scene.solver.tolerance * scenes::force_scale(scene);
+    let way = force / scenes::tip_stiffness(scene);
     let allowed = [force, way, way * 2.0 * std::f64::consts::PI * 9100.0];
     for (row, (found, exact)) in motion(scene, size, inputs).iter().zip(&exact).enumerate() {
         for ((found, exact), allowed) in found.iter().zip(exact).zip(allowed) {
@@ -150,9 +148,7 @@ fn a_contact_at_rest_is_not_integrated() {
         assert!(steps > 5, "{steps}");
         simulation.step(&pressed, 3601.0, 1e6).unwrap();
         assert_eq!(simulation.integer(IntegerOutput::SolverSteps), steps);
-        // A steady load on a propped cantilever with a mass at the prop, the prop all but rigid.
-        let section = &simulation.model().section;
-        let statics = 10.0 * (0.375 * section.mass_per_length * section.length + section.tip_mass);
+        let statics = 10.0 * scenes::propped_mass(&scene);
         let added = simulation.real(RealOutput::ContactForce) - force;
         assert!((added / statics - 1.0).abs() < 1e-3, "{added} {statics}");
     }
@@ -199,7 +195,7 @@ fn events(size: u32, inputs: impl Fn(f64) -> Inputs) -> Vec<Event> {
 }
 
 #[test]
-fn every_event_is_told_once() {
+fn every_event_is_reported_once() {
     // A push that comes and goes takes back what the integrator has done ahead.
     let pulsed = |time: f64| Inputs {
         base_acceleration: if (time / 5e-4 + 1e-6) % 2.0 < 1.0 { 1.0 } else { 0.0 },

@@ -7,7 +7,8 @@ use std::f64::consts::TAU;
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{ContactLawKind, ExcitationKind, RealOutput};
+use relay_contact::variables::{ContactLawKind, RealOutput};
+use testing::scenes::{force_scale, largest_difference, propped_mass, shaken};
 
 const FREQUENCY: f64 = 1000.0;
 
@@ -27,10 +28,6 @@ fn forces(scene: &Scene, step: u32, inputs: impl Fn(f64) -> Inputs) -> Vec<f64> 
     forces
 }
 
-fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
-}
-
 /// The sine from outside is that of the generator, wrong by the square of the step where its derivative comes with it and by
 /// the step where it does not. At 98 m/s2 the contact stays closed, at 400 it opens twice in the run.
 #[test]
@@ -46,10 +43,8 @@ fn a_sine_from_outside_converges_to_the_generators() {
             base_acceleration_rate: amplitude * TAU * FREQUENCY * (TAU * FREQUENCY * time).cos(),
             ..held(time)
         };
-        let mut generated = scene;
-        generated.effects.excitation = ExcitationKind::Sine;
-        generated.excitation.amplitude = amplitude;
-        generated.excitation.frequency = FREQUENCY;
+        let mut generated = shaken(amplitude, FREQUENCY);
+        generated.solver.tolerance = scene.solver.tolerance;
         let exact = forces(&generated, 100, |_| Inputs::default());
         for (inputs, order) in [(&held as &dyn Fn(f64) -> Inputs, 1), (&linear, 2)] {
             let errors = [2, 1].map(|step| largest_difference(&forces(&scene, step, inputs), &exact));
@@ -90,19 +85,17 @@ fn a_ramp_does_not_depend_on_where_it_is_cut() {
                 }
                 simulation
             });
-            let scale = whole.model().force_scale;
+            let scale = force_scale(&scene);
             let difference = whole.real(RealOutput::ContactForce) - parts.real(RealOutput::ContactForce);
             // Each is right to the tolerance.
             assert!(
                 difference.abs() <= 2.0 * scene.solver.tolerance * scale,
                 "{law:?} {damping}: {difference}"
             );
-            // Quasi-static growth of the force, the inertia of a propped cantilever with a mass at the prop; the lowest
-            // mode swings about it with an amplitude of rate / omega.
-            let section = &whole.model().section;
-            let mass = 0.375 * section.mass_per_length * section.length + section.tip_mass;
-            let omega = TAU * whole.model().frequency;
-            let grown = whole.real(RealOutput::ContactForce) - whole.model().preload.force;
+            // Quasi-static growth of the force; the lowest mode swings about it with an amplitude of rate / omega.
+            let mass = propped_mass(&scene);
+            let omega = TAU * whole.real(RealOutput::PreloadFrequency);
+            let grown = whole.real(RealOutput::ContactForce) - whole.real(RealOutput::PreloadForce);
             let swing = mass * rate / omega;
             assert!(
                 (grown - mass * rate * 1e-3).abs() < 2.0 * swing,
@@ -118,6 +111,11 @@ fn a_support_with_its_derivative_does_not_lag() {
     let scene = Scene::default();
     let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
     let rate = 1e-3;
+    // The tip and the overlap with the fixed contact move against each other by its displacement.
+    let sum = |simulation: &Simulation| {
+        simulation.real(RealOutput::TipDisplacement) + simulation.real(RealOutput::ContactIndentation)
+    };
+    let start = sum(&simulation);
     for k in 0..10 {
         let time = 1e-5 * f64::from(k);
         let inputs = Inputs {
@@ -126,7 +124,7 @@ fn a_support_with_its_derivative_does_not_lag() {
             ..Inputs::default()
         };
         simulation.step(&inputs, time, 1e-5).unwrap();
-        let reached = simulation.state().support;
+        let reached = sum(&simulation) - start;
         assert!((reached - rate * simulation.time()).abs() < 1e-18, "{reached}");
     }
 }
@@ -176,10 +174,8 @@ fn derivatives_of_outputs_are_the_slopes_of_their_courses() {
         ContactLawKind::Bonded,
     ] {
         for (amplitude, size) in [(98.0, 1e-6), (98.0, 1e-5), (400.0, 1e-6), (400.0, 1e-5)] {
-            let mut scene = Scene::default();
+            let mut scene = shaken(amplitude, FREQUENCY);
             scene.effects.contact_law = law;
-            scene.effects.excitation = ExcitationKind::Sine;
-            scene.excitation.amplitude = amplitude;
             scene.solver.tolerance = TOLERANCE;
             let inputs = Inputs {
                 contact_current: 0.1,

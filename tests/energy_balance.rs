@@ -5,17 +5,15 @@
 
 #![allow(clippy::unwrap_used)]
 
-#[allow(dead_code)]
-mod common;
-
 use std::f64::consts::TAU;
 
-use common::{Rig, undamped};
 use relay_contact::inputs::Inputs;
 use relay_contact::model::Model;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ContactLawKind, ExcitationKind, IntegerOutput, RealOutput};
+use testing::rig::Rig;
+use testing::scenes::{self, undamped};
 
 /// Inputs over the communication step from an instant (s) by a length (s).
 type Drive = fn(f64, f64) -> Inputs;
@@ -63,10 +61,7 @@ fn support_moves(time: f64, size: f64) -> Inputs {
 }
 
 fn shaken(amplitude: f64) -> Scene {
-    let mut scene = Scene::default();
-    scene.effects.excitation = ExcitationKind::Sine;
-    scene.excitation.amplitude = amplitude;
-    scene
+    scenes::shaken(amplitude, 1000.0)
 }
 
 /// Steps of the linear scenes are exact, unless a longest step is set.
@@ -301,5 +296,5 @@ fn the_balance_belongs_to_the_communication_point() {
     };
     simulation.step(&changed, f64::from(end) * size, 1e-3).unwrap();
     let way = 1e-4; // m, far more than the tip moves
-    assert!(simulation.real(RealOutput::EnergyBalance).abs() < 1e-6 * simulation.model().force_scale * way);
+    assert!(simulation.real(RealOutput::EnergyBalance).abs() < 1e-6 * scenes::force_scale(&shaken(400.0)) * way);
 }

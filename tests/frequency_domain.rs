@@ -32,7 +32,7 @@ fn shaken([alpha, beta, contact]: [f64; 3], frequency: f64) -> Scene {
     scene.contact.damping = contact;
     scene.effects.excitation = ExcitationKind::Sine;
     scene.excitation.frequency = frequency;
-    // Nobody watches what happens inside steps.
+    // Without them a linear scene takes exact steps.
     scene.effects.extremes = false;
     scene.effects.chatter = false;
     scene

@@ -84,7 +84,7 @@ fn a_value_set_by_name_holds_the_input() -> Result<(), Box<dyn Error>> {
 }
 
 #[test]
-fn what_is_wrong_in_a_table_is_told_with_its_place() -> Result<(), Box<dyn Error>> {
+fn errors_in_a_table_are_reported_with_their_place() -> Result<(), Box<dyn Error>> {
     let folder = Folder::new("wrong")?;
     for (table, expected) in [
         (
@@ -140,7 +140,7 @@ fn what_is_wrong_in_a_table_is_told_with_its_place() -> Result<(), Box<dyn Error
 }
 
 #[test]
-fn a_table_that_is_missing_or_says_again_what_the_file_says_is_told() -> Result<(), Box<dyn Error>> {
+fn a_missing_table_and_an_input_given_twice_are_reported() -> Result<(), Box<dyn Error>> {
     let folder = Folder::new("missing")?;
     let twice = folder.message("time,contact.current\n0,1\n", "contact.current = 1\n");
     let expected = "scene.toml: line 6: contact.current: given twice, allowed is a value here or a column of the file";

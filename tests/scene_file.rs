@@ -66,7 +66,7 @@ fn inputs_and_outputs_are_taken() -> Result<(), SceneError> {
 }
 
 #[test]
-fn an_unknown_name_is_told_with_its_line_and_the_nearest_names() {
+fn an_unknown_name_is_reported_with_its_line_and_the_nearest_names() {
     let misspelt = message("[parameters]\nbeam.lenght = 0.02\n");
     assert!(
         misspelt.starts_with("line 5: beam.lenght: no such parameter; nearest: beam.length,"),
@@ -101,7 +101,7 @@ fn an_unknown_name_is_told_with_its_line_and_the_nearest_names() {
 }
 
 #[test]
-fn a_value_out_of_range_is_told_with_its_unit_and_the_range() {
+fn a_value_out_of_range_is_reported_with_its_unit_and_the_range() {
     for (rest, expected) in [
         (
             "beam.length = -0.0155",
@@ -137,7 +137,7 @@ fn a_value_out_of_range_is_told_with_its_unit_and_the_range() {
 }
 
 #[test]
-fn a_value_of_the_wrong_type_is_told_with_the_type_wanted() {
+fn a_value_of_the_wrong_type_is_reported_with_the_type_expected() {
     for (rest, expected) in [
         (
             "beam.length = \"long\"",

@@ -1,17 +1,10 @@
 //! What a communication step costs through the C interface, and what starting costs:
 //! `cargo bench --package benches --bench cost`. Medians of several turns; the scene is the published one at tolerance 1e-6.
 
-use cpu_time::ThreadTime;
-use std::ffi::CString;
-use std::ptr;
-
 use benches::machine;
-use relay_contact::fmi2::{
-    fmi2CallbackFunctions, fmi2CoSimulation, fmi2Component, fmi2DoStep, fmi2EnterInitializationMode,
-    fmi2ExitInitializationMode, fmi2FreeInstance, fmi2GetInteger, fmi2Instantiate, fmi2OK, fmi2SetInteger, fmi2SetReal,
-    fmi2SetupExperiment, fmi2Status, fmi2True,
-};
-use relay_contact::variables::{GUID, Variable};
+use cpu_time::ThreadTime;
+use relay_contact::fmi2::{fmi2OK, fmi2Status};
+use testing::instance::Instance;
 
 const TURNS: usize = 9;
 
@@ -40,7 +33,7 @@ fn main() {
 
     let starts = median((0..TURNS).map(|_| {
         let start = ThreadTime::now();
-        drop(Component::new(true));
+        drop(started(true));
         start.elapsed().as_secs_f64()
     }));
     println!("\ninstantiate, set up, initialise, free: {:.1} us", 1e6 * starts);
@@ -51,14 +44,16 @@ fn report(name: &str, shaken: bool, sizes: &[f64]) {
     let simulated: f64 = sizes.iter().sum();
     let mut steps = 0;
     let time = median((0..TURNS).map(|_| {
-        let mut component = Component::new(shaken);
+        let contact = started(shaken);
         let start = ThreadTime::now();
+        let mut time = 0.0;
         for size in sizes {
-            component.step(*size);
+            check(contact.step(time, *size));
+            time += size;
         }
-        let time = start.elapsed().as_secs_f64();
-        steps = component.integer("solver.steps");
-        time
+        let taken = start.elapsed().as_secs_f64();
+        steps = contact.integer("solver.steps");
+        taken
     }));
     println!(
         "{name:<44}{:>12.3}{:>14.3}{:>14.2e}",
@@ -74,88 +69,17 @@ fn median(times: impl Iterator<Item = f64>) -> f64 {
     times[times.len() / 2]
 }
 
-/// An instance behind the C interface.
-struct Component {
-    c: fmi2Component,
-    time: f64,
-}
-
-impl Component {
-    fn new(shaken: bool) -> Self {
-        let guid = CString::new(GUID).expect("no zero byte in the GUID");
-        let silent = fmi2CallbackFunctions {
-            logger: None,
-            allocateMemory: None,
-            freeMemory: None,
-            stepFinished: None,
-            componentEnvironment: ptr::null_mut(),
-        };
-        let name = c"bench".as_ptr();
-        // SAFETY: pointers to what is declared here, with its length; the texts end with a zero byte.
-        let component = unsafe {
-            let c = fmi2Instantiate(
-                name,
-                fmi2CoSimulation,
-                guid.as_ptr(),
-                ptr::null(),
-                &raw const silent,
-                0,
-                0,
-            );
-            assert!(!c.is_null());
-            Self { c, time: 0.0 }
-        };
-        component.set_integer("effects.excitation", if shaken { 2 } else { 1 });
-        component.set_integer("effects.axialForce", 2);
-        component.set_real("excitation.amplitude", 98.0);
-        component.set_real("excitation.frequency", 1000.0);
-        component.set_real("solver.tolerance", 1e-6);
-        // SAFETY: the instance was made above.
-        unsafe {
-            check(fmi2SetupExperiment(component.c, 0, 0.0, 0.0, 0, 0.0));
-            check(fmi2EnterInitializationMode(component.c));
-            check(fmi2ExitInitializationMode(component.c));
-        }
-        component
-    }
-
-    fn step(&mut self, size: f64) {
-        // SAFETY: the instance is alive until it is dropped.
-        check(unsafe { fmi2DoStep(self.c, self.time, size, fmi2True) });
-        self.time += size;
-    }
-
-    fn set_real(&self, name: &str, value: f64) {
-        let reference = reference(name);
-        // SAFETY: pointers to one element each.
-        check(unsafe { fmi2SetReal(self.c, &raw const reference, 1, &raw const value) });
-    }
-
-    fn set_integer(&self, name: &str, value: i32) {
-        let reference = reference(name);
-        // SAFETY: pointers to one element each.
-        check(unsafe { fmi2SetInteger(self.c, &raw const reference, 1, &raw const value) });
-    }
-
-    fn integer(&self, name: &str) -> i32 {
-        let (reference, mut value) = (reference(name), 0);
-        // SAFETY: pointers to one element each.
-        check(unsafe { fmi2GetInteger(self.c, &raw const reference, 1, &raw mut value) });
-        value
-    }
-}
-
-impl Drop for Component {
-    fn drop(&mut self) {
-        // SAFETY: the instance is freed here and not used again.
-        unsafe { fmi2FreeInstance(self.c) };
-    }
-}
-
-fn reference(name: &str) -> u32 {
-    Variable::by_name(name)
-        .expect("a variable of the component")
-        .value_reference
+/// An instance of the published scene, started.
+fn started(shaken: bool) -> Instance {
+    let instance = Instance::new();
+    check(instance.set_integer("effects.excitation", if shaken { 2 } else { 1 }));
+    check(instance.set_integer("effects.axialForce", 2));
+    check(instance.set_real("excitation.amplitude", 98.0));
+    check(instance.set_real("excitation.frequency", 1000.0));
+    check(instance.set_real("solver.tolerance", 1e-6));
+    check(instance.setup(None, 0.0, None));
+    instance.initialize();
+    instance
 }
 
 fn check(status: fmi2Status) {

@@ -3,15 +3,29 @@
 use std::rc::Rc;
 
 use anyhow::{Result, anyhow};
-use relay_contact::model::Model;
 use relay_contact::scene::Solver;
 
 use crate::component::Component;
-use crate::integrator::{self, Integrator, Setting};
+use crate::cvode::Cvode;
+use crate::diffsol::Diffsol;
+use crate::generalised_alpha::GeneralisedAlpha;
+use crate::integrator::{Integrator, Setting};
 use crate::problem::Problem;
 use crate::radau::Reference;
 use crate::study::Case;
 use crate::{scenes, table};
+
+/// The integrators compared, the component first.
+pub fn integrators() -> [Rc<dyn Integrator>; 6] {
+    [
+        Rc::new(Component),
+        Rc::new(Cvode::new()),
+        Rc::new(Diffsol::Bdf),
+        Rc::new(Diffsol::Esdirk34),
+        Rc::new(GeneralisedAlpha::newmark()),
+        Rc::new(GeneralisedAlpha::with_spectral_radius(0.8)),
+    ]
+}
 
 /// Longest step of the reference, s.
 fn reference_step(problem: &Problem, quick: bool) -> f64 {
@@ -25,16 +39,25 @@ fn reference(problem: &Problem, quick: bool) -> Result<Rc<Reference>> {
     ))
 }
 
-/// All integrators on the modes the component chooses at its default tolerance.
+/// All that is measured: each scene by all integrators, and by the component alone.
 ///
 /// # Errors
 /// Where a scene cannot be simulated or its reference fails, as for all here.
-pub fn peers(problem: &Problem, quick: bool) -> Result<Vec<Case>> {
+pub fn all(quick: bool) -> Result<Vec<Case>> {
+    let mut cases = Vec::new();
+    for problem in scenes::all()? {
+        cases.extend(peers(&problem, quick)?);
+        cases.extend(own(&problem, quick)?);
+    }
+    Ok(cases)
+}
+
+/// All integrators on the modes the component chooses at its default tolerance.
+fn peers(problem: &Problem, quick: bool) -> Result<Vec<Case>> {
     let reference = reference(problem, quick)?;
     let problem = Rc::new(problem.clone());
     let mut cases = Vec::new();
-    for integrator in integrator::all() {
-        let integrator: Rc<dyn Integrator> = integrator.into();
+    for integrator in integrators() {
         for setting in settings(integrator.fixed_step(), quick) {
             cases.push(Case {
                 part: table::PEERS,
@@ -49,10 +72,7 @@ pub fn peers(problem: &Problem, quick: bool) -> Result<Vec<Case>> {
 }
 
 /// The component against the motion with many modes: as delivered, and split into modes and time steps.
-///
-/// # Errors
-/// See [`peers`].
-pub fn own(problem: &Problem, quick: bool) -> Result<Vec<Case>> {
+fn own(problem: &Problem, quick: bool) -> Result<Vec<Case>> {
     let many = problem.with_modes(scenes::MANY_MODES)?;
     let reference = reference(&many, quick)?;
     let case = |part, problem: Problem, setting| Case {
@@ -67,7 +87,7 @@ pub fn own(problem: &Problem, quick: bool) -> Result<Vec<Case>> {
         let mut chosen = problem.model.scene;
         chosen.solver.modes = 0;
         chosen.solver.tolerance = setting.value();
-        let chosen = i32::try_from(Model::new(&chosen, 0.0)?.modes.len())?;
+        let chosen = scenes::modes_chosen(&chosen)?;
         cases.push(case(table::DELIVERED, problem.with_modes(chosen)?, setting));
         cases.push(case("steps", many.clone(), setting));
     }
@@ -88,5 +108,41 @@ fn settings(fixed_step: bool, quick: bool) -> Vec<Setting> {
         (false, false) => (1..=12)
             .map(|digits| Setting::Tolerance(10_f64.powi(-digits)))
             .collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integrator::Failure;
+
+    /// Second order at steps of 1 us leaves about (omega h)^2 / 12 of the motion, omega the highest frequency that moves the
+    /// contact, some 1e5 1/s: 1e-3. Tolerances are far below that.
+    #[test]
+    fn all_integrate_the_same_equations() -> Result<(), Box<dyn std::error::Error>> {
+        for mut problem in [scenes::paper()?, scenes::linear()?] {
+            problem.end = 2e-3;
+            problem.cells = 20;
+            let reference = Reference::new(&problem, 1e-6).map_err(|failure| failure.to_string())?;
+            for integrator in integrators() {
+                let setting = if integrator.fixed_step() {
+                    Setting::Step(1e-6)
+                } else {
+                    Setting::Tolerance(1e-7)
+                };
+                match integrator.run(&problem, setting) {
+                    Ok(run) => {
+                        assert_eq!(run.forces.len(), reference.forces.len());
+                        for (force, exact) in run.forces.iter().zip(&reference.forces) {
+                            let error = (force - exact).abs() / problem.model.force_scale;
+                            assert!(error < 1e-3, "{}, {}: {error}", problem.name, integrator.name());
+                        }
+                    }
+                    Err(Failure::Unavailable(why)) => eprintln!("{}: {why}", integrator.name()),
+                    Err(failure) => return Err(failure.to_string().into()),
+                }
+            }
+        }
+        Ok(())
     }
 }

@@ -1,9 +1,10 @@
 //! The scenes compared. All start from rest, without axial force.
 
 use relay_contact::error::SceneError;
-use relay_contact::model::Model;
+use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
-use relay_contact::variables::{AxialForceKind, ContactLawKind, ExcitationKind};
+use relay_contact::simulation::Simulation;
+use relay_contact::variables::{AxialForceKind, ContactLawKind, ExcitationKind, IntegerOutput};
 
 use crate::problem::Problem;
 
@@ -59,6 +60,15 @@ pub fn all() -> Result<Vec<Problem>, SceneError> {
     Ok(vec![paper()?, chatter()?, closing_bounce()?, linear()?])
 }
 
+/// Number of modes that the component takes for a scene.
+///
+/// # Errors
+/// See [`paper`].
+pub fn modes_chosen(scene: &Scene) -> Result<i32, SceneError> {
+    let simulation = Simulation::new(scene, &Inputs::default(), 0.0)?;
+    Ok(simulation.integer(IntegerOutput::SolverModesUsed))
+}
+
 fn still() -> Scene {
     let mut scene = Scene::default();
     scene.effects.axial_force = AxialForceKind::None;
@@ -84,7 +94,6 @@ fn with_default_modes(
     end: f64,
     cells: u32,
 ) -> Result<Problem, SceneError> {
-    let chosen = Model::new(&scene, 0.0)?.modes.len();
-    scene.solver.modes = i32::try_from(chosen).unwrap_or(MANY_MODES);
+    scene.solver.modes = modes_chosen(&scene)?;
     Problem::new(name, &scene, support_rate, end, cells)
 }

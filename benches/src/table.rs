@@ -11,6 +11,9 @@ pub const DELIVERED: &str = "delivered";
 /// The part of a study in which all integrators work on the same modes.
 pub const PEERS: &str = "peers";
 
+/// Picks an error of a run; none where it has none.
+type Error = fn(&Measured) -> Option<f64>;
+
 /// All tables, with the machine and what failed.
 pub fn report(rows: &[Row]) -> String {
     let mut text = format!(
@@ -19,31 +22,30 @@ pub fn report(rows: &[Row]) -> String {
         crate::machine::description(),
         delivered(rows),
     );
-    for scene in ["paper", "linear", "chatter", "closing bounce"] {
-        let _ = write!(
-            text,
-            "\nScene *{scene}*, error of the contact force relative to the preload:\n\n"
-        );
-        text += &ratios(
-            rows,
-            scene,
-            &[1e-2, 1e-4, 1e-6, 1e-8, 1e-10],
-            |level| format!("{level:.0e}"),
-            |run| Some(run.force_error),
-        );
-    }
-    for scene in ["chatter", "closing bounce"] {
-        let _ = write!(
-            text,
-            "\nScene *{scene}*, error of the instants of opening and closing:\n\n"
-        );
-        text += &ratios(
-            rows,
-            scene,
-            &[1e-6, 1e-7, 1e-8, 1e-9, 1e-10],
-            |level| format!("{level:.0e} s"),
-            |run| run.event_error,
-        );
+    let force: Error = |run| Some(run.force_error);
+    let instants: Error = |run| run.event_error;
+    let of_force = (
+        "contact force relative to the preload",
+        [1e-2, 1e-4, 1e-6, 1e-8, 1e-10],
+        "",
+        force,
+    );
+    let of_instants = (
+        "instants of opening and closing",
+        [1e-6, 1e-7, 1e-8, 1e-9, 1e-10],
+        " s",
+        instants,
+    );
+    for (scene, (quantity, levels, unit, error)) in [
+        ("paper", of_force),
+        ("linear", of_force),
+        ("chatter", of_force),
+        ("closing bounce", of_force),
+        ("chatter", of_instants),
+        ("closing bounce", of_instants),
+    ] {
+        let _ = write!(text, "\nScene *{scene}*, error of the {quantity}:\n\n");
+        text += &ratios(rows, scene, &levels, unit, error);
     }
     text += "\nRuns that gave no result:\n\n";
     let failures = failures(rows);
@@ -146,13 +148,7 @@ pub fn csv(rows: &[Row]) -> String {
 
 /// Time per simulated second of the cheapest run of each integrator that is at least as accurate as each level, and how many
 /// times that of the component; a table in Markdown. The error is the one `error` picks.
-fn ratios(
-    rows: &[Row],
-    scene: &str,
-    levels: &[f64],
-    heading: impl Fn(f64) -> String,
-    error: impl Fn(&Measured) -> Option<f64>,
-) -> String {
+fn ratios(rows: &[Row], scene: &str, levels: &[f64], unit: &str, error: fn(&Measured) -> Option<f64>) -> String {
     let rows: Vec<&Row> = rows
         .iter()
         .filter(|row| row.case.part == PEERS && row.case.problem.name == scene)
@@ -174,7 +170,7 @@ fn ratios(
     };
     let mut text = String::from("| |");
     for level in levels {
-        let _ = write!(text, " {} |", heading(*level));
+        let _ = write!(text, " {level:.0e}{unit} |");
     }
     text.push_str("\n|---|");
     text.push_str(&"---:|".repeat(levels.len()));

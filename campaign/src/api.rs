@@ -1,9 +1,24 @@
 //! The 34 functions of the component, with the types of the standard.
 
+use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::Path;
+use std::sync::LazyLock;
 
 use libloading::Library;
 use relay_contact::fmi2::*;
+
+/// The dynamic library that cargo has built beside this program, or beside the tests.
+pub static LIBRARY: LazyLock<Api> = LazyLock::new(|| {
+    let program = std::env::current_exe().expect("a program");
+    let folder = program.parent().expect("a folder");
+    let name = format!("{DLL_PREFIX}relay_contact{DLL_SUFFIX}");
+    let path = if folder.ends_with("deps") {
+        folder.join(name)
+    } else {
+        folder.join("deps").join(name)
+    };
+    Api::load(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+});
 
 /// `size_t` of C.
 type Size = usize;

@@ -1,6 +1,8 @@
 //! A call as plain data: it can be made at any moment, repeated and printed.
 
-use crate::description::Kind;
+use relay_contact::fmi2::fmi2LastSuccessfulTime;
+
+use crate::description::{DESCRIPTION, Kind};
 
 /// Saved states that a sequence of calls can hold at once; each slot has its bytes beside it.
 pub const SLOTS: usize = 3;
@@ -89,6 +91,11 @@ pub enum StatusFunction {
     Integer,
     Boolean,
     String,
+}
+
+impl StatusFunction {
+    /// Every one.
+    pub const ALL: [Self; 5] = [Self::Status, Self::Real, Self::Integer, Self::Boolean, Self::String];
 }
 
 /// A call.
@@ -222,29 +229,79 @@ impl Call {
         }
     }
 
-    /// Reads variables, no pointer wrong.
+    /// Initialisation from begin to end.
+    pub const INITIALISE: [Self; 2] = [Self::EnterInitializationMode, Self::ExitInitializationMode];
+
+    /// Initialisation of an instance that a sine of this amplitude shakes, m/s2.
+    pub fn shaken(amplitude: f64) -> [Self; 4] {
+        let excitation = vec![(DESCRIPTION.reference("effects.excitation"), 2.0)];
+        let amplitude = vec![(DESCRIPTION.reference("excitation.amplitude"), amplitude)];
+        let [enter, exit] = Self::INITIALISE;
+        [
+            Self::set(Kind::Integer, excitation),
+            Self::set_reals(amplitude),
+            enter,
+            exit,
+        ]
+    }
+
+    /// Reads variables, no pointer wrong, as with all below.
     pub fn get(kind: Kind, references: Vec<u32>) -> Self {
+        let fault = Fault::None;
         Self::Get {
             kind,
             references,
-            fault: Fault::None,
+            fault,
         }
     }
 
-    /// Sets real variables, no pointer wrong.
+    /// Sets variables.
+    pub fn set(kind: Kind, values: Vec<(u32, f64)>) -> Self {
+        let fault = Fault::None;
+        Self::Set { kind, values, fault }
+    }
+
+    /// Sets real variables.
     pub fn set_reals(values: Vec<(u32, f64)>) -> Self {
-        Self::Set {
-            kind: Kind::Real,
-            values,
-            fault: Fault::None,
-        }
+        Self::set(Kind::Real, values)
     }
 
     /// A step from where the instance stands.
     pub fn step(size: f64) -> Self {
-        Self::DoStep {
-            point: Point::Here,
-            size,
+        let point = Point::Here;
+        Self::DoStep { point, size }
+    }
+
+    /// The last successful time.
+    pub fn time() -> Self {
+        Self::Status {
+            function: StatusFunction::Real,
+            kind: fmi2LastSuccessfulTime,
+            fault: Fault::None,
         }
+    }
+
+    /// Saves the state.
+    pub fn save(slot: usize) -> Self {
+        let fault = Fault::None;
+        Self::GetState { slot, fault }
+    }
+
+    /// Goes back to a saved state.
+    pub fn restore(slot: usize) -> Self {
+        let fault = Fault::None;
+        Self::SetState { slot, fault }
+    }
+
+    /// Makes bytes of a saved state.
+    pub fn serialize(slot: usize) -> Self {
+        let fault = Fault::None;
+        Self::Serialize { slot, fault }
+    }
+
+    /// Makes a saved state of the bytes, undamaged.
+    pub fn deserialize(slot: usize) -> Self {
+        let (damage, fault) = (Damage::None, Fault::None);
+        Self::Deserialize { slot, damage, fault }
     }
 }

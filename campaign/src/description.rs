@@ -18,6 +18,11 @@ pub enum Kind {
     String,
 }
 
+impl Kind {
+    /// Every one.
+    pub const ALL: [Self; 4] = [Self::Real, Self::Integer, Self::Boolean, Self::String];
+}
+
 /// Where the value of a variable comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
@@ -73,10 +78,6 @@ pub struct Description {
     pub variables: Vec<Variable>,
     /// Log categories.
     pub categories: Vec<String>,
-    /// Whether `fmi2SetRealInputDerivatives` is supported, with order 1.
-    pub input_derivatives: bool,
-    /// Whether `fmi2GetRealOutputDerivatives` is supported, with order 1.
-    pub output_derivatives: bool,
 }
 
 /// The description of this component.
@@ -92,7 +93,6 @@ impl Description {
                 .into_iter()
                 .flat_map(|node| node.children().filter(Node::is_element))
         };
-        let capability = |name| element("CoSimulation").and_then(|node| node.attribute(name));
         let choices = |name: &str| {
             children("TypeDefinitions")
                 .filter(|definition| definition.attribute("name") == Some(name))
@@ -106,8 +106,6 @@ impl Description {
             categories: children("LogCategories")
                 .filter_map(|node| Some(node.attribute("name")?.to_owned()))
                 .collect(),
-            input_derivatives: capability("canInterpolateInputs") == Some("true"),
-            output_derivatives: capability("maxOutputDerivativeOrder").is_some_and(|order| order != "0"),
         }
     }
 
@@ -133,11 +131,13 @@ impl Description {
 
     /// The references of the outputs of a type.
     pub fn outputs(&self, kind: Kind) -> Vec<u32> {
-        self.variables
-            .iter()
-            .filter(|variable| variable.role == Role::Output && variable.kind == kind)
-            .map(|variable| variable.reference)
-            .collect()
+        self.references(|variable| variable.role == Role::Output && variable.kind == kind)
+    }
+
+    /// The references of the variables that are wanted.
+    pub fn references(&self, wanted: impl Fn(&Variable) -> bool) -> Vec<u32> {
+        let wanted = self.variables.iter().filter(|variable| wanted(variable));
+        wanted.map(|variable| variable.reference).collect()
     }
 }
 

@@ -3,8 +3,8 @@
 use crate::call::{Call, Damage, Fault, Point, SLOTS, StatusFunction};
 use crate::choices::Choices;
 use crate::description::{DESCRIPTION, Kind, Role, Variable};
-use crate::life_cycle::Moment;
-use crate::phase::Phase;
+use crate::moment::Moment;
+use crate::states::Phase;
 
 /// Steps are drawn up to this length, s, so that stiff scenes do not take minutes.
 const LONGEST_STEP: f64 = 1e-4;
@@ -45,10 +45,7 @@ pub fn call(choices: &mut Choices, now: &Moment) -> Call {
         Phase::Terminated | Phase::Error => match pick {
             0..20 => get(choices, now),
             20..30 => status(choices),
-            30..60 => Call::SetState {
-                slot: choices.below(SLOTS),
-                fault: Fault::None,
-            },
+            30..60 => Call::restore(choices.below(SLOTS)),
             60..70 => state(choices),
             70..75 => Call::Renew,
             _ => Call::Reset,
@@ -83,7 +80,7 @@ fn anything(choices: &mut Choices, now: &Moment) -> Call {
 }
 
 fn any_kind(choices: &mut Choices) -> Kind {
-    choices.one(&[Kind::Real, Kind::Integer, Kind::Boolean, Kind::String])
+    choices.one(&Kind::ALL)
 }
 
 /// Mostly none.

@@ -4,7 +4,7 @@
 use relay_contact::fmi2::*;
 
 use crate::api::Api;
-use crate::call::{Call, Damage, Fault, StatusFunction};
+use crate::call::Call;
 use crate::choices::Choices;
 use crate::description::{DESCRIPTION, Kind};
 use crate::importer::Importer;
@@ -21,26 +21,10 @@ const TAIL: usize = 4;
 /// The bytes of a contact under way: shaken by a sine until it has opened.
 pub fn specimen(api: &Api) -> Vec<u8> {
     let mut judge = Judge::new(api);
-    let reference = |name| DESCRIPTION.reference(name);
-    let none = Fault::None;
-    let calls = [
-        Call::Set {
-            kind: Kind::Integer,
-            values: vec![(reference("effects.excitation"), 2.0)],
-            fault: none,
-        },
-        Call::set_reals(vec![(reference("excitation.amplitude"), 400.0)]),
-        Call::EnterInitializationMode,
-        Call::ExitInitializationMode,
-        Call::step(1e-3),
-        Call::step(1.3e-6),
-        Call::step(1.3e-6),
-        Call::GetState { slot: 0, fault: none },
-        Call::Serialize { slot: 0, fault: none },
-    ];
-    for call in &calls {
-        judge.call(call).expect("the specimen runs");
-    }
+    let steps = [1e-3, 1.3e-6, 1.3e-6].map(Call::step);
+    let bytes = [Call::save(0), Call::serialize(0)];
+    let calls = [&Call::shaken(400.0)[..], &steps, &bytes].concat();
+    judge.run(&calls).expect("the specimen runs");
     judge.importer.bytes(0).clone()
 }
 
@@ -113,26 +97,15 @@ pub enum Outcome {
 pub fn meet(api: &Api, bytes: &[u8], steps: u32) -> Result<Outcome, String> {
     let mut importer = Importer::new(api);
     *importer.bytes(0) = bytes.to_vec();
-    let none = Fault::None;
-    let read = Call::Deserialize {
-        slot: 0,
-        damage: Damage::None,
-        fault: none,
-    };
-    if answer(&mut importer, &read, 0.0)?.0 != fmi2OK {
+    if answer(&mut importer, &Call::deserialize(0), 0.0)?.0 != fmi2OK {
         return Ok(Outcome::NotRead);
     }
-    if answer(&mut importer, &Call::SetState { slot: 0, fault: none }, 0.0)?.0 != fmi2OK {
+    if answer(&mut importer, &Call::restore(0), 0.0)?.0 != fmi2OK {
         return Ok(Outcome::NotSet);
     }
     for step in 0..=steps {
         // Where does it stand? There alone it goes on.
-        let time = Call::Status {
-            function: StatusFunction::Real,
-            kind: fmi2LastSuccessfulTime,
-            fault: none,
-        };
-        let (_, time) = answer(&mut importer, &time, 0.0)?;
+        let (_, time) = answer(&mut importer, &Call::time(), 0.0)?;
         let time = time.first().copied().unwrap_or(f64::NAN);
         for kind in [Kind::Real, Kind::Integer, Kind::Boolean] {
             answer(&mut importer, &Call::get(kind, DESCRIPTION.outputs(kind)), time)?;
@@ -141,11 +114,7 @@ pub fn meet(api: &Api, bytes: &[u8], steps: u32) -> Result<Outcome, String> {
             return Ok(Outcome::StepFailed);
         }
     }
-    for call in [
-        Call::GetState { slot: 1, fault: none },
-        Call::Serialize { slot: 1, fault: none },
-        Call::Reset,
-    ] {
+    for call in [Call::save(1), Call::serialize(1), Call::Reset] {
         if answer(&mut importer, &call, 0.0)?.0 != fmi2OK {
             return Err(format!("{call:?} is refused"));
         }
@@ -155,7 +124,7 @@ pub fn meet(api: &Api, bytes: &[u8], steps: u32) -> Result<Outcome, String> {
 
 fn answer(importer: &mut Importer, call: &Call, time: f64) -> Result<(fmi2Status, Vec<f64>), String> {
     let answer = importer.make(call, time);
-    let panics = |message: &&crate::log::Message| message.text.contains("internal error");
+    let panics = |message: &&testing::log::Message| message.text.contains("internal error");
     if let Some(message) = importer.messages().iter().find(panics) {
         return Err(format!("{call:?}: {}", message.text));
     }

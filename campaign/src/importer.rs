@@ -4,11 +4,12 @@ use std::ffi::CString;
 use std::ptr;
 
 use relay_contact::fmi2::*;
+use testing::instance::Arguments;
+use testing::log::{Log, Message, callbacks};
 
 use crate::api::Api;
 use crate::call::{Call, Damage, Fault, SLOTS, StatusFunction};
 use crate::description::{DESCRIPTION, Kind};
-use crate::log::{Log, Message, callbacks};
 use crate::pointers::{arguments, middle, place, places};
 
 /// An instance, the states saved of it and their bytes. All freed with the value.
@@ -23,6 +24,9 @@ pub struct Importer<'a> {
     log: Box<Log>,
 }
 
+/// A function that reads or writes variables.
+type Function<Values> = unsafe extern "C" fn(fmi2Component, *const fmi2ValueReference, usize, Values) -> fmi2Status;
+
 /// What a call gave back: status, and the values read where there were any.
 pub type Answer = (fmi2Status, Vec<f64>);
 
@@ -30,13 +34,7 @@ impl<'a> Importer<'a> {
     /// A new instance.
     pub fn new(api: &'a Api) -> Self {
         let log = Box::new(Log::default());
-        let component = instantiate(
-            api,
-            Some("relay"),
-            fmi2CoSimulation,
-            Some(&DESCRIPTION.guid),
-            Some(&log),
-        );
+        let component = instantiate(api, &log);
         assert!(
             !component.is_null(),
             "no instance: is this the library that belongs to the tests? {log:?}"
@@ -100,8 +98,7 @@ impl<'a> Importer<'a> {
                 Call::Reset => (api.fmi2Reset)(c),
                 Call::Renew => {
                     (api.fmi2FreeInstance)(c);
-                    let guid = Some(DESCRIPTION.guid.as_str());
-                    self.component = instantiate(api, Some("relay"), fmi2CoSimulation, guid, Some(&self.log));
+                    self.component = instantiate(api, &self.log);
                     if self.component.is_null() { fmi2Error } else { fmi2OK }
                 }
                 Call::Get {
@@ -154,66 +151,53 @@ impl<'a> Importer<'a> {
     }
 
     fn get(&self, kind: Kind, references: &[u32], fault: Fault) -> Answer {
-        let (api, c) = (self.api, self.component);
-        let mut reals = vec![f64::NAN; references.len()];
-        let mut integers = vec![i32::MIN; references.len()];
-        let mut texts: Vec<fmi2String> = vec![ptr::null(); references.len()];
-        unsafe {
-            let status = match kind {
-                Kind::Real => {
-                    let (vr, value, count) = places(fault, references, &mut reals);
-                    return ((api.fmi2GetReal)(c, vr, count, value), reals);
-                }
-                Kind::Integer => {
-                    let (vr, value, count) = places(fault, references, &mut integers);
-                    (api.fmi2GetInteger)(c, vr, count, value)
-                }
-                Kind::Boolean => {
-                    let (vr, value, count) = places(fault, references, &mut integers);
-                    (api.fmi2GetBoolean)(c, vr, count, value)
-                }
-                Kind::String => {
-                    let (vr, value, count) = places(fault, references, &mut texts);
-                    (api.fmi2GetString)(c, vr, count, value)
-                }
-            };
-            (status, integers.into_iter().map(f64::from).collect())
+        let (api, read) = (self.api, (references, fault));
+        let numbers = |(status, values): (fmi2Status, Vec<i32>)| (status, values.into_iter().map(f64::from).collect());
+        match kind {
+            Kind::Real => self.read(api.fmi2GetReal, read, f64::NAN),
+            Kind::Integer => numbers(self.read(api.fmi2GetInteger, read, i32::MIN)),
+            Kind::Boolean => numbers(self.read(api.fmi2GetBoolean, read, i32::MIN)),
+            Kind::String => (self.read(api.fmi2GetString, read, ptr::null()).0, Vec::new()),
         }
+    }
+
+    fn read<T: Clone>(
+        &self,
+        function: Function<*mut T>,
+        (references, fault): (&[u32], Fault),
+        before: T,
+    ) -> (fmi2Status, Vec<T>) {
+        let mut values = vec![before; references.len()];
+        let (vr, value, count) = places(fault, references, &mut values);
+        (unsafe { function(self.component, vr, count, value) }, values)
     }
 
     #[allow(clippy::cast_possible_truncation)] // saturates, as wanted of values beyond the integers
     fn set(&self, kind: Kind, values: &[(u32, f64)], fault: Fault) -> fmi2Status {
-        let (api, c) = (self.api, self.component);
-        let references: Vec<_> = values.iter().map(|value| value.0).collect();
-        let reals: Vec<_> = values.iter().map(|value| value.1).collect();
-        let integers: Vec<_> = values.iter().map(|value| value.1 as i32).collect();
-        let texts: Vec<_> = values.iter().map(|_| c"text".as_ptr()).collect();
-        unsafe {
-            match kind {
-                Kind::Real => {
-                    let (vr, value, count) = arguments(fault, &references, &reals);
-                    (api.fmi2SetReal)(c, vr, count, value)
-                }
-                Kind::Integer => {
-                    let (vr, value, count) = arguments(fault, &references, &integers);
-                    (api.fmi2SetInteger)(c, vr, count, value)
-                }
-                Kind::Boolean => {
-                    let (vr, value, count) = arguments(fault, &references, &integers);
-                    (api.fmi2SetBoolean)(c, vr, count, value)
-                }
-                Kind::String => {
-                    let (vr, value, count) = arguments(fault, &references, &texts);
-                    (api.fmi2SetString)(c, vr, count, value)
-                }
-            }
+        let (api, write) = (self.api, (values, fault));
+        match kind {
+            Kind::Real => self.write(api.fmi2SetReal, write, |value| value),
+            Kind::Integer => self.write(api.fmi2SetInteger, write, |value| value as i32),
+            Kind::Boolean => self.write(api.fmi2SetBoolean, write, |value| value as i32),
+            Kind::String => self.write(api.fmi2SetString, write, |_| c"text".as_ptr()),
         }
+    }
+
+    fn write<T>(
+        &self,
+        function: Function<*const T>,
+        (values, fault): (&[(u32, f64)], Fault),
+        as_held: impl Fn(f64) -> T,
+    ) -> fmi2Status {
+        let (references, values): (Vec<_>, Vec<_>) = values.iter().map(|value| (value.0, as_held(value.1))).unzip();
+        let (vr, value, count) = arguments(fault, &references, &values);
+        unsafe { function(self.component, vr, count, value) }
     }
 
     fn state_call(&mut self, call: &Call) -> Answer {
         let (api, c) = (self.api, self.component);
-        let mut foreign = [0_u64; 8];
-        let mut foreign: fmi2FMUstate = foreign.as_mut_ptr().cast();
+        let mut memory = [0_u64; 8];
+        let mut foreign: fmi2FMUstate = memory.as_mut_ptr().cast();
         // The state itself, as some functions want it.
         let state = |slot: usize, fault| match fault {
             Fault::Foreign => foreign,
@@ -281,6 +265,7 @@ impl<'a> Importer<'a> {
                 _ => unreachable!("no call about saved states: {call:?}"),
             }
         };
+        assert_eq!(memory, [0; 8], "{call:?}: wrote to memory that is no saved state");
         (status, Vec::new())
     }
 
@@ -332,18 +317,11 @@ pub fn damaged(bytes: &[u8], damage: Damage) -> Vec<u8> {
     bytes
 }
 
-/// `fmi2Instantiate` with what can go wrong left open; no callbacks without a log.
-pub fn instantiate(
-    api: &Api,
-    name: Option<&str>,
-    kind: fmi2Type,
-    guid: Option<&str>,
-    log: Option<&Log>,
-) -> fmi2Component {
-    let text = |text: Option<&str>| text.map(|text| CString::new(text).unwrap_or_default());
-    let pointer = |text: &Option<CString>| text.as_ref().map_or(ptr::null(), |text| text.as_ptr());
-    let (name, guid) = (text(name), text(guid));
-    let callbacks = log.map(callbacks);
-    let callbacks = callbacks.as_ref().map_or(ptr::null(), ptr::from_ref);
-    unsafe { (api.fmi2Instantiate)(pointer(&name), kind, pointer(&guid), ptr::null(), callbacks, 0, 0) }
+/// A new instance by the description's own GUID.
+fn instantiate(api: &Api, log: &Log) -> fmi2Component {
+    let arguments = Arguments {
+        guid: Some(&DESCRIPTION.guid),
+        ..Arguments::default()
+    };
+    arguments.instantiate(api.fmi2Instantiate, Some(&callbacks(log)))
 }

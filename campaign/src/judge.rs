@@ -5,11 +5,11 @@ use std::collections::BTreeSet;
 use relay_contact::fmi2::*;
 
 use crate::api::Api;
-use crate::call::{Call, Fault, StatusFunction};
+use crate::call::{Call, StatusFunction};
 use crate::description::{DESCRIPTION, Kind, Role};
 use crate::importer::{Answer, Importer};
 use crate::life_cycle::{LifeCycle, of_kind};
-use crate::phase::Phase;
+use crate::states::{Phase, allowed};
 
 /// An instance under judgement.
 #[derive(Debug)]
@@ -36,6 +36,14 @@ impl<'a> Judge<'a> {
             steps: 0,
             met: BTreeSet::new(),
         }
+    }
+
+    /// Makes calls, up to the first wrong answer.
+    ///
+    /// # Errors
+    /// See [`Judge::call`].
+    pub fn run<'c>(&mut self, calls: impl IntoIterator<Item = &'c Call>) -> Result<(), String> {
+        calls.into_iter().try_for_each(|call| self.call(call))
     }
 
     /// Makes a call.
@@ -87,7 +95,12 @@ impl<'a> Judge<'a> {
             [] => !shown,
             [told] => {
                 let function = format!("{}: ", call.function());
-                shown && told.status == status && told.category == category && told.text.starts_with(&function)
+                let out_of_order = format!("not allowed in the state {}", self.life.now.phase.name());
+                shown
+                    && told.status == status
+                    && told.category == category
+                    && told.text.starts_with(&function)
+                    && told.text.contains(&out_of_order) != allowed(call.function(), self.life.now.phase)
             }
             _ => false,
         };
@@ -103,7 +116,8 @@ impl<'a> Judge<'a> {
     /// Once an output can be read in Initialization Mode, initialisation must end well, and the other way round.
     fn learn_whether_it_fits(&mut self, call: &Call) -> Result<(), String> {
         let asks = matches!(call, Call::Get { references, .. } if references.len() > 1);
-        if asks && self.life.now.phase == Phase::InitializationMode && self.life.now.fits.is_none() {
+        let unknown = !self.life.now.computed && self.life.now.fits != Some(false);
+        if asks && unknown && self.life.now.phase == Phase::InitializationMode {
             let one = DESCRIPTION.outputs(Kind::Real)[0];
             self.call(&Call::get(Kind::Real, vec![one]))?;
         }
@@ -142,7 +156,7 @@ impl<'a> Judge<'a> {
         Ok(())
     }
 
-    /// The outputs after calls that could have changed them, and the values after a state was set.
+    /// The outputs after calls that could have changed them, and the values after calls that set them all or none.
     fn check_state(&mut self, call: &Call, status: fmi2Status) -> Result<(), String> {
         let moves = match call {
             Call::DoStep { .. } => true,
@@ -169,21 +183,18 @@ impl<'a> Judge<'a> {
         }
         if matches!(call, Call::DoStep { .. }) && status == fmi2OK {
             self.steps += 1;
-            self.call(&Call::Status {
-                function: StatusFunction::Real,
-                kind: fmi2LastSuccessfulTime,
-                fault: Fault::None,
-            })?;
+            self.call(&Call::time())?;
         }
-        if matches!(call, Call::SetState { .. }) && status == fmi2OK {
+        let sets = match call {
+            Call::SetState { .. } | Call::Reset => status == fmi2OK,
+            Call::Set { .. } => status == fmi2Discard,
+            _ => false,
+        };
+        if sets {
             for kind in [Kind::Real, Kind::Integer, Kind::Boolean] {
                 let settable =
-                    |variable: &&crate::description::Variable| variable.role != Role::Output && variable.kind == kind;
-                let references = DESCRIPTION.variables.iter().filter(settable);
-                self.call(&Call::get(
-                    kind,
-                    references.map(|variable| variable.reference).collect(),
-                ))?;
+                    DESCRIPTION.references(|variable| variable.role != Role::Output && variable.kind == kind);
+                self.call(&Call::get(kind, settable))?;
             }
         }
         Ok(())
@@ -203,11 +214,7 @@ impl<'a> Judge<'a> {
 
     fn replay(&mut self, slot: usize, inputs: &[(u32, f64)], steps: u32, size: f64) -> Result<(), String> {
         let mut run = || {
-            self.call(&Call::SetState {
-                slot,
-                fault: Fault::None,
-            })?;
-            self.call(&Call::set_reals(inputs.to_vec()))?;
+            self.run(&[Call::restore(slot), Call::set_reals(inputs.to_vec())])?;
             let mut trace = Vec::new();
             for _ in 0..steps {
                 self.call(&Call::step(size))?;

@@ -1,5 +1,5 @@
 //! The life of an instance as FMI 2.0 has it for co-simulation (sections 2.1 and 4.2), in our own words and apart from
-//! the component's own table: which status a call must have, and what is true after it.
+//! the component's own code: which status a call must have, and what is true after it.
 //!
 //! Where the standard leaves room, this is what the component promises:
 //! - the first wrong thing of a call decides its status: a state that does not allow it, a pointer, then the elements of
@@ -13,7 +13,8 @@ use relay_contact::fmi2::*;
 
 use crate::call::{Call, Damage, Fault, Point, SLOTS, StatusFunction};
 use crate::description::{DESCRIPTION, Kind, Role, Variable};
-use crate::phase::{Phase, allowed};
+use crate::moment::Moment;
+use crate::states::{Phase, allowed};
 
 use Phase::{Error, InitializationMode, Instantiated, StepComplete, Terminated};
 
@@ -51,52 +52,6 @@ impl Verdict {
     }
 }
 
-/// All that is true of an instance at a moment, and that a saved state brings back.
-#[derive(Clone, Debug)]
-pub struct Moment {
-    /// Where in its life.
-    pub phase: Phase,
-    /// Values of the inputs and parameters, in the order of the description.
-    pub values: Vec<f64>,
-    /// Derivatives of the inputs over the next step, in the same order.
-    rates: Vec<f64>,
-    /// Where it stands, s.
-    pub time: f64,
-    /// End of the experiment, s.
-    pub stop: f64,
-    /// Whether outputs have been computed.
-    pub computed: bool,
-    /// Whether the parameters fit together, once that is known.
-    pub fits: Option<bool>,
-    /// Whether it was driven by more than numbers can follow, so that a step may fail.
-    pub extreme: bool,
-    /// The bits of the outputs, once read at this communication point.
-    pub outputs: Option<Vec<u64>>,
-}
-
-impl Moment {
-    fn new() -> Self {
-        Self {
-            phase: Instantiated,
-            values: DESCRIPTION.variables.iter().map(|variable| variable.start).collect(),
-            rates: vec![0.0; DESCRIPTION.variables.len()],
-            time: 0.0,
-            stop: f64::INFINITY,
-            computed: false,
-            fits: None,
-            extreme: false,
-            outputs: None,
-        }
-    }
-
-    /// The value of an input or parameter.
-    pub fn value(&self, reference: u32) -> f64 {
-        DESCRIPTION
-            .position(reference)
-            .map_or(f64::NAN, |position| self.values[position])
-    }
-}
-
 /// An instance, its saved states and their bytes.
 #[derive(Clone, Debug)]
 pub struct LifeCycle {
@@ -115,7 +70,7 @@ pub struct LifeCycle {
 impl Default for LifeCycle {
     fn default() -> Self {
         Self {
-            now: Moment::new(),
+            now: Moment::default(),
             saved: [const { None }; SLOTS],
             written: [const { None }; SLOTS],
             errors: true,
@@ -163,9 +118,6 @@ impl LifeCycle {
             },
             Call::DirectionalDerivative => Refuse,
             Call::SetInputDerivatives { values, fault } => {
-                if !DESCRIPTION.input_derivatives {
-                    return Refuse;
-                }
                 let judge = |&(reference, order, value): &(u32, i32, f64)| match continuous(reference, Role::Input) {
                     true if order == 1 && value.is_finite() => Accept,
                     true if order == 1 => Discard,
@@ -174,9 +126,6 @@ impl LifeCycle {
                 three_arrays(*fault, values.len()).unwrap_or_else(|| first_wrong(values.iter().map(judge)))
             }
             Call::GetOutputDerivatives { values, fault } => {
-                if !DESCRIPTION.output_derivatives {
-                    return Refuse;
-                }
                 let judge = |&(reference, order): &(u32, i32)| {
                     if continuous(reference, Role::Output) && order == 1 && self.now.computed {
                         Accept
@@ -272,20 +221,11 @@ impl LifeCycle {
             || off > 4.0 * rounding
             || late > 0.0
             || self.now.extreme
-            || self.pushed_hard()
+            || self.now.pushed_hard()
         {
             return AcceptOrFail;
         }
         Accept
-    }
-
-    /// Whether the inputs are beyond what the ranges of the generated excitation allow, which are meant to be wide.
-    fn pushed_hard(&self) -> bool {
-        let acceleration = DESCRIPTION.reference("base.acceleration");
-        let rate = DESCRIPTION
-            .position(acceleration)
-            .map_or(0.0, |position| self.now.rates[position]);
-        self.now.value(acceleration).abs() > 1e6 || rate.abs() > 1e12
     }
 
     /// What is true after the call came to `status`, which the verdict allows.
@@ -323,11 +263,15 @@ impl LifeCycle {
             Call::SetupExperiment { start, stop, .. } => {
                 (now.time, now.stop) = (*start, stop.unwrap_or(f64::INFINITY));
             }
-            Call::EnterInitializationMode => now.phase = InitializationMode,
+            Call::EnterInitializationMode => {
+                now.phase = InitializationMode;
+                // The start values fit together.
+                now.fits = now.is_untouched().then_some(true);
+            }
             Call::ExitInitializationMode => (now.phase, now.fits, now.computed) = (StepComplete, Some(true), true),
             Call::Terminate => now.phase = Terminated,
-            Call::Reset => *now = Moment::new(),
-            Call::Renew => (*now, self.errors, self.warnings) = (Moment::new(), true, true),
+            Call::Reset => *now = Moment::default(),
+            Call::Renew => (*now, self.errors, self.warnings) = (Moment::default(), true, true),
             Call::Set { kind, values, .. } => {
                 for &(reference, value) in values {
                     if let Some(position) = DESCRIPTION.position(reference) {
@@ -347,7 +291,7 @@ impl LifeCycle {
             }
             Call::DoStep { point, size } => {
                 now.time = point.instant(now.time, *size) + size;
-                self.now.extreme |= self.pushed_hard();
+                self.now.extreme |= self.now.pushed_hard();
                 self.now.rates.fill(0.0);
             }
             Call::GetState { slot, .. } => self.saved[*slot] = Some(now.clone()),

@@ -66,8 +66,7 @@ pub fn sequence(api: &Api, bytes: &[u8]) -> Result<Count, String> {
 /// # Errors
 /// The first wrong answer.
 pub fn run(api: &Api, calls: &[Call]) -> Result<(), String> {
-    let mut judge = Judge::new(api);
-    calls.iter().try_for_each(|call| judge.call(call))
+    Judge::new(api).run(calls)
 }
 
 /// How long a shorter sequence is looked for.

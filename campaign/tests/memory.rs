@@ -1,13 +1,9 @@
 //! Instances made and freed again and again take no more memory. Alone in its process, as it looks at the whole of it.
 #![cfg(target_os = "linux")]
 
-#[path = "loaded_library/library.rs"]
-mod library;
-
-use campaign::call::{Call, Fault};
+use campaign::api::LIBRARY;
+use campaign::call::Call;
 use campaign::judge::Judge;
-
-use library::LIBRARY;
 
 /// Memory of this process that is its own and in use, bytes.
 fn resident() -> u64 {
@@ -18,35 +14,21 @@ fn resident() -> u64 {
 
 /// A whole life with a saved state, its bytes, an error and a reset.
 fn live() {
-    let mut judge = Judge::new(&LIBRARY);
-    for call in [
-        Call::EnterInitializationMode,
-        Call::ExitInitializationMode,
+    let [enter, exit] = Call::INITIALISE;
+    let life = [
+        enter,
+        exit,
         Call::step(1e-5),
-        Call::GetState {
-            slot: 0,
-            fault: Fault::None,
-        },
-        Call::Serialize {
-            slot: 0,
-            fault: Fault::None,
-        },
-        Call::Deserialize {
-            slot: 0,
-            damage: campaign::call::Damage::None,
-            fault: Fault::None,
-        },
+        Call::save(0),
+        Call::serialize(0),
+        Call::deserialize(0),
         Call::step(-1.0),
-        Call::SetState {
-            slot: 0,
-            fault: Fault::None,
-        },
+        Call::restore(0),
         Call::step(1e-5),
         Call::Reset,
         Call::Renew,
-    ] {
-        judge.call(&call).unwrap();
-    }
+    ];
+    Judge::new(&LIBRARY).run(&life).unwrap();
 }
 
 #[test]

@@ -21,8 +21,6 @@ use relay_contact::preload::Preload;
 use relay_contact::scene::Scene;
 use relay_contact::variables::AxialForceKind;
 
-// With its path, as the report has this file as a module too.
-#[path = "quantities.rs"]
 mod quantities;
 
 pub use self::quantities::{PARAMETERS, SOURCES};
@@ -38,6 +36,7 @@ pub const FREQUENCY: f64 = 1000.0;
 /// Values of [`SOURCES`], in their units.
 #[derive(Clone, Copy, Debug)]
 pub struct Published {
+    /// In the order and units of the sources.
     pub values: [f64; 5],
     /// What the published force amplitude is taken for.
     pub amplitude: Amplitude,
@@ -82,6 +81,7 @@ impl Default for Published {
 
 impl Published {
     /// With one of the values changed by a part of it.
+    #[must_use]
     pub fn changed(mut self, source: usize, part: f64) -> Self {
         self.values[source] *= 1.0 + part;
         self

@@ -3,9 +3,7 @@
 //!
 //! `cargo run --release --example identify`
 
-mod identification;
-
-use identification::{Amplitude, Error, PARAMETERS, Published, SOURCES, Specimen, precision, sensitivities};
+use identify::{Amplitude, Error, PARAMETERS, Published, SOURCES, Specimen, precision, sensitivities};
 use relay_contact::scene::Scene;
 
 fn main() -> Result<(), Error> {

@@ -9,7 +9,7 @@ use relay_contact::variables::ContactLawKind;
 use crate::case::{Check, cases, closest, worst};
 use crate::energy_balance::{balances, square};
 use crate::ride::{Ride, Segment, throw};
-use crate::rig::{Rig, compose, hertz, oscillator, undamped};
+use testing::rig::{Rig, compose, hertz, oscillator, undamped};
 
 cases! { CASES:
     "Contact 100 times stiffer", "it rings at ever higher frequencies"

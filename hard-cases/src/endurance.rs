@@ -9,7 +9,7 @@ use relay_contact::variables::{ExcitationKind, RealOutput};
 
 use crate::case::{Check, cases, closest, worst};
 use crate::ride::throw;
-use crate::rig::{Rig, undamped};
+use testing::rig::{Rig, undamped};
 
 cases! { CASES:
     "1000 contact cycles and more, no damping at all, 1 ms communication steps",

@@ -13,7 +13,7 @@ use relay_contact::variables::ExcitationKind;
 
 use crate::case::{Check, cases};
 use crate::ride::throw;
-use crate::rig::{Rig, compose, oscillator};
+use testing::rig::{Rig, compose, oscillator};
 
 cases! { CASES:
     "Chatter at 41 g in communication steps of 1 µs to 10 ms",

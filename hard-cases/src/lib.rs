@@ -15,9 +15,6 @@ mod energy_balance;
 mod excitation;
 mod instants;
 pub mod ride;
-#[allow(dead_code, reason = "shared with the tests of the library, which use all of it")]
-#[path = "../../tests/common/mod.rs"]
-mod rig;
 mod solver;
 mod spring;
 mod support;

@@ -10,7 +10,7 @@ use relay_contact::model::Model;
 use relay_contact::scene::Scene;
 
 use crate::case::{Check, closest};
-use crate::rig::Rig;
+use testing::rig::Rig;
 
 /// Tip displacement per impulse of the mode that measures the impulse of the contact force: too heavy to move.
 const METER: f64 = 1e-9;

@@ -11,7 +11,7 @@ use relay_contact::variables::AxialForceKind;
 
 use crate::case::{Check, cases};
 use crate::ride::{Ride, Segment};
-use crate::rig::undamped;
+use testing::rig::undamped;
 
 cases! { CASES:
     "Spring without damping", "only the contact dissipates"

@@ -2,10 +2,10 @@
 //!
 //! A contact force wrong by at most `e` along a path of length `s` of the tip changes the energy by at most `e s`.
 
-use crate::common::{Rig, undamped};
 use relay_contact::inputs::Inputs;
 use relay_contact::model::Model;
 use relay_contact::variables::ContactLawKind;
+use testing::rig::{Rig, undamped};
 
 #[test]
 fn energy_stays_without_damping() {

@@ -3,12 +3,9 @@
 //! m = 156 kg, k = 2e6 N/m, stop 1e10 N/m, gap 1 mm, force 3000 sin(2 pi 5 t) N, from rest. The instants were computed from
 //! the closed form between switchings.
 
-use crate::common::{Rig, compose, oscillator};
-use crate::{digits, penalty};
-use relay_contact::excitation::generator::Generator;
-use relay_contact::excitation::sine::Sine;
-use relay_contact::excitation::window::Window;
+use crate::digits;
 use relay_contact::inputs::Inputs;
+use testing::rig::{Rig, compose, oscillator, stop};
 
 /// Touch and release, s: the first three contacts, and the last one within the first period.
 const PUBLISHED: [(f64, f64); 4] = [
@@ -22,14 +19,8 @@ const PUBLISHED: [(f64, f64); 4] = [
 fn touch_and_release() {
     let (mass, force) = (156.0, 3000.0);
     for tolerance in [1e-7, 1e-9, 1e-11] {
-        let mut model = compose(&[oscillator(mass, 2e6)], penalty(1e10), 1e-3, tolerance, force);
-        model.generator = Generator::Sine(Sine {
-            amplitude: force / mass,
-            frequency: 5.0,
-            phase: 0.0,
-            window: Window::from(0.0),
-        });
-        let mut rig = Rig::new(model);
+        let model = compose(&[oscillator(mass, 2e6)], stop(1e10), 1e-3, tolerance, force);
+        let mut rig = Rig::shaken(model, force / mass, 5.0);
         let mut found: Vec<(f64, f64)> = Vec::new();
         for k in 1..=2100 {
             rig.run_to(&Inputs::default(), f64::from(k) * 1e-4).unwrap();

@@ -5,7 +5,6 @@
 
 use std::f64::consts::TAU;
 
-use crate::common::Rig;
 use nalgebra::{Complex, DMatrix, DVector};
 use relay_contact::beam::galerkin::Space;
 use relay_contact::contact::law::Law;
@@ -13,6 +12,7 @@ use relay_contact::inputs::Inputs;
 use relay_contact::model::Model;
 use relay_contact::scene::Scene;
 use relay_contact::variables::{ContactLawKind, ExcitationKind};
+use testing::rig::Rig;
 
 const FREQUENCY: f64 = 1000.0;
 const AMPLITUDE: f64 = 98.0;
@@ -56,7 +56,7 @@ fn force(model: &Model, t: f64) -> f64 {
 
 fn scene(law: ContactLawKind) -> Scene {
     let mut scene = Scene::default();
-    // Somebody who watches what happens inside steps would have them short.
+    // With them steps would be short.
     scene.effects.extremes = false;
     scene.effects.chatter = false;
     scene.effects.contact_law = law;

@@ -5,9 +5,6 @@
 
 #![allow(clippy::unwrap_used)]
 
-#[path = "../common/mod.rs"]
-mod common;
-
 mod energy;
 mod forced_shock;
 mod hertz_impact;
@@ -17,9 +14,6 @@ mod restitution;
 mod shock;
 mod sphere_on_beam;
 
-use relay_contact::contact::law::Law;
-use relay_contact::contact::linear::Linear;
-
 /// All digits given, the last one rounded, and `error` beside it.
 fn digits(value: f64, published: f64, last_digit: f64, error: f64) {
     assert!(
@@ -27,14 +21,4 @@ fn digits(value: f64, published: f64, last_digit: f64, error: f64) {
         "{value} against {published}, {:e}",
         value - published
     );
-}
-
-/// A spring (N/m) that only pushes.
-pub fn penalty(stiffness: f64) -> Law {
-    Law::Linear(Linear {
-        stiffness,
-        damping: 0.0,
-        offset: 0.0,
-        bonded: false,
-    })
 }

@@ -5,23 +5,16 @@
 
 use std::f64::consts::TAU;
 
-use crate::common::Rig;
-use relay_contact::contact::law::Law;
-use relay_contact::contact::linear::Linear;
-use relay_contact::excitation::generator::Generator;
-use relay_contact::excitation::sine::Sine;
-use relay_contact::excitation::window::Window;
 use relay_contact::harmonic;
 use relay_contact::inputs::Inputs;
 use relay_contact::model::Model;
-use relay_contact::scene::Scene;
-use relay_contact::variables::{ContactLawKind, ExcitationKind};
+use relay_contact::variables::ContactLawKind;
+use testing::rig::Rig;
+use testing::scenes::shaken;
 
 fn model(law: ContactLawKind, tolerance: f64, frequency: f64) -> Model {
-    let mut scene = Scene::default();
+    let mut scene = shaken(98.0, frequency);
     scene.effects.contact_law = law;
-    scene.effects.excitation = ExcitationKind::Sine;
-    scene.excitation.frequency = frequency;
     scene.solver.tolerance = tolerance;
     scene.solver.modes = 10;
     Model::new(&scene, 0.0).unwrap()
@@ -29,14 +22,8 @@ fn model(law: ContactLawKind, tolerance: f64, frequency: f64) -> Model {
 
 /// The model shaken with the amplitude (m/s2) until nothing is left of the start: the slowest motion decays by more than
 /// 1e-13 in 40 ms.
-fn periodic(mut model: Model, amplitude: f64, frequency: f64) -> Rig {
-    model.generator = Generator::Sine(Sine {
-        amplitude,
-        frequency,
-        phase: 0.0,
-        window: Window::from(0.0),
-    });
-    let mut rig = Rig::new(model);
+fn periodic(model: Model, amplitude: f64, frequency: f64) -> Rig {
+    let mut rig = Rig::shaken(model, amplitude, frequency);
     rig.run_to(&Inputs::default(), (0.04 * frequency).ceil() / frequency)
         .unwrap();
     rig
@@ -69,12 +56,7 @@ fn the_linearised_contact_opens_at_the_analytic_threshold() {
         for (factor, opens) in [(1.0 - 1e-6, false), (1.0 + 1e-6, true)] {
             let mut rig = periodic(closed.clone(), factor * threshold, frequency);
             // Up to here the contact is held; now it may open.
-            if let Law::Linear(linear) = rig.model.law {
-                rig.model.law = Law::Linear(Linear {
-                    bonded: false,
-                    ..linear
-                });
-            }
+            rig.unbond();
             let (mut at, start) = (rig.state.time, rig.state.time);
             while rig.state.force <= rig.model.preload.force {
                 at += 1e-5;

@@ -5,9 +5,9 @@
 //! stiffness and speed, computed by a Runge-Kutta method with the square root of the indentation as unknown, in which
 //! the equation is smooth.
 
-use crate::common::{Rig, compose, hertz, oscillator};
 use crate::digits;
 use relay_contact::inputs::Inputs;
+use testing::rig::{Rig, compose, hertz, oscillator};
 
 #[test]
 fn restitution_at_release_without_tension() {

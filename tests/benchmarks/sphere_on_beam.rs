@@ -6,10 +6,10 @@
 
 use std::f64::consts::PI;
 
-use crate::common::{Rig, compose, hertz, oscillator};
 use crate::digits;
 use relay_contact::beam::mode::Mode;
 use relay_contact::inputs::Inputs;
+use testing::rig::{Rig, compose, hertz, oscillator};
 
 #[test]
 fn greatest_force_its_instant_and_the_duration() {

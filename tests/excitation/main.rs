@@ -84,13 +84,6 @@ fn equal_steps(size: f64, count: u32) -> Vec<f64> {
     (1..=count).map(|k| f64::from(k) * size).collect()
 }
 
-fn scale(scene: &Scene) -> f64 {
-    Simulation::new(scene, &Inputs::default(), 0.0)
-        .unwrap()
-        .model()
-        .force_scale
-}
-
 /// The acceleration from its definition, as far as it goes without a sum of sines.
 fn closed_form(scene: &Scene, time: f64) -> f64 {
     let e = &scene.excitation;

@@ -3,14 +3,14 @@
 use relay_contact::inputs::Inputs;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ContactLawKind, ExcitationKind, IntegerOutput, RealOutput};
+use testing::scenes::{at_rest, force_scale, propped_mass};
 
 use crate::{
-    G, closed_form, equal_steps, every_waveform, excited, forces, generator, half_sine, limited, phased, random, scale,
-    sweep, undriven,
+    G, closed_form, equal_steps, every_waveform, excited, forces, generator, half_sine, limited, phased, random, sweep,
+    undriven,
 };
 
-/// Slow against the spring, the force follows the inertia of a propped cantilever with a mass at the prop, the prop all but
-/// rigid. Bonded, so that it may also pull.
+/// Slow against the spring, the force follows the inertia of a propped cantilever. Bonded, so that it may also pull.
 #[test]
 fn a_slow_acceleration_acts_through_its_mass() {
     let slow = [
@@ -31,10 +31,8 @@ fn a_slow_acceleration_acts_through_its_mass() {
             if scene.effects.excitation == ExcitationKind::Sine {
                 scene.excitation.frequency = 10.0;
             }
-            let simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
-            let section = &simulation.model().section;
-            let mass = 0.375 * section.mass_per_length * section.length + section.tip_mass;
-            let preload = simulation.model().preload.force;
+            let mass = propped_mass(&scene);
+            let preload = at_rest(&scene, RealOutput::PreloadForce);
             let times = equal_steps(5.1e-3, 70);
             let (forces, _) = forces(&scene, &times, undriven);
             let expected: Vec<f64> = times.iter().map(|t| mass * closed_form(&scene, *t)).collect();
@@ -105,7 +103,7 @@ fn the_communication_step_does_not_matter() {
                     scene.solver.tolerance = 1e-10;
                     forces(&scene, &equal_steps(1e-3, 4), undriven).0
                 };
-                let allowed = scene.solver.tolerance * scale(&scene);
+                let allowed = scene.solver.tolerance * force_scale(&scene);
                 let mut irregular = Vec::new();
                 for ms in 0..4 {
                     // Golden section of what is left.
@@ -139,7 +137,7 @@ fn the_communication_step_does_not_matter() {
 fn a_linear_scene_goes_through_a_shock_in_exact_steps() {
     let mut scene = half_sine(2e-4, 98.0, 5e-4);
     scene.effects.contact_law = ContactLawKind::Bonded;
-    // Nobody watches what happens inside steps.
+    // Without them a linear scene takes exact steps.
     scene.effects.extremes = false;
     scene.effects.chatter = false;
     scene.solver.tolerance = 1e-10;
@@ -149,7 +147,7 @@ fn a_linear_scene_goes_through_a_shock_in_exact_steps() {
     let (parts, _) = forces(&scene, &equal_steps(7e-6, 142), undriven);
     let (last, _) = forces(&scene, &[142.0 * 7e-6], undriven);
     assert!(
-        (parts[141] - last[0]).abs() < 1e-12 * scale(&scene),
+        (parts[141] - last[0]).abs() < 1e-12 * force_scale(&scene),
         "{} {}",
         parts[141],
         last[0]
@@ -159,7 +157,7 @@ fn a_linear_scene_goes_through_a_shock_in_exact_steps() {
     let (integrated, many) = forces(&stepped, &[1e-3], undriven);
     assert!(many > 50, "{many}");
     assert!(
-        (integrated[0] - whole[0]).abs() < 1e-10 * scale(&scene),
+        (integrated[0] - whole[0]).abs() < 1e-10 * force_scale(&scene),
         "{integrated:?} {whole:?}"
     );
 }

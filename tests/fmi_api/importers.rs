@@ -4,9 +4,7 @@ use std::ffi::CString;
 use std::ptr;
 
 use relay_contact::fmi2::*;
-use relay_contact::variables::{GUID, Group, VARIABLES};
-
-use crate::harness::{Fmu, Log, callbacks, vr};
+use testing::instance::{Arguments, Instance};
 
 const STEP: f64 = 1e-5;
 
@@ -25,12 +23,9 @@ const CLOCKS: [(&str, Clock); 6] = [
 
 /// Forces at some of the communication points, with steps that are `STEP` or the difference of the points.
 fn forces(clock: Clock, differences: bool, steps: u32, stop: Option<f64>, amplitude: f64) -> Vec<f64> {
-    let fmu = Fmu::new();
-    let (defined, stop) = (stop.is_some().into(), stop.unwrap_or(0.0));
-    let status = unsafe { fmi2SetupExperiment(fmu.component, 0, 0.0, 0.0, defined, stop) };
-    assert_eq!(status, fmi2OK);
-    assert_eq!(unsafe { fmi2EnterInitializationMode(fmu.component) }, fmi2OK);
-    assert_eq!(unsafe { fmi2ExitInitializationMode(fmu.component) }, fmi2OK);
+    let fmu = Instance::new();
+    assert_eq!(fmu.setup(None, 0.0, stop), fmi2OK);
+    fmu.initialize();
     let (mut forces, mut sum) = (Vec::new(), 0.0);
     for n in 0..steps {
         let time = clock(f64::from(n), sum);
@@ -88,11 +83,10 @@ fn a_million_steps_reach_the_stop_time_however_they_are_counted() {
 #[test]
 fn an_undefined_stop_time_is_not_looked_at() {
     for stop in [0.0, -1.0, f64::NAN] {
-        let fmu = Fmu::new();
+        let fmu = Instance::new();
         let status = unsafe { fmi2SetupExperiment(fmu.component, 0, f64::NAN, 1.0, 0, stop) };
         assert_eq!(status, fmi2OK);
-        assert_eq!(unsafe { fmi2EnterInitializationMode(fmu.component) }, fmi2OK);
-        assert_eq!(unsafe { fmi2ExitInitializationMode(fmu.component) }, fmi2OK);
+        fmu.initialize();
         assert_eq!(fmu.step(1.0, STEP), fmi2OK);
         assert!(fmu.messages().is_empty());
     }
@@ -114,54 +108,33 @@ fn any_place_of_the_resources_will_do() {
         Some(b"C:\\fmu\\resources"),
         Some(b"file:///tmp/\xff\xfe/%zz/%s%n"),
     ];
-    let guid = CString::new(GUID).unwrap();
     for place in places {
-        let log = Log::default();
-        let callbacks = callbacks(&log);
         let place = place.map(|place| CString::new(place).unwrap());
-        let pointer = place.as_ref().map_or(ptr::null(), |place| place.as_ptr());
-        unsafe {
-            let component = fmi2Instantiate(
-                c"relay".as_ptr(),
-                fmi2CoSimulation,
-                guid.as_ptr(),
-                pointer,
-                &raw const callbacks,
-                0,
-                1,
-            );
-            assert!(!component.is_null(), "{place:?}: {log:?}");
-            assert_eq!(fmi2EnterInitializationMode(component), fmi2OK);
-            assert_eq!(fmi2ExitInitializationMode(component), fmi2OK);
-            assert_eq!(fmi2DoStep(component, 0.0, STEP, 1), fmi2OK);
-            fmi2FreeInstance(component);
-        }
-        assert!(log.into_inner().unwrap().is_empty());
+        let fmu = Instance::with(&Arguments {
+            resources: place.as_deref(),
+            logging_on: true,
+            ..Arguments::default()
+        });
+        fmu.initialize();
+        assert_eq!(fmu.step(0.0, STEP), fmi2OK);
+        assert!(fmu.messages().is_empty());
     }
 }
 
 #[test]
-fn every_variable_can_be_read_while_initialising_and_after() {
-    let fmu = Fmu::initializing();
-    let read = || {
-        for variable in VARIABLES {
-            let reference = vr(variable.name);
-            let (mut real, mut integer) = (f64::NAN, i32::MIN);
-            let status = match variable.group {
-                Group::RealInput(_) | Group::RealOutput(_) | Group::RealParameter(_) => unsafe {
-                    fmi2GetReal(fmu.component, &raw const reference, 1, &raw mut real)
-                },
-                Group::BooleanOutput(_) | Group::BooleanParameter(_) => unsafe {
-                    fmi2GetBoolean(fmu.component, &raw const reference, 1, &raw mut integer)
-                },
-                _ => unsafe { fmi2GetInteger(fmu.component, &raw const reference, 1, &raw mut integer) },
-            };
-            assert_eq!(status, fmi2OK, "{}", variable.name);
-            assert!(real.is_finite() || integer > i32::MIN, "{}", variable.name);
-        }
+fn an_importer_need_not_listen() {
+    let silent = fmi2CallbackFunctions {
+        logger: None,
+        allocateMemory: None,
+        freeMemory: None,
+        stepFinished: None,
+        componentEnvironment: ptr::null_mut(),
     };
-    read();
-    assert_eq!(unsafe { fmi2ExitInitializationMode(fmu.component) }, fmi2OK);
-    read();
-    assert!(fmu.messages().is_empty());
+    let component = Arguments::default().instantiate(fmi2Instantiate, Some(&silent));
+    assert!(!component.is_null());
+    unsafe {
+        assert_eq!(fmi2DoStep(component, 0.0, 1.0, 1), fmi2Error);
+        assert_eq!(fmi2Reset(component), fmi2OK);
+        fmi2FreeInstance(component);
+    }
 }

@@ -6,25 +6,22 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use relay_contact::MODEL_DESCRIPTION;
 use relay_contact::fmi2::*;
-use relay_contact::variables::GUID;
+use testing::instance::{Arguments, Instance};
 
-use crate::harness::Fmu;
-
-fn choose(fmu: &Fmu, on: fmi2Boolean, categories: &[&CStr]) -> fmi2Status {
+fn choose(fmu: &Instance, on: fmi2Boolean, categories: &[&CStr]) -> fmi2Status {
     let pointers: Vec<_> = categories.iter().map(|category| category.as_ptr()).collect();
     unsafe { fmi2SetDebugLogging(fmu.component, on, pointers.len(), pointers.as_ptr()) }
 }
 
 /// Number of messages that a discarded value and then an error send.
-fn heard(fmu: &Fmu) -> [usize; 2] {
+fn heard(fmu: &Instance) -> [usize; 2] {
     assert_eq!(fmu.set_real("beam.length", -1.0), fmi2Discard);
     assert_eq!(fmu.set_real("contact.force", 1.0), fmi2Error);
     assert_eq!(fmu.reset(), fmi2OK);
+    let messages = fmu.messages();
     ["logStatusWarning", "logStatusError"].map(|category| {
-        fmu.messages()
-            .iter()
-            .filter(|message| message.category == category)
-            .count()
+        let told = messages.iter().filter(|message| message.category == category);
+        told.count()
     })
 }
 
@@ -48,9 +45,9 @@ fn errors_and_warnings_are_logged_unless_their_category_is_switched_off() {
         (fmi2False, &[error, warning], [0, 0]),
         (fmi2True, &[error, warning], [1, 1]),
     ];
-    assert_eq!(heard(&Fmu::new()), [1, 1]);
+    assert_eq!(heard(&Instance::new()), [1, 1]);
     for (on, categories, expected) in cases {
-        let fmu = Fmu::new();
+        let fmu = Instance::new();
         assert_eq!(choose(&fmu, on, categories), fmi2OK);
         assert_eq!(heard(&fmu), expected, "{on} {categories:?}");
     }
@@ -58,7 +55,7 @@ fn errors_and_warnings_are_logged_unless_their_category_is_switched_off() {
 
 #[test]
 fn an_unknown_category_is_a_warning_that_changes_nothing() {
-    let fmu = Fmu::new();
+    let fmu = Instance::new();
     assert_eq!(choose(&fmu, fmi2False, &[c"logStatusError", c"log%sAll"]), fmi2Warning);
     // As a printf format this reads "log%sAll".
     fmu.expect_message(
@@ -74,7 +71,7 @@ fn an_unknown_category_is_a_warning_that_changes_nothing() {
 
 #[test]
 fn messages_carry_the_name_of_the_instance_and_the_function() {
-    let fmu = Fmu::new();
+    let fmu = Instance::new();
     assert_eq!(fmu.step(0.0, 1.0), fmi2Error);
     let messages = fmu.messages();
     assert_eq!(messages[0].instance, "relay 1");
@@ -86,18 +83,18 @@ fn messages_carry_the_name_of_the_instance_and_the_function() {
 type Choice<'a> = (fmi2Boolean, &'a [&'a CStr]);
 
 /// Messages of events and of the solver in a run in which the contact opens at 0.7088 ms, as `choices` have it.
-fn debug_messages(logging_on: fmi2Boolean, choices: &[Choice]) -> [Vec<String>; 2] {
-    let fmu = Fmu::with_logging(logging_on);
+fn debug_messages(logging_on: bool, choices: &[Choice]) -> [Vec<String>; 2] {
+    let fmu = Instance::with(&Arguments {
+        logging_on,
+        ..Arguments::default()
+    });
     for (on, categories) in choices {
         assert_eq!(choose(&fmu, *on, categories), fmi2OK);
     }
     assert_eq!(fmu.set_integer("effects.excitation", 2), fmi2OK);
     assert_eq!(fmu.set_integer("effects.axialForce", 2), fmi2OK);
     assert_eq!(fmu.set_real("excitation.amplitude", 400.0), fmi2OK);
-    unsafe {
-        assert_eq!(fmi2EnterInitializationMode(fmu.component), fmi2OK);
-        assert_eq!(fmi2ExitInitializationMode(fmu.component), fmi2OK);
-    }
+    fmu.initialize();
     for k in 0..3 {
         assert_eq!(fmu.step(f64::from(k) * 5e-4, 5e-4), fmi2OK);
     }
@@ -111,7 +108,7 @@ fn debug_messages(logging_on: fmi2Boolean, choices: &[Choice]) -> [Vec<String>; 
 
 #[test]
 fn openings_and_closings_are_logged_with_their_instants() {
-    let [events, solver] = debug_messages(fmi2False, &[(fmi2True, &[])]);
+    let [events, solver] = debug_messages(false, &[(fmi2True, &[])]);
     // Instants of the specimen at 400 m/s2 and 1 kHz without axial force, converged by two methods.
     let expected = [("opens", 708.827_593e-6), ("closes", 1_089.427_605e-6)];
     assert_eq!(events.len(), expected.len(), "{events:?}");
@@ -131,14 +128,14 @@ fn openings_and_closings_are_logged_with_their_instants() {
 fn debug_messages_are_off_unless_asked_for() {
     let [both, none] = [[true, true], [false, false]];
     let (events, solver) = (c"logEvents", c"logSolver");
-    let cases: [(fmi2Boolean, &[Choice], [bool; 2]); 7] = [
-        (fmi2False, &[], none),
-        (fmi2True, &[], [true, false]),
-        (fmi2False, &[(fmi2True, &[])], both),
-        (fmi2True, &[(fmi2False, &[])], none),
-        (fmi2False, &[(fmi2True, &[events])], [true, false]),
-        (fmi2False, &[(fmi2True, &[]), (fmi2False, &[events])], [false, true]),
-        (fmi2True, &[(fmi2True, &[solver])], [false, true]),
+    let cases: [(bool, &[Choice], [bool; 2]); 7] = [
+        (false, &[], none),
+        (true, &[], [true, false]),
+        (false, &[(fmi2True, &[])], both),
+        (true, &[(fmi2False, &[])], none),
+        (false, &[(fmi2True, &[events])], [true, false]),
+        (false, &[(fmi2True, &[]), (fmi2False, &[events])], [false, true]),
+        (true, &[(fmi2True, &[solver])], [false, true]),
     ];
     for (on, choices, expected) in cases {
         let heard = debug_messages(on, choices).map(|messages| !messages.is_empty());
@@ -169,24 +166,19 @@ fn a_logger_that_calls_back_is_refused_and_harms_nothing() {
     let mut component: fmi2Component = ptr::null_mut();
     let place = &raw mut component;
     let callbacks = fmi2CallbackFunctions {
-        // As in the harness.
+        // As in `testing::log`.
         logger: unsafe { std::mem::transmute::<Fixed, fmi2CallbackLogger>(meddle) },
         allocateMemory: None,
         freeMemory: None,
         stepFinished: None,
         componentEnvironment: place.cast(),
     };
-    let guid = std::ffi::CString::new(GUID).unwrap();
+    let logging = Arguments {
+        logging_on: true,
+        ..Arguments::default()
+    };
+    let made = logging.instantiate(fmi2Instantiate, Some(&callbacks));
     unsafe {
-        let made = fmi2Instantiate(
-            c"relay".as_ptr(),
-            fmi2CoSimulation,
-            guid.as_ptr(),
-            ptr::null(),
-            &raw const callbacks,
-            0,
-            1,
-        );
         place.write(made);
         assert_eq!(fmi2DoStep(made, 0.0, 1.0, 1), fmi2Error);
         assert_eq!(STATUS_INSIDE.load(Ordering::SeqCst), fmi2Error);

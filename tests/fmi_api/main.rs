@@ -1,14 +1,14 @@
-//! The FMI 2.0 functions, called through their C signatures.
+//! The FMI 2.0 functions called through their C signatures: what the package `campaign`, which judges statuses, values and states
+//! of every call, does not look at.
+//!
+//! [`messages`], [`logging`]: what is said, and where;   [`values`], [`derivatives`], [`steps`]: what a call does to the
+//! simulation;   [`fmu_state`]: a saved state goes on bit by bit;   [`importers`]: habits of importers.
 #![allow(clippy::undocumented_unsafe_blocks)] // every block calls a C function with what it needs, or, as the test says, without
 
-mod arguments;
 mod derivatives;
 mod fmu_state;
-mod harness;
 mod importers;
-mod life_cycle;
-#[path = "../../campaign/src/log.rs"]
-mod log;
 mod logging;
+mod messages;
 mod steps;
 mod values;

@@ -40,7 +40,7 @@ pub fn run() -> Result<()> {
             ])
             .env("CAMPAIGN_CALLS", CALLS),
     )?;
-    let life_cycle = built(&["test", "--no-run", "--package=relay-contact", "--test=c_life_cycle"])?;
+    let life_cycle = built(&["test", "--no-run", "--package=relay-contact", "--test=c"])?;
     commands::run(
         memcheck()
             // The C program is started by the test, and so is its compiler, which is not looked at.
@@ -48,7 +48,7 @@ pub fn run() -> Result<()> {
                 "--trace-children=yes",
                 "--trace-children-skip=*/cc,*/gcc,*/collect2,*/ld,*/as,*/cc1",
             ])
-            .arg(life_cycle),
+            .args([life_cycle.as_os_str(), "life_cycle".as_ref()]),
     )
 }
 

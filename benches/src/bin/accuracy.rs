@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use benches::{plan, scenes, study, table};
+use benches::{plan, study, table};
 use clap::Parser;
 
 const BEGIN: &str = "<!-- tables: written by cargo xtask accuracy -->";
@@ -27,12 +27,10 @@ struct Arguments {
 
 fn main() -> Result<()> {
     let arguments = Arguments::parse();
-    let mut cases = Vec::new();
-    for problem in scenes::all()? {
-        cases.extend(plan::peers(&problem, arguments.quick)?);
-        cases.extend(plan::own(&problem, arguments.quick)?);
-    }
-    let rows = study::run(&cases, if arguments.quick { 1 } else { arguments.turns });
+    let rows = study::run(
+        &plan::all(arguments.quick)?,
+        if arguments.quick { 1 } else { arguments.turns },
+    );
     fs::create_dir_all(&arguments.folder)?;
     write(&arguments.folder.join("accuracy.csv"), &table::csv(&rows))?;
     update(&arguments.folder.join("accuracy.md"), &table::report(&rows))

@@ -2,11 +2,9 @@
 //! those of the integrator), `10us` (about as long) or `shaken` (10 us, and an input that changes every step), the way `fmi2DoStep` (of the library file
 //! beside this program) or `library` (the same steps without C).
 
-use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
-
-use campaign::api::Api;
-use campaign::call::{Call, Fault};
-use campaign::description::{DESCRIPTION, Kind};
+use campaign::api::LIBRARY;
+use campaign::call::Call;
+use campaign::description::DESCRIPTION;
 use campaign::importer::Importer;
 use relay_contact::fmi2::{fmi2OK, fmi2True};
 use relay_contact::inputs::Inputs;
@@ -29,7 +27,7 @@ fn plan(scene: &str) -> (f64, fn(u32) -> f64) {
 fn main() {
     let arguments: Vec<String> = std::env::args().collect();
     let [_, scene, way, count] = &arguments[..] else {
-        panic!("wanted: SCENE WAY COUNT");
+        panic!("usage: steps SCENE WAY COUNT");
     };
     let count = count.parse().expect("a count of steps");
     let force = match way.as_str() {
@@ -41,30 +39,15 @@ fn main() {
 }
 
 fn through_c((size, acceleration): (f64, fn(u32) -> f64), count: u32) -> f64 {
-    let program = std::env::current_exe().expect("a program");
-    let folder = program.parent().expect("a folder").join("deps");
-    let path = folder.join(format!("{DLL_PREFIX}relay_contact{DLL_SUFFIX}"));
-    let api = Api::load(&path).expect("the library");
-    let reference = |name| DESCRIPTION.reference(name);
-    let mut importer = Importer::new(&api);
-    let excitation = Call::Set {
-        kind: Kind::Integer,
-        values: vec![(reference("effects.excitation"), 2.0)],
-        fault: Fault::None,
-    };
-    let amplitude = Call::set_reals(vec![(reference("excitation.amplitude"), AMPLITUDE)]);
-    for call in [
-        excitation,
-        amplitude,
-        Call::EnterInitializationMode,
-        Call::ExitInitializationMode,
-    ] {
+    let api = &*LIBRARY;
+    let mut importer = Importer::new(api);
+    for call in Call::shaken(AMPLITUDE) {
         assert_eq!(importer.make(&call, 0.0).0, fmi2OK);
     }
     let (c, input, output) = (
         importer.component,
-        reference("base.acceleration"),
-        reference("contact.force"),
+        DESCRIPTION.reference("base.acceleration"),
+        DESCRIPTION.reference("contact.force"),
     );
     let (mut force, mut value) = (0.0, 0.0);
     // SAFETY: pointers to what is declared here.

@@ -3,67 +3,28 @@
 use std::collections::BTreeSet;
 use std::ptr;
 
+use campaign::api::LIBRARY;
 use campaign::call::{Call, Damage, Fault, Point, StatusFunction};
 use campaign::description::{DESCRIPTION, Kind, Role};
 use campaign::importer::Importer;
 use campaign::judge::Judge;
-use campaign::phase::{Phase, allowed};
-use relay_contact::fmi2::states::{State, TABLE};
+use campaign::states::{Phase, functions};
 use relay_contact::fmi2::*;
-
-use crate::library::LIBRARY;
-
-const PHASES: [Phase; 5] = [
-    Phase::Instantiated,
-    Phase::InitializationMode,
-    Phase::StepComplete,
-    Phase::Terminated,
-    Phase::Error,
-];
-
-const STATUS_FUNCTIONS: [StatusFunction; 5] = [
-    StatusFunction::Status,
-    StatusFunction::Real,
-    StatusFunction::Integer,
-    StatusFunction::Boolean,
-    StatusFunction::String,
-];
+use relay_contact::{C_HEADER, MODEL_DESCRIPTION};
 
 /// An instance in the phase, with a saved state and its bytes in the first slot.
 fn in_phase(phase: Phase) -> Judge<'static> {
     let mut judge = Judge::new(&LIBRARY);
-    let save = [
-        Call::GetState {
-            slot: 0,
-            fault: Fault::None,
-        },
-        Call::Serialize {
-            slot: 0,
-            fault: Fault::None,
-        },
-    ];
-    let more: &[Call] = match phase {
-        Phase::Instantiated => &[],
-        Phase::InitializationMode => &[Call::EnterInitializationMode],
-        Phase::StepComplete => &[
-            Call::EnterInitializationMode,
-            Call::ExitInitializationMode,
-            Call::step(1e-5),
-        ],
-        Phase::Terminated => &[
-            Call::EnterInitializationMode,
-            Call::ExitInitializationMode,
-            Call::Terminate,
-        ],
-        Phase::Error => &[
-            Call::EnterInitializationMode,
-            Call::ExitInitializationMode,
-            Call::step(-1.0),
-        ],
+    judge.run(&[Call::save(0), Call::serialize(0)]).unwrap();
+    let [enter, exit] = Call::INITIALISE;
+    let more = match phase {
+        Phase::Instantiated => vec![],
+        Phase::InitializationMode => vec![enter],
+        Phase::StepComplete => vec![enter, exit, Call::step(1e-5)],
+        Phase::Terminated => vec![enter, exit, Call::Terminate],
+        Phase::Error => vec![enter, exit, Call::step(-1.0)],
     };
-    for call in save.iter().chain(more) {
-        judge.call(call).unwrap();
-    }
+    judge.run(&more).unwrap();
     assert_eq!(judge.life.now.phase, phase);
     judge
 }
@@ -88,7 +49,7 @@ fn calls() -> Vec<Call> {
     let input = DESCRIPTION.reference("base.acceleration");
     let force = DESCRIPTION.reference("contact.force");
     for fault in [Fault::None].into_iter().chain(Fault::ALL) {
-        for kind in [Kind::Real, Kind::Integer, Kind::Boolean, Kind::String] {
+        for kind in Kind::ALL {
             let some: Vec<_> = DESCRIPTION
                 .variables
                 .iter()
@@ -123,7 +84,7 @@ fn calls() -> Vec<Call> {
                 calls.push(Call::Deserialize { slot, damage, fault });
             }
         }
-        for function in STATUS_FUNCTIONS {
+        for function in StatusFunction::ALL {
             for kind in [0, 1, 2, 3, 4, u32::MAX] {
                 calls.push(Call::Status { function, kind, fault });
             }
@@ -146,24 +107,41 @@ fn calls() -> Vec<Call> {
             categories: vec![],
             fault,
         });
-        calls.push(Call::SetInputDerivatives {
-            values: vec![(input, 1, 3.0)],
-            fault,
-        });
-        calls.push(Call::GetOutputDerivatives {
-            values: vec![(force, 1)],
-            fault,
-        });
+        for count in [0, 1] {
+            calls.push(Call::SetInputDerivatives {
+                values: vec![(input, 1, 3.0); count],
+                fault,
+            });
+            calls.push(Call::GetOutputDerivatives {
+                values: vec![(force, 1); count],
+                fault,
+            });
+        }
     }
     calls
+}
+
+fn set_derivative(reference: u32, order: i32, value: f64) -> Call {
+    Call::SetInputDerivatives {
+        values: vec![(reference, order, value)],
+        fault: Fault::None,
+    }
+}
+
+fn get_derivative(reference: u32, order: i32) -> Call {
+    Call::GetOutputDerivatives {
+        values: vec![(reference, order)],
+        fault: Fault::None,
+    }
 }
 
 /// Wrong values, references and instants.
 fn wrong_numbers() -> Vec<Call> {
     let mut calls = Vec::new();
+    let current = DESCRIPTION.reference("contact.current");
     let strange = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e307, -1e307];
     for variable in &DESCRIPTION.variables {
-        for kind in [Kind::Real, Kind::Integer, Kind::Boolean, Kind::String] {
+        for kind in Kind::ALL {
             calls.push(Call::get(kind, vec![variable.reference]));
             let near = [variable.min, variable.max, variable.min - 1.0, variable.max + 1.0];
             // The value matters where the function suits the variable.
@@ -173,21 +151,14 @@ fn wrong_numbers() -> Vec<Call> {
                 1
             };
             for value in strange.iter().chain(&near).take(count) {
-                calls.push(Call::Set {
-                    kind,
-                    values: vec![(variable.reference, *value)],
-                    fault: Fault::None,
-                });
+                // After a right one, of which nothing is taken over where the value is wrong.
+                let before = (kind == Kind::Real).then_some((current, 3.0));
+                let values = before.into_iter().chain([(variable.reference, *value)]);
+                calls.push(Call::set(kind, values.collect()));
             }
         }
-        calls.push(Call::SetInputDerivatives {
-            values: vec![(variable.reference, 1, 0.0)],
-            fault: Fault::None,
-        });
-        calls.push(Call::GetOutputDerivatives {
-            values: vec![(variable.reference, 1)],
-            fault: Fault::None,
-        });
+        calls.push(set_derivative(variable.reference, 1, 0.0));
+        calls.push(get_derivative(variable.reference, 1));
     }
     for reference in [3, 99, 9999, u32::MAX] {
         calls.push(Call::get(Kind::Real, vec![reference]));
@@ -197,15 +168,12 @@ fn wrong_numbers() -> Vec<Call> {
         DESCRIPTION.reference("base.acceleration"),
         DESCRIPTION.reference("contact.force"),
     );
-    for (order, value) in [(0, 0.0), (2, 0.0), (-1, 0.0), (1, f64::NAN), (1, f64::INFINITY)] {
-        calls.push(Call::SetInputDerivatives {
-            values: vec![(input, order, value)],
-            fault: Fault::None,
-        });
-        calls.push(Call::GetOutputDerivatives {
-            values: vec![(force, order)],
-            fault: Fault::None,
-        });
+    for order in [i32::MIN, -1, 0, 2, i32::MAX] {
+        calls.push(set_derivative(input, order, 0.0));
+        calls.push(get_derivative(force, order));
+    }
+    for value in strange {
+        calls.push(set_derivative(input, 1, value));
     }
     for size in [0.0, -0.0, -1e-5, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 5e-324] {
         calls.push(Call::step(size));
@@ -216,6 +184,7 @@ fn wrong_numbers() -> Vec<Call> {
         Point::Off(0.01),
         Point::At(f64::NAN),
         Point::At(f64::INFINITY),
+        Point::At(f64::NEG_INFINITY),
     ] {
         calls.push(Call::DoStep { point, size: 1e-5 });
     }
@@ -234,51 +203,47 @@ fn wrong_numbers() -> Vec<Call> {
     calls
 }
 
+/// From any state to a first step.
+fn reset_and_run() -> [Call; 4] {
+    let [enter, exit] = Call::INITIALISE;
+    [Call::Reset, enter, exit, Call::step(1e-5)]
+}
+
 #[test]
 fn every_call_in_every_state_gets_the_answer_of_the_standard() {
     let mut met = BTreeSet::new();
-    for phase in PHASES {
+    let set = Call::set_reals(vec![(DESCRIPTION.reference("base.acceleration"), 1.0)]);
+    for phase in Phase::ALL {
         for call in calls().iter().chain(&wrong_numbers()) {
             let mut judge = in_phase(phase);
             judge.call(call).unwrap();
             met.extend(judge.met.iter().map(|(function, _)| *function));
-            // Whatever it was, the way out is open.
-            judge
-                .call(&Call::SetState {
-                    slot: 2,
-                    fault: Fault::None,
-                })
-                .unwrap();
-            for call in [
-                Call::Reset,
-                Call::EnterInitializationMode,
-                Call::ExitInitializationMode,
-                Call::step(1e-5),
-            ] {
-                judge.call(&call).unwrap();
-            }
+            // Whatever it was: after an error nothing more can be set, and the way out is open.
+            judge.run(&[set.clone(), Call::restore(2)]).unwrap();
+            judge.run(&reset_and_run()).unwrap();
         }
     }
-    for function in TABLE {
-        assert!(met.contains(function.name), "{} was not called", function.name);
+    for function in functions() {
+        assert!(met.contains(function), "{function} was not called");
     }
 }
 
 #[test]
-fn the_components_own_table_says_what_the_standards_says() {
-    let state = |phase| match phase {
-        Phase::Instantiated => State::Instantiated,
-        Phase::InitializationMode => State::InitializationMode,
-        Phase::StepComplete => State::StepComplete,
-        Phase::Terminated => State::Terminated,
-        Phase::Error => State::Error,
-    };
-    for function in TABLE {
-        for phase in PHASES {
-            let own = function.allowed.contains(&state(phase));
-            assert_eq!(own, allowed(function.name, phase), "{} in {phase:?}", function.name);
-        }
+fn the_header_has_the_34_functions_of_the_standard() {
+    let without_instance = ["fmi2GetTypesPlatform", "fmi2GetVersion", "fmi2Instantiate"];
+    let names: BTreeSet<_> = functions().chain(without_instance).collect();
+    assert_eq!(names.len(), 34);
+    for name in names {
+        assert!(C_HEADER.contains(&format!("{name}(")), "{name} is not in the header");
     }
+}
+
+#[test]
+fn the_description_promises_the_derivatives_that_are_offered() {
+    for promise in ["canInterpolateInputs=\"true\"", "maxOutputDerivativeOrder=\"1\""] {
+        assert!(MODEL_DESCRIPTION.contains(promise), "{promise}");
+    }
+    assert!(!MODEL_DESCRIPTION.contains("providesDirectionalDerivative=\"true\""));
 }
 
 #[test]
@@ -303,22 +268,13 @@ fn what_is_no_instance_is_refused_by_every_function_and_left_alone() {
 
 #[test]
 fn a_step_past_the_stop_time_a_second_end_and_a_call_after_a_failed_step_are_errors() {
-    let start = [
-        Call::SetupExperiment {
-            tolerance: None,
-            start: 1.0,
-            stop: Some(1.0 + 2e-5),
-        },
-        Call::EnterInitializationMode,
-        Call::ExitInitializationMode,
-        Call::step(1e-5),
-    ];
-    let reset_and_run = [
-        Call::Reset,
-        Call::EnterInitializationMode,
-        Call::ExitInitializationMode,
-        Call::step(1e-5),
-    ];
+    let setup = Call::SetupExperiment {
+        tolerance: None,
+        start: 1.0,
+        stop: Some(1.0 + 2e-5),
+    };
+    let [enter, exit] = Call::INITIALISE;
+    let start = [setup, enter, exit, Call::step(1e-5)];
     let cases: [&[Call]; 4] = [
         &[
             Call::step(2e-5),
@@ -338,13 +294,9 @@ fn a_step_past_the_stop_time_a_second_end_and_a_call_after_a_failed_step_are_err
     ];
     for case in cases {
         let mut judge = Judge::new(&LIBRARY);
-        for call in start.iter().chain(case) {
-            judge.call(call).unwrap();
-        }
+        judge.run(start.iter().chain(case)).unwrap();
         assert_eq!(judge.life.now.phase, Phase::Error, "{case:?}");
-        for call in &reset_and_run {
-            judge.call(call).unwrap();
-        }
+        judge.run(&reset_and_run()).unwrap();
         assert_eq!(judge.life.now.phase, Phase::StepComplete);
     }
 }

@@ -2,10 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use campaign::api::LIBRARY;
 use campaign::choices::{Choices, bytes};
 use campaign::hostile::{Outcome, changed, meet, repaired, specimen};
-
-use crate::library::LIBRARY;
 
 #[test]
 fn a_repaired_specimen_is_the_specimen() {

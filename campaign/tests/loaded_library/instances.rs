@@ -2,15 +2,13 @@
 
 use std::ffi::CStr;
 
-use campaign::api::Api;
-use campaign::call::{Call, Fault};
-use campaign::description::{DESCRIPTION, Kind};
-use campaign::importer::instantiate;
+use campaign::api::{Api, LIBRARY};
+use campaign::call::Call;
+use campaign::description::DESCRIPTION;
 use campaign::judge::Judge;
-use campaign::log::Log;
 use relay_contact::fmi2::*;
-
-use crate::library::LIBRARY;
+use testing::instance::Arguments;
+use testing::log::{Log, Message, callbacks};
 
 #[test]
 fn the_library_is_the_one_of_this_build() {
@@ -26,56 +24,43 @@ fn the_library_is_the_one_of_this_build() {
 
 #[test]
 fn a_wrong_guid_type_name_or_no_callbacks_make_no_instance() {
-    let guid = DESCRIPTION.guid.as_str();
-    let cases = [
-        (
-            Some("relay"),
-            fmi2CoSimulation,
-            Some("{00000000000000000000000000000000}"),
-        ),
-        (Some("relay"), fmi2CoSimulation, Some("")),
-        (Some("relay"), fmi2CoSimulation, None),
-        (Some("relay"), fmi2ModelExchange, Some(guid)),
-        (Some("relay"), 77, Some(guid)),
-        (Some(""), fmi2CoSimulation, Some(guid)),
-        (None, fmi2CoSimulation, Some(guid)),
-    ];
-    for (name, kind, guid) in cases {
+    let right = Arguments::default();
+    let guid = |guid| Arguments { guid, ..right };
+    let kind = |kind| Arguments { kind, ..right };
+    let name = |name| Arguments { name, ..right };
+    for (wrong, parts) in [
+        (guid(Some("{1234}")), ["fmuGUID = {1234}", &DESCRIPTION.guid]),
+        (guid(Some("")), ["fmuGUID", &DESCRIPTION.guid]),
+        (guid(None), ["fmuGUID", "null"]),
+        (kind(fmi2ModelExchange), ["fmuType = 0", "fmi2CoSimulation"]),
+        (kind(77), ["fmuType = 77", "fmi2CoSimulation"]),
+        (name(Some("")), ["instanceName", ""]),
+        (name(None), ["instanceName", ""]),
+    ] {
         let log = Log::default();
-        assert!(instantiate(&LIBRARY, name, kind, guid, Some(&log)).is_null());
+        let function = LIBRARY.fmi2Instantiate;
+        assert!(wrong.instantiate(function, Some(&callbacks(&log))).is_null());
         let messages = log.into_inner().unwrap();
+        let told = |message: &Message| {
+            let error = message.status == fmi2Error && message.category == "logStatusError";
+            error && parts.iter().all(|part| message.text.contains(part))
+        };
         assert!(
-            matches!(&messages[..], [message] if message.status == fmi2Error),
-            "{messages:?}"
+            matches!(&messages[..], [message] if told(message)),
+            "{wrong:?}: {messages:?}"
         );
     }
-    assert!(instantiate(&LIBRARY, Some("relay"), fmi2CoSimulation, Some(guid), None).is_null());
+    assert!(right.instantiate(LIBRARY.fmi2Instantiate, None).is_null());
 }
 
 /// The bits of all real outputs over a run in which the contact opens; each number its own run.
 fn run(api: &Api, number: u32) -> Vec<u64> {
     let mut judge = Judge::new(api);
-    let reference = |name| DESCRIPTION.reference(name);
-    let excitation = Call::Set {
-        kind: Kind::Integer,
-        values: vec![(reference("effects.excitation"), 2.0)],
-        fault: Fault::None,
-    };
-    let amplitude = 400.0 + f64::from(number);
-    let parameters = Call::set_reals(vec![(reference("excitation.amplitude"), amplitude)]);
     let mut bits = Vec::new();
-    for call in [
-        excitation,
-        parameters,
-        Call::EnterInitializationMode,
-        Call::ExitInitializationMode,
-    ] {
-        judge.call(&call).unwrap();
-    }
+    judge.run(&Call::shaken(400.0 + f64::from(number))).unwrap();
     for k in 0..200 {
-        let input = (reference("base.acceleration"), f64::from(k % 7));
-        judge.call(&Call::set_reals(vec![input])).unwrap();
-        judge.call(&Call::step(1.7e-5)).unwrap();
+        let input = (DESCRIPTION.reference("base.acceleration"), f64::from(k % 7));
+        judge.run(&[Call::set_reals(vec![input]), Call::step(1.7e-5)]).unwrap();
         bits.extend(judge.life.now.outputs.iter().flatten());
     }
     bits
@@ -98,16 +83,12 @@ fn eight_threads_with_an_instance_each_get_the_bits_of_a_single_one() {
 fn thousands_of_instances_live_at_once() {
     let mut judges: Vec<_> = (0..2000).map(|_| Judge::new(&LIBRARY)).collect();
     for judge in &mut judges {
-        for call in [Call::EnterInitializationMode, Call::ExitInitializationMode] {
-            judge.call(&call).unwrap();
-        }
+        judge.run(&Call::INITIALISE).unwrap();
     }
     let input = DESCRIPTION.reference("base.acceleration");
     for (number, judge) in judges.iter_mut().enumerate() {
-        judge
-            .call(&Call::set_reals(vec![(input, (number % 2) as f64 * 50.0)]))
-            .unwrap();
-        judge.call(&Call::step(1e-4)).unwrap();
+        let push = Call::set_reals(vec![(input, (number % 2) as f64 * 50.0)]);
+        judge.run(&[push, Call::step(1e-4)]).unwrap();
     }
     let force = |judge: &Judge| judge.life.now.outputs.clone();
     let (pushed, left) = (force(&judges[1]), force(&judges[0]));

@@ -4,5 +4,4 @@
 mod every_call;
 mod hostile_states;
 mod instances;
-mod library;
 mod random_calls;

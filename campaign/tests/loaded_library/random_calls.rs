@@ -2,9 +2,8 @@
 
 use std::time::Instant;
 
+use campaign::api::LIBRARY;
 use campaign::random::campaign;
-
-use crate::library::LIBRARY;
 
 /// How many calls are made, unless the environment variable CAMPAIGN_CALLS says otherwise.
 const CALLS: u64 = 100_000;

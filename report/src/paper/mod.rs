@@ -5,8 +5,6 @@
 //! [`elastic`]; [`findings`]; [`identification`].   [`table`], [`curves`]: what these are made with;   [`spring`]: the motion
 //! between clamp and contact;   [`validation`]: the same as `docs/validation.md`.
 
-#[path = "../../../examples/identify/identification.rs"]
-mod calculation;
 mod comparison;
 mod curves;
 mod displacement;
@@ -27,6 +25,7 @@ mod tests;
 pub mod validation;
 
 use anyhow::Result;
+use identify as calculation;
 
 use self::results::Results;
 use crate::content::Arguments;

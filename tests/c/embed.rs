@@ -1,9 +1,6 @@
 //! The examples that use the library from a loop of their own, `embed.rs` and `embed.c`: run as their users do. Both print
 //! the same numbers; force, circuit and interruptions are checked against closed forms.
 
-#[path = "common/c_program.rs"]
-mod c_program;
-
 use std::f64::consts::TAU;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,6 +12,8 @@ use relay_contact::harmonic;
 use relay_contact::model::Model;
 use relay_contact::scene::Scene;
 use relay_contact::variables::VARIABLES;
+
+use crate::program;
 
 /// Communication step of the examples, s.
 const STEP: f64 = 2e-6;
@@ -28,8 +27,8 @@ fn in_rust() -> Command {
 }
 
 fn in_c() -> Command {
-    static PROGRAM: LazyLock<PathBuf> = LazyLock::new(|| c_program::compile("examples/embed.c"));
-    c_program::command(&PROGRAM)
+    static PROGRAM: LazyLock<PathBuf> = LazyLock::new(|| program::compile("examples/embed.c"));
+    program::command(&PROGRAM)
 }
 
 fn output(mut program: Command, arguments: &[&str]) -> Output {
@@ -163,7 +162,7 @@ fn the_circuit_swings_as_its_equations_say_while_the_contact_is_open() {
 }
 
 #[test]
-fn the_interruptions_told_are_those_of_the_table() {
+fn the_interruptions_printed_are_those_of_the_table() {
     let run = Run::new(in_rust(), "400", "0.006", "embed-interruptions.csv");
     let threshold = Scene::default().chatter.resistance_threshold;
     let above: Vec<_> = run.rows.iter().map(|row| row[3] > threshold).collect();
@@ -184,12 +183,12 @@ fn the_interruptions_told_are_those_of_the_table() {
 }
 
 #[test]
-fn what_is_wrong_is_told() {
+fn wrong_arguments_end_with_a_message_and_a_code() {
     for program in [in_rust, in_c] {
         let help = output(program(), &["--help"]);
         assert!(help.status.success() && String::from_utf8_lossy(&help.stdout).contains("usage: embed ["));
-        for (arguments, code, wanted) in [
-            (["fast", "0.01"], 2, "ACCELERATION = fast: wanted is a number"),
+        for (arguments, code, message) in [
+            (["fast", "0.01"], 2, "ACCELERATION = fast: expected a number"),
             (["400", "-1"], 2, "DURATION = -1 s: allowed is 2e-6 to 10 s"),
             (
                 ["nan", "0.01"],
@@ -198,9 +197,9 @@ fn what_is_wrong_is_told() {
             ),
         ] {
             let ran = output(program(), &arguments);
-            let told = String::from_utf8_lossy(&ran.stderr);
-            assert_eq!(ran.status.code(), Some(code), "{told}");
-            assert!(told.contains(wanted), "{told}");
+            let printed = String::from_utf8_lossy(&ran.stderr);
+            assert_eq!(ran.status.code(), Some(code), "{printed}");
+            assert!(printed.contains(message), "{printed}");
         }
     }
 }

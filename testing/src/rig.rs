@@ -1,11 +1,11 @@
-//! What the tests of the integrator share: a model under way, also one put together from modes without a beam, its energy,
-//! and what is given to it.
+//! A model under way, also one put together from modes without a beam, with its energy.
 
 use relay_contact::beam::mode::Mode;
 use relay_contact::contact::hertz::Hertz;
 use relay_contact::contact::law::Law;
 use relay_contact::contact::linear::Linear;
 use relay_contact::error::StepError;
+use relay_contact::excitation::generator::Generator;
 use relay_contact::inputs::Inputs;
 use relay_contact::integrator::communication_step;
 use relay_contact::integrator::motion::Motion;
@@ -15,13 +15,24 @@ use relay_contact::preload::Preload;
 use relay_contact::scene::Scene;
 use relay_contact::state::State;
 
+use crate::scenes::shaken;
+// For those who need both.
+pub use crate::scenes::undamped;
+
 /// A model with its state.
 pub struct Rig {
+    /// Modes, contact law and preload.
     pub model: Model,
     /// The whole motion at the instant reached.
     pub state: State,
     course: Motion,
     workspace: Workspace,
+}
+
+impl std::fmt::Debug for Rig {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(f, "{:?}", self.state)
+    }
 }
 
 impl Rig {
@@ -34,6 +45,12 @@ impl Rig {
             workspace: Workspace::new(&model),
             model,
         }
+    }
+
+    /// The same with a sine at the base from the instant 0 on: amplitude (m/s2) and frequency (Hz).
+    pub fn shaken(model: Model, amplitude: f64, frequency: f64) -> Self {
+        let generator = Generator::new(&shaken(amplitude, frequency)).expect("a sine");
+        Self::new(Model { generator, ..model })
     }
 
     /// Sets the modal velocities at the start, in the order of the modes, and what follows from them.
@@ -50,7 +67,17 @@ impl Rig {
         self.course = Motion::new(*state);
     }
 
+    /// Lets a bonded contact open from here on.
+    pub fn unbond(&mut self) {
+        if let Law::Linear(linear) = &mut self.model.law {
+            linear.bonded = false;
+        }
+    }
+
     /// Advances to the instant `time` (s) with the inputs held.
+    ///
+    /// # Errors
+    /// A [`StepError`] where the motion cannot be integrated.
     pub fn run_to(&mut self, inputs: &Inputs, time: f64) -> Result<(), StepError> {
         let Self {
             model,
@@ -91,21 +118,13 @@ impl Rig {
     }
 }
 
-/// The start values, but without damping of beam or contact.
-pub fn undamped() -> Scene {
-    let mut scene = Scene::default();
-    scene.beam.stiffness_damping = 0.0;
-    scene.contact.damping = 0.0;
-    scene
-}
-
 /// A model put together from modes: `gap` (m) in front of the contact, tolerance relative to `force_scale` (N).
 pub fn compose(modes: &[Mode], law: Law, gap: f64, tolerance: f64, force_scale: f64) -> Model {
     let mut scene = Scene::default();
     scene.solver.tolerance = tolerance;
     // Of a mass there is no current.
     scene.effects.chatter = false;
-    let model = Model::new(&scene, 0.0).unwrap();
+    let model = Model::new(&scene, 0.0).expect("the specimen");
     Model {
         preload: Preload {
             force: 0.0,
@@ -129,6 +148,16 @@ pub fn oscillator(mass: f64, stiffness: f64) -> Mode {
         tip: 1.0 / mass.sqrt(),
         participation: mass.sqrt(),
     }
+}
+
+/// A spring (N/m) that only pushes.
+pub fn stop(stiffness: f64) -> Law {
+    Law::Linear(Linear {
+        stiffness,
+        damping: 0.0,
+        offset: 0.0,
+        bonded: false,
+    })
 }
 
 /// Hertzian contact `k d^(3/2)` (N/m^1.5) with the damping time (s).

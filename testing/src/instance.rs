@@ -1,0 +1,228 @@
+//! Instances behind the C interface.
+
+use std::ffi::{CStr, CString};
+use std::ptr;
+
+use relay_contact::fmi2::*;
+use relay_contact::variables::{GUID, Variable};
+
+use crate::log::{Log, Message, callbacks};
+
+/// The type of `fmi2Instantiate`.
+pub type Instantiate = unsafe extern "C" fn(
+    fmi2String,
+    fmi2Type,
+    fmi2String,
+    fmi2String,
+    *const fmi2CallbackFunctions,
+    fmi2Boolean,
+    fmi2Boolean,
+) -> fmi2Component;
+
+/// Arguments of `fmi2Instantiate`, right ones by default.
+#[derive(Clone, Copy, Debug)]
+#[allow(missing_docs)] // named as in the standard
+pub struct Arguments<'a> {
+    pub name: Option<&'a str>,
+    pub kind: fmi2Type,
+    pub guid: Option<&'a str>,
+    pub resources: Option<&'a CStr>,
+    pub logging_on: bool,
+}
+
+impl Default for Arguments<'_> {
+    fn default() -> Self {
+        Self {
+            name: Some("relay 1"),
+            kind: fmi2CoSimulation,
+            guid: Some(GUID),
+            resources: None,
+            logging_on: false,
+        }
+    }
+}
+
+impl Arguments<'_> {
+    /// Calls `function`, the `fmi2Instantiate` of a library.
+    pub fn instantiate(&self, function: Instantiate, callbacks: Option<&fmi2CallbackFunctions>) -> fmi2Component {
+        let text = |text: Option<&str>| text.map(|text| CString::new(text).unwrap_or_default());
+        let pointer = |text: &Option<CString>| text.as_ref().map_or(ptr::null(), |text| text.as_ptr());
+        let (name, guid) = (text(self.name), text(self.guid));
+        unsafe {
+            function(
+                pointer(&name),
+                self.kind,
+                pointer(&guid),
+                self.resources.map_or(ptr::null(), CStr::as_ptr),
+                callbacks.map_or(ptr::null(), ptr::from_ref),
+                fmi2False,
+                self.logging_on.into(),
+            )
+        }
+    }
+}
+
+/// An instance of the library that is linked into this program, with what it logs. Freed with the value.
+#[derive(Debug)]
+pub struct Instance {
+    /// For calls that are not below.
+    pub component: fmi2Component,
+    // Boxed, so that the address the callback holds stays.
+    log: Box<Log>,
+}
+
+/// The value reference of a name.
+pub fn vr(name: &str) -> fmi2ValueReference {
+    let variable = Variable::by_name(name);
+    variable.unwrap_or_else(|| panic!("no variable {name}")).value_reference
+}
+
+impl Default for Instance {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Instance {
+    /// In the state instantiated.
+    pub fn new() -> Self {
+        Self::with(&Arguments::default())
+    }
+
+    /// The same with other arguments.
+    pub fn with(arguments: &Arguments) -> Self {
+        let log = Box::new(Log::default());
+        let component = arguments.instantiate(fmi2Instantiate, Some(&callbacks(&log)));
+        assert!(!component.is_null(), "{arguments:?}: {log:?}");
+        Self { component, log }
+    }
+
+    /// In Initialization Mode.
+    pub fn initializing() -> Self {
+        let instance = Self::new();
+        assert_eq!(instance.enter_initialization_mode(), fmi2OK);
+        instance
+    }
+
+    /// At the first communication point, with start values.
+    pub fn initialized() -> Self {
+        let instance = Self::new();
+        instance.initialize();
+        instance
+    }
+
+    /// `fmi2SetupExperiment`.
+    pub fn setup(&self, tolerance: Option<f64>, start: f64, stop: Option<f64>) -> fmi2Status {
+        let defined = |number: Option<f64>| (number.is_some().into(), number.unwrap_or(0.0));
+        let ((tolerance_defined, tolerance), (stop_defined, stop)) = (defined(tolerance), defined(stop));
+        unsafe { fmi2SetupExperiment(self.component, tolerance_defined, tolerance, start, stop_defined, stop) }
+    }
+
+    /// `fmi2EnterInitializationMode`.
+    pub fn enter_initialization_mode(&self) -> fmi2Status {
+        unsafe { fmi2EnterInitializationMode(self.component) }
+    }
+
+    /// `fmi2ExitInitializationMode`.
+    pub fn exit_initialization_mode(&self) -> fmi2Status {
+        unsafe { fmi2ExitInitializationMode(self.component) }
+    }
+
+    /// From the state instantiated to the first communication point.
+    pub fn initialize(&self) {
+        assert_eq!(self.enter_initialization_mode(), fmi2OK, "{:?}", self.log);
+        assert_eq!(self.exit_initialization_mode(), fmi2OK, "{:?}", self.log);
+    }
+
+    /// `fmi2SetReal`.
+    pub fn set_reals<const N: usize>(&self, names: [&str; N], values: [f64; N]) -> fmi2Status {
+        unsafe { fmi2SetReal(self.component, names.map(vr).as_ptr(), N, values.as_ptr()) }
+    }
+
+    /// Of one variable.
+    pub fn set_real(&self, name: &str, value: f64) -> fmi2Status {
+        self.set_reals([name], [value])
+    }
+
+    /// `fmi2SetInteger`.
+    pub fn set_integer(&self, name: &str, value: i32) -> fmi2Status {
+        unsafe { fmi2SetInteger(self.component, [vr(name)].as_ptr(), 1, &raw const value) }
+    }
+
+    /// `fmi2SetBoolean`.
+    pub fn set_boolean(&self, name: &str, value: bool) -> fmi2Status {
+        let value = value.into();
+        unsafe { fmi2SetBoolean(self.component, [vr(name)].as_ptr(), 1, &raw const value) }
+    }
+
+    /// `fmi2GetReal`: status and value.
+    pub fn try_real(&self, name: &str) -> (fmi2Status, f64) {
+        let (reference, mut value) = (vr(name), f64::NAN);
+        let status = unsafe { fmi2GetReal(self.component, &raw const reference, 1, &raw mut value) };
+        (status, value)
+    }
+
+    /// The value of a real variable.
+    pub fn real(&self, name: &str) -> f64 {
+        let (status, value) = self.try_real(name);
+        assert_eq!(status, fmi2OK, "{name}: {:?}", self.log);
+        value
+    }
+
+    /// The value of an integer variable.
+    pub fn integer(&self, name: &str) -> i32 {
+        let (reference, mut value) = (vr(name), i32::MIN);
+        let status = unsafe { fmi2GetInteger(self.component, &raw const reference, 1, &raw mut value) };
+        assert_eq!(status, fmi2OK, "{name}: {:?}", self.log);
+        value
+    }
+
+    /// `fmi2DoStep`.
+    pub fn step(&self, point: f64, size: f64) -> fmi2Status {
+        unsafe { fmi2DoStep(self.component, point, size, fmi2True) }
+    }
+
+    /// `fmi2Reset`.
+    pub fn reset(&self) -> fmi2Status {
+        unsafe { fmi2Reset(self.component) }
+    }
+
+    /// Status and value of the last successful time.
+    pub fn last_successful_time(&self) -> (fmi2Status, f64) {
+        let mut time = f64::NAN;
+        let status = unsafe { fmi2GetRealStatus(self.component, fmi2LastSuccessfulTime, &raw mut time) };
+        (status, time)
+    }
+
+    /// What was logged since the last look.
+    pub fn messages(&self) -> Vec<Message> {
+        self.log
+            .lock()
+            .map(|mut log| std::mem::take(&mut *log))
+            .unwrap_or_default()
+    }
+
+    /// The call has come to the status, and the only message since the last look holds all `parts`.
+    pub fn answers(&self, status: fmi2Status, expected: fmi2Status, parts: &[&str]) {
+        assert_eq!(status, expected, "{parts:?}: {:?}", self.log);
+        self.expect_message(expected, parts);
+    }
+
+    /// The only message since the last look, whose text holds all `parts`.
+    pub fn expect_message(&self, status: fmi2Status, parts: &[&str]) {
+        let messages = self.messages();
+        let [message] = &messages[..] else {
+            panic!("one message expected with {parts:?}, found {messages:#?}");
+        };
+        assert_eq!(message.status, status, "{message:?}");
+        for part in parts {
+            assert!(message.text.contains(part), "{part:?} missing: {message:?}");
+        }
+    }
+}
+
+impl Drop for Instance {
+    fn drop(&mut self) {
+        unsafe { fmi2FreeInstance(self.component) }
+    }
+}

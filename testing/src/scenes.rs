@@ -1,0 +1,54 @@
+//! Scenes that tests begin with, and what is known of them without the library.
+
+use relay_contact::inputs::Inputs;
+use relay_contact::scene::Scene;
+use relay_contact::simulation::Simulation;
+use relay_contact::variables::{ExcitationKind, RealOutput};
+
+/// The specimen under a sine of this amplitude (m/s2) and frequency (Hz).
+pub fn shaken(amplitude: f64, frequency: f64) -> Scene {
+    let mut scene = Scene::default();
+    scene.effects.excitation = ExcitationKind::Sine;
+    scene.excitation.amplitude = amplitude;
+    scene.excitation.frequency = frequency;
+    scene
+}
+
+/// The start values, but without damping of beam or contact.
+pub fn undamped() -> Scene {
+    let mut scene = Scene::default();
+    scene.beam.stiffness_damping = 0.0;
+    scene.contact.damping = 0.0;
+    scene
+}
+
+/// An output of the scene at rest in its preload.
+pub fn at_rest(scene: &Scene, output: RealOutput) -> f64 {
+    let simulation = Simulation::new(scene, &Inputs::default(), 0.0).expect("a scene that can be simulated");
+    simulation.real(output)
+}
+
+/// Stiffness of the tip against a force there, `3 E I / L^3`, N/m.
+pub fn tip_stiffness(scene: &Scene) -> f64 {
+    let beam = &scene.beam;
+    3.0 * (beam.youngs_modulus * beam.width * beam.thickness.powi(3) / 12.0) / beam.length.powi(3)
+}
+
+/// What `solver.tolerance` is relative to, N: the preload force, or that of the spring bent by the overtravel (by 0.1 mm where
+/// that is less) if it is greater.
+pub fn force_scale(scene: &Scene) -> f64 {
+    let bent = tip_stiffness(scene) * scene.contact.overtravel.abs().max(1e-4);
+    at_rest(scene, RealOutput::PreloadForce).max(bent)
+}
+
+/// Mass with which a slow acceleration of the base acts on the contact, kg: that of a propped cantilever with the rivet at
+/// the prop, the prop all but rigid.
+pub fn propped_mass(scene: &Scene) -> f64 {
+    let beam = &scene.beam;
+    0.375 * beam.density * beam.width * beam.thickness * beam.length + scene.tip.mass
+}
+
+/// Largest difference of two courses at the same instants.
+pub fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}

@@ -1,0 +1,234 @@
+//! What a call that is not done says: which argument or variable, its value, and what is allowed.
+
+use std::ptr;
+
+use relay_contact::fmi2::*;
+use relay_contact::variables::{Group, VARIABLES};
+use testing::instance::{Instance, vr};
+
+#[test]
+fn an_array_that_is_null_misaligned_or_endless_is_named() {
+    let (reference, order, mut value) = (vr("beam.length"), 1, 0.0);
+    let (reference, order, value) = (&raw const reference, &raw const order, &raw mut value);
+    let null = ptr::null();
+    macro_rules! check {
+        ($function:ident($($argument:expr),*), $wrong:literal) => {
+            let fmu = Instance::initialized();
+            let status = unsafe { $function(fmu.component, $($argument),*) };
+            fmu.answers(status, fmi2Error, &[stringify!($function), concat!("argument ", $wrong, " "), "null"]);
+        };
+    }
+    check!(fmi2GetReal(null, 1, value), "vr");
+    check!(fmi2GetReal(reference, 1, ptr::null_mut()), "value");
+    check!(fmi2GetReal(reference, usize::MAX, value), "vr");
+    check!(fmi2GetReal(reference, 1, value.byte_add(1)), "value");
+    check!(fmi2GetInteger(null, 1, ptr::null_mut()), "vr");
+    check!(fmi2GetBoolean(null, 1, ptr::null_mut()), "vr");
+    check!(fmi2GetString(null, 1, ptr::null_mut()), "vr");
+    check!(fmi2SetReal(null, 1, value), "vr");
+    check!(fmi2SetReal(reference, 1, ptr::null()), "value");
+    check!(fmi2SetInteger(reference, 1, ptr::null()), "value");
+    check!(fmi2SetBoolean(reference, 1, ptr::null()), "value");
+    check!(fmi2SetString(reference, 1, ptr::null()), "value");
+    check!(fmi2SetDebugLogging(1, 1, ptr::null()), "categories");
+    check!(fmi2SetDebugLogging(1, 1, [ptr::null()].as_ptr()), "categories");
+    check!(fmi2GetRealStatus(fmi2LastSuccessfulTime, ptr::null_mut()), "value");
+    check!(fmi2SetRealInputDerivatives(null, 1, order, value), "vr");
+    check!(fmi2SetRealInputDerivatives(reference, 1, ptr::null(), value), "order");
+    check!(fmi2SetRealInputDerivatives(reference, 1, order, ptr::null()), "value");
+    check!(fmi2GetRealOutputDerivatives(null, 1, order, value), "vr");
+    check!(fmi2GetRealOutputDerivatives(reference, 1, ptr::null(), value), "order");
+    check!(
+        fmi2GetRealOutputDerivatives(reference, 1, order, ptr::null_mut()),
+        "value"
+    );
+    check!(fmi2GetFMUstate(ptr::null_mut()), "FMUstate");
+}
+
+#[test]
+fn a_value_out_of_range_is_named_with_its_unit_and_the_range() {
+    let cases: [(&str, f64, &[&str]); 7] = [
+        ("beam.width", -1.0, &["beam.width = -1 m", "0.0001 to 1"]),
+        ("beam.width", f64::NAN, &["beam.width = NaN"]),
+        ("beam.width", f64::INFINITY, &["beam.width = inf"]),
+        (
+            "contact.moving.poissonRatio",
+            0.6,
+            &["contact.moving.poissonRatio = 0.6", "-1", "0.5"],
+        ),
+        (
+            "contact.moving.poissonRatio",
+            0.5,
+            &["contact.moving.poissonRatio = 0.5", "less than 0.5"],
+        ),
+        ("resistance.open", 0.0, &["resistance.open = 0 Ohm", "1 to"]),
+        (
+            "base.acceleration",
+            f64::NEG_INFINITY,
+            &["base.acceleration = -inf m/s2", "-1000000000 to 1000000000"],
+        ),
+    ];
+    for (name, value, parts) in cases {
+        let fmu = Instance::new();
+        fmu.answers(fmu.set_real(name, value), fmi2Discard, parts);
+    }
+    let cases: [(&str, i32, &[&str]); 4] = [
+        (
+            "effects.axialForce",
+            9,
+            &["effects.axialForce = 9", "FromPreload", "Prescribed"],
+        ),
+        ("effects.excitation", 0, &["effects.excitation = 0", "Sine"]),
+        ("solver.modes", -1, &["solver.modes = -1", "0 to"]),
+        ("solver.modes", i32::MAX, &["solver.modes = 2147483647"]),
+    ];
+    for (name, value, parts) in cases {
+        let fmu = Instance::initializing();
+        fmu.answers(fmu.set_integer(name, value), fmi2Discard, parts);
+    }
+}
+
+#[test]
+fn a_variable_that_the_call_cannot_have_is_named_with_the_reason() {
+    let fmu = Instance::new();
+    let unknown = unsafe { fmi2SetReal(fmu.component, [u32::MAX].as_ptr(), 1, [1.0].as_ptr()) };
+    fmu.answers(unknown, fmi2Error, &["fmi2SetReal", "4294967295"]);
+    let fmu = Instance::initialized();
+    let reference = vr("solver.modes").to_string();
+    let of_other_type = fmu.try_real("solver.modes").0;
+    fmu.answers(of_other_type, fmi2Error, &["fmi2GetReal", "solver.modes", &reference]);
+    let fmu = Instance::new();
+    let parts = ["fmi2GetReal", "contact.force", "instantiated"];
+    fmu.answers(fmu.try_real("contact.force").0, fmi2Error, &parts);
+
+    let set = |fmu: &Instance, name| match name {
+        "effects.excitation" | "solver.steps" => fmu.set_integer(name, 2),
+        "contact.closed" => fmu.set_boolean(name, true),
+        _ => fmu.set_real(name, 0.02),
+    };
+    for name in ["contact.force", "solver.steps", "contact.closed"] {
+        let fmu = Instance::new();
+        fmu.answers(set(&fmu, name), fmi2Error, &[name, "computed"]);
+    }
+    for name in ["beam.length", "effects.excitation"] {
+        let fmu = Instance::initialized();
+        let parts = [name, "step complete", "fixed parameter"];
+        fmu.answers(set(&fmu, name), fmi2Error, &parts);
+    }
+}
+
+#[test]
+fn a_derivative_that_there_is_not_is_named_with_its_order() {
+    let set = |fmu: &Instance, name, order, value| unsafe {
+        let (vr, order, value) = ([vr(name)], [order], [value]);
+        fmi2SetRealInputDerivatives(fmu.component, vr.as_ptr(), 1, order.as_ptr(), value.as_ptr())
+    };
+    let get = |fmu: &Instance, name, order| unsafe {
+        let (vr, order, mut value) = ([vr(name)], [order], [0.0]);
+        fmi2GetRealOutputDerivatives(fmu.component, vr.as_ptr(), 1, order.as_ptr(), value.as_mut_ptr())
+    };
+    for order in [i32::MIN, -1, 0, 2, i32::MAX] {
+        let fmu = Instance::initialized();
+        let parts = ["base.acceleration", &order.to_string(), "allowed is 1"];
+        fmu.answers(set(&fmu, "base.acceleration", order, 1.0), fmi2Error, &parts);
+        let fmu = Instance::initialized();
+        let parts = ["contact.force", &order.to_string(), "allowed is 1"];
+        fmu.answers(get(&fmu, "contact.force", order), fmi2Error, &parts);
+    }
+    for variable in VARIABLES {
+        let fmu = Instance::initialized();
+        if !matches!(variable.group, Group::RealInput(_)) {
+            let parts = ["fmi2SetRealInputDerivatives", variable.name];
+            fmu.answers(set(&fmu, variable.name, 1, 1.0), fmi2Error, &parts);
+            assert_eq!(fmu.reset(), fmi2OK);
+        }
+        let fmu = Instance::initialized();
+        if get(&fmu, variable.name, 1) != fmi2OK {
+            let parts = ["fmi2GetRealOutputDerivatives", variable.name];
+            fmu.expect_message(fmi2Error, &parts);
+        }
+    }
+    let fmu = Instance::initialized();
+    let parts = ["base.acceleration", "finite"];
+    fmu.answers(set(&fmu, "base.acceleration", 1, f64::NAN), fmi2Discard, &parts);
+}
+
+#[test]
+fn a_number_of_the_experiment_or_of_a_step_is_named() {
+    for tolerance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let fmu = Instance::new();
+        let parts = ["fmi2SetupExperiment", &format!("tolerance = {tolerance}")];
+        fmu.answers(fmu.setup(Some(tolerance), 2.0, None), fmi2Warning, &parts);
+    }
+    for (start, stop, part) in [
+        (f64::NAN, None, "startTime = NaN"),
+        (f64::INFINITY, None, "startTime = inf"),
+        (1.0, Some(0.5), "stopTime = 0.5"),
+        (0.0, Some(f64::NAN), "stopTime = NaN"),
+    ] {
+        let fmu = Instance::new();
+        let parts = ["fmi2SetupExperiment", part, "allowed"];
+        fmu.answers(fmu.setup(None, start, stop), fmi2Error, &parts);
+    }
+    for size in [0.0, -1e-5, f64::NAN, f64::INFINITY, 1e-300] {
+        let fmu = Instance::new();
+        assert_eq!(fmu.setup(None, 1.0, None), fmi2OK);
+        fmu.initialize();
+        fmu.answers(fmu.step(1.0, size), fmi2Error, &["fmi2DoStep", "communicationStepSize"]);
+    }
+    for (time, part) in [
+        (f64::NAN, ""),
+        (f64::INFINITY, ""),
+        (f64::NEG_INFINITY, ""),
+        (0.5, "stands at"),
+    ] {
+        let fmu = Instance::initialized();
+        let parts = ["fmi2DoStep", "currentCommunicationPoint", part];
+        fmu.answers(fmu.step(time, 1e-5), fmi2Error, &parts);
+    }
+    let fmu = Instance::new();
+    assert_eq!(fmu.setup(None, 0.0, Some(1e-5)), fmi2OK);
+    fmu.initialize();
+    assert_eq!(fmu.step(0.0, 1e-5), fmi2OK);
+    fmu.answers(fmu.step(1e-5, 1e-5), fmi2Error, &["stop time 0.00001 s"]);
+}
+
+#[test]
+fn what_there_is_not_is_named() {
+    let fmu = Instance::initialized();
+    let mut time = 0.0;
+    for kind in [fmi2DoStepStatus, fmi2Terminated, 99] {
+        let status = unsafe { fmi2GetRealStatus(fmu.component, kind, &raw mut time) };
+        let parts = ["fmi2GetRealStatus", &format!("status kind {kind}")];
+        fmu.answers(status, fmi2Discard, &parts);
+    }
+    let (none, mut nothing) = (ptr::null(), 0.0);
+    let status =
+        unsafe { fmi2GetDirectionalDerivative(fmu.component, none, 0, none, 0, ptr::null(), &raw mut nothing) };
+    let parts = [
+        "fmi2GetDirectionalDerivative",
+        "not supported",
+        "providesDirectionalDerivative",
+    ];
+    fmu.answers(status, fmi2Error, &parts);
+    let mut memory = [0_u64; 8];
+    let mut foreign: fmi2FMUstate = memory.as_mut_ptr().cast();
+    for wrong in [ptr::null_mut(), foreign] {
+        let fmu = Instance::initialized();
+        let parts = ["fmi2SetFMUstate", "FMUstate", "no saved state"];
+        fmu.answers(unsafe { fmi2SetFMUstate(fmu.component, wrong) }, fmi2Error, &parts);
+    }
+    let place = &raw mut foreign;
+    let fmu = Instance::initialized();
+    fmu.answers(
+        unsafe { fmi2GetFMUstate(fmu.component, place) },
+        fmi2Error,
+        &["fmi2GetFMUstate", "no saved state"],
+    );
+    assert_eq!(fmu.reset(), fmi2OK);
+    fmu.answers(
+        unsafe { fmi2FreeFMUstate(fmu.component, place) },
+        fmi2Error,
+        &["fmi2FreeFMUstate", "no saved state"],
+    );
+}
