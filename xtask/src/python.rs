@@ -4,10 +4,8 @@ use std::env::consts::EXE_SUFFIX;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
-use indicatif::ProgressBar;
 
 use crate::commands::{command, output, root, run};
 
@@ -47,12 +45,10 @@ pub fn prepare() -> Result<()> {
         return Ok(());
     }
     let python3 = system_python()?;
-    let progress = spinner("making .venv (Python packages of requirements.txt)");
+    println!("making .venv (Python packages of requirements.txt): some minutes the first time");
     output(command(python3).args(["-m", "venv", "--clear", ".venv"]))?;
     output(pip().args(["-r", "requirements.txt"]))?;
-    fs::write(stamp, required)?;
-    progress.finish_and_clear();
-    Ok(())
+    Ok(fs::write(stamp, required)?)
 }
 
 fn requirements() -> Result<String> {
@@ -63,12 +59,6 @@ fn pip() -> Command {
     let mut pip = python();
     pip.args(["-m", "pip", "install", "--disable-pip-version-check", "--quiet"]);
     pip
-}
-
-fn spinner(message: &'static str) -> ProgressBar {
-    let progress = ProgressBar::new_spinner().with_message(message);
-    progress.enable_steady_tick(Duration::from_millis(100));
-    progress
 }
 
 /// The folder of the libclang that comes with the environment.
@@ -87,10 +77,9 @@ pub fn zig() -> Result<(PathBuf, PathBuf)> {
     const MARK: &str = "; extra == 'release'";
     prepare()?;
     let required = requirements()?;
-    let progress = spinner("installing zig (Python package of requirements.txt)");
+    println!("installing zig (Python package of requirements.txt)");
     let marked = required.lines().filter_map(|line| line.strip_suffix(MARK));
     output(pip().args(marked.map(str::trim)))?;
-    progress.finish_and_clear();
     let zigbuild = interpreter().with_file_name(format!("cargo-zigbuild{EXE_SUFFIX}"));
     Ok((package("ziglang")?.join(format!("zig{EXE_SUFFIX}")), zigbuild))
 }

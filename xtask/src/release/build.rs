@@ -77,22 +77,13 @@ pub fn library(target: &str, tools: &Tools, metadata: &Metadata) -> Result<Vec<u
 }
 
 fn apple_flags(lld: &Path) -> Vec<String> {
-    let linker = [
-        format!("-Clinker={}", lld.display()),
-        "-Zunstable-options".to_owned(),
-        "-Clinker-flavor=darwin-lld".to_owned(),
-    ];
+    let linker = format!("-Clinker={}", lld.display());
     // Symbols that are not exported go; so does libiconv, which the standard library names and nothing uses.
-    let arguments = [
-        "-install_name",
-        "@rpath/RelayContact.dylib",
-        "-dead_strip_dylibs",
-        "-x",
-        "-S",
-    ];
-    linker
+    let arguments = "-install_name @rpath/RelayContact.dylib -dead_strip_dylibs -x -S";
+    ["-Zunstable-options", "-Clinker-flavor=darwin-lld", &linker]
+        .map(str::to_owned)
         .into_iter()
-        .chain(arguments.map(|argument| format!("-Clink-arg={argument}")))
+        .chain(arguments.split(' ').map(|argument| format!("-Clink-arg={argument}")))
         .collect()
 }
 
