@@ -10,9 +10,9 @@ use relay_contact::{C_HEADER, MODEL_DESCRIPTION};
 
 use crate::bill;
 use crate::commands::{cargo, command, output, root, run};
+use crate::documentation;
 use crate::licences;
 use crate::package::{Files, pack};
-use crate::report;
 
 /// Writes `dist/RelayContact.fmu` and gives its path. Beside it, for C programs, the library in `lib` and its header in
 /// `include`.
@@ -95,7 +95,7 @@ pub fn files<'a>(
         ("model.png".to_owned(), read(&root().join("docs/model.png"))?),
         (
             "documentation/index.html".to_owned(),
-            report::documentation()?.into_bytes(),
+            documentation::page()?.into_bytes(),
         ),
     ]);
     for (folder, extension, library) in libraries {
@@ -141,7 +141,7 @@ mod tests {
             pack(&first)?,
             pack(&licences::texts(&metadata, Path::new("rustc"), &[])?)?
         );
-        assert_eq!(report::documentation()?, report::documentation()?);
+        assert_eq!(documentation::page()?, documentation::page()?);
         assert!(files(&metadata, [], Path::new("rustc"), &[])?.contains_key("documentation/sbom.cdx.json"));
         Ok(())
     }
