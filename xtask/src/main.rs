@@ -3,6 +3,7 @@
 mod bill;
 mod commands;
 mod demo;
+mod documentation;
 mod fmu;
 mod importers;
 mod licences;

@@ -50,11 +50,6 @@ pub fn start(task: &str, arguments: &[impl AsRef<OsStr>]) -> Result<()> {
     commands::run(program().arg(task).args(arguments))
 }
 
-/// The page `documentation/index.html` of the component.
-pub fn documentation() -> Result<String> {
-    commands::output(program().arg("documentation"))
-}
-
 fn program() -> Command {
     let mut program = cargo();
     program.args(["run", "--quiet", "--package=report", "--"]);
