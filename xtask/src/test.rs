@@ -31,7 +31,7 @@ pub fn run(arguments: Arguments) -> Result<()> {
     if arguments.component {
         return component();
     }
-    stage("all", || {
+    stage("cargo xtask test", || {
         stage("format", || run_command(cargo().args(["fmt", "--all", "--check"])))?;
         stage("lint", || run_command(cargo().arg("clippy").args(LINT)))?;
         if arguments.quick {

@@ -12,6 +12,9 @@ use cargo_metadata::Message;
 use crate::commands::{cargo, command, output, run as run_command};
 use crate::release::trial::{Runner, Trial};
 
+/// The test that makes the calls.
+const CAMPAIGN: &str = "loaded_library";
+
 /// Random calls made under valgrind, fifty times slower there.
 const CALLS: &str = "5000";
 
@@ -70,13 +73,16 @@ fn build_campaign() -> Result<PathBuf> {
         "test",
         "--no-run",
         "--package=campaign",
-        "--test=loaded_library",
+        "--test",
+        CAMPAIGN,
         "--features=portable",
         "--target-dir=target/portable",
         "--message-format=json-render-diagnostics",
     ]);
     for message in Message::parse_stream(output(&mut build)?.as_bytes()) {
+        // Cargo also builds the programs of the package.
         if let Message::CompilerArtifact(artifact) = message?
+            && artifact.target.name == CAMPAIGN
             && let Some(executable) = artifact.executable
         {
             return Ok(executable.into_std_path_buf());
