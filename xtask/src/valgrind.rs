@@ -1,7 +1,6 @@
 //! The calls of importers under valgrind: no error, no leak.
 //!
-//! Valgrind does not know every instruction of the compilation for AVX2, so the library is built with the feature
-//! `portable`, in a target folder of its own, where no other build takes its library for its own.
+//! The library is that of the Rust tests, with its compilation for AVX2 (tried with valgrind 3.19, Debian 12).
 
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::PathBuf;
@@ -66,19 +65,11 @@ pub fn run() -> Result<()> {
     Ok(())
 }
 
-/// Builds the campaign with the feature and gives its program.
+/// Builds the campaign as the Rust tests do, so that nothing is compiled again, and gives its program.
 fn build_campaign() -> Result<PathBuf> {
     let mut build = cargo();
-    build.args([
-        "test",
-        "--no-run",
-        "--package=campaign",
-        "--test",
-        CAMPAIGN,
-        "--features=portable",
-        "--target-dir=target/portable",
-        "--message-format=json-render-diagnostics",
-    ]);
+    build.args(["test", "--no-run", "--test", CAMPAIGN]);
+    build.arg("--message-format=json-render-diagnostics");
     for message in Message::parse_stream(output(&mut build)?.as_bytes()) {
         // Cargo also builds the programs of the package.
         if let Message::CompilerArtifact(artifact) = message?
