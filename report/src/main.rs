@@ -8,9 +8,7 @@
 
 mod accuracy;
 mod content;
-mod documentation;
 mod effects;
-mod html;
 mod importers;
 mod markdown;
 mod opening;
@@ -53,8 +51,6 @@ enum Task {
     ReferenceRuns,
     /// Print the table of what the importers did
     Importers,
-    /// Print the page documentation/index.html of the component
-    Documentation,
 }
 
 fn main() -> ExitCode {
@@ -67,7 +63,6 @@ fn main() -> ExitCode {
         Task::Instructions => effects::instructions(),
         Task::ReferenceRuns => importers::reference::write(),
         Task::Importers => importers::print(),
-        Task::Documentation => documentation::page().map(|page| print!("{page}")),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -3,6 +3,7 @@
 //! [`figure`]: what plotly.js is told to draw;   [`table`]: tables.
 
 mod figure;
+mod html;
 #[cfg(test)]
 pub mod sample;
 mod table;
@@ -15,9 +16,8 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use relay_contact::MODEL_DESCRIPTION;
 use roxmltree::Document;
 
+use self::html::{head, markdown as html_of};
 use crate::content::{Block, Figure, Section};
-use crate::documentation::attribute;
-use crate::html::{head, markdown as html_of};
 use crate::programs::{output, python, root};
 
 const SCRIPT: &str = include_str!("figures.js");
@@ -44,7 +44,7 @@ pub fn write(sections: &[Section], quick: bool) -> Result<PathBuf> {
 /// The page as HTML, with the text of plotly.js.
 fn page(sections: &[Section], quick: bool, library: &str) -> Result<String> {
     let document = Document::parse(MODEL_DESCRIPTION)?;
-    let model = document.root_element();
+    let attribute = |name| document.root_element().attribute(name).unwrap_or_default();
     let (summary, others): (Vec<_>, Vec<_>) = sections.iter().partition(|section| section.id == SUMMARY);
     let blocks = sections.iter().flat_map(|section| &section.blocks);
     let figures: Vec<_> = blocks
@@ -61,8 +61,8 @@ fn page(sections: &[Section], quick: bool, library: &str) -> Result<String> {
             (head("relay-contact: report"))
             body {
                 header {
-                    h1 { "relay-contact " span.faint { (attribute(model, "version")) } }
-                    p { (attribute(model, "description")) "." }
+                    h1 { "relay-contact " span.faint { (attribute("version")) } }
+                    p { (attribute("description")) "." }
                     p {
                         "An FMI 2.0 component for co-simulation. Every number of ours on this page was computed by the command that "
                         "wrote it; published numbers name their source."

@@ -2,8 +2,8 @@
 
 use maud::{Markup, html};
 
+use super::html::{inline_markdown, markdown};
 use crate::content::Table;
-use crate::html::{inline_markdown, markdown};
 
 /// A table as HTML.
 pub fn table(table: &Table) -> Markup {

@@ -2,17 +2,22 @@
 //! the README, so that neither is written twice.
 
 mod block;
+mod description;
 
 use std::fs;
 
 use anyhow::{Context, Result, ensure};
-use maud::{DOCTYPE, Markup, html};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use pulldown_cmark::Parser;
 use relay_contact::MODEL_DESCRIPTION;
 use roxmltree::{Document, Node};
 
 use self::block::block;
-use crate::html::{head, markdown};
-use crate::programs::root;
+use self::description::{attribute, start, unit};
+use crate::commands::root;
+
+/// That of the report.
+const STYLE: &str = include_str!("../../../report/src/page/style.css");
 
 /// Sections of the README that the page repeats.
 const SECTIONS: [&str; 2] = ["Limits of validity", "Source"];
@@ -28,7 +33,12 @@ pub fn page() -> Result<String> {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
-            (head(&format!("{name} {version}")))
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { (name) " " (version) }
+                style { (PreEscaped(STYLE)) }
+            }
             body {
                 h1 { (name) " " span.faint { (version) } }
                 (markdown(introduction(&readme)?))
@@ -51,6 +61,12 @@ pub fn page() -> Result<String> {
         }
     };
     Ok(page.into_string())
+}
+
+fn markdown(text: &str) -> Markup {
+    let mut html = String::new();
+    pulldown_cmark::html::push_html(&mut html, Parser::new(text));
+    PreEscaped(html)
 }
 
 /// What may be wider than the page, in a box that scrolls.
@@ -103,36 +119,6 @@ fn choices(document: &Document) -> Markup {
             }
         }
     }
-}
-
-/// What the declared type of a variable's value says.
-fn declared<'a>(document: &'a Document, value: Node) -> Option<Node<'a, 'a>> {
-    let name = value.attribute("declaredType")?;
-    let mut types = document.descendants().filter(|node| node.has_tag_name("SimpleType"));
-    types
-        .find(|node| node.attribute("name") == Some(name))?
-        .first_element_child()
-}
-
-fn unit<'a>(document: &'a Document, value: Node) -> &'a str {
-    declared(document, value).map_or("", |declared| attribute(declared, "unit"))
-}
-
-/// The start value; of an enumeration, the choice's name.
-fn start<'a>(document: &'a Document, value: Node<'a, 'a>) -> &'a str {
-    let start = attribute(value, "start");
-    let items = declared(document, value)
-        .into_iter()
-        .flat_map(|declared| declared.children());
-    let mut items = items.filter(|item| item.has_tag_name("Item"));
-    items
-        .find(|item| attribute(*item, "value") == start)
-        .map_or(start, |item| attribute(item, "name"))
-}
-
-/// An attribute, or nothing.
-pub fn attribute<'a>(node: Node<'a, '_>, name: &str) -> &'a str {
-    node.attribute(name).unwrap_or("")
 }
 
 /// The README's first paragraph.

@@ -1,10 +1,10 @@
-//! What the HTML pages share: their head with the style sheet, and Markdown.
+//! HTML of the head with the style sheet, and of Markdown.
 
 use maud::{Markup, PreEscaped, html};
 use pulldown_cmark::{Options, Parser};
 
 /// The style sheet: light and dark, screen and paper.
-const STYLE: &str = include_str!("html.css");
+const STYLE: &str = include_str!("style.css");
 
 /// The head of a page.
 pub fn head(title: &str) -> Markup {

@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 use roxmltree::{Document, Node};
 
-use super::{attribute, unit};
+use super::description::{attribute, unit};
 
 /// Between two variables, and sizes of the block and of what is beside it, in pixels.
 const PITCH: usize = 22;
