@@ -12,13 +12,13 @@ use std::process::Command;
 use std::{env, fs};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use relay_contact::harmonic;
 use relay_contact::inputs::Inputs;
-use relay_contact::integrator::motion::Motion;
 use relay_contact::integrator::workspace::Workspace;
-use relay_contact::model::Model;
+use relay_contact::reference;
+use relay_contact::reference::Model;
+use relay_contact::reference::State;
 use relay_contact::scene::Scene;
-use relay_contact::state::State;
+use relay_contact::simulation::Motion;
 use relay_contact::variables::ExcitationKind;
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
@@ -87,7 +87,7 @@ fn settle(acceleration: f64, frequency: f64, from: Option<&State>) -> Result<Per
         let extremes = course.extremes(&model);
         (least, most) = (extremes.least, extremes.greatest);
         let changed = (least - last.0).abs().max((most - last.1).abs());
-        if changed < PERIODIC * model.preload.force {
+        if changed < PERIODIC * model.preload().force {
             let end = relay_contact::integrator::communication_step::state(&model, &course, &mut workspace)?;
             let opens = end.last_opening > end.time - 1.0 / frequency;
             return Ok(Period {
@@ -133,12 +133,12 @@ fn table() -> Result<String> {
     let mut rows = String::from("curve,acceleration,frequency,force_amplitude\n");
     let model = Model::new(&Scene::default(), 0.0)?;
     for frequency in frequencies(590) {
-        let force = harmonic::response(&model, TAU * frequency).force.norm();
+        let force = reference::response(&model, TAU * frequency).force.norm();
         for acceleration in ACCELERATIONS {
             writeln!(rows, "linear,{acceleration},{frequency},{}", acceleration * force)?;
         }
-        let opening = harmonic::opening_threshold(&model, TAU * frequency);
-        writeln!(rows, "linear threshold,{opening},{frequency},{}", model.preload.force)?;
+        let opening = reference::opening_threshold(&model, TAU * frequency);
+        writeln!(rows, "linear threshold,{opening},{frequency},{}", model.preload().force)?;
     }
 
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 59
@@ -160,7 +160,7 @@ fn table() -> Result<String> {
     }
     progress.set_message("opening thresholds");
     for frequency in frequencies(THRESHOLDS) {
-        let linear = harmonic::opening_threshold(&model, TAU * frequency);
+        let linear = reference::opening_threshold(&model, TAU * frequency);
         writeln!(rows, "threshold,{},{frequency},", threshold(frequency, linear)?)?;
         progress.inc(1);
     }

@@ -43,23 +43,24 @@
 )]
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
-pub mod beam;
-pub mod chatter;
-pub mod closed_loop;
-pub mod contact;
-pub mod electrical;
+mod beam;
+mod chatter;
+mod closed_loop;
+mod contact;
+mod electrical;
 pub mod error;
-pub mod excitation;
+mod excitation;
 pub mod fmi2;
-pub mod harmonic;
+mod harmonic;
 pub mod inputs;
-pub mod integrator;
-pub mod math;
-pub mod model;
-pub mod preload;
+mod integrator;
+mod math;
+mod model;
+mod preload;
+pub mod reference;
 pub mod scene;
 pub mod simulation;
-pub mod state;
+mod state;
 pub mod variables;
 
 /// Whether this build lacks the effects that reach into the steps of the integrator: `effects.contactDamping`, `.chatter`,

@@ -28,33 +28,48 @@ use crate::variables::{AxialForceKind, ContactLawKind, RealParameter};
 #[derive(Clone, Debug)]
 pub struct Model {
     /// What was asked for.
-    pub scene: Scene,
+    pub(crate) scene: Scene,
     /// The spring.
-    pub section: Section,
+    pub(crate) section: Section,
     /// The contact.
+    pub(crate) law: Law,
+    /// The equilibrium the motion is counted from.
+    pub(crate) preload: Preload,
+    /// The modes, frequency ascending.
+    pub(crate) modes: Vec<Mode>,
+    /// The axial force, where it follows the deflection at all times.
+    pub(crate) axial: Option<Feedback>,
+    /// Modes and contact together, where they are linear, the generator harmonic, and nobody looks inside steps.
+    pub(crate) closed_loop: Option<ClosedLoop>,
+    /// The base acceleration generated inside.
+    pub(crate) generator: Generator,
+    /// `support.displacement` at the start, m: part of the preload.
+    pub(crate) initial_support: f64,
+    /// What the tolerance is relative to, N: max(F_0, 3 E I max(|s|, 0.1 mm) / L^3).
+    pub(crate) force_scale: f64,
+    /// Lowest natural frequency with the contact as a spring, from the exact characteristic equation, Hz.
+    pub(crate) frequency: f64,
+    /// What current sees of it.
+    pub(crate) electrical: Option<ElectricalContact>,
+    /// What counts as an interruption, where they are asked for.
+    pub(crate) criterion: Option<Criterion>,
+    /// What the steps are computed with.
+    pub(crate) simd: Simd,
+}
+
+/// The parts of a model that can be exchanged: see [`Model::with`].
+#[derive(Clone, Debug)]
+pub struct Parts {
+    /// The modes of the cantilever, frequency ascending; [`MAX_MODES`] at most.
+    pub modes: Vec<Mode>,
+    /// The contact law.
     pub law: Law,
     /// The equilibrium the motion is counted from.
     pub preload: Preload,
-    /// The modes, frequency ascending.
-    pub modes: Vec<Mode>,
-    /// The axial force, where it follows the deflection at all times.
-    pub axial: Option<Feedback>,
-    /// Modes and contact together, where they are linear, the generator harmonic, and nobody looks inside steps.
-    pub closed_loop: Option<ClosedLoop>,
     /// The base acceleration generated inside.
     pub generator: Generator,
-    /// `support.displacement` at the start, m: part of the preload.
-    pub initial_support: f64,
-    /// What the tolerance is relative to, N: max(F_0, 3 E I max(|s|, 0.1 mm) / L^3).
+    /// What the tolerance is relative to, N.
     pub force_scale: f64,
-    /// Lowest natural frequency with the contact as a spring, from the exact characteristic equation, Hz.
-    pub frequency: f64,
-    /// What current sees of it.
-    pub electrical: Option<ElectricalContact>,
-    /// What counts as an interruption, where they are asked for.
-    pub criterion: Option<Criterion>,
-    /// What the steps are computed with.
-    pub simd: Simd,
 }
 
 impl Model {
@@ -145,6 +160,58 @@ impl Model {
             criterion,
             simd: Simd::detect(),
         })
+    }
+
+    /// The same with other parts, for problems that are no springs. It takes no exact steps.
+    #[must_use]
+    pub fn with(mut self, change: impl FnOnce(&mut Parts)) -> Self {
+        let mut parts = Parts {
+            modes: self.modes,
+            law: self.law,
+            preload: self.preload,
+            generator: self.generator,
+            force_scale: self.force_scale,
+        };
+        change(&mut parts);
+        parts.modes.truncate(MAX_MODES);
+        (self.modes, self.law, self.preload) = (parts.modes, parts.law, parts.preload);
+        (self.generator, self.force_scale, self.closed_loop) = (parts.generator, parts.force_scale, None);
+        self
+    }
+
+    /// What was asked for.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The spring.
+    pub fn section(&self) -> Section {
+        self.section
+    }
+
+    /// The contact law.
+    pub fn law(&self) -> Law {
+        self.law
+    }
+
+    /// The static equilibrium.
+    pub fn preload(&self) -> Preload {
+        self.preload
+    }
+
+    /// The modes of the cantilever, frequency ascending.
+    pub fn modes(&self) -> &[Mode] {
+        &self.modes
+    }
+
+    /// What the tolerance is relative to, N: max(F_0, 3 E I max(|s|, 0.1 mm) / L^3).
+    pub fn force_scale(&self) -> f64 {
+        self.force_scale
+    }
+
+    /// Lowest natural frequency with the contact as a spring, Hz.
+    pub fn frequency(&self) -> f64 {
+        self.frequency
     }
 
     /// [`Model::axial`], where the build has it.

@@ -4,13 +4,14 @@ use crate::chatter::Summary;
 use crate::error::{SceneError, StepError};
 use crate::inputs::Inputs;
 use crate::integrator::communication_step;
-use crate::integrator::events::log::Event;
-use crate::integrator::motion::Motion;
 use crate::integrator::workspace::Workspace;
 use crate::model::Model;
 use crate::scene::Scene;
 use crate::state::State;
 use crate::variables::{BooleanOutput, Group, IntegerOutput, RealOutput, Variable};
+
+pub use crate::integrator::events::log::Event;
+pub use crate::integrator::motion::Motion;
 
 /// A simulation from its preload onwards.
 #[derive(Clone, Debug)]
@@ -35,6 +36,24 @@ impl Simulation {
             motion,
             workspace,
         })
+    }
+
+    /// A model at any state: a reference run, or one that goes on from another with other parameters.
+    pub fn from_state(model: Model, state: State) -> Self {
+        let workspace = Workspace::new(&model);
+        Self {
+            model,
+            motion: Motion::new(state),
+            workspace,
+        }
+    }
+
+    /// The whole motion at the communication point, of which [`Simulation::state`] may lie before it.
+    ///
+    /// # Errors
+    /// A [`StepError`] where it cannot be found.
+    pub fn state_now(&mut self) -> Result<State, StepError> {
+        communication_step::state(&self.model, &self.motion, &mut self.workspace)
     }
 
     /// Advances over the communication step from `time` to `time + step_size`, s, with inputs that are held or change linearly.

@@ -2,10 +2,10 @@
 
 #![allow(clippy::unwrap_used)]
 
-use relay_contact::beam::characteristic;
-use relay_contact::beam::galerkin::Space;
-use relay_contact::beam::section::Section;
-use relay_contact::beam::statics::Statics;
+use relay_contact::reference;
+use relay_contact::reference::Section;
+use relay_contact::reference::Space;
+use relay_contact::reference::Statics;
 
 /// E I = rho A = L = 1, so that omega = (beta L)^2.
 const UNIT: Section = Section {
@@ -29,7 +29,7 @@ fn published_eigenvalues_of_the_plain_beam() {
         (1e13, &[3.926_602_31, 7.068_582_75, 10.210_176_12]),
     ];
     for (support, published) in cases {
-        let exact = characteristic::frequencies(&UNIT, 0.0, support, published.len());
+        let exact = reference::frequencies(&UNIT, 0.0, support, published.len());
         for (omega, published) in exact.iter().zip(published) {
             assert!(
                 (omega.sqrt() - published).abs() < 1e-8,
@@ -50,7 +50,7 @@ fn exact_frequencies_agree_with_galerkin() {
         };
         for axial_force in [-30.0, -1.0, 0.0, 1e-4, 1.0, 2.4] {
             for support in [0.0, 1.0, 5000.0, 1e7] {
-                let exact = characteristic::frequencies(&section, axial_force, support, 4);
+                let exact = reference::frequencies(&section, axial_force, support, 4);
                 let galerkin = Space::new(24).modes(&section, axial_force, support);
                 assert_eq!(exact.len(), 4);
                 for (exact, mode) in exact.iter().zip(&galerkin.unwrap()) {

@@ -4,12 +4,12 @@
 
 use std::f64::consts::TAU;
 
-use relay_contact::beam::characteristic;
-use relay_contact::beam::galerkin::Space;
-use relay_contact::beam::section::Section;
-use relay_contact::harmonic;
 use relay_contact::inputs::Inputs;
-use relay_contact::model::Model;
+use relay_contact::reference;
+use relay_contact::reference;
+use relay_contact::reference::Model;
+use relay_contact::reference::Section;
+use relay_contact::reference::Space;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{AxialForceKind, ExcitationKind, RealOutput};
@@ -44,7 +44,7 @@ fn natural_frequencies_of_the_continuum_and_of_galerkin() {
     let scene = specimen();
     let stiffness = at_rest(&scene, RealOutput::PreloadContactStiffness);
     let section = Section::new(&scene);
-    let exact = characteristic::frequencies(&section, 0.0, stiffness, 3);
+    let exact = reference::frequencies(&section, 0.0, stiffness, 3);
     let galerkin = Space::new(20).modes(&section, 0.0, stiffness).unwrap();
     for ((exact, galerkin), published) in exact.iter().zip(&galerkin).zip([1354.5397, 4378.2322, 9096.4319]) {
         digits(exact / TAU, published, 1e-4);
@@ -65,7 +65,7 @@ fn linear_force_amplitude() {
     let model = Model::new(&specimen(), 0.0).unwrap();
     for (frequency, published) in [(500.0, 3.6295e-2), (1000.0, 4.8122e-2)] {
         digits(
-            98.0 * harmonic::response(&model, TAU * frequency).force.norm(),
+            98.0 * reference::response(&model, TAU * frequency).force.norm(),
             published,
             1e-6,
         );

@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used)]
 
 use relay_contact::inputs::Inputs;
-use relay_contact::integrator::events::log::Event;
 use relay_contact::scene::Scene;
+use relay_contact::simulation::Event;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{BooleanOutput, IntegerOutput, RealOutput};
 use testing::scenes;

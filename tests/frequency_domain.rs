@@ -6,10 +6,10 @@
 use std::f64::consts::TAU;
 
 use nalgebra::Complex;
-use relay_contact::beam::galerkin::Space;
-use relay_contact::harmonic;
 use relay_contact::inputs::Inputs;
-use relay_contact::model::Model;
+use relay_contact::reference;
+use relay_contact::reference::Model;
+use relay_contact::reference::Space;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ContactLawKind, ExcitationKind, RealOutput, ResistanceKind};
@@ -73,7 +73,7 @@ fn the_transient_of_the_linear_contact_settles_to_it() {
                     scene.solver.maximum_step = maximum_step;
                     scene.solver.tolerance = tolerance;
                     let model = Model::new(&scene, 0.0).unwrap();
-                    let expected = harmonic::response(&model, TAU * frequency);
+                    let expected = reference::response(&model, TAU * frequency);
                     let [force, displacement] =
                         settled(&scene, [RealOutput::ContactForce, RealOutput::TipDisplacement]);
                     let pairs = [(force, expected.force), (displacement, expected.displacement)];
@@ -97,9 +97,9 @@ fn it_is_the_superposition_of_the_modes_of_beam_and_contact_spring() {
             let scene = shaken([alpha, beta, beta], frequency);
             let model = Model::new(&scene, 0.0).unwrap();
             let omega = TAU * frequency;
-            let stiffness = model.preload.contact_stiffness;
-            let displacement: Complex<f64> = Space::new(model.modes.len())
-                .modes(&model.section, model.preload.axial_force, stiffness)
+            let stiffness = model.preload().contact_stiffness;
+            let displacement: Complex<f64> = Space::new(model.modes().len())
+                .modes(&model.section(), model.preload().axial_force, stiffness)
                 .unwrap()
                 .iter()
                 .map(|mode| {
@@ -108,7 +108,7 @@ fn it_is_the_superposition_of_the_modes_of_beam_and_contact_spring() {
                 })
                 .sum();
             let force = -stiffness * Complex::new(1.0, omega * beta) * displacement;
-            let response = harmonic::response(&model, omega);
+            let response = reference::response(&model, omega);
             let errors = [
                 (response.force - force).norm() / force.norm(),
                 (response.displacement - displacement).norm() / displacement.norm(),
@@ -127,12 +127,12 @@ fn a_small_swing_of_the_resistance_is_that_of_the_force() {
         scene.resistance.film = 0.01;
         scene.excitation.amplitude = 0.1;
         let model = Model::new(&scene, 0.0).unwrap();
-        let force = scene.excitation.amplitude * harmonic::response(&model, TAU * 1000.0).force.norm();
-        let expected = harmonic::resistance_amplitude(&model, force);
+        let force = scene.excitation.amplitude * reference::response(&model, TAU * 1000.0).force.norm();
+        let expected = reference::resistance_amplitude(&model, force);
         let [resistance] = settled(&scene, [RealOutput::ContactResistance]);
         let error = (resistance.norm() * scene.excitation.amplitude / expected - 1.0).abs();
         // Of the second power of the relative amplitude of the force.
-        let ratio = force / model.preload.force;
+        let ratio = force / model.preload().force;
         assert!(error < ratio * ratio, "{kind:?}: {error:e}, {ratio:e}");
     }
 }
@@ -145,7 +145,7 @@ fn more_mass_damping_lowers_the_peak_and_its_frequency_as_published() {
             .map(|k| 0.1 * f64::from(k))
             .map(|frequency| {
                 (
-                    98.0 * harmonic::response(&model, TAU * frequency).force.norm(),
+                    98.0 * reference::response(&model, TAU * frequency).force.norm(),
                     frequency,
                 )
             })

@@ -8,7 +8,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use relay_contact::contact::law::Law;
+use relay_contact::reference::Law;
 
 use crate::integrator::{BUDGET, Failure, Integrator, Run, Setting};
 use crate::problem::Problem;
@@ -101,10 +101,10 @@ fn question(problem: &Problem, tolerance: f64) -> String {
         }
         text.push('\n');
     };
-    for mode in &model.modes {
+    for mode in &model.modes() {
         line(&[mode.omega_squared, mode.damping, mode.tip, mode.participation]);
     }
-    match model.law {
+    match model.law() {
         Law::Hertz(hertz) => line(&[0.0, hertz.coefficient, hertz.damping, 0.0]),
         Law::Linear(linear) => line(&[
             if linear.bonded { 2.0 } else { 1.0 },
@@ -114,7 +114,7 @@ fn question(problem: &Problem, tolerance: f64) -> String {
         ]),
     }
     let (amplitude, omega, phase) = problem.sine();
-    line(&[model.preload.force, model.preload.indentation]);
+    line(&[model.preload().force, model.preload().indentation]);
     line(&[amplitude, omega, phase, problem.support_rate]);
     let absolute: Vec<f64> = problem.scales().iter().map(|scale| tolerance * scale).collect();
     line(&[problem.relative * tolerance]);

@@ -35,7 +35,7 @@ impl Integrator for Diffsol {
     fn run(&self, problem: &Problem, setting: Setting) -> Result<Run, Failure> {
         let start = ThreadTime::now();
         let mut run = Run {
-            forces: vec![problem.model.preload.force],
+            forces: vec![problem.model.preload().force],
             ..Run::default()
         };
         let mut branch = Start {

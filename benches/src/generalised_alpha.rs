@@ -125,7 +125,7 @@ impl<'a> Motion<'a> {
         let mut compliance = (0.0, 0.0);
         let modes = problem
             .model
-            .modes
+            .modes()
             .iter()
             .map(|mode| {
                 let mass = 1.0 - alpha_m + (1.0 - alpha_f) * h * (mode.damping * gamma + mode.omega_squared * beta * h);
@@ -138,7 +138,7 @@ impl<'a> Motion<'a> {
                 }
             })
             .collect();
-        let preload = problem.model.preload;
+        let preload = problem.model.preload();
         Self {
             method,
             problem,
@@ -163,7 +163,7 @@ impl<'a> Motion<'a> {
             gamma,
             ..
         } = *self.method;
-        let preload = problem.model.preload;
+        let preload = problem.model.preload();
         self.steps += 1.0;
         self.time = self.steps * h;
         let acceleration = problem.acceleration(self.time);
@@ -172,7 +172,7 @@ impl<'a> Motion<'a> {
         let force = alpha_f * self.force - preload.force;
         let mut d = preload.indentation + problem.support_rate * self.time;
         let mut rate = problem.support_rate;
-        for (motion, mode) in self.modes.iter_mut().zip(&problem.model.modes) {
+        for (motion, mode) in self.modes.iter_mut().zip(&problem.model.modes()) {
             let ModeMotion { q, v, a, mobility } = *motion;
             let q_free = q + h * v + h * h * (0.5 - beta) * a;
             let v_free = v + h * (1.0 - gamma) * a;
@@ -191,7 +191,7 @@ impl<'a> Motion<'a> {
             rate -= mode.tip * motion.v;
         }
         let (force, iterations) = self.solve(d, rate)?;
-        for (motion, mode) in self.modes.iter_mut().zip(&problem.model.modes) {
+        for (motion, mode) in self.modes.iter_mut().zip(&problem.model.modes()) {
             let a = (1.0 - alpha_f) * mode.tip * force * motion.mobility;
             motion.q += h * h * beta * a;
             motion.v += h * gamma * a;
@@ -199,7 +199,7 @@ impl<'a> Motion<'a> {
         }
         self.force = force;
         self.acceleration = acceleration;
-        let law = &problem.model.law;
+        let law = &problem.model.law();
         self.engagement = law.engagement(d - self.compliance.0 * force, rate - self.compliance.1 * force);
         Some(iterations)
     }
@@ -209,7 +209,7 @@ impl<'a> Motion<'a> {
         let Self {
             problem, compliance, ..
         } = *self;
-        let law = &problem.model.law;
+        let law = &problem.model.law();
         let bonded = law.never_opens();
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
         if !bonded {
@@ -243,7 +243,7 @@ impl<'a> Motion<'a> {
             if !bonded && (iteration > 8 && iteration % 2 == 0 || !(low..=high).contains(&next)) {
                 next = f64::midpoint(low, high);
             }
-            if (next - force).abs() <= 1e-13 * problem.model.force_scale.max(force) {
+            if (next - force).abs() <= 1e-13 * problem.model.force_scale().max(force) {
                 return next.is_finite().then_some((next, iteration));
             }
             force = next;

@@ -84,7 +84,7 @@ fn own(problem: &Problem, quick: bool) -> Result<Vec<Case>> {
     };
     let mut cases = Vec::new();
     for setting in settings(false, quick) {
-        let mut chosen = problem.model.scene;
+        let mut chosen = problem.model.scene();
         chosen.solver.modes = 0;
         chosen.solver.tolerance = setting.value();
         let chosen = scenes::modes_chosen(&chosen)?;
@@ -134,7 +134,7 @@ mod tests {
                     Ok(run) => {
                         assert_eq!(run.forces.len(), reference.forces.len());
                         for (force, exact) in run.forces.iter().zip(&reference.forces) {
-                            let error = (force - exact).abs() / problem.model.force_scale;
+                            let error = (force - exact).abs() / problem.model.force_scale();
                             assert!(error < 1e-3, "{}, {}: {error}", problem.name, integrator.name());
                         }
                     }

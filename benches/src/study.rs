@@ -110,7 +110,7 @@ fn measure(case: &Case, run: &Run, time: f64) -> Result<Measured, Failure> {
     let found = (run.events.len() == reference.events.len()).then_some(run.events.as_slice());
     Ok(Measured {
         cost: time / problem.end,
-        force_error: largest_difference(&run.forces, &reference.forces) / problem.model.force_scale,
+        force_error: largest_difference(&run.forces, &reference.forces) / problem.model.force_scale(),
         events: run.events.len(),
         event_error: found.map(|events| largest_difference(events, &reference.events)),
         duration_error: found.map(|events| {

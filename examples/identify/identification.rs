@@ -11,13 +11,11 @@
 
 use std::f64::consts::{PI, TAU};
 
-use relay_contact::beam::characteristic;
-use relay_contact::beam::section::Section;
-use relay_contact::contact::hertz::Hertz;
-use relay_contact::harmonic;
-use relay_contact::math::roots;
-use relay_contact::model::Model;
-use relay_contact::preload::Preload;
+use relay_contact::reference;
+use relay_contact::reference::Hertz;
+use relay_contact::reference::Model;
+use relay_contact::reference::Preload;
+use relay_contact::reference::Section;
 use relay_contact::scene::Scene;
 use relay_contact::variables::AxialForceKind;
 
@@ -55,10 +53,10 @@ impl Amplitude {
     /// Of this force in the linear response to the published acceleration at a frequency (Hz), cN.
     pub fn of(self, model: &Model, frequency: f64) -> f64 {
         let omega = TAU * frequency;
-        let whole = 100.0 * ACCELERATION * harmonic::response(model, omega).force.norm();
+        let whole = 100.0 * ACCELERATION * reference::response(model, omega).force.norm();
         match self {
             Self::Whole => whole,
-            Self::Elastic => whole / f64::hypot(1.0, omega * model.law.damping()),
+            Self::Elastic => whole / f64::hypot(1.0, omega * model.law().damping()),
         }
     }
 }
@@ -141,14 +139,15 @@ pub fn scene(published: &Published) -> Result<Scene, Error> {
         let hertz = contact(radius);
         hertz.tangent_stiffness(hertz.indentation(force)) - stiffness
     };
-    scene.contact.curvature_radius = roots::bracketed(excess, 1e-3, 1.0).ok_or("no camber radius from 1 mm to 1 m")?;
+    scene.contact.curvature_radius =
+        reference::bracketed(excess, 1e-3, 1.0).ok_or("no camber radius from 1 mm to 1 m")?;
 
     let excess = |bending: f64| {
         let scene = with_section(&scene, bending, 0.05);
         let hertz = Hertz::new(&scene.contact);
         Preload::new(&scene, &Section::new(&scene), &hertz, 0.0).map_or(f64::NAN, |preload| preload.force - force)
     };
-    let bending = roots::bracketed(excess, 1e-5, 1e-1).ok_or("no bending stiffness from 1e-5 to 1e-1 N m2")?;
+    let bending = reference::bracketed(excess, 1e-5, 1e-1).ok_or("no bending stiffness from 1e-5 to 1e-1 N m2")?;
 
     scene.beam.stiffness_damping = published.damping();
     scene.contact.damping = published.damping();
@@ -160,7 +159,7 @@ pub fn scene(published: &Published) -> Result<Scene, Error> {
             _ => f64::NAN,
         }
     };
-    let mass = roots::bracketed(excess, 0.0, 200e-6).ok_or("no rivet mass up to 200 mg")?;
+    let mass = reference::bracketed(excess, 0.0, 200e-6).ok_or("no rivet mass up to 200 mg")?;
     with_rivet(&scene, bending, mass, frequency).ok_or_else(|| "no mass per length".into())
 }
 
@@ -181,7 +180,7 @@ fn with_rivet(scene: &Scene, bending: f64, mass: f64, frequency: f64) -> Option<
         let scene = with_section(&scene, bending, per_length);
         first_frequency(&scene).map_or(f64::NAN, |found| found - frequency)
     };
-    let per_length = roots::bracketed(excess, 5e-3, 0.5)?;
+    let per_length = reference::bracketed(excess, 5e-3, 0.5)?;
     Some(with_section(&scene, bending, per_length))
 }
 
@@ -189,7 +188,7 @@ fn with_rivet(scene: &Scene, bending: f64, mass: f64, frequency: f64) -> Option<
 fn first_frequency(scene: &Scene) -> Option<f64> {
     let section = Section::new(scene);
     let preload = Preload::new(scene, &section, &Hertz::new(&scene.contact), 0.0).ok()?;
-    let found = characteristic::frequencies(&section, 0.0, preload.contact_stiffness, 1);
+    let found = reference::frequencies(&section, 0.0, preload.contact_stiffness, 1);
     found.first().map(|omega| omega / TAU)
 }
 

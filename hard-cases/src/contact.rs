@@ -2,7 +2,7 @@
 
 use anyhow::{Result, ensure};
 use relay_contact::inputs::Inputs;
-use relay_contact::model::Model;
+use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
 use relay_contact::variables::ContactLawKind;
 
@@ -109,7 +109,7 @@ fn undamped_impact() -> Result<Vec<Check>> {
         off = worst(off, (rig.energy() - start).abs());
     }
     // Rounding: the last of thirteen digits of it.
-    let allowed = scene.solver.effective_tolerance() * rig.model.force_scale * path + 1e-13 * start;
+    let allowed = scene.solver.effective_tolerance() * rig.model.force_scale() * path + 1e-13 * start;
     let property = "the energy put in is kept";
     Ok(vec![Check::energy(property, off, allowed)])
 }

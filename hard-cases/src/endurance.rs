@@ -2,7 +2,7 @@
 
 use anyhow::{Result, ensure};
 use relay_contact::inputs::Inputs;
-use relay_contact::model::Model;
+use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ExcitationKind, RealOutput};
@@ -49,7 +49,11 @@ fn drift() -> Result<Vec<Check>> {
     }
     ensure!(settled > 0.0, "the contact is open");
     let property = "the force at whole periods stays what it was at the 41st";
-    Ok(vec![Check::two_runs(property, off, 1e-6 * contact.model().force_scale)])
+    Ok(vec![Check::two_runs(
+        property,
+        off,
+        1e-6 * contact.model().force_scale(),
+    )])
 }
 
 /// The specimen without damping, thrown so that it bounces until it has closed `cycles` times, with a communication step (s):

@@ -4,9 +4,9 @@
 //! does not depend on the communication step.
 
 use anyhow::{Context, Result, bail};
-use relay_contact::beam::mode::{MAX_MODES, Mode};
 use relay_contact::inputs::Inputs;
-use relay_contact::model::Model;
+use relay_contact::reference::Model;
+use relay_contact::reference::{MAX_MODES, Mode};
 use relay_contact::scene::Scene;
 
 use crate::case::{Check, closest};
@@ -97,7 +97,7 @@ impl Ride {
     /// steps do not suffice.
     pub fn run(&self, parts: u32) -> Result<Outcome> {
         let mut model = Model::new(&self.scene, 0.0)?;
-        let metered = model.modes.len() < MAX_MODES;
+        let metered = model.modes().len() < MAX_MODES;
         if !metered && self.segments.iter().any(|segment| segment.support != 0.0) {
             bail!("the work of the support cannot be measured with this many modes");
         }
@@ -108,7 +108,7 @@ impl Ride {
                 tip: METER,
                 participation: 0.0,
             };
-            model.modes.insert(0, meter);
+            model = model.with(|parts| parts.modes.insert(0, meter));
         }
         let mut rig = Rig::new(model);
         if self.speed != 0.0 {
@@ -118,7 +118,7 @@ impl Ride {
         let mut outcome = Outcome {
             forces: Vec::new(),
             made: 0.0,
-            throughput: lowest + rig.model.preload.force * rig.model.preload.indentation.max(0.0),
+            throughput: lowest + rig.model.preload().force * rig.model.preload().indentation.max(0.0),
             path: 0.0,
             rig,
         };
@@ -171,7 +171,7 @@ impl Ride {
         if numbers.into_iter().chain(modal).any(|x| !x.is_finite()) {
             bail!("not finite at {} s: {numbers:?}", state.time);
         }
-        if state.force < 0.0 && !model.law.never_opens() {
+        if state.force < 0.0 && !model.law().never_opens() {
             bail!("the contact pulls at {} s: {:e} N", state.time, state.force);
         }
         if state.steps + state.rejected_steps > self.steps {
@@ -200,7 +200,7 @@ impl Ride {
 impl Outcome {
     /// Error allowed in the contact force, N.
     fn force_error(&self) -> f64 {
-        self.rig.model.force_scale * self.rig.model.scene.solver.effective_tolerance()
+        self.rig.model.force_scale() * self.rig.model.scene().solver.effective_tolerance()
     }
 
     /// No energy is made. A contact force wrong by the tolerance makes at most that force times the path of the tip; rounding,
@@ -221,7 +221,7 @@ impl Outcome {
 
 /// Gives the whole spring a velocity, m/s.
 pub(crate) fn throw(rig: &mut Rig, speed: f64) {
-    let modes = rig.model.modes.iter();
+    let modes = rig.model.modes().iter();
     let velocities: Vec<f64> = modes.map(|mode| speed * mode.participation).collect();
     rig.launch(&velocities);
 }
@@ -229,7 +229,7 @@ pub(crate) fn throw(rig: &mut Rig, speed: f64) {
 /// Impulse of the contact force above the preload force since the start, N s.
 fn meter(rig: &Rig) -> f64 {
     rig.model
-        .modes
+        .modes()
         .first()
         .filter(|mode| mode.tip == METER)
         .map_or(0.0, |_| rig.state.modes[0].v / METER)
@@ -237,6 +237,6 @@ fn meter(rig: &Rig) -> f64 {
 
 /// Work of one metre per second squared of base acceleration from the preload to here, J.
 fn base_work(rig: &Rig) -> f64 {
-    let pairs = rig.model.modes.iter().zip(&rig.state.modes);
+    let pairs = rig.model.modes().iter().zip(&rig.state.modes);
     -pairs.map(|(mode, at)| mode.participation * at.q).sum::<f64>()
 }

@@ -3,8 +3,8 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use anyhow::{Result, ensure};
-use relay_contact::harmonic;
 use relay_contact::inputs::Inputs;
+use relay_contact::reference;
 use relay_contact::scene::{Scene, Solver};
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ContactLawKind, ExcitationKind, IntegerOutput, RealOutput};
@@ -88,10 +88,10 @@ fn linear() -> Result<Vec<Check>> {
             let mut contact = Simulation::new(&scene, &Inputs::default(), 0.0)?;
             contact.step(&Inputs::default(), 0.0, time)?;
             let omega = TAU * scene.excitation.frequency;
-            let (amplitude, phase) = harmonic::response(contact.model(), omega).force.to_polar();
+            let (amplitude, phase) = reference::response(contact.model(), omega).force.to_polar();
             let swing = scene.excitation.amplitude * amplitude * (omega * time + phase - FRAC_PI_2).cos();
             let exact = contact.real(RealOutput::PreloadForce) + swing;
-            off = worst(off, (force(&contact) - exact).abs() / contact.model().force_scale);
+            off = worst(off, (force(&contact) - exact).abs() / contact.model().force_scale());
         }
     }
     Ok(vec![Check::new(
@@ -144,7 +144,7 @@ fn seconds() -> Result<Vec<Check>> {
         seconds.step(&Inputs::default(), f64::from(second), 1.0)?;
         off = worst(off, (force(&seconds) - force(&fine)).abs());
     }
-    let tolerance = Solver::DEFAULT_TOLERANCE * fine.model().force_scale;
+    let tolerance = Solver::DEFAULT_TOLERANCE * fine.model().force_scale();
     let steps = seconds.integer(IntegerOutput::SolverSteps).try_into()?;
     Ok(vec![
         Check::two_runs(

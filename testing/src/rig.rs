@@ -1,77 +1,69 @@
 //! A model under way, also one put together from modes without a beam, with its energy.
 
-use relay_contact::beam::mode::Mode;
-use relay_contact::contact::hertz::Hertz;
-use relay_contact::contact::law::Law;
-use relay_contact::contact::linear::Linear;
 use relay_contact::error::StepError;
-use relay_contact::excitation::generator::Generator;
 use relay_contact::inputs::Inputs;
-use relay_contact::integrator::communication_step;
-use relay_contact::integrator::motion::Motion;
-use relay_contact::integrator::workspace::Workspace;
-use relay_contact::model::Model;
-use relay_contact::preload::Preload;
+use relay_contact::reference::{Generator, Hertz, Law, Linear, Mode, Model, Preload, State};
 use relay_contact::scene::Scene;
-use relay_contact::state::State;
+use relay_contact::simulation::Simulation;
 
 use crate::scenes::shaken;
 // For those who need both.
 pub use crate::scenes::undamped;
 
 /// A model with its state.
+#[derive(Debug)]
 pub struct Rig {
     /// Modes, contact law and preload.
     pub model: Model,
     /// The whole motion at the instant reached.
     pub state: State,
-    course: Motion,
-    workspace: Workspace,
-}
-
-impl std::fmt::Debug for Rig {
-    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        write!(f, "{:?}", self.state)
-    }
+    simulation: Simulation,
 }
 
 impl Rig {
     /// The model at rest in its preload.
     pub fn new(model: Model) -> Self {
         let state = model.initial_state(0.0);
+        Self::at(model, state)
+    }
+
+    fn at(model: Model, state: State) -> Self {
+        let simulation = Simulation::from_state(model.clone(), state);
         Self {
-            state,
-            course: Motion::new(state),
-            workspace: Workspace::new(&model),
             model,
+            state,
+            simulation,
         }
     }
 
     /// The same with a sine at the base from the instant 0 on: amplitude (m/s2) and frequency (Hz).
     pub fn shaken(model: Model, amplitude: f64, frequency: f64) -> Self {
         let generator = Generator::new(&shaken(amplitude, frequency)).expect("a sine");
-        Self::new(Model { generator, ..model })
+        Self::new(model.with(|parts| parts.generator = generator))
     }
 
     /// Sets the modal velocities at the start, in the order of the modes, and what follows from them.
     pub fn launch(&mut self, velocities: &[f64]) {
-        let Self { model, state, .. } = self;
+        let (model, mut state) = (&self.model, self.state);
         state.indentation_rate = 0.0;
-        for ((mode, v), constants) in state.modes.iter_mut().zip(velocities).zip(&model.modes) {
+        for ((mode, v), constants) in state.modes.iter_mut().zip(velocities).zip(model.modes()) {
             mode.v = *v;
             state.indentation_rate -= constants.tip * v;
         }
-        let d = model.preload.indentation + state.indentation;
-        state.force = model.law.force(d, state.indentation_rate);
+        let d = model.preload().indentation + state.indentation;
+        state.force = model.law().force(d, state.indentation_rate);
         state.closed = model.engagement(state.indentation, state.indentation_rate) > 0.0;
-        self.course = Motion::new(*state);
+        *self = Self::at(model.clone(), state);
     }
 
     /// Lets a bonded contact open from here on.
     pub fn unbond(&mut self) {
-        if let Law::Linear(linear) = &mut self.model.law {
-            linear.bonded = false;
-        }
+        let model = self.model.clone().with(|parts| {
+            if let Law::Linear(linear) = &mut parts.law {
+                linear.bonded = false;
+            }
+        });
+        *self = Self::at(model, self.state);
     }
 
     /// Advances to the instant `time` (s) with the inputs held.
@@ -79,15 +71,9 @@ impl Rig {
     /// # Errors
     /// A [`StepError`] where the motion cannot be integrated.
     pub fn run_to(&mut self, inputs: &Inputs, time: f64) -> Result<(), StepError> {
-        let Self {
-            model,
-            state,
-            course,
-            workspace,
-        } = self;
-        let start = course.time;
-        communication_step::step(model, course, workspace, inputs, start, time - start)?;
-        *state = communication_step::state(model, course, workspace)?;
+        let start = self.simulation.time();
+        self.simulation.step(inputs, start, time - start)?;
+        self.state = self.simulation.state_now()?;
         Ok(())
     }
 
@@ -96,12 +82,12 @@ impl Rig {
     pub fn energy(&self) -> f64 {
         let Self { model, state, .. } = self;
         let modes: f64 = model
-            .modes
+            .modes()
             .iter()
             .zip(&state.modes)
             .map(|(mode, at)| 0.5 * (at.v * at.v + mode.omega_squared * at.q * at.q))
             .sum();
-        let contact = |d: f64| match model.law {
+        let contact = |d: f64| match model.law() {
             Law::Hertz(hertz) => 0.4 * hertz.elastic_force(d) * d.max(0.0),
             Law::Linear(Linear {
                 stiffness,
@@ -113,7 +99,7 @@ impl Rig {
                 0.5 * stiffness * overlap * overlap
             }
         };
-        let Preload { indentation, force, .. } = model.preload;
+        let Preload { indentation, force, .. } = model.preload();
         modes + contact(indentation + state.indentation) - contact(indentation) - force * state.indentation
     }
 }
@@ -124,20 +110,18 @@ pub fn compose(modes: &[Mode], law: Law, gap: f64, tolerance: f64, force_scale: 
     scene.solver.tolerance = tolerance;
     // Of a mass there is no current.
     scene.effects.chatter = false;
-    let model = Model::new(&scene, 0.0).expect("the specimen");
-    Model {
-        preload: Preload {
+    Model::new(&scene, 0.0).expect("the specimen").with(|parts| {
+        parts.preload = Preload {
             force: 0.0,
             indentation: -gap,
             contact_stiffness: 0.0,
             deflection: 0.0,
             axial_force: 0.0,
-        },
-        modes: modes.to_vec(),
-        law,
-        force_scale,
-        ..model
-    }
+        };
+        parts.modes = modes.to_vec();
+        parts.law = law;
+        parts.force_scale = force_scale;
+    })
 }
 
 /// A mass (kg) on a spring (N/m), without damping. A base acceleration acts on it as on any mass.

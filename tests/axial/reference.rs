@@ -4,9 +4,9 @@
 use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
-use relay_contact::beam::section::Section;
-use relay_contact::contact::hertz::Hertz;
-use relay_contact::preload::Preload;
+use relay_contact::reference::Hertz;
+use relay_contact::reference::Preload;
+use relay_contact::reference::Section;
 use relay_contact::scene::Scene;
 
 use crate::FUNCTIONS;

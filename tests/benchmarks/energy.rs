@@ -3,7 +3,7 @@
 //! A contact force wrong by at most `e` along a path of length `s` of the tip changes the energy by at most `e s`.
 
 use relay_contact::inputs::Inputs;
-use relay_contact::model::Model;
+use relay_contact::reference::Model;
 use relay_contact::variables::ContactLawKind;
 use testing::rig::{Rig, undamped};
 
@@ -22,7 +22,12 @@ fn energy_stays_without_damping() {
                 scene.solver.tolerance = tolerance;
                 scene.solver.modes = 6;
                 let mut rig = Rig::new(Model::new(&scene, 0.0).unwrap());
-                let velocities: Vec<f64> = rig.model.modes.iter().map(|mode| speed * mode.participation).collect();
+                let velocities: Vec<f64> = rig
+                    .model
+                    .modes()
+                    .iter()
+                    .map(|mode| speed * mode.participation)
+                    .collect();
                 rig.launch(&velocities);
                 let start = rig.energy();
                 let (mut worst, mut path) = (0.0_f64, 0.0);
@@ -31,7 +36,7 @@ fn energy_stays_without_damping() {
                     rig.run_to(&Inputs::default(), f64::from(k) * 2e-6).unwrap();
                     path += (rig.state.indentation - before).abs();
                     let excess =
-                        (rig.energy() - start).abs() / (tolerance * rig.model.force_scale * path + 1e-13 * start);
+                        (rig.energy() - start).abs() / (tolerance * rig.model.force_scale() * path + 1e-13 * start);
                     worst = worst.max(excess);
                 }
                 println!("tolerance {tolerance:e}, {law:?} at {speed} m/s: {worst:.1e} of the energy allowed");

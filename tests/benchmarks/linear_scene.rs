@@ -6,10 +6,10 @@
 use std::f64::consts::TAU;
 
 use nalgebra::{Complex, DMatrix, DVector};
-use relay_contact::beam::galerkin::Space;
-use relay_contact::contact::law::Law;
 use relay_contact::inputs::Inputs;
-use relay_contact::model::Model;
+use relay_contact::reference::Law;
+use relay_contact::reference::Model;
+use relay_contact::reference::Space;
 use relay_contact::scene::Scene;
 use relay_contact::variables::{ContactLawKind, ExcitationKind};
 use testing::rig::Rig;
@@ -41,10 +41,10 @@ fn from_rest(omega_squared: f64, damping: f64, t: f64) -> (f64, f64) {
 
 /// The force above the preload force, by the closed form.
 fn force(model: &Model, t: f64) -> f64 {
-    let preload = &model.preload;
-    let beta = model.law.damping();
-    Space::new(model.modes.len())
-        .modes(&model.section, preload.axial_force, preload.contact_stiffness)
+    let preload = &model.preload();
+    let beta = model.law().damping();
+    Space::new(model.modes().len())
+        .modes(&model.section(), preload.axial_force, preload.contact_stiffness)
         .unwrap()
         .iter()
         .map(|mode| {
@@ -77,8 +77,8 @@ fn within_the_tolerance_of_the_closed_form() {
             let mut worst = 0.0_f64;
             for k in 1..=1000 {
                 rig.run_to(&Inputs::default(), f64::from(k) * 1.3e-5).unwrap();
-                let exact = rig.model.preload.force + force(&rig.model, rig.state.time);
-                worst = worst.max((rig.state.force - exact).abs() / rig.model.force_scale);
+                let exact = rig.model.preload().force + force(&rig.model, rig.state.time);
+                worst = worst.max((rig.state.force - exact).abs() / rig.model.force_scale());
             }
             println!(
                 "{law:?}: asked {tolerance:e}, delivered {worst:.1e}, {} steps",
@@ -97,8 +97,8 @@ fn machine_precision_in_single_steps() {
         let mut rig = Rig::new(Model::new(&scene(ContactLawKind::Bonded), 0.0).unwrap());
         for k in 1..=50 {
             rig.run_to(&Inputs::default(), f64::from(k) * size).unwrap();
-            let exact = rig.model.preload.force + force(&rig.model, rig.state.time);
-            let error = (rig.state.force - exact).abs() / rig.model.force_scale;
+            let exact = rig.model.preload().force + force(&rig.model, rig.state.time);
+            let error = (rig.state.force - exact).abs() / rig.model.force_scale();
             assert!(error < 1e-12, "{size} s, step {k}: {error:e}");
         }
         assert_eq!(rig.state.steps, 50, "{size} s");
@@ -145,17 +145,17 @@ fn error_against_the_exponential(scene: &Scene) -> f64 {
     let length = 3e-6;
     let mut rig = Rig::new(Model::new(scene, 0.0).unwrap());
     let model = rig.model.clone();
-    let Law::Linear(contact) = model.law else { panic!() };
+    let Law::Linear(contact) = model.law() else { panic!() };
     let (k, beta_c) = (contact.stiffness, contact.damping);
-    let (n, omega) = (model.modes.len(), TAU * scene.excitation.frequency);
+    let (n, omega) = (model.modes().len(), TAU * scene.excitation.frequency);
     // q_i w, v_i, then u, u', acceleration of the input, sine, cosine, jerk: w makes displacements as large as velocities.
-    let w = model.modes.last().unwrap().omega_squared.sqrt();
+    let w = model.modes().last().unwrap().omega_squared.sqrt();
     let mut matrix = DMatrix::zeros(2 * n + 6, 2 * n + 6);
-    for (i, mode) in model.modes.iter().enumerate() {
+    for (i, mode) in model.modes().iter().enumerate() {
         matrix[(i, n + i)] = w;
         matrix[(n + i, i)] = -mode.omega_squared / w;
         matrix[(n + i, n + i)] = -mode.damping;
-        for (j, other) in model.modes.iter().enumerate() {
+        for (j, other) in model.modes().iter().enumerate() {
             matrix[(n + i, j)] -= k * mode.tip * other.tip / w;
             matrix[(n + i, n + j)] -= k * beta_c * mode.tip * other.tip;
         }
@@ -197,14 +197,14 @@ fn error_against_the_exponential(scene: &Scene) -> f64 {
         rig.run_to(&inputs, f64::from(count + 1) * length).unwrap();
 
         let mut force = k * (support + beta_c * rate);
-        for (i, mode) in model.modes.iter().enumerate() {
+        for (i, mode) in model.modes().iter().enumerate() {
             let parts = [motion[i] / w, beta_c * motion[n + i]].map(|part| k * mode.tip * part);
             force -= parts[0] + parts[1];
         }
-        worst = worst.max((rig.state.force - model.preload.force - force).abs());
+        worst = worst.max((rig.state.force - model.preload().force - force).abs());
     }
     assert_eq!(rig.state.steps, 40);
-    worst / model.force_scale
+    worst / model.force_scale()
 }
 
 #[test]
@@ -233,8 +233,8 @@ fn every_damping_and_load_against_the_matrix_exponential() {
 #[test]
 fn through_critical_damping() {
     let model = Model::new(&damped(ContactLawKind::Bonded, 1, (0.0, 0.0, 0.0)), 0.0).unwrap();
-    let mode = model.modes[0];
-    let contact = model.preload.contact_stiffness * mode.tip * mode.tip;
+    let mode = model.modes()[0];
+    let contact = model.preload().contact_stiffness * mode.tip * mode.tip;
     let critical = 2.0 * (mode.omega_squared + contact).sqrt();
     for off in [
         0.0, 1e-15, -1e-15, 1e-12, -1e-12, 1e-8, -1e-8, 1e-5, -1e-5, 1e-4, 1e-3, 1e-2, -1e-2,
@@ -277,7 +277,7 @@ fn one_step_or_many() {
                     many.run_to(&inputs, (f64::from(count) + f64::from(part) / f64::from(parts)) * size)
                         .unwrap();
                 }
-                worst = worst.max((one.state.force - many.state.force).abs() / one.model.force_scale);
+                worst = worst.max((one.state.force - many.state.force).abs() / one.model.force_scale());
             }
             println!("{damping:?}, {modes} modes: {worst:.1e}");
             assert_eq!(
@@ -323,7 +323,7 @@ fn linearised_that_opens_is_left_to_the_collocation() {
         closed_loop: None,
         ..mixed.model.clone()
     });
-    let allowed = 2.0 * scene.solver.effective_tolerance() * mixed.model.force_scale;
+    let allowed = 2.0 * scene.solver.effective_tolerance() * mixed.model.force_scale();
     for k in 1..=100 {
         for rig in [&mut mixed, &mut plain] {
             rig.run_to(&Inputs::default(), f64::from(k) * 2e-5).unwrap();
@@ -342,7 +342,7 @@ fn the_generator_starts_inside_a_step() {
     scene.excitation.start_time = 1e-4;
     let mut rig = Rig::new(Model::new(&scene, 0.0).unwrap());
     rig.run_to(&Inputs::default(), 2.5e-4).unwrap();
-    let exact = rig.model.preload.force + force(&rig.model, 1.5e-4);
+    let exact = rig.model.preload().force + force(&rig.model, 1.5e-4);
     assert_eq!(rig.state.steps, 1);
-    assert!((rig.state.force - exact).abs() < 1e-12 * rig.model.force_scale);
+    assert!((rig.state.force - exact).abs() < 1e-12 * rig.model.force_scale());
 }

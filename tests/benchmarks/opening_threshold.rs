@@ -5,9 +5,9 @@
 
 use std::f64::consts::TAU;
 
-use relay_contact::harmonic;
 use relay_contact::inputs::Inputs;
-use relay_contact::model::Model;
+use relay_contact::reference;
+use relay_contact::reference::Model;
 use relay_contact::variables::ContactLawKind;
 use testing::rig::Rig;
 use testing::scenes::shaken;
@@ -51,14 +51,14 @@ fn the_linearised_contact_opens_at_the_analytic_threshold() {
     for frequency in [250.0, 700.0, 1000.0, 1300.0, 2000.0] {
         let tolerance = 1e-8;
         let closed = model(ContactLawKind::Bonded, tolerance, frequency);
-        let threshold = harmonic::opening_threshold(&closed, TAU * frequency);
+        let threshold = reference::opening_threshold(&closed, TAU * frequency);
         // The force misses zero by 1e-6 of the preload force on either side, a hundred times the error allowed.
         for (factor, opens) in [(1.0 - 1e-6, false), (1.0 + 1e-6, true)] {
             let mut rig = periodic(closed.clone(), factor * threshold, frequency);
             // Up to here the contact is held; now it may open.
             rig.unbond();
             let (mut at, start) = (rig.state.time, rig.state.time);
-            while rig.state.force <= rig.model.preload.force {
+            while rig.state.force <= rig.model.preload().force {
                 at += 1e-5;
                 rig.run_to(&Inputs::default(), at).unwrap();
                 assert!(at < start + 2.0 / frequency);
@@ -74,7 +74,7 @@ fn the_linearised_contact_opens_at_the_analytic_threshold() {
 fn the_nonlinear_force_leaves_the_linear_one_quadratically() {
     let frequency = 1000.0;
     let hertz = model(ContactLawKind::Hertz, 1e-10, frequency);
-    let response = harmonic::response(&hertz, TAU * frequency).force.norm();
+    let response = reference::response(&hertz, TAU * frequency).force.norm();
     let preload = hertz.preload.force;
     let deviation = |ratio: f64| {
         let mut rig = periodic(hertz.clone(), ratio * preload / response, frequency);

@@ -7,8 +7,8 @@
 use std::f64::consts::PI;
 
 use crate::digits;
-use relay_contact::beam::mode::Mode;
 use relay_contact::inputs::Inputs;
+use relay_contact::reference::Mode;
 use testing::rig::{Rig, compose, hertz, oscillator};
 
 #[test]

@@ -9,8 +9,8 @@ mod waveforms;
 
 use std::f64::consts::{PI, TAU};
 
-use relay_contact::excitation::generator::Generator;
 use relay_contact::inputs::Inputs;
+use relay_contact::reference::Generator;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ExcitationKind, IntegerOutput, RealOutput};

@@ -2,10 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use relay_contact::excitation::generator::Turns;
 use relay_contact::integrator::collocation::polynomial::Collocation;
 use relay_contact::math::nodal::{LONG, SHORT};
 use relay_contact::math::simd::Simd;
+use relay_contact::reference::Turns;
 use relay_contact::scene::Scene;
 use relay_contact::variables::ExcitationKind;
 

@@ -1,0 +1,19 @@
+//! What stands behind a simulation, for reference solutions, other integrators on the same equations, and tests of the
+//! integrator on problems that are no springs. Nobody who only simulates needs it.
+
+pub use crate::beam::characteristic::frequencies;
+pub use crate::beam::galerkin::Space;
+pub use crate::beam::mode::{MAX_MODES, Mode, ModeState};
+pub use crate::beam::section::Section;
+pub use crate::beam::statics::{Statics, axial_force_from_deflection};
+pub use crate::contact::Branch;
+pub use crate::contact::hertz::Hertz;
+pub use crate::contact::law::Law;
+pub use crate::contact::linear::Linear;
+pub use crate::electrical::ElectricalContact;
+pub use crate::excitation::generator::Generator;
+pub use crate::harmonic::{Response, opening_threshold, resistance_amplitude, response};
+pub use crate::math::roots::bracketed;
+pub use crate::model::{Model, Parts};
+pub use crate::preload::Preload;
+pub use crate::state::State;
