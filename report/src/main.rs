@@ -11,6 +11,7 @@ mod content;
 mod effects;
 mod importers;
 mod markdown;
+mod numbers;
 mod opening;
 mod page;
 mod paper;

@@ -8,6 +8,7 @@ use super::list::{self, MINIMAL};
 use super::{Measured, Measurement, Off};
 use crate::content::Table;
 use crate::markdown::table as markdown_table;
+use crate::numbers::two_digits;
 
 /// What each effect costs.
 pub fn costs(measurement: &Measurement) -> Table {
@@ -75,7 +76,7 @@ pub fn influences(measurement: &Measurement) -> Option<Table> {
     let row = |measured: &Measured| {
         let Influence { closed, open } = measured.influence.as_ref()?;
         let mut row = vec![measured.effect.name.to_owned(), list::code(measured.effect.off)];
-        row.extend(closed.iter().flatten().map(|difference| amount(1e3 * difference)));
+        row.extend(closed.iter().flatten().map(|difference| two_digits(1e3 * difference)));
         row.extend(open.iter().map(|time| format!("{:.3}", 1e3 * time)));
         Some(row)
     };
@@ -87,19 +88,6 @@ pub fn influences(measurement: &Measurement) -> Option<Table> {
         columns,
         rows,
     })
-}
-
-/// Two digits.
-fn amount(value: f64) -> String {
-    match value {
-        0.0 => "0".to_owned(),
-        value if (0.01..1e4).contains(&value) => {
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 3")]
-            let places = (1.0 - value.log10().floor()).clamp(0.0, 3.0) as usize;
-            format!("{value:.places$}")
-        }
-        value => format!("{value:.0e}"),
-    }
 }
 
 /// When each matters, a list.

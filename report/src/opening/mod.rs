@@ -8,16 +8,13 @@ mod shock;
 mod vibration;
 
 use anyhow::{Context, Result};
+use rayon::prelude::*;
 
-use self::levels::{LEVELS, Verdict, table, verdict};
+use self::levels::{LEVELS, Verdict, least, table, verdict};
 use self::shock::shock;
-use self::vibration::{DWELL, RESOLUTION, Thresholds, thresholds};
+use self::vibration::{COLUMNS, DWELL, G, Outcome, RESOLUTION, Thresholds, thresholds};
 use crate::content::Arguments;
 use crate::content::{Axis, Block, Curve, Figure, Section, Style, Table};
-use crate::threads;
-
-/// Standard acceleration of free fall, m/s2.
-const G: f64 = 9.80665;
 
 /// Range of the map, Hz.
 const RANGE: (f64, f64) = (10.0, 3000.0);
@@ -32,13 +29,8 @@ pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
         .into_iter()
         .map(|level| verdict(level, &points))
         .collect::<Result<Vec<_>>>()?;
-    let least = |threshold: fn(&Thresholds) -> f64| {
-        let points = points.iter().map(|point| (threshold(point), point.frequency));
-        points.fold(
-            (f64::INFINITY, 0.0),
-            |least, point| if point.0 < least.0 { point } else { least },
-        )
-    };
+    let least =
+        |threshold: fn(&Thresholds) -> f64| least(points.iter().map(|point| (threshold(point), point.frequency)));
     let (opens, interrupts) = (least(|point| point.opens), least(|point| point.interrupts));
     let asked = verdicts.last().context("no levels")?;
     let lead = answer(&verdicts, asked);
@@ -71,7 +63,7 @@ fn map(count: u32) -> Result<Vec<Thresholds>> {
     let mut coarse: Vec<f64> = between(RANGE, count).chain(ends).collect();
     coarse.sort_by(f64::total_cmp);
     coarse.dedup_by(|a, b| (*a / *b - 1.0).abs() < SAME);
-    let mut points = threads::map(&coarse, |frequency| thresholds(*frequency))?;
+    let mut points = all_thresholds(&coarse)?;
     let lowest = points.iter().enumerate().min_by(|a, b| a.1.opens.total_cmp(&b.1.opens));
     let lowest = lowest.map_or(0, |(index, _)| index);
     let around = points.get(lowest.saturating_sub(1)..(lowest + 2).min(points.len()));
@@ -85,24 +77,28 @@ fn map(count: u32) -> Result<Vec<Thresholds>> {
                     .all(|point| (point.frequency / frequency - 1.0).abs() > SAME)
             })
             .collect();
-        points.extend(threads::map(&new, |frequency| thresholds(*frequency))?);
+        points.extend(all_thresholds(&new)?);
         points.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
     }
     Ok(points)
 }
 
+fn all_thresholds(frequencies: &[f64]) -> Result<Vec<Thresholds>> {
+    frequencies.par_iter().map(|frequency| thresholds(*frequency)).collect()
+}
+
 fn answer(verdicts: &[Verdict], asked: &Verdict) -> String {
     let acceleration = asked.level.acceleration;
-    let verdict = if asked.interruptions == 0 {
+    let verdict = if asked.worst.interruptions == 0 {
         format!("**At {acceleration} g no contact opens for 10 µs or more at any frequency from 10 to 3000 Hz")
     } else {
         format!(
             "**At {acceleration} g the contact does open for 10 µs or more, for up to {:.0} µs at {:.0} Hz",
-            1e6 * asked.longest.0,
-            asked.longest.1
+            1e6 * asked.worst.longest,
+            asked.longest_at
         )
     };
-    let shorter = if asked.interruptions == 0 && asked.opened {
+    let shorter = if asked.worst.interruptions == 0 && asked.worst.opened {
         ", though it opens for a shorter time"
     } else {
         ""
@@ -124,7 +120,7 @@ fn weakest(opens: (f64, f64), interrupts: (f64, f64)) -> String {
 
 /// The levels at which nothing is interrupted, as a sentence.
 fn passed(verdicts: &[Verdict]) -> String {
-    let passed = verdicts.iter().filter(|verdict| verdict.interruptions == 0);
+    let passed = verdicts.iter().filter(|verdict| verdict.worst.interruptions == 0);
     let levels: Vec<String> = passed
         .map(|verdict| format!("{} g", verdict.level.acceleration))
         .collect();
@@ -140,12 +136,9 @@ fn acceleration_text(acceleration: f64) -> String {
 }
 
 fn figure(points: &[Thresholds]) -> Figure {
-    let curve = |name: &str, value: fn(&Thresholds) -> f64, style, colour| Curve {
-        name: name.to_owned(),
-        x: points.iter().map(|point| point.frequency).collect(),
-        y: points.iter().map(|point| value(point) / G).collect(),
-        style,
-        colour,
+    let curve = |name: &str, value: fn(&Thresholds) -> f64, style, colour| {
+        let points = points.iter().map(|point| (point.frequency, value(point) / G));
+        Curve::new(name, points, style, colour)
     };
     let mut curves = vec![
         curve(
@@ -161,16 +154,8 @@ fn figure(points: &[Thresholds]) -> Figure {
     Figure {
         id: "opening-map",
         title: "Base acceleration that opens the contact".to_owned(),
-        x: Axis {
-            label: "frequency",
-            unit: "Hz",
-            logarithmic: true,
-        },
-        y: Axis {
-            label: "amplitude of the base acceleration",
-            unit: "g",
-            logarithmic: false,
-        },
+        x: Axis::logarithmic("frequency", "Hz"),
+        y: Axis::linear("amplitude of the base acceleration", "g"),
         curves,
         caption: format!(
             "The first two curves differ by {:.1} % at most: the force stays below that of 60 Ω for 10 µs about as soon as it \
@@ -186,10 +171,6 @@ fn figure(points: &[Thresholds]) -> Figure {
     }
 }
 
-fn yes(answer: bool) -> String {
-    if answer { "yes" } else { "no" }.to_owned()
-}
-
 fn shocks(quick: bool) -> Result<Table> {
     let conditions = SHOCKS.get(..if quick { 1 } else { SHOCKS.len() }).unwrap_or_default();
     let directions = [("presses the contact", 1.0), ("pulls it open", -1.0)];
@@ -197,42 +178,25 @@ fn shocks(quick: bool) -> Result<Table> {
         .iter()
         .flat_map(|condition| directions.map(|direction| (condition, direction)))
         .collect();
-    let outcomes = threads::map(&runs, |((_, acceleration, duration), (_, sign))| {
+    let shock = |((_, acceleration, duration), (_, sign)): &(&(_, f64, f64), (_, f64))| {
         shock(sign * G * acceleration, *duration)
-    })?;
-    let rows = runs
-        .iter()
-        .zip(outcomes)
-        .map(|(((name, acceleration, duration), (direction, _)), outcome)| {
-            vec![
+    };
+    let outcomes = runs.par_iter().map(shock).collect::<Result<Vec<_>>>()?;
+    let row =
+        |(((name, acceleration, duration), (direction, _)), outcome): (&(&(_, f64, f64), (&str, _)), &Outcome)| {
+            let head = [
                 format!("method 213, condition {name}"),
                 format!("{acceleration} g, {:.0} ms", 1e3 * duration),
                 (*direction).to_owned(),
-                yes(outcome.opened),
-                yes(outcome.interruptions > 0),
-                if outcome.longest > 0.0 {
-                    format!("{:.1} µs", 1e6 * outcome.longest)
-                } else {
-                    "none".to_owned()
-                },
-                format!("{:.1} %", 100.0 * outcome.least_force),
-            ]
-        });
-    Ok(Table {
-        caption: "Half-sine shock of MIL-STD-202, in both directions along the motion of the contact.".to_owned(),
-        columns: [
-            "test",
-            "shock",
-            "direction",
-            "opens at all",
-            "opens for 10 µs",
-            "longest interruption",
-            "least force, of the preload",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: rows.collect(),
-    })
+            ];
+            head.into_iter().chain(outcome.cells()).collect()
+        };
+    let columns: Vec<&str> = ["test", "shock", "direction"].into_iter().chain(COLUMNS).collect();
+    Ok(Table::new(
+        "Half-sine shock of MIL-STD-202, in both directions along the motion of the contact.",
+        &columns,
+        runs.iter().zip(&outcomes).map(row).collect(),
+    ))
 }
 
 fn method(frequencies: usize) -> String {

@@ -17,6 +17,9 @@ pub const DWELL: (f64, f64) = (0.03, 10.0);
 /// Thresholds are found to this part of them.
 pub const RESOLUTION: f64 = 1e-4;
 
+/// Standard acceleration of free fall, m/s2.
+pub const G: f64 = 9.80665;
+
 /// What came of shaking.
 #[derive(Clone, Copy, Debug)]
 pub struct Outcome {
@@ -30,6 +33,21 @@ pub struct Outcome {
 }
 
 impl Outcome {
+    /// Whether it opens at all, whether for long enough to count, the longest interruption, the least force.
+    pub fn cells(&self) -> [String; 4] {
+        let yes = |answer: bool| if answer { "yes" } else { "no" }.to_owned();
+        [
+            yes(self.opened),
+            yes(self.interruptions > 0),
+            if self.longest > 0.0 {
+                format!("{:.1} µs", 1e6 * self.longest)
+            } else {
+                "none".to_owned()
+            },
+            format!("{:.1} %", 100.0 * self.least_force),
+        ]
+    }
+
     /// Of a run up to now, whose least force is known.
     pub fn of(contact: &Simulation, least_force: f64) -> Self {
         Self {
@@ -40,6 +58,14 @@ impl Outcome {
         }
     }
 }
+
+/// Titles of [`Outcome::cells`].
+pub const COLUMNS: [&str; 4] = [
+    "opens at all",
+    "opens for 10 µs or more",
+    "longest interruption",
+    "smallest force, relative to the preload",
+];
 
 /// What a threshold is sought of.
 #[derive(Clone, Copy, PartialEq, Eq)]

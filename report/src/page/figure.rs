@@ -191,23 +191,6 @@ mod tests {
     }
 
     #[test]
-    fn curves_of_a_figure_differ_without_colour() {
-        for plot in plots() {
-            let curves = plot["data"].as_array().cloned().unwrap_or_default();
-            let looks = curves.iter().map(|curve| {
-                let (dash, symbol) = (&curve["line"]["dash"], &curve["marker"]["symbol"]);
-                match curve["mode"].as_str() {
-                    Some("lines") => dash.to_string(),
-                    Some("markers") => symbol.to_string(),
-                    _ => format!("{dash}{symbol}"),
-                }
-            });
-            let looks: std::collections::BTreeSet<_> = looks.collect();
-            assert_eq!(looks.len(), curves.len(), "{}", plot["id"]);
-        }
-    }
-
-    #[test]
     fn axes_and_points_have_their_units() {
         let plots = plots();
         let history = plots.iter().find(|plot| plot["id"] == "history");

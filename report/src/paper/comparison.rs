@@ -6,8 +6,9 @@ use relay_contact::variables::AxialForceKind;
 use super::published as paper;
 use super::results::{Results, peak};
 use super::runs::{self, elastic_force, excitation, linear_force};
-use super::table::{cells, comparison, difference, number, row, signed, table};
+use super::table::{cells, comparison, difference, row, table};
 use crate::content::Block;
+use crate::numbers::{number, signed};
 
 const FIT: &str = " †";
 

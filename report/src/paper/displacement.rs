@@ -7,8 +7,9 @@ use super::published as paper;
 use super::results::Results;
 use super::runs::{self, elastic_force, excitation};
 use super::spring::displacement;
-use super::table::{cells, deviation, number, signed, table};
+use super::table::{cells, table};
 use crate::content::Block;
+use crate::numbers::{deviation, number, signed};
 
 /// The blocks.
 pub fn blocks(results: &Results) -> Result<Vec<Block>> {

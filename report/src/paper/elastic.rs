@@ -5,13 +5,14 @@ use relay_contact::math::roots;
 use relay_contact::model::Model;
 
 use super::calculation::{self, Amplitude, Published};
-use super::curves::{FORCE_AMPLITUDE, FREQUENCY, curve, published};
+use super::curves::{FORCE_AMPLITUDE, FREQUENCY, published};
 use super::published as paper;
 use super::resistance::resistance_deviations;
 use super::results::{Results, peak};
 use super::runs::{self, elastic_force, linear_force};
-use super::table::{cells, deviation, number, percent, table};
-use crate::content::{Block, Figure, Style};
+use super::table::{cells, table};
+use crate::content::{Block, Curve, Figure, Style};
+use crate::numbers::{deviation, number, percent};
 
 /// The scene in which the elastic part of the force has the published amplitudes at 1000 and 1250 Hz.
 pub fn fit() -> Result<Model> {
@@ -125,14 +126,14 @@ fn figure(results: &Results, fit: &Model) -> Result<Figure> {
         let (model, other) = (runs::model(&runs::specimen(ratio))?, scaled(fit, ratio)?);
         let over = |value: &dyn Fn(f64) -> f64| results.frequencies.iter().map(|f| (*f, value(*f))).collect::<Vec<_>>();
         let elastic = over(&|f| elastic_force(&other, f));
-        curves.push(curve(
+        curves.push(Curve::new(
             &format!("elastic part, fitted to it, ratio {ratio}"),
             elastic,
             Style::Line,
             colour,
         ));
         let whole = over(&|f| linear_force(&model, f));
-        curves.push(curve(
+        curves.push(Curve::new(
             &format!("whole force, ratio {ratio}"),
             whole,
             Style::Dashed,

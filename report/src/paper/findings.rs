@@ -10,8 +10,9 @@ use super::curves::{FORCE_AMPLITUDE, FREQUENCY, amplitudes, published};
 use super::published as paper;
 use super::results::Results;
 use super::runs;
-use super::table::{cells, number, significant, table};
+use super::table::{cells, table};
 use crate::content::{Block, Figure, Style};
+use crate::numbers::{number, significant};
 
 /// The blocks of the section.
 pub fn blocks(results: &Results) -> Result<Vec<Block>> {

@@ -6,9 +6,10 @@ use relay_contact::variables::AxialForceKind;
 use super::published as paper;
 use super::results::{Results, peak};
 use super::runs::{self, linear_force};
-use super::table::{cells, deviation, number, significant, table};
+use super::table::{cells, table};
 use super::{displacement, elastic};
 use crate::content::Block;
+use crate::numbers::{deviation, number, significant};
 
 /// The blocks of the section.
 pub fn blocks(results: &Results) -> Result<Vec<Block>> {
