@@ -2,6 +2,7 @@
 
 /// How much is run.
 #[derive(clap::Args, Clone, Copy, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "options of a command line")]
 pub struct Arguments {
     /// Fewer points and runs, to see that everything works
     #[arg(long)]

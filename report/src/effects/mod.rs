@@ -34,7 +34,7 @@ pub struct Arguments {
     /// The page to write
     #[arg(long, default_value = "docs/effects.md")]
     page: PathBuf,
-    /// Only check that what is off costs nothing
+    /// Only check that disabled effects add no cost
     #[arg(long)]
     off: bool,
 }
@@ -195,7 +195,7 @@ fn check(off: Option<&[Off; 2]>) -> Result<()> {
     for off in off.into_iter().flatten() {
         if off.more() > ALLOWED {
             bail!(
-                "effects that are off cost {:+.2} % ({}), allowed is {} %",
+                "disabled effects cost {:+.2} % ({}); allowed: {} %",
                 100.0 * off.more(),
                 off.run,
                 100.0 * ALLOWED

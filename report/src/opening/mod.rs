@@ -108,8 +108,8 @@ fn answer(verdicts: &[Verdict], asked: &Verdict) -> String {
 
 fn weakest(opens: (f64, f64), interrupts: (f64, f64)) -> String {
     format!(
-        "The specimen is weakest near its first resonance: its contact force first touches zero at {} at {:.0} Hz, and an \
-         interruption of 10 µs first occurs at {} at {:.0} Hz. The identified damping, rivet mass and preload are known to some \
+        "The specimen opens most easily near its first resonance: from {} on at {:.0} Hz the contact force reaches zero, from {} on \
+         at {:.0} Hz the contact opens for 10 µs. The identified damping, rivet mass and preload are known to some \
          per cent, and so is this acceleration.",
         acceleration_text(opens.0),
         opens.1,
@@ -141,14 +141,14 @@ fn figure(points: &[Thresholds]) -> Figure {
         Curve::new(name, points, style, colour)
     };
     let mut curves = vec![
-        curve(
-            "opens for 10 µs (interruption)",
-            |point| point.interrupts,
-            Style::Line,
-            0,
-        ),
+        curve("opens for 10 µs or more", |point| point.interrupts, Style::Line, 0),
         curve("opens at all", |point| point.opens, Style::Dashed, 1),
-        curve("linear theory: opens at all", |point| point.linear, Style::Line, 2),
+        curve(
+            "linear theory: force reaches zero",
+            |point| point.linear,
+            Style::Line,
+            2,
+        ),
     ];
     curves.extend(LEVELS.iter().zip(3..).map(|(level, colour)| level.curve(colour)));
     Figure {
@@ -158,10 +158,10 @@ fn figure(points: &[Thresholds]) -> Figure {
         y: Axis::linear("amplitude of the base acceleration", "g"),
         curves,
         caption: format!(
-            "The first two curves differ by {:.1} % at most: the force stays below that of 60 Ω for 10 µs about as soon as it \
-             touches zero. Above the resonance they lie below linear theory because the first swing of the sudden start opens \
-             the contact. A test level passes where its dashed line stays below the first curve. Left of its corner a level is \
-             limited by the stroke of the shaker, not by acceleration. 1 g = {G} m/s².",
+            "The first two curves differ by {:.1} % at most: once the force reaches zero, the resistance soon stays above 60 Ω for \
+             10 µs. Above the resonance they lie below linear theory because the transient of the sudden start opens the \
+             contact. The specimen passes a test level where the level's dashed line lies below the first curve. At low \
+             frequencies a level is limited by displacement, not by acceleration. 1 g = {G} m/s².",
             100.0
                 * points
                     .iter()
@@ -203,10 +203,11 @@ fn method(frequencies: usize) -> String {
     let (duration, periods) = DWELL;
     format!(
         "How it was found: the nonlinear specimen is shaken from rest with a sine for {:.0} ms or {periods:.0} periods, whichever \
-         is longer, at {frequencies} frequencies; by then nothing of the start is left, which counts too. It *opens at all* where \
+         is longer, at {frequencies} frequencies; by then the transient of the start has decayed, but it counts too. It *opens at all* where \
          the contact force reaches zero at any instant, and is *interrupted* where the resistance stays above 60 Ω for 10 µs \
-         (MIL-PRF-28776; MIL-STD-202 method 310). Each threshold is the least acceleration found, by bisection to {} %. The verdict is that of the equivalent beam with its identified damping, vibrated along the \
-         motion of the contact, and of a contact at rest: bounce after switching and the case's own resonances are not in it.",
+         (MIL-PRF-28776; MIL-STD-202 method 310). Each threshold is the smallest such acceleration, found by bisection to {} %. The result holds for the equivalent beam \
+         with its identified damping, vibrated along the motion of the contact, after the contact has come to rest: bounce after \
+         switching and resonances of the relay's case are not included.",
         1e3 * duration,
         100.0 * RESOLUTION,
     )

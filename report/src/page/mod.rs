@@ -60,8 +60,8 @@ fn page(sections: &[Section], quick: bool, library: &str) -> Result<String> {
                     h1 { "relay-contact " span.faint { (attribute("version")) } }
                     p { (attribute("description")) "." }
                     p {
-                        "An FMI 2.0 component for co-simulation. Every number of ours on this page was computed by the command that "
-                        "wrote it; published numbers name their source."
+                        "An FMI 2.0 component for co-simulation. \"Ours\" are numbers of this component, computed when this page was written "
+                        "where nothing else is said; published numbers name their source."
                     }
                     pre { code {
                         "cargo xtask report   # this page\n"
@@ -69,7 +69,7 @@ fn page(sections: &[Section], quick: bool, library: &str) -> Result<String> {
                         "cargo xtask test     # every check and test"
                     } }
                     @if quick {
-                        p { strong { "Quick form: fewer points and runs than the report itself." } }
+                        p { strong { "Quick form: fewer points and runs than the full report." } }
                     }
                     noscript { p { strong { "The figures need JavaScript." } } }
                 }
