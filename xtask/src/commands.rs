@@ -1,15 +1,41 @@
-//! Running other programs in the project's folder.
+//! Running other programs in the project's folder, and its files.
 
-use std::env;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::{env, fs};
 
 use anyhow::{Context, Result, bail};
+use cargo_metadata::{Metadata, MetadataCommand};
 
-/// The project's top folder.
+/// The project's top folder: that of the xtask which cargo runs, or the one that the current folder is in.
 pub fn root() -> PathBuf {
-    let manifest = Path::new(env!("CARGO_MANIFEST_DIR"));
-    manifest.parent().unwrap_or(manifest).to_owned()
+    // At run time: a copy of the project with its `target` folder is another project.
+    let start = env::var_os("CARGO_MANIFEST_DIR").map_or_else(|| PathBuf::from("."), PathBuf::from);
+    workspace(&start).unwrap_or(start)
+}
+
+/// The workspace that a folder is in.
+fn workspace(folder: &Path) -> Option<PathBuf> {
+    let folder = std::path::absolute(folder).ok()?;
+    let is_workspace = |folder: &&Path| {
+        let manifest = fs::read_to_string(folder.join("Cargo.toml"));
+        manifest.is_ok_and(|text| text.lines().any(|line| line.trim() == "[workspace]"))
+    };
+    folder.ancestors().find(is_workspace).map(Path::to_owned)
+}
+
+/// Reads a file of the project.
+pub fn read(path: impl AsRef<Path>) -> Result<Vec<u8>> {
+    let path = root().join(path);
+    fs::read(&path).with_context(|| format!("cannot read {}", path.display()))
+}
+
+/// Writes a file of the project, and its folder if there is none yet; gives its whole path.
+pub fn write(path: impl AsRef<Path>, contents: &[u8]) -> Result<PathBuf> {
+    let path = root().join(path);
+    fs::create_dir_all(path.parent().context("a file without a folder")?)?;
+    fs::write(&path, contents).with_context(|| format!("cannot write {}", path.display()))?;
+    Ok(path)
 }
 
 /// A program to run in the project's top folder.
@@ -24,7 +50,12 @@ pub fn cargo() -> Command {
     command(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
 }
 
-/// Runs a program, its output shown; the error names the whole command.
+/// What cargo knows about the project.
+pub fn metadata() -> Result<Metadata> {
+    Ok(MetadataCommand::new().current_dir(root()).exec()?)
+}
+
+/// Runs a program and shows its output; the error names the whole command.
 pub fn run(command: &mut Command) -> Result<()> {
     let status = command
         .status()
@@ -35,20 +66,20 @@ pub fn run(command: &mut Command) -> Result<()> {
     Ok(())
 }
 
-/// Runs a program and gives what it printed; the error tells all that it said.
+/// Runs a program and gives what it printed; the error has all of its output.
 pub fn output(command: &mut Command) -> Result<String> {
     let output = command
         .output()
         .with_context(|| format!("cannot start: {}", line(command)))?;
     if !output.status.success() {
-        let [printed, message] = [&output.stdout, &output.stderr].map(|said| String::from_utf8_lossy(said));
-        let said = format!("{printed}{message}");
-        bail!("failed ({}): {}\n{}", output.status, line(command), said.trim());
+        let [printed, message] = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text));
+        let all = format!("{printed}{message}");
+        bail!("failed ({}): {}\n{}", output.status, line(command), all.trim());
     }
     Ok(String::from_utf8(output.stdout)?)
 }
 
-/// The folder of a Rust compiler, below which its libraries and documentation are.
+/// The folder of a Rust compiler, which has its libraries and documentation.
 pub fn sysroot(rustc: impl AsRef<std::ffi::OsStr>) -> Result<PathBuf> {
     let sysroot = output(command(rustc).args(["--print", "sysroot"]))?;
     Ok(PathBuf::from(sysroot.trim()))
@@ -57,4 +88,23 @@ pub fn sysroot(rustc: impl AsRef<std::ffi::OsStr>) -> Result<PathBuf> {
 fn line(command: &Command) -> String {
     let words = [command.get_program()].into_iter().chain(command.get_args());
     words.map(|word| word.to_string_lossy()).collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_copy_of_the_project_is_its_own_workspace() -> Result<()> {
+        assert!(root().join("modelDescription.xml").exists());
+        let copy = tempfile::tempdir()?;
+        let member = copy.path().join("xtask");
+        fs::create_dir_all(member.join("src"))?;
+        fs::write(copy.path().join("Cargo.toml"), "[workspace]\nmembers = [\"xtask\"]\n")?;
+        fs::write(member.join("Cargo.toml"), "[package]\nname = \"xtask\"\n")?;
+        for start in [copy.path(), &member, &member.join("src")] {
+            assert_eq!(workspace(start).as_deref(), Some(copy.path()));
+        }
+        Ok(())
+    }
 }

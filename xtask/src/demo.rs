@@ -7,7 +7,7 @@ use crate::{fmu, python};
 
 /// Prepares Python, builds the component, runs the case.
 pub fn run() -> Result<()> {
-    // Python first: what is missing should be told before anything long starts.
+    // Python first: what is missing is reported before anything long starts.
     python::prepare()?;
     let path = fmu::build()?;
     commands::run(

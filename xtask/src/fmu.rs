@@ -1,39 +1,30 @@
 //! Builds the component and packs it.
 
 use std::collections::BTreeSet;
+use std::env;
 use std::path::{Path, PathBuf};
-use std::{env, fs};
 
-use anyhow::{Context, Result, bail};
-use cargo_metadata::{Metadata, MetadataCommand};
+use anyhow::{Result, bail};
+use cargo_metadata::Metadata;
 use relay_contact::{C_HEADER, MODEL_DESCRIPTION};
 
-use crate::bill;
-use crate::commands::{cargo, command, output, root, run};
-use crate::documentation;
-use crate::licences;
+use crate::commands::{cargo, command, metadata, output, read, run, write};
+use crate::linked;
 use crate::package::{Files, pack};
+use crate::{bill, documentation, licences};
 
 /// Writes `dist/RelayContact.fmu` and gives its path. Beside it, for C programs, the library in `lib` and its header in
 /// `include`.
 pub fn build() -> Result<PathBuf> {
-    let metadata = MetadataCommand::new().current_dir(root()).exec()?;
+    let metadata = metadata()?;
     build_library(&metadata)?;
     let (folder, prefix, extension) = platform()?;
     let name = format!("{prefix}relay_contact.{extension}");
-    let library = read(&metadata.target_directory.as_std_path().join("release").join(&name))?;
-    write("include/relay_contact.h", C_HEADER.as_bytes())?;
-    write(&format!("lib/{name}"), &library)?;
+    let library = read(metadata.target_directory.as_std_path().join("release").join(&name))?;
+    write("dist/include/relay_contact.h", C_HEADER.as_bytes())?;
+    write(format!("dist/lib/{name}"), &library)?;
     let files = files(&metadata, [(folder, extension, library)], Path::new("rustc"), &[])?;
-    write("RelayContact.fmu", &pack(&files)?)
-}
-
-/// Writes a file in `dist` and gives its path.
-pub fn write(name: &str, contents: &[u8]) -> Result<PathBuf> {
-    let path = root().join("dist").join(name);
-    fs::create_dir_all(path.parent().context("a file without a folder")?)?;
-    fs::write(&path, contents).with_context(|| format!("cannot write {}", path.display()))?;
-    Ok(path)
+    write("dist/RelayContact.fmu", &pack(&files)?)
 }
 
 /// Cargo's arguments that build the shared library. It alone, as only then it is optimised across crates.
@@ -61,15 +52,15 @@ fn build_library(metadata: &Metadata) -> Result<()> {
         build.arg(format!("--config=build.rustflags={ours:?}"));
     }
     let built = run(&mut build);
-    // Rust links with the C compiler's help, and says so less plainly.
+    // Rust links with the C compiler, and its own message is less plain.
     if built.is_err() && cfg!(unix) && output(command("cc").arg("--version")).is_err() {
         bail!("no C compiler: Rust needs one to link (on Debian: apt-get install gcc libc6-dev)");
     }
     built
 }
 
-/// Flags that keep the folders of this machine out of the library: without them its messages of panics name their
-/// source files by whole path.
+/// Flags that keep the folders of this machine out of the library: without them the messages of panics have the whole
+/// paths of source files.
 pub fn path_flags(metadata: &Metadata) -> Vec<String> {
     let foreign = metadata.packages.iter().filter(|package| package.source.is_some());
     let crates: BTreeSet<_> = foreign
@@ -82,35 +73,28 @@ pub fn path_flags(metadata: &Metadata) -> Vec<String> {
     crates.chain([project]).collect()
 }
 
-/// What is in the archive: libraries come with folder and extension. `rustc` is the compiler whose standard library they
-/// have, `targets` are their platforms as it calls them, this machine's where there are none.
+/// The contents of the archive. Libraries come with their folder and extension; `rustc` is the compiler whose standard library
+/// they contain; `targets` are their platforms as it calls them, none stands for this machine.
 pub fn files<'a>(
     metadata: &Metadata,
     libraries: impl IntoIterator<Item = (&'a str, &'a str, Vec<u8>)>,
     rustc: &Path,
     targets: &[&str],
 ) -> Result<Files> {
-    let mut files = Files::from([
-        ("modelDescription.xml".to_owned(), MODEL_DESCRIPTION.as_bytes().to_vec()),
-        ("model.png".to_owned(), read(&root().join("docs/model.png"))?),
-        (
-            "documentation/index.html".to_owned(),
-            documentation::page()?.into_bytes(),
-        ),
-    ]);
+    let crates = linked::crates(metadata, targets)?;
+    let mut files = licences::texts(&crates, rustc)?;
+    for (path, contents) in [
+        ("modelDescription.xml", MODEL_DESCRIPTION.as_bytes().to_vec()),
+        ("model.png", read("docs/model.png")?),
+        ("documentation/index.html", documentation::page()?.into_bytes()),
+        ("documentation/sbom.cdx.json", bill::text(&crates, rustc)?.into_bytes()),
+    ] {
+        files.insert(path.to_owned(), contents);
+    }
     for (folder, extension, library) in libraries {
         files.insert(format!("binaries/{folder}/RelayContact.{extension}"), library);
     }
-    let bill = bill::text(metadata, rustc, targets)?;
-    files.insert("documentation/sbom.cdx.json".to_owned(), bill.into_bytes());
-    for (path, text) in licences::texts(metadata, rustc, targets)? {
-        files.insert(format!("documentation/licenses/{path}"), text);
-    }
     Ok(files)
-}
-
-pub fn read(path: &Path) -> Result<Vec<u8>> {
-    fs::read(path).with_context(|| format!("cannot read {}", path.display()))
 }
 
 /// The folder FMI 2.0 gives this machine's platform, and how a shared library is called there.
@@ -122,9 +106,7 @@ fn platform() -> Result<(&'static str, &'static str, &'static str)> {
     } else if cfg!(target_os = "macos") {
         Ok(("darwin64", "lib", "dylib"))
     } else {
-        bail!(
-            "importers on this platform look for no library of its own: FMI 2.0 names 64-bit x86 Linux and Windows, and macOS"
-        )
+        bail!("FMI 2.0 has no folder for this platform: it names 64-bit x86 Linux and Windows, and macOS")
     }
 }
 
@@ -133,16 +115,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn documentation_and_licences_are_the_same_bytes_every_time() -> Result<()> {
-        let metadata = MetadataCommand::new().current_dir(root()).exec()?;
-        let first = licences::texts(&metadata, Path::new("rustc"), &[])?;
-        assert!(first.contains_key("LICENSE-MIT") && first.keys().any(|path| path.starts_with("nalgebra-")));
-        assert_eq!(
-            pack(&first)?,
-            pack(&licences::texts(&metadata, Path::new("rustc"), &[])?)?
-        );
-        assert_eq!(documentation::page()?, documentation::page()?);
-        assert!(files(&metadata, [], Path::new("rustc"), &[])?.contains_key("documentation/sbom.cdx.json"));
+    fn everything_but_the_library_is_the_same_bytes_every_time() -> Result<()> {
+        let metadata = metadata()?;
+        let files = || files(&metadata, [], Path::new("rustc"), &[]);
+        let first = files()?;
+        assert!(first.contains_key("documentation/licenses/LICENSE-MIT"));
+        let of_crate = |path: &String| path.starts_with("documentation/licenses/nalgebra-");
+        assert!(first.keys().any(of_crate));
+        assert_eq!(pack(&first)?, pack(&files()?)?);
         Ok(())
     }
 }

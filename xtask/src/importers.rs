@@ -1,65 +1,89 @@
 //! The component in other people's importers.
 //!
 //! [`prepare`] writes to `out/conformance` our own runs and a system of two contacts, and the scenes' parameter sets to
-//! `out/ssv`; the tests under `conformance/` compare with them and each leave a row there; [`table`] prints the rows.
+//! `out/ssv`; the tests under `conformance/` compare with them and each write a row of the table of results there.
 
-use std::path::{Path, PathBuf};
-use std::{fs, io};
+use std::ffi::OsString;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
 
 use anyhow::{Context, Result};
 
-use crate::commands::{self, root};
+use crate::commands::{cargo, command, output, read, root, run as run_command, write};
 use crate::package::{Files, pack};
+use crate::stage::stage;
 use crate::{fmu, python, report};
 
-/// Tests in `conformance/python` that leave rows; the others compare with numbers of their own.
-const PYTHON: [&str; 6] = [
-    "test_ecos.py",
-    "test_fmpy.py",
-    "test_libcosim.py",
-    "test_scenes.py",
-    "test_state.py",
-    "test_validate.py",
+const FOLDER: &str = "out/conformance";
+
+/// Tests in `conformance/python` that write rows; the others compare with numbers of their own.
+const WITH_ROWS: [&str; 6] = [
+    "conformance/python/test_ecos.py",
+    "conformance/python/test_fmpy.py",
+    "conformance/python/test_libcosim.py",
+    "conformance/python/test_scenes.py",
+    "conformance/python/test_state.py",
+    "conformance/python/test_validate.py",
 ];
 
-fn folder() -> PathBuf {
-    root().join("out/conformance")
+/// Builds the component and tests it under all importers.
+pub fn run() -> Result<()> {
+    let component = fmu::build()?;
+    python::prepare()?;
+    stages(&component)
 }
 
-/// Writes our own runs and the system of two contacts, and clears the table.
-pub fn prepare(component: &Path) -> Result<()> {
-    match fs::remove_dir_all(folder()) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error).context("cannot clear the table"),
-        _ => fs::create_dir_all(folder())?,
+/// The component under all importers, and the table of results.
+pub fn stages(component: &Path) -> Result<()> {
+    stage("reference runs", || prepare(component))?;
+    stage("Python importers", || python::test(&["conformance/python"], component))?;
+    stage("Rust importer", || {
+        let mut test = conformance("test")?;
+        run_command(test.env("RELAY_CONTACT_FMU", component))
+    })?;
+    stage("importers", || report::start("importers", &[""; 0]))
+}
+
+/// The rows that the full report shows: the importers that are called from Python.
+pub fn for_report(arguments: &report::Arguments) -> Result<()> {
+    if arguments.has(&["--quick", "--docs", "--help", "-h"]) {
+        return Ok(());
     }
-    report::start("reference-runs", [""; 0])?;
-    let system = Files::from([
-        (
-            "SystemStructure.ssd".to_owned(),
-            fs::read(root().join("conformance/SystemStructure.ssd"))?,
-        ),
-        ("resources/RelayContact.fmu".to_owned(), fs::read(component)?),
-    ]);
-    fs::write(folder().join("two-contacts.ssp"), pack(&system)?)?;
-    Ok(())
-}
-
-/// Runs the importers that are called from Python, those alone that leave rows.
-pub fn run_python() -> Result<()> {
     let component = fmu::build()?;
     python::prepare()?;
     prepare(&component)?;
-    let tests = PYTHON.map(|name| format!("conformance/python/{name}"));
-    commands::output(
-        python::python()
-            .args(["-m", "pytest", "--quiet"])
-            .args(tests)
-            .env("RELAY_CONTACT_FMU", component),
-    )?;
+    python::test(&WITH_ROWS, &component)
+}
+
+/// Writes our own runs and the system of two contacts, and clears the table.
+fn prepare(component: &Path) -> Result<()> {
+    let folder = root().join(FOLDER);
+    if folder.exists() {
+        fs::remove_dir_all(&folder).context("cannot clear the table of results")?;
+    }
+    report::start("reference-runs", &[""; 0])?;
+    let description = "SystemStructure.ssd";
+    let system = Files::from([
+        (description.to_owned(), read(format!("conformance/{description}"))?),
+        ("resources/RelayContact.fmu".to_owned(), read(component)?),
+    ]);
+    write(format!("{FOLDER}/two-contacts.ssp"), &pack(&system)?)?;
     Ok(())
 }
 
-/// Prints the table of what the importers did; an error where a row is missing.
-pub fn table() -> Result<()> {
-    report::start("importers", [""; 0])
+/// Cargo's command for the conformance crate. The build of its FMI bindings needs libclang, and the C compiler's own headers
+/// (`stddef.h`), which do not come with the libclang of `.venv`.
+pub fn conformance(subcommand: &str) -> Result<Command> {
+    let mut include = OsString::new();
+    if cfg!(unix) {
+        let folder = output(command("cc").arg("-print-file-name=include"))?;
+        include.push(format!("-I{}", folder.trim()));
+    }
+    let mut cargo = cargo();
+    cargo
+        .args([subcommand, "--package=conformance"])
+        .env("LIBCLANG_PATH", python::libclang()?)
+        .env("BINDGEN_EXTRA_CLANG_ARGS", include);
+    Ok(cargo)
 }

@@ -1,76 +1,64 @@
 //! The licence texts of everything that is linked into the component.
 
-use std::collections::BTreeMap;
 use std::fs;
-use std::io::ErrorKind;
 use std::path::Path;
 
 use anyhow::{Context, Result, bail};
-use cargo_metadata::Metadata;
 
-use crate::commands::{root, sysroot};
-use crate::linked::{COMPONENT, graph, package};
+use crate::commands::{read, sysroot};
+use crate::linked::{COMPONENT, Crates};
 use crate::package::Files;
 
-/// Texts by path below `documentation/licenses/`: ours, a folder for each crate, and the Rust standard library's, which is
-/// that of the compiler `rustc`; `targets` are as for [`graph`].
-pub fn texts(metadata: &Metadata, rustc: &Path, targets: &[&str]) -> Result<Files> {
+/// Where they are in the archive.
+const FOLDER: &str = "documentation/licenses";
+
+/// Ours, a folder for each crate, and that of the Rust standard library, which is the one of the compiler `rustc`.
+pub fn texts(crates: &Crates, rustc: &Path) -> Result<Files> {
     let mut files = Files::new();
     for name in ["LICENSE-MIT", "LICENSE-APACHE"] {
-        let text = fs::read(root().join(name)).with_context(|| format!("cannot read {name}"))?;
-        files.insert(name.to_owned(), text);
+        files.insert(format!("{FOLDER}/{name}"), read(name)?);
     }
-    for crate_ in graph(targets)?.keys().filter(|(name, _)| name != COMPONENT) {
-        let package = package(metadata, crate_)?;
-        let folder = format!("{}-{}", package.name, package.version);
-        let texts = licence_files(
-            package
-                .manifest_path
-                .parent()
-                .context("a crate without a folder")?
-                .as_std_path(),
-        )?;
+    for ((name, version), linked) in crates {
+        if name == COMPONENT {
+            continue;
+        }
+        let source = linked.package.manifest_path.parent();
+        let texts = of_crate(source.context("a crate without a folder")?.as_std_path())?;
         if texts.is_empty() {
-            bail!("crate {folder} is linked into the component but comes without a licence text");
+            bail!("crate {name} {version} is linked into the component but comes without a licence text");
         }
-        for (name, text) in texts {
-            files.insert(format!("{folder}/{name}"), text);
-        }
+        files.extend(texts.into_iter().map(|(text, contents)| {
+            let path = format!("{FOLDER}/{name}-{version}/{text}");
+            (path, contents)
+        }));
     }
     if let Some((name, text)) = standard_library(rustc)? {
-        files.insert(format!("rust-standard-library/{name}"), text);
+        files.insert(format!("{FOLDER}/rust-standard-library/{name}"), text);
     }
     Ok(files)
 }
 
-/// The licence text of the standard library, where rustup or Debian's packages put it below the compiler's folder.
-fn standard_library(rustc: &Path) -> Result<Option<(String, Vec<u8>)>> {
+/// The licence text of the standard library, where rustup or Debian's packages put it.
+fn standard_library(rustc: &Path) -> Result<Option<(&'static str, Vec<u8>)>> {
     let documentation = sysroot(rustc)?.join("share/doc");
-    let places = [
-        "rust/COPYRIGHT-library.html",
-        "libstd-rust-web-dev/copyright",
-        "libstd-rust-dev/copyright",
-    ];
-    for place in places {
-        let path = documentation.join(place);
-        let name = path.file_name().context("a text without a name")?.to_string_lossy();
-        match fs::read(&path) {
-            Ok(text) => return Ok(Some((name.into_owned(), text))),
-            Err(error) if error.kind() == ErrorKind::NotFound => {}
-            Err(error) => return Err(error).with_context(|| format!("cannot read {}", path.display())),
+    for (folder, name) in [
+        ("rust", "COPYRIGHT-library.html"),
+        ("libstd-rust-web-dev", "copyright"),
+        ("libstd-rust-dev", "copyright"),
+    ] {
+        let path = documentation.join(folder).join(name);
+        if path.exists() {
+            return Ok(Some((name, read(path)?)));
         }
     }
-    eprintln!(
-        "licence of the Rust standard library left out: {} has none of {}",
-        documentation.display(),
-        places.join(", ")
-    );
+    let documentation = documentation.display();
+    eprintln!("WARNING: no licence of the Rust standard library in {documentation}: it is left out of the archive");
     Ok(None)
 }
 
 /// The files of a crate's top folder whose name says that they are about its licence.
-fn licence_files(folder: &Path) -> Result<BTreeMap<String, Vec<u8>>> {
-    let mut files = BTreeMap::new();
+fn of_crate(folder: &Path) -> Result<Files> {
+    let mut files = Files::new();
     for entry in fs::read_dir(folder)? {
         let entry = entry?;
         let name = entry.file_name().to_string_lossy().into_owned();
@@ -90,8 +78,7 @@ mod tests {
     /// The Rust of this machine comes with its documentation or with that of the Debian packages.
     #[test]
     fn the_licence_of_the_standard_library_is_found() -> Result<()> {
-        let (name, text) = standard_library(Path::new("rustc"))?.context("no licence of the standard library")?;
-        assert!(name.to_lowercase().starts_with("copyright"));
+        let (_, text) = standard_library(Path::new("rustc"))?.context("no licence of the standard library")?;
         assert!(String::from_utf8(text)?.contains("Apache"));
         Ok(())
     }

@@ -13,60 +13,52 @@ pub const COMPONENT: &str = "relay-contact";
 /// Name and version of a crate.
 pub type Crate = (String, String);
 
-/// Each crate, the component included, with those it uses itself; `targets` are the platforms as rustc calls them, this
-/// machine's where there are none. `cargo tree` is asked because, unlike `cargo metadata`, it resolves features for this
-/// one package.
-pub fn graph(targets: &[&str]) -> Result<BTreeMap<Crate, BTreeSet<Crate>>> {
+/// A crate that is linked.
+pub struct Linked<'a> {
+    /// What cargo knows about it.
+    pub package: &'a Package,
+    /// The crates it uses itself.
+    pub uses: BTreeSet<Crate>,
+}
+
+/// All of them, the component included.
+pub type Crates<'a> = BTreeMap<Crate, Linked<'a>>;
+
+/// Finds them. `targets` are the platforms as rustc calls them; none stands for this machine. `cargo tree` is asked because,
+/// unlike `cargo metadata`, it resolves features for this one package.
+pub fn crates<'a>(metadata: &'a Metadata, targets: &[&str]) -> Result<Crates<'a>> {
     let mut tree = cargo();
     tree.args(["tree", "--edges=normal,no-proc-macro", "--prefix=depth", "--format={p}"]);
     tree.arg(format!("--package={COMPONENT}"));
     for target in targets {
         tree.args(["--target", target]);
     }
-    let mut graph: BTreeMap<Crate, BTreeSet<Crate>> = BTreeMap::new();
+    let mut crates = Crates::new();
     let mut above: Vec<Crate> = Vec::new();
     // A tree for each platform, an empty line between them.
     for line in output(&mut tree)?.lines().filter(|line| !line.is_empty()) {
-        let (depth, name, version) = parts(line).with_context(|| format!("cargo tree said: {line}"))?;
-        let linked = (name.to_owned(), version.to_owned());
+        let (depth, name, version) =
+            parts(line).with_context(|| format!("cannot read a line of cargo tree: {line}"))?;
+        let crate_ = (name.to_owned(), version.to_owned());
         above.truncate(depth);
-        if let Some(user) = above.last() {
-            graph.entry(user.clone()).or_default().insert(linked.clone());
+        if let Some(user) = above.last().and_then(|user| crates.get_mut(user)) {
+            user.uses.insert(crate_.clone());
         }
-        graph.entry(linked.clone()).or_default();
-        above.push(linked);
+        if !crates.contains_key(&crate_) {
+            let mut known = metadata.packages.iter();
+            let package = known.find(|known| known.name.as_str() == name && known.version.to_string() == version);
+            let package = package.with_context(|| format!("cargo metadata does not know {name} {version}"))?;
+            let uses = BTreeSet::new();
+            crates.insert(crate_.clone(), Linked { package, uses });
+        }
+        above.push(crate_);
     }
-    Ok(graph)
+    Ok(crates)
 }
 
-/// Of a line such as `2csv-core v0.1.13 (*)`.
+/// Depth, name and version in a line such as `2csv-core v0.1.13 (*)`.
 fn parts(line: &str) -> Option<(usize, &str, &str)> {
     let (depth, crate_) = line.split_at(line.find(|c: char| !c.is_ascii_digit())?);
     let mut words = crate_.split(' ');
     Some((depth.parse().ok()?, words.next()?, words.next()?.strip_prefix('v')?))
-}
-
-/// What cargo knows about a crate.
-pub fn package<'a>(metadata: &'a Metadata, (name, version): &Crate) -> Result<&'a Package> {
-    metadata
-        .packages
-        .iter()
-        .find(|package| package.name.as_str() == name && package.version.to_string() == *version)
-        .with_context(|| format!("cargo metadata does not know {name} {version}"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn several_platforms_give_the_crates_of_all_of_them() -> Result<()> {
-        let targets = ["x86_64-pc-windows-gnu", "aarch64-apple-darwin"];
-        let mut all = graph(&targets[..1])?;
-        for (crate_, used) in graph(&targets[1..])? {
-            all.entry(crate_).or_default().extend(used);
-        }
-        assert_eq!(graph(&targets)?, all);
-        Ok(())
-    }
 }

@@ -12,7 +12,7 @@ mod package;
 mod python;
 mod release;
 mod report;
-mod scene;
+mod stage;
 mod test;
 mod valgrind;
 
@@ -35,32 +35,32 @@ struct Arguments {
 enum Task {
     /// Build the component and pack it as dist/RelayContact.fmu
     Fmu,
-    /// Run a scene, write what it looks at to out/scenes/NAME.csv and .png, and tell what happened
+    /// Run a scene, write its outputs to out/scenes/NAME.csv and .png, and print a summary
     #[command(disable_help_flag = true)]
     Scene(report::Arguments),
     /// Write each scene as a parameter set for SSP tools, out/ssv/NAME.ssv
     Ssv,
     /// Build the component, run the published 1 kHz case under FMPy, compare and plot
     Demo,
-    /// Measure what accuracy costs, beside other integrators; rewrite docs/accuracy.csv, its figures and its tables
+    /// Measure time against accuracy, beside other integrators; rewrite docs/accuracy.csv, its figures and its tables
     #[command(disable_help_flag = true)]
     Accuracy(report::Arguments),
-    /// Measure what each effect costs and changes; rewrite docs/effects.md
+    /// Measure the cost and influence of each effect; rewrite docs/effects.md
     #[command(disable_help_flag = true)]
     Effects(report::Arguments),
-    /// Run what the report shows and write out/report/index.html
+    /// Run everything that the report shows and write out/report/index.html
     #[command(disable_help_flag = true)]
     Report(report::Arguments),
-    /// Test the component under other people's importers and print the table of what they did
+    /// Test the component under other people's importers and print the table of results
     Importers,
-    /// Run calls of importers under valgrind: no error, no leak
+    /// Check the calls of importers for memory errors and leaks, under valgrind
     Valgrind,
-    /// Count the instructions of a communication step, through C and in the library alone (needs valgrind)
+    /// Count the instructions of a communication step, through C and in Rust (needs valgrind)
     Instructions,
     /// Build the component for all platforms and pack it as dist/release/RelayContact.fmu
     Release(release::Arguments),
     /// Run every check and test
-    Test,
+    Test(test::Arguments),
 }
 
 /// No arguments.
@@ -70,16 +70,16 @@ fn main() -> ExitCode {
     let outcome = match Arguments::parse().task {
         Task::Fmu => fmu::build().map(|path| println!("{}", path.display())),
         Task::Scene(arguments) => report::run("scene", &arguments),
-        Task::Ssv => report::start("ssv", NONE),
+        Task::Ssv => report::start("ssv", &NONE),
         Task::Demo => demo::run(),
         Task::Accuracy(arguments) => report::run("accuracy", &arguments),
         Task::Effects(arguments) => report::run("effects", &arguments),
-        Task::Report(arguments) => report::report(&arguments),
-        Task::Importers => test::importers_alone(),
+        Task::Report(arguments) => importers::for_report(&arguments).and_then(|()| report::run("report", &arguments)),
+        Task::Importers => importers::run(),
         Task::Valgrind => valgrind::run(),
-        Task::Instructions => report::start("instructions", NONE),
+        Task::Instructions => report::start("instructions", &NONE),
         Task::Release(arguments) => release::run(&arguments),
-        Task::Test => test::run(),
+        Task::Test(arguments) => test::run(arguments),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -2,30 +2,24 @@
 
 use std::env::consts::EXE_SUFFIX;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
-use indicatif::ProgressBar;
 
-use crate::commands::{command, output, root};
+use crate::commands::{command, output, root, run};
 
 /// Oldest Python for which the pinned packages exist.
 const OLDEST: (u32, u32) = (3, 11);
 
-/// The environment's folder.
-fn folder() -> PathBuf {
-    root().join(".venv")
-}
-
 /// The environment's interpreter.
 fn interpreter() -> PathBuf {
-    folder().join(if cfg!(windows) {
+    let below = if cfg!(windows) {
         "Scripts/python.exe"
     } else {
         "bin/python"
-    })
+    };
+    root().join(".venv").join(below)
 }
 
 /// A command of the environment's Python, in the project's top folder.
@@ -33,38 +27,48 @@ pub fn python() -> Command {
     command(interpreter())
 }
 
+/// Runs the Python tests in folders or files, with the component.
+pub fn test(tests: &[&str], component: &Path) -> Result<()> {
+    run(python()
+        .args(["-m", "pytest", "--quiet", "-rs"])
+        .args(tests)
+        .env("RELAY_CONTACT_FMU", component))
+}
+
 /// Makes the environment, unless it is there with the same requirements.
 pub fn prepare() -> Result<()> {
-    let wanted = fs::read_to_string(root().join("requirements.txt")).context("cannot read requirements.txt")?;
-    // Written last, so that a half-made environment is made anew.
-    let stamp = folder().join("requirements.txt");
-    let current = fs::read_to_string(&stamp).is_ok_and(|installed| installed == wanted);
+    let required = requirements()?;
+    // Written last, so that an unfinished environment is made anew.
+    let stamp = root().join(".venv/requirements.txt");
+    let current = fs::read_to_string(&stamp).is_ok_and(|installed| installed == required);
     if current && output(python().arg("--version")).is_ok() {
         return Ok(());
     }
     let python3 = system_python()?;
-    let progress = ProgressBar::new_spinner().with_message("making .venv (Python packages of requirements.txt)");
-    progress.enable_steady_tick(Duration::from_millis(100));
+    println!("making .venv (Python packages of requirements.txt): some minutes the first time");
     output(command(python3).args(["-m", "venv", "--clear", ".venv"]))?;
-    let pip = [
-        "-m",
-        "pip",
-        "install",
-        "--disable-pip-version-check",
-        "--quiet",
-        "-r",
-        "requirements.txt",
-    ];
-    output(python().args(pip))?;
-    fs::write(stamp, wanted)?;
-    progress.finish_and_clear();
-    Ok(())
+    output(pip().args(["-r", "requirements.txt"]))?;
+    Ok(fs::write(stamp, required)?)
+}
+
+fn requirements() -> Result<String> {
+    fs::read_to_string(root().join("requirements.txt")).context("cannot read requirements.txt")
+}
+
+fn pip() -> Command {
+    let mut pip = python();
+    pip.args(["-m", "pip", "install", "--disable-pip-version-check", "--quiet"]);
+    pip
 }
 
 /// The folder of the libclang that comes with the environment.
 pub fn libclang() -> Result<PathBuf> {
-    let code = "import clang, pathlib; print(pathlib.Path(clang.__path__[0]) / 'native')";
-    let path = output(python().args(["-c", code]))?;
+    Ok(package("clang")?.join("native"))
+}
+
+/// The folder of a package of the environment.
+fn package(name: &str) -> Result<PathBuf> {
+    let path = output(python().args(["-c", &format!("import {name}; print({name}.__path__[0])")]))?;
     Ok(PathBuf::from(path.trim()))
 }
 
@@ -72,17 +76,12 @@ pub fn libclang() -> Result<PathBuf> {
 pub fn zig() -> Result<(PathBuf, PathBuf)> {
     const MARK: &str = "; extra == 'release'";
     prepare()?;
-    let requirements = fs::read_to_string(root().join("requirements.txt")).context("cannot read requirements.txt")?;
-    let wanted = requirements.lines().filter_map(|line| line.strip_suffix(MARK));
-    let progress = ProgressBar::new_spinner().with_message("installing zig (Python package of requirements.txt)");
-    progress.enable_steady_tick(Duration::from_millis(100));
-    let pip = ["-m", "pip", "install", "--disable-pip-version-check", "--quiet"];
-    output(python().args(pip).args(wanted.map(str::trim)))?;
-    progress.finish_and_clear();
-    let code = "import pathlib, ziglang; print(pathlib.Path(ziglang.__path__[0]))";
-    let zig = PathBuf::from(output(python().args(["-c", code]))?.trim()).join(format!("zig{EXE_SUFFIX}"));
+    let required = requirements()?;
+    println!("installing zig (Python package of requirements.txt)");
+    let marked = required.lines().filter_map(|line| line.strip_suffix(MARK));
+    output(pip().args(marked.map(str::trim)))?;
     let zigbuild = interpreter().with_file_name(format!("cargo-zigbuild{EXE_SUFFIX}"));
-    Ok((zig, zigbuild))
+    Ok((package("ziglang")?.join(format!("zig{EXE_SUFFIX}")), zigbuild))
 }
 
 /// The machine's Python 3, if it can make environments.

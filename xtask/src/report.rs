@@ -7,15 +7,15 @@ use std::process::Command;
 use anyhow::Result;
 
 use crate::commands::{self, cargo, command};
-use crate::{importers, python};
+use crate::python;
 
-/// Said where Chromium is missing.
+/// The message where Chromium is missing.
 pub const CHROMIUM_MISSING: &str = "Chromium is missing (on Debian: apt-get install chromium)";
 
-/// What Chromium is called.
+/// Names of Chromium.
 const CHROMIUM: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
 
-/// What is handed on to the program.
+/// Arguments that are handed on to the program.
 #[derive(clap::Args)]
 pub struct Arguments {
     #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
@@ -23,44 +23,30 @@ pub struct Arguments {
 }
 
 impl Arguments {
-    fn has(&self, argument: &str) -> bool {
-        self.arguments.iter().any(|known| known == argument)
-    }
-
-    fn asks_for_help(&self) -> bool {
-        self.has("--help") || self.has("-h")
+    /// Whether one of these is among them.
+    pub fn has(&self, names: &[&str]) -> bool {
+        self.arguments
+            .iter()
+            .any(|known| names.iter().any(|name| known == name))
     }
 }
 
 /// Does one of the program's tasks.
 pub fn run(task: &str, arguments: &Arguments) -> Result<()> {
-    if !arguments.asks_for_help() {
+    if !arguments.has(&["--help", "-h"]) {
         python::prepare()?;
     }
     start(task, &arguments.arguments)
 }
 
-/// The report, for which the component is tried under the importers that are called from Python.
-pub fn report(arguments: &Arguments) -> Result<()> {
-    if !["--quick", "--docs"].into_iter().any(|short| arguments.has(short)) && !arguments.asks_for_help() {
-        importers::run_python()?;
-    }
-    run("report", arguments)
-}
-
 /// The report in its quick form, in a browser.
 pub fn test() -> Result<()> {
-    start("report", ["--quick"])?;
+    start("report", &["--quick"])?;
     commands::run(python::python().args(["-m", "pytest", "--quiet", "report/browser"]))
 }
 
-/// Checks that disabled effects cost nothing.
-pub fn what_is_off() -> Result<()> {
-    start("effects", ["--off"])
-}
-
 /// Does a task of the program with its arguments.
-pub fn start(task: &str, arguments: impl IntoIterator<Item = impl AsRef<OsStr>>) -> Result<()> {
+pub fn start(task: &str, arguments: &[impl AsRef<OsStr>]) -> Result<()> {
     commands::run(program().arg(task).args(arguments))
 }
 

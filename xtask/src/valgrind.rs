@@ -1,26 +1,39 @@
 //! The calls of importers under valgrind: no error, no leak.
 //!
 //! Valgrind does not know every instruction of the compilation for AVX2, so the library is built with the feature
-//! `portable`, in a target folder of its own: no other build can mistake its library for one of theirs.
+//! `portable`, in a target folder of its own, where no other build takes its library for its own.
 
-use std::io::BufReader;
+use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::PathBuf;
-use std::process::{Command, Stdio};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use cargo_metadata::Message;
 
-use crate::commands::{self, cargo, command};
+use crate::commands::{cargo, command, output, run as run_command};
+use crate::release::trial::{Runner, Trial};
+
+/// The test that makes the calls.
+const CAMPAIGN: &str = "loaded_library";
 
 /// Random calls made under valgrind, fifty times slower there.
 const CALLS: &str = "5000";
 
-/// Said where valgrind is missing.
+/// The message where valgrind is missing.
 pub const MISSING: &str = "valgrind is missing (on Debian: apt-get install valgrind)";
+
+const VALGRIND: [&str; 6] = [
+    "valgrind",
+    "--quiet",
+    "--leak-check=full",
+    // To valgrind, what Rust's runtime keeps of its main thread to the end is "possibly lost".
+    "--show-leak-kinds=definite,indirect",
+    "--errors-for-leak-kinds=definite,indirect",
+    "--error-exitcode=1",
+];
 
 /// Whether valgrind is there.
 pub fn is_installed() -> bool {
-    commands::output(command("valgrind").arg("--version")).is_ok()
+    output(command("valgrind").arg("--version")).is_ok()
 }
 
 /// Runs the campaign and the C program under valgrind.
@@ -28,11 +41,13 @@ pub fn run() -> Result<()> {
     if !is_installed() {
         bail!(MISSING);
     }
-    let campaign = built(&["test", "--no-run", "--package=campaign", "--test=loaded_library"])?;
-    commands::run(
-        memcheck()
-            .arg(campaign)
-            // Instances by the thousand, and every call in every state, show nothing new here and take minutes.
+    let campaign = build_campaign()?;
+    let [valgrind, options @ ..] = VALGRIND;
+    run_command(
+        command(valgrind)
+            .args(options)
+            .arg(&campaign)
+            // Thousands of instances, and every call in every state, show nothing new here and take minutes.
             .args([
                 "--test-threads=1",
                 "--skip=thousands",
@@ -40,56 +55,38 @@ pub fn run() -> Result<()> {
             ])
             .env("CAMPAIGN_CALLS", CALLS),
     )?;
-    let life_cycle = built(&["test", "--no-run", "--package=relay-contact", "--test=c_life_cycle"])?;
-    commands::run(
-        memcheck()
-            // The C program is started by the test, and so is its compiler, which is not looked at.
-            .args([
-                "--trace-children=yes",
-                "--trace-children-skip=*/cc,*/gcc,*/collect2,*/ld,*/as,*/cc1",
-            ])
-            .arg(life_cycle),
-    )
+    let runner = Runner {
+        compiler: vec!["cc".into()],
+        start: VALGRIND.map(Into::into).to_vec(),
+    };
+    // Cargo builds the library beside the test.
+    let library = campaign.with_file_name(format!("{DLL_PREFIX}relay_contact{DLL_SUFFIX}"));
+    let trial = Trial::prepare(runner, "valgrind", &library)?;
+    print!("{}", trial.output("life_cycle", &["-lrelay_contact", "-lm"], &[])?);
+    Ok(())
 }
 
-fn memcheck() -> Command {
-    let mut valgrind = command("valgrind");
-    valgrind.args([
-        "--quiet",
-        "--leak-check=full",
-        // What Rust's runtime holds of its main thread to the end is "possibly lost" to valgrind.
-        "--show-leak-kinds=definite,indirect",
-        "--errors-for-leak-kinds=definite,indirect",
-        "--error-exitcode=1",
-    ]);
-    valgrind
-}
-
-/// Builds with the feature and gives the program.
-fn built(arguments: &[&str]) -> Result<PathBuf> {
-    let (subcommand, rest) = arguments.split_first().context("no arguments")?;
+/// Builds the campaign with the feature and gives its program.
+fn build_campaign() -> Result<PathBuf> {
     let mut build = cargo();
-    build
-        .arg(subcommand)
-        .args([
-            "--features=portable",
-            "--target-dir=target/portable",
-            "--message-format=json-render-diagnostics",
-        ])
-        .args(rest)
-        .stdout(Stdio::piped());
-    let mut child = build.spawn()?;
-    let messages = child.stdout.take().context("cargo says nothing")?;
-    let mut program = None;
-    for message in Message::parse_stream(BufReader::new(messages)) {
+    build.args([
+        "test",
+        "--no-run",
+        "--package=campaign",
+        "--test",
+        CAMPAIGN,
+        "--features=portable",
+        "--target-dir=target/portable",
+        "--message-format=json-render-diagnostics",
+    ]);
+    for message in Message::parse_stream(output(&mut build)?.as_bytes()) {
+        // Cargo also builds the programs of the package.
         if let Message::CompilerArtifact(artifact) = message?
+            && artifact.target.name == CAMPAIGN
             && let Some(executable) = artifact.executable
         {
-            program = Some(executable.into_std_path_buf());
+            return Ok(executable.into_std_path_buf());
         }
     }
-    if !child.wait()?.success() {
-        bail!("the build with the feature portable failed");
-    }
-    program.context("cargo built no program")
+    bail!("cargo built no campaign")
 }

@@ -1,6 +1,5 @@
 //! Builds the library for any platform on this machine.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
@@ -8,7 +7,7 @@ use cargo_metadata::Metadata;
 
 use super::check::{declared, without_time};
 use super::tools::{Tools, lld};
-use crate::commands::{cargo, command, run};
+use crate::commands::{cargo, command, read, run, write};
 use crate::fmu;
 
 /// Oldest C library of Linux, and oldest macOS, on which the libraries load.
@@ -67,12 +66,9 @@ pub fn library(target: &str, tools: &Tools, metadata: &Metadata) -> Result<Vec<u
     run(&mut build)?;
     let release = folder.join(target).join("release");
     let names = ["librelay_contact.so", "relay_contact.dll", "librelay_contact.dylib"];
-    let path = names
-        .map(|name| release.join(name))
-        .into_iter()
-        .find(|path| path.exists());
-    let path = path.with_context(|| format!("cargo built no library in {}", release.display()))?;
-    let library = fmu::read(&path)?;
+    let paths = names.map(|name| release.join(name));
+    let path = paths.iter().find(|path| path.exists());
+    let library = read(path.with_context(|| format!("cargo built no library in {}", release.display()))?)?;
     if target.contains("windows") {
         without_time(library)
     } else {
@@ -81,46 +77,33 @@ pub fn library(target: &str, tools: &Tools, metadata: &Metadata) -> Result<Vec<u
 }
 
 fn apple_flags(lld: &Path) -> Vec<String> {
-    let linker = [
-        format!("-Clinker={}", lld.display()),
-        "-Zunstable-options".to_owned(),
-        "-Clinker-flavor=darwin-lld".to_owned(),
-    ];
+    let linker = format!("-Clinker={}", lld.display());
     // Symbols that are not exported go; so does libiconv, which the standard library names and nothing uses.
-    let arguments = [
-        "-install_name",
-        "@rpath/RelayContact.dylib",
-        "-dead_strip_dylibs",
-        "-x",
-        "-S",
-    ];
-    linker
+    let arguments = "-install_name @rpath/RelayContact.dylib -dead_strip_dylibs -x -S";
+    ["-Zunstable-options", "-Clinker-flavor=darwin-lld", &linker]
+        .map(str::to_owned)
         .into_iter()
-        .chain(arguments.map(|argument| format!("-Clink-arg={argument}")))
+        .chain(arguments.split(' ').map(|argument| format!("-Clink-arg={argument}")))
         .collect()
 }
 
 /// A file that names what the library exports: without one zig exports everything, as MinGW's linkers do.
 fn exports(folder: &Path) -> Result<PathBuf> {
-    let path = folder.join("exports.def");
     let names = declared().into_iter().map(|name| format!("    {name}\n"));
-    fs::create_dir_all(folder)?;
-    fs::write(&path, format!("EXPORTS\n{}", names.collect::<String>()))
-        .with_context(|| format!("cannot write {}", path.display()))?;
-    Ok(path)
+    write(
+        folder.join("exports.def"),
+        format!("EXPORTS\n{}", names.collect::<String>()).as_bytes(),
+    )
 }
 
 /// A folder that stands for the SDK of macOS: the list of what its system library exports, as zig has it.
 fn sdk(zig: &Path, folder: &Path) -> Result<PathBuf> {
-    let path = zig.with_file_name("lib").join("libc/darwin/libSystem.tbd");
-    let text = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
+    let text = read(zig.with_file_name("lib").join("libc/darwin/libSystem.tbd"))?;
     // A processor that this linker does not know yet.
-    let text = text.replace("arm64e.x1-", "arm64e-");
+    let text = String::from_utf8(text)?.replace("arm64e.x1-", "arm64e-");
     let sdk = folder.join("MacOSX.sdk");
-    let libraries = sdk.join("usr/lib");
-    fs::create_dir_all(&libraries)?;
     for name in ["System", "c", "m", "iconv"] {
-        fs::write(libraries.join(format!("lib{name}.tbd")), &text)?;
+        write(sdk.join(format!("usr/lib/lib{name}.tbd")), text.as_bytes())?;
     }
     Ok(sdk)
 }

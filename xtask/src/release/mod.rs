@@ -3,25 +3,22 @@
 pub mod build;
 pub mod check;
 pub mod platform;
-pub mod sums;
 pub mod tools;
 pub mod trial;
-pub mod universal;
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::PathBuf;
 
-use anyhow::{Context, Result, bail};
-use cargo_metadata::{Metadata, MetadataCommand};
+use anyhow::{Result, bail};
+use cargo_metadata::Metadata;
 use clap::builder::PossibleValuesParser;
+use sha2::{Digest, Sha256};
 
-use crate::commands::root;
-use crate::package::{Files, pack};
-use crate::{fmu, test};
-use platform::{PLATFORMS, Platform};
-use tools::Tools;
-use trial::Outcome;
+use self::platform::{PLATFORMS, Platform};
+use self::tools::Tools;
+use crate::commands::{metadata, write};
+use crate::package::pack;
+use crate::{fmu, python};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -33,7 +30,7 @@ pub struct Arguments {
 /// Builds, checks and tries the libraries, and writes `dist/release/RelayContact.fmu` with `SHA256SUMS` beside it. A platform
 /// that cannot be built is left out, and the command fails in the end.
 pub fn run(arguments: &Arguments) -> Result<()> {
-    let metadata = MetadataCommand::new().current_dir(root()).exec()?;
+    let metadata = metadata()?;
     let tools = Tools::find()?;
     let asked = |platform: &&Platform| {
         arguments.platforms.is_empty() || arguments.platforms.iter().any(|name| name == platform.folder)
@@ -48,8 +45,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     for platform in PLATFORMS.iter().filter(asked) {
         println!("== {}", platform.folder);
         match release.platform(platform) {
-            Ok((library, outcome)) => {
-                lines.push(format!("{:15} {:7} bytes  {outcome}", platform.folder, library.len()));
+            Ok((library, trial)) => {
+                lines.push(format!("{:15} {:7} bytes  {trial}", platform.folder, library.len()));
                 libraries.push((platform, library));
             }
             Err(error) => {
@@ -66,21 +63,19 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         .iter()
         .flat_map(|(platform, _)| platform.targets.iter().copied())
         .collect();
+    let runs_here = libraries.iter().any(|(platform, _)| trial::is_host(platform));
     let binaries = libraries
-        .iter()
-        .map(|(platform, library)| (platform.folder, platform.extension, library.clone()));
+        .into_iter()
+        .map(|(platform, library)| (platform.folder, platform.extension, library));
     let mut files = fmu::files(&metadata, binaries, &tools.rustc, &targets)?;
-    for (path, text) in tools.licences()? {
-        files.insert(format!("documentation/licenses/{path}"), text);
-    }
+    files.extend(tools.licences()?);
     let packed = pack(&files)?;
-    let archive = fmu::write("release/RelayContact.fmu", &packed)?;
-    let sums = sums::text(&Files::from([("RelayContact.fmu".to_owned(), packed)]));
-    fmu::write("release/SHA256SUMS", sums.as_bytes())?;
+    let archive = write("dist/release/RelayContact.fmu", &packed)?;
+    write("dist/release/SHA256SUMS", sum("RelayContact.fmu", &packed).as_bytes())?;
     println!("== FMPy");
-    if libraries.iter().any(|(platform, _)| trial::is_host(platform)) {
+    if runs_here {
         for tests in ["test_validate.py", "test_check_values.py", "test_paper.py"] {
-            test::pytest(&format!("conformance/python/{tests}"), &archive)?;
+            python::test(&[&format!("conformance/python/{tests}")], &archive)?;
         }
     } else {
         println!("NOT RUN, the archive has no library for this machine");
@@ -95,15 +90,15 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 struct Release<'a> {
     metadata: &'a Metadata,
     tools: &'a Tools,
-    /// Folders of this machine whose paths no library may hold.
+    /// Folders of this machine whose paths no library may contain.
     private: Vec<PathBuf>,
     /// Libraries by what rustc calls their platforms.
     built: BTreeMap<&'static str, Vec<u8>>,
 }
 
 impl Release<'_> {
-    /// The library of a platform, checked, and how it was tried.
-    fn platform(&mut self, platform: &Platform) -> Result<(Vec<u8>, Outcome)> {
+    /// The library of a platform, checked, and what its trial showed.
+    fn platform(&mut self, platform: &Platform) -> Result<(Vec<u8>, String)> {
         let mut parts = Vec::new();
         for target in platform.targets {
             if !self.built.contains_key(target) {
@@ -114,19 +109,40 @@ impl Release<'_> {
         }
         let library = match parts.as_slice() {
             [one] => one.clone(),
-            several => universal::join(several)?,
+            several => check::join(several)?,
         };
-        let findings = check::library(platform, &library, &self.private)?;
-        for finding in &findings {
-            println!("{finding}");
+        let report = check::library(platform, &library, &self.private)?;
+        print!("{}", report.text);
+        if !report.failed.is_empty() {
+            let failed = report.failed.iter().map(|(target, check)| format!("{target}: {check}"));
+            bail!("checks failed: {}", failed.collect::<Vec<_>>().join(", "));
         }
-        check::demand(platform.folder, &findings)?;
-        let folder = build::folder(self.metadata).join("libraries").join(platform.folder);
-        fs::create_dir_all(&folder)?;
-        let path = folder.join(format!("RelayContact.{}", platform.extension));
-        fs::write(&path, &library).with_context(|| format!("cannot write {}", path.display()))?;
-        let outcome = trial::run(platform, &path, &self.tools.zig)?;
-        println!("{outcome}");
-        Ok((library, outcome))
+        let name = format!("RelayContact.{}", platform.extension);
+        let path = build::folder(self.metadata)
+            .join("libraries")
+            .join(platform.folder)
+            .join(name);
+        write(&path, &library)?;
+        let trial = trial::run(platform, &path, &self.tools.zig)?;
+        println!("{trial}");
+        Ok((library, trial))
+    }
+}
+
+/// A file's line of `SHA256SUMS`, as `sha256sum --check` reads it.
+fn sum(name: &str, contents: &[u8]) -> String {
+    let digits = Sha256::digest(contents)
+        .iter()
+        .fold(String::new(), |digits, byte| digits + &format!("{byte:02x}"));
+    format!("{digits}  {name}\n")
+}
+
+#[cfg(test)]
+mod tests {
+    /// The example "abc" of FIPS 180-4.
+    #[test]
+    fn a_sum_is_the_digest_and_the_name() {
+        let digest = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+        assert_eq!(super::sum("a.so", b"abc"), format!("{digest}  a.so\n"));
     }
 }

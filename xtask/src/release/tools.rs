@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 
-use crate::commands::{command, output, sysroot};
+use crate::commands::{command, output, read, sysroot};
 use crate::package::Files;
-use crate::{fmu, python};
+use crate::python;
 
 /// Programs and files that were found.
 pub struct Tools {
@@ -41,11 +41,11 @@ impl Tools {
         })
     }
 
-    /// Licence texts of what zig links into libraries, by path below `documentation/licenses/`.
+    /// Licence texts of what zig links into libraries, by path in the archive.
     pub fn licences(&self) -> Result<Files> {
         let text = |name: &str| {
-            let text = fmu::read(&self.zig.with_file_name(name))?;
-            Ok((format!("zig/{}", name.replace('/', "-")), text))
+            let path = format!("documentation/licenses/zig/{}", name.replace('/', "-"));
+            Ok((path, read(self.zig.with_file_name(name))?))
         };
         ZIG_LICENCES.into_iter().map(text).collect()
     }

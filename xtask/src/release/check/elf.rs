@@ -9,7 +9,7 @@ use goblin::elf::section_header::SHN_UNDEF;
 use goblin::elf::sym::{STB_LOCAL, STB_WEAK, STV_HIDDEN, STV_INTERNAL};
 use goblin::elf::symver::VerneedSection;
 
-use super::Report;
+use super::report::Report;
 
 /// The parts of the GNU C library, by the names they all had until 2.17 and still have.
 const LIBRARIES: [&str; 5] = ["libc.so.6", "libm.so.6", "libpthread.so.0", "libdl.so.2", "ld-linux*"];
@@ -58,7 +58,7 @@ pub fn check(report: &mut Report, bytes: &[u8]) -> Result<()> {
     let found = match (too_new.as_slice(), newest) {
         ([], None) => "none".to_owned(),
         ([], Some([major, minor, _])) => format!("up to GLIBC_{major}.{minor}"),
-        _ => super::listed(&too_new),
+        _ => super::report::listed(&too_new),
     };
     let [major, minor] = GLIBC;
     report.add(

@@ -3,13 +3,14 @@
 use std::collections::BTreeSet;
 
 use anyhow::{Context, Result};
+use fat_macho::FatWriter;
 use goblin::mach::MachO;
 use goblin::mach::cputype::{CPU_TYPE_ARM64, CPU_TYPE_X86_64};
 use goblin::mach::header::MH_DYLIB;
 use goblin::mach::load_command::{CommandVariant, PLATFORM_MACOS};
 use sha2::{Digest, Sha256};
 
-use super::Report;
+use super::report::Report;
 
 /// What a program that links the library writes down to find it by.
 const INSTALL_NAME: &str = "@rpath/RelayContact.dylib";
@@ -66,6 +67,17 @@ pub fn check(report: &mut Report, bytes: &[u8]) -> Result<()> {
     };
     report.add("code signature", found, allowed, passed);
     Ok(())
+}
+
+/// Joins libraries for several processors into one universal library.
+pub fn join(libraries: &[Vec<u8>]) -> Result<Vec<u8>> {
+    let mut writer = FatWriter::new();
+    for library in libraries {
+        writer.add(library.as_slice()).context("cannot join the libraries")?;
+    }
+    let mut joined = Vec::new();
+    writer.write_to(&mut joined).context("cannot join the libraries")?;
+    Ok(joined)
 }
 
 /// As rustc calls it.

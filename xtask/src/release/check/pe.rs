@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use goblin::pe::PE;
 use goblin::pe::header::COFF_MACHINE_X86_64;
 
-use super::Report;
+use super::report::Report;
 
 /// Those that every Windows has.
 const LIBRARIES: [&str; 9] = [
@@ -64,7 +64,7 @@ pub fn check(report: &mut Report, bytes: &[u8]) -> Result<()> {
         system.max(subsystem) <= WINDOWS,
     );
     let time = pe.header.coff_header.time_date_stamp;
-    report.add("time of linking", format!("{time}"), "0".to_owned(), time == 0);
+    report.add("time of linking", format!("{time}"), "0", time == 0);
     Ok(())
 }
 
