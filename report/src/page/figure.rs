@@ -18,7 +18,13 @@ const STROKES: [&str; 5] = [
     "16px,4px,3px,4px,3px,4px",
     "28px,5px",
 ];
-const DASHES: [&str; 4] = ["6px,4px", "2px,3px", "8px,3px,2px,3px", "3px,6px"];
+const DASHES: [&str; 5] = [
+    "6px,4px",
+    "2px,3px",
+    "8px,3px,2px,3px",
+    "3px,6px",
+    "10px,2px,2px,2px,2px,2px",
+];
 const SYMBOLS: [&str; 7] = [
     "circle",
     "square",
