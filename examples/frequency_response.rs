@@ -13,13 +13,10 @@ use std::{env, fs};
 
 use indicatif::{ProgressBar, ProgressStyle};
 use relay_contact::inputs::Inputs;
-use relay_contact::integrator::workspace::Workspace;
-use relay_contact::reference;
-use relay_contact::reference::Model;
-use relay_contact::reference::State;
+use relay_contact::reference::{self, Model, State};
 use relay_contact::scene::Scene;
-use relay_contact::simulation::Motion;
-use relay_contact::variables::ExcitationKind;
+use relay_contact::simulation::Simulation;
+use relay_contact::variables::{ExcitationKind, RealOutput};
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
@@ -70,25 +67,21 @@ impl Period {
 fn settle(acceleration: f64, frequency: f64, from: Option<&State>) -> Result<Period> {
     let start = from.map_or(0.0, |state| state.time);
     let model = Model::new(&shaken(acceleration, frequency, start), 0.0)?;
-    let mut course = Motion::new(from.copied().unwrap_or(model.initial_state(0.0)));
-    let mut workspace = Workspace::new(&model);
+    let preload = model.preload().force;
+    let state = from.copied().unwrap_or(model.initial_state(0.0));
+    let mut contact = Simulation::from_state(model, &state);
     let (mut least, mut most) = (f64::NAN, f64::NAN);
     for period in 0..PATIENCE {
         let last = (least, most);
-        let (time, until) = (course.time, start + f64::from(period + 1) / frequency);
-        relay_contact::integrator::communication_step::step(
-            &model,
-            &mut course,
-            &mut workspace,
-            &Inputs::default(),
-            time,
-            until - time,
-        )?;
-        let extremes = course.extremes(&model);
-        (least, most) = (extremes.least, extremes.greatest);
+        let (time, until) = (contact.time(), start + f64::from(period + 1) / frequency);
+        contact.step(&Inputs::default(), time, until - time)?;
+        (least, most) = (
+            contact.real(RealOutput::StepMinimumForce),
+            contact.real(RealOutput::StepMaximumForce),
+        );
         let changed = (least - last.0).abs().max((most - last.1).abs());
-        if changed < PERIODIC * model.preload().force {
-            let end = relay_contact::integrator::communication_step::state(&model, &course, &mut workspace)?;
+        if changed < PERIODIC * preload {
+            let end = contact.state_now()?;
             let opens = end.last_opening > end.time - 1.0 / frequency;
             return Ok(Period {
                 least,

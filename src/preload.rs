@@ -5,8 +5,7 @@
 //! because `s - y` would lose four digits of it.
 
 use crate::beam::section::Section;
-use crate::beam::statics::Statics;
-use crate::beam::statics::axial_force_from_deflection;
+use crate::beam::statics::{Statics, axial_force_from_deflection};
 use crate::contact::hertz::Hertz;
 use crate::error::SceneError;
 use crate::math::roots;

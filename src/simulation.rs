@@ -39,11 +39,11 @@ impl Simulation {
     }
 
     /// A model at any state: a reference run, or one that goes on from another with other parameters.
-    pub fn from_state(model: Model, state: State) -> Self {
+    pub fn from_state(model: Model, state: &State) -> Self {
         let workspace = Workspace::new(&model);
         Self {
             model,
-            motion: Motion::new(state),
+            motion: Motion::new(*state),
             workspace,
         }
     }

@@ -2,10 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-use relay_contact::reference;
-use relay_contact::reference::Section;
-use relay_contact::reference::Space;
-use relay_contact::reference::Statics;
+use relay_contact::reference::{self, Section, Space, Statics};
 
 /// E I = rho A = L = 1, so that omega = (beta L)^2.
 const UNIT: Section = Section {

@@ -4,8 +4,7 @@
 
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
-use relay_contact::simulation::Event;
-use relay_contact::simulation::Simulation;
+use relay_contact::simulation::{Event, Simulation};
 use relay_contact::variables::{BooleanOutput, IntegerOutput, RealOutput};
 use testing::scenes;
 

@@ -7,9 +7,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Complex;
 use relay_contact::inputs::Inputs;
-use relay_contact::reference;
-use relay_contact::reference::Model;
-use relay_contact::reference::Space;
+use relay_contact::reference::{self, Model, Space};
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ContactLawKind, ExcitationKind, RealOutput, ResistanceKind};

@@ -101,7 +101,7 @@ fn question(problem: &Problem, tolerance: f64) -> String {
         }
         text.push('\n');
     };
-    for mode in &model.modes() {
+    for mode in model.modes() {
         line(&[mode.omega_squared, mode.damping, mode.tip, mode.participation]);
     }
     match model.law() {

@@ -172,7 +172,7 @@ impl<'a> Motion<'a> {
         let force = alpha_f * self.force - preload.force;
         let mut d = preload.indentation + problem.support_rate * self.time;
         let mut rate = problem.support_rate;
-        for (motion, mode) in self.modes.iter_mut().zip(&problem.model.modes()) {
+        for (motion, mode) in self.modes.iter_mut().zip(problem.model.modes()) {
             let ModeMotion { q, v, a, mobility } = *motion;
             let q_free = q + h * v + h * h * (0.5 - beta) * a;
             let v_free = v + h * (1.0 - gamma) * a;
@@ -191,7 +191,7 @@ impl<'a> Motion<'a> {
             rate -= mode.tip * motion.v;
         }
         let (force, iterations) = self.solve(d, rate)?;
-        for (motion, mode) in self.modes.iter_mut().zip(&problem.model.modes()) {
+        for (motion, mode) in self.modes.iter_mut().zip(problem.model.modes()) {
             let a = (1.0 - alpha_f) * mode.tip * force * motion.mobility;
             motion.q += h * h * beta * a;
             motion.v += h * gamma * a;

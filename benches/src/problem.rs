@@ -9,8 +9,7 @@
 use std::f64::consts::TAU;
 
 use relay_contact::error::SceneError;
-use relay_contact::reference::Branch;
-use relay_contact::reference::Model;
+use relay_contact::reference::{Branch, Model};
 use relay_contact::scene::Scene;
 use relay_contact::variables::ExcitationKind;
 
@@ -54,7 +53,7 @@ impl Problem {
     /// # Errors
     /// A [`SceneError`] where the scene cannot be simulated.
     pub fn with_modes(&self, modes: i32) -> Result<Self, SceneError> {
-        let mut scene = self.model.scene();
+        let mut scene = *self.model.scene();
         scene.solver.modes = modes;
         let model = Model::new(&scene, 0.0)?;
         Ok(Self { model, ..self.clone() })
@@ -146,7 +145,7 @@ impl Problem {
         let (q, v) = state.split_at(self.modes());
         let (q_rate, v_rate) = derivative.split_at_mut(self.modes());
         q_rate.copy_from_slice(v);
-        for (((rate, mode), q), v) in v_rate.iter_mut().zip(&self.model.modes()).zip(q).zip(v) {
+        for (((rate, mode), q), v) in v_rate.iter_mut().zip(self.model.modes()).zip(q).zip(v) {
             *rate = mode.tip * force - mode.participation * acceleration - mode.damping * v - mode.omega_squared * q;
         }
     }
@@ -157,7 +156,7 @@ impl Problem {
         let (q, v) = direction.split_at(self.modes());
         let (q_rate, v_rate) = product.split_at_mut(self.modes());
         q_rate.copy_from_slice(v);
-        let modes = &self.model.modes();
+        let modes = self.model.modes();
         let force: f64 = modes
             .iter()
             .zip(q.iter().zip(v))

@@ -11,11 +11,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use relay_contact::reference;
-use relay_contact::reference::Hertz;
-use relay_contact::reference::Model;
-use relay_contact::reference::Preload;
-use relay_contact::reference::Section;
+use relay_contact::reference::{self, Hertz, Model, Preload, Section};
 use relay_contact::scene::Scene;
 use relay_contact::variables::AxialForceKind;
 

@@ -4,9 +4,7 @@ use std::f64::consts::PI;
 
 use anyhow::{Context, Result};
 use relay_contact::inputs::Inputs;
-use relay_contact::reference::Law;
-use relay_contact::reference::Linear;
-use relay_contact::reference::Model;
+use relay_contact::reference::{Law, Linear, Model};
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::ExcitationKind;

@@ -5,8 +5,7 @@
 
 use anyhow::{Context, Result, bail};
 use relay_contact::inputs::Inputs;
-use relay_contact::reference::Model;
-use relay_contact::reference::{MAX_MODES, Mode};
+use relay_contact::reference::{MAX_MODES, Mode, Model};
 use relay_contact::scene::Scene;
 
 use crate::case::{Check, closest};

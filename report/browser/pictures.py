@@ -2,7 +2,7 @@
 
 import io
 
-from browser import PAGE, ROOT, chromium
+from browser import PATIENCE, REPORT, ROOT, chromium
 from PIL import Image
 
 FOLDER = ROOT / "docs/report"
@@ -14,7 +14,8 @@ def main() -> None:
     FOLDER.mkdir(exist_ok=True)
     with chromium() as browser:
         page = browser.new_page(viewport={"width": WIDTH + 32, "height": HEIGHT}, color_scheme="light")
-        page.goto(PAGE.as_uri())
+        page.set_default_timeout(PATIENCE)
+        page.goto(REPORT.as_uri())
         for figure in page.locator("figure:has(.plot)").all():
             path = FOLDER / f"{figure.get_attribute('id')}.png"
             picture = Image.open(io.BytesIO(figure.locator(".plot").screenshot()))

@@ -7,7 +7,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from browser import COMPONENT, FOLDER, chromium
+from browser import COMPONENT, PATIENCE, QUICK, chromium
 from playwright.sync_api import Page
 
 
@@ -18,8 +18,9 @@ def page(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
         archive.extractall(folder)
     with chromium() as browser:
         page = browser.new_page(viewport={"width": request.param, "height": 900})
+        page.set_default_timeout(PATIENCE)
         page.goto((folder / "documentation/index.html").as_uri())
-        page.screenshot(path=FOLDER / f"documentation-{request.param}.png", full_page=True)
+        page.screenshot(path=QUICK.parent / f"documentation-{request.param}.png", full_page=True)
         yield page
 
 

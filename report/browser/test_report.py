@@ -4,8 +4,8 @@ import json
 from collections.abc import Iterator
 
 import pytest
-from browser import FOLDER, PAGE, chromium
-from playwright.sync_api import Browser, Page
+from browser import PATIENCE, QUICK, chromium
+from playwright.sync_api import Browser, Page, expect
 
 # Width of the window, its colours, whether it is touched; and the name of the picture of it.
 WINDOWS = {
@@ -31,11 +31,11 @@ class Visit:
             has_touch=touch,
             is_mobile=touch,
         )
-        self.page.set_default_timeout(5000)
+        self.page.set_default_timeout(PATIENCE)
         self.page.on("console", lambda message: self.complaints.append(message.text))
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.page.on("request", lambda request: self.requests.append(request.url))
-        self.page.goto(PAGE.as_uri())
+        self.page.goto(QUICK.as_uri())
 
 
 @pytest.fixture(scope="module")
@@ -53,7 +53,7 @@ def visit(browser: Browser, request: pytest.FixtureRequest) -> Iterator[Visit]:
 
 def test_loads_without_complaint_and_without_anything_else(visit: Visit) -> None:
     assert visit.complaints == []
-    assert visit.requests == [PAGE.as_uri()]
+    assert visit.requests == [QUICK.as_uri()]
 
 
 def test_every_figure_is_drawn(visit: Visit) -> None:
@@ -79,6 +79,18 @@ def test_every_figure_is_drawn(visit: Visit) -> None:
             drawn = trace.locator("path.js-line, path.point")
             assert drawn.count() > 0, f"{figure['id']}: {curve['name']}"
             assert all(drawn.evaluate_all("paths => paths.map(path => (path.getAttribute('d') ?? '').length > 4)"))
+
+
+def test_curves_of_a_figure_differ_without_colour(visit: Visit) -> None:
+    for figure in json.loads(visit.page.locator("#figures").text_content() or ""):
+        looks = [
+            (
+                "lines" in curve["mode"] and curve["line"]["dash"],
+                "markers" in curve["mode"] and curve["marker"]["symbol"],
+            )
+            for curve in figure["data"]
+        ]
+        assert len(set(looks)) == len(looks), figure["id"]
 
 
 def test_axes_of_every_figure_have_titles_that_are_seen_whole(visit: Visit) -> None:
@@ -117,7 +129,7 @@ def test_links_within_the_page_lead_somewhere(visit: Visit) -> None:
 def test_links_to_files_lead_to_files(visit: Visit) -> None:
     links = visit.page.eval_on_selector_all("a[href]", "links => links.map(link => link.getAttribute('href'))")
     files = [link.split("#")[0] for link in links if not link.startswith(("#", "http:", "https:"))]
-    assert [file for file in files if not (FOLDER / file).exists()] == []
+    assert [file for file in files if not (QUICK.parent / file).exists()] == []
 
 
 def test_page_is_no_wider_than_its_window(visit: Visit) -> None:
@@ -135,17 +147,17 @@ def test_figures_have_the_colours_of_the_page(visit: Visit) -> None:
 
 
 def test_pictures_of_the_page_are_kept(visit: Visit) -> None:
-    path = FOLDER / f"{visit.window}.png"
-    visit.page.screenshot(path=path, full_page=True, timeout=60_000)
+    path = QUICK.parent / f"{visit.window}.png"
+    visit.page.screenshot(path=path, full_page=True)
     assert path.stat().st_size > 20_000
 
 
 def test_colours_change_with_those_of_the_machine(browser: Browser) -> None:
     visit = Visit(browser, "desktop")
-    before = visit.page.locator("figure .plot .main-svg").first.evaluate("svg => getComputedStyle(svg).backgroundColor")
+    drawing = visit.page.locator("figure .plot .main-svg").first
+    before = drawing.evaluate("svg => getComputedStyle(svg).backgroundColor")
     visit.page.emulate_media(color_scheme="dark")
-    after = visit.page.locator("figure .plot .main-svg").first.evaluate("svg => getComputedStyle(svg).backgroundColor")
-    assert before != after
+    expect(drawing).not_to_have_css("background-color", before, timeout=PATIENCE)
     assert visit.complaints == []
 
 
@@ -155,9 +167,8 @@ def test_a_click_in_the_legend_hides_a_curve(browser: Browser) -> None:
     curves = plot.locator(".scatterlayer .trace")
     before = curves.count()
     plot.locator(".legendtoggle").first.click()
-    # A second click soon after would be a double click, so plotly.js waits a moment.
-    visit.page.wait_for_timeout(600)
-    assert curves.count() == before - 1
+    # A second click soon after would be a double click, so plotly.js waits a moment before it hides the curve.
+    expect(curves).to_have_count(before - 1, timeout=PATIENCE)
 
 
 def test_hovering_reads_a_value_with_its_unit(browser: Browser) -> None:

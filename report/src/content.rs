@@ -2,6 +2,7 @@
 
 /// How much is run.
 #[derive(clap::Args, Clone, Copy, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "options of a command line")]
 pub struct Arguments {
     /// Fewer points and runs, to see that everything works
     #[arg(long)]
@@ -9,6 +10,9 @@ pub struct Arguments {
     /// Also draw each figure small, as docs/report/FIGURE.png (needs Chromium)
     #[arg(long)]
     pub pictures: bool,
+    /// Measure the accuracy of this and other integrators anew, instead of showing docs/accuracy.csv (minutes)
+    #[arg(long)]
+    pub peers: bool,
     /// Only rewrite docs/validation.md
     #[arg(long)]
     pub docs: bool,
@@ -43,6 +47,16 @@ pub struct Table {
 }
 
 impl Table {
+    /// A table of these columns.
+    pub fn new(caption: &str, columns: &[impl AsRef<str>], rows: Vec<Vec<String>>) -> Self {
+        let columns = columns.iter().map(|column| column.as_ref().trim_end().to_owned());
+        Self {
+            caption: caption.to_owned(),
+            columns: columns.collect(),
+            rows,
+        }
+    }
+
     /// Which columns hold numbers, for their alignment: every cell starts like one, or is empty or a dash.
     pub fn numeric(&self) -> Vec<bool> {
         let number = |cell: &String| {
@@ -84,6 +98,26 @@ pub struct Axis {
     pub logarithmic: bool,
 }
 
+impl Axis {
+    /// A linear axis; an empty unit is that of a pure number.
+    pub const fn linear(label: &'static str, unit: &'static str) -> Self {
+        Self {
+            label,
+            unit,
+            logarithmic: false,
+        }
+    }
+
+    /// A logarithmic axis.
+    pub const fn logarithmic(label: &'static str, unit: &'static str) -> Self {
+        Self {
+            label,
+            unit,
+            logarithmic: true,
+        }
+    }
+}
+
 /// A curve, in the units of the axes.
 #[derive(Clone, Debug)]
 pub struct Curve {
@@ -93,6 +127,20 @@ pub struct Curve {
     pub style: Style,
     /// Which colour; curves that belong together have the same.
     pub colour: usize,
+}
+
+impl Curve {
+    /// A curve through points.
+    pub fn new(name: &str, points: impl IntoIterator<Item = (f64, f64)>, style: Style, colour: usize) -> Self {
+        let (x, y) = points.into_iter().unzip();
+        Self {
+            name: name.to_owned(),
+            x,
+            y,
+            style,
+            colour,
+        }
+    }
 }
 
 /// How a curve is drawn.

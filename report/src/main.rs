@@ -11,6 +11,7 @@ mod content;
 mod effects;
 mod importers;
 mod markdown;
+mod numbers;
 mod opening;
 mod page;
 mod paper;
@@ -18,7 +19,6 @@ mod programs;
 mod scene;
 mod sections;
 mod stability;
-mod threads;
 
 use std::process::ExitCode;
 

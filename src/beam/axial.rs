@@ -20,8 +20,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::beam::galerkin::Space;
-use crate::beam::mode::Modal;
-use crate::beam::mode::{MAX_MODES, Mode, ModeState};
+use crate::beam::mode::{MAX_MODES, Modal, Mode, ModeState};
 use crate::beam::section::Section;
 use crate::preload::Preload;
 

@@ -9,8 +9,7 @@ use crate::excitation::sine::Sine;
 use crate::excitation::sweep::LogSweep;
 use crate::excitation::waveform::{Accelerations, Rotation};
 use crate::excitation::window::Window;
-use crate::math::nodal::Nodal;
-use crate::math::nodal::scaled;
+use crate::math::nodal::{Nodal, scaled};
 use crate::math::simd::Simd;
 use crate::scene::Scene;
 use crate::variables::ExcitationKind;
@@ -211,5 +210,98 @@ impl Generator {
             Self::Random(random) if random.window.is_open_after(time) => 0.25 / random.highest,
             _ => f64::INFINITY,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integrator::collocation::polynomial::Collocation;
+    use crate::math::nodal::{LONG, SHORT};
+
+    /// A step's accelerations, at its start and at its nodes, are those of the instants.
+    #[test]
+    fn nodes_agree_with_direct_evaluation() {
+        fn check<const S: usize>(scene: &Scene, time: f64, length: f64) {
+            let generator = Generator::new(scene).unwrap();
+            let nodes = Collocation::<S>::new().nodes;
+            let mut turns = Turns::<S>::room(&generator);
+            let e = &scene.excitation;
+            let highest = match scene.effects.excitation {
+                ExcitationKind::HalfSine => 0.5 / e.duration,
+                ExcitationKind::Sine => e.frequency,
+                _ => e.frequency.max(e.end_frequency),
+            };
+            let largest = match scene.effects.excitation {
+                // Half its sines in step.
+                ExcitationKind::Random => 0.5 * (512.0 * e.spectral_density * (e.end_frequency - e.frequency)).sqrt(),
+                _ => e.amplitude,
+            };
+            // The rounding of time to each side, in radians, and some of the sums.
+            let allowed = largest * (2.0 * TAU * highest * f64::EPSILON * (time + length) + 1e-13);
+            for machine in [Simd::Portable, Simd::detect()] {
+                turns.fill(&generator, machine, length, &nodes);
+                let found = generator.over_step(machine, time, &turns);
+                let start = generator.acceleration(time);
+                assert!(
+                    (found.start - start).abs() <= allowed,
+                    "{:?} at {time}: {} {start}",
+                    scene.effects.excitation,
+                    found.start
+                );
+                for (x, found) in nodes.iter().zip(&found.nodes) {
+                    let expected = generator.acceleration_before(time + x * length);
+                    assert!(
+                        (found - expected).abs() <= allowed,
+                        "{:?} at {time} + {x} {length}: {found} {expected}, allowed {allowed:e}",
+                        scene.effects.excitation
+                    );
+                }
+            }
+        }
+        let excited = |kind, frequencies: (f64, f64), times: (f64, f64)| {
+            let mut scene = Scene::default();
+            scene.effects.excitation = kind;
+            (scene.excitation.frequency, scene.excitation.end_frequency) = frequencies;
+            (scene.excitation.start_time, scene.excitation.duration) = times;
+            scene.excitation.spectral_density = 4.0;
+            (scene.excitation.phase, scene.excitation.displacement_limit) = (0.4, 3e-6);
+            scene
+        };
+        let early = (3e-4, 2e-3);
+        for scene in [
+            excited(ExcitationKind::Sine, (1000.0, 0.0), early),
+            excited(ExcitationKind::HalfSine, (1000.0, 0.0), early),
+            excited(ExcitationKind::LogSweep, (300.0, 3000.0), early),
+            excited(ExcitationKind::LogSweep, (3000.0, 300.0), early),
+            excited(ExcitationKind::Random, (100.0, 2500.0), early),
+        ] {
+            for (time, length) in [
+                (0.0, 3e-4),
+                (3e-4, 1e-4),
+                (7.1e-4, 3e-5),
+                (1.3e-3, 1e-9),
+                (2.2e-3, 1e-4),
+            ] {
+                check::<SHORT>(&scene, time, length);
+                check::<LONG>(&scene, time, length);
+            }
+        }
+        let late = [
+            excited(ExcitationKind::LogSweep, (1000.0, 1e6), (0.0, 1e9)),
+            excited(ExcitationKind::LogSweep, (1e6, 1000.0), (0.0, 1e9)),
+            excited(ExcitationKind::LogSweep, (10.0, 2000.0), (0.0, 900.0)),
+            excited(ExcitationKind::LogSweep, (1000.0, 1001.0), (0.0, 1e9)),
+            excited(ExcitationKind::LogSweep, (1000.0, 1000.0), (0.0, 1e9)),
+            excited(ExcitationKind::Sine, (1000.0, 0.0), (0.0, 1.0)),
+            excited(ExcitationKind::Random, (10.0, 2000.0), (0.0, 1.0)),
+        ];
+        for scene in &late {
+            for time in [0.1, 17.3, 449.9, 451.2, 899.9] {
+                check::<SHORT>(scene, time, 3e-5);
+                check::<LONG>(scene, time, 3e-5);
+            }
+        }
+        check::<LONG>(&late[0], 7e8, 1e-7);
     }
 }

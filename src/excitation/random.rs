@@ -8,8 +8,7 @@ use std::f64::consts::TAU;
 
 use crate::excitation::waveform::{Accelerations, Rotation};
 use crate::excitation::window::Window;
-use crate::math::nodal::Nodal;
-use crate::math::nodal::add;
+use crate::math::nodal::{Nodal, add};
 use crate::math::simd::{Arithmetic, Separate, Simd, compiled_for};
 use crate::scene::Excitation;
 

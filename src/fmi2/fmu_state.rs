@@ -10,9 +10,8 @@ use libc::size_t;
 use super::entry::{array, array_mut, call, place};
 use super::failure::Failure;
 use super::instance::{Instance, Snapshot};
-use super::serial;
-use super::states;
 use super::types::{fmi2Byte, fmi2Component, fmi2FMUstate, fmi2Real, fmi2Status, fmi2ValueReference};
+use super::{serial, states};
 
 /// What a saved state points to. The guard comes first: it tells one from other memory.
 #[repr(C)]

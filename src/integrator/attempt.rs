@@ -1,18 +1,12 @@
 //! A step on trial, and whether its error is one that a step may have.
 
-use crate::error::StepError;
-use crate::error::StepErrorCause;
+use crate::error::{StepError, StepErrorCause};
 use crate::integrator::collocation::newton::Source;
-use crate::integrator::collocation::step::Trial;
-use crate::integrator::collocation::step::is_rounding;
-use crate::integrator::collocation::step::trial;
+use crate::integrator::collocation::step::{Trial, is_rounding, trial};
 use crate::integrator::grid::Target;
-use crate::integrator::integration::Integration;
-use crate::integrator::integration::StepOutcome;
-use crate::integrator::workspace::work;
-use crate::integrator::workspace::{Room, Workspace};
-use crate::math::nodal;
-use crate::math::nodal::SHORT;
+use crate::integrator::integration::{Integration, StepOutcome};
+use crate::integrator::workspace::{Room, Workspace, work};
+use crate::math::nodal::{self, SHORT};
 
 /// Error of the contact force within a step, per force that its polynomial misses at the start.
 pub(crate) const INSIDE: f64 = 0.3;

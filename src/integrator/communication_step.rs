@@ -1,15 +1,13 @@
 //! A communication step: HEAD
 use crate::BARE;
-use crate::error::StepError;
-use crate::error::StepErrorCause;
+use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
 use crate::inputs::Inputs;
 use crate::integrator::extremes::Extremes;
 use crate::integrator::integration::Steps;
 use crate::integrator::motion::Motion;
 use crate::integrator::step_control::advance;
-use crate::integrator::workspace::Budget;
-use crate::integrator::workspace::Workspace;
+use crate::integrator::workspace::{Budget, Workspace};
 use crate::model::Model;
 use crate::state::State;
 

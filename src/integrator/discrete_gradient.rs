@@ -8,13 +8,11 @@
 
 use crate::error::{StepError, StepErrorCause};
 use crate::integrator::collocation::newton::Source;
-use crate::integrator::collocation::step::Trial;
-use crate::integrator::collocation::step::trial;
+use crate::integrator::collocation::step::{Trial, trial};
 use crate::integrator::grid::Target;
 use crate::integrator::integration::{Integration, StepOutcome};
 use crate::integrator::workspace::Room;
-use crate::math::nodal::SHORT;
-use crate::math::nodal::end;
+use crate::math::nodal::{SHORT, end};
 use crate::math::roots;
 
 /// Steps given up in succession before one has to do.

@@ -1,9 +1,9 @@
 //! One exact step, of any length, where beam and contact are linear and the contact stays closed.
 
 use crate::beam::mode::MAX_MODES;
-use crate::closed_loop::closed_loop::{ClosedLoop, Steady};
 use crate::closed_loop::oscillator::Coordinates;
 use crate::closed_loop::propagator::Propagators;
+use crate::closed_loop::system::{ClosedLoop, Steady};
 use crate::contact::law::Law;
 use crate::contact::linear::Linear;
 use crate::excitation::drive::Drive;

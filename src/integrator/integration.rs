@@ -1,13 +1,10 @@
 //! A communication step, or one step of the integrator's own, under way: what all its parts share.
-use crate::error::StepError;
-use crate::error::StepErrorCause;
+use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::extremes::Extremes;
-use crate::integrator::grid::Grid;
-use crate::integrator::grid::Target;
-use crate::integrator::workspace::Room;
-use crate::integrator::workspace::Workspace;
+use crate::integrator::grid::{Grid, Target};
+use crate::integrator::workspace::{Room, Workspace};
 use crate::math::prediction::Prediction;
 use crate::model::Model;
 use crate::state::State;

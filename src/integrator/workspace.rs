@@ -2,8 +2,7 @@
 
 use crate::beam::mode::{MAX_MODES, ModeState, ModeStates};
 use crate::closed_loop::propagator::Propagators;
-use crate::error::StepError;
-use crate::error::StepErrorCause;
+use crate::error::{StepError, StepErrorCause};
 use crate::integrator::collocation::coefficients::Cache;
 use crate::integrator::events::log::Events;
 use crate::math::nodal::{LONG, SHORT};

@@ -15,9 +15,7 @@
 //! file = "closing.csv"        # further inputs over time, beside this file: see `input_table`
 //! ```
 
-use crate::scene::names::Role;
-use crate::scene::names::list;
-use crate::scene::names::variable;
+use crate::scene::names::{Role, list, variable};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::str::FromStr;

@@ -24,14 +24,14 @@ impl Rig {
     /// The model at rest in its preload.
     pub fn new(model: Model) -> Self {
         let state = model.initial_state(0.0);
-        Self::at(model, state)
+        Self::at(model, &state)
     }
 
-    fn at(model: Model, state: State) -> Self {
+    fn at(model: Model, state: &State) -> Self {
         let simulation = Simulation::from_state(model.clone(), state);
         Self {
             model,
-            state,
+            state: *state,
             simulation,
         }
     }
@@ -53,7 +53,7 @@ impl Rig {
         let d = model.preload().indentation + state.indentation;
         state.force = model.law().force(d, state.indentation_rate);
         state.closed = model.engagement(state.indentation, state.indentation_rate) > 0.0;
-        *self = Self::at(model.clone(), state);
+        *self = Self::at(model.clone(), &state);
     }
 
     /// Lets a bonded contact open from here on.
@@ -63,7 +63,7 @@ impl Rig {
                 linear.bonded = false;
             }
         });
-        *self = Self::at(model, self.state);
+        *self = Self::at(model, &self.state);
     }
 
     /// Advances to the instant `time` (s) with the inputs held.

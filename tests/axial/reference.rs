@@ -4,9 +4,7 @@
 use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
-use relay_contact::reference::Hertz;
-use relay_contact::reference::Preload;
-use relay_contact::reference::Section;
+use relay_contact::reference::{Hertz, Preload, Section};
 use relay_contact::scene::Scene;
 
 use crate::FUNCTIONS;

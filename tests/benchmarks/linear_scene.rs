@@ -7,9 +7,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Complex, DMatrix, DVector};
 use relay_contact::inputs::Inputs;
-use relay_contact::reference::Law;
-use relay_contact::reference::Model;
-use relay_contact::reference::Space;
+use relay_contact::reference::{Law, Model, Space};
 use relay_contact::scene::Scene;
 use relay_contact::variables::{ContactLawKind, ExcitationKind};
 use testing::rig::Rig;
@@ -221,7 +219,7 @@ fn every_damping_and_load_against_the_matrix_exponential() {
             scene.tip.mass = mass;
             stiffen(&mut scene, factor);
             // At the resonance, which without damping has no steady motion.
-            scene.excitation.frequency = Model::new(&scene, 0.0).unwrap().frequency;
+            scene.excitation.frequency = Model::new(&scene, 0.0).unwrap().frequency();
             let worst = error_against_the_exponential(&scene);
             println!("{damping:?}, {modes} modes, stiffness x {factor}, tip {mass}: {worst:.1e}");
             assert!(worst < 1e-12, "{damping:?} {modes} {factor} {mass}: {worst:e}");
@@ -319,10 +317,7 @@ fn linearised_that_opens_is_left_to_the_collocation() {
     let mut scene = scene(ContactLawKind::Linearised);
     scene.excitation.amplitude = 400.0;
     let mut mixed = Rig::new(Model::new(&scene, 0.0).unwrap());
-    let mut plain = Rig::new(Model {
-        closed_loop: None,
-        ..mixed.model.clone()
-    });
+    let mut plain = Rig::new(mixed.model.clone().with(|_| ()));
     let allowed = 2.0 * scene.solver.effective_tolerance() * mixed.model.force_scale();
     for k in 1..=100 {
         for rig in [&mut mixed, &mut plain] {

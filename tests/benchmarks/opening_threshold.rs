@@ -6,8 +6,7 @@
 use std::f64::consts::TAU;
 
 use relay_contact::inputs::Inputs;
-use relay_contact::reference;
-use relay_contact::reference::Model;
+use relay_contact::reference::{self, Model};
 use relay_contact::variables::ContactLawKind;
 use testing::rig::Rig;
 use testing::scenes::shaken;
@@ -75,7 +74,7 @@ fn the_nonlinear_force_leaves_the_linear_one_quadratically() {
     let frequency = 1000.0;
     let hertz = model(ContactLawKind::Hertz, 1e-10, frequency);
     let response = reference::response(&hertz, TAU * frequency).force.norm();
-    let preload = hertz.preload.force;
+    let preload = hertz.preload().force;
     let deviation = |ratio: f64| {
         let mut rig = periodic(hertz.clone(), ratio * preload / response, frequency);
         let nonlinear = 1.0 - least_force(&mut rig, frequency) / preload;

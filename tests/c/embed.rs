@@ -8,8 +8,7 @@ use std::process::{Command, Output};
 use std::sync::LazyLock;
 
 use nalgebra::{Complex, Matrix3, Vector3};
-use relay_contact::reference;
-use relay_contact::reference::Model;
+use relay_contact::reference::{self, Model};
 use relay_contact::scene::Scene;
 use relay_contact::variables::VARIABLES;
 

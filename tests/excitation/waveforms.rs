@@ -2,14 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use relay_contact::integrator::collocation::polynomial::Collocation;
-use relay_contact::math::nodal::{LONG, SHORT};
-use relay_contact::math::simd::Simd;
-use relay_contact::reference::Turns;
-use relay_contact::scene::Scene;
 use relay_contact::variables::ExcitationKind;
 
-use crate::{G, closed_form, every_waveform, excited, generator, half_sine, limited, phased, random, sweep};
+use crate::{G, closed_form, every_waveform, excited, generator, half_sine, limited, phased, sweep};
 
 #[test]
 fn waveforms_are_those_of_their_closed_forms() {
@@ -28,74 +23,6 @@ fn waveforms_are_those_of_their_closed_forms() {
         }
         assert!(largest > 30.0, "{name}: {largest}");
     }
-}
-
-/// A step's accelerations, at its start and at its nodes, are those of the instants.
-#[test]
-fn nodes_agree_with_direct_evaluation() {
-    fn check<const S: usize>(name: &str, scene: &Scene, time: f64, length: f64) {
-        let generator = generator(scene);
-        let nodes = Collocation::<S>::new().nodes;
-        let mut turns = Turns::<S>::room(&generator);
-        let e = &scene.excitation;
-        let highest = match scene.effects.excitation {
-            ExcitationKind::HalfSine => 0.5 / e.duration,
-            ExcitationKind::Sine => e.frequency,
-            _ => e.frequency.max(e.end_frequency),
-        };
-        let largest = match scene.effects.excitation {
-            // Half its sines in step.
-            ExcitationKind::Random => 0.5 * (512.0 * e.spectral_density * (e.end_frequency - e.frequency)).sqrt(),
-            _ => e.amplitude,
-        };
-        // The rounding of time to each side, in radians, and some of the sums.
-        let allowed = largest * (2.0 * TAU * highest * f64::EPSILON * (time + length) + 1e-13);
-        for machine in [Simd::Portable, Simd::detect()] {
-            turns.fill(&generator, machine, length, &nodes);
-            let found = generator.over_step(machine, time, &turns);
-            let start = generator.acceleration(time);
-            assert!(
-                (found.start - start).abs() <= allowed,
-                "{name} at {time}: {} {start}",
-                found.start
-            );
-            for (x, found) in nodes.iter().zip(&found.nodes) {
-                let expected = generator.acceleration_before(time + x * length);
-                assert!(
-                    (found - expected).abs() <= allowed,
-                    "{name} at {time} + {x} {length}: {found} {expected}, allowed {allowed:e}"
-                );
-            }
-        }
-    }
-    for (name, scene) in every_waveform() {
-        for (time, length) in [
-            (0.0, 3e-4),
-            (3e-4, 1e-4),
-            (7.1e-4, 3e-5),
-            (1.3e-3, 1e-9),
-            (2.2e-3, 1e-4),
-        ] {
-            check::<SHORT>(name, &scene, time, length);
-            check::<LONG>(name, &scene, time, length);
-        }
-    }
-    let late = [
-        ("sweep", sweep(0.0, 10.0, 2000.0, 900.0)),
-        ("slow sweep", sweep(0.0, 1000.0, 1e6, 1e9)),
-        ("slow sweep down", sweep(0.0, 1e6, 1000.0, 1e9)),
-        ("slight sweep", sweep(0.0, 1000.0, 1001.0, 1e9)),
-        ("sweep that is a sine", sweep(0.0, 1000.0, 1000.0, 1e9)),
-        ("sine", excited(ExcitationKind::Sine, 0.0)),
-        ("random", random(0.0, 10.0, 2000.0, 1.0)),
-    ];
-    for (name, scene) in late {
-        for time in [0.1, 17.3, 449.9, 451.2, 899.9] {
-            check::<SHORT>(name, &scene, time, 3e-5);
-            check::<LONG>(name, &scene, time, 3e-5);
-        }
-    }
-    check::<LONG>("slow sweep", &late[1].1, 7e8, 1e-7);
 }
 
 #[test]

@@ -2,8 +2,7 @@
 
 use anyhow::Result;
 
-use crate::commands;
-use crate::{fmu, python};
+use crate::{commands, fmu, python};
 
 /// Prepares Python, builds the component, runs the case.
 pub fn run() -> Result<()> {

@@ -9,9 +9,8 @@ use cargo_metadata::Metadata;
 use relay_contact::{C_HEADER, MODEL_DESCRIPTION};
 
 use crate::commands::{cargo, command, metadata, output, read, run, write};
-use crate::linked;
 use crate::package::{Files, pack};
-use crate::{bill, documentation, licences};
+use crate::{bill, documentation, licences, linked};
 
 /// Writes `dist/RelayContact.fmu` and gives its path. Beside it, for C programs, the library in `lib` and its header in
 /// `include`.

@@ -1,8 +1,7 @@
 //! Every check and test, those that fail fastest first.
 
-use std::env;
 use std::process::Command;
-use std::thread;
+use std::{env, thread};
 
 use anyhow::{Result, anyhow, bail};
 

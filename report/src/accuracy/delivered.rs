@@ -1,191 +1,214 @@
-//! What the component delivers at a tolerance: errors against a finer run of its own, and the time it takes.
+//! The component at each tolerance, with the number of modes it chooses itself.
 
-use anyhow::{Context, Result};
-use relay_contact::scene::file::SceneFile;
-use relay_contact::variables::{IntegerOutput, RealOutput};
+use super::curves::{ERROR, TIME};
+use super::rows::Row;
+use crate::content::{Axis, Block, Curve, Figure, Style, Table};
+use crate::numbers::seconds_roughly;
 
-use crate::effects::run_scene::RunScene;
-use crate::{scene, threads};
+const SCENES: [&str; 3] = ["paper", "chatter", "closing bounce"];
 
-/// Scenes, and what is changed in them.
-pub const SCENES: [(&str, &[(&str, &str)]); 3] = [
-    ("paper-1khz", &[]),
-    ("chatter-41g", &[]),
-    // A support that moves makes every communication step an integration step at least.
-    ("closing-bounce", &[("communicationStep", "1e-5")]),
+/// Smaller tolerances are not judged: rounding shows.
+const SMALLEST: f64 = 0.99e-10;
+
+/// Rows of a scene, from the largest tolerance to the smallest.
+fn scene<'a>(rows: &'a [Row], name: &'a str) -> impl Iterator<Item = &'a Row> {
+    let is_one = move |row: &&Row| row.part == "delivered" && row.scene == name && row.value > SMALLEST;
+    rows.iter().filter(is_one)
+}
+
+/// Whether the errors stay below the tolerances, as far as the reference can tell.
+pub fn verdict(rows: &[Row]) -> String {
+    let all = SCENES.into_iter().flat_map(|name| scene(rows, name));
+    let judged = all.filter(|row| row.value > 5.0 * row.reference_force_error);
+    let parts = judged.map(|row| row.force_error.unwrap_or(f64::INFINITY) / row.value);
+    let worst = parts.fold(0.0, f64::max);
+    if worst <= 1.0 {
+        format!(
+            "The error of the contact force stays below `solver.tolerance`; it is {:.1} % of it at most",
+            100.0 * worst
+        )
+    } else {
+        format!("The error of the contact force exceeds `solver.tolerance`, by up to {worst:.1} times")
+    }
+}
+
+/// Text, figures and tables.
+pub fn blocks(rows: &[Row], verdict: &str, source: &str) -> Vec<Block> {
+    let text = format!(
+        "`solver.tolerance` is the error allowed in the contact force, relative to the preload force. **{verdict}**, in the three \
+         scenes below and from 1e-1 to 1e-10, except for tolerances of less than five times the reference's own error. The error \
+         is the largest at a communication point, against an independent integrator, Radau IIA of order 9, with more modes. \
+         Times are processor times of one core. `docs/accuracy.md` describes the scenes. {source}"
+    );
+    vec![
+        Block::Text(text),
+        Block::Figure(asked(rows)),
+        Block::Figure(cost(rows)),
+        Block::Table(table(rows)),
+        Block::Table(questions(rows)),
+    ]
+}
+
+fn curves(rows: &[Row], x: fn(&Row) -> Option<f64>) -> Vec<Curve> {
+    let curve = |(name, colour): (&'static str, usize)| {
+        let points = scene(rows, name).filter_map(|row| Some((x(row)?, row.force_error?)));
+        Curve::new(name, points, Style::LineAndMarkers, colour)
+    };
+    SCENES.into_iter().zip(0..).map(curve).collect()
+}
+
+fn asked(rows: &[Row]) -> Figure {
+    let mut curves = curves(rows, |row| Some(row.value));
+    let tolerances = scene(rows, SCENES[0]).map(|row| (row.value, row.value));
+    curves.push(Curve::new("error = tolerance", tolerances, Style::Dashed, curves.len()));
+    Figure {
+        id: "accuracy-asked",
+        title: "Error against tolerance".to_owned(),
+        x: Axis::logarithmic("solver.tolerance", ""),
+        y: ERROR,
+        curves,
+        caption: "Below the dashed line the error is smaller than the tolerance.".to_owned(),
+    }
+}
+
+fn cost(rows: &[Row]) -> Figure {
+    Figure {
+        id: "accuracy-cost",
+        title: "Error over computing time".to_owned(),
+        x: TIME,
+        y: ERROR,
+        curves: curves(rows, |row| row.seconds_per_second),
+        caption: "Left and down is better. Each point is a tolerance.".to_owned(),
+    }
+}
+
+fn error(error: Option<f64>) -> String {
+    error.map_or("failed".to_owned(), |error| format!("{error:.0e}"))
+}
+
+fn time(row: &Row) -> String {
+    row.seconds_per_second.map_or(String::new(), seconds_roughly)
+}
+
+fn table(rows: &[Row]) -> Table {
+    let mut columns = vec!["tolerance".to_owned(), "modes".to_owned()];
+    for name in SCENES {
+        columns.extend([format!("*{name}*: error"), "time per simulated second".to_owned()]);
+    }
+    let row = |first: &Row| {
+        let mut cells = vec![format!("{:.0e}", first.value), first.modes.to_string()];
+        for name in SCENES {
+            let found = scene(rows, name).find(|row| row.value == first.value);
+            cells.extend(found.map_or([String::new(), String::new()], |row| {
+                [error(row.force_error), time(row)]
+            }));
+        }
+        cells
+    };
+    let rows = scene(rows, SCENES[0]).map(row).collect();
+    Table::new(
+        "Error of the contact force relative to the preload, and computing time, at each tolerance.",
+        &columns,
+        rows,
+    )
+}
+
+/// A question, where it is asked, and what has to be small for it.
+struct Question {
+    text: &'static str,
+    scene: &'static str,
+    error: fn(&Row) -> Option<f64>,
+    /// What the error is, and its unit.
+    quantity: (&'static str, &'static str),
+    allowed: f64,
+}
+
+const FORCE: (&str, &str) = ("force, relative to the preload", "");
+const INSTANTS: (&str, &str) = ("instants", "µs");
+
+const QUESTIONS: [Question; 4] = [
+    Question {
+        // The resistance goes with the force to the power -0.95, and the force falls to two thirds of the preload.
+        text: "Is the contact resistance right within 1 %?",
+        scene: "paper",
+        error: |row| row.force_error,
+        quantity: FORCE,
+        allowed: 7e-3,
+    },
+    Question {
+        text: "Does the contact open, and when, within 1 µs?",
+        scene: "chatter",
+        error: |row| row.event_error_us,
+        quantity: INSTANTS,
+        allowed: 1.0,
+    },
+    Question {
+        text: "What is the force of the impact at closing, within 1 % of the preload?",
+        scene: "closing bounce",
+        error: |row| row.force_error,
+        quantity: FORCE,
+        allowed: 0.01,
+    },
+    Question {
+        text: "Openings and closings within 1 ns, as a reference for other programs?",
+        scene: "chatter",
+        error: |row| row.event_error_us,
+        quantity: INSTANTS,
+        allowed: 1e-3,
+    },
 ];
 
-/// How a run is made: tolerance, number of modes (0: as the tolerance asks), longest integration step (s; 0: no limit).
-type Fineness = (f64, i32, f64);
-
-/// The run that the others are measured against, and one that shows its own error, with other modes and short steps. The
-/// steps of the first are not limited: more of them have more rounding, which is felt just after a blow, where 1e-17 s
-/// earlier or later are 1e-9 of the preload force.
-const REFERENCES: [Fineness; 2] = [(1e-11, 34, 0.0), (1e-11, 30, 5e-7)];
-
-/// What a run comes to.
-struct Run {
-    /// At the communication points, N.
-    forces: Vec<f64>,
-    /// Ohm.
-    resistances: Vec<f64>,
-    /// Openings and closings, s.
-    events: Vec<f64>,
-    /// Greatest force at any instant, N.
-    greatest: f64,
-    modes: i32,
-    /// What the tolerance is relative to, N.
-    scale: f64,
-}
-
-/// Differences from the finest run.
-#[derive(Clone, Copy, Debug)]
-pub struct Errors {
-    /// Contact force, of what the tolerance is relative to.
-    pub force: f64,
-    /// Contact resistance, of itself.
-    pub resistance: f64,
-    /// Instants of openings and closings, s; infinite where there are more or fewer of them.
-    pub instants: f64,
-    /// Force of the hardest blow, of itself.
-    pub blow: f64,
-}
-
-/// A scene at a tolerance.
-pub struct Delivered {
-    pub tolerance: f64,
-    pub modes: i32,
-    pub errors: Errors,
-    /// Processor seconds for a simulated second.
-    pub time: f64,
-}
-
-/// A scene at all tolerances.
-pub struct Scene {
-    pub name: &'static str,
-    pub delivered: Vec<Delivered>,
-    /// Error of what they are measured against.
-    pub own_error: f64,
-}
-
-impl Scene {
-    /// Those with a tolerance well above what the reference itself does not know.
-    pub fn judged(&self) -> impl Iterator<Item = &Delivered> {
-        let known = |delivered: &&Delivered| delivered.tolerance > 5.0 * self.own_error;
-        self.delivered.iter().filter(known)
-    }
-}
-
-/// All scenes at the tolerances. Errors first, on all cores; then times, one after the other, in the build for release.
-pub fn measure(tolerances: &[f64], timings: usize) -> Result<Vec<Scene>> {
-    let finenesses = || {
-        let asked = tolerances.iter().map(|tolerance| (*tolerance, 0, 0.0));
-        REFERENCES.into_iter().chain(asked)
-    };
-    let tasks: Vec<_> = SCENES
-        .into_iter()
-        .flat_map(|scene| finenesses().map(move |fineness| (scene, fineness)))
-        .collect();
-    let runs = threads::map(&tasks, |((name, changes), fineness)| run(name, changes, *fineness))?;
-    let program = RunScene::build()?;
-    let mut scenes = Vec::new();
-    for ((name, changes), runs) in SCENES.into_iter().zip(runs.chunks(finenesses().count())) {
-        let [finest, finer, runs @ ..] = runs else {
-            continue;
-        };
-        let mut delivered = Vec::new();
-        for (tolerance, run) in tolerances.iter().zip(runs) {
-            let tolerance_asked = [("solver.tolerance", tolerance.to_string())];
-            let fixed = changes.iter().map(|(name, value)| (*name, (*value).to_owned()));
-            let output = [("outputs", "contact.force".to_owned())];
-            let changes: Vec<_> = fixed
-                .chain(tolerance_asked)
-                .chain(output)
-                .map(|(name, value)| (name.to_owned(), value))
-                .collect();
-            // Nanoseconds per millisecond.
-            let time = 1e-6 * program.nanoseconds(&format!("scenes/{name}.toml"), &changes, timings)?;
-            delivered.push(Delivered {
-                tolerance: *tolerance,
-                modes: run.modes,
-                errors: run.errors(finest),
-                time,
-            });
-        }
-        scenes.push(Scene {
-            name,
-            delivered,
-            own_error: finer.errors(finest).force,
-        });
-    }
-    Ok(scenes)
-}
-
-fn run(name: &str, changes: &[(&str, &str)], (tolerance, modes, longest): Fineness) -> Result<Run> {
-    let mut file: SceneFile = scene::read(name)?;
-    for (name, value) in changes {
-        file.set(name, value)?;
-    }
-    file.scene.solver.tolerance = tolerance;
-    file.scene.solver.modes = modes;
-    file.scene.solver.maximum_step = longest;
-    let mut contact = scene::start(&file)?;
-    let mut run = Run {
-        forces: Vec::new(),
-        resistances: Vec::new(),
-        events: Vec::new(),
-        greatest: 0.0,
-        modes: contact.integer(IntegerOutput::SolverModesUsed),
-        scale: contact.model().force_scale,
-    };
-    for (time, size) in file.steps() {
-        contact
-            .step(&file.inputs_over(time, size)?, time, size)
-            .with_context(|| format!("{name} at tolerance {tolerance}"))?;
-        run.forces.push(contact.real(RealOutput::ContactForce));
-        run.resistances.push(contact.real(RealOutput::ContactResistance));
-        run.events.extend(contact.events().0.map(|event| event.time));
-        run.greatest = run.greatest.max(contact.real(RealOutput::StepMaximumForce));
-    }
-    Ok(run)
-}
-
-impl Run {
-    fn errors(&self, finest: &Self) -> Errors {
-        let greatest = |differences: &mut dyn Iterator<Item = f64>| differences.fold(0.0, f64::max);
-        let pairs = |own: &'_ [f64], other: &'_ [f64]| -> Vec<(f64, f64)> {
-            own.iter().copied().zip(other.iter().copied()).collect()
-        };
-        let absolute =
-            |own: &[f64], other: &[f64]| greatest(&mut pairs(own, other).into_iter().map(|(a, b)| (a - b).abs()));
-        let resistances = pairs(&self.resistances, &finest.resistances);
-        Errors {
-            force: absolute(&self.forces, &finest.forces) / self.scale,
-            resistance: greatest(&mut resistances.into_iter().map(|(a, b)| (a / b - 1.0).abs())),
-            instants: if self.events.len() == finest.events.len() {
-                absolute(&self.events, &finest.events)
-            } else {
-                f64::INFINITY
+/// The largest tolerance from which on a question is answered.
+fn questions(rows: &[Row]) -> Table {
+    let row = |question: &Question| {
+        let mut rows: Vec<&Row> = scene(rows, question.scene).collect();
+        rows.reverse();
+        // From the smallest tolerance up, as long as it is answered.
+        let answered = rows
+            .into_iter()
+            .take_while(|row| (question.error)(row).is_some_and(|error| error <= question.allowed));
+        let (quantity, unit) = question.quantity;
+        let answer = answered.last().map_or_else(
+            || ["none of those measured".to_owned(), String::new(), String::new()],
+            |row| {
+                let error = format!("{} {unit}", error((question.error)(row)));
+                [
+                    format!("{:.0e}", row.value),
+                    format!("{quantity}: {}", error.trim_end()),
+                    time(row),
+                ]
             },
-            blow: (self.greatest / finest.greatest - 1.0).abs(),
-        }
-    }
+        );
+        let head = [question.text.to_owned(), question.scene.to_owned()];
+        head.into_iter().chain(answer).collect()
+    };
+    Table::new(
+        "Which tolerance for which question: the largest of those measured that answers it.",
+        &[
+            "question",
+            "scene",
+            "tolerance",
+            "error at that tolerance",
+            "time per simulated second",
+        ],
+        QUESTIONS.iter().map(row).collect(),
+    )
 }
 
 #[cfg(test)]
 mod tests {
+    use anyhow::Result;
+
+    use super::super::rows::read;
     use super::*;
 
     #[test]
-    fn errors_are_those_of_the_runs() -> Result<()> {
-        let (name, changes) = ("chatter-41g", &[("stop", "0.0015")]);
-        let finest = run(name, changes, (1e-10, 30, 1e-6))?;
-        let coarse = run(name, changes, (1e-3, 0, 0.0))?;
-        let errors = coarse.errors(&finest);
-        assert_eq!(finest.events.len(), 2, "it opens and closes once");
-        assert!(errors.force > 0.0 && errors.force < 1e-3, "{errors:?}");
-        assert!(errors.instants < 1e-9 && errors.blow < 1e-3, "{errors:?}");
-        assert_eq!(finest.errors(&finest).force, 0.0);
+    fn the_measurements_of_the_project_answer_every_question() -> Result<()> {
+        let (rows, _) = read("docs")?;
+        assert!(SCENES.iter().all(|name| scene(&rows, name).count() == 10));
+        let answers = questions(&rows).rows;
+        let tolerances = answers.iter().filter_map(|row| row.get(2)?.parse::<f64>().ok());
+        assert_eq!(tolerances.count(), QUESTIONS.len(), "{answers:?}");
         Ok(())
     }
 }

@@ -1,10 +1,11 @@
 //! What an effect changes in the scenes.
 
-use anyhow::Result;
-use relay_contact::scene::file::SceneFile;
+use anyhow::{Context, Result};
+use rayon::prelude::*;
+use relay_contact::scene::Scene;
 use relay_contact::variables::RealOutput;
 
-use super::list::{Effect, Settings};
+use super::list::{EFFECTS, Effect, Settings};
 use crate::scene;
 
 /// Scenes in which the contact stays closed.
@@ -14,7 +15,7 @@ pub const CLOSED: [&str; 2] = ["paper-1khz", "shock-50g"];
 pub const OPENING: &str = "chatter-41g";
 
 /// Contact force, N, and resistance, Ohm, at the communication points.
-struct Course {
+struct History {
     forces: Vec<f64>,
     resistances: Vec<f64>,
     step: f64,
@@ -28,44 +29,85 @@ pub struct Influence {
     pub open: [f64; 2],
 }
 
-/// What it changes in the scenes.
-pub fn influence(effect: &Effect) -> Result<Influence> {
-    let mut closed = [[0.0; 2]; CLOSED.len()];
-    for (name, differences) in CLOSED.into_iter().zip(&mut closed) {
-        let with = course(name, effect.setting)?;
-        let without = course(name, effect.off)?;
-        *differences = [
-            greatest(&with.forces, &without.forces),
-            greatest(&with.resistances, &without.resistances),
-        ];
+/// Runs of the scenes with the settings of all effects, each different one once.
+pub struct Runs(Vec<(&'static str, Scene, History)>);
+
+impl Runs {
+    /// Runs all of them.
+    pub fn compute() -> Result<Self> {
+        let mut files = Vec::new();
+        for name in CLOSED.into_iter().chain([OPENING]) {
+            let compared = EFFECTS.iter().filter(|effect| is_compared(effect));
+            for settings in compared.flat_map(|effect| [effect.setting, effect.off]) {
+                let file = scene_with(name, settings)?;
+                if !files
+                    .iter()
+                    .any(|(known, other): &(_, scene::SceneFile)| *known == name && other.scene == file.scene)
+                {
+                    files.push((name, file));
+                }
+            }
+        }
+        let run = |(name, file): (&'static str, scene::SceneFile)| Ok((name, file.scene, History::of(&file)?));
+        Ok(Self(files.into_par_iter().map(run).collect::<Result<_>>()?))
     }
-    let open = |settings| Ok::<_, anyhow::Error>(course(OPENING, settings)?.open());
-    Ok(Influence {
-        closed,
-        open: [open(effect.off)?, open(effect.setting)?],
-    })
+
+    /// What an effect changes; none where there is nothing to compare.
+    pub fn influence(&self, effect: &Effect) -> Result<Option<Influence>> {
+        if !is_compared(effect) {
+            return Ok(None);
+        }
+        let mut closed = [[0.0; 2]; CLOSED.len()];
+        for (name, differences) in CLOSED.into_iter().zip(&mut closed) {
+            let with = self.find(name, effect.setting)?;
+            let without = self.find(name, effect.off)?;
+            *differences = [
+                largest_difference(&with.forces, &without.forces),
+                largest_difference(&with.resistances, &without.resistances),
+            ];
+        }
+        let open = |settings| Ok::<_, anyhow::Error>(self.find(OPENING, settings)?.open());
+        Ok(Some(Influence {
+            closed,
+            open: [open(effect.off)?, open(effect.setting)?],
+        }))
+    }
+
+    fn find(&self, name: &str, settings: Settings) -> Result<&History> {
+        let scene = scene_with(name, settings)?.scene;
+        let mut runs = self.0.iter();
+        let found = runs.find(|(known, other, _)| *known == name && *other == scene);
+        found.map(|(_, _, history)| history).context("not run")
+    }
 }
 
-fn course(name: &str, settings: Settings) -> Result<Course> {
-    let mut file: SceneFile = scene::read(name)?;
+fn is_compared(effect: &Effect) -> bool {
+    !effect.off.is_empty()
+}
+
+fn scene_with(name: &str, settings: Settings) -> Result<scene::SceneFile> {
+    let mut file = scene::read(name)?;
     for (name, value) in settings {
         file.set(name, value)?;
     }
-    let mut contact = scene::start(&file)?;
-    let mut course = Course {
-        forces: Vec::new(),
-        resistances: Vec::new(),
-        step: file.communication_step,
-    };
-    for (time, size) in file.steps() {
-        contact.step(&file.inputs_over(time, size)?, time, size)?;
-        course.forces.push(contact.real(RealOutput::ContactForce));
-        course.resistances.push(contact.real(RealOutput::ContactResistance));
-    }
-    Ok(course)
+    Ok(file)
 }
 
-impl Course {
+impl History {
+    fn of(file: &scene::SceneFile) -> Result<Self> {
+        let mut history = Self {
+            forces: Vec::new(),
+            resistances: Vec::new(),
+            step: file.communication_step,
+        };
+        scene::each_step(file, |contact, _| {
+            history.forces.push(contact.real(RealOutput::ContactForce));
+            history.resistances.push(contact.real(RealOutput::ContactResistance));
+            Ok(())
+        })?;
+        Ok(history)
+    }
+
     /// Time without force, s, by the communication points.
     fn open(&self) -> f64 {
         self.forces
@@ -77,7 +119,7 @@ impl Course {
 }
 
 /// The largest difference at a communication point.
-fn greatest(with: &[f64], without: &[f64]) -> f64 {
+fn largest_difference(with: &[f64], without: &[f64]) -> f64 {
     let differences = with.iter().zip(without).map(|(with, without)| with - without);
-    differences.fold(0.0, |greatest, difference| greatest.max(difference.abs()))
+    differences.fold(0.0, |largest, difference| largest.max(difference.abs()))
 }

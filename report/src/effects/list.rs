@@ -41,42 +41,42 @@ pub const EFFECTS: &[Effect] = &[
     Effect {
         name: "no excitation",
         setting: &[("effects.excitation", "None")],
-        matters: "where inputs drive the contact, or nothing does: at rest no step is taken, however long the run.",
+        matters: "where the inputs drive the contact; a contact at rest takes no integration step, however long the run.",
         ..NOTHING
     },
     Effect {
         name: "logarithmic sweep",
         setting: &[("effects.excitation", "LogSweep")],
         with: &[("excitation.duration", "0.1")],
-        matters: "to find resonances; its cost beside that of a sine is mostly that of the higher frequencies.",
+        matters: "to find resonances; it costs more than a sine mostly because of the higher frequencies.",
         ..NOTHING
     },
     Effect {
         name: "half sine",
         setting: &[("effects.excitation", "HalfSine")],
         with: &[("excitation.duration", "0.1")],
-        matters: "for shocks; after its duration it costs nothing.",
+        matters: "for shocks; no cost after its duration.",
         ..NOTHING
     },
     Effect {
         name: "random excitation",
         setting: &[("effects.excitation", "Random")],
         with: &[("excitation.spectralDensity", "9.617"), ("excitation.frequency", "50")],
-        matters: "for vibration of vehicles and the like, which a sine cannot stand for.",
+        matters: "for vibration of vehicles and the like, which a sine does not represent.",
         ..NOTHING
     },
     Effect {
         name: "contact damping",
         setting: &[("effects.contactDamping", "true")],
         off: &[("effects.contactDamping", "false")],
-        matters: "where the contact opens: it decides the force of a blow and how long it bounces; a closed one hardly feels it.",
+        matters: "where the contact opens: it sets the force of the impact at closing and the bounce time; it hardly affects a closed contact.",
         ..NOTHING
     },
     Effect {
         name: "linearised contact",
         setting: &[("effects.contactLaw", "Linearised")],
         off: &[("effects.contactLaw", "Hertz")],
-        matters: "to compare with modal and frequency-domain analyses; near enough while the force stays far from zero, wrong where the \
+        matters: "to compare with modal and frequency-domain analyses; accurate while the force stays far from zero, wrong where the \
                   contact opens.",
         ..NOTHING
     },
@@ -84,29 +84,29 @@ pub const EFFECTS: &[Effect] = &[
         name: "bonded contact",
         setting: &[("effects.contactLaw", "Bonded")],
         off: &[("effects.contactLaw", "Hertz")],
-        matters: "where the contact cannot open: every communication step is one exact step, so long ones cost least.",
+        matters: "where the contact cannot open: every communication step is one exact step, so long communication steps cost least.",
         ..NOTHING
     },
     Effect {
         name: "axial force from the preload",
         setting: &[("effects.axialForce", "FromPreload")],
         off: &[("effects.axialForce", "None")],
-        matters: "hardly ever: it is millinewtons for the specimen, and the modes are computed with it once.",
+        matters: "hardly ever: it is some millinewtons for the specimen; the modes include it, computed once.",
         ..NOTHING
     },
     Effect {
         name: "axial force from the deflection",
         setting: &[("effects.axialForce", "FromDeflection")],
         off: &[("effects.axialForce", "FromPreload")],
-        matters: "where the tip moves by much of its deflection at preload, in wide openings; a closed contact does not tell it from \
-                  that of the preload.",
+        matters: "where the tip moves by much of its deflection at preload, in wide openings; for a closed contact the result is that \
+                  of the force from the preload.",
         ..NOTHING
     },
     Effect {
         name: "prescribed axial force",
         setting: &[("effects.axialForce", "Prescribed"), ("beam.axialForce", "1")],
         off: &[("effects.axialForce", "None")],
-        matters: "where the spring is clamped under compression, which lowers its frequencies; the modes are computed with it \
+        matters: "where the spring is clamped under compression, which lowers its frequencies; the modes include it, computed \
                   once.",
         ..NOTHING
     },
@@ -114,7 +114,7 @@ pub const EFFECTS: &[Effect] = &[
         name: POWER_LAW,
         setting: &[("effects.resistance", "PowerLaw")],
         reads: "contact.force,contact.resistance",
-        matters: "for every question about resistance; a power is taken where the resistance is read, and nowhere else.",
+        matters: "for every question about resistance; it is evaluated only where the resistance is read.",
         ..NOTHING
     },
     Effect {
@@ -141,14 +141,14 @@ pub const EFFECTS: &[Effect] = &[
         reads: "contact.force,contact.resistance,chatter.count",
         beside: Some(POWER_LAW),
         off: &[("effects.chatter", "false")],
-        matters: "where interruptions are asked for: shorter than a communication step they show nowhere else.",
+        matters: "where interruptions are counted: those shorter than a communication step show nowhere else.",
     },
     Effect {
         name: "extremes",
         setting: &[("effects.extremes", "true")],
         reads: "contact.force,step.minimumForce,step.maximumForce",
         off: &[("effects.extremes", "false")],
-        matters: "where communication steps are long against the vibration.",
+        matters: "where communication steps are long compared with the period of the vibration.",
         ..NOTHING
     },
     Effect {

@@ -16,14 +16,14 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
 use indicatif::{ProgressBar, ProgressStyle};
+use rayon::prelude::*;
 
 pub use self::callgrind::instructions;
 use self::cost::{Cost, Counter};
-use self::influence::{Influence, influence};
+use self::influence::{Influence, Runs};
 use self::list::{EFFECTS, Effect};
 use self::run_scene::RunScene;
 use crate::markdown::table as markdown_table;
-use crate::threads;
 
 /// Instructions that everything that is off may cost, of those of a build that does not have it.
 const ALLOWED: f64 = 0.01;
@@ -34,7 +34,7 @@ pub struct Arguments {
     /// The page to write
     #[arg(long, default_value = "docs/effects.md")]
     page: PathBuf,
-    /// Only check that what is off costs nothing
+    /// Only check that disabled effects add no cost
     #[arg(long)]
     off: bool,
 }
@@ -127,11 +127,12 @@ pub fn measure(extent: Extent, progress: &ProgressBar) -> Result<Measurement> {
         progress.inc(1);
     }
     progress.set_message("instructions and influence");
-    let counts = threads::map(&runs, |changes| {
+    let count = |changes: &Vec<_>| {
         let count = counter.as_ref().map(|counter| counter.count(changes)).transpose();
         progress.inc(1);
         count
-    })?;
+    };
+    let counts: Vec<_> = runs.par_iter().map(count).collect::<Result<_>>()?;
     let costs: Vec<Cost> = times
         .into_iter()
         .zip(counts)
@@ -140,10 +141,7 @@ pub fn measure(extent: Extent, progress: &ProgressBar) -> Result<Measurement> {
             nanoseconds,
         })
         .collect();
-    let influences = threads::map(EFFECTS, |effect| {
-        let compared = extent.influence && !effect.off.is_empty();
-        compared.then(|| influence(effect)).transpose()
-    })?;
+    let influences = extent.influence.then(Runs::compute).transpose()?;
     let (minimal, costs) = costs.split_first().context("nothing measured")?;
     let base = |effect: &Effect| match effect.beside {
         Some(name) => {
@@ -153,17 +151,16 @@ pub fn measure(extent: Extent, progress: &ProgressBar) -> Result<Measurement> {
         }
         None => Ok(*minimal),
     };
-    let effects = EFFECTS.iter().zip(costs).zip(influences);
-    let effects = effects
-        .map(|((effect, cost), influence)| {
-            Ok(Measured {
-                effect,
-                cost: *cost,
-                base: base(effect)?,
-                influence,
-            })
+    let measured = |(effect, cost): (&'static Effect, &Cost)| {
+        let influence = influences.as_ref().map(|runs| runs.influence(effect)).transpose()?;
+        Ok(Measured {
+            effect,
+            cost: *cost,
+            base: base(effect)?,
+            influence: influence.flatten(),
         })
-        .collect::<Result<_>>()?;
+    };
+    let effects = EFFECTS.iter().zip(costs).map(measured).collect::<Result<_>>()?;
     Ok(Measurement {
         extent,
         minimal: *minimal,
@@ -198,7 +195,7 @@ fn check(off: Option<&[Off; 2]>) -> Result<()> {
     for off in off.into_iter().flatten() {
         if off.more() > ALLOWED {
             bail!(
-                "effects that are off cost {:+.2} % ({}), allowed is {} %",
+                "disabled effects cost {:+.2} % ({}); allowed: {} %",
                 100.0 * off.more(),
                 off.run,
                 100.0 * ALLOWED

@@ -8,6 +8,7 @@ use super::list::{self, MINIMAL};
 use super::{Measured, Measurement, Off};
 use crate::content::Table;
 use crate::markdown::table as markdown_table;
+use crate::numbers::two_digits;
 
 /// What each effect costs.
 pub fn costs(measurement: &Measurement) -> Table {
@@ -26,13 +27,13 @@ pub fn costs(measurement: &Measurement) -> Table {
         "setting",
         "instructions per ms",
         "added",
-        "ns per ms",
+        "nanoseconds per ms",
         "added",
     ];
     Table {
         caption: format!(
-            "Per simulated millisecond of a run of {} ms in communication steps of 10 µs, each effect added alone to the scene \
-             with everything off that can be.",
+            "Per simulated millisecond of a run of {} ms in communication steps of 10 µs, each effect added alone to the minimal \
+             scene, in which every effect is off that can be.",
             LENGTH * 1e3
         ),
         columns: columns.map(str::to_owned).to_vec(),
@@ -47,7 +48,9 @@ fn cost(measured: &Measured) -> Vec<String> {
         (Some(now), Some(before)) => added(now, before),
         _ => String::new(),
     };
-    let beside = effect.beside.map_or(String::new(), |name| format!(", beside {name}"));
+    let beside = effect
+        .beside
+        .map_or(String::new(), |name| format!(" (compared with {name})"));
     vec![
         format!("{}{beside}", effect.name),
         list::code(effect.setting),
@@ -65,41 +68,28 @@ fn instructions(cost: &Cost) -> String {
 
 /// What each effect changes in the scenes; none where that was not looked at.
 pub fn influences(measurement: &Measurement) -> Option<Table> {
-    let mut columns = vec!["effect".to_owned(), "against".to_owned()];
+    let mut columns = vec!["effect".to_owned(), "compared with".to_owned()];
     for name in CLOSED {
-        columns.push(format!("*{name}*: force, mN"));
-        columns.push("resistance, mΩ".to_owned());
+        columns.push(format!("*{name}*: change of force, mN"));
+        columns.push("change of resistance, mΩ".to_owned());
     }
-    columns.push(format!("*{OPENING}*: open without it, ms"));
-    columns.push("with it".to_owned());
+    columns.push(format!("*{OPENING}*: time open without the effect, ms"));
+    columns.push("with the effect, ms".to_owned());
     let row = |measured: &Measured| {
         let Influence { closed, open } = measured.influence.as_ref()?;
         let mut row = vec![measured.effect.name.to_owned(), list::code(measured.effect.off)];
-        row.extend(closed.iter().flatten().map(|difference| amount(1e3 * difference)));
+        row.extend(closed.iter().flatten().map(|difference| two_digits(1e3 * difference)));
         row.extend(open.iter().map(|time| format!("{:.3}", 1e3 * time)));
         Some(row)
     };
     let rows: Vec<_> = measurement.effects.iter().filter_map(row).collect();
     (!rows.is_empty()).then(|| Table {
-        caption: "Each on against off in three scenes: the largest difference of contact force and resistance at a communication \
-                  point, and where the contact opens, the time without force."
+        caption: "Each effect on and off in three scenes: the largest difference of contact force and resistance at a communication \
+                  point; in the scene in which the contact opens, the time without contact force."
             .to_owned(),
         columns,
         rows,
     })
-}
-
-/// Two digits.
-fn amount(value: f64) -> String {
-    match value {
-        0.0 => "0".to_owned(),
-        value if (0.01..1e4).contains(&value) => {
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 3")]
-            let places = (1.0 - value.log10().floor()).clamp(0.0, 3.0) as usize;
-            format!("{value:.places$}")
-        }
-        value => format!("{value:.0e}"),
-    }
 }
 
 /// When each matters, a list.
@@ -135,7 +125,7 @@ pub fn how(measurement: &Measurement) -> String {
     let counted = if measurement.minimal.instructions.is_some() {
         "Instructions are counted by valgrind in a build for any processor"
     } else {
-        "Instructions were not counted in this run (that needs valgrind, and is left out of a quick one)"
+        "Instructions were not counted in this run (the quick report leaves them out; they need valgrind)"
     };
     format!(
         "{counted}; nanoseconds are those of this machine, the shortest of {} runs.",
@@ -161,14 +151,14 @@ pub fn page(measurement: &Measurement) -> String {
     let changed = changes.as_ref().map_or(String::new(), markdown_table);
     let off = nothing(measurement).unwrap_or("Not measured.".to_owned());
     format!(
-        "<!-- Written by cargo xtask effects. -->\n# What each effect costs and changes\n\n    cargo xtask effects\n\n\
-         runs [`scenes/minimal.toml`](../scenes/minimal.toml), in which everything is off that can be, and adds each effect \
-         alone. The run is {} ms long in communication steps of 10 µs; after each, the contact force is read, and what the \
-         effect is for. Instructions are counted by valgrind's callgrind in a build for any processor, nanoseconds taken on \
+        "<!-- Written by cargo xtask effects. -->\n# Cost and influence of each effect\n\n    cargo xtask effects\n\n\
+         runs [`scenes/minimal.toml`](../scenes/minimal.toml), in which every effect is off that can be, and adds each effect \
+         alone. The run is {} ms long in communication steps of 10 µs; after each, the contact force and the outputs \
+         of the effect are read. Instructions are counted by valgrind's callgrind in a build for any processor, nanoseconds taken on \
          this machine in the usual build, the shortest of {} runs.\n\n{table}\n\n\
          ## When each matters\n\n{sentences}\n\
          {caption}\n\n{changed}\n\n\
-         ## What is off costs nothing\n\n{off}\n",
+         ## Disabled effects add no cost\n\n{off}\n",
         LENGTH * 1e3,
         runs(measurement),
     )

@@ -4,8 +4,7 @@ use anyhow::Result;
 use indicatif::ProgressBar;
 
 use super::{Extent, measure, page};
-use crate::content::Arguments;
-use crate::content::{Block, Section};
+use crate::content::{Arguments, Block, Section};
 
 /// The section.
 pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
@@ -16,7 +15,7 @@ pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
     };
     let measurement = measure(extent, &ProgressBar::hidden())?;
     let text = format!(
-        "Every effect is asked for by a parameter. {} `cargo xtask effects` writes the same to `docs/effects.md`.",
+        "Each effect is switched on by a parameter of the scene. {} `cargo xtask effects` writes these tables to `docs/effects.md`.",
         page::how(&measurement)
     );
     let mut blocks = vec![Block::Text(text), Block::Table(page::costs(&measurement))];
@@ -25,7 +24,7 @@ pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
     blocks.extend(page::nothing(&measurement).map(Block::Text));
     Ok(vec![Section {
         id: "effects",
-        title: "What each effect costs and changes",
+        title: "Cost and influence of each effect",
         lead: String::new(),
         blocks,
     }])

@@ -9,16 +9,15 @@ use anyhow::Result;
 
 use self::rows::Row;
 pub use self::rows::table as print;
-use crate::content::Arguments;
-use crate::content::{Block, Section, Table};
+use crate::content::{Arguments, Block, Section, Table};
 
 /// The section.
 pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
     let (rows, missing) = rows::rows()?;
     let mut text = String::from(
-        "`RelayContact.fmu` in programs that others have written. *Run*: 500 steps with forces up to newtons; *two coupled* and \
-         *SSP*: the tip of one contact carries the fixed contact of a second; *scenes*: all files of `scenes/`. The difference is \
-         the largest from our own run of the Rust library. `docs/importers.md` tells what each importer needs.",
+        "`RelayContact.fmu` in simulation programs of others. *run*: 500 steps with an opening contact and forces up to newtons; *two \
+         coupled* and *SSP*: the tip of one contact moves the fixed contact of a second; *scenes*: all files of `scenes/`. The \
+         difference is the largest from the same run by the Rust library. `docs/importers.md` says what each importer needs.",
     );
     let when = if rows.is_empty() {
         "**Not run**: `cargo xtask importers` runs them all.".to_owned()
@@ -26,7 +25,7 @@ pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
         let age = rows::prepared()?.elapsed().unwrap_or_default().as_secs() / 60;
         format!(
             "Not run for this page: the rows are those of the last `cargo xtask importers`, `test` or `report`, {} h {} min \
-             before this page.",
+             earlier.",
             age / 60,
             age % 60
         )
@@ -47,7 +46,8 @@ pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
         String::new()
     } else {
         format!(
-            "{passed} of {} tasks in programs of others pass; their contact force differs from our own by {worst} N at most.",
+            "{passed} of {} tasks in importers of others pass; their contact force differs from that of the Rust library by {worst} N at \
+             most.",
             rows.len()
         )
     };

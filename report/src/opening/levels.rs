@@ -1,15 +1,14 @@
-//! Levels of vibration that standards ask for, and what each comes to.
+//! Levels of vibration required by standards, and what each comes to.
 
 use std::f64::consts::TAU;
 
 use anyhow::Result;
+use rayon::prelude::*;
 
-use super::vibration::{Outcome, Thresholds, shake};
-use super::{G, yes};
+use super::vibration::{COLUMNS, G, Outcome, Thresholds, shake};
 use crate::content::{Curve, Style, Table};
-use crate::threads;
 
-/// A level of vibration that standards ask for.
+/// A level of vibration required by a standard.
 pub struct Level {
     name: &'static str,
     /// g.
@@ -60,98 +59,84 @@ impl Level {
     pub fn curve(&self, colour: usize) -> Curve {
         let (low, high) = self.frequencies;
         let crossover = (G * self.acceleration / (0.5 * self.double_amplitude)).sqrt() / TAU;
-        let x = vec![low, crossover, high];
-        Curve {
-            name: format!("{} g: {}", self.acceleration, self.name),
-            y: x.iter().map(|frequency| self.amplitude(*frequency) / G).collect(),
-            x,
-            style: Style::Dashed,
-            colour,
-        }
+        let points = [low, crossover, high].map(|frequency| (frequency, self.amplitude(frequency) / G));
+        let name = format!("{} g: {}", self.acceleration, self.name);
+        Curve::new(&name, points, Style::Dashed, colour)
     }
 }
 
 /// What a level comes to over the frequencies it covers.
 pub struct Verdict {
     pub level: Level,
-    /// Worst of each, and the frequency (Hz) at which it occurs.
-    least_force: (f64, f64),
-    pub longest: (f64, f64),
-    pub opened: bool,
-    pub interruptions: i32,
-    /// Acceleration that interrupts, over that of the level.
+    /// The worst of each at any frequency.
+    pub worst: Outcome,
+    /// Frequencies of the least force and of the longest interruption, Hz.
+    least_force_at: f64,
+    pub longest_at: f64,
+    /// Smallest acceleration that interrupts over that of the level, and its frequency, Hz.
     margin: (f64, f64),
 }
 
 /// Runs a level at every frequency of the map that it covers.
 pub fn verdict(level: Level, points: &[Thresholds]) -> Result<Verdict> {
     let covered: Vec<&Thresholds> = points.iter().filter(|point| level.covers(point.frequency)).collect();
-    let outcomes = threads::map(&covered, |point| {
-        shake(point.frequency, level.amplitude(point.frequency), None)
-    })?;
-    let runs = || covered.iter().zip(&outcomes);
-    let worst = |value: &dyn Fn(&Thresholds, &Outcome) -> f64| {
-        let values = runs().map(|(point, outcome)| (value(point, outcome), point.frequency));
-        values.fold(
-            (f64::INFINITY, 0.0),
-            |worst, value| if value.0 < worst.0 { value } else { worst },
-        )
+    let shake = |point: &&Thresholds| shake(point.frequency, level.amplitude(point.frequency), None);
+    let outcomes: Vec<Outcome> = covered.par_iter().map(shake).collect::<Result<_>>()?;
+    let least = |value: &dyn Fn(&Thresholds, &Outcome) -> f64| {
+        let runs = covered.iter().zip(&outcomes);
+        least(runs.map(|(point, outcome)| (value(point, outcome), point.frequency)))
     };
-    let least_force = worst(&|_, outcome| outcome.least_force);
-    let longest = worst(&|_, outcome| -outcome.longest);
-    let margin = worst(&|point, _| point.interrupts / level.amplitude(point.frequency));
+    let (least_force, least_force_at) = least(&|_, outcome| outcome.least_force);
+    let (longest, longest_at) = least(&|_, outcome| -outcome.longest);
+    let margin = least(&|point, _| point.interrupts / level.amplitude(point.frequency));
     Ok(Verdict {
-        least_force,
-        longest: (-longest.0, longest.1),
-        opened: outcomes.iter().any(|outcome| outcome.opened),
-        interruptions: outcomes.iter().map(|outcome| outcome.interruptions).max().unwrap_or(0),
+        worst: Outcome {
+            opened: outcomes.iter().any(|outcome| outcome.opened),
+            least_force,
+            interruptions: outcomes.iter().map(|outcome| outcome.interruptions).max().unwrap_or(0),
+            longest: -longest,
+        },
+        least_force_at,
+        longest_at,
         margin,
         level,
     })
 }
 
+/// The point of the least value.
+pub fn least(points: impl Iterator<Item = (f64, f64)>) -> (f64, f64) {
+    points.fold(
+        (f64::INFINITY, 0.0),
+        |least, point| if point.0 < least.0 { point } else { least },
+    )
+}
+
 pub fn table(verdicts: &[Verdict]) -> Table {
     let rows = verdicts.iter().map(|verdict| {
         let level = &verdict.level;
+        let [opens, counts, longest, force] = verdict.worst.cells();
+        let at = |text: String, frequency: f64| format!("{text} at {frequency:.0} Hz");
         vec![
             format!("{} g", level.acceleration),
             level.name.to_owned(),
             format!("{:.0} to {:.0} Hz", level.frequencies.0, level.frequencies.1),
-            yes(verdict.opened),
-            yes(verdict.interruptions > 0),
-            microseconds(verdict.longest),
-            format!(
-                "{:.1} % at {:.0} Hz",
-                100.0 * verdict.least_force.0,
-                verdict.least_force.1
-            ),
-            format!("{:.2} at {:.0} Hz", verdict.margin.0, verdict.margin.1),
+            opens,
+            counts,
+            if verdict.worst.longest > 0.0 {
+                at(longest, verdict.longest_at)
+            } else {
+                longest
+            },
+            at(force, verdict.least_force_at),
+            at(format!("{:.2}", verdict.margin.0), verdict.margin.1),
         ]
     });
-    Table {
-        caption: "Vibration. Each level was run at every frequency of the figure that it covers. Margin: the acceleration that \
-                  interrupts for 10 µs, over that of the level; below 1 the test fails."
-            .to_owned(),
-        columns: [
-            "level",
-            "asked by",
-            "range",
-            "opens at all",
-            "opens for 10 µs",
-            "longest interruption",
-            "least force, of the preload",
-            "lowest margin",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: rows.collect(),
-    }
-}
-
-fn microseconds((longest, frequency): (f64, f64)) -> String {
-    if longest > 0.0 {
-        format!("{:.1} µs at {frequency:.0} Hz", 1e6 * longest)
-    } else {
-        "none".to_owned()
-    }
+    let columns: Vec<&str> = ["level", "standard", "frequencies"]
+        .into_iter()
+        .chain(COLUMNS)
+        .chain(["smallest margin"])
+        .collect();
+    let caption = "Vibration. Each level was run at every frequency of the figure that it covers. Margin: the acceleration at which \
+                   the contact opens for 10 µs, divided by that of the level; below 1 the test fails.";
+    Table::new(caption, &columns, rows.collect())
 }

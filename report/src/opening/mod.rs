@@ -8,16 +8,12 @@ mod shock;
 mod vibration;
 
 use anyhow::{Context, Result};
+use rayon::prelude::*;
 
-use self::levels::{LEVELS, Verdict, table, verdict};
+use self::levels::{LEVELS, Verdict, least, table, verdict};
 use self::shock::shock;
-use self::vibration::{DWELL, RESOLUTION, Thresholds, thresholds};
-use crate::content::Arguments;
-use crate::content::{Axis, Block, Curve, Figure, Section, Style, Table};
-use crate::threads;
-
-/// Standard acceleration of free fall, m/s2.
-const G: f64 = 9.80665;
+use self::vibration::{COLUMNS, DWELL, G, Outcome, RESOLUTION, Thresholds, thresholds};
+use crate::content::{Arguments, Axis, Block, Curve, Figure, Section, Style, Table};
 
 /// Range of the map, Hz.
 const RANGE: (f64, f64) = (10.0, 3000.0);
@@ -32,13 +28,8 @@ pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
         .into_iter()
         .map(|level| verdict(level, &points))
         .collect::<Result<Vec<_>>>()?;
-    let least = |threshold: fn(&Thresholds) -> f64| {
-        let points = points.iter().map(|point| (threshold(point), point.frequency));
-        points.fold(
-            (f64::INFINITY, 0.0),
-            |least, point| if point.0 < least.0 { point } else { least },
-        )
-    };
+    let least =
+        |threshold: fn(&Thresholds) -> f64| least(points.iter().map(|point| (threshold(point), point.frequency)));
     let (opens, interrupts) = (least(|point| point.opens), least(|point| point.interrupts));
     let asked = verdicts.last().context("no levels")?;
     let lead = answer(&verdicts, asked);
@@ -71,7 +62,7 @@ fn map(count: u32) -> Result<Vec<Thresholds>> {
     let mut coarse: Vec<f64> = between(RANGE, count).chain(ends).collect();
     coarse.sort_by(f64::total_cmp);
     coarse.dedup_by(|a, b| (*a / *b - 1.0).abs() < SAME);
-    let mut points = threads::map(&coarse, |frequency| thresholds(*frequency))?;
+    let mut points = all_thresholds(&coarse)?;
     let lowest = points.iter().enumerate().min_by(|a, b| a.1.opens.total_cmp(&b.1.opens));
     let lowest = lowest.map_or(0, |(index, _)| index);
     let around = points.get(lowest.saturating_sub(1)..(lowest + 2).min(points.len()));
@@ -85,24 +76,28 @@ fn map(count: u32) -> Result<Vec<Thresholds>> {
                     .all(|point| (point.frequency / frequency - 1.0).abs() > SAME)
             })
             .collect();
-        points.extend(threads::map(&new, |frequency| thresholds(*frequency))?);
+        points.extend(all_thresholds(&new)?);
         points.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
     }
     Ok(points)
 }
 
+fn all_thresholds(frequencies: &[f64]) -> Result<Vec<Thresholds>> {
+    frequencies.par_iter().map(|frequency| thresholds(*frequency)).collect()
+}
+
 fn answer(verdicts: &[Verdict], asked: &Verdict) -> String {
     let acceleration = asked.level.acceleration;
-    let verdict = if asked.interruptions == 0 {
+    let verdict = if asked.worst.interruptions == 0 {
         format!("**At {acceleration} g no contact opens for 10 µs or more at any frequency from 10 to 3000 Hz")
     } else {
         format!(
             "**At {acceleration} g the contact does open for 10 µs or more, for up to {:.0} µs at {:.0} Hz",
-            1e6 * asked.longest.0,
-            asked.longest.1
+            1e6 * asked.worst.longest,
+            asked.longest_at
         )
     };
-    let shorter = if asked.interruptions == 0 && asked.opened {
+    let shorter = if asked.worst.interruptions == 0 && asked.worst.opened {
         ", though it opens for a shorter time"
     } else {
         ""
@@ -112,8 +107,8 @@ fn answer(verdicts: &[Verdict], asked: &Verdict) -> String {
 
 fn weakest(opens: (f64, f64), interrupts: (f64, f64)) -> String {
     format!(
-        "The specimen is weakest near its first resonance: its contact force first touches zero at {} at {:.0} Hz, and an \
-         interruption of 10 µs first occurs at {} at {:.0} Hz. The identified damping, rivet mass and preload are known to some \
+        "The specimen opens most easily near its first resonance: from {} on at {:.0} Hz the contact force reaches zero, from {} on \
+         at {:.0} Hz the contact opens for 10 µs. The identified damping, rivet mass and preload are known to some \
          per cent, and so is this acceleration.",
         acceleration_text(opens.0),
         opens.1,
@@ -124,7 +119,7 @@ fn weakest(opens: (f64, f64), interrupts: (f64, f64)) -> String {
 
 /// The levels at which nothing is interrupted, as a sentence.
 fn passed(verdicts: &[Verdict]) -> String {
-    let passed = verdicts.iter().filter(|verdict| verdict.interruptions == 0);
+    let passed = verdicts.iter().filter(|verdict| verdict.worst.interruptions == 0);
     let levels: Vec<String> = passed
         .map(|verdict| format!("{} g", verdict.level.acceleration))
         .collect();
@@ -140,43 +135,32 @@ fn acceleration_text(acceleration: f64) -> String {
 }
 
 fn figure(points: &[Thresholds]) -> Figure {
-    let curve = |name: &str, value: fn(&Thresholds) -> f64, style, colour| Curve {
-        name: name.to_owned(),
-        x: points.iter().map(|point| point.frequency).collect(),
-        y: points.iter().map(|point| value(point) / G).collect(),
-        style,
-        colour,
+    let curve = |name: &str, value: fn(&Thresholds) -> f64, style, colour| {
+        let points = points.iter().map(|point| (point.frequency, value(point) / G));
+        Curve::new(name, points, style, colour)
     };
     let mut curves = vec![
-        curve(
-            "opens for 10 µs (interruption)",
-            |point| point.interrupts,
-            Style::Line,
-            0,
-        ),
+        curve("opens for 10 µs or more", |point| point.interrupts, Style::Line, 0),
         curve("opens at all", |point| point.opens, Style::Dashed, 1),
-        curve("linear theory: opens at all", |point| point.linear, Style::Line, 2),
+        curve(
+            "linear theory: force reaches zero",
+            |point| point.linear,
+            Style::Line,
+            2,
+        ),
     ];
     curves.extend(LEVELS.iter().zip(3..).map(|(level, colour)| level.curve(colour)));
     Figure {
         id: "opening-map",
         title: "Base acceleration that opens the contact".to_owned(),
-        x: Axis {
-            label: "frequency",
-            unit: "Hz",
-            logarithmic: true,
-        },
-        y: Axis {
-            label: "amplitude of the base acceleration",
-            unit: "g",
-            logarithmic: false,
-        },
+        x: Axis::logarithmic("frequency", "Hz"),
+        y: Axis::linear("amplitude of the base acceleration", "g"),
         curves,
         caption: format!(
-            "The first two curves differ by {:.1} % at most: the force stays below that of 60 Ω for 10 µs about as soon as it \
-             touches zero. Above the resonance they lie below linear theory because the first swing of the sudden start opens \
-             the contact. A test level passes where its dashed line stays below the first curve. Left of its corner a level is \
-             limited by the stroke of the shaker, not by acceleration. 1 g = {G} m/s².",
+            "The first two curves differ by {:.1} % at most: once the force reaches zero, the resistance soon stays above 60 Ω for \
+             10 µs. Above the resonance they lie below linear theory because the transient of the sudden start opens the \
+             contact. The specimen passes a test level where the level's dashed line lies below the first curve. At low \
+             frequencies a level is limited by displacement, not by acceleration. 1 g = {G} m/s².",
             100.0
                 * points
                     .iter()
@@ -186,10 +170,6 @@ fn figure(points: &[Thresholds]) -> Figure {
     }
 }
 
-fn yes(answer: bool) -> String {
-    if answer { "yes" } else { "no" }.to_owned()
-}
-
 fn shocks(quick: bool) -> Result<Table> {
     let conditions = SHOCKS.get(..if quick { 1 } else { SHOCKS.len() }).unwrap_or_default();
     let directions = [("presses the contact", 1.0), ("pulls it open", -1.0)];
@@ -197,52 +177,36 @@ fn shocks(quick: bool) -> Result<Table> {
         .iter()
         .flat_map(|condition| directions.map(|direction| (condition, direction)))
         .collect();
-    let outcomes = threads::map(&runs, |((_, acceleration, duration), (_, sign))| {
+    let shock = |((_, acceleration, duration), (_, sign)): &(&(_, f64, f64), (_, f64))| {
         shock(sign * G * acceleration, *duration)
-    })?;
-    let rows = runs
-        .iter()
-        .zip(outcomes)
-        .map(|(((name, acceleration, duration), (direction, _)), outcome)| {
-            vec![
+    };
+    let outcomes = runs.par_iter().map(shock).collect::<Result<Vec<_>>>()?;
+    let row =
+        |(((name, acceleration, duration), (direction, _)), outcome): (&(&(_, f64, f64), (&str, _)), &Outcome)| {
+            let head = [
                 format!("method 213, condition {name}"),
                 format!("{acceleration} g, {:.0} ms", 1e3 * duration),
                 (*direction).to_owned(),
-                yes(outcome.opened),
-                yes(outcome.interruptions > 0),
-                if outcome.longest > 0.0 {
-                    format!("{:.1} µs", 1e6 * outcome.longest)
-                } else {
-                    "none".to_owned()
-                },
-                format!("{:.1} %", 100.0 * outcome.least_force),
-            ]
-        });
-    Ok(Table {
-        caption: "Half-sine shock of MIL-STD-202, in both directions along the motion of the contact.".to_owned(),
-        columns: [
-            "test",
-            "shock",
-            "direction",
-            "opens at all",
-            "opens for 10 µs",
-            "longest interruption",
-            "least force, of the preload",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: rows.collect(),
-    })
+            ];
+            head.into_iter().chain(outcome.cells()).collect()
+        };
+    let columns: Vec<&str> = ["test", "shock", "direction"].into_iter().chain(COLUMNS).collect();
+    Ok(Table::new(
+        "Half-sine shock of MIL-STD-202, in both directions along the motion of the contact.",
+        &columns,
+        runs.iter().zip(&outcomes).map(row).collect(),
+    ))
 }
 
 fn method(frequencies: usize) -> String {
     let (duration, periods) = DWELL;
     format!(
         "How it was found: the nonlinear specimen is shaken from rest with a sine for {:.0} ms or {periods:.0} periods, whichever \
-         is longer, at {frequencies} frequencies; by then nothing of the start is left, which counts too. It *opens at all* where \
+         is longer, at {frequencies} frequencies; by then the transient of the start has decayed, but it counts too. It *opens at all* where \
          the contact force reaches zero at any instant, and is *interrupted* where the resistance stays above 60 Ω for 10 µs \
-         (MIL-PRF-28776; MIL-STD-202 method 310). Each threshold is the least acceleration found, by bisection to {} %. The verdict is that of the equivalent beam with its identified damping, vibrated along the \
-         motion of the contact, and of a contact at rest: bounce after switching and the case's own resonances are not in it.",
+         (MIL-PRF-28776; MIL-STD-202 method 310). Each threshold is the smallest such acceleration, found by bisection to {} %. The result holds for the equivalent beam \
+         with its identified damping, vibrated along the motion of the contact, after the contact has come to rest: bounce after \
+         switching and resonances of the relay's case are not included.",
         1e3 * duration,
         100.0 * RESOLUTION,
     )

@@ -3,9 +3,8 @@
 use std::f64::consts::TAU;
 
 use anyhow::{Result, bail};
-use relay_contact::harmonic;
 use relay_contact::inputs::Inputs;
-use relay_contact::model::Model;
+use relay_contact::reference::{self, Model};
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ExcitationKind, IntegerOutput, RealOutput};
@@ -16,6 +15,9 @@ pub const DWELL: (f64, f64) = (0.03, 10.0);
 
 /// Thresholds are found to this part of them.
 pub const RESOLUTION: f64 = 1e-4;
+
+/// Standard acceleration of free fall, m/s2.
+pub const G: f64 = 9.80665;
 
 /// What came of shaking.
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +32,21 @@ pub struct Outcome {
 }
 
 impl Outcome {
+    /// Whether it opens at all, whether for long enough to count, the longest interruption, the least force.
+    pub fn cells(&self) -> [String; 4] {
+        let yes = |answer: bool| if answer { "yes" } else { "no" }.to_owned();
+        [
+            yes(self.opened),
+            yes(self.interruptions > 0),
+            if self.longest > 0.0 {
+                format!("{:.1} µs", 1e6 * self.longest)
+            } else {
+                "none".to_owned()
+            },
+            format!("{:.1} %", 100.0 * self.least_force),
+        ]
+    }
+
     /// Of a run up to now, whose least force is known.
     pub fn of(contact: &Simulation, least_force: f64) -> Self {
         Self {
@@ -40,6 +57,14 @@ impl Outcome {
         }
     }
 }
+
+/// Titles of [`Outcome::cells`].
+pub const COLUMNS: [&str; 4] = [
+    "opens at all",
+    "opens for 10 µs or more",
+    "longest interruption",
+    "smallest force, relative to the preload",
+];
 
 /// What a threshold is sought of.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -103,7 +128,7 @@ pub struct Thresholds {
 /// All thresholds at a frequency (Hz).
 pub fn thresholds(frequency: f64) -> Result<Thresholds> {
     let model = Model::new(&Scene::default(), 0.0)?;
-    let linear = harmonic::opening_threshold(&model, TAU * frequency);
+    let linear = reference::opening_threshold(&model, TAU * frequency);
     let opens = threshold(frequency, 0.5 * linear, 1.1, Question::Opens)?;
     // From just below, as 60 Ohm are reached before the force is zero. In small steps: an interruption must not be missed
     // where a stronger vibration would close the contact earlier.

@@ -6,8 +6,9 @@ use relay_contact::variables::AxialForceKind;
 use super::published as paper;
 use super::results::{Results, peak};
 use super::runs::{self, elastic_force, excitation, linear_force};
-use super::table::{cells, comparison, difference, number, row, signed, table};
+use super::table::{cells, comparison, difference, row, table};
 use crate::content::Block;
+use crate::numbers::{number, signed};
 
 const FIT: &str = " †";
 
@@ -36,7 +37,7 @@ pub fn statics(results: &Results) -> Result<Block> {
         row(
             &format!("static contact force F_0{FIT}"),
             paper::FORCE,
-            model.preload.force,
+            model.preload().force,
             4,
             "N",
             "section 3.1",
@@ -44,7 +45,7 @@ pub fn statics(results: &Results) -> Result<Block> {
         row(
             &format!("contact stiffness k_j{FIT}"),
             1e-6 * paper::STIFFNESS,
-            1e-6 * model.preload.contact_stiffness,
+            1e-6 * model.preload().contact_stiffness,
             4,
             "N/µm",
             "section 3.1",
@@ -52,7 +53,7 @@ pub fn statics(results: &Results) -> Result<Block> {
         row(
             &format!("first frequency, with prestress{FIT}"),
             paper::WITH_PRESTRESS,
-            model.frequency,
+            model.frequency(),
             1,
             "Hz",
             "section 3.1, Fig. 4",
@@ -60,7 +61,7 @@ pub fn statics(results: &Results) -> Result<Block> {
         row(
             "first frequency, without prestress",
             paper::WITHOUT_PRESTRESS,
-            without.frequency,
+            without.frequency(),
             1,
             "Hz",
             "section 3.1",
@@ -75,7 +76,7 @@ pub fn statics(results: &Results) -> Result<Block> {
         rows.push(row(
             &format!("first frequency, L = {length} mm, s = {overtravel} mm, with prestress"),
             frequency,
-            ours.frequency,
+            ours.frequency(),
             1,
             "Hz",
             "section 3.1, Fig. 5",

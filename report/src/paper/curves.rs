@@ -3,33 +3,12 @@
 use super::runs::Periodic;
 use crate::content::{Axis, Curve, Style};
 
-pub const FREQUENCY: Axis = axis("frequency", "Hz");
-pub const FORCE_AMPLITUDE: Axis = axis("force amplitude", "cN");
-
-/// A linear axis.
-pub const fn axis(label: &'static str, unit: &'static str) -> Axis {
-    Axis {
-        label,
-        unit,
-        logarithmic: false,
-    }
-}
-
-/// A curve through points.
-pub fn curve(name: &str, points: impl IntoIterator<Item = (f64, f64)>, style: Style, colour: usize) -> Curve {
-    let (x, y) = points.into_iter().unzip();
-    Curve {
-        name: name.to_owned(),
-        x,
-        y,
-        style,
-        colour,
-    }
-}
+pub const FREQUENCY: Axis = Axis::linear("frequency", "Hz");
+pub const FORCE_AMPLITUDE: Axis = Axis::linear("amplitude of the contact force", "cN");
 
 /// The force amplitude over the frequency.
 pub fn amplitudes(name: &str, runs: &[Periodic], style: Style, colour: usize) -> Curve {
-    curve(
+    Curve::new(
         name,
         runs.iter().map(|run| (run.frequency, run.amplitude())),
         style,
@@ -39,5 +18,5 @@ pub fn amplitudes(name: &str, runs: &[Periodic], style: Style, colour: usize) ->
 
 /// Published points.
 pub fn published(name: &str, points: impl IntoIterator<Item = (f64, f64)>, colour: usize) -> Curve {
-    curve(&format!("published, {name}"), points, Style::Markers, colour)
+    Curve::new(&format!("published, {name}"), points, Style::Markers, colour)
 }

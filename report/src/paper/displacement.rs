@@ -1,19 +1,20 @@
 //! The displacement of the contact, and where on the spring the published one may have been read.
 
 use anyhow::{Context, Result};
-use relay_contact::math::roots;
+use relay_contact::reference;
 
 use super::published as paper;
 use super::results::Results;
 use super::runs::{self, elastic_force, excitation};
 use super::spring::displacement;
-use super::table::{cells, deviation, number, signed, table};
+use super::table::{cells, table};
 use crate::content::Block;
+use crate::numbers::{deviation, number, signed};
 
 /// The blocks.
 pub fn blocks(results: &Results) -> Result<Vec<Block>> {
     let base = 1e6 * excitation(1000.0);
-    let stiffness = results.specimen.preload.contact_stiffness;
+    let stiffness = results.specimen.preload().contact_stiffness;
     let mut rows = Vec::new();
     for (ratio, published) in paper::RATIOS.into_iter().zip(paper::DISPLACEMENTS) {
         let run = results.at(ratio, 1000.0)?;
@@ -29,7 +30,7 @@ pub fn blocks(results: &Results) -> Result<Vec<Block>> {
         ]));
     }
     let run = results.at(paper::BEST, 1000.0)?;
-    let indentation = results.specimen.preload.indentation;
+    let indentation = results.specimen.preload().indentation;
     let text = format!(
         "### The displacement of the contact\n\n\
          The base moves by {} µm at 1000 Hz and 98 m/s². A closed contact moves with it: a force amplitude of {} cN over a contact stiffness of \
@@ -73,7 +74,7 @@ const POINTS: [f64; 4] = [0.8, 0.85, 0.9, 0.95];
 fn elsewhere() -> Result<Vec<Block>> {
     let specimen = runs::model(&runs::specimen(paper::BEST))?;
     let excess = |part: f64| displacement(&specimen, 1000.0, part).map_or(f64::NAN, |d| 1e6 * d - paper::DISPLACEMENT);
-    let fitted = roots::bracketed(excess, 0.7, 1.0).context("no point of the spring moves as published")?;
+    let fitted = reference::bracketed(excess, 0.7, 1.0).context("no point of the spring moves as published")?;
     let mut rows = Vec::new();
     for (ratio, published) in paper::RATIOS.into_iter().zip(paper::DISPLACEMENTS) {
         let model = runs::model(&runs::specimen(ratio))?;
@@ -109,7 +110,7 @@ fn elsewhere() -> Result<Vec<Block>> {
          published amplitude for ratio 10 at 1000 Hz, and those for the ratios from 5 to 30 within {} %. The weakly damped ones and \
          those at 1250 Hz are not found at that point.",
         number(fitted, 3),
-        number(1e3 * (1.0 - fitted) * specimen.section.length, 2),
+        number(1e3 * (1.0 - fitted) * specimen.section().length, 2),
         number(furthest, 1),
     );
     let heads = ["run".to_owned(), "published".to_owned()].into_iter();

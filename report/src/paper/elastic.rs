@@ -1,17 +1,17 @@
 //! Twice and three times the damping, and which force the publication may show.
 
 use anyhow::{Context, Result, anyhow};
-use relay_contact::math::roots;
-use relay_contact::model::Model;
+use relay_contact::reference::{self, Model};
 
-use super::calculation::{self, Amplitude, Published};
-use super::curves::{FORCE_AMPLITUDE, FREQUENCY, curve, published};
+use super::curves::{FORCE_AMPLITUDE, FREQUENCY, published};
 use super::published as paper;
 use super::resistance::resistance_deviations;
 use super::results::{Results, peak};
 use super::runs::{self, elastic_force, linear_force};
-use super::table::{cells, deviation, number, percent, table};
-use crate::content::{Block, Figure, Style};
+use super::table::{cells, table};
+use crate::content::{Block, Curve, Figure, Style};
+use crate::numbers::{deviation, number, percent};
+use identify::{Amplitude, Published};
 
 /// The scene in which the elastic part of the force has the published amplitudes at 1000 and 1250 Hz.
 pub fn fit() -> Result<Model> {
@@ -21,17 +21,17 @@ pub fn fit() -> Result<Model> {
             ..Published::default()
         };
         published.values[4] *= factor;
-        let scene = calculation::scene(&published).map_err(|error| anyhow!(error))?;
+        let scene = identify::scene(&published).map_err(|error| anyhow!(error))?;
         runs::model(&scene)
     };
     let (_, at, amplitude) = paper::PEAKS[0];
     let excess = |factor: f64| found(factor).map_or(f64::NAN, |model| elastic_force(&model, at) - amplitude);
-    found(roots::bracketed(excess, 0.72, 1.0).context("no damping fits the elastic part")?)
+    found(reference::bracketed(excess, 0.72, 1.0).context("no damping fits the elastic part")?)
 }
 
 /// Its damping for another ratio.
 fn scaled(fit: &Model, ratio: f64) -> Result<Model> {
-    let mut scene = fit.scene;
+    let mut scene = *fit.scene();
     scene.beam.stiffness_damping *= ratio / paper::BEST;
     scene.contact.damping *= ratio / paper::BEST;
     runs::model(&scene)
@@ -58,7 +58,7 @@ pub fn blocks(results: &Results) -> Result<Vec<Block>> {
         rows.push(row);
     }
     let mut deviations = Vec::new();
-    let force = results.specimen.preload.force;
+    let force = results.specimen.preload().force;
     for (ratio, least, greatest) in paper::RESISTANCE_DEVIATIONS {
         let run = results.at(ratio, 1000.0)?;
         let (a, b) = resistance_deviations(run.least, run.greatest);
@@ -81,8 +81,11 @@ pub fn blocks(results: &Results) -> Result<Vec<Block>> {
          domains in *The publication reproduced*), though the amplitudes at 10 are too low. If rivet mass and damping are fitted anew, so that \
          the elastic part has the published amplitudes at 1000 and 1250 Hz ({} mg, and {} times the damping), all three peaks are at the \
          published frequencies. The publication does not say which force it shows. The start values are fitted to the whole force.",
-        number(1e6 * fit.section.tip_mass, 1),
-        number(fit.scene.contact.damping / results.specimen.scene.contact.damping, 2),
+        number(1e6 * fit.section().tip_mass, 1),
+        number(
+            fit.scene().contact.damping / results.specimen.scene().contact.damping,
+            2
+        ),
     );
     let peaks = [
         "ratio",
@@ -125,14 +128,14 @@ fn figure(results: &Results, fit: &Model) -> Result<Figure> {
         let (model, other) = (runs::model(&runs::specimen(ratio))?, scaled(fit, ratio)?);
         let over = |value: &dyn Fn(f64) -> f64| results.frequencies.iter().map(|f| (*f, value(*f))).collect::<Vec<_>>();
         let elastic = over(&|f| elastic_force(&other, f));
-        curves.push(curve(
+        curves.push(Curve::new(
             &format!("elastic part, fitted to it, ratio {ratio}"),
             elastic,
             Style::Line,
             colour,
         ));
         let whole = over(&|f| linear_force(&model, f));
-        curves.push(curve(
+        curves.push(Curve::new(
             &format!("whole force, ratio {ratio}"),
             whole,
             Style::Dashed,

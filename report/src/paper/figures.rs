@@ -1,17 +1,17 @@
 //! The publication's figures of frequencies, courses in time, and resistance.
 
 use anyhow::{Context, Result};
-use relay_contact::electrical::ElectricalContact;
+use relay_contact::reference::ElectricalContact;
 use relay_contact::scene::Scene;
 use relay_contact::variables::{AxialForceKind, ResistanceKind};
 
-use super::curves::{axis, curve, published};
+use super::curves::published;
 use super::published as paper;
 use super::resistance::resistance_deviations;
 use super::results::Results;
 use super::runs::{self, Periodic, excitation, linear_force, resistance};
-use super::table::number;
-use crate::content::{Axis, Figure, Style};
+use crate::content::{Axis, Curve, Figure, Style};
+use crate::numbers::number;
 
 /// Fig. 5: first frequency over overtravel.
 pub fn frequencies(quick: bool) -> Result<Figure> {
@@ -26,10 +26,10 @@ pub fn frequencies(quick: bool) -> Result<Figure> {
             let points = (0..count)
                 .map(|k| {
                     let scene = runs::spring(1e-3 * length, 1e-3 * overtravel(k), axial);
-                    Ok((overtravel(k), runs::model(&scene)?.frequency))
+                    Ok((overtravel(k), runs::model(&scene)?.frequency()))
                 })
                 .collect::<Result<Vec<_>>>()?;
-            curves.push(curve(&format!("L = {length} mm, {name}"), points, style, colour));
+            curves.push(Curve::new(&format!("L = {length} mm, {name}"), points, style, colour));
         }
         let points = paper::SHORT
             .into_iter()
@@ -53,8 +53,8 @@ pub fn frequencies(quick: bool) -> Result<Figure> {
     Ok(Figure {
         id: "paper-fig5",
         title: "First frequency over overtravel (Fig. 5)".to_owned(),
-        x: axis("overtravel", "mm"),
-        y: axis("first frequency", "Hz"),
+        x: Axis::linear("overtravel", "mm"),
+        y: Axis::linear("first frequency", "Hz"),
         curves,
         caption: "Ours from the exact characteristic equation with the contact as a spring. Published are the values its text \
                   states. With and without the axial force of eq. 9 our curves lie on each other, and overtravel hardly matters."
@@ -87,7 +87,7 @@ fn turning(points: &[(f64, f64)]) -> Option<[f64; 2]> {
 /// Fig. 6: courses of force and displacement at 1000 Hz.
 pub fn courses(results: &Results) -> Result<[Figure; 2]> {
     let run = results.at(paper::BEST, 1000.0)?;
-    let rest = 100.0 * results.specimen.preload.force;
+    let rest = 100.0 * results.specimen.preload().force;
     let force = repeated(run, 3, |point| 100.0 * point.1);
     let [top, bottom] = turning(&force).context("empty course")?;
     let amplitude = [
@@ -97,9 +97,9 @@ pub fn courses(results: &Results) -> Result<[Figure; 2]> {
     let force = Figure {
         id: "paper-fig6-force",
         title: "Contact force at 1000 Hz, 98 m/s² (Fig. 6)".to_owned(),
-        x: axis("time", "ms"),
-        y: axis("contact force", "cN"),
-        curves: vec![curve("ours", force, Style::Line, 0), published("amplitude", amplitude, 0)],
+        x: Axis::linear("time", "ms"),
+        y: Axis::linear("contact force", "cN"),
+        curves: vec![Curve::new("ours", force, Style::Line, 0), published("amplitude", amplitude, 0)],
         caption: "Three periods after the transients have decayed, damping ratio 10. Published is the amplitude; it is drawn about the \
                   static force, at the instants of our extremes."
             .to_owned(),
@@ -116,11 +116,11 @@ pub fn courses(results: &Results) -> Result<[Figure; 2]> {
     let displacement = Figure {
         id: "paper-fig6-displacement",
         title: "Displacement of the contact at 1000 Hz, 98 m/s² (Fig. 6)".to_owned(),
-        x: axis("time", "ms"),
-        y: axis("displacement", "µm"),
+        x: Axis::linear("time", "ms"),
+        y: Axis::linear("displacement", "µm"),
         curves: vec![
-            curve("ours", displacement, Style::Line, 0),
-            curve("base", shaken, Style::Dashed, 1),
+            Curve::new("ours", displacement, Style::Line, 0),
+            Curve::new("base", shaken, Style::Dashed, 1),
             published("amplitude", [(top, paper::DISPLACEMENT), (bottom, -paper::DISPLACEMENT)], 0),
         ],
         caption: "Base included. Our contact moves with the base but for nanometres; the published displacement must have been read \
@@ -143,18 +143,14 @@ pub fn laws() -> Result<Figure> {
     };
     let (coefficient, exponent) = paper::RESISTANCE;
     let points = [0.02, 0.05, 0.1, 0.152, 0.2, 0.5, 1.0].map(|force: f64| (force, coefficient * force.powf(-exponent)));
-    let logarithmic = |axis: Axis| Axis {
-        logarithmic: true,
-        ..axis
-    };
     Ok(Figure {
         id: "paper-fig11",
         title: "Contact resistance over contact force (Fig. 11)".to_owned(),
-        x: logarithmic(axis("contact force", "N")),
-        y: logarithmic(axis("contact resistance", "mΩ")),
+        x: Axis::logarithmic("contact force", "N"),
+        y: Axis::logarithmic("contact resistance", "mΩ"),
         curves: vec![
-            curve("power law", law(ResistanceKind::PowerLaw)?, Style::Line, 0),
-            curve("Holm", law(ResistanceKind::Holm)?, Style::Dashed, 1),
+            Curve::new("power law", law(ResistanceKind::PowerLaw)?, Style::Line, 0),
+            Curve::new("Holm", law(ResistanceKind::Holm)?, Style::Dashed, 1),
             published("eq. 29", points, 0),
         ],
         caption: "The component's power law is the published fit. Holm's law, with the hardness the publication measured and the resistivity of \
@@ -171,12 +167,12 @@ pub fn resistance_course(results: &Results) -> Result<Figure> {
     Ok(Figure {
         id: "paper-fig16",
         title: "Contact resistance at 1000 Hz, 98 m/s² (Fig. 16)".to_owned(),
-        x: axis("time", "ms"),
-        y: axis("contact resistance", "mΩ"),
+        x: Axis::linear("time", "ms"),
+        y: Axis::linear("contact resistance", "mΩ"),
         curves: vec![
-            curve("ours", repeated(run, 10, |point| resistance(point.1)), Style::Line, 0),
-            curve("measured, greatest", band(high), Style::Dashed, 1),
-            curve("measured, least", band(low), Style::Dashed, 2),
+            Curve::new("ours", repeated(run, 10, |point| resistance(point.1)), Style::Line, 0),
+            Curve::new("measured, greatest", band(high), Style::Dashed, 1),
+            Curve::new("measured, least", band(low), Style::Dashed, 2),
         ],
         caption: format!(
             "Ten periods. Measured from {low} to {high} mΩ, ours from {} to {} mΩ. The publication's own simulation is {} % from the least \
@@ -205,12 +201,12 @@ pub fn deviations(results: &Results) -> Result<[Figure; 2]> {
     let time = Figure {
         id: "paper-fig17",
         title: "Resistance against measured, time domain, 1000 Hz (Fig. 17, Table 6)".to_owned(),
-        x: axis("damping ratio", ""),
-        y: axis("size of the deviation", "%"),
+        x: Axis::linear("damping ratio", ""),
+        y: Axis::linear("size of the deviation", "%"),
         curves: vec![
-            curve("ours, greatest", greatest, Style::LineAndMarkers, 0),
+            Curve::new("ours, greatest", greatest, Style::LineAndMarkers, 0),
             published("greatest", published_greatest, 0),
-            curve("ours, least", least, Style::LineAndMarkers, 1),
+            Curve::new("ours, least", least, Style::LineAndMarkers, 1),
             published("least", published_least, 1),
         ],
         caption: format!(
@@ -222,7 +218,7 @@ pub fn deviations(results: &Results) -> Result<[Figure; 2]> {
     };
     let mut points = Vec::new();
     let high = paper::MEASURED_RESISTANCE.1;
-    let force = results.specimen.preload.force;
+    let force = results.specimen.preload().force;
     for step in 0..=40 {
         let alpha = 3000.0 + 100.0 * f64::from(step);
         let model = runs::model(&runs::with_mass_damping(alpha))?;
@@ -236,10 +232,10 @@ pub fn deviations(results: &Results) -> Result<[Figure; 2]> {
     let frequency = Figure {
         id: "paper-fig18",
         title: "Greatest resistance against measured, frequency domain, 1000 Hz (Fig. 18)".to_owned(),
-        x: axis("mass coefficient", "1/s"),
-        y: axis("size of the deviation", "%"),
+        x: Axis::linear("mass coefficient", "1/s"),
+        y: Axis::linear("size of the deviation", "%"),
         curves: vec![
-            curve("ours", points, Style::Line, 0),
+            Curve::new("ours", points, Style::Line, 0),
             published("5125 1/s", [(5125.0, paper::FREQUENCY_DOMAIN_DEVIATIONS[1].1)], 0),
         ],
         caption: format!(

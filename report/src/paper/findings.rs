@@ -6,11 +6,11 @@ use anyhow::Result;
 use relay_contact::variables::AxialForceKind;
 
 use super::curves::{FORCE_AMPLITUDE, FREQUENCY, amplitudes, published};
-use super::published as paper;
 use super::results::Results;
-use super::runs;
-use super::table::{cells, number, significant, table};
+use super::table::{cells, table};
+use super::{published as paper, runs};
 use crate::content::{Block, Figure, Style};
+use crate::numbers::{number, significant};
 
 /// The blocks of the section.
 pub fn blocks(results: &Results) -> Result<Vec<Block>> {
@@ -28,7 +28,7 @@ fn damping(results: &Results) -> Result<Vec<Block>> {
         .iter()
         .fold(f64::NEG_INFINITY, |greatest, a| greatest.max(*a));
     let omega = paper::ALPHA_PER_BETA.sqrt();
-    let first = results.specimen.frequency;
+    let first = results.specimen.frequency();
     let text = format!(
         "### The published stiffness coefficient cannot be meant as printed\n\n\
          The publication damps with C = beta K and prints beta = {beta:.4e} s, which is 2 ζ/ω at 1000 Hz with a \"damping ratio\" \
@@ -94,12 +94,12 @@ fn literal_figure(results: &Results) -> Figure {
 fn axial_force(results: &Results) -> Result<Vec<Block>> {
     let model = &results.specimen;
     let without = runs::model(&runs::spring(15.5e-3, 0.2e-3, AxialForceKind::None))?;
-    let force = relay_contact::beam::statics::axial_force_from_deflection(&model.section, model.preload.deflection);
-    let buckling = model.section.buckling_load();
-    let shift = without.frequency - model.frequency;
+    let force = relay_contact::reference::axial_force_from_deflection(&model.section(), model.preload().deflection);
+    let buckling = model.section().buckling_load();
+    let shift = without.frequency() - model.frequency();
     let published = paper::WITHOUT_PRESTRESS - paper::WITH_PRESTRESS;
     let part = paper::WITH_PRESTRESS / paper::WITHOUT_PRESTRESS;
-    let needed = runs::axial_force_for(part * without.frequency)?;
+    let needed = runs::axial_force_for(part * without.frequency())?;
     let text = format!(
         "### Equation 9 does not explain the published effect of prestress\n\n\
          Eq. 9 gives the axial force from the tip's deflection, N = (3 E I y / L³) sin(3 y / (2 L)). At the specimen that is {} mN: the \
@@ -125,7 +125,7 @@ fn axial_force(results: &Results) -> Result<Vec<Block>> {
         cells(&[
             "axial force for the published part of the frequency",
             &format!("{} N", significant(needed)),
-            &format!("{} Hz", number(without.frequency * (1.0 - part), 1)),
+            &format!("{} Hz", number(without.frequency() * (1.0 - part), 1)),
         ]),
     ];
     let columns = ["", "axial force", "first frequency lower by"];

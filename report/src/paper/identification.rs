@@ -3,9 +3,10 @@
 use anyhow::{Context, Result, anyhow};
 use relay_contact::scene::Scene;
 
-use super::calculation::{Amplitude, PARAMETERS, Published, SOURCES, Specimen, precision, sensitivities};
-use super::table::{deviation, number, percent, table};
+use super::table::table;
 use crate::content::Block;
+use crate::numbers::{deviation, magnitude, number, percent};
+use identify::{Amplitude, PARAMETERS, Published, SOURCES, Specimen, precision, sensitivities};
 
 /// The blocks of the section.
 pub fn blocks() -> Result<Vec<Block>> {
@@ -102,7 +103,5 @@ pub fn blocks() -> Result<Vec<Block>> {
 
 /// Digits after the point for six significant ones.
 fn decimals(value: f64) -> usize {
-    #[allow(clippy::cast_possible_truncation)] // at most 308
-    let magnitude = value.abs().log10().floor() as i32;
-    usize::try_from(5 - magnitude).unwrap_or_default()
+    usize::try_from(5 - magnitude(value)).unwrap_or_default()
 }

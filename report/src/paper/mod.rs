@@ -1,6 +1,6 @@
 //! The publication beside the model.
 //!
-//! [`published`]: its numbers;   [`runs`], [`results`]: ours;   [`calculation`]: the identification, shared with its example.
+//! [`published`]: its numbers;   [`runs`], [`results`]: ours;   the crate `identify`: the identification, shared with its example.
 //! Sections, of blocks by [`comparison`], [`resistance`], [`figures`], [`responses`]; [`not_reproduced`] with [`displacement`],
 //! [`elastic`]; [`findings`]; [`identification`].   [`table`], [`curves`]: what these are made with;   [`spring`]: the motion
 //! between clamp and contact;   [`validation`]: the same as `docs/validation.md`.
@@ -25,11 +25,9 @@ mod tests;
 pub mod validation;
 
 use anyhow::Result;
-use identify as calculation;
 
 use self::results::Results;
-use crate::content::Arguments;
-use crate::content::{Block, Section};
+use crate::content::{Arguments, Block, Section};
 
 /// The sections.
 pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {

@@ -3,12 +3,12 @@
 use anyhow::Result;
 use relay_contact::variables::AxialForceKind;
 
-use super::published as paper;
 use super::results::{Results, peak};
 use super::runs::{self, linear_force};
-use super::table::{cells, deviation, number, significant, table};
-use super::{displacement, elastic};
+use super::table::{cells, table};
+use super::{displacement, elastic, published as paper};
 use crate::content::Block;
+use crate::numbers::{deviation, number, significant};
 
 /// The blocks of the section.
 pub fn blocks(results: &Results) -> Result<Vec<Block>> {
@@ -22,8 +22,8 @@ pub fn blocks(results: &Results) -> Result<Vec<Block>> {
 }
 
 fn prestress(results: &Results) -> Result<Block> {
-    let without = runs::model(&runs::spring(15.5e-3, 0.2e-3, AxialForceKind::None))?.frequency;
-    let shift = without - results.specimen.frequency;
+    let without = runs::model(&runs::spring(15.5e-3, 0.2e-3, AxialForceKind::None))?.frequency();
+    let shift = without - results.specimen.frequency();
     let published = paper::WITHOUT_PRESTRESS - paper::WITH_PRESTRESS;
     Ok(Block::Text(format!(
         "### The shift of the first frequency by prestress\n\n\
@@ -40,8 +40,8 @@ fn short_springs(results: &Results) -> Result<Vec<Block>> {
     let mut rows = Vec::new();
     for (length, overtravel, published) in paper::SHORT {
         let spring = |axial| runs::model(&runs::spring(1e-3 * length, 1e-3 * overtravel, axial));
-        let ours = spring(AxialForceKind::FromPreload)?.frequency;
-        let scaled = results.specimen.frequency * (15.5 / length).powi(2);
+        let ours = spring(AxialForceKind::FromPreload)?.frequency();
+        let scaled = results.specimen.frequency() * (15.5 / length).powi(2);
         rows.push(cells(&[
             &format!("L = {length} mm, s = {overtravel} mm"),
             &format!("{published} Hz"),
@@ -52,11 +52,11 @@ fn short_springs(results: &Results) -> Result<Vec<Block>> {
     }
     let frequency = |length: f64, overtravel: f64| -> Result<f64> {
         let spring = runs::spring(1e-3 * length, 1e-3 * overtravel, AxialForceKind::FromPreload);
-        Ok(runs::model(&spring)?.frequency)
+        Ok(runs::model(&spring)?.frequency())
     };
     let change = frequency(11.5, 0.5)? - frequency(11.5, 0.45)?;
     let published = paper::SHORT[1].2 - paper::SHORT[0].2;
-    let ratio = results.specimen.preload.contact_stiffness / results.specimen.section.tip_stiffness();
+    let ratio = results.specimen.preload().contact_stiffness / results.specimen.section().tip_stiffness();
     let text = format!(
         "### The frequencies of the shorter springs\n\n\
          The frequencies of a uniform beam go with 1/L² (last column, from 15.5 mm); the published ones follow no single power of the \
@@ -78,13 +78,13 @@ fn short_springs(results: &Results) -> Result<Vec<Block>> {
 
 fn undamped(results: &Results) -> Result<Vec<Block>> {
     let mut rows = Vec::new();
-    let force = results.specimen.preload.force;
+    let force = results.specimen.preload().force;
     let mut opening = Vec::new();
     for ratio in [0.1, 1.0, 5.0, 10.0] {
         let model = runs::model(&runs::specimen(ratio))?;
         let (at, linear) = peak(paper::FREQUENCIES.into_iter().map(|f| (f, linear_force(&model, f))));
-        let omega = std::f64::consts::TAU * model.frequency;
-        let damping = 0.5 * model.scene.beam.stiffness_damping * omega;
+        let omega = std::f64::consts::TAU * model.frequency();
+        let damping = 0.5 * model.scene().beam.stiffness_damping * omega;
         let opens = results.ratio(ratio)?.iter().any(|run| run.opens);
         if opens {
             opening.push(format!("{ratio}"));
@@ -137,9 +137,9 @@ fn mass_damping(results: &Results) -> Result<Block> {
          interface, and its radius is a fit. The damping of the first mode is {} of critical, which no metal spring has by itself: it is \
          a fit too. Where the contact opens, the force of closing again is set by the damping of the contact.",
         peaks.join(" and "),
-        number(1e9 * results.specimen.preload.indentation, 1),
+        number(1e9 * results.specimen.preload().indentation, 1),
         number(
-            std::f64::consts::PI * results.specimen.frequency * results.specimen.scene.beam.stiffness_damping,
+            std::f64::consts::PI * results.specimen.frequency() * results.specimen.scene().beam.stiffness_damping,
             2
         ),
     )))

@@ -5,8 +5,9 @@ use anyhow::Result;
 use super::published as paper;
 use super::results::Results;
 use super::runs::{linear_force, resistance};
-use super::table::{cells, comparison, number, percent, row, signed};
+use super::table::{cells, comparison, row};
 use crate::content::Block;
+use crate::numbers::{number, percent, signed};
 
 /// Deviations of least and greatest resistance from the measured ones at 1000 Hz, %, where the force has extremes (N).
 pub fn resistance_deviations(least: f64, greatest: f64) -> (f64, f64) {
@@ -56,7 +57,7 @@ pub fn resistances(results: &Results) -> Result<[Block; 2]> {
         rows.push(points(&name("greatest"), greatest, ours_greatest, "Table 6"));
         rows.push(points(&name("least"), least, ours_least, "Table 6"));
     }
-    let force = results.specimen.preload.force;
+    let force = results.specimen.preload().force;
     let model = results.alpha(5125.0)?;
     for (frequency, published) in paper::FREQUENCY_DOMAIN_DEVIATIONS {
         let ours = resistance(force - linear_force(model, frequency) / 100.0);

@@ -2,12 +2,12 @@
 
 use anyhow::Result;
 
-use super::curves::{FORCE_AMPLITUDE, FREQUENCY, amplitudes, axis, curve, published};
+use super::curves::{FORCE_AMPLITUDE, FREQUENCY, amplitudes, published};
 use super::published as paper;
 use super::results::Results;
 use super::runs::{excitation, linear_force};
-use super::table::number;
-use crate::content::{Curve, Figure, Style};
+use crate::content::{Axis, Curve, Figure, Style};
+use crate::numbers::number;
 
 /// Fig. 7: force amplitude, time domain.
 pub fn time_domain(results: &Results) -> Figure {
@@ -51,7 +51,7 @@ pub fn displacement(results: &Results) -> Figure {
                 100.0 * (run.displacement / excitation(run.frequency) - 1.0),
             )
         });
-        curves.push(curve(&name, above, Style::Line, colour));
+        curves.push(Curve::new(&name, above, Style::Line, colour));
         let table = paper::RATIOS
             .into_iter()
             .zip(paper::DISPLACEMENTS)
@@ -71,7 +71,7 @@ pub fn displacement(results: &Results) -> Figure {
         id: "paper-fig8",
         title: "Displacement amplitude of the contact above that of the base (Fig. 8)".to_owned(),
         x: FREQUENCY,
-        y: axis("above the base", "%"),
+        y: Axis::linear("above the base", "%"),
         curves,
         caption: format!(
             "Published at 1000 Hz from its Table 4, at 1250 Hz from its text. Ours differs from the base by {} % at most: see *Not \
@@ -141,5 +141,5 @@ pub fn domains(results: &Results) -> Result<Figure> {
 fn linear(name: &str, results: &Results, alpha: f64, style: Style, colour: usize) -> Result<Curve> {
     let model = results.alpha(alpha)?;
     let points = results.frequencies.iter().map(|f| (*f, linear_force(model, *f)));
-    Ok(curve(name, points, style, colour))
+    Ok(Curve::new(name, points, style, colour))
 }

@@ -1,11 +1,11 @@
 //! All that the sections show, computed once.
 
 use anyhow::{Context, Result};
-use relay_contact::model::Model;
+use rayon::prelude::*;
+use relay_contact::reference::Model;
 
 use super::published::{ALPHAS, BETAS, FREQUENCIES, RATIOS};
 use super::runs::{self, Periodic};
-use crate::threads;
 
 /// Damping ratios drawn over the frequency: with those below, the contact opens near the resonance.
 pub const DRAWN: [f64; 4] = [5.0, 10.0, 20.0, 30.0];
@@ -40,7 +40,11 @@ impl Results {
             .map(|(ratio, f)| (runs::specimen(*ratio), *f))
             .collect();
         points.extend(FREQUENCIES.map(|f| (runs::with_damping(literal), f)));
-        let mut done = threads::map(&points, |(scene, frequency)| runs::periodic(scene, *frequency))?.into_iter();
+        let mut done = points
+            .par_iter()
+            .map(|(scene, frequency)| runs::periodic(scene, *frequency))
+            .collect::<Result<Vec<_>>>()?
+            .into_iter();
         let grid: Vec<_> = done.by_ref().take(grid.len()).collect();
         let curves = DRAWN
             .map(|ratio| (ratio, done.by_ref().take(frequencies.len()).collect()))

@@ -3,16 +3,14 @@
 use std::f64::consts::{PI, TAU};
 
 use anyhow::{Context, Result};
-use relay_contact::electrical::ElectricalContact;
 use relay_contact::inputs::Inputs;
-use relay_contact::math::roots;
-use relay_contact::model::Model;
+use relay_contact::reference::{self, ElectricalContact, Model};
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{AxialForceKind, ExcitationKind, RealOutput};
 
-use super::calculation::Amplitude;
 use super::published::{ACCELERATION, BEST};
+use identify::Amplitude;
 
 /// Communication steps of the last period, whose course is kept.
 const SAMPLES: u32 = 1000;
@@ -120,15 +118,15 @@ pub fn periodic(scene: &Scene, frequency: f64) -> Result<Periodic> {
     scene.excitation.frequency = frequency;
     scene.solver.tolerance = TOLERANCE;
     let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0)?;
-    let omega = TAU * simulation.model().frequency;
+    let omega = TAU * simulation.model().frequency();
     let decay = scene.beam.mass_damping + scene.beam.stiffness_damping * omega * omega;
     let slowest = (2.0 / decay).max(decay / (omega * omega)).max(scene.contact.damping);
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // some thousands at most
     let periods = (-DECAYED.ln() * slowest * frequency).ceil().max(10.0) as u32 + 2;
 
     let base = excitation(frequency);
-    let deflection = simulation.model().preload.deflection;
-    let force_scale = simulation.model().preload.force;
+    let deflection = simulation.model().preload().deflection;
+    let force_scale = simulation.model().preload().force;
     let mut found = Periodic {
         frequency,
         ..Periodic::default()
@@ -185,8 +183,8 @@ pub fn axial_force_for(frequency: f64) -> Result<f64> {
         let mut scene = Scene::default();
         scene.effects.axial_force = AxialForceKind::Prescribed;
         scene.beam.axial_force = force;
-        Model::new(&scene, 0.0).map_or(f64::NAN, |model| model.frequency - frequency)
+        Model::new(&scene, 0.0).map_or(f64::NAN, |model| model.frequency() - frequency)
     };
-    let limit = model(&Scene::default())?.section.buckling_load();
-    roots::bracketed(with, 0.0, 0.99 * limit).context("no axial force below the buckling load gives this frequency")
+    let limit = model(&Scene::default())?.section().buckling_load();
+    reference::bracketed(with, 0.0, 0.99 * limit).context("no axial force below the buckling load gives this frequency")
 }

@@ -10,20 +10,20 @@ use std::f64::consts::TAU;
 
 use anyhow::{Context, Result};
 use nalgebra::{Complex, Matrix4, Vector4};
-use relay_contact::model::Model;
+use relay_contact::reference::Model;
 
 use super::published::ACCELERATION;
 
 /// Amplitude of the displacement with the base at a part of the spring's length under the published vibration at a
 /// frequency (Hz), m.
 pub fn displacement(model: &Model, frequency: f64, part: f64) -> Result<f64> {
-    let section = model.section;
+    let section = model.section();
     let omega = TAU * frequency;
     let real = |value: f64| Complex::new(value, 0.0);
     let damped = |value: f64, time: f64| Complex::new(value, omega * time * value);
     let base = real(-ACCELERATION / (omega * omega));
-    let bending = damped(section.bending_stiffness, model.scene.beam.stiffness_damping);
-    let contact = damped(model.preload.contact_stiffness, model.law.damping());
+    let bending = damped(section.bending_stiffness, model.scene().beam.stiffness_damping);
+    let contact = damped(model.preload().contact_stiffness, model.law().damping());
     let g = (real(section.mass_per_length * omega * omega) / bending).sqrt().sqrt();
 
     let z = g * section.length;
@@ -51,7 +51,7 @@ pub fn displacement(model: &Model, frequency: f64, part: f64) -> Result<f64> {
 
 #[cfg(test)]
 mod tests {
-    use relay_contact::harmonic;
+    use relay_contact::reference;
 
     use super::super::runs;
     use super::*;
@@ -62,7 +62,7 @@ mod tests {
         let base = runs::excitation(1000.0);
         assert!((displacement(&model, 1000.0, 0.0).unwrap() / base - 1.0).abs() < 1e-12);
         // The library has the tip from its modes, with the axial force of eq. 9, which is 3e-4 of the buckling load.
-        let relative = ACCELERATION * harmonic::response(&model, TAU * 1000.0).displacement;
+        let relative = ACCELERATION * reference::response(&model, TAU * 1000.0).displacement;
         let tip = (relative - base).norm();
         assert!((displacement(&model, 1000.0, 1.0).unwrap() / tip - 1.0).abs() < 1e-6);
     }

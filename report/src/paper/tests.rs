@@ -2,15 +2,14 @@
 
 use std::f64::consts::TAU;
 
-use relay_contact::model::Model;
+use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
 use relay_contact::variables::AxialForceKind;
 
-use super::calculation::{PARAMETERS, Published, Specimen};
 use super::runs::{self, Periodic};
 use super::{elastic, published as paper};
-use crate::content::Arguments;
-use crate::content::Block;
+use crate::content::{Arguments, Block};
+use identify::{PARAMETERS, Published, Specimen};
 
 /// Equal to within half a unit of the last digit that is known of a value.
 fn close(value: f64, known: f64, digit: f64) {
@@ -30,9 +29,9 @@ fn without_axial_force() -> Scene {
 #[test]
 fn what_was_fitted_has_the_published_digits() {
     let model = Model::new(&Scene::default(), 0.0).unwrap();
-    close(model.preload.force, paper::FORCE, 0.001);
-    close(model.preload.contact_stiffness, paper::STIFFNESS, 0.01e6);
-    close(model.frequency, paper::WITH_PRESTRESS, 0.1);
+    close(model.preload().force, paper::FORCE, 0.001);
+    close(model.preload().contact_stiffness, paper::STIFFNESS, 0.01e6);
+    close(model.frequency(), paper::WITH_PRESTRESS, 0.1);
     let run = runs::periodic(&runs::specimen(paper::BEST), 1000.0).unwrap();
     assert!(run.repeats && !run.opens);
     close(run.amplitude(), paper::FORCE_AMPLITUDE, 0.001);
@@ -43,10 +42,10 @@ fn two_other_solutions_of_the_model_agree() {
     // Two solutions of the model that share no code with this one, without axial force, to the digits they agree on.
     let scene = without_axial_force();
     let model = Model::new(&scene, 0.0).unwrap();
-    close(model.preload.force, 0.152_026_1, 1e-7);
-    close(model.preload.indentation, 64.418e-9, 1e-12);
-    close(model.preload.contact_stiffness, 3.539_968e6, 1.0);
-    close(model.frequency, 1354.5397, 1e-4);
+    close(model.preload().force, 0.152_026_1, 1e-7);
+    close(model.preload().indentation, 64.418e-9, 1e-12);
+    close(model.preload().contact_stiffness, 3.539_968e6, 1.0);
+    close(model.frequency(), 1354.5397, 1e-4);
     close(runs::linear_force(&model, 500.0), 3.6295, 1e-4);
     close(runs::linear_force(&model, 1000.0), 4.8122, 1e-4);
     let run = runs::periodic(&scene, 1000.0).unwrap();
@@ -85,15 +84,19 @@ fn the_printed_beta_gives_the_same_force_at_every_frequency() {
 fn equation_9_shifts_the_frequency_by_a_fortieth_of_a_hertz() {
     let (with, without) = (runs::specimen(paper::BEST), without_axial_force());
     let with = runs::model(&with).unwrap();
-    close(1e3 * with.preload.axial_force, 2.94, 0.01);
-    close(with.preload.force, 0.151_980_6, 1e-7);
-    close(with.frequency, 1354.5151, 1e-4);
-    close(runs::model(&without).unwrap().frequency - with.frequency, 0.025, 0.001);
+    close(1e3 * with.preload().axial_force, 2.94, 0.01);
+    close(with.preload().force, 0.151_980_6, 1e-7);
+    close(with.frequency(), 1354.5151, 1e-4);
+    close(
+        runs::model(&without).unwrap().frequency() - with.frequency(),
+        0.025,
+        0.001,
+    );
     // The force that is needed is found: it gives the frequency.
     let mut scene = Scene::default();
     scene.effects.axial_force = AxialForceKind::Prescribed;
     scene.beam.axial_force = runs::axial_force_for(1312.0).unwrap();
-    close(runs::model(&scene).unwrap().frequency, 1312.0, 1e-6);
+    close(runs::model(&scene).unwrap().frequency(), 1312.0, 1e-6);
 }
 
 #[test]
@@ -114,12 +117,12 @@ fn the_start_values_are_what_is_identified_rounded() {
 #[test]
 fn the_identified_scene_has_the_published_results() {
     // Roots are found to rounding; 1e-9 of it is lost in the functions.
-    let scene = super::calculation::scene(&Published::default()).unwrap();
+    let scene = identify::scene(&Published::default()).unwrap();
     let model = runs::model(&scene).unwrap();
     for (value, known) in [
-        (model.preload.force, paper::FORCE),
-        (model.preload.contact_stiffness, paper::STIFFNESS),
-        (model.frequency, paper::WITH_PRESTRESS),
+        (model.preload().force, paper::FORCE),
+        (model.preload().contact_stiffness, paper::STIFFNESS),
+        (model.frequency(), paper::WITH_PRESTRESS),
         (runs::linear_force(&model, 1000.0), paper::FORCE_AMPLITUDE),
     ] {
         assert!((value / known - 1.0).abs() < 1e-9, "{value}, {known}");
@@ -137,7 +140,7 @@ fn the_elastic_part_fits_both_amplitudes_it_is_fitted_to() {
 fn displacement_and_phase_are_those_of_the_linear_response() {
     let scene = runs::specimen(paper::BEST);
     let run = runs::periodic(&scene, 1000.0).unwrap();
-    let response = relay_contact::harmonic::response(&runs::model(&scene).unwrap(), TAU * 1000.0);
+    let response = relay_contact::reference::response(&runs::model(&scene).unwrap(), TAU * 1000.0);
     let shaken = paper::ACCELERATION * response.displacement - runs::excitation(1000.0);
     // Harmonics are some thousandths of the nanometres by which the tip moves in the base.
     close(1e6 * run.displacement, 1e6 * shaken.norm(), 1e-3);

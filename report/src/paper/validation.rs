@@ -6,8 +6,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 
 use super::sections;
-use crate::content::Arguments;
-use crate::content::Section;
+use crate::content::{Arguments, Section};
 use crate::markdown::markdown;
 use crate::programs::root;
 

@@ -6,11 +6,11 @@ mod summary;
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail};
 use indicatif::{ProgressBar, ProgressStyle};
-use relay_contact::scene::file::SceneFile;
+pub use relay_contact::scene::file::SceneFile;
 use relay_contact::simulation::Simulation;
 
 use self::summary::Summary;
@@ -102,38 +102,58 @@ fn find(scene: &str) -> Result<PathBuf> {
 /// Runs the scene from 0 to its stop, a row of its outputs for each communication point to `table`, and tells what
 /// happened.
 pub fn simulate(file: &SceneFile, table: &Path) -> Result<Summary> {
-    let mut simulation = start(file)?;
     let mut rows = BufWriter::new(File::create(table).with_context(|| format!("cannot write {}", table.display()))?);
     write!(rows, "time")?;
     for output in &file.outputs {
         write!(rows, ",{}", output.name)?;
     }
     writeln!(rows)?;
+    let simulation = start(file)?;
     write_row(&mut rows, file, &simulation, 0.0)?;
 
     let mut summary = Summary::new(&file.scene, &simulation);
     let progress = ProgressBar::new(1000).with_style(ProgressStyle::with_template("{bar:40} {percent}% {eta} left")?);
-    for (time, size) in file.steps() {
-        let inputs = file.inputs_over(time, size)?;
-        let begun = Instant::now();
-        simulation.step(&inputs, time, size)?;
-        summary.add(&simulation, begun.elapsed());
-        write_row(&mut rows, file, &simulation, time + size)?;
+    let simulation = each_step(file, |simulation, step| {
+        summary.add(simulation, step.taken);
+        write_row(&mut rows, file, simulation, step.end)?;
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
             reason = "between 0 and 1000"
         )]
-        progress.set_position((1000.0 * time / file.stop) as u64);
-    }
+        progress.set_position((1000.0 * step.end / file.stop) as u64);
+        Ok(())
+    })?;
     progress.finish_and_clear();
     rows.flush()?;
     summary.end(&simulation);
     Ok(summary)
 }
 
+/// A communication step that was made.
+pub struct Step {
+    /// s.
+    pub end: f64,
+    /// Computing time.
+    pub taken: Duration,
+}
+
+/// Runs the scene from 0 to its stop and calls `after` each communication step; returns the simulation at its end.
+pub fn each_step(file: &SceneFile, mut after: impl FnMut(&Simulation, &Step) -> Result<()>) -> Result<Simulation> {
+    let mut simulation = start(file)?;
+    for (time, size) in file.steps() {
+        let inputs = file.inputs_over(time, size)?;
+        let begun = Instant::now();
+        simulation.step(&inputs, time, size)?;
+        let taken = begun.elapsed();
+        let end = time + size;
+        after(&simulation, &Step { end, taken })?;
+    }
+    Ok(simulation)
+}
+
 /// The scene in its preload.
-pub fn start(file: &SceneFile) -> Result<Simulation> {
+fn start(file: &SceneFile) -> Result<Simulation> {
     let inputs = file.inputs_over(0.0, file.communication_step)?;
     Ok(Simulation::new(&file.scene, &inputs, 0.0)?)
 }

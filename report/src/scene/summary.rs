@@ -7,6 +7,8 @@ use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{IntegerOutput, RealOutput, ResistanceKind};
 
+use crate::numbers::{seconds, significant};
+
 /// Kept up with from step to step.
 pub struct Summary {
     scene: Scene,
@@ -135,7 +137,7 @@ impl fmt::Display for Summary {
             writeln!(
                 formatter,
                 "worst resistance{seen}: {} Ohm",
-                digits(self.worst_resistance)
+                significant(self.worst_resistance)
             )?;
         }
         if effects.energy {
@@ -157,23 +159,5 @@ impl fmt::Display for Summary {
         )?;
         let taken = self.taken.as_secs_f64();
         write!(formatter, "time taken: {} for {}", seconds(taken), seconds(self.time))
-    }
-}
-
-/// Up to four digits after the point, or the power of ten.
-fn digits(x: f64) -> String {
-    if (1e-3..1e4).contains(&x) {
-        format!("{x:.4}")
-    } else {
-        format!("{x:.3e}")
-    }
-}
-
-/// A time in a unit that fits.
-fn seconds(time: f64) -> String {
-    match time.abs() {
-        size if size >= 1.0 => format!("{time:.3} s"),
-        size if size >= 1e-3 => format!("{:.4} ms", 1e3 * time),
-        _ => format!("{:.3} us", 1e6 * time),
     }
 }

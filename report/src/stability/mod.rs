@@ -4,14 +4,14 @@ use anyhow::{Result, bail};
 use hard_cases::CASES;
 use hard_cases::case::{Case, Check};
 
-use super::Arguments;
-use super::content::{Block, Section, Table};
-use crate::threads;
+use crate::content::Arguments;
+use crate::content::{Block, Section, Table};
+use rayon::prelude::*;
 
 /// The section; an error where a property is not kept.
 pub fn sections(_: Arguments) -> Result<Vec<Section>> {
     let cases: Vec<&Case> = CASES.iter().copied().flatten().collect();
-    let checks = threads::map(&cases, |case| Ok(case.keeps_its_properties()))?;
+    let checks: Vec<_> = cases.par_iter().map(|case| case.keeps_its_properties()).collect();
     let mut broken = Vec::new();
     let mut kept = Vec::new();
     for (case, checks) in cases.iter().zip(checks) {

@@ -9,16 +9,12 @@
 //! until the sine in the law of the axial force turns to tension. That is followed like any other motion, in shorter steps.
 
 use crate::beam::axial::Feedback;
-use crate::beam::mode::MAX_MODES;
-use crate::beam::mode::Modal;
+use crate::beam::mode::{MAX_MODES, Modal};
 use crate::integrator::collocation::coefficients::{ErrorColumn, ModeColumns, StepCoefficients};
-use crate::integrator::collocation::newton::FreeResponse;
-use crate::integrator::collocation::newton::{Solution, Source, closed_forces, first_forces};
+use crate::integrator::collocation::newton::{FreeResponse, Solution, Source, closed_forces, first_forces};
 use crate::integrator::collocation::polynomial::Collocation;
-use crate::math::nodal::Nodal;
-use crate::math::nodal::{add, add_columns, dot};
-use crate::math::simd::Arithmetic;
-use crate::math::simd::LANES;
+use crate::math::nodal::{Nodal, add, add_columns, dot};
+use crate::math::simd::{Arithmetic, LANES};
 use crate::model::Model;
 use crate::state::State;
 

@@ -1,15 +1,13 @@
 //! Everything of a step that depends on its length alone, and a cache of it.
 
-use crate::beam::mode::Modal;
-use crate::beam::mode::{MAX_MODES, Mode};
+use crate::beam::mode::{MAX_MODES, Modal, Mode};
 use crate::excitation::generator::Turns;
 use crate::integrator::collocation::modal_response::ModeOverStep;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::Table;
 use crate::integrator::collocation::superposition::{Pair, Sum};
 use crate::math::free_motion::FreeMotion;
-use crate::math::nodal::Nodal;
-use crate::math::nodal::{add, scaled};
+use crate::math::nodal::{Nodal, add, scaled};
 use crate::math::simd::{Arithmetic, compiled_for};
 use crate::model::Model;
 

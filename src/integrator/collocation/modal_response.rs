@@ -6,12 +6,10 @@
 //! parts); where it is fast, of the shape's derivatives (the motion that follows the load) and a free motion that takes
 //! away what this has at the start. A strongly overdamped mode with one fast and one slow root is one of each.
 
-use crate::integrator::collocation::shapes::MAX_SHAPES;
-use crate::integrator::collocation::shapes::{Row, Shapes, TERMS};
+use crate::integrator::collocation::shapes::{MAX_SHAPES, Row, Shapes, TERMS};
 use crate::integrator::collocation::superposition::{Combination, Fading, Pair, Response};
 use crate::math::free_motion::FreeMotion;
-use crate::math::nodal::Nodal;
-use crate::math::nodal::{add, scaled};
+use crate::math::nodal::{Nodal, add, scaled};
 use crate::math::simd::Arithmetic;
 
 /// Root times step length up to which the power series keeps its digits: its terms grow to about `7^6 / 7!`.

@@ -3,8 +3,7 @@
 use crate::BARE;
 use crate::integrator::collocation::coefficients::{ErrorColumn, StepCoefficients};
 use crate::integrator::collocation::polynomial::Collocation;
-use crate::math::nodal::Nodal;
-use crate::math::nodal::{add_columns, end, scaled};
+use crate::math::nodal::{Nodal, add_columns, end, scaled};
 use crate::math::simd::Arithmetic;
 use crate::model::Model;
 use crate::state::State;

@@ -4,14 +4,10 @@
 //! however stiff its damping is (Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.5): eight for
 //! long steps, four where a short one is wanted (a communication step of a microsecond, the time just after a blow).
 
-use crate::integrator::collocation::shapes::MAX_SHAPES;
-use crate::integrator::collocation::shapes::Shapes;
+use crate::integrator::collocation::shapes::{MAX_SHAPES, Shapes};
 use crate::math::legendre;
-use crate::math::nodal::LONG;
-use crate::math::nodal::Nodal;
-use crate::math::nodal::{add, dot, scaled};
-use crate::math::prediction::Prediction;
-use crate::math::prediction::Predictions;
+use crate::math::nodal::{LONG, Nodal, add, dot, scaled};
+use crate::math::prediction::{Prediction, Predictions};
 use crate::math::simd::{Arithmetic, Separate, Simd, compiled_for};
 
 /// Points at which a nodal polynomial is looked at where it comes near zero.

@@ -2,9 +2,7 @@
 //! one degree more that vanishes at the nodes and is 1 at the start, which the error estimate uses.
 
 use crate::math::legendre;
-use crate::math::nodal::LONG;
-use crate::math::nodal::Nodal;
-use crate::math::nodal::{add, end};
+use crate::math::nodal::{LONG, Nodal, add, end};
 use crate::math::simd::Arithmetic;
 
 /// Most terms of a power series: `7^n / n!` is below rounding from there on ([`crate::integrator::collocation::modal_response`]).

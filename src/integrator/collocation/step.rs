@@ -2,20 +2,16 @@
 //! error.
 
 use crate::beam::axial::Feedback;
-use crate::beam::mode::Modal;
-use crate::beam::mode::ModeStates;
+use crate::beam::mode::{Modal, ModeStates};
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::axial_force::{self, Settled};
 use crate::integrator::collocation::coefficients::{EndRows, StepCoefficients};
-use crate::integrator::collocation::newton::FreeResponse;
-use crate::integrator::collocation::newton::Tangent;
-use crate::integrator::collocation::newton::{Solution, at_nodes};
-use crate::integrator::collocation::newton::{Source, closed_forces, first_forces};
+use crate::integrator::collocation::newton::{
+    FreeResponse, Solution, Source, Tangent, at_nodes, closed_forces, first_forces,
+};
 use crate::integrator::collocation::polynomial::Collocation;
-use crate::math::nodal::Nodal;
-use crate::math::nodal::{add, add_columns, add_products, dot, end};
-use crate::math::simd::LANES;
-use crate::math::simd::{Arithmetic, compiled_for};
+use crate::math::nodal::{Nodal, add, add_columns, add_products, dot, end};
+use crate::math::simd::{Arithmetic, LANES, compiled_for};
 use crate::model::Model;
 use crate::state::State;
 

@@ -2,10 +2,8 @@
 //! integrals and derivatives, and free motions that fade ([`crate::integrator::collocation::modal_response`]). The factors of many modes add up
 //! before they meet the shapes.
 
-use crate::integrator::collocation::shapes::MAX_SHAPES;
-use crate::integrator::collocation::shapes::{Row, Shapes, TERMS, Table};
-use crate::math::nodal::Nodal;
-use crate::math::nodal::{add, end};
+use crate::integrator::collocation::shapes::{MAX_SHAPES, Row, Shapes, TERMS, Table};
+use crate::math::nodal::{Nodal, add, end};
 use crate::math::simd::Arithmetic;
 
 /// Displacement and velocity, in units of the step length.

@@ -39,8 +39,7 @@
 
 use crate::BARE;
 use crate::integrator::collocation::newton::Source;
-use crate::integrator::collocation::step;
-use crate::integrator::collocation::step::Trial;
+use crate::integrator::collocation::step::{self, Trial};
 use crate::integrator::grid::Target;
 use crate::integrator::integration::Integration;
 use crate::integrator::workspace::{Room, Workspace};

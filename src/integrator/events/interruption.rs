@@ -6,12 +6,10 @@ use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::events::Cut;
 use crate::integrator::grid::Target;
-use crate::integrator::integration::Integration;
-use crate::integrator::integration::StepOutcome;
-use crate::integrator::workspace::Room;
-use crate::integrator::workspace::Workspace;
-use crate::math::nodal::SHORT;
-use crate::math::{nodal, roots};
+use crate::integrator::integration::{Integration, StepOutcome};
+use crate::integrator::workspace::{Room, Workspace};
+use crate::math::nodal::{self, SHORT};
+use crate::math::roots;
 
 /// Places in a step at which the force is looked for clearly on its old side of the threshold.
 const PLACES: u32 = 8;
