@@ -1,6 +1,5 @@
 //! Model and state: everything computed once from a scene, and the numbers that move.
 
-use crate::BARE;
 use crate::beam::axial::Feedback;
 use crate::beam::characteristic;
 use crate::beam::galerkin::Space;
@@ -211,9 +210,9 @@ impl Model {
         self.frequency
     }
 
-    /// [`Model::axial`], where the build has it.
+    /// Axial force from the deflection, with `effects.axialForce` FromDeflection.
     pub fn axial(&self) -> Option<&Feedback> {
-        self.axial.as_ref().filter(|_| !BARE)
+        self.axial.as_ref()
     }
 
     /// The law's engagement at an indentation given as deviation from the preload (m) that grows at `rate` (m/s), m: positive

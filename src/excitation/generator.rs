@@ -2,7 +2,6 @@
 
 use std::f64::consts::TAU;
 
-use crate::BARE;
 use crate::error::SceneError;
 use crate::excitation::random::{self, Random};
 use crate::excitation::sine::Sine;
@@ -160,7 +159,6 @@ impl Generator {
                 }
                 sin
             }
-            _ if BARE => 0.0,
             _ => self.over_step_out_of_line(simd, time, turns, &mut nodes),
         };
         Accelerations { start, nodes }

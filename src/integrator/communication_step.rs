@@ -1,5 +1,4 @@
 //! A communication step: HEAD
-use crate::BARE;
 use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
 use crate::inputs::Inputs;
@@ -26,7 +25,7 @@ pub fn step(
     time: f64,
     size: f64,
 ) -> Result<(), StepError> {
-    if model.scene.effects.extremes && !BARE {
+    if model.scene.effects.extremes {
         step_by::<true>(model, motion, workspace, inputs, (time, size))
     } else {
         step_by::<false>(model, motion, workspace, inputs, (time, size))

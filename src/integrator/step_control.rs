@@ -1,6 +1,5 @@
 //! A communication step as a sequence of integration steps.
 
-use crate::BARE;
 use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
 use crate::integrator::attempt::step_factor;
@@ -73,7 +72,7 @@ pub(crate) fn advance(
         drive,
         grid,
         dense,
-        extremes: extremes.filter(|_| !BARE),
+        extremes,
         tolerance,
         allowed: SHARE * tolerance,
         refusals: 0,

@@ -1,6 +1,5 @@
 //! Newton's method for the nodal forces on the closed branch: the forces of the law at the motion that they give.
 
-use crate::BARE;
 use crate::integrator::collocation::coefficients::{ErrorColumn, StepCoefficients};
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::math::nodal::{Nodal, add_columns, end, scaled};
@@ -157,7 +156,7 @@ pub(crate) fn closed_forces<const S: usize, A: Arithmetic>(
     guess: Nodal<S>,
     newton: f64,
 ) -> Option<Solution<S>> {
-    if model.law.damping() > 0.0 && !BARE {
+    if model.law.damping() > 0.0 {
         iterated::<S, A, true>(model, step, free, guess, newton)
     } else {
         iterated::<S, A, false>(model, step, free, guess, newton)

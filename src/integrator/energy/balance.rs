@@ -37,7 +37,6 @@
 //! A force wrong by `e` over a way `s` of the tip is worth `e s` at most. That is what to hold the balance against: the
 //! tolerance times the force scale times the way.
 
-use crate::BARE;
 use crate::integrator::collocation::newton::Source;
 use crate::integrator::collocation::step::{self, Trial};
 use crate::integrator::grid::Target;
@@ -53,7 +52,7 @@ impl Integration<'_> {
     where
         Workspace: Room<S>,
     {
-        if BARE || !self.model.scene.effects.energy {
+        if !self.model.scene.effects.energy {
             return None;
         }
         let half = 0.5 * target.length;

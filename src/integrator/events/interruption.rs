@@ -1,5 +1,4 @@
 //! An interruption begins or ends: where the contact force passes that of the threshold resistance inside a step.
-use crate::BARE;
 use crate::chatter::Criterion;
 use crate::error::StepError;
 use crate::integrator::collocation::polynomial::Collocation;
@@ -20,7 +19,7 @@ impl Integration<'_> {
     where
         Workspace: Room<S>,
     {
-        let criterion = self.model.criterion.filter(|_| !BARE)?;
+        let criterion = self.model.criterion?;
         if !self.state.closed {
             return None;
         }
@@ -123,7 +122,7 @@ impl Integration<'_> {
         if let Some(extremes) = &mut self.extremes {
             extremes.add(self.state.force);
         }
-        let Some(criterion) = self.model.criterion.as_ref().filter(|_| !BARE) else {
+        let Some(criterion) = self.model.criterion.as_ref() else {
             return;
         };
         let state = &mut *self.state;
