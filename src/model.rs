@@ -83,8 +83,10 @@ impl Model {
         let preload = Preload::new(scene, &section, &hertz, support)?;
         let law = match scene.effects.contact_law {
             ContactLawKind::Hertz => Law::Hertz(hertz),
-            _ if preload.force <= 0.0 => return Err(SceneError::NoPreload),
-            kind => Law::Linear(Linear {
+            ContactLawKind::Linearised | ContactLawKind::Bonded if preload.force <= 0.0 => {
+                return Err(SceneError::NoPreload);
+            }
+            kind @ (ContactLawKind::Linearised | ContactLawKind::Bonded) => Law::Linear(Linear {
                 stiffness: preload.contact_stiffness,
                 damping: hertz.damping,
                 offset: preload.indentation - preload.force / preload.contact_stiffness,

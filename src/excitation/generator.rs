@@ -48,7 +48,7 @@ impl<const S: usize> Turns<S> {
             (Generator::Random(random), Self::Random(rotations)) => {
                 random.turn(simd, &scaled(nodes, length), rotations);
             }
-            _ => {}
+            (Generator::None | Generator::Sine(_) | Generator::LogSweep(_) | Generator::Random(_), _) => {}
         }
     }
 }
@@ -76,7 +76,7 @@ impl Generator {
         let shakes = match scene.effects.excitation {
             ExcitationKind::None => false,
             ExcitationKind::Random => excitation.spectral_density > 0.0,
-            _ => excitation.amplitude > 0.0,
+            ExcitationKind::Sine | ExcitationKind::HalfSine | ExcitationKind::LogSweep => excitation.amplitude > 0.0,
         };
         Ok(match scene.effects.excitation {
             ExcitationKind::Random if excitation.end_frequency <= excitation.frequency => {
@@ -159,7 +159,9 @@ impl Generator {
                 }
                 sin
             }
-            _ => self.over_step_out_of_line(simd, time, turns, &mut nodes),
+            (Self::Sine(_) | Self::LogSweep(_) | Self::Random(_), _) => {
+                self.over_step_out_of_line(simd, time, turns, &mut nodes)
+            }
         };
         Accelerations { start, nodes }
     }
@@ -179,7 +181,7 @@ impl Generator {
             (Self::Random(random), Turns::Random(rotations)) if self.is_active(time) => {
                 random.over_step(simd, time, rotations)
             }
-            _ => return 0.0,
+            (Self::None | Self::Sine(_) | Self::LogSweep(_) | Self::Random(_), _) => return 0.0,
         };
         *nodes = found.nodes;
         found.start
@@ -206,7 +208,7 @@ impl Generator {
             Self::Sine(sine) if sine.window.is_open_after(time) => 0.25 / sine.frequency,
             Self::LogSweep(sweep) if sweep.window.is_open_after(time) => sweep.longest_step(time),
             Self::Random(random) if random.window.is_open_after(time) => 0.25 / random.highest,
-            _ => f64::INFINITY,
+            Self::None | Self::Sine(_) | Self::LogSweep(_) | Self::Random(_) => f64::INFINITY,
         }
     }
 }

@@ -25,7 +25,10 @@ impl Integration<'_> {
         } else {
             0.0
         };
-        let (ratio, inside) = (trial.error / self.allowed.max(trial.rounding), trial.missed * inside);
+        let (ratio, inside) = (
+            trial.error / self.allowed.max(trial.rounding),
+            trial.start_defect * inside,
+        );
         // Not `max`, which would hide NaN.
         let ratio = if ratio < inside { inside } else { ratio };
         if ratio > 1.0 && is_rounding(self.model, self.state, trial) {
@@ -91,8 +94,8 @@ impl Integration<'_> {
         if !(trial.indentation.is_finite() && trial.rate.is_finite()) {
             return Err(self.error(StepErrorCause::NotFinite));
         }
-        let due = self.energy_due(trial, target);
-        if due.is_some() {
+        let expected_energy = self.expected_energy(trial, target);
+        if expected_energy.is_some() {
             // The balance repeats the step in two halves.
             self.workspace.work += work(target.recurring) + 1;
         }
@@ -108,7 +111,7 @@ impl Integration<'_> {
         let start = state.force - model.preload.force;
         state.predictions = collocation.predictions(model.simd, start, &trial.forces, &state.predictions, ratio);
         if let Some((_, dense)) = &mut self.dense {
-            dense.good = INSIDE * trial.missed <= self.tolerance;
+            dense.accurate = INSIDE * trial.start_defect <= self.tolerance;
             dense.indentation = collocation.through(state.indentation, &trial.indentations);
             dense.rate = collocation.through(state.indentation_rate, &trial.rates);
             dense.force = *state.predictions.through_all();
@@ -132,7 +135,7 @@ impl Integration<'_> {
         self.grid.done = target.done;
         self.refusals = 0;
         self.settle(target.length);
-        self.balance(due);
+        self.balance(expected_energy);
         Ok(())
     }
 }

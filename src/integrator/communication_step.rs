@@ -70,12 +70,12 @@ fn step_by<const EXTREMES: bool>(
     let own_step = motion.end.short_step.max(motion.end.long_step);
     if steady && (ahead || size < own_step || size < MANY_STEPS * own_step && size != motion.size) {
         if !inside {
-            let left = until - motion.end.time;
-            if left < MANY_STEPS * own_step {
+            let remaining = until - motion.end.time;
+            if remaining < MANY_STEPS * own_step {
                 go_ahead(model, motion, workspace, until, extremes.as_mut())?;
             } else {
                 let (mut end, time) = (motion.end, motion.end.time);
-                let steps = Steps::Exactly { time, size: left };
+                let steps = Steps::Exactly { time, size: remaining };
                 if let Some(extremes) = &mut extremes {
                     motion.add_dense(extremes, model, since, time);
                 }
@@ -159,7 +159,7 @@ fn go_ahead(
             extremes.add(ahead.end.force);
         }
     }
-    if ahead.end.time > time && !ahead.dense.good {
+    if ahead.end.time > time && !ahead.dense.accurate {
         ahead.end = ahead.start;
         workspace.events.forget_after(ahead.end.time);
         let (start, size) = (ahead.end.time, time - ahead.end.time);

@@ -67,15 +67,15 @@ impl Integration<'_> {
             let source = Source::Given([force - preload.force; SHORT]);
             trial(model, state, drive, (step, collocation), source, end)
         };
-        let wanted = |trial: &Trial<SHORT>| {
+        let law_force = |trial: &Trial<SHORT>| {
             let speed = (trial.indentation - state.indentation) / target.length;
             model
                 .law
                 .mean_force(from, preload.indentation + trial.indentation, speed)
         };
         // Bracket: zero force gives the largest indentation and so the largest force of the law.
-        let most = Some(wanted(&under(0.0)?)).filter(|most| most.is_finite())?;
-        let mut excess = |force: f64| under(force).map_or(f64::NAN, |trial| force - wanted(&trial));
+        let most = Some(law_force(&under(0.0)?)).filter(|most| most.is_finite())?;
+        let mut excess = |force: f64| under(force).map_or(f64::NAN, |trial| force - law_force(&trial));
         let bracket = ((0.0, -most), (most, excess(most)));
         let force = roots::between(excess, bracket.0, bracket.1, 0.0).unwrap_or(most);
         let trial = under(force);

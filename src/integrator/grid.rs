@@ -52,7 +52,7 @@ impl Grid {
     }
 
     /// Remaining time, s.
-    pub fn left(&self) -> f64 {
+    pub fn remaining(&self) -> f64 {
         if self.free {
             f64::INFINITY
         } else {
@@ -62,9 +62,9 @@ impl Grid {
 
     /// The next step from `time` (s), of at most about `requested` seconds, ending at the latest at `corner` (s), the next
     /// discontinuity of the excitation.
-    pub fn target(&self, wanted: f64, time: f64, corner: Option<f64>) -> Target {
+    pub fn target(&self, requested: f64, time: f64, corner: Option<f64>) -> Target {
         if self.free {
-            let length = round_down(wanted);
+            let length = round_down(requested);
             let corner = corner.filter(|corner| *corner < time + length);
             return corner.map_or(
                 Target {
@@ -76,10 +76,10 @@ impl Grid {
                 |corner| self.cut(corner - time, corner),
             );
         }
-        let done = if self.done == 0.0 && wanted >= self.size {
+        let done = if self.done == 0.0 && requested >= self.size {
             1.0
         } else {
-            self.grid_point(wanted)
+            self.grid_point(requested)
         };
         if let Some(corner) = corner.filter(|corner| *corner < self.start + done * self.size) {
             return self.cut(corner - time, corner);
@@ -117,8 +117,8 @@ impl Grid {
 
     /// The next point of the dyadic grid with cells of at most `requested` seconds, unless it is too near to be worth a
     /// step. As fraction of the communication step.
-    fn grid_point(&self, wanted: f64) -> f64 {
-        let level = (self.size / wanted).log2().ceil().clamp(0.0, 52.0);
+    fn grid_point(&self, requested: f64) -> f64 {
+        let level = (self.size / requested).log2().ceil().clamp(0.0, 52.0);
         let cell = (-level).exp2();
         // On the grid: one cell, or a finer one where no cell of this size begins here.
         let aligned = (0..6)

@@ -37,7 +37,7 @@ pub(crate) struct Integration<'a> {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct DenseOutput {
     /// Whether they are within the tolerance inside the step; just after an impact they may not be.
-    pub good: bool,
+    pub accurate: bool,
     /// Contact force, N.
     pub force: Prediction,
     /// Indentation, m.
@@ -77,13 +77,17 @@ pub(crate) struct StepOutcome {
 
 impl StepOutcome {
     /// After an accepted step of `length` seconds where `requested` seconds were proposed.
-    pub(crate) fn after(length: f64, wanted: f64, growth: f64) -> Self {
+    pub(crate) fn after(length: f64, requested: f64, growth: f64) -> Self {
         let next = growth.min(4.0) * length;
         Self {
             taken: true,
             growth,
             // A step shortened by the grid keeps the size proposed before.
-            length: if length < 0.9 * wanted { wanted.max(next) } else { next },
+            length: if length < 0.9 * requested {
+                requested.max(next)
+            } else {
+                next
+            },
         }
     }
 }

@@ -53,11 +53,11 @@ pub(crate) fn advance(
     let (grid, dense) = match steps {
         Steps::Exactly { time, size } => {
             state.time = rests_until(model, state, &drive, tolerance, time + size).unwrap_or(time);
-            let left = size - (state.time - time);
-            if left <= 0.0 || step_exactly(model, state, &mut workspace.propagators, &drive, left) {
+            let remaining = size - (state.time - time);
+            if remaining <= 0.0 || step_exactly(model, state, &mut workspace.propagators, &drive, remaining) {
                 return Ok(());
             }
-            (Grid::over(state.time, left), None)
+            (Grid::over(state.time, remaining), None)
         }
         Steps::Own { until, dense } => {
             let size = state.short_step.max(state.long_step);
@@ -112,7 +112,7 @@ impl Integration<'_> {
 
     /// One integration step, accepted or rejected: with 4 nodes where they suffice, else with 8.
     fn advance(&mut self) -> Result<(), StepError> {
-        let left = self.grid.left();
+        let remaining = self.grid.remaining();
         let short_step = self.state.short_step;
         // Just after an impact the force is not smooth enough for polynomials of high degree.
         let smooth = if self.state.last_closing < 0.0 {
@@ -121,7 +121,9 @@ impl Integration<'_> {
             self.state.time - self.state.last_closing
         };
         let long_step = self.state.long_step.min(smooth);
-        if self.tolerance <= LONG_FLOOR * self.model.force_scale || left <= short_step || long_step < WORTH * short_step
+        if self.tolerance <= LONG_FLOOR * self.model.force_scale
+            || remaining <= short_step
+            || long_step < WORTH * short_step
         {
             let outcome = self.advance_with::<SHORT>(short_step)?;
             self.state.short_step = outcome.length;
@@ -133,22 +135,22 @@ impl Integration<'_> {
             self.state.long_step = outcome.length;
             // A long step cut far below its possible size: a short one will do next time.
             if outcome.taken {
-                self.state.short_step = short_step.max(outcome.growth * left.min(long_step) / LONGER);
+                self.state.short_step = short_step.max(outcome.growth * remaining.min(long_step) / LONGER);
             }
         }
         Ok(())
     }
 
     /// One step with `S` nodes of at most `requested` seconds, accepted or rejected.
-    fn advance_with<const S: usize>(&mut self, wanted: f64) -> Result<StepOutcome, StepError>
+    fn advance_with<const S: usize>(&mut self, requested: f64) -> Result<StepOutcome, StepError>
     where
         Workspace: Room<S>,
     {
-        let wanted = wanted
+        let requested = requested
             .min(self.model.longest_step(self.state.time))
             .max(self.shortest());
         let corner = self.model.generator.next_break(self.state.time);
-        let target = self.grid.target(wanted, self.state.time, corner);
+        let target = self.grid.target(requested, self.state.time, corner);
         let attempt = self.attempt::<S>(&target);
         let ratio = attempt
             .as_ref()
@@ -182,7 +184,7 @@ impl Integration<'_> {
         let candidate = self.first_event_candidate(&trial, target.length);
         if let Some(passed) = self.first_passage(&trial)
             && candidate.is_none_or(|part| passed <= part)
-            && let Some(outcome) = self.stop_at_threshold::<S>(passed, &target, growth, wanted)?
+            && let Some(outcome) = self.stop_at_threshold::<S>(passed, &target, growth, requested)?
         {
             return Ok(outcome);
         }
@@ -192,10 +194,10 @@ impl Integration<'_> {
                 return Ok(self.reject(0.9 * part * target.length));
             }
             if let Some(cut) = self.cut(part, &trial, target.length) {
-                return self.end_at::<S>(&cut, growth, wanted);
+                return self.end_at::<S>(&cut, growth, requested);
             }
         }
         self.take(&trial, &target)?;
-        Ok(StepOutcome::after(target.length, wanted, growth))
+        Ok(StepOutcome::after(target.length, requested, growth))
     }
 }

@@ -100,7 +100,7 @@ impl Budget {
     /// [`StepErrorCause::Budget`] if it is exhausted.
     pub(crate) fn check(&self, workspace: &Workspace, time: f64) -> Result<(), StepError> {
         let cause = StepErrorCause::Budget(self.steps);
-        let left = workspace.work < self.limit;
-        left.then_some(()).ok_or(StepError { time, cause })
+        let within_limit = workspace.work < self.limit;
+        within_limit.then_some(()).ok_or(StepError { time, cause })
     }
 }

@@ -73,7 +73,7 @@ pub(crate) fn settle<const S: usize, A: Arithmetic>(
                 let error = load_error::<S, A>(model, free, &start, &loads, (step, collocation));
                 let free = FreeResponse {
                     error: &error,
-                    missed: 1.0,
+                    start_defect: 1.0,
                     ..with_loads::<S, A>(model, free, step, &loads)
                 };
                 closed_forces::<S, A>(model, step, &free, forces, newton)?
@@ -193,14 +193,14 @@ fn load_error<const S: usize, A: Arithmetic>(
     (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
 ) -> ErrorColumn<S> {
     let mut error = ErrorColumn {
-        displacement: free.error.displacement.map(|d| free.missed * d),
-        velocity: free.error.velocity.map(|r| free.missed * r),
+        displacement: free.error.displacement.map(|d| free.start_defect * d),
+        velocity: free.error.velocity.map(|r| free.start_defect * r),
     };
     let modes = model.modes.iter().zip(&step.columns).zip(start).zip(loads);
     for (((mode, columns), start), load) in modes {
-        let missed = -mode.tip * (start - dot::<S, A>(load, &collocation.at_start));
-        add::<S, A>(&mut error.displacement, missed, &columns.error.displacement);
-        add::<S, A>(&mut error.velocity, missed, &columns.error.velocity);
+        let start_defect = -mode.tip * (start - dot::<S, A>(load, &collocation.at_start));
+        add::<S, A>(&mut error.displacement, start_defect, &columns.error.displacement);
+        add::<S, A>(&mut error.velocity, start_defect, &columns.error.velocity);
     }
     error
 }

@@ -35,7 +35,7 @@ pub(crate) struct FreeResponse<'a, const S: usize> {
     /// Its velocity, m/s.
     pub(crate) free_rate: Nodal<S>,
     /// Defect of the load polynomial at the start, m/s2 for the base acceleration.
-    pub(crate) missed: f64,
+    pub(crate) start_defect: f64,
     /// Indentation and its velocity at the nodes per unit of that defect.
     pub(crate) error: &'a ErrorColumn<S>,
 }

@@ -35,7 +35,7 @@ pub struct Trial<const S: usize> {
     /// Rounding of the contact force, N: an error estimate below it is meaningless.
     pub rounding: f64,
     /// Defect of the force polynomial at the start: difference from the contact force there, N.
-    pub missed: f64,
+    pub start_defect: f64,
     /// Newton iterations.
     pub iterations: u64,
     /// Tangent of the contact law.
@@ -128,7 +128,7 @@ fn compute_with_axial_force<const S: usize, A: Arithmetic>(
     // One combined defect of all loads.
     let free = FreeResponse {
         error: &error,
-        missed: 1.0,
+        start_defect: 1.0,
         ..axial_force::with_loads::<S, A>(model, &free, step, &loads)
     };
     let tip = end_of_modes::<S, A>(
@@ -191,7 +191,7 @@ fn free_response<'a, const S: usize, A: Arithmetic>(
     add_columns::<S, A>(&mut free, &step.acceleration.displacement, &accelerations);
     add_columns::<S, A>(&mut free_rate, &step.acceleration.velocity, &accelerations);
     FreeResponse {
-        missed: driven + generated.start - dot::<S, A>(&accelerations, &collocation.at_start),
+        start_defect: driven + generated.start - dot::<S, A>(&accelerations, &collocation.at_start),
         error: &step.acceleration_error,
         accelerations,
         free,
@@ -218,12 +218,12 @@ fn judged<const S: usize, A: Arithmetic>(
     let largest = forces.iter().fold(f64::MIN_POSITIVE, |largest, force| {
         largest.max((model.preload.force + force).abs())
     });
-    let missed = if state.closed {
+    let start_defect = if state.closed {
         state.force - model.preload.force - dot::<S, A>(&forces, &collocation.at_start)
     } else {
         0.0
     };
-    let error = error(model, state, step, solution, missed, free, largest);
+    let error = error(model, state, step, solution, start_defect, free, largest);
     Trial {
         forces,
         indentations,
@@ -233,7 +233,7 @@ fn judged<const S: usize, A: Arithmetic>(
         rate,
         error,
         rounding: ROUNDING * largest.max(model.preload.force),
-        missed: missed.abs(),
+        start_defect: start_defect.abs(),
         iterations,
         tangent: solution.tangent,
     }
@@ -254,25 +254,25 @@ fn error<const S: usize>(
     state: &State,
     step: &StepCoefficients<S>,
     solution: &Solution<S>,
-    missed: f64,
+    start_defect: f64,
     free: &FreeResponse<S>,
     largest: f64,
 ) -> f64 {
     if state.closed {
         let (by_force, by_load) = (solution.by_force, solution.by_load);
-        let wrong_d = by_load.0 * free.missed - by_force.0 * missed;
-        let wrong_r = by_load.1 * free.missed - by_force.1 * missed;
+        let wrong_d = by_load.0 * free.start_defect - by_force.0 * start_defect;
+        let wrong_r = by_load.1 * free.start_defect - by_force.1 * start_defect;
         let fast = (solution.tangent.stiffness * wrong_d).abs() + (solution.tangent.damping * wrong_r).abs();
         let elapsed = state.time - state.last_kink;
         let kinked = if elapsed < FAR * step.length {
-            KINKED * missed.abs() * analytic::<S>(elapsed / step.length)
+            KINKED * start_defect.abs() * analytic::<S>(elapsed / step.length)
         } else {
             0.0
         };
-        let slow = 3.0 * missed * missed / largest + kinked;
+        let slow = 3.0 * start_defect * start_defect / largest + kinked;
         fast + slow * solution.tangent.gain / (1.0 + solution.tangent.gain)
     } else {
-        let last = |values: &Nodal<S>| (end(values) * free.missed).abs();
+        let last = |values: &Nodal<S>| (end(values) * free.start_defect).abs();
         let rows = free.error;
         let wrong = last(&rows.displacement) + model.law.damping() * last(&rows.velocity);
         model.law.tangent_stiffness(model.force_scale) * wrong

@@ -48,7 +48,7 @@ use crate::state::State;
 impl Integration<'_> {
     /// Energy relative to the preload at the end of a step about to be accepted, if the step were free of error, J; `None`
     /// without `effects.energy`.
-    pub(crate) fn energy_due<const S: usize>(&mut self, trial: &Trial<S>, target: &Target) -> Option<f64>
+    pub(crate) fn expected_energy<const S: usize>(&mut self, trial: &Trial<S>, target: &Target) -> Option<f64>
     where
         Workspace: Room<S>,
     {
@@ -89,10 +89,10 @@ impl Integration<'_> {
     }
 
     /// Adds a step just accepted, at whose end the energy should be `expected` (J).
-    pub(crate) fn balance(&mut self, due: Option<f64>) {
-        if let Some(due) = due {
+    pub(crate) fn balance(&mut self, expected: Option<f64>) {
+        if let Some(expected) = expected {
             let Self { model, state, .. } = self;
-            state.energy_balance += due - model.energy(&state.modes, state.indentation);
+            state.energy_balance += expected - model.energy(&state.modes, state.indentation);
         }
     }
 }
@@ -265,9 +265,9 @@ mod tests {
         let mut made = 0.0;
         let (entered, _) = balance::<LONG>(&model, &mut end, drive, 6e-5, |_, modes| {
             let first = modes.first_mut().unwrap();
-            let due = first.v;
+            let expected = first.v;
             first.v *= 1.0 + 1e-6;
-            made = 0.5 * (first.v * first.v - due * due);
+            made = 0.5 * (first.v * first.v - expected * expected);
         });
         assert!(
             (entered + made).abs() < 1e-3 * made,

@@ -57,7 +57,7 @@ impl Integration<'_> {
         passed: f64,
         target: &Target,
         growth: f64,
-        wanted: f64,
+        requested: f64,
     ) -> Result<Option<StepOutcome>, StepError>
     where
         Workspace: Room<S>,
@@ -79,7 +79,7 @@ impl Integration<'_> {
         if end > 0.0 {
             // The polynomial crosses, the force does not: the next step starts here.
             return (latest < target.length)
-                .then(|| self.end_at::<S>(&cut_at(latest), growth, wanted))
+                .then(|| self.end_at::<S>(&cut_at(latest), growth, requested))
                 .transpose();
         }
         let start = self.excess(criterion, self.state.force - model.preload.force);
@@ -103,7 +103,7 @@ impl Integration<'_> {
             Some(length) if length > resolution => length,
             _ if self.state.interruptions.turned_at(self.state.time) && start <= 0.0 => {
                 // On the new side for less than the resolution of time: the force has crossed back by the end of this piece.
-                return self.end_at::<S>(&cut_at(latest), growth, wanted).map(Some);
+                return self.end_at::<S>(&cut_at(latest), growth, requested).map(Some);
             }
             _ => {
                 // The crossing is at the start of the step.
@@ -111,7 +111,7 @@ impl Integration<'_> {
                 return Ok(Some(self.reject(target.length)));
             }
         };
-        let outcome = self.end_at::<S>(&cut_at(length), growth, wanted)?;
+        let outcome = self.end_at::<S>(&cut_at(length), growth, requested)?;
         if outcome.taken {
             self.state.interruptions.turn(criterion, self.state.time);
         }

@@ -51,7 +51,7 @@ impl Integration<'_> {
         &mut self,
         cut: &Cut,
         growth: f64,
-        wanted: f64,
+        requested: f64,
     ) -> Result<StepOutcome, StepError>
     where
         Workspace: Room<S>,
@@ -80,7 +80,7 @@ impl Integration<'_> {
                 length: self.switch(!self.state.closed),
             });
         }
-        Ok(StepOutcome::after(target.length, wanted, growth))
+        Ok(StepOutcome::after(target.length, requested, growth))
     }
 
     /// Opens or closes the contact at the instant of the state; returns the length of the next step, s.
