@@ -38,7 +38,8 @@ impl Integration<'_> {
         }
     }
 
-    /// Whether a step to the target with this relative error is accepted; one of the shortest length with any finite error.
+    /// Whether a step to the target with this relative error is accepted; one of the shortest length with any finite
+    /// error.
     pub(crate) fn is_acceptable(&self, ratio: f64, target: &Target) -> bool {
         ratio <= 1.0 || self.is_shortest(target) && ratio.is_finite()
     }

@@ -1,10 +1,11 @@
 //! The discrete-gradient step, used where the collocation fails: it always has a solution.
 //!
-//! The contact force is constant over the step: the discrete gradient of the elastic energy between the ends of the step, plus
-//! a damping force against the displacement between them (O. Gonzalez, J. Nonlinear Sci. 6 (1996) 449). With exact
-//! modes the energy is conserved exactly without damping and never grows with damping, for any step length; opening
-//! and closing need no event location. The indentation at the end decreases linearly with the constant force and the law's mean
-//! force increases with the indentation: one monotone scalar equation, solved by a bracketing method.
+//! The contact force is constant over the step: the discrete gradient of the elastic energy between the ends of the
+//! step, plus a damping force against the displacement between them (O. Gonzalez, J. Nonlinear Sci. 6 (1996) 449). With
+//! exact modes the energy is conserved exactly without damping and never grows with damping, for any step length;
+//! opening and closing need no event location. The indentation at the end decreases linearly with the constant force
+//! and the law's mean force increases with the indentation: one monotone scalar equation, solved by a bracketing
+//! method.
 
 use crate::error::{StepError, StepErrorCause};
 use crate::integrator::collocation::newton::Source;
@@ -33,8 +34,8 @@ impl Integration<'_> {
             length = self.switch(closed);
         }
         if closed {
-            // The velocity at the end belongs to a constant force: if the contact is nearly a rigid dashpot, the law would
-            // overestimate the force.
+            // The velocity at the end belongs to a constant force: if the contact is nearly a rigid dashpot, the law
+            // would overestimate the force.
             let law = self.model.law.closed_branch(d, trial.rate);
             let rigid = law.damping * self.model.mobility() * target.length > 1.0;
             self.state.force = if rigid { mean } else { law.force };

@@ -10,7 +10,8 @@ use crate::excitation::drive::Drive;
 use crate::model::Model;
 use crate::state::State;
 
-/// Takes `size` seconds from the state's time in one exact step, or several where the generator starts or ends within them.
+/// Takes `size` seconds from the state's time in one exact step, or several where the generator starts or ends within
+/// them.
 /// `false`, with the state unchanged, if the motion is not linear or the contact may open.
 pub(crate) fn step_exactly(
     model: &Model,
@@ -47,8 +48,8 @@ pub(crate) fn step_exactly(
     false
 }
 
-/// One step of `length` seconds without a start or end of the generator inside; `false`, with the state unchanged, if the
-/// contact may open or be interrupted.
+/// One step of `length` seconds without a start or end of the generator inside; `false`, with the state unchanged, if
+/// the contact may open or be interrupted.
 fn advance(
     closed_loop: &ClosedLoop,
     model: &Model,

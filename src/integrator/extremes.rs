@@ -34,8 +34,8 @@ impl Extremes {
         self.greatest = self.greatest.max(force);
     }
 
-    /// Includes the force within a step from `from` to `to` (relative to its end, in step lengths): that of the polynomial,
-    /// or zero while the contact is open.
+    /// Includes the force within a step from `from` to `to` (relative to its end, in step lengths): that of the
+    /// polynomial, or zero while the contact is open.
     pub(crate) fn add_course(&mut self, model: &Model, closed: bool, polynomial: &Prediction, from: f64, to: f64) {
         if !closed {
             self.add(0.0);

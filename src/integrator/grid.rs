@@ -1,5 +1,5 @@
-//! The grid of a communication step. Integration steps are dyadic fractions of it, or free steps of a few rounded lengths;
-//! either way step lengths recur, so that their coefficients can be cached.
+//! The grid of a communication step. Integration steps are dyadic fractions of it, or free steps of a few rounded
+//! lengths; either way step lengths recur, so that their coefficients can be cached.
 
 /// Progress within a communication step.
 #[derive(Clone, Copy, Debug)]
@@ -60,8 +60,8 @@ impl Grid {
         }
     }
 
-    /// The next step from `time` (s), of at most about `requested` seconds, ending at the latest at `corner` (s), the next
-    /// discontinuity of the excitation.
+    /// The next step from `time` (s), of at most about `requested` seconds, ending at the latest at `corner` (s), the
+    /// next discontinuity of the excitation.
     pub fn target(&self, requested: f64, time: f64, corner: Option<f64>) -> Target {
         if self.free {
             let length = round_down(requested);

@@ -1,9 +1,10 @@
 //! The motion at a communication point, and dense output between integration steps.
 //!
-//! Long communication steps are integrated exactly to their ends. With short ones (a circuit simulator's) or ones of ever new
-//! sizes, and inputs that continue as before, the integrator runs ahead in steps as long as the error allows. The
-//! communication points then lie inside an integration step, and the tip is read from the step's polynomials (dense output).
-//! When an input changes, the step is repeated from its start to the communication point and integration restarts there.
+//! Long communication steps are integrated exactly to their ends. With short ones (a circuit simulator's) or ones of
+//! ever new sizes, and inputs that continue as before, the integrator runs ahead in steps as long as the error allows.
+//! The communication points then lie inside an integration step, and the tip is read from the step's polynomials (dense
+//! output). When an input changes, the step is repeated from its start to the communication point and integration
+//! restarts there.
 
 use crate::beam::mode::MAX_MODES;
 use crate::excitation::drive::Drive;

@@ -13,17 +13,19 @@ const ROUNDING: f64 = 1e-14;
 /// Relative change of the modal stiffness up to which an axial force from the deflection counts as weak.
 const WEAK: f64 = 0.1;
 
-/// The instant (s), at most `end`, until which the contact force stays within a hundredth of `tolerance` (N) of its present
-/// value; `None` if the contact is not at rest. Requires constant base acceleration and a fixed contact that does not move.
+/// The instant (s), at most `end`, until which the contact force stays within a hundredth of `tolerance` (N) of its
+/// present value; `None` if the contact is not at rest. Requires constant base acceleration and a fixed contact that
+/// does not move.
 ///
-/// An energy bound: the potential energy is convex and each mode has at least its own stiffness, so a net load `r` on a mode
-/// is worth at most `r^2 / (2 omega^2)` above the equilibrium. Together with the kinetic energy this bounds the energy above
-/// the equilibrium, which never grows. A contact force that differs by `e` from that of the equilibrium needs at least
+/// An energy bound: the potential energy is convex and each mode has at least its own stiffness, so a net load `r` on a
+/// mode is worth at most `r^2 / (2 omega^2)` above the equilibrium. Together with the kinetic energy this bounds the
+/// energy above the equilibrium, which never grows. A contact force that differs by `e` from that of the equilibrium
+/// needs at least
 /// `e^2 / (2 k)` of it, with `k` the greatest tangent stiffness in between.
 ///
-/// An axial force that follows the deflection adds its loads. It has no potential; but if it changes the modal stiffness
-/// little and there is damping, the bound holds up to a factor near one, for which the hundredth leaves room. Otherwise only
-/// the equilibrium to rounding counts as rest.
+/// An axial force that follows the deflection adds its loads. It has no potential; but if it changes the modal
+/// stiffness little and there is damping, the bound holds up to a factor near one, for which the hundredth leaves room.
+/// Otherwise only the equilibrium to rounding counts as rest.
 pub(crate) fn rests_until(model: &Model, state: &State, drive: &Drive, tolerance: f64, end: f64) -> Option<f64> {
     if !drive.is_constant() || model.generator.is_active(state.time) {
         return None;

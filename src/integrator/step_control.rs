@@ -15,7 +15,8 @@ use crate::math::nodal::{LONG, SHORT};
 use crate::model::Model;
 use crate::state::State;
 
-/// Largest spacing of floating-point numbers at an instant, relative to the first step, with which integration is possible.
+/// Largest spacing of floating-point numbers at an instant, relative to the first step, with which integration is
+/// possible.
 const COARSEST: f64 = 0.1;
 
 /// Limit of the velocity of the fixed contact, m/s.

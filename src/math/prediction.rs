@@ -1,4 +1,5 @@
-//! Polynomials of a quantity over a step, expanded about its end: for dense output, and to extrapolate to the next step.
+//! Polynomials of a quantity over a step, expanded about its end: for dense output, and to extrapolate to the next
+//! step.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,8 +8,8 @@ use crate::math::nodal::LONG;
 /// Coefficients of a polynomial through the nodes of a step, about the step's end, in time relative to its length.
 pub type Prediction = [f64; LONG + 1];
 
-/// Two extrapolations of the force to the next step, through all nodes and through the last few, and which of the two was
-/// better last time.
+/// Two extrapolations of the force to the next step, through all nodes and through the last few, and which of the two
+/// was better last time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Predictions {
     pub(crate) steep: Prediction,

@@ -1,14 +1,14 @@
 //! Roots of scalar functions in a bracket.
 
-/// Root of `f` between `a` and `b`, to the spacing of floating-point numbers. `None` unless `f(a)` and `f(b)` differ in sign,
-/// and if `f` returns NaN.
+/// Root of `f` between `a` and `b`, to the spacing of floating-point numbers. `None` unless `f(a)` and `f(b)` differ in
+/// sign, and if `f` returns NaN.
 pub fn bracketed(mut f: impl FnMut(f64) -> f64, a: f64, b: f64) -> Option<f64> {
     let ends = ((a, f(a)), (b, f(b)));
     between(f, ends.0, ends.1, 0.0)
 }
 
-/// The same with known values at the two points, to within `resolution`. Inverse quadratic interpolation where it is safe,
-/// else bisection.
+/// The same with known values at the two points, to within `resolution`. Inverse quadratic interpolation where it is
+/// safe, else bisection.
 ///
 /// T. R. Chandrupatla, Advances in Engineering Software 28 (1997) 145.
 pub fn between(mut f: impl FnMut(f64) -> f64, a: (f64, f64), b: (f64, f64), resolution: f64) -> Option<f64> {

@@ -1,5 +1,5 @@
-//! Instruction set, selected once. The kernel of a step is compiled twice from the same source: for the generic processor,
-//! and for processors with vectors of four numbers and fused multiply-add (AVX2 and FMA).
+//! Instruction set, selected once. The kernel of a step is compiled twice from the same source: for the generic
+//! processor, and for processors with vectors of four numbers and fused multiply-add (AVX2 and FMA).
 
 #[cfg(target_arch = "x86_64")]
 use fearless_simd::Avx2;
@@ -28,8 +28,8 @@ impl Simd {
     }
 }
 
-/// Multiply-add, the one operation to be chosen explicitly: the compiler never fuses on its own, and without the instruction
-/// [`f64::mul_add`] is a slow library call.
+/// Multiply-add, the one operation to be chosen explicitly: the compiler never fuses on its own, and without the
+/// instruction [`f64::mul_add`] is a slow library call.
 pub trait Arithmetic {
     /// `a b + c`.
     fn mul_add(a: f64, b: f64, c: f64) -> f64;
@@ -57,7 +57,8 @@ impl Arithmetic for Fused {
     }
 }
 
-/// `compiled_for!(simd, A => body)`: evaluates the body compiled for the instruction set `simd`, with its [`Arithmetic`] as
+/// `compiled_for!(simd, A => body)`: evaluates the body compiled for the instruction set `simd`, with its
+/// [`Arithmetic`] as
 /// `A`. Only functions inlined into the body are compiled for it.
 macro_rules! compiled_for {
     ($simd:expr, $arithmetic:ident => $body:expr) => {

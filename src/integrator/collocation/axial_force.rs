@@ -1,12 +1,13 @@
 //! A step with an axial force that follows the deflection ([`Feedback`]): loads that couple all modes.
 //!
-//! The loads are collocation polynomials like the contact force, and weak compared with the modal stiffness. They are found
-//! by fixed-point iteration: motion under the current forces, loads of that motion, contact forces under those loads. The
-//! defect of the load polynomials at the start of the step enters the error estimate in the same way as that of the base
-//! acceleration. If the iteration does not converge, the step is too long.
+//! The loads are collocation polynomials like the contact force, and weak compared with the modal stiffness. They are
+//! found by fixed-point iteration: motion under the current forces, loads of that motion, contact forces under those
+//! loads. The defect of the load polynomials at the start of the step enters the error estimate in the same way as that
+//! of the base acceleration. If the iteration does not converge, the step is too long.
 //!
-//! In violent motion the axial force may temporarily exceed the buckling load: the beam then moves away from its position
-//! until the sine in the law of the axial force turns to tension. Such motion is integrated like any other, in shorter steps.
+//! In violent motion the axial force may temporarily exceed the buckling load: the beam then moves away from its
+//! position until the sine in the law of the axial force turns to tension. Such motion is integrated like any other, in
+//! shorter steps.
 
 use crate::beam::axial::Feedback;
 use crate::beam::mode::{MAX_MODES, Modal};
@@ -144,7 +145,8 @@ fn set_loads<const S: usize, A: Arithmetic>(
     }
 }
 
-/// Static tip force of the same strain energy as the change of the loads, and as the loads, N: the largest over the nodes.
+/// Static tip force of the same strain energy as the change of the loads, and as the loads, N: the largest over the
+/// nodes.
 #[inline(always)]
 fn force_of_change<const S: usize>(model: &Model, loads: &NodalModes<S>, next: &NodalModes<S>) -> (f64, f64) {
     let (mut change, mut size, mut unit) = ([0.0; S], [0.0; S], f64::MIN_POSITIVE);
@@ -290,8 +292,9 @@ mod tests {
                 }
             }
             assert!(most > 1e-3 * start, "{most:e} of {start:e} J");
-            // The phase of the fastest mode advances by x = 1.3 rad per step: polynomials of degree 8 have an error of at
-            // most x^9 / 9!, some 1e-5, of its motion, and of the order of the square of that in the mean of its work.
+            // The phase of the fastest mode advances by x = 1.3 rad per step: polynomials of degree 8 have an error of
+            // at most x^9 / 9!, some 1e-5, of its motion, and of the order of the square of that in the mean of its
+            // work.
             assert!(wrong < 1e-8 * most, "{wrong:e} of {most:e} J");
         }
     }

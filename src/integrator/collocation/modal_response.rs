@@ -1,10 +1,10 @@
 //! Exact response of a mode `q'' + c q' + omega^2 q = r(t)` over a step to its initial state and to a load that is a
 //! polynomial in time, at any step length and any damping.
 //!
-//! In units of the step length, the response to a load shape is a combination of functions of the shape alone. For a mode
-//! slow compared with the step: repeated integrals of the shape (the power series of the impulse response, integrated by
-//! parts). For a fast mode: derivatives of the shape (the quasi-static particular solution) and a free motion that
-//! cancels its initial value. A strongly overdamped mode with one fast and one slow root uses one of each.
+//! In units of the step length, the response to a load shape is a combination of functions of the shape alone. For a
+//! mode slow compared with the step: repeated integrals of the shape (the power series of the impulse response,
+//! integrated by parts). For a fast mode: derivatives of the shape (the quasi-static particular solution) and a free
+//! motion that cancels its initial value. A strongly overdamped mode with one fast and one slow root uses one of each.
 
 use crate::integrator::collocation::shapes::{MAX_SHAPES, Row, Shapes, TERMS};
 use crate::integrator::collocation::superposition::{Combination, Fading, Pair, Response};

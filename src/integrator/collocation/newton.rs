@@ -1,4 +1,5 @@
-//! Newton's method for the nodal forces on the closed branch: each equals the contact law at the motion that they cause.
+//! Newton's method for the nodal forces on the closed branch: each equals the contact law at the motion that they
+//! cause.
 
 use crate::integrator::collocation::coefficients::{ErrorColumn, StepCoefficients};
 use crate::integrator::collocation::polynomial::Collocation;
@@ -77,9 +78,9 @@ impl<const S: usize> Solution<S> {
         }
     }
 
-    /// Of the last iterate, with the greatest stiffness and damping at its nodes. `force_error`: nodal forces per defect of the
-    /// contact force; `load_error`: free response per defect of the other loads, and the nodal forces it causes. From
-    /// these the effects at the end are formed.
+    /// Of the last iterate, with the greatest stiffness and damping at its nodes. `force_error`: nodal forces per
+    /// defect of the contact force; `load_error`: free response per defect of the other loads, and the nodal forces it
+    /// causes. From these the effects at the end are formed.
     #[inline(always)]
     fn new(
         step: &StepCoefficients<S>,
@@ -199,8 +200,8 @@ fn iterated<const S: usize, A: Arithmetic, const DAMPED: bool>(
             *residual -= law.force - model.preload.force;
             (*stiffness, *damping) = (law.stiffness, law.damping);
         }
-        // The residual is that of the law at the motion: on a stiff contact the forces depend strongly on the motion, whose
-        // rounding limits the residual.
+        // The residual is that of the law at the motion: on a stiff contact the forces depend strongly on the motion,
+        // whose rounding limits the residual.
         let rounding = MOTION_ROUNDING * (greatest(&stiffness) * farthest + greatest(&damping) * fastest);
         if let Some((by_force, by_load)) = by_errors.filter(|_| greatest(&residual) <= newton.max(rounding)) {
             return Some(Solution::new(
@@ -230,8 +231,9 @@ fn iterated<const S: usize, A: Arithmetic, const DAMPED: bool>(
     None
 }
 
-/// Solves `(1 + A) x = b` for several `b`, `A` by columns, by Gauss-Jordan elimination, whose inner loops run down columns.
-/// Rows are exchanged only for a small pivot, which occurs in violent steps only. `None` if the matrix is singular.
+/// Solves `(1 + A) x = b` for several `b`, `A` by columns, by Gauss-Jordan elimination, whose inner loops run down
+/// columns. Rows are exchanged only for a small pivot, which occurs in violent steps only. `None` if the matrix is
+/// singular.
 #[expect(
     clippy::indexing_slicing,
     reason = "every index runs over the fixed size of the arrays"

@@ -1,8 +1,8 @@
 //! The collocation polynomial in time for contact force and base acceleration within a step.
 //!
-//! A step has `S` Radau IIA nodes, the last one at its end, so that the contact force there satisfies the contact law however
-//! stiff its damping (Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.5): eight for long steps, four
-//! for short ones (communication steps of a microsecond, the time just after an impact).
+//! A step has `S` Radau IIA nodes, the last one at its end, so that the contact force there satisfies the contact law
+//! however stiff its damping (Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.5): eight for long
+//! steps, four for short ones (communication steps of a microsecond, the time just after an impact).
 
 use crate::integrator::collocation::shapes::{MAX_SHAPES, Shapes};
 use crate::math::legendre;
@@ -34,8 +34,8 @@ pub struct Collocation<const S: usize> {
     pub at_start: Nodal<S>,
     /// Mean of the Lagrange polynomials over the step: the weights of the Radau quadrature.
     weights: Nodal<S>,
-    /// Lagrange polynomials of the start and the nodes, by coefficients of y^0, y^1, ..., `y = x - 1`; the first row is that
-    /// of the start.
+    /// Lagrange polynomials of the start and the nodes, by coefficients of y^0, y^1, ..., `y = x - 1`; the first row is
+    /// that of the start.
     steep: Vec<Prediction>,
     /// The same for the last few nodes only, which is better for long extrapolation.
     flat: Vec<Prediction>,
@@ -91,16 +91,17 @@ impl<const S: usize> Collocation<S> {
         sum
     }
 
-    /// Whether the nodal polynomial through `values`, with the value `start` at the start of the step, may reach zero in it.
+    /// Whether the nodal polynomial through `values`, with the value `start` at the start of the step, may reach zero
+    /// in it.
     pub fn comes_near_zero(start: f64, values: &Nodal<S>) -> bool {
         let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
         let highest = values.iter().copied().fold(start, f64::max);
         lowest <= NEAR * highest
     }
 
-    /// First place in the step (0 to 1) before `until` where the nodal polynomial through `values` is found below zero: at a
-    /// sample point, or at the minimum near the lowest of them. It is not searched before the first node, where the
-    /// polynomial extrapolates.
+    /// First place in the step (0 to 1) before `until` where the nodal polynomial through `values` is found below zero:
+    /// at a sample point, or at the minimum near the lowest of them. It is not searched before the first node, where
+    /// the polynomial extrapolates.
     pub fn first_dip(&self, values: &Nodal<S>, until: f64) -> Option<f64> {
         let value = |x: f64| self.interpolate(values, x);
         let look = 1.0 / f64::from(LOOKS);
@@ -126,8 +127,9 @@ impl<const S: usize> Collocation<S> {
         dot::<S, Separate>(values, &self.weights)
     }
 
-    /// Predictions for the next step from the values at the start and at the nodes of this one. The previous predictions,
-    /// made for a step `ratio` times as long as the one before, are compared with the values to choose between the two.
+    /// Predictions for the next step from the values at the start and at the nodes of this one. The previous
+    /// predictions, made for a step `ratio` times as long as the one before, are compared with the values to choose
+    /// between the two.
     pub fn predictions(
         &self,
         simd: Simd,

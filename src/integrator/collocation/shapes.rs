@@ -1,5 +1,5 @@
-//! Integrals and derivatives of the load shapes of a step: the Lagrange polynomials of its nodes, and for the error estimate
-//! the polynomial of one degree more that vanishes at the nodes and is 1 at the start.
+//! Integrals and derivatives of the load shapes of a step: the Lagrange polynomials of its nodes, and for the error
+//! estimate the polynomial of one degree more that vanishes at the nodes and is 1 at the start.
 
 use crate::math::legendre;
 use crate::math::nodal::{LONG, Nodal, add, end};
@@ -102,7 +102,8 @@ impl<const S: usize> Shapes<S> {
     }
 }
 
-/// `n`-fold integrals by Cauchy's formula, the integral of `(x - s)^(n-1) / (n-1)!` times the shape, by Gauss quadrature.
+/// `n`-fold integrals by Cauchy's formula, the integral of `(x - s)^(n-1) / (n-1)!` times the shape, by Gauss
+/// quadrature.
 fn integrals<const S: usize>(nodes: &Nodal<S>) -> Vec<Table<S>> {
     let mut tables = vec![(Table::<S>::ZERO, Table::<S>::ZERO); TERMS];
     let points: Vec<_> = legendre::gauss(POINTS).collect();

@@ -1,5 +1,5 @@
-//! A trial step: the nodal contact forces ([`crate::integrator::collocation::newton`]), the motion they cause, and the error
-//! estimate.
+//! A trial step: the nodal contact forces ([`crate::integrator::collocation::newton`]), the motion they cause, and the
+//! error estimate.
 
 use crate::beam::axial::Feedback;
 use crate::beam::mode::{Modal, ModeStates};
@@ -51,14 +51,15 @@ const ROUNDING: f64 = 1e-13;
 /// Rounding of a sum over the modes, in units of machine epsilon.
 const ROUNDINGS: f64 = 4.0;
 
-/// Ratio of the mean error over the step to the defect at the start, for a force that grows with the square root of time.
+/// Ratio of the mean error over the step to the defect at the start, for a force that grows with the square root of
+/// time.
 const KINKED: f64 = 0.015;
 
 /// Distance from a kink, in step lengths, beyond which it has no effect.
 const FAR: f64 = 20.0;
 
-/// Computes the step from `state` with the given coefficients, contact closed or open as in `state`; writes the modes at its
-/// end to `end_modes`. `None` if the iteration for contact or axial force does not converge.
+/// Computes the step from `state` with the given coefficients, contact closed or open as in `state`; writes the modes
+/// at its end to `end_modes`. `None` if the iteration for contact or axial force does not converge.
 pub fn trial<const S: usize>(
     model: &Model,
     state: &State,
@@ -241,11 +242,11 @@ fn judged<const S: usize, A: Arithmetic>(
 
 /// Estimate of the error that a step adds to the contact force, N.
 ///
-/// The polynomials are exact at the nodes; their defect at the start gives the amplitude of the next term, the shape that
-/// vanishes at the nodes. Its effect on the nodal forces is known to first order ([`Solution`]). At the end of the step,
-/// modes slow compared with the step are hardly affected by it (the shape is orthogonal to polynomials of low degree); their
-/// error is of twice the order, about three times the square of the defect (calibrated with a free mass impacting a Hertz
-/// contact). Just after first touch or a jump the force is not smooth, and their error is larger.
+/// The polynomials are exact at the nodes; their defect at the start gives the amplitude of the next term, the shape
+/// that vanishes at the nodes. Its effect on the nodal forces is known to first order ([`Solution`]). At the end of the
+/// step, modes slow compared with the step are hardly affected by it (the shape is orthogonal to polynomials of low
+/// degree); their error is of twice the order, about three times the square of the defect (calibrated with a free mass
+/// impacting a Hertz contact). Just after first touch or a jump the force is not smooth, and their error is larger.
 ///
 /// `start_defect` (N) is the defect of the force polynomial, `largest` (N) the largest nodal force.
 #[inline(always)]
@@ -279,8 +280,8 @@ fn error<const S: usize>(
     }
 }
 
-/// Whether the error of a step from `state` is explained by rounding of the sums over the modes: after an impact the modal
-/// velocities are large and their sum at the tip is small.
+/// Whether the error of a step from `state` is explained by rounding of the sums over the modes: after an impact the
+/// modal velocities are large and their sum at the tip is small.
 pub(crate) fn is_rounding<const S: usize>(model: &Model, state: &State, trial: &Trial<S>) -> bool {
     let (mut displacement, mut velocity) = (0.0, 0.0);
     for (mode, at) in model.modes.iter().zip(&state.modes) {
@@ -293,10 +294,11 @@ pub(crate) fn is_rounding<const S: usize>(model: &Model, state: &State, trial: &
     trial.error <= ROUNDINGS * f64::EPSILON * (stiffness * displacement + damping * velocity) / reaction
 }
 
-/// Ratio of the quadrature error to the interpolation error with `S` nodes for a square root of time whose branch point lies
+/// Ratio of the quadrature error to the interpolation error with `S` nodes for a square root of time whose branch point
+/// lies
 /// `distance` step lengths before the step. Interpolation converges with the power `S` of the size of the Bernstein
-/// ellipse, quadrature with the power `2 S - 1` (L. N. Trefethen, Approximation Theory and Approximation Practice, 2013,
-/// chapters 8 and 19).
+/// ellipse, quadrature with the power `2 S - 1` (L. N. Trefethen, Approximation Theory and Approximation Practice,
+/// 2013, chapters 8 and 19).
 fn analytic<const S: usize>(distance: f64) -> f64 {
     let ellipse = 1.0 + 2.0 * distance + 2.0 * (distance * (distance + 1.0)).sqrt();
     (1..S).fold(1.0, |product, _| product / ellipse)
@@ -324,8 +326,8 @@ fn loads_on_modes<const S: usize, A: Arithmetic>(
     }
 }
 
-/// Writes the modes at the end of a step to `ends`; `loads_from` computes the loads on [`LANES`] modes from a given one on.
-/// Returns displacement and velocity of the tip.
+/// Writes the modes at the end of a step to `ends`; `loads_from` computes the loads on [`LANES`] modes from a given one
+/// on. Returns displacement and velocity of the tip.
 #[inline(always)]
 #[expect(
     clippy::indexing_slicing,

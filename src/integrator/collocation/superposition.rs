@@ -1,6 +1,6 @@
-//! Superposition of modal responses to the load shapes: factors of the shapes' integrals and derivatives, and decaying free
-//! motions ([`crate::integrator::collocation::modal_response`]). The factors of many modes are summed before they are
-//! multiplied by the shapes.
+//! Superposition of modal responses to the load shapes: factors of the shapes' integrals and derivatives, and decaying
+//! free motions ([`crate::integrator::collocation::modal_response`]). The factors of many modes are summed before they
+//! are multiplied by the shapes.
 
 use crate::integrator::collocation::shapes::{MAX_SHAPES, Row, Shapes, TERMS, Table};
 use crate::math::nodal::{Nodal, add, end};

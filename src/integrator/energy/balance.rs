@@ -1,11 +1,11 @@
 //! The energy balance (`effects.energy`): the numerical energy error of the integration in time. Energy supplied since
-//! initialisation, minus energy stored, minus energy dissipated, J. Positive: the integration has lost energy; negative: it
-//! has created energy.
+//! initialisation, minus energy stored, minus energy dissipated, J. Positive: the integration has lost energy;
+//! negative: it has created energy.
 //!
-//! Supplied: the work of the base acceleration `a` and of the moving fixed contact (displacement `u`). Stored: kinetic and
-//! strain energy of the beam and the elastic energy `V` of the contact. Dissipated: `D_b` in the beam and, in the contact,
-//! the work of `F_d`, the force of the law minus its elastic part `V'(d)`. If damping makes the force vanish before the
-//! surfaces part, `F_d = -V'(d)`: the energy left in the indentation does no work and is dissipated.
+//! Supplied: the work of the base acceleration `a` and of the moving fixed contact (displacement `u`). Stored: kinetic
+//! and strain energy of the beam and the elastic energy `V` of the contact. Dissipated: `D_b` in the beam and, in the
+//! contact, the work of `F_d`, the force of the law minus its elastic part `V'(d)`. If damping makes the force vanish
+//! before the surfaces part, `F_d = -V'(d)`: the energy left in the indentation does no work and is dissipated.
 //!
 //! A step moves the tip by a force `F_p`, a polynomial, and for that force the motion of the modes is exact. So for
 //! the beam, with the preload force `F_0` and `E_b = sum (v_i^2 + omega_i^2 q_i^2) / 2`, both about the preload,
@@ -21,21 +21,22 @@
 //! balance = integral of (F_p - F_d) d' dt - change of V = integral of (F_p - F) d' dt,
 //! ```
 //!
-//! the work of the difference between the polynomial and the law `F` at the motion. This difference vanishes at the nodes,
-//! where a quadrature would not see it. The motion is therefore computed again in two half steps, from the same start
-//! under the same `F_p`, with the base acceleration at more instants, and the integral is taken by the Radau quadratures
-//! of both, with eight nodes each. The energy at the end of that motion may differ from that of the step taken, by the step's
-//! polynomial of the base acceleration, by an impulse it applied, or by a programming error. This difference is included.
+//! the work of the difference between the polynomial and the law `F` at the motion. This difference vanishes at the
+//! nodes, where a quadrature would not see it. The motion is therefore computed again in two half steps, from the same
+//! start under the same `F_p`, with the base acceleration at more instants, and the integral is taken by the Radau
+//! quadratures of both, with eight nodes each. The energy at the end of that motion may differ from that of the step
+//! taken, by the step's polynomial of the base acceleration, by an impulse it applied, or by a programming error. This
+//! difference is included.
 //!
-//! So the balance measures the integration in time, not the truncation to a number of modes, nor the exact solution of a
-//! single mode, which it relies on. A contact at rest and exact linear steps contribute nothing: one does not move, the
-//! other has no polynomial and satisfies the law at every instant to rounding.
+//! So the balance measures the integration in time, not the truncation to a number of modes, nor the exact solution of
+//! a single mode, which it relies on. A contact at rest and exact linear steps contribute nothing: one does not move,
+//! the other has no polynomial and satisfies the law at every instant to rounding.
 //!
-//! The balance is updated at the ends of integration steps: at a communication point inside a step it is that of the step's
-//! start.
+//! The balance is updated at the ends of integration steps: at a communication point inside a step it is that of the
+//! step's start.
 //!
-//! A force error `e` over a tip path `s` changes the energy by at most `e s`. So compare the balance with the tolerance times
-//! the force scale times the path.
+//! A force error `e` over a tip path `s` changes the energy by at most `e s`. So compare the balance with the tolerance
+//! times the force scale times the path.
 
 use crate::integrator::collocation::newton::Source;
 use crate::integrator::collocation::step::{self, Trial};
@@ -46,8 +47,8 @@ use crate::math::nodal::LONG;
 use crate::state::State;
 
 impl Integration<'_> {
-    /// Energy relative to the preload at the end of a step about to be accepted, if the step were free of error, J; `None`
-    /// without `effects.energy`.
+    /// Energy relative to the preload at the end of a step about to be accepted, if the step were free of error, J;
+    /// `None` without `effects.energy`.
     pub(crate) fn expected_energy<const S: usize>(&mut self, trial: &Trial<S>, target: &Target) -> Option<f64>
     where
         Workspace: Room<S>,
@@ -171,8 +172,8 @@ mod tests {
         (state.energy_balance, trial)
     }
 
-    /// The same from all works, energies and losses, integrated along the motion under the force of the step by the classical
-    /// Runge-Kutta method, J.
+    /// The same from all works, energies and losses, integrated along the motion under the force of the step by the
+    /// classical Runge-Kutta method, J.
     #[expect(clippy::indexing_slicing, reason = "as many entries as the modes need")]
     fn summed<const S: usize>(
         model: &Model,
@@ -231,8 +232,8 @@ mod tests {
             let mut end = start;
             let (entered, trial) = balance::<SHORT>(&model, &mut end, drive, length, |_, _| ());
             let sum = summed(&model, &start, &end, drive, length, &trial);
-            // The defect at the start excites oscillations of about a microsecond, which the nodes of the half steps do not
-            // resolve.
+            // The defect at the start excites oscillations of about a microsecond, which the nodes of the half steps do
+            // not resolve.
             assert!(
                 (entered - sum).abs() < 0.1 * sum.abs(),
                 "{length} s: entered {entered:e} J, summed {sum:e} J"

@@ -1,9 +1,9 @@
 //! Energy conservation in scenes without damping and without generator.
 //!
 //! The energy relative to the preload then changes only by the work of the base acceleration, known exactly from the
-//! modal displacements, and of the moving fixed contact: its velocity times the impulse of the force, known exactly from the
-//! polynomial. Any other change is an error of the step. It is corrected by a small impulse on the tip in this step or
-//! in later ones, so that errors do not accumulate over any number of impacts.
+//! modal displacements, and of the moving fixed contact: its velocity times the impulse of the force, known exactly
+//! from the polynomial. Any other change is an error of the step. It is corrected by a small impulse on the tip in this
+//! step or in later ones, so that errors do not accumulate over any number of impacts.
 
 use crate::excitation::drive::Drive;
 use crate::excitation::generator::Generator;
@@ -50,8 +50,8 @@ impl Integration<'_> {
         (finish - start - by_base - by_support, rounding)
     }
 
-    /// Whether the energy error of the step exceeds that of a force error of one tolerance along the path of the tip. The
-    /// error estimate, a single number, can be small by chance.
+    /// Whether the energy error of the step exceeds that of a force error of one tolerance along the path of the tip.
+    /// The error estimate, a single number, can be small by chance.
     pub(crate) fn breaks_account<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> bool
     where
         Workspace: Room<S>,
@@ -77,8 +77,8 @@ impl Integration<'_> {
         }
     }
 
-    /// Corrects the accumulated energy error by an impulse on the tip, limited to that of a small force error over the step
-    /// just taken. The remainder is left to later steps.
+    /// Corrects the accumulated energy error by an impulse on the tip, limited to that of a small force error over the
+    /// step just taken. The remainder is left to later steps.
     pub(crate) fn settle(&mut self, length: f64) {
         if !self.conserves || !self.state.closed || self.state.energy_surplus == 0.0 {
             return;

@@ -1,9 +1,10 @@
-//! Event location of closing: the first instant within a step of free flight at which the contact force becomes nonzero.
+//! Event location of closing: the first instant within a step of free flight at which the contact force becomes
+//! nonzero.
 //!
 //! Sign changes alone would miss a grazing contact. Between two samples of indentation and velocity the indentation is
-//! approximated by the Hermite cubic, whose error is estimated at a sample between them. If the maximum of the cubic stays below
-//! first touch by more than this error there is no contact; otherwise the interval is bisected. Modes that oscillate
-//! faster than the interval resolves are added with their amplitudes.
+//! approximated by the Hermite cubic, whose error is estimated at a sample between them. If the maximum of the cubic
+//! stays below first touch by more than this error there is no contact; otherwise the interval is bisected. Modes that
+//! oscillate faster than the interval resolves are added with their amplitudes.
 
 use crate::beam::mode::Mode;
 use crate::integrator::collocation::step::Trial;
@@ -131,8 +132,8 @@ impl Integration<'_> {
         (displacement, velocity)
     }
 
-    /// The first instant of closing between two samples, s from the start of the step; `error` (m) is the error of their
-    /// cubic.
+    /// The first instant of closing between two samples, s from the start of the step; `error` (m) is the error of
+    /// their cubic.
     fn touch_between<const S: usize>(&mut self, a: &Sample, b: &Sample, error: f64, depth: u32) -> Option<f64>
     where
         Workspace: Room<S>,

@@ -51,7 +51,8 @@ impl Integration<'_> {
         trial.map_or(f64::NAN, |trial| self.excess(criterion, nodal::end(&trial.forces)))
     }
 
-    /// Ends the step at the crossing found at or before the part `passed` of it; `None` if the step need not be shortened.
+    /// Ends the step at the crossing found at or before the part `passed` of it; `None` if the step need not be
+    /// shortened.
     pub(crate) fn stop_at_threshold<const S: usize>(
         &mut self,
         passed: f64,
@@ -84,8 +85,8 @@ impl Integration<'_> {
         }
         let start = self.excess(criterion, self.state.force - model.preload.force);
         let resolution = self.resolution();
-        // Where an interruption has just begun or ended, rounding may put the force on the wrong side: start from a sample
-        // clearly on the right side.
+        // Where an interruption has just begun or ended, rounding may put the force on the wrong side: start from a
+        // sample clearly on the right side.
         let clear = if start > 0.0 {
             Some((0.0, start))
         } else {
@@ -102,7 +103,8 @@ impl Integration<'_> {
         let length = match length {
             Some(length) if length > resolution => length,
             _ if self.state.interruptions.turned_at(self.state.time) && start <= 0.0 => {
-                // On the new side for less than the resolution of time: the force has crossed back by the end of this piece.
+                // On the new side for less than the resolution of time: the force has crossed back by the end of this
+                // piece.
                 return self.end_at::<S>(&cut_at(latest), growth, requested).map(Some);
             }
             _ => {

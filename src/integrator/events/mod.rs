@@ -1,4 +1,5 @@
-//! Events: openings, closings, interruptions and jumps of the force. Steps end at an event, and integration restarts there.
+//! Events: openings, closings, interruptions and jumps of the force. Steps end at an event, and integration restarts
+//! there.
 
 pub mod closing;
 pub mod interruption;
@@ -32,8 +33,8 @@ impl Integration<'_> {
         }
     }
 
-    /// Locates the event suspected at the part `candidate` of the step of `length` seconds; `None` if the step need not be
-    /// shortened.
+    /// Locates the event suspected at the part `candidate` of the step of `length` seconds; `None` if the step need not
+    /// be shortened.
     pub(crate) fn cut<const S: usize>(&mut self, candidate: f64, trial: &Trial<S>, length: f64) -> Option<Cut>
     where
         Workspace: Room<S>,

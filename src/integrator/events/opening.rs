@@ -36,8 +36,8 @@ impl Integration<'_> {
         })
     }
 
-    /// Where in the step the contact may first open, 0 to 1: a node or the end where it is open, or a place between nodes where
-    /// the force polynomial is below zero.
+    /// Where in the step the contact may first open, 0 to 1: a node or the end where it is open, or a place between
+    /// nodes where the force polynomial is below zero.
     pub(crate) fn first_open<const S: usize>(&mut self, trial: &Trial<S>) -> Option<f64>
     where
         Workspace: Room<S>,
