@@ -3,8 +3,7 @@
 //! Machines 2025, 13(1), 52, eqs. (16) to (25). The deflection is a sum of mode shapes with amplitudes `q_i` (eq. 16)
 //! that are normalised to the mass (eqs. 17 to 19). Beam damping `C = alpha M + beta K` leaves them uncoupled (eqs. 20
 //! to 24), with `c_i = alpha + beta omega_i^2 = 2 xi_i omega_i` (eqs. 22, 23), and under loads `r_i` of angular
-//! frequency
-//! `omega` (eq. 25)
+//! frequency `omega` (eq. 25)
 //!
 //! `(omega_i^2 - omega^2 + i omega c_i) q_i = r_i`.
 //!

@@ -93,7 +93,7 @@ impl Problem {
             (vectors, product)
         };
         let ((slow, n1), (fast, n2)) = (at(slow), at(fast));
-        // Scaled by strain energy, as their contact forces may differ by orders of magnitude.
+        // Both scaled to the same strain energy, as their contact forces may differ by orders of magnitude.
         let product = |a: &[[f64; 2]], b: &[[f64; 2]]| {
             let parts = a.iter().zip(b).zip(&self.modes);
             parts.map(|(([a, _], [b, _]), (omega, _))| omega * a * b).sum::<f64>()

@@ -75,8 +75,7 @@ impl Oscillator {
         [y, y * Complex::new(0.0, omega)]
     }
 
-    /// Displacement and velocity `length` seconds after rest under the acceleration `e^(i omega t)`; `turn` is its
-    /// value there.
+    /// Displacement and velocity `length` seconds after rest under the acceleration `e^(i omega t)`, `turn` there.
     pub(crate) fn driven_from_rest(
         &self,
         free: &FreeMotion,

@@ -175,15 +175,15 @@ impl ClosedLoop {
         });
         let Linear { stiffness, damping, .. } = self.contact;
         // Error of the contact force of a modal motion, and the magnitude of its terms.
-        let missed = |motion: &[f64], expected: f64| {
+        let residual = |motion: &[f64], expected: f64| {
             modes.iter().zip(motion.chunks_exact(2)).fold(
                 (expected, expected.abs()),
-                |(missed, size), (mode, motion)| {
+                |(residual, size), (mode, motion)| {
                     let [spring, damper] = match motion {
                         [q, v] => [q, &(damping * v)].map(|length| stiffness * mode.tip * length),
                         _ => [f64::NAN; 2],
                     };
-                    (missed + (spring + damper), size + (spring.abs() + damper.abs()))
+                    (residual + (spring + damper), size + (spring.abs() + damper.abs()))
                 },
             )
         };
@@ -191,7 +191,8 @@ impl ClosedLoop {
         let pairs = columns().zip(columns().skip(modes.len()));
         survives
             && self.oscillators.iter().zip(pairs).all(|(oscillator, (at_x, at_v))| {
-                let [(x, x_size), (v, v_size)] = [missed(at_x, oscillator.force[0]), missed(at_v, oscillator.force[1])];
+                let [(x, x_size), (v, v_size)] =
+                    [residual(at_x, oscillator.force[0]), residual(at_v, oscillator.force[1])];
                 let frequency = oscillator.omega_squared.sqrt();
                 let size = x_size + frequency * v_size;
                 x.abs() < ROUNDING * size && frequency * v.abs() < ROUNDING * size
@@ -205,8 +206,8 @@ impl ClosedLoop {
         free
     }
 
-    /// Motion of the modes at the end of a step, from the free motion at its start and the particular solution at its
-    /// end;
+    /// Motion of the modes at the end of a step, from the free motion at its start and the particular solution at the
+    /// end.
     /// `phasor`: sine and cosine of the generator's phase at the start, times its amplitude.
     pub(crate) fn moved(
         &self,
@@ -248,8 +249,7 @@ impl ClosedLoop {
         }
     }
 
-    /// Lower bound of the contact force (N) over a step that begins with the free motion `free`, given the preload
-    /// force (N).
+    /// Lower bound of the contact force over a step that begins with the free motion `free`, N.
     pub(crate) fn least_force(
         &self,
         preload_force: f64,

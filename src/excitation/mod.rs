@@ -1,7 +1,6 @@
 //! Base acceleration: generated inside the component, and from the inputs ([`drive`]).
 //!
-//! One file per waveform: [`sine`], also the half sine; [`sweep`]; [`random`]. A generator acts within its [`window`]
-//! of time.
+//! One file per waveform: [`sine`], also the half sine; [`sweep`]; [`random`]. A generator acts within its [`window`].
 
 pub mod drive;
 pub mod generator;

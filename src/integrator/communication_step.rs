@@ -12,8 +12,7 @@ use crate::integrator::workspace::{Budget, Workspace};
 use crate::model::Model;
 use crate::state::State;
 
-/// Communication steps of at least this many integration steps end with an integration step; shorter ones use dense
-/// output.
+/// Shortest communication step that ends with an integration step, in integration steps; shorter ones use dense output.
 const MANY_STEPS: f64 = 4.0;
 
 /// Advances over the communication step from `time` to `time + size` (s) with inputs that are held or change linearly.

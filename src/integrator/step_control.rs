@@ -15,8 +15,7 @@ use crate::math::nodal::{LONG, SHORT};
 use crate::model::Model;
 use crate::state::State;
 
-/// Largest spacing of floating-point numbers at an instant, relative to the first step, with which integration is
-/// possible.
+/// Largest spacing of floating-point numbers at an instant, relative to the first step, that allows integration.
 const COARSEST: f64 = 0.1;
 
 /// Limit of the velocity of the fixed contact, m/s.

@@ -1,5 +1,4 @@
-//! Newton's method for the nodal forces on the closed branch: each equals the contact law at the motion that they
-//! cause.
+//! Newton's method for the nodal forces on the closed branch: each is that of the law at the motion that they cause.
 
 use crate::integrator::collocation::coefficients::{ErrorColumn, StepCoefficients};
 use crate::integrator::collocation::polynomial::Collocation;
@@ -200,8 +199,8 @@ fn iterated<const S: usize, A: Arithmetic, const DAMPED: bool>(
             *residual -= law.force - model.preload.force;
             (*stiffness, *damping) = (law.stiffness, law.damping);
         }
-        // The residual is that of the law at the motion: on a stiff contact the forces depend strongly on the motion,
-        // whose rounding limits the residual.
+        // Convergence is judged by the residual of the law, not by the change of the nodal forces, which on a stiff
+        // contact hardly depend on the law. Rounding of the motion limits the residual.
         let rounding = MOTION_ROUNDING * (greatest(&stiffness) * farthest + greatest(&damping) * fastest);
         if let Some((by_force, by_load)) = by_errors.filter(|_| greatest(&residual) <= newton.max(rounding)) {
             return Some(Solution::new(

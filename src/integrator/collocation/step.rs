@@ -295,10 +295,9 @@ pub(crate) fn is_rounding<const S: usize>(model: &Model, state: &State, trial: &
 }
 
 /// Ratio of the quadrature error to the interpolation error with `S` nodes for a square root of time whose branch point
-/// lies
-/// `distance` step lengths before the step. Interpolation converges with the power `S` of the size of the Bernstein
-/// ellipse, quadrature with the power `2 S - 1` (L. N. Trefethen, Approximation Theory and Approximation Practice,
-/// 2013, chapters 8 and 19).
+/// lies `distance` step lengths before the step. Interpolation converges with the power `S` of the size of the
+/// Bernstein ellipse, quadrature with the power `2 S - 1` (L. N. Trefethen, Approximation Theory and Approximation
+/// Practice, 2013, chapters 8 and 19).
 fn analytic<const S: usize>(distance: f64) -> f64 {
     let ellipse = 1.0 + 2.0 * distance + 2.0 * (distance * (distance + 1.0)).sqrt();
     (1..S).fold(1.0, |product, _| product / ellipse)

@@ -1,5 +1,4 @@
-//! Event location of closing: the first instant within a step of free flight at which the contact force becomes
-//! nonzero.
+//! Event location of closing: the first instant within a step of free flight at which there is a contact force.
 //!
 //! Sign changes alone would miss a grazing contact. Between two samples of indentation and velocity the indentation is
 //! approximated by the Hermite cubic, whose error is estimated at a sample between them. If the maximum of the cubic
