@@ -1,15 +1,15 @@
-//! Interruptions: stretches in which the contact resistance is above a threshold.
+//! Interruptions (contact chatter): intervals in which the contact resistance is above a threshold.
 //!
-//! The resistance falls with the contact force, so an interruption is a stretch with a force below that of the threshold.
-//! One that stands at the start begins there. It counts once it has lasted the minimum duration, also while it goes on
-//! (MIL-PRF-28776, MIL-STD-202 method 310: 10 us).
+//! The resistance decreases with the contact force, so an interruption is an interval with a force below that of the
+//! threshold. One present at the start begins there. It counts once it has lasted the minimum duration, even if it is
+//! still in progress (MIL-PRF-28776, MIL-STD-202 method 310: 10 us).
 
 use serde::{Deserialize, Serialize};
 
 use crate::electrical::ElectricalContact;
 use crate::scene::Scene;
 
-/// What counts as an interruption.
+/// Criterion of an interruption.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Criterion {
     /// Contact force below which the contact is interrupted, N; above 0.
@@ -19,7 +19,7 @@ pub struct Criterion {
 }
 
 impl Criterion {
-    /// Of the scene, if it asks for interruptions and there can be any.
+    /// From the scene; `None` without `effects.chatter`, or if there can be no interruption.
     pub fn new(scene: &Scene, electrical: &ElectricalContact) -> Option<Self> {
         let force = electrical.force_at(scene.chatter.resistance_threshold);
         (scene.effects.chatter && force > 0.0).then_some(Self {
@@ -29,29 +29,29 @@ impl Criterion {
     }
 }
 
-/// The interruptions up to an instant.
+/// Interruptions up to an instant: the state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Interruptions {
-    /// Since when the contact has been interrupted, s, if it is.
+    /// Start of the interruption in progress, s.
     since: Option<f64>,
-    /// Those that have ended and count.
+    /// Number of completed interruptions that count.
     count: u64,
-    /// The longest that has ended, s.
+    /// Longest completed one, s.
     longest: f64,
-    /// Duration of those that have ended and count, s.
+    /// Total duration of the completed ones that count, s.
     total: f64,
-    /// When one last began or ended, s.
+    /// Instant at which one last began or ended, s.
     turned: Option<f64>,
 }
 
-/// The interruptions up to an instant, one in progress included.
+/// Interruptions up to an instant, including one in progress: the outputs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Summary {
-    /// How many count.
+    /// Number that count.
     pub count: u64,
     /// The longest, s.
     pub longest: f64,
-    /// Duration of those that count, s.
+    /// Total duration of those that count, s.
     pub total: f64,
 }
 
@@ -61,7 +61,7 @@ impl Interruptions {
         self.since.is_some()
     }
 
-    /// The contact becomes interrupted or is so no more, at an instant (s).
+    /// Begins or ends an interruption at an instant (s).
     pub fn turn(&mut self, criterion: &Criterion, time: f64) {
         let Summary { count, longest, total } = self.summary(criterion, time);
         *self = Self {
@@ -78,7 +78,7 @@ impl Interruptions {
         self.turned == Some(time)
     }
 
-    /// Whether every number is one that a simulation can have come to by an instant (s).
+    /// Whether the values are consistent at an instant (s) (check of a deserialised state).
     pub fn is_sound(&self, time: f64) -> bool {
         let Self {
             since,
@@ -91,7 +91,7 @@ impl Interruptions {
         past(since) && past(turned) && longest.is_finite() && total.is_finite()
     }
 
-    /// All up to an instant (s).
+    /// Summary at an instant (s).
     pub fn summary(&self, criterion: &Criterion, time: f64) -> Summary {
         let lasted = self.since.map_or(0.0, |since| time - since);
         let counts = self.in_progress() && lasted >= criterion.minimum_duration;

@@ -1,32 +1,32 @@
 //! Contact resistance and temperature as functions of contact force and current.
 //!
 //! The constriction is a power law of the force: Machines 2025, 13(1), 52, eqs. (28), (29), `R_c = H F^(-n)`, or
-//! Holm's `R_c = (rho / 2) sqrt(pi H_B / F)`. The film lies in series, the open resistance beside both:
-//! `G = 1 / (R_c + R_film) + 1 / R_open`, the first term 0 where the force is. Arcs are outside the model.
+//! Holm's `R_c = (rho / 2) sqrt(pi H_B / F)`. The film is in series with it, the open resistance in parallel to both:
+//! `G = 1 / (R_c + R_film) + 1 / R_open`, without the first term at zero force. Arcs are not modelled.
 
 use std::f64::consts::PI;
 
 use crate::scene::Scene;
 use crate::variables::ResistanceKind;
 
-/// Lorenz number: of thermal conductivity over electrical conductivity and temperature, V2/K2.
+/// Lorenz number: thermal conductivity over the product of electrical conductivity and temperature, V2/K2.
 const LORENZ: f64 = 2.45e-8;
 
-/// How current finds its way through the contact.
+/// Electrical model of the contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ElectricalContact {
     /// Resistance of the constriction at 1 N, Ohm.
     coefficient: f64,
-    /// It falls with this power of the force.
+    /// Exponent of the force: the constriction is proportional to `F^(-exponent)`.
     exponent: f64,
-    /// Film, Ohm.
+    /// Film resistance, Ohm.
     film: f64,
-    /// Open contact, Ohm.
+    /// Resistance of the open contact, Ohm.
     open: f64,
 }
 
 impl ElectricalContact {
-    /// Of the scene, if it asks for a resistance.
+    /// From the scene; `None` without `effects.resistance`.
     pub fn new(scene: &Scene) -> Option<Self> {
         let resistance = &scene.resistance;
         let (coefficient, exponent) = match scene.effects.resistance {
@@ -67,8 +67,8 @@ impl ElectricalContact {
         self.exponent * (constriction * closed) * (closed / force)
     }
 
-    /// Force below which the resistance is above a threshold (Ohm), N: 0 where it is not even open, infinite where it is
-    /// at any force.
+    /// Force below which the resistance exceeds a threshold (Ohm), N: 0 if it does not even when open, infinite if it
+    /// does at any force.
     pub fn force_at(&self, threshold: f64) -> f64 {
         let closed = 1.0 / threshold - 1.0 / self.open;
         if closed <= 0.0 {
@@ -81,9 +81,9 @@ impl ElectricalContact {
         (self.coefficient / constriction).powf(1.0 / self.exponent)
     }
 
-    /// Temperature of the contact spot at a force (N) and a current (A), K: `T^2 = T_0^2 + V^2 / (4 L)` with the voltage
-    /// across constriction and film, at most the melting voltage (R. Holm, Electric Contacts, 1967, section 15; L the
-    /// Lorenz number).
+    /// Temperature of the contact spot at a force (N) and a current (A), K: `T^2 = T_0^2 + V^2 / (4 L)` with the
+    /// voltage across constriction and film, at most the melting voltage (R. Holm, Electric Contacts, 1967, section 15;
+    /// L the Lorenz number).
     pub fn temperature(&self, scene: &Scene, force: f64, current: f64) -> f64 {
         let surroundings = scene.environment.temperature;
         if force <= 0.0 {
@@ -94,7 +94,7 @@ impl ElectricalContact {
         surroundings.hypot(voltage / (2.0 * LORENZ.sqrt()))
     }
 
-    /// Its derivatives by force and by the size of the current, K/N and K/A.
+    /// Derivatives of the temperature with respect to force and to the magnitude of the current, K/N and K/A.
     pub fn temperature_slopes(&self, scene: &Scene, force: f64, current: f64) -> (f64, f64) {
         if force <= 0.0 {
             return (0.0, 0.0);

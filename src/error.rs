@@ -72,9 +72,6 @@ pub enum SceneError {
     /// Interruptions asked for without a resistance to tell them by.
     #[error("effects.chatter = true: not allowed with effects.resistance = None, allowed is false")]
     NoResistance,
-    /// An effect that a bare build ([`crate::BARE`]) does not have.
-    #[error("{0}: this is a bare build, which has only what is simplest")]
-    Bare(&'static str),
     /// A linear contact law without a contact force to linearise about.
     #[error("effects.contactLaw: Linearised and Bonded need a contact that is closed at rest, preload.force is 0 N")]
     NoPreload,

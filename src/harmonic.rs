@@ -1,17 +1,17 @@
 //! Frequency domain: the linear response about the preload to a harmonic base acceleration, by modal superposition.
 //!
 //! Machines 2025, 13(1), 52, eqs. (16) to (25). The deflection is a sum of mode shapes with amplitudes `q_i` (eq. 16)
-//! that are normalised to the mass (eqs. 17 to 19). Beam damping `C = alpha M + beta K` leaves them uncoupled (eqs. 20 to
-//! 24), with `c_i = alpha + beta omega_i^2 = 2 xi_i omega_i` (eqs. 22, 23), and under loads `r_i` of angular frequency
-//! `omega` (eq. 25)
+//! that are normalised to the mass (eqs. 17 to 19). Beam damping `C = alpha M + beta K` leaves them uncoupled (eqs. 20
+//! to 24), with `c_i = alpha + beta omega_i^2 = 2 xi_i omega_i` (eqs. 22, 23), and under loads `r_i` of angular
+//! frequency `omega` (eq. 25)
 //!
 //! `(omega_i^2 - omega^2 + i omega c_i) q_i = r_i`.
 //!
-//! The modes are those of the cantilever without contact; the contact, linearised at the preload, loads them as any other
-//! force does: `r_i = T_i F - g_i a`, `F = -(k_j + i omega beta_c k_j) sum T_i q_i`. One equation for `F` is left. With
-//! `beta_c = beta` and `alpha = 0` that is the publication's superposition of the modes of beam and contact spring; and
-//! `beta_c` may differ from `beta`, which would couple those. Mass damping acts on the beam alone either way: the contact
-//! has no mass.
+//! The modes are those of the cantilever without contact; the contact, linearised at the preload, loads them as an
+//! external force: `r_i = T_i F - g_i a`, `F = -(k_j + i omega beta_c k_j) sum T_i q_i`. One scalar equation for `F`
+//! remains. With `beta_c = beta` and `alpha = 0` this equals the publication's superposition of the modes of beam and
+//! contact spring; here `beta_c` may differ from `beta`, which would couple those modes. Mass damping acts on the beam
+//! only: the contact has no mass.
 //!
 //! Amplitudes are complex, `x(t) = Re(x exp(i omega t))`, and per base acceleration.
 
@@ -29,7 +29,7 @@ pub struct Response {
 }
 
 /// Response of the model at the angular frequency `omega` (rad/s) to a base acceleration, with the contact held closed.
-/// Where the preload leaves it open, the contact force is 0.
+/// If it is open at rest, the contact force is 0.
 ///
 /// It is infinite or not a number at a resonance without damping.
 pub fn response(model: &Model, omega: f64) -> Response {
@@ -51,8 +51,8 @@ pub fn response(model: &Model, omega: f64) -> Response {
     }
 }
 
-/// Amplitude of the contact resistance under a small amplitude of the contact force (N) about the preload force, Ohm: the
-/// slope `|dR/dF|` times it. 0 without the resistance effect.
+/// Amplitude of the contact resistance under a small amplitude of the contact force (N) about the preload force, Ohm:
+/// the slope `|dR/dF|` times it. 0 without the resistance effect.
 ///
 /// The resistance is far from linear in the force: an amplitude of a third of the preload force makes it swing by 47 %
 /// upwards and 24 % downwards (power law). For its extremes take the conductance at the extremes of the force.
@@ -63,8 +63,8 @@ pub fn resistance_amplitude(model: &Model, force_amplitude: f64) -> f64 {
     })
 }
 
-/// Base acceleration (m/s2) whose linear response at the angular frequency `omega` (rad/s) has an amplitude of the contact
-/// force as large as the preload force: the contact is about to open.
+/// Base acceleration (m/s2) whose linear response at the angular frequency `omega` (rad/s) has an amplitude of the
+/// contact force as large as the preload force: the contact is about to open.
 pub fn opening_threshold(model: &Model, omega: f64) -> f64 {
     model.preload.force / response(model, omega).force.norm()
 }

@@ -63,11 +63,6 @@ pub mod simulation;
 mod state;
 pub mod variables;
 
-/// Whether this build lacks the effects that reach into the steps of the integrator: `effects.contactDamping`, `.chatter`,
-/// `.extremes`, `.energy`, the axial force from the deflection, and all excitations but the sine. Where the integrator asks
-/// for one of them it asks for `!BARE` too, so that a build with the feature `bare` shows what asking costs: `cargo xtask effects`.
-pub const BARE: bool = cfg!(feature = "bare");
-
 /// `modelDescription.xml` with the GUID filled in, as it stands in the packaged component.
 pub const MODEL_DESCRIPTION: &str = include_str!(concat!(env!("OUT_DIR"), "/modelDescription.xml"));
 

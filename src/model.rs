@@ -1,6 +1,5 @@
 //! Model and state: everything computed once from a scene, and the numbers that move.
 
-use crate::BARE;
 use crate::beam::axial::Feedback;
 use crate::beam::characteristic;
 use crate::beam::galerkin::Space;
@@ -84,8 +83,10 @@ impl Model {
         let preload = Preload::new(scene, &section, &hertz, support)?;
         let law = match scene.effects.contact_law {
             ContactLawKind::Hertz => Law::Hertz(hertz),
-            _ if preload.force <= 0.0 => return Err(SceneError::NoPreload),
-            kind => Law::Linear(Linear {
+            ContactLawKind::Linearised | ContactLawKind::Bonded if preload.force <= 0.0 => {
+                return Err(SceneError::NoPreload);
+            }
+            kind @ (ContactLawKind::Linearised | ContactLawKind::Bonded) => Law::Linear(Linear {
                 stiffness: preload.contact_stiffness,
                 damping: hertz.damping,
                 offset: preload.indentation - preload.force / preload.contact_stiffness,
@@ -211,9 +212,9 @@ impl Model {
         self.frequency
     }
 
-    /// [`Model::axial`], where the build has it.
+    /// Axial force from the deflection, with `effects.axialForce` FromDeflection.
     pub fn axial(&self) -> Option<&Feedback> {
-        self.axial.as_ref().filter(|_| !BARE)
+        self.axial.as_ref()
     }
 
     /// The law's engagement at an indentation given as deviation from the preload (m) that grows at `rate` (m/s), m: positive

@@ -1,8 +1,8 @@
 //! Static equilibrium of spring and contact before any vibration.
 //!
-//! The tip deflection `y = w(L)` obeys `y = c(N) F_e(d) + c_g(N) g0` with `d = s + u - y`; `c` and `c_g` are the compliances
-//! of the cantilever under the axial force `N`, which itself may follow from `y`. The unknown is the indentation `d`,
-//! because `s - y` would lose four digits of it.
+//! The tip deflection `y = w(L)` obeys `y = c(N) F_e(d) + c_g(N) g0` with `d = s + u - y`; `c` and `c_g` are the
+//! compliances of the cantilever under the axial force `N`, which may depend on `y`. The unknown is the indentation
+//! `d`, as `s - y` would lose four digits by cancellation.
 
 use crate::beam::section::Section;
 use crate::beam::statics::{Statics, axial_force_from_deflection};
@@ -15,7 +15,7 @@ use crate::variables::{AxialForceKind, RealOutput, RealParameter};
 /// The equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Preload {
-    /// Contact force F_0, N; 0 where the contact is open.
+    /// Contact force F_0, N; 0 if the contact is open.
     pub force: f64,
     /// Indentation d_0, m; negative: a gap.
     pub indentation: f64,
@@ -74,7 +74,7 @@ impl Preload {
             let spring = (total_overtravel - d - statics.gravity_compliance(n) * gravity) / statics.tip_compliance(n);
             hertz.elastic_force(d) - spring
         };
-        // Without a sign change the spring gives no force against the contact: it has buckled under its own deflection.
+        // No sign change: the spring exerts no force on the contact, it has buckled under its own deflection.
         let Some(indentation) = roots::bracketed(residual, 0.0, total_overtravel - alone) else {
             return Err(check(axial(total_overtravel)).err().unwrap_or(SceneError::NotFinite {
                 name: RealOutput::PreloadIndentation.variable().name,
@@ -94,8 +94,8 @@ impl Preload {
     }
 }
 
-/// Deflection of the tip without contact, m: zero but for gravity, where the axial force follows the deflection it
-/// causes. That feedback is weak (N grows with the square of y), so the iteration converges in a few rounds.
+/// Deflection of the tip without contact, m: zero without gravity. The axial force may depend on it; this feedback is
+/// weak (N grows with the square of y), so the fixed-point iteration converges fast.
 fn free_deflection(statics: &Statics, gravity: f64, axial: &impl Fn(f64) -> f64) -> f64 {
     let mut y = 0.0;
     for _ in 0..50 {

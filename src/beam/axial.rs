@@ -1,8 +1,8 @@
-//! Axial force of the spring, compression positive, and what it does where it follows the deflection at all times.
+//! Axial force that follows the deflection at all times, compression positive, as loads on the modes.
 //!
-//! With `w = w_0 + sum q_j phi_j`, `w_0` the deflection at preload and `phi_j` the modes under the axial force `N_0` there,
-//! the weak form of `rho A w_tt + E I w_xxxx + N w_xx = ...` has the axial force as `-N` times the integral of `w' phi_i'`
-//! (the boundary term at the tip is the shear `N w_x` of the condition there). The modes hold its part
+//! With `w = w_0 + sum q_j phi_j`, `w_0` the deflection at preload and `phi_j` the modes under the axial force `N_0`
+//! there, the weak form of `rho A w_tt + E I w_xxxx + N w_xx = ...` has the axial force as `-N` times the integral of
+//! `w' phi_i'` (the boundary term at the tip is the shear `N w_x` of the condition there). The modes hold its part
 //! `-N_0 w'`; what is left is a load on mode i,
 //!
 //! `L_i = (N(y) - N_0) (g_i + sum_j G_ij q_j)`, `G_ij` the integral of `phi_i' phi_j'`, `g_i` that of `w_0' phi_i'`,
@@ -10,8 +10,8 @@
 //! where `w_0 = sum q0_j phi_j` with `omega_j^2 q0_j = T_j F_0 - (g_j of the base) g0`, so that `g = G q0`.
 //!
 //! The tangent of the beam at preload is `diag(omega_i^2) - N'(y_0) g_i T_j`. Its second part has rank one and is not
-//! symmetric: the axial force follows the tip alone and acts on the whole beam, so no potential stands behind it, and it
-//! does work over a cycle. Such a matrix cannot be part of a Rayleigh damping matrix: `-N' beta g_i T_j` would feed
+//! symmetric: the axial force follows the tip alone and acts on the whole beam, so no potential stands behind it, and
+//! it does work over a cycle. Such a matrix cannot be part of a Rayleigh damping matrix: `-N' beta g_i T_j` would feed
 //! energy in, and has no common modes with the mass. So damping and modes have the stiffness of bending and of the
 //! constant `N_0`, which is symmetric and positive below the buckling load; the damping at the tip has
 //! `beta N_0 w_xt`. The rest is a load. Relative to the tip stiffness it is of the order of
@@ -37,7 +37,7 @@ pub struct Feedback {
 }
 
 impl Feedback {
-    /// About the preload, for the modes there and their shapes in `space`, under the constant acceleration `gravity` (m/s2).
+    /// For the modes about the preload, with their shapes in `space`, under the constant acceleration `gravity` (m/s2).
     pub fn new(
         section: &Section,
         preload: &Preload,
@@ -74,7 +74,7 @@ impl Feedback {
     pub fn change(&self, y: f64) -> f64 {
         let per_length = 1.5 / self.section.length;
         let sin = (per_length * (self.deflection + y)).sin();
-        // The difference of two sines, without cancellation.
+        // Difference of two sines without cancellation.
         let difference = 2.0 * (per_length * (self.deflection + 0.5 * y)).cos() * (0.5 * per_length * y).sin();
         self.section.tip_stiffness() * (y * sin + self.deflection * difference)
     }
@@ -86,7 +86,7 @@ impl Feedback {
         self.section.tip_stiffness() * (sin + 1.5 * at / self.section.length * cos)
     }
 
-    /// Loads on the modes in the motion.
+    /// Loads on the modes in a state.
     pub fn loads(&self, modes: &[Mode], states: &[ModeState]) -> Modal {
         let y: f64 = modes.iter().zip(states).map(|(mode, at)| mode.tip * at.q).sum();
         let mut slopes = self.slopes;
@@ -99,11 +99,11 @@ impl Feedback {
         slopes.map(|slope| change * slope)
     }
 
-    /// How much the axial force may change the stiffness of the modes at most, relative to it, in the motion.
+    /// Bound of the change of the modal stiffness by the axial force in a state, relative to the stiffness.
     pub fn strength(&self, modes: &[Mode], states: &[ModeState]) -> f64 {
         let y: f64 = modes.iter().zip(states).map(|(mode, at)| mode.tip * at.q).sum();
         let change = self.change(y);
-        // Norms in units of the stiffness. That of the slopes of all modes is bounded by the buckling load.
+        // Norms relative to the stiffness; that of the slopes of all modes is bounded by the buckling load.
         let slopes: f64 = self
             .slopes
             .iter()
@@ -118,8 +118,9 @@ impl Feedback {
         self.slope(y).abs() * (slopes * tips).sqrt() + change.abs() * trace
     }
 
-    /// Lowest angular frequency (rad/s) of small vibration about the preload, with an elastic support of `stiffness` (N/m)
-    /// at the tip: of the tangent `diag(omega_i^2) + (k T_i - N' g_i) T_j`, whose inverse Sherman and Morrison give.
+    /// Lowest angular frequency (rad/s) of small vibration about the preload, with an elastic support of `stiffness`
+    /// (N/m) at the tip: of the tangent `diag(omega_i^2) + (k T_i - N' g_i) T_j`, whose inverse Sherman and Morrison
+    /// give.
     pub fn frequency(&self, modes: &[Mode], stiffness: f64) -> Option<f64> {
         let count = modes.len();
         let slope = self.slope(0.0);

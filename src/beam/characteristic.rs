@@ -2,16 +2,16 @@
 //! with rivet mass and rotary inertia, an elastic support at the tip, and axial force.
 //!
 //! With `w = W(x) e^(i omega t)` the equation `E I W'''' + N W'' = rho A omega^2 W` has the solutions
-//! `sin, cos(s1 x)` and `sinh, cosh(s2 x)`, `s1^2, s2^2 = +-N/(2EI) + sqrt((N/(2EI))^2 + rho A omega^2/(EI))`. Those that
-//! vanish with their slope at the clamp are `U = cos(s1 x) - cosh(s2 x)` and `V = s2 sin(s1 x) - s1 sinh(s2 x)`. At the tip
-//! `E I W'' - J omega^2 W' = 0` and `E I W''' + N W' + (m omega^2 - k) W = 0`; a frequency is a zero of the
+//! `sin, cos(s1 x)` and `sinh, cosh(s2 x)`, `s1^2, s2^2 = +-N/(2EI) + sqrt((N/(2EI))^2 + rho A omega^2/(EI))`. Those
+//! that vanish with their slope at the clamp are `U = cos(s1 x) - cosh(s2 x)` and `V = s2 sin(s1 x) - s1 sinh(s2 x)`.
+//! At the tip `E I W'' - J omega^2 W' = 0` and `E I W''' + N W' + (m omega^2 - k) W = 0`; a frequency is a zero of the
 //! determinant of these two conditions. (The paper's printed eq. (12) cannot be used: signs and operators are lost.)
 
 use crate::beam::section::Section;
 use crate::math::roots;
 
-/// Spacing in `z = L (rho A omega^2 / (E I))^(1/4)` at which signs are looked at. Neighbouring roots lie about pi apart,
-/// except where rivet and support bring two together; this separates those too.
+/// Step in `z = L (rho A omega^2 / (E I))^(1/4)` of the search for sign changes. Neighbouring roots lie about pi apart,
+/// except where rivet and support bring two close together; this step separates those too.
 const STEP: f64 = 0.01;
 
 /// The first `count` angular frequencies (rad/s), ascending, of the section under the axial compression (N) with an

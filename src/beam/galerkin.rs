@@ -57,14 +57,14 @@ impl Space {
         space
     }
 
-    /// The modes of the section under the axial compression (N) with an elastic support of `stiffness` (N/m) at the tip,
-    /// frequency ascending; `None` at or above the buckling load.
+    /// The modes of the section under the axial compression (N) with an elastic support of `stiffness` (N/m) at the
+    /// tip, frequency ascending; `None` at or above the buckling load.
     pub fn modes(&self, section: &Section, axial_force: f64, stiffness: f64) -> Option<Vec<Mode>> {
         let modes = self.modes_with_shapes(section, axial_force, stiffness)?;
         Some(modes.into_iter().map(|(mode, _)| mode).collect())
     }
 
-    /// [`Space::modes`], each with its shape: factors of the functions, 1/sqrt(kg).
+    /// [`Space::modes`], each with its shape: coefficients of the basis functions, 1/sqrt(kg).
     pub fn modes_with_shapes(
         &self,
         section: &Section,
@@ -89,7 +89,7 @@ impl Space {
         let mut rigidity = DMatrix::identity(count, count) - &self.geometric * compression;
         rigidity.ger(stiffness / half_stiffness, &self.tip, &self.tip, 1.0);
         let factor = rigidity.cholesky()?;
-        // Eigenvalues mu of R^-1 M R^-T are 1/omega^2: the low modes, which carry the motion, come out to full precision.
+        // Eigenvalues mu of R^-1 M R^-T are 1/omega^2: the low modes, which matter most, have full relative accuracy.
         let half = factor.l_dirty().solve_lower_triangular(&mass)?;
         let reduced = factor.l_dirty().solve_lower_triangular(&half.transpose())?;
         let eigen = ((&reduced + reduced.transpose()) * 0.5).symmetric_eigen();
@@ -100,7 +100,7 @@ impl Space {
             .iter()
             .zip(shapes.column_iter())
             .map(|(&mu, shape)| {
-                // Of the highest of very many modes rounding leaves only the order of magnitude.
+                // Rounding leaves only the order of magnitude of the highest of many modes.
                 let mu = mu.max(f64::EPSILON * largest);
                 let normalisation = 1.0 / (mu * half_mass).sqrt();
                 let tip = shape.dot(&self.tip) * normalisation;

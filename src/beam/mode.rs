@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Largest number of modes: a multiple of four, the modes a step computes at once.
+/// Largest number of modes; a multiple of four, the width of the vectors in a step.
 pub const MAX_MODES: usize = 40;
 
 /// A value for each mode; those beyond the modes in use are zero.
@@ -24,11 +24,11 @@ pub struct Mode {
 /// Displacement and velocity of a mode, as deviation from the preload.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ModeState {
-    /// m sqrt(kg).
+    /// Modal displacement, m sqrt(kg).
     pub q: f64,
-    /// m sqrt(kg) / s.
+    /// Modal velocity, m sqrt(kg) / s.
     pub v: f64,
 }
 
-/// Room for the states of all modes; those in use come first.
+/// States of all modes; those in use come first, the rest are zero.
 pub type ModeStates = [ModeState; MAX_MODES];

@@ -1,4 +1,4 @@
-//! The uniform section of the spring and what it carries at its tip.
+//! The uniform section of the spring and the rivet at its tip.
 
 use crate::scene::Scene;
 

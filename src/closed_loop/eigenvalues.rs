@@ -1,29 +1,30 @@
-//! The zeros of the secular equation ([`super::problem`]), in pairs.
+//! The eigenvalues: zeros of the secular equation ([`super::problem`]), in pairs.
 //!
-//! Without damping, and where beam and contact have the same damping time, each lies between two known poles. Where they are
-//! damped differently all are found at once by Ehrlich's and Aberth's iteration (O. Aberth, Mathematics of Computation 27 (1973) 339) on the
-//! characteristic polynomial `f = s prod p_i`, `s` the secular function, which is never multiplied out.
+//! Without damping, and if beam and contact have the same damping time, each lies between two known poles. With
+//! different damping times all are found together by the Ehrlich-Aberth iteration (O. Aberth, Mathematics of
+//! Computation 27 (1973) 339) on the characteristic polynomial `f = s prod p_i`, `s` the secular function, which is
+//! never expanded.
 
 use nalgebra::Complex;
 
 use crate::closed_loop::problem::{Number, Pair, Problem, Root};
 use crate::math::roots;
 
-/// Distance of two real zeros over their size, and half their distance over their mean where it is known in closed form, within
-/// which they are a close pair.
+/// Relative distance of two real zeros below which they are treated as a close pair; also half their distance over
+/// their mean where it is known in closed form.
 const CLOSE: f64 = 1e-1;
-/// The same among those that crowd at `-1 / beta`.
+/// The same for the zeros that cluster at `-1 / beta`.
 const CROWDED: f64 = 1e-2;
-/// Imaginary part, relative to the zero, below which it is taken for one of a close pair, or real.
+/// Relative imaginary part below which a zero is taken to be real or one of a close pair.
 const REAL: f64 = 1e-4;
-/// Rounds before the search is given up.
+/// Largest number of iterations.
 const ROUNDS: usize = 100;
 /// Terms of the power series about a close pair.
 const TERMS: usize = 12;
 
 type Zero = Root<Complex<f64>>;
 
-/// The zeros, a pair for each mode; `None` where they cannot be told apart.
+/// The zeros, a pair for each mode; `None` if they cannot be separated.
 pub fn pairs(problem: &Problem) -> Option<Vec<Pair>> {
     let undamped = undamped(problem)?;
     if problem.contact_damping == problem.stiffness_damping {
@@ -34,8 +35,8 @@ pub fn pairs(problem: &Problem) -> Option<Vec<Pair>> {
 
 /// The zeros without damping, each `-l^2` with the square of its mode's tip displacement (modal mass 1 kg).
 ///
-/// They interlace with the omega_i^2. Each is sought as distance from the nearest of these, which keeps all digits
-/// of it.
+/// They interlace with the omega_i^2. Each is computed as its distance from the nearest of these, to full relative
+/// accuracy.
 fn undamped(problem: &Problem) -> Option<Vec<(f64, f64)>> {
     let softness = 1.0 / problem.contact_stiffness;
     let total: f64 = problem.modes.iter().map(|(_, tip)| tip * tip).sum();
@@ -79,7 +80,7 @@ fn undamped(problem: &Problem) -> Option<Vec<(f64, f64)>> {
     Some(found)
 }
 
-/// The pair of a mode whose damping is the beam's.
+/// The pair of a mode if the contact has the damping time of the beam.
 fn damped_pair(problem: &Problem, nu: f64) -> Pair {
     let mean = -0.5 * (problem.mass_damping + problem.stiffness_damping * nu);
     let square = mean * mean - nu;
@@ -108,7 +109,8 @@ fn damped_pair(problem: &Problem, nu: f64) -> Pair {
     }
 }
 
-/// The zeros in pairs, from the zeros without damping, each with the square of its mode's tip displacement.
+/// The zeros for different damping times, by the Ehrlich-Aberth iteration from the zeros without damping, each given
+/// with the square of its mode's tip displacement.
 fn damped_differently(problem: &Problem, undamped: &[(f64, f64)]) -> Option<Vec<Pair>> {
     let mut zeros: Vec<Zero> = undamped.iter().flat_map(|mode| first_guess(problem, *mode)).collect();
     let mut settled = vec![false; zeros.len()];
@@ -118,7 +120,7 @@ fn damped_differently(problem: &Problem, undamped: &[(f64, f64)]) -> Option<Vec<
             let newton = newton(problem, &zero);
             let others = zeros.iter().enumerate().filter(|(other, _)| *other != n);
             let repulsion: Complex<f64> = others.map(|(_, other)| 1.0 / difference(problem, &zero, other)).sum();
-            // Never further than the zero is from those around it, or it may be lost.
+            // Limit the change, or the zero may diverge.
             let change = newton / (1.0 - newton * repulsion);
             let farthest = 0.5 * zero.value.norm();
             let change = if change.norm() > farthest {
@@ -126,7 +128,7 @@ fn damped_differently(problem: &Problem, undamped: &[(f64, f64)]) -> Option<Vec<
             } else {
                 change
             };
-            // On a pole, to rounding: the zero is there.
+            // At a pole to rounding: converged.
             let change = if change.is_finite() { change } else { Complex::default() };
             let beam = zero.beam - change * problem.stiffness_damping;
             let contact = zero.contact - change * problem.contact_damping;
@@ -140,7 +142,7 @@ fn damped_differently(problem: &Problem, undamped: &[(f64, f64)]) -> Option<Vec<
     paired(problem, zeros)
 }
 
-/// The pair of a mode whose damping is what that of beam and contact does to it alone.
+/// Initial guess for a pair: the mode alone, with the damping of beam and contact.
 fn first_guess(problem: &Problem, (nu, tip): (f64, f64)) -> [Zero; 2] {
     let excess = problem.contact_damping - problem.stiffness_damping;
     let damping = problem.mass_damping + problem.stiffness_damping * nu + problem.contact_stiffness * excess * tip;
@@ -151,15 +153,15 @@ fn first_guess(problem: &Problem, (nu, tip): (f64, f64)) -> [Zero; 2] {
         let contact = value * problem.contact_damping + 1.0;
         let beam = -value * (value + (damping.max(0.0) - problem.stiffness_damping * nu)) / nu;
         let zero = at(problem, value, beam, contact);
-        // Off the real axis, or two real zeros could never become complex ones; to either side, or equal ones could not
-        // part.
+        // Perturbed off the real axis, so that two real guesses can become complex; to opposite sides, so that equal
+        // ones can separate.
         let aside = Complex::new(0.0, part * resolution(problem, &zero));
         let beam = zero.beam + aside * problem.stiffness_damping;
         at(problem, value + aside, beam, contact + aside * problem.contact_damping)
     })
 }
 
-/// The zero, its three parts in accord to all digits: `beam` and `contact` count where they are small.
+/// The zero with its three parts consistent to all digits: `beam` and `contact` determine it where they are small.
 fn at(problem: &Problem, value: Complex<f64>, beam: Complex<f64>, contact: Complex<f64>) -> Zero {
     let (beta, beta_c) = (problem.stiffness_damping, problem.contact_damping);
     let is_small = |part: Complex<f64>| part.norm() < 0.5;
@@ -175,8 +177,7 @@ fn at(problem: &Problem, value: Complex<f64>, beam: Complex<f64>, contact: Compl
     Zero { value, beam, contact }
 }
 
-/// The distance that counts as large at the zero: its own size, or less where it is close to `-1 / beta` or `-1 /
-/// beta_c`.
+/// Length scale at the zero: its modulus, or less if it is close to `-1 / beta` or `-1 / beta_c`.
 fn resolution(problem: &Problem, zero: &Zero) -> f64 {
     let size = zero.value.norm();
     let size = size.min(zero.beam.norm() / problem.stiffness_damping);
@@ -192,7 +193,7 @@ fn difference(problem: &Problem, a: &Zero, b: &Zero) -> Complex<f64> {
     }
 }
 
-/// f / f', the step of Newton's method.
+/// Newton correction f / f'.
 fn newton(problem: &Problem, zero: &Zero) -> Complex<f64> {
     let l = zero.value;
     let own = l * (l + problem.mass_damping);
@@ -211,7 +212,7 @@ fn newton(problem: &Problem, zero: &Zero) -> Complex<f64> {
     secular / ((sum * problem.contact_damping + zero.contact * slope) * k + secular * poles)
 }
 
-/// Puts the zeros together in pairs.
+/// Groups the zeros into pairs.
 fn paired(problem: &Problem, zeros: Vec<Zero>) -> Option<Vec<Pair>> {
     let mut pairs = Vec::with_capacity(zeros.len() / 2);
     let mut real = Vec::new();
@@ -254,7 +255,7 @@ fn paired(problem: &Problem, zeros: Vec<Zero>) -> Option<Vec<Pair>> {
             });
         }
     }
-    // The slowest with the fastest, as the two of a strongly damped mode are.
+    // Slowest with fastest, as for a strongly damped mode.
     let (slow, fast) = single.split_at(single.len() / 2);
     pairs.extend(
         slow.iter()
@@ -264,8 +265,8 @@ fn paired(problem: &Problem, zeros: Vec<Zero>) -> Option<Vec<Pair>> {
     Some(pairs)
 }
 
-/// Two zeros so close that each alone is known to half the digits: what is known to all digits is the quadratic that
-/// has both as zeros, a factor of the secular function's power series about their middle.
+/// Two zeros so close that each alone is accurate to half the digits only. Accurate to all digits is the quadratic with
+/// both zeros, a factor of the power series of the secular function about their midpoint.
 fn close_pair(problem: &Problem, a: &Zero, b: &Zero) -> Pair {
     let centre = Zero {
         value: Complex::from(f64::midpoint(a.value.re, b.value.re)),
@@ -298,7 +299,7 @@ fn close_pair(problem: &Problem, a: &Zero, b: &Zero) -> Pair {
     })
 }
 
-/// Coefficients of the secular function about a real point.
+/// Power series coefficients of the secular function about a real point.
 fn series(problem: &Problem, centre: &Zero) -> [f64; TERMS + 2] {
     let l = centre.value.re;
     let mut sum = [0.0; TERMS + 2];

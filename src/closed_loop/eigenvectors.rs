@@ -3,7 +3,7 @@
 use crate::closed_loop::eigenvalues;
 use crate::closed_loop::problem::{Number, Pair, Problem, Root};
 
-/// One mode's part of the motion of a pair. A function `f(l)` on a pair is given as `f_0 + f_1 l`, by `[f_0, f_1]`.
+/// Share of one mode in the motion of a pair. A function `f(l)` on a pair is given as `f_0 + f_1 l`, by `[f_0, f_1]`.
 #[derive(Clone, Copy, Debug)]
 pub struct Component {
     /// q_i per displacement x of the oscillator, and per velocity.
@@ -23,7 +23,7 @@ pub struct EigenPair {
     pub omega_squared: f64,
     /// c, minus their sum, 1/s.
     pub damping: f64,
-    /// The zeros where they are real and apart, 1/s, each with its part of `force`.
+    /// The zeros if real and distinct, 1/s, each with its share of `force`.
     pub apart: Option<[(f64, f64); 2]>,
     /// Contact force per x and per x'.
     pub force: [f64; 2],
@@ -32,7 +32,7 @@ pub struct EigenPair {
 }
 
 impl Problem {
-    /// The eigenvalues and eigenvectors, a pair for each mode; `None` where they cannot be told apart.
+    /// The eigenvalues and eigenvectors, a pair for each mode; `None` if they cannot be separated.
     pub fn solve(&self) -> Option<Vec<EigenPair>> {
         let pairs = eigenvalues::pairs(self)?;
         Some(pairs.iter().map(|pair| self.eigen_pair(pair)).collect())
@@ -49,7 +49,7 @@ impl Problem {
         let (mean, square) = (root.value.mean, root.value.square);
         let linear = |f: Number| [f.mean - mean * f.slope, f.slope];
         let vectors = self.vectors(root);
-        // Products of the left vectors (of which q is what multiplies v) with the right ones, for either part of both.
+        // Products of left and right eigenvectors, for both parts of each; q of the left one multiplies v.
         let (mut a, mut b, mut c, mut d) = (0.0, 0.0, 0.0, 0.0);
         for [q, left] in &vectors {
             let ([q0, q1], [v0, v1], [l0, l1]) = (linear(*q), linear(*q * root.value), linear(*left));
@@ -93,7 +93,7 @@ impl Problem {
             (vectors, product)
         };
         let ((slow, n1), (fast, n2)) = (at(slow), at(fast));
-        // Both with the same strain energy: the force of one may be far larger.
+        // Both scaled to the same strain energy, as their contact forces may differ by orders of magnitude.
         let product = |a: &[[f64; 2]], b: &[[f64; 2]]| {
             let parts = a.iter().zip(b).zip(&self.modes);
             parts.map(|(([a, _], [b, _]), (omega, _))| omega * a * b).sum::<f64>()
@@ -122,7 +122,7 @@ impl Problem {
         }
     }
 
-    /// Mode by mode q_i of the eigenvector of unit contact force, and what multiplies q_i in the left eigenvector.
+    /// For each mode, q_i of the eigenvector of unit contact force and the factor of q_i in the left eigenvector.
     fn vectors(&self, root: Root<Number>) -> Vec<[Number; 2]> {
         let Root { value, beam, contact } = root;
         let own = value * (value + self.mass_damping);
@@ -138,7 +138,7 @@ impl Problem {
             inverses.push(one / p);
         }
         if weakest.0 < 0.1 {
-            // Where a p_i is the small difference of large terms, the secular equation itself gives it.
+            // If p_i suffers cancellation, it follows from the secular equation instead.
             let others = self
                 .modes
                 .iter()

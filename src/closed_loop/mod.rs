@@ -1,4 +1,4 @@
-//! Beam and linear contact together as uncoupled oscillators, which are propagated exactly over any length of time.
+//! Beam with a linear contact: decoupled into oscillators, each propagated exactly over a step of any length.
 
 pub mod eigenvalues;
 pub mod eigenvectors;

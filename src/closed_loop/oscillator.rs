@@ -17,11 +17,11 @@ pub struct Oscillator {
     pub(crate) omega_squared: f64,
     /// c, 1/s.
     pub(crate) damping: f64,
-    /// Unit base acceleration as a velocity that adds to x', and as an acceleration.
+    /// Forcing by unit base acceleration: velocity added to x', and acceleration.
     pub(crate) load: [f64; 2],
-    /// The same for a unit force on the tip.
+    /// Forcing by a unit tip force.
     pub(crate) push: [f64; 2],
-    /// Its roots where they are real and apart, 1/s, each with its contact force.
+    /// Its roots if real and distinct, 1/s, each with its contact force.
     pub(crate) apart: Option<[(f64, f64); 2]>,
     /// Contact force per displacement and per velocity.
     pub(crate) force: [f64; 2],
@@ -37,8 +37,7 @@ pub(crate) fn set(coordinates: &mut Coordinates, oscillator: usize, count: usize
 }
 
 impl Oscillator {
-    /// Displacement and velocity under base acceleration, from those of the free to an acceleration `x''` of its
-    /// course.
+    /// Displacement and velocity under base acceleration, from those of the oscillator under a unit acceleration `x''`.
     pub(crate) fn loaded(&self, [y, y_rate]: [Complex<f64>; 2]) -> [Complex<f64>; 2] {
         let [kick, push] = self.load;
         [
@@ -47,37 +46,36 @@ impl Oscillator {
         ]
     }
 
-    /// No contact force of the free motion exceeds this.
+    /// Upper bound of the contact force of the free motion.
     pub(crate) fn largest_force(&self, x: f64, v: f64) -> f64 {
         if let Some([(l1, force1), (l2, force2)]) = self.apart {
-            // Each root decays without a swing.
+            // Each root decays without oscillation.
             return (((v - l2 * x) * force1).abs() + ((l1 * x - v) * force2).abs()) / (l1 - l2).abs();
         }
-        // No energy comes in.
+        // The energy does not grow.
         let [per_x, per_v] = self.force;
         ((x * x + v * v / self.omega_squared) * (per_x * per_x + per_v * per_v * self.omega_squared)).sqrt()
     }
 
-    /// Displacement and velocity at rest under a load.
+    /// Displacement and velocity at equilibrium under a constant load.
     pub(crate) fn at_rest(&self, [kick, push]: [f64; 2]) -> [f64; 2] {
         [(push + self.damping * kick) / self.omega_squared, -kick]
     }
 
-    /// Displacement and velocity at the start of a particular motion under a load that grows with time.
+    /// Displacement and velocity at the start of a particular solution under a load that grows linearly with time.
     pub(crate) fn at_ramp(&self, load: [f64; 2]) -> [f64; 2] {
         let [x, v] = self.at_rest(load);
         [-(v + self.damping * x) / self.omega_squared, x]
     }
 
-    /// Amplitude of displacement and velocity under a unit acceleration of the frequency (Hz).
+    /// Complex amplitudes of displacement and velocity under unit harmonic acceleration of the frequency (Hz).
     pub(crate) fn steady(&self, frequency: f64) -> [Complex<f64>; 2] {
         let omega = TAU * frequency;
         let y = 1.0 / Complex::new(self.omega_squared - omega * omega, omega * self.damping);
         [y, y * Complex::new(0.0, omega)]
     }
 
-    /// Displacement and velocity `length` seconds after rest under the acceleration `e^(i omega t)`, which is `turn`
-    /// there.
+    /// Displacement and velocity `length` seconds after rest under the acceleration `e^(i omega t)`, `turn` there.
     pub(crate) fn driven_from_rest(
         &self,
         free: &FreeMotion,
@@ -89,14 +87,14 @@ impl Oscillator {
         let half = 0.5 * self.damping;
         let w = (self.omega_squared - half * half).max(0.0).sqrt();
         if w <= half {
-            // Far from any resonance: the steady motion less a free one.
+            // Far from resonance: the steady state less a free motion.
             let [y, y_rate] = self.steady(frequency);
             return [
                 y * turn - (y * free.q_from_q + y_rate * free.q_from_v),
                 y_rate * turn - (y * free.v_from_q + y_rate * free.v_from_v),
             ];
         }
-        // Each of the two roots l apart: the integral of e^(l (length - t)) e^(i omega t).
+        // For each root l the integral of e^(l (length - t)) e^(i omega t).
         let driven = |root: Complex<f64>| {
             let free = (root * length).exp();
             let rate = omega - root;

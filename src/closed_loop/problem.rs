@@ -1,14 +1,14 @@
 //! The secular equation of the beam with a linear contact, whose zeros are the eigenvalues of the two together.
 //!
 //! A force `F` on the tip moves the modes of the cantilever as `q_i = T_i F / p_i(l)`, `p_i = l^2 + c_i l + omega_i^2`,
-//! and the contact answers with `F = -k (1 + beta_c l) sum T_i q_i`. Both hold at the zeros of
+//! and the contact force is `F = -k (1 + beta_c l) sum T_i q_i`. Both hold at the zeros of
 //!
 //! `1 + k (1 + beta_c l) sum T_i^2 / p_i(l)`
 //!
 //! (G. H. Golub, SIAM Review 15 (1973) 318, for a change of rank one; here of stiffness and damping together). The
-//! zeros are twice as many as modes, and taken in pairs: complex conjugates, or two real ones. With `c_i = alpha + beta
-//! omega_i^2`, `p_i = l (l + alpha) + omega_i^2 h` with `h = 1 + beta l`. Many slow zeros crowd at `l = -1 / beta`,
-//! where only `h` tells them apart, so `h` is found along with `l` and not formed from it.
+//! zeros are twice as many as modes, and form pairs: complex conjugates, or two real ones. With `c_i = alpha + beta
+//! omega_i^2`, `p_i = l (l + alpha) + omega_i^2 h` with `h = 1 + beta l`. Many slow zeros cluster at `l = -1 / beta`,
+//! where only `h` separates them, so `h` is computed along with `l` and not from it.
 
 use std::ops::{Add, Div, Mul, Sub};
 
@@ -27,7 +27,7 @@ pub struct Problem {
     pub contact_damping: f64,
 }
 
-/// A zero `l` of the secular equation, with what would lose digits if it were formed from `l`.
+/// A zero `l` of the secular equation, with quantities that would lose digits if computed from `l`.
 #[derive(Clone, Copy, Debug)]
 pub struct Root<T> {
     /// l, 1/s.
@@ -38,12 +38,12 @@ pub struct Root<T> {
     pub contact: T,
 }
 
-/// Two zeros that belong together.
+/// A pair of zeros.
 #[derive(Clone, Copy, Debug)]
 pub enum Pair {
     /// Complex conjugates, equal, or real and close to each other.
     Close(Root<Number>),
-    /// Real and apart, the slow one first.
+    /// Real and distinct, the slow one first.
     Apart(Root<f64>, Root<f64>),
 }
 
@@ -53,14 +53,14 @@ pub enum Pair {
 pub struct Number {
     /// Mean of the two values.
     pub mean: f64,
-    /// Their difference divided by that of the zeros.
+    /// Divided difference of the two values.
     pub slope: f64,
     /// w^2.
     pub(crate) square: f64,
 }
 
 impl Number {
-    /// From its parts.
+    /// From mean, divided difference and `w^2`.
     pub fn new(mean: f64, slope: f64, square: f64) -> Self {
         Self { mean, slope, square }
     }

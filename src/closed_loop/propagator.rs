@@ -1,11 +1,10 @@
-//! Exact motion of the oscillators of beam and linear contact over a step: everything of it that depends on the length of
-//! the step alone, kept for lengths that come again.
+//! Exact motion of the oscillators of beam and linear contact over a step: the coefficients, which depend on the step
+//! length only, and a cache of them.
 //!
-//! A step is as long as it is to the last bit. Over a length that is merged with another one within rounding, as
-//! collocation steps may be, the motion would be behind or ahead of its communication point by that rounding, and nothing in
-//! an exact step takes it back: in a ringing without damping the lags of a million steps would add up. Nor does
-//! merging save much. An importer that gets the lengths as differences of times hands over multiples of the spacing of
-//! floating-point numbers there, so no more than two or three different ones while time does not double.
+//! Step lengths are used exactly, to the last bit. Collocation steps treat lengths that differ by rounding as equal;
+//! here the resulting phase error would never be corrected, and in undamped vibration it would accumulate over millions
+//! of steps. Nor would it save much: an importer that computes step sizes as differences of times passes multiples of
+//! the spacing of floating-point numbers there, so only two or three different ones until time doubles.
 
 use std::f64::consts::TAU;
 
@@ -17,7 +16,7 @@ use crate::excitation::generator::Generator;
 use crate::excitation::waveform::turned;
 use crate::math::free_motion::FreeMotion;
 
-/// How many lengths are kept.
+/// Number of cached lengths.
 const KEPT: usize = 8;
 
 /// The motion over a step.
@@ -28,7 +27,7 @@ pub struct Propagator {
     pub(crate) x_from_v: [f64; MAX_MODES],
     pub(crate) v_from_x: [f64; MAX_MODES],
     pub(crate) v_from_v: [f64; MAX_MODES],
-    /// Motion from rest under the generator with unit amplitude: per sine and per cosine of its phase at the start.
+    /// Motion from rest under the generator with unit amplitude, per sine and per cosine of its phase at the start.
     pub(crate) from_sine: Coordinates,
     pub(crate) from_cosine: Coordinates,
 }
@@ -43,7 +42,7 @@ impl Propagator {
         from_cosine: [0.0; 2 * MAX_MODES],
     };
 
-    /// Computes what belongs to the length (s) in place.
+    /// Computes the coefficients for a length (s) in place.
     fn fill(&mut self, length: f64, oscillators: &[Oscillator], generator: &Generator) {
         let count = oscillators.len();
         let generated = generator.frequency().map(|frequency| {
@@ -65,18 +64,18 @@ impl Propagator {
     }
 }
 
-/// The last lengths with their motions. What is kept never changes a result, only the time it takes.
+/// Cache of the last lengths. Its content never affects results, only the time they take.
 #[derive(Clone, Debug)]
 pub struct Propagators {
-    /// s; 0: none yet.
+    /// Cached lengths, s; 0: none yet.
     lengths: [f64; KEPT],
     motions: Vec<Propagator>,
-    /// The one to make room next.
+    /// The entry to be replaced next.
     oldest: usize,
 }
 
 impl Propagators {
-    /// The motion over the length (s).
+    /// The motion over a length (s).
     pub(crate) fn over(
         &mut self,
         length: f64,

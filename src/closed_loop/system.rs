@@ -1,12 +1,13 @@
 //! Exact steps of any length where beam and contact are linear.
 //!
-//! With the contact as a spring and damper at the tip, the eigenvalues of the motion come in pairs
-//! ([`crate::closed_loop::eigenvectors`]), each a damped oscillator of its own ([`crate::closed_loop::oscillator`]) that is propagated exactly ([`crate::closed_loop::propagator`]). A step
-//! goes from the cantilever's modes to these oscillators, moves them, and comes back.
+//! With the contact as a spring and damper at the tip, the eigenvalues come in pairs
+//! ([`crate::closed_loop::eigenvectors`]). Each pair is an independent damped oscillator
+//! ([`crate::closed_loop::oscillator`]), propagated exactly ([`crate::closed_loop::propagator`]). A step transforms the
+//! modes of the cantilever to these oscillators, propagates them, and transforms back.
 //!
-//! Constant and linear loads (base acceleration held or linear, fixed contact moving linearly) are taken out by a particular
-//! solution, which cannot be large as every oscillator has a stiffness. The generator's sine is taken as response from
-//! rest, which stays right at a resonance without damping.
+//! Constant and linear loads (base acceleration held or linear, fixed contact moving linearly) are covered by a
+//! particular solution, which is bounded as every oscillator has a stiffness. The generator's sine is covered by the
+//! response from rest, which is valid even at a resonance without damping.
 
 use crate::beam::mode::{MAX_MODES, Mode};
 use crate::closed_loop::eigenvectors::EigenPair;
@@ -18,8 +19,8 @@ use crate::excitation::generator::Generator;
 use crate::math::simd::{Arithmetic, Simd, compiled_for};
 use crate::scene::Scene;
 
-/// Largest error of taking the motion of a single mode apart and putting it together again, relative to its amplitude.
-/// High modes lose most, and move least: the contact force is then right to some 1e-13 of its scale.
+/// Largest error of transforming the motion of a single mode to the oscillators and back, relative to its amplitude. It
+/// is largest for high modes, which move least: the contact force is then accurate to some 1e-13 of its scale.
 const ROUNDING: f64 = 1e-10;
 
 /// Beam and linear contact as uncoupled oscillators.
@@ -27,21 +28,21 @@ const ROUNDING: f64 = 1e-10;
 pub struct ClosedLoop {
     pub(crate) contact: Linear,
     pub(crate) oscillators: Vec<Oscillator>,
-    /// What each oscillator's displacement, then velocity, is in the modes.
+    /// Transformation from oscillators (displacement, then velocity of each) to modes.
     to_modes: Columns,
-    /// What each mode's displacement and velocity is in the oscillators.
+    /// Transformation from modes (displacement and velocity of each) to oscillators.
     to_oscillators: Columns,
-    /// Motion under unit base acceleration and under one that grows with time, at its start.
+    /// Particular solution at its start, under unit base acceleration and under one that grows linearly with time.
     acceleration: Coordinates,
     jerk: Coordinates,
-    /// The same under force on the tip.
+    /// The same under a tip force.
     force: Coordinates,
     growth: Coordinates,
-    /// Steady motion under the generator with unit amplitude, per sine and per cosine of its phase.
+    /// Steady state under the generator with unit amplitude, per sine and per cosine of its phase.
     steady: [Coordinates; 2],
 }
 
-/// A square matrix, column after column, with columns of zeros up to a multiple of four.
+/// A square matrix by columns, padded with zero columns to a multiple of four.
 #[derive(Clone, Debug)]
 struct Columns {
     size: usize,
@@ -66,7 +67,7 @@ impl Columns {
         compiled_for!(simd, A => self.compute::<A>(factors))
     }
 
-    /// Four columns at a time, so that the sums are seldom loaded and stored.
+    /// Matrix-vector product, four columns at a time to reduce memory traffic.
     #[inline(always)]
     fn compute<A: Arithmetic>(&self, factors: &Coordinates) -> Coordinates {
         let mut sums = [0.0; 2 * MAX_MODES];
@@ -85,7 +86,8 @@ impl Columns {
 }
 
 impl ClosedLoop {
-    /// Of the modes and the contact of the scene; `None` where the eigenvectors cannot be told apart to all digits.
+    /// From the modes and the contact of the scene; `None` if the eigenvectors are too close to be separated
+    /// accurately.
     pub fn new(scene: &Scene, modes: &[Mode], contact: Linear, generator: &Generator) -> Option<Self> {
         let problem = Problem {
             modes: modes.iter().map(|mode| (mode.omega_squared, mode.tip)).collect(),
@@ -96,7 +98,7 @@ impl ClosedLoop {
         };
         let pairs = problem.solve()?;
         let count = pairs.len();
-        // What a load on the modes is for an oscillator.
+        // Load on an oscillator per load on the modes.
         let load = |pair: &EigenPair, of_mode: fn(&Mode) -> f64| {
             let parts = pair.components.iter().zip(modes);
             parts.fold([0.0, 0.0], |[kick, push], (component, mode)| {
@@ -154,8 +156,8 @@ impl ClosedLoop {
         closed_loop.is_exact(modes).then_some(closed_loop)
     }
 
-    /// Whether the motion of each mode alone survives being taken apart and put together again, and the oscillators
-    /// move with the contact force they stand for.
+    /// Whether the transformations are inverse to each other, and the oscillators have the right contact force, to the
+    /// accuracy required.
     fn is_exact(&self, modes: &[Mode]) -> bool {
         let scales: Vec<f64> = modes.iter().flat_map(|mode| [mode.omega_squared.sqrt(), 1.0]).collect();
         let survives = scales.iter().enumerate().all(|(n, scale)| {
@@ -172,16 +174,16 @@ impl ClosedLoop {
                 .all(|error| error.abs() < ROUNDING)
         });
         let Linear { stiffness, damping, .. } = self.contact;
-        // Contact force of a motion of the modes less the force it should have, and the size of what was added up.
-        let missed = |motion: &[f64], expected: f64| {
+        // Error of the contact force of a modal motion, and the magnitude of its terms.
+        let residual = |motion: &[f64], expected: f64| {
             modes.iter().zip(motion.chunks_exact(2)).fold(
                 (expected, expected.abs()),
-                |(missed, size), (mode, motion)| {
+                |(residual, size), (mode, motion)| {
                     let [spring, damper] = match motion {
                         [q, v] => [q, &(damping * v)].map(|length| stiffness * mode.tip * length),
                         _ => [f64::NAN; 2],
                     };
-                    (missed + (spring + damper), size + (spring.abs() + damper.abs()))
+                    (residual + (spring + damper), size + (spring.abs() + damper.abs()))
                 },
             )
         };
@@ -189,23 +191,24 @@ impl ClosedLoop {
         let pairs = columns().zip(columns().skip(modes.len()));
         survives
             && self.oscillators.iter().zip(pairs).all(|(oscillator, (at_x, at_v))| {
-                let [(x, x_size), (v, v_size)] = [missed(at_x, oscillator.force[0]), missed(at_v, oscillator.force[1])];
+                let [(x, x_size), (v, v_size)] =
+                    [residual(at_x, oscillator.force[0]), residual(at_v, oscillator.force[1])];
                 let frequency = oscillator.omega_squared.sqrt();
                 let size = x_size + frequency * v_size;
                 x.abs() < ROUNDING * size && frequency * v.abs() < ROUNDING * size
             })
     }
 
-    /// The motion of the oscillators about the particular solution, from that of the modes: displacement and velocity of
-    /// each, mode after mode.
+    /// Motion of the oscillators relative to the particular solution, from displacement and velocity of each mode.
     pub(crate) fn free_motion(&self, simd: Simd, modes: &Coordinates, steady: &Steady) -> Coordinates {
         let mut free = self.to_oscillators.times(simd, modes);
         self.add_particular(&mut free, steady, -1.0);
         free
     }
 
-    /// The motion of the modes after a step, from the free motion at its start and the particular solution at its end;
-    /// `phasor` is sine and cosine of the generator's phase at the start, times its amplitude.
+    /// Motion of the modes at the end of a step, from the free motion at its start and the particular solution at the
+    /// end.
+    /// `phasor`: sine and cosine of the generator's phase at the start, times its amplitude.
     pub(crate) fn moved(
         &self,
         simd: Simd,
@@ -246,7 +249,7 @@ impl ClosedLoop {
         }
     }
 
-    /// With the preload force (N), a force (N) below which that of the contact does not fall over a step that begins with the free motion.
+    /// Lower bound of the contact force over a step that begins with the free motion `free`, N.
     pub(crate) fn least_force(
         &self,
         preload_force: f64,
@@ -286,7 +289,7 @@ impl ClosedLoop {
     }
 }
 
-/// What the motion would settle to without the generator.
+/// Constant and linear loads of a step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Steady {
     /// Base acceleration at the start of the step, m/s2.
@@ -300,7 +303,7 @@ pub(crate) struct Steady {
 }
 
 impl Steady {
-    /// After `length` seconds.
+    /// The loads `length` seconds later.
     pub(crate) fn after(self, length: f64) -> Self {
         Self {
             acceleration: self.acceleration + self.jerk * length,

@@ -5,7 +5,8 @@
 //!
 //! `F = max(0, k_H d^(3/2) + beta_c k_j(d) d')`, `k_j = (3/2) k_H d^(1/2)`, for `d > 0`, else 0.
 //!
-//! With `g = d + (3/2) beta_c d'` this is `F = k_H d^(1/2) g`: the contact is closed while both `d` and `g` are positive.
+//! With `g = d + (3/2) beta_c d'` this is `F = k_H d^(1/2) g`: the contact is closed while both `d` and `g` are
+//! positive.
 
 use crate::contact::Branch;
 use crate::scene::Contact;
@@ -20,7 +21,7 @@ pub struct Hertz {
 }
 
 impl Hertz {
-    /// Of the two materials and the camber.
+    /// From the two materials and the radius of curvature.
     pub fn new(contact: &Contact) -> Self {
         let compliance = |nu: f64, e: f64| (1.0 - nu * nu) / e;
         let modulus = 1.0
@@ -48,9 +49,9 @@ impl Hertz {
         (force / self.coefficient).powf(2.0 / 3.0)
     }
 
-    /// Mean elastic force between two indentations (m): the difference of the elastic energies `(2/5) k_H d^(5/2)` over that
-    /// of the indentations, N. In the roots of the indentations that is a polynomial over a sum, so that no digit is lost
-    /// where they are close.
+    /// Mean elastic force between two indentations (m), N: divided difference of the elastic energy
+    /// `(2/5) k_H d^(5/2)`. In the square roots of the indentations it is a polynomial over a sum, free of cancellation
+    /// if they are close.
     pub fn mean_force(&self, a: f64, b: f64) -> f64 {
         let (low, high) = (a.min(b), a.max(b));
         if high <= 0.0 {
@@ -65,8 +66,8 @@ impl Hertz {
         0.4 * self.coefficient * (sum / (x + y))
     }
 
-    /// Elastic energy at `d0 + deviation` above its tangent at `d0` (m), J; never negative. In the roots of the indentations it
-    /// is a sum of positive terms, so that no digit is lost where the deviation is small.
+    /// Elastic energy at `d0 + deviation` above its tangent at `d0` (m), J; never negative. In the square roots of the
+    /// indentations it is a sum of positive terms, free of cancellation for small deviations.
     pub fn energy_above_tangent(&self, d0: f64, deviation: f64) -> f64 {
         let d = d0 + deviation;
         let (x, y) = (d0.max(0.0).sqrt(), d.max(0.0).sqrt());
@@ -81,8 +82,7 @@ impl Hertz {
             }
     }
 
-    /// Mean tangent stiffness between two indentations (m): the difference of the elastic forces over that of the
-    /// indentations, N/m.
+    /// Mean tangent stiffness between two indentations (m), N/m: divided difference of the elastic force.
     pub fn mean_stiffness(&self, a: f64, b: f64) -> f64 {
         let (low, high) = (a.min(b), a.max(b));
         if high <= 0.0 {
@@ -101,8 +101,8 @@ impl Hertz {
         d.min(d + 1.5 * self.damping * rate)
     }
 
-    /// The closed branch continued smoothly past the release (the force may turn negative), for the steps that end at
-    /// the release.
+    /// The closed branch, continued smoothly beyond opening (the force may be negative), for steps in which the contact
+    /// opens.
     #[inline(always)]
     pub fn closed_branch(&self, d: f64, rate: f64) -> Branch {
         if d <= 0.0 {

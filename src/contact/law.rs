@@ -1,4 +1,4 @@
-//! The contact law a scene asks for.
+//! The contact law of a scene.
 
 use crate::contact::Branch;
 use crate::contact::hertz::Hertz;
@@ -40,10 +40,9 @@ impl Law {
         }
     }
 
-    /// Force that does over the way from one indentation to another (m) the work of the elastic force, and takes away at least
-    /// nothing by damping, N: the discrete gradient of the elastic energy, and the damping time the mean stiffness times
-    /// `speed` (m/s), the difference over the time it took. It grows with the second indentation, and never pulls unless
-    /// bonded.
+    /// Constant force over a step from one indentation to another (m) that does the work of the elastic force and
+    /// dissipates, N: the discrete gradient of the elastic energy, plus damping time times mean stiffness times `speed`
+    /// (m/s), the mean velocity. It increases with the second indentation, and is never tensile unless bonded.
     pub fn mean_force(&self, from: f64, to: f64, speed: f64) -> f64 {
         let (elastic, stiffness) = match self {
             Self::Hertz(hertz) => (hertz.mean_force(from, to), hertz.mean_stiffness(from, to)),
@@ -60,17 +59,17 @@ impl Law {
         }
     }
 
-    /// Whether the contact holds whatever pulls at it.
+    /// Whether the contact can bear tension.
     pub fn never_opens(&self) -> bool {
         matches!(self, Self::Linear(linear) if linear.bonded)
     }
 
-    /// A force (N), or none where it would pull at a contact that cannot.
+    /// The force (N), or zero if tensile in a contact that cannot bear tension.
     pub fn without_pull(&self, force: f64) -> f64 {
         if self.never_opens() { force } else { force.max(0.0) }
     }
 
-    /// Indentation beyond that of first touch at which a contact at rest bears `force` (N), m.
+    /// Static indentation beyond first touch under `force` (N), m.
     pub fn overlap(&self, force: f64) -> f64 {
         match self {
             Self::Hertz(hertz) => hertz.indentation(force),

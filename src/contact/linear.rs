@@ -1,7 +1,7 @@
-//! The contact law linearised about the preload, with or without the cut where the force would turn into tension.
+//! The contact law linearised about the preload; it opens when the force would become tensile, or is bonded.
 //!
 //! `F = max(0, F_0 + k_j0 (d - d_0) + beta_c k_j0 d')`, which the modal and frequency-domain analyses of Machines 2025,
-//! 13(1), 52 use; bonded: the same without the cut.
+//! 13(1), 52 use; bonded: the same without `max`.
 
 use crate::contact::Branch;
 
@@ -14,7 +14,7 @@ pub struct Linear {
     pub damping: f64,
     /// Indentation at which the force of a contact at rest is zero, d_0 - F_0 / k_j0, m.
     pub offset: f64,
-    /// Whether the contact can pull.
+    /// Whether the contact bears tension.
     pub bonded: bool,
 }
 
@@ -28,7 +28,7 @@ impl Linear {
         }
     }
 
-    /// The force without the cut.
+    /// The force, also where tensile.
     #[inline(always)]
     pub fn closed_branch(&self, d: f64, rate: f64) -> Branch {
         Branch {

@@ -1,4 +1,4 @@
-//! What the inputs drive the contact with over a communication step.
+//! Base acceleration and motion of the fixed contact over a communication step, from the inputs.
 
 use crate::inputs::Inputs;
 use serde::{Deserialize, Serialize};
@@ -17,7 +17,7 @@ pub struct Drive {
 }
 
 impl Drive {
-    /// From the instant `time` (s) over `size` seconds, in which the fixed contact moves by `way` (m).
+    /// Over `size` seconds from `time` (s), in which the fixed contact moves by `way` (m).
     pub fn new(inputs: &Inputs, time: f64, size: f64, way: f64) -> Self {
         Self {
             acceleration: inputs.base_acceleration,
@@ -33,12 +33,12 @@ impl Drive {
         self.acceleration + self.jerk * (time - self.since)
     }
 
-    /// Whether neither the base acceleration changes nor the fixed contact moves.
+    /// Whether the base acceleration is constant and the fixed contact at rest.
     pub fn is_constant(&self) -> bool {
         self.jerk == 0.0 && self.support_rate == 0.0
     }
 
-    /// Whether nothing changes from a communication step driven by `last` to this one, or in them.
+    /// Whether both are constant and equal to those of the last communication step.
     pub fn continues(&self, last: &Self) -> bool {
         self.is_constant() && last.is_constant() && self.acceleration == last.acceleration
     }

@@ -1,8 +1,7 @@
-//! The base acceleration that a scene asks for, whichever waveform it has.
+//! The base acceleration generator of a scene, of any waveform.
 
 use std::f64::consts::TAU;
 
-use crate::BARE;
 use crate::error::SceneError;
 use crate::excitation::random::{self, Random};
 use crate::excitation::sine::Sine;
@@ -14,21 +13,21 @@ use crate::math::simd::Simd;
 use crate::scene::Scene;
 use crate::variables::ExcitationKind;
 
-/// What a generator needs to know of a step and depends on its length alone.
+/// Coefficients of a generator over a step, which depend on the step length only.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Turns<const S: usize> {
-    /// Nothing.
+    /// No generator.
     None,
-    /// How far a sine turns.
+    /// Rotation of a sine.
     Sine(Rotation<S>),
-    /// When the nodes are, s from the start of the step.
+    /// Nodes, s from the start of the step.
     LogSweep(Nodal<S>),
-    /// How far each of many sines turns.
+    /// Rotation of each of many sines.
     Random(Box<[Rotation<S>]>),
 }
 
 impl<const S: usize> Turns<S> {
-    /// Room for what the generator needs.
+    /// Allocates for the generator.
     pub fn room(generator: &Generator) -> Self {
         match generator {
             Generator::None => Self::None,
@@ -38,7 +37,7 @@ impl<const S: usize> Turns<S> {
         }
     }
 
-    /// Computes in place what belongs to a step of `length` seconds with these nodes.
+    /// Computes the coefficients for a step of `length` seconds with these nodes in place.
     pub fn fill(&mut self, generator: &Generator, simd: Simd, length: f64, nodes: &Nodal<S>) {
         match (generator, self) {
             (Generator::Sine(sine), Self::Sine(rotation)) => {
@@ -49,17 +48,17 @@ impl<const S: usize> Turns<S> {
             (Generator::Random(random), Self::Random(rotations)) => {
                 random.turn(simd, &scaled(nodes, length), rotations);
             }
-            _ => {}
+            (Generator::None | Generator::Sine(_) | Generator::LogSweep(_) | Generator::Random(_), _) => {}
         }
     }
 }
 
-/// The generator a scene asks for.
+/// The generator of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Generator {
     /// No acceleration.
     None,
-    /// A sine, or one half wave of it.
+    /// A sine, or a half-sine pulse.
     Sine(Sine),
     /// A sine whose frequency grows or falls exponentially.
     LogSweep(LogSweep),
@@ -77,7 +76,7 @@ impl Generator {
         let shakes = match scene.effects.excitation {
             ExcitationKind::None => false,
             ExcitationKind::Random => excitation.spectral_density > 0.0,
-            _ => excitation.amplitude > 0.0,
+            ExcitationKind::Sine | ExcitationKind::HalfSine | ExcitationKind::LogSweep => excitation.amplitude > 0.0,
         };
         Ok(match scene.effects.excitation {
             ExcitationKind::Random if excitation.end_frequency <= excitation.frequency => {
@@ -95,7 +94,7 @@ impl Generator {
         })
     }
 
-    /// The acceleration of the generator's course at an instant (s) within its window, m/s2.
+    /// Acceleration at an instant (s) within the window, m/s2.
     fn value(&self, time: f64) -> f64 {
         match self {
             Self::None => 0.0,
@@ -114,18 +113,18 @@ impl Generator {
         }
     }
 
-    /// Acceleration at an instant (s), m/s2: where it jumps, that which follows.
+    /// Acceleration at an instant (s), m/s2; at a jump the limit from the right.
     pub fn acceleration(&self, time: f64) -> f64 {
         if self.is_active(time) { self.value(time) } else { 0.0 }
     }
 
-    /// Acceleration at an instant (s) as it has been reached, m/s2: where it jumps, that which was before.
+    /// Acceleration at an instant (s), m/s2; at a jump the limit from the left.
     pub fn acceleration_before(&self, time: f64) -> f64 {
         let active = self.window().is_some_and(|window| window.is_open_before(time));
         if active { self.value(time) } else { 0.0 }
     }
 
-    /// Sine and cosine of the generator's phase at `time`, times its amplitude: none where it is not a sine.
+    /// Sine and cosine of the generator's phase at `time` (s), times its amplitude; zero if it is not a sine.
     pub(crate) fn phasor(&self, time: f64) -> (f64, f64) {
         match self {
             Self::Sine(sine) if sine.window.is_open_after(time) => sine.phasor(time),
@@ -133,7 +132,7 @@ impl Generator {
         }
     }
 
-    /// The one frequency of the generator, where it has one, Hz.
+    /// Frequency of a sine generator, Hz.
     pub(crate) fn frequency(&self) -> Option<f64> {
         match self {
             Self::Sine(sine) => Some(sine.frequency),
@@ -141,13 +140,13 @@ impl Generator {
         }
     }
 
-    /// Whether linear motion under it is known in closed form: under a sine, or nothing.
+    /// Whether linear motion under it is known in closed form: a sine, or none.
     pub(crate) fn is_harmonic(&self) -> bool {
         matches!(self, Self::None | Self::Sine(_))
     }
 
-    /// Accelerations over a step that begins at `time` (s) and has the given turns. A step goes over none of the breaks
-    /// that [`Generator::next_break`] tells.
+    /// Accelerations over a step that begins at `time` (s), with the coefficients of its length. There must be no
+    /// [`Generator::next_break`] within the step.
     #[inline(always)]
     pub fn over_step<const S: usize>(&self, simd: Simd, time: f64, turns: &Turns<S>) -> Accelerations<S> {
         let mut nodes = [0.0; S];
@@ -160,14 +159,15 @@ impl Generator {
                 }
                 sin
             }
-            _ if BARE => 0.0,
-            _ => self.over_step_out_of_line(simd, time, turns, &mut nodes),
+            (Self::Sine(_) | Self::LogSweep(_) | Self::Random(_), _) => {
+                self.over_step_out_of_line(simd, time, turns, &mut nodes)
+            }
         };
         Accelerations { start, nodes }
     }
 
-    /// [`Generator::over_step`] of the generators that take their time, kept out of the kernel of a step: the acceleration at
-    /// the start, and those at the nodes in place of zeros.
+    /// [`Generator::over_step`] of the costly generators, not inlined into the kernel of a step: returns the
+    /// acceleration at the start, and replaces the zeros of `nodes`.
     #[inline(never)]
     fn over_step_out_of_line<const S: usize>(
         &self,
@@ -181,7 +181,7 @@ impl Generator {
             (Self::Random(random), Turns::Random(rotations)) if self.is_active(time) => {
                 random.over_step(simd, time, rotations)
             }
-            _ => return 0.0,
+            (Self::None | Self::Sine(_) | Self::LogSweep(_) | Self::Random(_), _) => return 0.0,
         };
         *nodes = found.nodes;
         found.start
@@ -202,13 +202,13 @@ impl Generator {
         }
     }
 
-    /// Longest step from `time` on within which the acceleration cannot turn unseen, a quarter of its shortest period, s.
+    /// Longest step from `time` (s) that resolves the acceleration: a quarter of its shortest period, s.
     pub fn longest_step(&self, time: f64) -> f64 {
         match self {
             Self::Sine(sine) if sine.window.is_open_after(time) => 0.25 / sine.frequency,
             Self::LogSweep(sweep) if sweep.window.is_open_after(time) => sweep.longest_step(time),
             Self::Random(random) if random.window.is_open_after(time) => 0.25 / random.highest,
-            _ => f64::INFINITY,
+            Self::None | Self::Sine(_) | Self::LogSweep(_) | Self::Random(_) => f64::INFINITY,
         }
     }
 }
@@ -233,11 +233,11 @@ mod tests {
                 _ => e.frequency.max(e.end_frequency),
             };
             let largest = match scene.effects.excitation {
-                // Half its sines in step.
+                // Half of its sines in phase.
                 ExcitationKind::Random => 0.5 * (512.0 * e.spectral_density * (e.end_frequency - e.frequency)).sqrt(),
                 _ => e.amplitude,
             };
-            // The rounding of time to each side, in radians, and some of the sums.
+            // Rounding of time, in radians, and of the sums.
             let allowed = largest * (2.0 * TAU * highest * f64::EPSILON * (time + length) + 1e-13);
             for machine in [Simd::Portable, Simd::detect()] {
                 turns.fill(&generator, machine, length, &nodes);

@@ -1,7 +1,6 @@
-//! Base acceleration generated inside the component, and [`drive`]: what comes from the inputs.
+//! Base acceleration: generated inside the component, and from the inputs ([`drive`]).
 //!
-//! One file for each idea of a waveform: [`sine`], also one half wave of it; [`sweep`]; [`random`]. A generator runs
-//! within its [`window`]; outside of it there is no acceleration.
+//! One file per waveform: [`sine`], also the half sine; [`sweep`]; [`random`]. A generator acts within its [`window`].
 
 pub mod drive;
 pub mod generator;

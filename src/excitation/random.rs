@@ -1,8 +1,8 @@
 //! Random vibration with a flat spectral density: a sum of sines of equal power.
 //!
-//! The band is divided into as many equal ones as there are sines. Each sine has a random place in its own, so that the sum
-//! never repeats, and a random phase. Its mean square over a long time is exactly the density times the width of the band;
-//! over a short one it scatters as that of noise does.
+//! The band is divided into equal intervals, one for each sine. Each sine has a random frequency in its interval, so
+//! that the sum does not repeat, and a random phase. The mean square over a long time is exactly the density times the
+//! width of the band; over a short time it scatters as that of noise.
 
 use std::f64::consts::TAU;
 
@@ -12,10 +12,10 @@ use crate::math::nodal::{Nodal, add};
 use crate::math::simd::{Arithmetic, Separate, Simd, compiled_for};
 use crate::scene::Excitation;
 
-/// How many.
+/// Number of sines.
 pub const SINES: usize = 256;
 
-/// Sums kept side by side.
+/// Partial sums computed in parallel.
 const LANES: usize = 8;
 
 /// A value for each sine.
@@ -32,12 +32,12 @@ pub struct Random {
     phases: Each,
     /// End of the band, Hz.
     pub highest: f64,
-    /// When.
+    /// Interval of time in which it acts.
     pub window: Window,
 }
 
 impl Random {
-    /// From the start on; the band must not be empty. Phase and displacement limit do not apply.
+    /// From the start time on; the band must not be empty. Phase and displacement limit do not apply.
     pub fn new(excitation: &Excitation) -> Self {
         let width = excitation.end_frequency - excitation.frequency;
         let mut generator = SplitMix64(excitation.seed.unsigned_abs().into());
@@ -63,7 +63,7 @@ impl Random {
         self.amplitude * sum(&sin)
     }
 
-    /// How far each sine turns in the times (s) after the start of a step, in place.
+    /// Computes in place the rotation of each sine at the times (s) after the start of a step.
     #[inline(never)]
     pub fn turn<const S: usize>(&self, simd: Simd, times: &Nodal<S>, rotations: &mut [Rotation<S>]) {
         compiled_for!(simd, A => {
@@ -78,7 +78,7 @@ impl Random {
         });
     }
 
-    /// Accelerations over a step that begins at `time` (s), in which the sines turn like this.
+    /// Accelerations over a step that begins at `time` (s), with the rotations of the sines at the nodes.
     pub fn over_step<const S: usize>(&self, simd: Simd, time: f64, rotations: &[Rotation<S>]) -> Accelerations<S> {
         compiled_for!(simd, A => self.compute::<S, A>(time, rotations))
     }
@@ -114,14 +114,14 @@ fn sum(values: &Each) -> f64 {
     sums.iter().sum()
 }
 
-/// Sines and cosines of the phases (turns) after `tau` seconds at the frequencies (Hz). All of them take the same operations, so
-/// that several are computed at once.
+/// Sines and cosines of the phases (turns) after `tau` seconds at the frequencies (Hz). Branch-free, so that the loop
+/// is vectorised.
 #[inline(always)]
 fn phasors<A: Arithmetic>(frequencies: &Each, tau: f64, phases: &Each) -> (Each, Each) {
     let (mut sines, mut cosines) = ([0.0; SINES], [0.0; SINES]);
     let phasors = sines.iter_mut().zip(&mut cosines);
     for ((sine, cosine), (frequency, phase)) in phasors.zip(frequencies.iter().zip(phases)) {
-        // Whole turns are dropped before anything is rounded, as in `super::turned`.
+        // Whole turns are removed before rounding, as in `waveform::turned`.
         let product = frequency * tau;
         let lost = frequency.mul_add(tau, -product);
         let turns = (product - product.round_ties_even()) + (lost + phase);
@@ -181,7 +181,7 @@ impl SplitMix64 {
         z ^ (z >> 31)
     }
 
-    /// A number in 0 to 1, 1 excluded.
+    /// A number in [0, 1).
     fn next_part(&mut self) -> f64 {
         (self.next() >> 11) as f64 * (-53.0_f64).exp2()
     }
@@ -194,7 +194,8 @@ mod tests {
 
     #[test]
     fn numbers_are_those_of_the_published_generator() {
-        // The first outputs of the reference implementation in C, <https://prng.di.unimi.it/splitmix64.c>, from 1234567.
+        // The first outputs of the reference implementation in C, <https://prng.di.unimi.it/splitmix64.c>, from
+        // 1234567.
         let mut generator = SplitMix64(1_234_567);
         for expected in [
             6_457_827_717_110_365_317,

@@ -1,4 +1,4 @@
-//! A sine, and the half wave of one that stands for a shock.
+//! A sine, and the half-sine shock pulse.
 
 use std::f64::consts::TAU;
 
@@ -15,12 +15,13 @@ pub struct Sine {
     pub frequency: f64,
     /// Phase at the start, rad.
     pub phase: f64,
-    /// When.
+    /// Interval of time in which it acts.
     pub window: Window,
 }
 
 impl Sine {
-    /// From the start on: Machines 2025, 13(1), 52, eqs. (26), (27), with the amplitude within the displacement limit.
+    /// From the start time on: Machines 2025, 13(1), 52, eqs. (26), (27), with the amplitude within the displacement
+    /// limit.
     pub fn new(excitation: &Excitation) -> Self {
         Self {
             amplitude: limited_amplitude(excitation, excitation.frequency),

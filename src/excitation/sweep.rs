@@ -1,7 +1,7 @@
 //! A sine whose frequency sweeps exponentially from one value to another.
 //!
-//! At `tau = t - t0` the frequency is `f e^x`, `x = ln(r) tau / D`, `r = f_end / f`, and the phase has turned
-//! `f tau (e^x - 1) / x` times. With `r` towards 1 this is the sine.
+//! At `tau = t - t0` the frequency is `f e^x`, `x = ln(r) tau / D`, `r = f_end / f`, and the phase has advanced
+//! by `f tau (e^x - 1) / x` cycles. For `r` towards 1 this is the sine.
 
 use std::f64::consts::TAU;
 
@@ -10,7 +10,7 @@ use crate::excitation::window::Window;
 use crate::math::nodal::Nodal;
 use crate::scene::Excitation;
 
-/// Exponent up to which the turns are counted as those of a sine and more.
+/// Exponent x up to which the cycles are computed as those of a sine plus a correction.
 const SMALL: f64 = 0.5;
 
 /// `A sin(2 pi f D / ln(r) (r^(tau/D) - 1) + phase)` for the duration D: the phase is that of a sine at the start.
@@ -24,16 +24,16 @@ pub struct LogSweep {
     rate: f64,
     /// Phase at the start, rad.
     phase: f64,
-    /// Largest displacement amplitude, m: below the crossover it sets the amplitude. Infinite: none.
+    /// Largest displacement amplitude, m; it sets the amplitude below the crossover frequency. Infinite: no limit.
     displacement_limit: f64,
     /// The instant within the sweep at which the displacement limit begins or ceases to set the amplitude, s.
     crossover: Option<f64>,
-    /// When.
+    /// Interval of time in which it acts.
     pub window: Window,
 }
 
 impl LogSweep {
-    /// From the start on, for the duration.
+    /// From the start time on, for the duration.
     pub fn new(excitation: &Excitation) -> Self {
         let &Excitation {
             amplitude,
@@ -75,8 +75,8 @@ impl LogSweep {
         self.amplitude.min((TAU * frequency).powi(2) * self.displacement_limit)
     }
 
-    /// Phase `tau` seconds after the start beyond most of its whole turns, rad. Late instants keep their digits: what is
-    /// rounded away is not more than the rounding of time makes.
+    /// Phase `tau` seconds after the start, reduced by most of its whole turns, rad. At late instants its rounding
+    /// error is no larger than that caused by the rounding of time.
     fn phase_after(&self, tau: f64) -> f64 {
         let x = self.rate * tau;
         let turns = if x.abs() < SMALL {
@@ -96,8 +96,8 @@ impl LogSweep {
         self.amplitude_at(self.frequency_after(tau)) * self.phase_after(tau).sin()
     }
 
-    /// Accelerations over a step that begins at `time` (s) and has its nodes at the times (s) after it. The phase at the
-    /// nodes is counted from that at the start, so that within a step nothing is rounded that is not small.
+    /// Accelerations over a step that begins at `time` (s) with nodes at the times (s) after it. Phases at the nodes
+    /// are relative to that at the start, so that only small numbers are rounded.
     pub fn over_step<const S: usize>(&self, time: f64, times: &Nodal<S>) -> Accelerations<S> {
         let tau = time - self.window.start;
         let (frequency, phase) = (self.frequency_after(tau), self.phase_after(tau));
@@ -124,7 +124,8 @@ impl LogSweep {
         }
     }
 
-    /// The time from `time` on in which the phase turns by a quarter, s, or the frequency changes by a factor of e.
+    /// The shorter of a quarter of the period at `time` (s) and the time in which the frequency changes by a factor of
+    /// e, s.
     #[inline(never)]
     pub fn longest_step(&self, time: f64) -> f64 {
         let quarter = 0.25 / self.frequency_after(time - self.window.start);
@@ -140,7 +141,7 @@ impl LogSweep {
     }
 }
 
-/// `ln(a / b)`, right also where the two are close.
+/// `ln(a / b)`, accurate also if the two are close.
 fn logarithm(a: f64, b: f64) -> f64 {
     let part = (a - b) / b;
     if part.abs() < 0.5 { part.ln_1p() } else { (a / b).ln() }

@@ -1,4 +1,4 @@
-//! What the waveforms share: their values over a step, phases without loss of digits, and the displacement limit.
+//! Common to the waveforms: values over a step, accurate phases, and the displacement limit.
 
 use std::f64::consts::TAU;
 
@@ -14,7 +14,7 @@ pub struct Accelerations<const S: usize> {
     pub nodes: Nodal<S>,
 }
 
-/// Sines and cosines of the angles that a phase turns through from the start of a step to its nodes.
+/// Sines and cosines of the phase advance from the start of a step to its nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotation<const S: usize> {
     /// Sines.
@@ -24,22 +24,21 @@ pub struct Rotation<const S: usize> {
 }
 
 impl<const S: usize> Rotation<S> {
-    /// By nothing yet.
+    /// Not computed yet.
     pub(crate) const ZERO: Self = Self {
         sin: [0.0; S],
         cos: [0.0; S],
     };
 }
 
-/// Turns of a rotation at `frequency` (Hz) over a time (s) beyond whole ones. These are dropped before anything is rounded, so
-/// that late instants keep their digits.
+/// Phase advance at `frequency` (Hz) over a time (s) in turns, without whole ones, which are removed before rounding:
+/// accurate also for long times.
 pub(crate) fn turned(frequency: f64, time: f64) -> f64 {
     let turns = frequency * time;
     turns.fract() + frequency.mul_add(time, -turns)
 }
 
-/// Amplitude at a frequency (Hz), m/s2: that of the displacement limit where this is lower, as in the crossover of vibration
-/// standards.
+/// Amplitude at a frequency (Hz), m/s2, within the displacement limit: the crossover of vibration standards.
 pub(crate) fn limited_amplitude(excitation: &Excitation, frequency: f64) -> f64 {
     if excitation.displacement_limit > 0.0 {
         excitation

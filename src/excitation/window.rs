@@ -1,11 +1,11 @@
-//! The time during which a generator runs.
+//! The interval of time in which a generator acts.
 
-/// From one instant to another, s.
+/// An interval of time, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
     /// t0.
     pub start: f64,
-    /// Infinite where there is none.
+    /// Infinite if there is no end.
     pub end: f64,
 }
 

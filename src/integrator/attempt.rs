@@ -1,4 +1,4 @@
-//! A step on trial, and whether its error is one that a step may have.
+//! A trial step: its relative error, acceptance and rejection.
 
 use crate::error::{StepError, StepErrorCause};
 use crate::integrator::collocation::newton::Source;
@@ -8,26 +8,28 @@ use crate::integrator::integration::{Integration, StepOutcome};
 use crate::integrator::workspace::{Room, Workspace, work};
 use crate::math::nodal::{self, SHORT};
 
-/// Error of the contact force within a step, per force that its polynomial misses at the start.
+/// Error of the contact force within a step, relative to the defect of its polynomial at the start of the step.
 pub(crate) const INSIDE: f64 = 0.3;
 
-/// Largest difference that Newton's method leaves between a nodal force and that of the law, in errors allowed in a
-/// step.
+/// Newton tolerance: largest residual of a nodal force, relative to the error allowed per step.
 const NEWTON: f64 = 0.2;
 
 impl Integration<'_> {
-    /// Estimated error of a trial to the target, in errors allowed; none where it is rounding, which no shorter step
-    /// makes smaller.
+    /// Estimated error of a trial to the target, relative to the error allowed; 0 where it is mere rounding, which no
+    /// shorter step reduces.
     pub(crate) fn relative_error<const S: usize>(&self, trial: &Trial<S>, target: &Target) -> f64 {
         let looked_into = self.dense.as_ref().is_some_and(|(until, _)| *until < target.time);
-        // Short steps may be wrong inside: `DenseOutput::good` then keeps them from being looked into.
+        // 4-node steps may be inaccurate inside: `DenseOutput::accurate` then prevents dense output.
         let inside = if looked_into && S != SHORT {
             INSIDE / self.tolerance
         } else {
             0.0
         };
-        let (ratio, inside) = (trial.error / self.allowed.max(trial.rounding), trial.missed * inside);
-        // Not `max`, which would hide what is not a number.
+        let (ratio, inside) = (
+            trial.error / self.allowed.max(trial.rounding),
+            trial.start_defect * inside,
+        );
+        // Not `max`, which would hide NaN.
         let ratio = if ratio < inside { inside } else { ratio };
         if ratio > 1.0 && is_rounding(self.model, self.state, trial) {
             0.0
@@ -36,12 +38,13 @@ impl Integration<'_> {
         }
     }
 
-    /// Whether a step to the target may have this error: what is allowed, and any where it cannot be shorter.
+    /// Whether a step to the target with this relative error is accepted; one of the shortest length with any finite
+    /// error.
     pub(crate) fn is_acceptable(&self, ratio: f64, target: &Target) -> bool {
         ratio <= 1.0 || self.is_shortest(target) && ratio.is_finite()
     }
 
-    /// The step to the target, with the modes at its end kept for [`Integration::take`].
+    /// A trial step to the target; the modes at its end are kept for [`Integration::take`].
     pub(crate) fn attempt<const S: usize>(&mut self, target: &Target) -> Option<Trial<S>>
     where
         Workspace: Room<S>,
@@ -49,7 +52,7 @@ impl Integration<'_> {
         self.trial(target.length, target.recurring, true)
     }
 
-    /// A step of `length` seconds only to be looked at.
+    /// A trial step of `length` seconds for event location only; it cannot be taken.
     pub(crate) fn probe<const S: usize>(&mut self, length: f64) -> Option<Trial<S>>
     where
         Workspace: Room<S>,
@@ -57,8 +60,7 @@ impl Integration<'_> {
         self.trial(length, false, false)
     }
 
-    /// A step of `length` seconds, whose coefficients may be wanted again (`recurring`), and the modes at its end
-    /// (`kept`).
+    /// A trial step of `length` seconds. `recurring`: cache its coefficients; `kept`: it may be taken.
     fn trial<const S: usize>(&mut self, length: f64, recurring: bool, kept: bool) -> Option<Trial<S>>
     where
         Workspace: Room<S>,
@@ -71,7 +73,7 @@ impl Integration<'_> {
         trial(self.model, self.state, &self.drive, (step, collocation), source, modes)
     }
 
-    /// Gives up a step; the next one is to have the length.
+    /// Rejects a step; the next one shall have `length` (s).
     pub(crate) fn reject(&mut self, length: f64) -> StepOutcome {
         self.state.rejected_steps += 1;
         self.refusals += 1;
@@ -82,7 +84,10 @@ impl Integration<'_> {
         }
     }
 
-    /// The trial becomes the state, if it is finite.
+    /// Accepts the trial as the new state.
+    ///
+    /// # Errors
+    /// [`StepErrorCause::NotFinite`] where it is not finite.
     pub(crate) fn take<const S: usize>(&mut self, trial: &Trial<S>, target: &Target) -> Result<(), StepError>
     where
         Workspace: Room<S>,
@@ -90,9 +95,9 @@ impl Integration<'_> {
         if !(trial.indentation.is_finite() && trial.rate.is_finite()) {
             return Err(self.error(StepErrorCause::NotFinite));
         }
-        let due = self.energy_due(trial, target);
-        if due.is_some() {
-            // The step once more, in halves.
+        let expected_energy = self.expected_energy(trial, target);
+        if expected_energy.is_some() {
+            // The balance repeats the step in two halves.
             self.workspace.work += work(target.recurring) + 1;
         }
         self.enter(trial, target.length);
@@ -107,7 +112,7 @@ impl Integration<'_> {
         let start = state.force - model.preload.force;
         state.predictions = collocation.predictions(model.simd, start, &trial.forces, &state.predictions, ratio);
         if let Some((_, dense)) = &mut self.dense {
-            dense.good = INSIDE * trial.missed <= self.tolerance;
+            dense.accurate = INSIDE * trial.start_defect <= self.tolerance;
             dense.indentation = collocation.through(state.indentation, &trial.indentations);
             dense.rate = collocation.through(state.indentation_rate, &trial.rates);
             dense.force = *state.predictions.through_all();
@@ -131,13 +136,12 @@ impl Integration<'_> {
         self.grid.done = target.done;
         self.refusals = 0;
         self.settle(target.length);
-        self.balance(due);
+        self.balance(expected_energy);
         Ok(())
     }
 }
 
-/// How many times as long a step could be that is wrong by `ratio` errors allowed: the error estimate grows with the
-/// power `S + 1` of the length.
+/// Factor to the step size at which the relative error `ratio` becomes 1: the error estimate is of order `S + 1`.
 pub(crate) fn step_factor<const S: usize>(ratio: f64) -> f64 {
     ratio.powf(-1.0 / (S as f64 + 1.0))
 }

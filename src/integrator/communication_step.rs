@@ -1,5 +1,6 @@
-//! A communication step: HEAD
-use crate::BARE;
+//! A communication step: integrated exactly to its end, or read from the dense output of a longer integration step
+//! ([`crate::integrator::motion`]).
+
 use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
 use crate::inputs::Inputs;
@@ -11,13 +12,13 @@ use crate::integrator::workspace::{Budget, Workspace};
 use crate::model::Model;
 use crate::state::State;
 
-/// How many of the integrator's steps a communication step has to be long for the integrator to end one with it.
+/// Shortest communication step that ends with an integration step, in integration steps; shorter ones use dense output.
 const MANY_STEPS: f64 = 4.0;
 
 /// Advances over the communication step from `time` to `time + size` (s) with inputs that are held or change linearly.
 ///
 /// # Errors
-/// A [`StepError`]; the motion then stands where it did.
+/// A [`StepError`]; the motion is then unchanged.
 pub fn step(
     model: &Model,
     motion: &mut Motion,
@@ -26,14 +27,14 @@ pub fn step(
     time: f64,
     size: f64,
 ) -> Result<(), StepError> {
-    if model.scene.effects.extremes && !BARE {
+    if model.scene.effects.extremes {
         step_by::<true>(model, motion, workspace, inputs, (time, size))
     } else {
         step_by::<false>(model, motion, workspace, inputs, (time, size))
     }
 }
 
-/// [`step`], with the extremes or without.
+/// [`step`], compiled with and without the extremes.
 fn step_by<const EXTREMES: bool>(
     model: &Model,
     motion: &mut Motion,
@@ -48,9 +49,9 @@ fn step_by<const EXTREMES: bool>(
             cause: StepErrorCause::StepSize,
         });
     }
-    // Where a point comes early by more than the step is long, time stands still.
+    // An importer's rounded time may put the end before the point already reached: no time passes then.
     let until = until.max(motion.time);
-    // Lengths that differ by the rounding of time are one, but for exact steps.
+    // Step sizes that differ by the rounding of time count as equal, except for exact linear steps.
     let size = if model.closed_loop.is_none() && (size - motion.size).abs() <= f64::EPSILON * until.abs() {
         motion.size
     } else {
@@ -58,23 +59,23 @@ fn step_by<const EXTREMES: bool>(
     };
     let since = motion.time;
     workspace.events.forget_until(since);
-    // The fixed contact moves linearly to where the input leads.
+    // The fixed contact moves at constant velocity to its position at the end of the step.
     let support = inputs.support_displacement_after(size) - model.initial_support;
     let drive = Drive::new(inputs, time, size, support - motion.state().support);
     let steady = drive.continues(&motion.drive) && model.closed_loop.is_none();
     let ahead = motion.time < motion.end.time;
-    // Nothing is integrated: what is read of the step is computed when it is read.
+    // The end lies inside the current integration step: nothing to integrate, outputs come from its dense output.
     let inside = steady && until < motion.end.time;
     let mut extremes = (EXTREMES && !inside).then(|| Extremes::at(motion.tip(model).force));
     let own_step = motion.end.short_step.max(motion.end.long_step);
     if steady && (ahead || size < own_step || size < MANY_STEPS * own_step && size != motion.size) {
         if !inside {
-            let left = until - motion.end.time;
-            if left < MANY_STEPS * own_step {
+            let remaining = until - motion.end.time;
+            if remaining < MANY_STEPS * own_step {
                 go_ahead(model, motion, workspace, until, extremes.as_mut())?;
             } else {
                 let (mut end, time) = (motion.end, motion.end.time);
-                let steps = Steps::Exactly { time, size: left };
+                let steps = Steps::Exactly { time, size: remaining };
                 if let Some(extremes) = &mut extremes {
                     motion.add_dense(extremes, model, since, time);
                 }
@@ -111,10 +112,10 @@ fn step_by<const EXTREMES: bool>(
     Ok(())
 }
 
-/// The whole motion at the communication point.
+/// The state at the communication point, by a step from the start of the integration step around it.
 ///
 /// # Errors
-/// A [`StepError`] where it cannot be found.
+/// A [`StepError`] where that step fails.
 pub fn state(model: &Model, motion: &Motion, workspace: &mut Workspace) -> Result<State, StepError> {
     let mut state = *motion.state();
     let (time, size) = (state.time, motion.time - state.time);
@@ -125,8 +126,8 @@ pub fn state(model: &Model, motion: &Motion, workspace: &mut Workspace) -> Resul
     Ok(state)
 }
 
-/// Advances the integrator by its own steps until it is at `time` (s) or ahead of it. Extremes are those up to the
-/// end of the last step that lies before.
+/// Takes integration steps of the integrator's own choice until one reaches `time` (s) or beyond. `extremes` covers the
+/// steps that end at or before `time`.
 fn go_ahead(
     model: &Model,
     motion: &mut Motion,
@@ -158,7 +159,7 @@ fn go_ahead(
             extremes.add(ahead.end.force);
         }
     }
-    if ahead.end.time > time && !ahead.dense.good {
+    if ahead.end.time > time && !ahead.dense.accurate {
         ahead.end = ahead.start;
         workspace.events.forget_after(ahead.end.time);
         let (start, size) = (ahead.end.time, time - ahead.end.time);
@@ -203,7 +204,7 @@ mod tests {
                 let portable = forces(&scene, Simd::Portable, size, count);
                 let found = forces(&scene, Simd::detect(), size, count);
                 for (k, (a, b)) in portable.iter().zip(&found).enumerate() {
-                    // Each of the two is within the tolerance of the exact force.
+                    // Each of the two is within the tolerance of the exact force, hence twice the tolerance.
                     assert!(
                         (a - b).abs() < 2.0 * tolerance * scale,
                         "{amplitude} m/s2, tolerance {tolerance}, step {size}, number {k}: {a} {b}"

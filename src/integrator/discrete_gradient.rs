@@ -1,10 +1,11 @@
-//! The step that cannot fail, for where the collocation cannot go on.
+//! The discrete-gradient step, used where the collocation fails: it always has a solution.
 //!
-//! The contact force is constant over the step: the discrete gradient of the elastic energy between its ends, and a
-//! damping force that opposes the way between them (O. Gonzalez, J. Nonlinear Sci. 6 (1996) 449). With exact modes the
-//! energy is kept exactly without damping and never made with damping, however long the step, and the contact opens and
-//! closes within it by itself. The indentation at the end falls linearly with the constant force, and the force grows
-//! with it: one monotone scalar equation between brackets.
+//! The contact force is constant over the step: the discrete gradient of the elastic energy between the ends of the
+//! step, plus a damping force against the displacement between them (O. Gonzalez, J. Nonlinear Sci. 6 (1996) 449). With
+//! exact modes the energy is conserved exactly without damping and never grows with damping, for any step length;
+//! opening and closing need no event location. The indentation at the end decreases linearly with the constant force
+//! and the law's mean force increases with the indentation: one monotone scalar equation, solved by a bracketing
+//! method.
 
 use crate::error::{StepError, StepErrorCause};
 use crate::integrator::collocation::newton::Source;
@@ -15,11 +16,11 @@ use crate::integrator::workspace::Room;
 use crate::math::nodal::{SHORT, end};
 use crate::math::roots;
 
-/// Steps given up in succession before one has to do.
+/// Successive rejections after which a discrete-gradient step is taken.
 pub(crate) const REFUSALS: u32 = 40;
 
 impl Integration<'_> {
-    /// Takes the step to the target with a constant force.
+    /// Takes a discrete-gradient step to the target.
     pub(crate) fn take_with_constant_force(&mut self, target: &Target) -> Result<StepOutcome, StepError> {
         let trial = self
             .constant_step(target)
@@ -33,13 +34,13 @@ impl Integration<'_> {
             length = self.switch(closed);
         }
         if closed {
-            // The velocity at the end is that of a tip under a constant force: where the contact is nearly a rigid
-            // dashpot the law makes too much of it.
+            // The velocity at the end belongs to a constant force: if the contact is nearly a rigid dashpot, the law
+            // would overestimate the force.
             let law = self.model.law.closed_branch(d, trial.rate);
             let rigid = law.damping * self.model.mobility() * target.length > 1.0;
             self.state.force = if rigid { mean } else { law.force };
         }
-        // It predicts nothing.
+        // No polynomial to predict the next step with.
         self.state.last_step = 0.0;
         Ok(StepOutcome {
             taken: true,
@@ -48,7 +49,7 @@ impl Integration<'_> {
         })
     }
 
-    /// The step to the target with a constant force.
+    /// Solves for the constant force of the step to the target.
     fn constant_step(&mut self, target: &Target) -> Option<Trial<SHORT>> {
         let Self {
             model,
@@ -67,15 +68,15 @@ impl Integration<'_> {
             let source = Source::Given([force - preload.force; SHORT]);
             trial(model, state, drive, (step, collocation), source, end)
         };
-        let wanted = |trial: &Trial<SHORT>| {
+        let law_force = |trial: &Trial<SHORT>| {
             let speed = (trial.indentation - state.indentation) / target.length;
             model
                 .law
                 .mean_force(from, preload.indentation + trial.indentation, speed)
         };
-        // Under no force the indentation asks for the most; under that force, for less.
-        let most = Some(wanted(&under(0.0)?)).filter(|most| most.is_finite())?;
-        let mut excess = |force: f64| under(force).map_or(f64::NAN, |trial| force - wanted(&trial));
+        // Bracket: zero force gives the largest indentation and so the largest force of the law.
+        let most = Some(law_force(&under(0.0)?)).filter(|most| most.is_finite())?;
+        let mut excess = |force: f64| under(force).map_or(f64::NAN, |trial| force - law_force(&trial));
         let bracket = ((0.0, -most), (most, excess(most)));
         let force = roots::between(excess, bracket.0, bracket.1, 0.0).unwrap_or(most);
         let trial = under(force);

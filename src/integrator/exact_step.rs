@@ -1,4 +1,4 @@
-//! One exact step, of any length, where beam and contact are linear and the contact stays closed.
+//! The exact step of any length for a linear contact that stays closed ([`crate::closed_loop`]).
 
 use crate::beam::mode::MAX_MODES;
 use crate::closed_loop::oscillator::Coordinates;
@@ -10,9 +10,9 @@ use crate::excitation::drive::Drive;
 use crate::model::Model;
 use crate::state::State;
 
-/// Takes the communication step from the state's time over `size` seconds in one exact step, or several where
-/// the generator starts or ends in it; `false`, with the state unchanged, where that cannot be done: the motion is not linear,
-/// or the contact may open.
+/// Takes `size` seconds from the state's time in one exact step, or several where the generator starts or ends within
+/// them.
+/// `false`, with the state unchanged, if the motion is not linear or the contact may open.
 pub(crate) fn step_exactly(
     model: &Model,
     state: &mut State,
@@ -48,8 +48,8 @@ pub(crate) fn step_exactly(
     false
 }
 
-/// Takes the state over `length` seconds in one step; `false`, with the state unchanged, where the contact may
-/// open.
+/// One step of `length` seconds without a start or end of the generator inside; `false`, with the state unchanged, if
+/// the contact may open or be interrupted.
 fn advance(
     closed_loop: &ClosedLoop,
     model: &Model,
@@ -78,7 +78,7 @@ fn advance(
     if state.interruptions.in_progress() {
         return false;
     }
-    // Above no force, or that of an interruption.
+    // The force must stay above zero, or above the threshold of an interruption.
     let least = model.criterion.map_or(0.0, |criterion| criterion.force);
     let watched = !model.law.never_opens() || least > 0.0;
     if watched && least >= closed_loop.least_force(model.preload.force, &free, &steady, phasor, length) {

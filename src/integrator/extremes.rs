@@ -1,4 +1,4 @@
-//! What is watched inside steps: extremes of the contact force, and where it passes the force of an interruption.
+//! Extremes of the contact force inside steps, from the polynomials of the steps.
 
 use crate::math::prediction::value_and_slope;
 use serde::{Deserialize, Serialize};
@@ -7,20 +7,20 @@ use crate::math::prediction::Prediction;
 use crate::math::roots;
 use crate::model::Model;
 
-/// Least and greatest contact force over some time, N.
+/// Least and greatest contact force over an interval of time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Extremes {
-    /// N.
+    /// Least force, N.
     pub least: f64,
-    /// N.
+    /// Greatest force, N.
     pub greatest: f64,
 }
 
-/// Pieces of a step in which a polynomial is looked at for an extreme.
+/// Intervals of a step searched for a sign change of the slope.
 const PIECES: u32 = 8;
 
 impl Extremes {
-    /// Of one force, N.
+    /// Of a single force, N.
     pub fn at(force: f64) -> Self {
         Self {
             least: force,
@@ -28,14 +28,14 @@ impl Extremes {
         }
     }
 
-    /// A force (N) more.
+    /// Includes a force (N).
     pub fn add(&mut self, force: f64) {
         self.least = self.least.min(force);
         self.greatest = self.greatest.max(force);
     }
 
-    /// The forces within a step, from `from` to `to` (in steps before its end): those of the polynomial, or none where the
-    /// contact is open.
+    /// Includes the force within a step from `from` to `to` (relative to its end, in step lengths): that of the
+    /// polynomial, or zero while the contact is open.
     pub(crate) fn add_course(&mut self, model: &Model, closed: bool, polynomial: &Prediction, from: f64, to: f64) {
         if !closed {
             self.add(0.0);
@@ -51,7 +51,6 @@ impl Extremes {
         let mut before = (from, slope(from));
         for k in 1..=PIECES {
             let now = (at(k), slope(at(k)));
-            // Looked for only where the slope changes sign.
             if (before.1 > 0.0) != (now.1 > 0.0)
                 && let Some(y) = roots::between(slope, before, now, 1e-9)
             {

@@ -1,16 +1,16 @@
-//! Where a communication step stands. Integration steps end on halvings of it, or are free to be longer than it; either
-//! way their lengths, and with them their coefficients, come again.
+//! The grid of a communication step. Integration steps are dyadic fractions of it, or free steps of a few rounded
+//! lengths; either way step lengths recur, so that their coefficients can be cached.
 
-/// A communication step in grid.
+/// Progress within a communication step.
 #[derive(Clone, Copy, Debug)]
 pub struct Grid {
     /// Start, s.
     pub start: f64,
     /// Length, s.
     pub size: f64,
-    /// Part done, 0 to 1.
+    /// Fraction completed, 0 to 1.
     pub done: f64,
-    /// Whether the one step taken may be longer.
+    /// A single step that may be longer than `size`.
     pub free: bool,
 }
 
@@ -19,16 +19,16 @@ pub struct Grid {
 pub struct Target {
     /// Length, s.
     pub length: f64,
-    /// Whether the length is a halving of the communication step.
+    /// Whether the length is expected to recur: its coefficients are cached.
     pub recurring: bool,
-    /// Part of the communication step done at its end.
+    /// Fraction of the communication step completed at its end, 0 to 1.
     pub done: f64,
     /// The instant at its end, s.
     pub time: f64,
 }
 
 impl Grid {
-    /// At the start of the communication step from `start` by `size` (s).
+    /// A communication step from `start` over `size` (s).
     pub fn over(start: f64, size: f64) -> Self {
         Self {
             start,
@@ -38,7 +38,7 @@ impl Grid {
         }
     }
 
-    /// At the start of one free step, at the instant `start` (s), likely of about `size` (s).
+    /// One free step from `start` (s), expected to be about `size` (s) long.
     pub fn free(start: f64, size: f64) -> Self {
         Self {
             free: true,
@@ -51,8 +51,8 @@ impl Grid {
         self.time(1.0)
     }
 
-    /// What is left to do, s.
-    pub fn left(&self) -> f64 {
+    /// Remaining time, s.
+    pub fn remaining(&self) -> f64 {
         if self.free {
             f64::INFINITY
         } else {
@@ -60,11 +60,11 @@ impl Grid {
         }
     }
 
-    /// The next step from the instant `time` (s), not longer than about `wanted` (s), which ends at `corner` (s) at the
-    /// latest.
-    pub fn target(&self, wanted: f64, time: f64, corner: Option<f64>) -> Target {
+    /// The next step from `time` (s), of at most about `requested` seconds, ending at the latest at `corner` (s), the
+    /// next discontinuity of the excitation.
+    pub fn target(&self, requested: f64, time: f64, corner: Option<f64>) -> Target {
         if self.free {
-            let length = round_down(wanted);
+            let length = round_down(requested);
             let corner = corner.filter(|corner| *corner < time + length);
             return corner.map_or(
                 Target {
@@ -76,16 +76,16 @@ impl Grid {
                 |corner| self.cut(corner - time, corner),
             );
         }
-        let done = if self.done == 0.0 && wanted >= self.size {
+        let done = if self.done == 0.0 && requested >= self.size {
             1.0
         } else {
-            self.grid_point(wanted)
+            self.grid_point(requested)
         };
         if let Some(corner) = corner.filter(|corner| *corner < self.start + done * self.size) {
             return self.cut(corner - time, corner);
         }
         let part = done - self.done;
-        // Halvings of one are exact in binary: nothing but the exponent is set.
+        // Powers of two have an empty mantissa.
         let recurring = part.to_bits().trailing_zeros() >= f64::MANTISSA_DIGITS - 1;
         Target {
             length: part * self.size,
@@ -115,20 +115,19 @@ impl Grid {
         }
     }
 
-    /// The next point of the grid whose cells are at most `wanted` seconds long, unless it is too near to be worth a
-    /// step.
-    fn grid_point(&self, wanted: f64) -> f64 {
-        let level = (self.size / wanted).log2().ceil().clamp(0.0, 52.0);
+    /// The next point of the dyadic grid with cells of at most `requested` seconds, unless it is too near to be worth a
+    /// step. As fraction of the communication step.
+    fn grid_point(&self, requested: f64) -> f64 {
+        let level = (self.size / requested).log2().ceil().clamp(0.0, 52.0);
         let cell = (-level).exp2();
-        // From a point of the grid the step is a halving: as long as wanted, or shorter where only finer cells begin
-        // here.
+        // On the grid: one cell, or a finer one where no cell of this size begins here.
         let aligned = (0..6)
             .map(|finer| cell * 0.5_f64.powi(finer))
             .find(|cell| (self.done / cell).fract() == 0.0);
         if let Some(cell) = aligned {
             return (self.done + cell).min(1.0);
         }
-        // After an event the grid has to be found again.
+        // Off the grid, after an event: back to it.
         let point = ((self.done / cell).floor() + 1.0) * cell;
         let point = if point - self.done < 0.3 * cell {
             point + 0.5 * cell
@@ -143,7 +142,7 @@ impl Grid {
     }
 }
 
-/// The next lower power of two or one and a half times a power of two: of these few lengths the coefficients are kept.
+/// Rounds down to `2^n` or `1.5 2^n`, so that the lengths of free steps recur.
 fn round_down(length: f64) -> f64 {
     f64::from_bits(length.to_bits() & (u64::MAX << (f64::MANTISSA_DIGITS - 2)))
 }

@@ -1,4 +1,5 @@
-//! A communication step, or one step of the integrator's own, under way: what all its parts share.
+//! The data shared by all parts of an integration in progress: a communication step, or one free step.
+
 use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::polynomial::Collocation;
@@ -10,32 +11,33 @@ use crate::model::Model;
 use crate::state::State;
 use serde::{Deserialize, Serialize};
 
-/// A communication step under way.
+/// An integration in progress.
 pub(crate) struct Integration<'a> {
     pub(crate) model: &'a Model,
     pub(crate) state: &'a mut State,
     pub(crate) workspace: &'a mut Workspace,
     pub(crate) drive: Drive,
     pub(crate) grid: Grid,
-    /// The instant beyond which the step is looked into, s, and what the tip does in it.
+    /// Dense output of a free step, read from the given instant (s) on.
     pub(crate) dense: Option<(f64, &'a mut DenseOutput)>,
-    /// Of the contact force, where they are asked for.
+    /// Extremes of the contact force, if requested.
     pub(crate) extremes: Option<&'a mut Extremes>,
-    /// Error allowed in the contact force, N.
+    /// Tolerance of the contact force, N.
     pub(crate) tolerance: f64,
-    /// Error allowed in a step, N.
+    /// Error allowed per step, N.
     pub(crate) allowed: f64,
-    /// Steps given up in succession.
+    /// Successive rejected steps.
     pub(crate) refusals: u32,
-    /// Whether the energy changes by the work done alone.
+    /// Whether the energy changes only by the work of the drive ([`crate::integrator::energy::conservation`]).
     pub(crate) conserves: bool,
 }
 
-/// The tip over a step: polynomials about its end, in steps. Deviations from the preload.
+/// Dense output of a step: polynomials of the tip about the step's end, in time relative to its length. Deviations from
+/// the preload.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct DenseOutput {
-    /// Whether they are within the tolerance; just after a blow no polynomial is.
-    pub good: bool,
+    /// Whether they are within the tolerance inside the step; just after an impact they may not be.
+    pub accurate: bool,
     /// Contact force, N.
     pub force: Prediction,
     /// Indentation, m.
@@ -47,42 +49,45 @@ pub(crate) struct DenseOutput {
 /// How far to advance.
 #[derive(Debug)]
 pub(crate) enum Steps<'a> {
-    /// From the instant `time` (s) by `size` (s), neither more nor less.
+    /// From `time` exactly to `time + size`.
     Exactly {
         /// s.
         time: f64,
         /// s.
         size: f64,
     },
-    /// By one step as long as the error allows, also within it where it goes beyond the instant `until` (s); what the
-    /// tip does in it goes to `dense`.
+    /// By one step as long as the error allows, with dense output.
     Own {
-        /// s.
+        /// Dense output is read from here on where the step goes beyond it, s.
         until: f64,
-        /// See [`Steps::Own`].
+        /// The tip during the step.
         dense: &'a mut DenseOutput,
     },
 }
 
-/// What a step says about the next.
+/// Outcome of a step: accepted or rejected, and the size of the next one.
 pub(crate) struct StepOutcome {
-    /// Whether it was taken.
+    /// Whether it was accepted.
     pub(crate) taken: bool,
-    /// How many times as long as this one it could have been.
+    /// Factor to its length that its error would have allowed.
     pub(crate) growth: f64,
-    /// Length wanted next, s.
+    /// Proposed length of the next step, s.
     pub(crate) length: f64,
 }
 
 impl StepOutcome {
-    /// After a step of `length` seconds taken, where `wanted` seconds were wanted.
-    pub(crate) fn after(length: f64, wanted: f64, growth: f64) -> Self {
+    /// After an accepted step of `length` seconds where `requested` seconds were proposed.
+    pub(crate) fn after(length: f64, requested: f64, growth: f64) -> Self {
         let next = growth.min(4.0) * length;
         Self {
             taken: true,
             growth,
-            // A step cut short by the grid says nothing against the length wanted before.
-            length: if length < 0.9 * wanted { wanted.max(next) } else { next },
+            // A step shortened by the grid keeps the size proposed before.
+            length: if length < 0.9 * requested {
+                requested.max(next)
+            } else {
+                next
+            },
         }
     }
 }
@@ -95,17 +100,17 @@ impl Integration<'_> {
         }
     }
 
-    /// Whether the step is as short as steps get: half of it would be too short.
+    /// Whether the step cannot be halved.
     pub(crate) fn is_shortest(&self, target: &Target) -> bool {
         target.length <= 2.0 * self.shortest()
     }
 
-    /// Length below which no step is wanted, s.
+    /// Shortest step, s.
     pub(crate) fn shortest(&self) -> f64 {
         8.0 * self.resolution()
     }
 
-    /// Difference between instants that cannot be told apart, s.
+    /// Rounding of time: spacing of floating-point numbers, s.
     pub(crate) fn resolution(&self) -> f64 {
         f64::EPSILON * (self.grid.start.abs() + self.grid.size)
     }

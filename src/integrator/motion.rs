@@ -1,10 +1,10 @@
-//! Communication steps, and output between the integrator's own steps.
+//! The motion at a communication point, and dense output between integration steps.
 //!
-//! Where communication steps are long, the integrator steps exactly to their ends. Where they are short (a circuit's)
-//! or of ever new lengths, and what drives the contact goes on as before, the integrator goes its own way ahead of
-//! them, in steps as long as the error allows, and the communication points lie inside a step: there the contact force
-//! is read from the step's polynomial. An input that changes meanwhile takes the motion back to the communication
-//! point, exactly, from the start of the step.
+//! Long communication steps are integrated exactly to their ends. With short ones (a circuit simulator's) or ones of
+//! ever new sizes, and inputs that continue as before, the integrator runs ahead in steps as long as the error allows.
+//! The communication points then lie inside an integration step, and the tip is read from the step's polynomials (dense
+//! output). When an input changes, the step is repeated from its start to the communication point and integration
+//! restarts there.
 
 use crate::beam::mode::MAX_MODES;
 use crate::excitation::drive::Drive;
@@ -16,7 +16,7 @@ use crate::model::Model;
 use crate::state::State;
 use serde::{Deserialize, Serialize};
 
-/// Everything that moves: the motion around a communication point. Plain numbers: saving it is a copy.
+/// All that changes in a simulation: the motion around a communication point. Plain numbers, so saving it is a copy.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Motion {
     /// The communication point, s.
@@ -27,16 +27,16 @@ pub struct Motion {
     pub current_rate: f64,
     /// Length of the last communication step, s.
     pub(crate) size: f64,
-    /// Extremes of the contact force in it, but for what lies in [`Motion::dense`] inside which it ends, N; none where all
-    /// of it does or nobody asks.
+    /// Extremes of the contact force in it up to the start of the step of [`Motion::dense`], N; `None` if the whole
+    /// communication step lies inside that step, or if no extremes are requested.
     pub(crate) extremes: Option<Extremes>,
-    /// What drove the contact over it.
+    /// Base acceleration and velocity of the fixed contact during it.
     pub(crate) drive: Drive,
-    /// The motion at the communication point, or before it where the integrator is ahead.
+    /// State at the start of the current integration step: at the communication point, or before it.
     pub(crate) start: State,
-    /// Where the integrator is.
+    /// State at the end of the current integration step: at the communication point, or ahead of it.
     pub(crate) end: State,
-    /// The tip in between.
+    /// The tip between `start` and `end`.
     pub(crate) dense: DenseOutput,
 }
 
@@ -51,7 +51,7 @@ pub struct Tip {
     pub rate: f64,
 }
 
-/// How the tip changes at a communication point.
+/// Time derivatives of the tip at a communication point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TipRates {
     /// Rate of the contact force, N/s.
@@ -61,7 +61,7 @@ pub struct TipRates {
 }
 
 impl Motion {
-    /// From a state on.
+    /// Starts from a state.
     pub fn new(state: State) -> Self {
         Self {
             time: state.time,
@@ -76,7 +76,7 @@ impl Motion {
         }
     }
 
-    /// The last state that the integrator has reached by the communication point, at or before it.
+    /// The last integrated state at or before the communication point.
     pub fn state(&self) -> &State {
         if self.end.time <= self.time {
             &self.end
@@ -85,7 +85,7 @@ impl Motion {
         }
     }
 
-    /// Whether every number is one that a simulation can have come to.
+    /// Whether the values are consistent: finite, with times in order (check of a deserialised state).
     pub fn is_sound(&self) -> bool {
         let Self {
             time,
@@ -117,7 +117,7 @@ impl Motion {
             && (start == end && end.time == *time || start.time < end.time && *time <= end.time)
     }
 
-    /// The event that the integrator has met beyond the communication point.
+    /// The opening or closing that the integrator has located beyond the communication point.
     pub fn event_ahead(&self) -> Option<Event> {
         let ahead = self.end.time > self.time && self.end.closed != self.start.closed;
         ahead.then_some(Event {
@@ -126,13 +126,13 @@ impl Motion {
         })
     }
 
-    /// Whether the communication point lies inside a step of the integrator: how far before its end, in steps.
+    /// Where the communication point lies inside an integration step: relative to its end, in step lengths, -1 to 0.
     pub(crate) fn inside(&self) -> Option<f64> {
         let from_end = self.time - self.end.time;
         (from_end < 0.0).then(|| from_end / self.length())
     }
 
-    /// Length of the step that [`Motion::dense`] tells of, s.
+    /// Length of the step of [`Motion::dense`], s.
     fn length(&self) -> f64 {
         self.end.time - self.start.time
     }
@@ -160,7 +160,7 @@ impl Motion {
         }
     }
 
-    /// Extremes of the contact force within the last communication step, N, where the scene asks for them.
+    /// Extremes of the contact force within the last communication step, N; for scenes with `effects.extremes`.
     pub fn extremes(&self, model: &Model) -> Extremes {
         let mut extremes = self.extremes.unwrap_or_else(|| Extremes::at(self.tip(model).force));
         if self.time < self.end.time {
@@ -169,13 +169,13 @@ impl Motion {
         extremes
     }
 
-    /// Adds what the force does in the dense between two instants (s), of which the first may lie before it.
+    /// Adds the extremes of the dense output between two instants (s); the first may lie before the step.
     pub(crate) fn add_dense(&self, extremes: &mut Extremes, model: &Model, from: f64, to: f64) {
         let at = |time: f64| ((time - self.end.time) / self.length()).clamp(-1.0, 0.0);
         extremes.add_course(model, self.start.closed, &self.dense.force, at(from), at(to));
     }
 
-    /// How the tip changes at the communication point, as it has been reached: what changes there at once comes after.
+    /// Time derivatives of the tip at the communication point; at a discontinuity, the limit from the left.
     pub fn tip_rates(&self, model: &Model) -> TipRates {
         let state = self.state();
         if self.size == 0.0 {

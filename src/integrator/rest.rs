@@ -1,29 +1,31 @@
-//! A contact at rest stays at rest until what drives it changes: nothing is integrated meanwhile.
+//! A contact at rest needs no integration until its loads change.
 
 use crate::excitation::drive::Drive;
 use crate::model::Model;
 use crate::state::State;
 
-/// Change of the contact force, in tolerances, that a contact at rest may still have before it.
+/// Largest possible later change of the contact force at rest, relative to the tolerance.
 const UNREST: f64 = 1e-2;
 
-/// Rounding of a contact force, relative to it.
+/// Relative rounding of a contact force.
 const ROUNDING: f64 = 1e-14;
 
-/// Change of the stiffness of the modes by an axial force that is small.
+/// Relative change of the modal stiffness up to which an axial force from the deflection counts as weak.
 const WEAK: f64 = 0.1;
 
-/// The instant (s), `end` at the latest, until which the contact force stays within a hundredth of `tolerance` (N)
-/// of what it is, where it does: under a constant base acceleration, and with the fixed contact at rest.
+/// The instant (s), at most `end`, until which the contact force stays within a hundredth of `tolerance` (N) of its
+/// present value; `None` if the contact is not at rest. Requires constant base acceleration and a fixed contact that
+/// does not move.
 ///
-/// The potential energy is convex, and each mode has at least its own stiffness: a net load `r` on it is at most
-/// `r^2 / (2 omega^2)` above the equilibrium. With the kinetic energy this bounds the energy left, which never
-/// grows; and a force that differs by `e` from that of the equilibrium takes at least `e^2 / (2 k)` of it, `k` the
-/// greatest stiffness on the way.
+/// An energy bound: the potential energy is convex and each mode has at least its own stiffness, so a net load `r` on a
+/// mode is worth at most `r^2 / (2 omega^2)` above the equilibrium. Together with the kinetic energy this bounds the
+/// energy above the equilibrium, which never grows. A contact force that differs by `e` from that of the equilibrium
+/// needs at least
+/// `e^2 / (2 k)` of it, with `k` the greatest tangent stiffness in between.
 ///
-/// An axial force that follows the deflection adds its loads. It has no potential, but where it changes the stiffness
-/// of the modes little and something dissipates, the bound holds but for a factor near one, and the hundredth is
-/// there for such. Elsewhere nothing but the equilibrium to rounding is rest.
+/// An axial force that follows the deflection adds its loads. It has no potential; but if it changes the modal
+/// stiffness little and there is damping, the bound holds up to a factor near one, for which the hundredth leaves room.
+/// Otherwise only the equilibrium to rounding counts as rest.
 pub(crate) fn rests_until(model: &Model, state: &State, drive: &Drive, tolerance: f64, end: f64) -> Option<f64> {
     if !drive.is_constant() || model.generator.is_active(state.time) {
         return None;
@@ -54,7 +56,7 @@ pub(crate) fn rests_until(model: &Model, state: &State, drive: &Drive, tolerance
             load * load / mode.omega_squared
         };
         energy += 0.5 * (strain + at.v * at.v);
-        // The first modes tell of most motions.
+        // The first modes reveal most motions: return early.
         if energy.is_nan() || energy > least {
             return None;
         }

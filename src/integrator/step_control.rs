@@ -1,6 +1,5 @@
-//! A communication step as a sequence of integration steps.
+//! Step size control: a communication step as a sequence of integration steps with 4 or 8 nodes.
 
-use crate::BARE;
 use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
 use crate::integrator::attempt::step_factor;
@@ -16,33 +15,32 @@ use crate::math::nodal::{LONG, SHORT};
 use crate::model::Model;
 use crate::state::State;
 
-/// Spacing of floating-point numbers at an instant, in first steps, with which the motion can be followed.
+/// Largest spacing of floating-point numbers at an instant, relative to the first step, that allows integration.
 const COARSEST: f64 = 0.1;
 
-/// m/s.
+/// Limit of the velocity of the fixed contact, m/s.
 const SPEED_OF_LIGHT: f64 = 299_792_458.0;
 
-/// Share of the tolerance that one step may use up. Found by comparing errors with tolerances over scenes
-/// (`tests/calibration.rs`): a blow makes the errors of the motion before it a hundred times larger, and without
-/// damping errors add up.
+/// Error allowed per step, relative to the tolerance. Calibrated by comparing errors with tolerances over many scenes
+/// (`tests/calibration.rs`): an impact amplifies earlier errors a hundredfold, and without damping errors accumulate.
 const SHARE: f64 = 0.004;
 
-/// Growth from step to step that shows the steps are still finding their length.
+/// Growth factor of the step size from which the step size is taken to be still adapting.
 const GROWING: f64 = 1.5;
 
-/// How much longer than a short step a long one has to be to be worth its cost.
+/// Ratio of an 8-node step to a 4-node step from which the longer one is cheaper.
 const WORTH: f64 = 2.0;
 
-/// Tolerances at which the rounding of the polynomials of many nodes begins to show.
+/// Relative tolerance below which the rounding of the 8-node polynomials shows; 4 nodes are used there.
 const LONG_FLOOR: f64 = 3e-11;
 
-/// Many nodes reach at most about this many times as far as few.
+/// Largest expected ratio of an 8-node step to a 4-node step of the same error.
 const LONGER: f64 = 16.0;
 
 /// Advances the state.
 ///
 /// # Errors
-/// A [`StepError`]; the state is then of no use.
+/// A [`StepError`]; the state is then undefined.
 pub(crate) fn advance(
     model: &Model,
     state: &mut State,
@@ -55,11 +53,11 @@ pub(crate) fn advance(
     let (grid, dense) = match steps {
         Steps::Exactly { time, size } => {
             state.time = rests_until(model, state, &drive, tolerance, time + size).unwrap_or(time);
-            let left = size - (state.time - time);
-            if left <= 0.0 || step_exactly(model, state, &mut workspace.propagators, &drive, left) {
+            let remaining = size - (state.time - time);
+            if remaining <= 0.0 || step_exactly(model, state, &mut workspace.propagators, &drive, remaining) {
                 return Ok(());
             }
-            (Grid::over(state.time, left), None)
+            (Grid::over(state.time, remaining), None)
         }
         Steps::Own { until, dense } => {
             let size = state.short_step.max(state.long_step);
@@ -73,7 +71,7 @@ pub(crate) fn advance(
         drive,
         grid,
         dense,
-        extremes: extremes.filter(|_| !BARE),
+        extremes,
         tolerance,
         allowed: SHARE * tolerance,
         refusals: 0,
@@ -112,18 +110,20 @@ impl Integration<'_> {
         Ok(())
     }
 
-    /// One integration step, taken or rejected: with few nodes where they reach far enough, else with many.
+    /// One integration step, accepted or rejected: with 4 nodes where they suffice, else with 8.
     fn advance(&mut self) -> Result<(), StepError> {
-        let left = self.grid.left();
+        let remaining = self.grid.remaining();
         let short_step = self.state.short_step;
-        // Just after a blow the force is no polynomial of high degree.
+        // Just after an impact the force is not smooth enough for polynomials of high degree.
         let smooth = if self.state.last_closing < 0.0 {
             f64::INFINITY
         } else {
             self.state.time - self.state.last_closing
         };
         let long_step = self.state.long_step.min(smooth);
-        if self.tolerance <= LONG_FLOOR * self.model.force_scale || left <= short_step || long_step < WORTH * short_step
+        if self.tolerance <= LONG_FLOOR * self.model.force_scale
+            || remaining <= short_step
+            || long_step < WORTH * short_step
         {
             let outcome = self.advance_with::<SHORT>(short_step)?;
             self.state.short_step = outcome.length;
@@ -133,37 +133,37 @@ impl Integration<'_> {
         } else {
             let outcome = self.advance_with::<LONG>(long_step)?;
             self.state.long_step = outcome.length;
-            // Where a long step is far shorter than it might be, a short one will do.
+            // A long step cut far below its possible size: a short one will do next time.
             if outcome.taken {
-                self.state.short_step = short_step.max(outcome.growth * left.min(long_step) / LONGER);
+                self.state.short_step = short_step.max(outcome.growth * remaining.min(long_step) / LONGER);
             }
         }
         Ok(())
     }
 
-    /// One step of `S` nodes, taken or rejected, of `wanted` seconds or less.
-    fn advance_with<const S: usize>(&mut self, wanted: f64) -> Result<StepOutcome, StepError>
+    /// One step with `S` nodes of at most `requested` seconds, accepted or rejected.
+    fn advance_with<const S: usize>(&mut self, requested: f64) -> Result<StepOutcome, StepError>
     where
         Workspace: Room<S>,
     {
-        let wanted = wanted
+        let requested = requested
             .min(self.model.longest_step(self.state.time))
             .max(self.shortest());
         let corner = self.model.generator.next_break(self.state.time);
-        let target = self.grid.target(wanted, self.state.time, corner);
+        let target = self.grid.target(requested, self.state.time, corner);
         let attempt = self.attempt::<S>(&target);
         let ratio = attempt
             .as_ref()
             .map_or(f64::INFINITY, |trial| self.relative_error(trial, &target));
         let Some(trial) = attempt.filter(|_| self.is_acceptable(ratio, &target)) else {
-            // The law asks for what no polynomial follows: a constant force gets on.
+            // The collocation failed; use the discrete-gradient step.
             if self.state.closed && (self.is_shortest(&target) || self.refusals >= REFUSALS) {
                 return self.take_with_constant_force(&target);
             }
             if self.is_shortest(&target) {
                 return Err(self.error(StepErrorCause::NotFinite));
             }
-            // Without an error estimate by the most, as nothing is known.
+            // Without an error estimate, shrink by the largest factor.
             let shrink = if ratio.is_finite() {
                 0.8 * step_factor::<S>(ratio)
             } else {
@@ -171,11 +171,11 @@ impl Integration<'_> {
             };
             return Ok(self.reject(target.length * shrink.clamp(0.1, 0.5)));
         };
-        // The error estimate may miss what the energy shows.
+        // The energy may reveal an error that the estimate misses.
         if !self.is_shortest(&target) && self.breaks_account(&trial, target.length) {
             return Ok(self.reject(0.5 * target.length));
         }
-        // By the whole step, also where an event cuts it short.
+        // From the error of the whole step, also if an event shortens it.
         let growth = if ratio < 1e-7 {
             64.0
         } else {
@@ -184,20 +184,20 @@ impl Integration<'_> {
         let candidate = self.first_event_candidate(&trial, target.length);
         if let Some(passed) = self.first_passage(&trial)
             && candidate.is_none_or(|part| passed <= part)
-            && let Some(outcome) = self.stop_at_threshold::<S>(passed, &target, growth, wanted)?
+            && let Some(outcome) = self.stop_at_threshold::<S>(passed, &target, growth, requested)?
         {
             return Ok(outcome);
         }
         if let Some(part) = candidate {
             if S != SHORT {
-                // Events are located in short steps; long ones end before.
+                // Events are located in 4-node steps; 8-node steps end before them.
                 return Ok(self.reject(0.9 * part * target.length));
             }
             if let Some(cut) = self.cut(part, &trial, target.length) {
-                return self.end_at::<S>(&cut, growth, wanted);
+                return self.end_at::<S>(&cut, growth, requested);
             }
         }
         self.take(&trial, &target)?;
-        Ok(StepOutcome::after(target.length, wanted, growth))
+        Ok(StepOutcome::after(target.length, requested, growth))
     }
 }

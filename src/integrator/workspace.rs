@@ -1,4 +1,4 @@
-//! Room for the steps, made once, so that no step allocates.
+//! Preallocated memory of the integrator, so that no step allocates, and the limit of steps.
 
 use crate::beam::mode::{MAX_MODES, ModeState, ModeStates};
 use crate::closed_loop::propagator::Propagators;
@@ -8,25 +8,25 @@ use crate::integrator::events::log::Events;
 use crate::math::nodal::{LONG, SHORT};
 use crate::model::Model;
 
-/// Scratch of the steps. Nothing in it changes a result, only the time it takes.
+/// Caches and scratch memory. Its content never affects results, only the time they take.
 #[derive(Clone, Debug)]
 pub struct Workspace {
     short: Cache<SHORT>,
     long: Cache<LONG>,
-    /// The modes at the end of the step about to be taken.
+    /// Modes at the end of the current trial step.
     end: ModeStates,
-    /// The modes at instants looked at.
+    /// Modes at the end of probe steps (event location).
     probe: ModeStates,
-    /// Of exact steps.
+    /// Cache of exact linear steps.
     pub(crate) propagators: Propagators,
-    /// Steps computed so far, taken, repeated, or only looked at; those of a new length count for several.
+    /// Steps computed so far, including rejected and probe steps, in units of a step with cached coefficients.
     pub(crate) work: u64,
-    /// Of the last communication step.
+    /// Openings and closings of the last communication step.
     pub events: Events,
 }
 
 impl Workspace {
-    /// For the model.
+    /// Allocates for the model.
     pub fn new(model: &Model) -> Self {
         Self {
             short: Cache::new(model),
@@ -40,9 +40,9 @@ impl Workspace {
     }
 }
 
-/// A workspace for steps with `S` nodes.
+/// The parts of the workspace for steps with `S` nodes.
 pub(crate) trait Room<const S: usize> {
-    /// The cache, and room for the modes at the end of the step and at instants looked at.
+    /// Coefficient cache, modes at the end of the trial step, modes at the end of probe steps.
     fn parts(&mut self) -> (&mut Cache<S>, &mut ModeStates, &mut ModeStates);
 }
 
@@ -58,30 +58,29 @@ impl Room<LONG> for Workspace {
     }
 }
 
-/// Integration steps of known lengths that a communication step may take, and further ones per second of it.
+/// Largest work of a communication step, in steps with cached coefficients.
 const STEPS: u64 = 10_000_000;
-/// See [`STEPS`].
+/// Further work allowed per simulated second, 1/s.
 const RATE: f64 = 1e7;
 
-/// Work of a step of a new length, in steps of known lengths: its coefficients have to be computed.
+/// Work of a step whose coefficients must be computed, in steps with cached coefficients.
 const NEW_LENGTH: u64 = 10;
 
-/// Work of a step whose length comes again, or is new, in steps of known lengths.
+/// Work of a step with cached coefficients, or with new ones.
 pub(crate) fn work(recurring: bool) -> u64 {
     if recurring { 1 } else { NEW_LENGTH }
 }
 
-/// What a communication step may still take, in integration steps of known lengths, also repeated ones and ones only
-/// looked at.
+/// Limit of the work of a communication step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Budget {
     steps: u64,
-    /// The work of all communication steps so far at which it is spent.
+    /// Value of [`Workspace::work`] at which it is exhausted.
     limit: u64,
 }
 
 impl Budget {
-    /// From here on, for `size` seconds.
+    /// For a communication step of `size` seconds that begins now.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -95,13 +94,13 @@ impl Budget {
         }
     }
 
-    /// Whether there is something left at the instant `time` (s).
+    /// Checks the limit at the instant `time` (s).
     ///
     /// # Errors
-    /// [`StepErrorCause::Budget`] where it is spent.
+    /// [`StepErrorCause::Budget`] if it is exhausted.
     pub(crate) fn check(&self, workspace: &Workspace, time: f64) -> Result<(), StepError> {
         let cause = StepErrorCause::Budget(self.steps);
-        let left = workspace.work < self.limit;
-        left.then_some(()).ok_or(StepError { time, cause })
+        let within_limit = workspace.work < self.limit;
+        within_limit.then_some(()).ok_or(StepError { time, cause })
     }
 }

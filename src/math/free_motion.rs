@@ -1,6 +1,6 @@
 //! The exact motion of a damped oscillator `q'' + c q' + omega^2 q = 0` from its initial state.
 
-/// The free motion: the state `(q, v)` after a time per initial state.
+/// Free motion: the state `(q, v)` after a time, per unit of the initial state.
 #[derive(Clone, Copy, Debug)]
 pub struct FreeMotion {
     /// q per initial q.

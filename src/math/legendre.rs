@@ -86,7 +86,8 @@ mod tests {
 
     #[test]
     fn radau_nodes_are_the_published_ones() {
-        // Hairer and Wanner, Solving Ordinary Differential Equations II, table 5.6: (4 -+ sqrt(6)) / 10 and 1 on [0, 1].
+        // Hairer and Wanner, Solving Ordinary Differential Equations II, table 5.6: (4 -+ sqrt(6)) / 10 and 1 on [0,
+        // 1].
         let root = 6.0_f64.sqrt();
         for (found, exact) in radau(3).iter().zip([(4.0 - root) / 10.0, (4.0 + root) / 10.0, 1.0]) {
             assert!((f64::midpoint(1.0, *found) - exact).abs() < 1e-15, "{found} {exact}");

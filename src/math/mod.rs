@@ -1,4 +1,4 @@
-//! Mathematics that is not about contacts: Legendre polynomials and Gauss nodes, bracketed roots.
+//! Numerical tools without contact mechanics: quadrature, polynomials, root finding, vector arithmetic.
 
 pub mod free_motion;
 pub mod legendre;

@@ -1,4 +1,4 @@
-//! Values at the nodes of a step, and the arithmetic on them, which is inlined into whatever is compiled for the processor
+//! Values at the nodes of a step and arithmetic on them, inlined into kernels compiled for the processor
 //! ([`crate::math::simd`]).
 
 use crate::math::simd::Arithmetic;
@@ -22,7 +22,7 @@ pub fn scaled<const S: usize>(values: &Nodal<S>, factor: f64) -> Nodal<S> {
     values
 }
 
-/// The value at the last node, the end of the step.
+/// The value at the last node, which is the end of the step.
 #[inline(always)]
 pub fn end<const S: usize>(values: &Nodal<S>) -> f64 {
     values.last().copied().unwrap_or_default()
@@ -50,7 +50,7 @@ pub fn add_products<const N: usize, A: Arithmetic>(sum: &mut [f64; N], a: &[f64;
     }
 }
 
-/// Adds the columns, each times its load.
+/// Adds the columns, each times its load: a matrix-vector product.
 #[inline(always)]
 pub fn add_columns<const S: usize, A: Arithmetic>(values: &mut Nodal<S>, columns: &[Nodal<S>; S], loads: &Nodal<S>) {
     for (column, load) in columns.iter().zip(loads) {

@@ -1,15 +1,15 @@
-//! Polynomials of a quantity over a step, by their coefficients about its end: they are read inside the step and predict the
-//! next one.
+//! Polynomials of a quantity over a step, expanded about its end: for dense output, and to extrapolate to the next
+//! step.
 
 use serde::{Deserialize, Serialize};
 
 use crate::math::nodal::LONG;
 
-/// A polynomial through the nodes of a step, by its coefficients about the end: it predicts the next step.
+/// Coefficients of a polynomial through the nodes of a step, about the step's end, in time relative to its length.
 pub type Prediction = [f64; LONG + 1];
 
-/// Two predictions of the force over the next step, one through all nodes and one through the last few, and which of
-/// the two was the better one last time.
+/// Two extrapolations of the force to the next step, through all nodes and through the last few, and which of the two
+/// was better last time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Predictions {
     pub(crate) steep: Prediction,
@@ -18,7 +18,7 @@ pub struct Predictions {
 }
 
 impl Predictions {
-    /// The polynomial through the start and all nodes of the step they are from.
+    /// The polynomial through the start and all nodes of the last step.
     pub fn through_all(&self) -> &Prediction {
         &self.steep
     }

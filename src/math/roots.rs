@@ -1,14 +1,14 @@
-//! Roots of scalar functions between two points where the sign differs.
+//! Roots of scalar functions in a bracket.
 
-/// Root of `f` between `a` and `b`, to the spacing of floating-point numbers there; `None` unless `f(a)` and `f(b)` are
-/// numbers of different sign, and where `f` gives no number in between.
+/// Root of `f` between `a` and `b`, to the spacing of floating-point numbers. `None` unless `f(a)` and `f(b)` differ in
+/// sign, and if `f` returns NaN.
 pub fn bracketed(mut f: impl FnMut(f64) -> f64, a: f64, b: f64) -> Option<f64> {
     let ends = ((a, f(a)), (b, f(b)));
     between(f, ends.0, ends.1, 0.0)
 }
 
-/// The same where the values at the two points are known, to within `resolution`. Inverse quadratic interpolation where
-/// it is safe, bisection elsewhere.
+/// The same with known values at the two points, to within `resolution`. Inverse quadratic interpolation where it is
+/// safe, else bisection.
 ///
 /// T. R. Chandrupatla, Advances in Engineering Software 28 (1997) 145.
 pub fn between(mut f: impl FnMut(f64) -> f64, a: (f64, f64), b: (f64, f64), resolution: f64) -> Option<f64> {
@@ -22,9 +22,9 @@ pub fn between(mut f: impl FnMut(f64) -> f64, a: (f64, f64), b: (f64, f64), reso
     if f1.is_nan() || f2.is_nan() || (f1 > 0.0) == (f2 > 0.0) {
         return None;
     }
-    // The secant first: the function is nearly straight where an event is sought.
+    // First a secant step: near events the function is nearly linear.
     let mut fraction = f1 / (f1 - f2);
-    // Bisection alone would need 1100 halvings at the worst, from the largest number to the smallest.
+    // Bisection alone would need 1100 iterations at worst, from the largest number to the smallest.
     for _ in 0..1100 {
         let x = x1 + fraction * (x2 - x1);
         let value = f(x);

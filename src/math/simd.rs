@@ -1,24 +1,24 @@
-//! The instructions of the processor, chosen once. The kernel of a step is compiled twice from the same source: for any
-//! processor, and for those with vectors of four numbers and a fused multiply-add (AVX2 and FMA).
+//! Instruction set, selected once. The kernel of a step is compiled twice from the same source: for the generic
+//! processor, and for processors with vectors of four numbers and fused multiply-add (AVX2 and FMA).
 
 #[cfg(target_arch = "x86_64")]
 use fearless_simd::Avx2;
 
-/// Numbers that a kernel computes side by side.
+/// Width of the vectors of a kernel.
 pub const LANES: usize = 4;
 
-/// What the kernel of a step is compiled for.
+/// Instruction set of the kernel of a step.
 #[derive(Clone, Copy, Debug)]
 pub enum Simd {
-    /// Any processor.
+    /// Generic processor.
     Portable,
-    /// This one has AVX2 and FMA, which the token proves.
+    /// AVX2 and FMA; the token proves that the processor has them.
     #[cfg(target_arch = "x86_64")]
     Avx2(Avx2),
 }
 
 impl Simd {
-    /// The best for this processor; any processor's where the feature `portable` is on.
+    /// The best for this processor; generic with the feature `portable`.
     pub fn detect() -> Self {
         #[cfg(all(target_arch = "x86_64", not(feature = "portable")))]
         if let Some(token) = fearless_simd::Level::new().as_avx2() {
@@ -28,18 +28,18 @@ impl Simd {
     }
 }
 
-/// The one operation that has to be asked for: the compiler never fuses on its own, and without the instruction
-/// [`f64::mul_add`] is a slow library call.
+/// Multiply-add, the one operation to be chosen explicitly: the compiler never fuses on its own, and without the
+/// instruction [`f64::mul_add`] is a slow library call.
 pub trait Arithmetic {
     /// `a b + c`.
     fn mul_add(a: f64, b: f64, c: f64) -> f64;
 }
 
-/// Rounds twice.
+/// Separate multiplication and addition: rounds twice.
 #[derive(Clone, Copy, Debug)]
 pub struct Separate;
 
-/// Rounds once, by an instruction of its own.
+/// Fused multiply-add: rounds once.
 #[derive(Clone, Copy, Debug)]
 pub struct Fused;
 
@@ -57,8 +57,9 @@ impl Arithmetic for Fused {
     }
 }
 
-/// `compiled_for!(simd, A => body)`: the body in the compilation for the simd, whose [`Arithmetic`] it knows as
-/// `A`. Only what is inlined into the body is compiled for the simd.
+/// `compiled_for!(simd, A => body)`: evaluates the body compiled for the instruction set `simd`, with its
+/// [`Arithmetic`] as
+/// `A`. Only functions inlined into the body are compiled for it.
 macro_rules! compiled_for {
     ($simd:expr, $arithmetic:ident => $body:expr) => {
         match $simd {

@@ -1,6 +1,5 @@
 //! The parameters by variable: reading, setting and checking them against their ranges.
 
-use crate::BARE;
 use crate::error::SceneError;
 use crate::scene::Scene;
 use crate::variables::{
@@ -109,8 +108,7 @@ impl Scene {
         Ok(())
     }
 
-    /// Checks every parameter against its range, for scenes whose fields were written directly, and whether this build has
-    /// the effects.
+    /// Checks every parameter against its range, for scenes whose fields were written directly.
     ///
     /// # Errors
     /// The first [`SceneError`] met.
@@ -120,24 +118,6 @@ impl Scene {
             let variable = RealParameter::SolverMaximumStep.variable();
             let allowed = format!("allowed is 0, for no limit, or {SHORTEST_LIMIT} or more");
             return Err(SceneError::out_of_range(variable, longest, allowed));
-        }
-        let effects = &self.effects;
-        let beyond_bare = [
-            ("effects.contactDamping", effects.contact_damping),
-            ("effects.chatter", effects.chatter),
-            ("effects.extremes", effects.extremes),
-            ("effects.energy", effects.energy),
-            (
-                "effects.excitation",
-                !matches!(effects.excitation, ExcitationKind::None | ExcitationKind::Sine),
-            ),
-            (
-                "effects.axialForce",
-                effects.axial_force == AxialForceKind::FromDeflection,
-            ),
-        ];
-        if BARE && let Some((name, _)) = beyond_bare.into_iter().find(|(_, asked)| *asked) {
-            return Err(SceneError::Bare(name));
         }
         let mut copy = *self;
         VARIABLES.iter().try_for_each(|variable| match variable.group {

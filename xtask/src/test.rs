@@ -77,11 +77,10 @@ fn rust(calls: &str) -> Result<()> {
 fn library() -> Result<()> {
     rust("1000000")?;
     if !valgrind::is_installed() {
-        println!("== valgrind, disabled effects: NOT RUN, {}", valgrind::MISSING);
+        println!("== valgrind: NOT RUN, {}", valgrind::MISSING);
         return Ok(());
     }
-    stage("valgrind", valgrind::run)?;
-    stage("disabled effects add no cost", || report::start("effects", &["--off"]))
+    stage("valgrind", valgrind::run)
 }
 
 /// The stages with the packed component, and Python.

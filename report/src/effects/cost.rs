@@ -20,41 +20,25 @@ pub struct Cost {
     pub nanoseconds: f64,
 }
 
-/// Builds for any processor, whose instructions are counted.
-pub struct Counter {
-    with_all: RunScene,
-    /// Without the effects that reach into the steps of the integrator.
-    bare: RunScene,
-}
+/// A build for any processor, whose instructions are counted.
+pub struct Counter(RunScene);
 
 impl Counter {
-    /// Builds both.
+    /// Builds it.
     pub fn build() -> Result<Self> {
-        Ok(Self {
-            with_all: RunScene::build_in("target/portable", &["--features=portable"])?,
-            bare: RunScene::build_in("target/bare", &["--features=bare"])?,
-        })
+        RunScene::build_in("target/portable", &["--features=portable"]).map(Self)
     }
 
     /// Instructions per simulated millisecond of the minimal scene with changes.
     pub fn count(&self, changes: &Changes) -> Result<f64> {
-        instructions(&self.with_all, changes)
-    }
-
-    /// The same in both builds.
-    pub fn both(&self, changes: &Changes) -> Result<(f64, f64)> {
-        Ok((self.count(changes)?, instructions(&self.bare, changes)?))
+        let counted = |stop| self.0.instructions(SCENE, &until(changes, stop));
+        Ok((counted(LENGTH)? - counted(STEP)?) / (1e3 * (LENGTH - STEP)))
     }
 }
 
 /// Nanoseconds per simulated millisecond of the minimal scene with changes, in the usual build.
 pub fn nanoseconds(usual: &RunScene, changes: &Changes, runs: usize) -> Result<f64> {
     usual.nanoseconds(SCENE, &until(changes, LENGTH), runs)
-}
-
-fn instructions(build: &RunScene, changes: &Changes) -> Result<f64> {
-    let counted = |stop| build.instructions(SCENE, &until(changes, stop));
-    Ok((counted(LENGTH)? - counted(STEP)?) / (1e3 * (LENGTH - STEP)))
 }
 
 fn until(changes: &Changes, stop: f64) -> Vec<(String, String)> {

@@ -14,7 +14,7 @@ pub mod section;
 use std::fs;
 use std::path::PathBuf;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
@@ -25,18 +25,12 @@ use self::list::{EFFECTS, Effect};
 use self::run_scene::RunScene;
 use crate::markdown::table as markdown_table;
 
-/// Instructions that everything that is off may cost, of those of a build that does not have it.
-const ALLOWED: f64 = 0.01;
-
 /// Where to write.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The page to write
     #[arg(long, default_value = "docs/effects.md")]
     page: PathBuf,
-    /// Only check that disabled effects add no cost
-    #[arg(long)]
-    off: bool,
 }
 
 /// How much is measured.
@@ -55,7 +49,6 @@ pub struct Measurement {
     extent: Extent,
     minimal: Cost,
     effects: Vec<Measured>,
-    off: Option<[Off; 2]>,
 }
 
 /// An effect, measured.
@@ -67,25 +60,8 @@ struct Measured {
     influence: Option<Influence>,
 }
 
-/// Instructions of the usual build and of one without what is off, per millisecond of a run.
-pub struct Off {
-    run: &'static str,
-    with: f64,
-    without: f64,
-}
-
-impl Off {
-    /// What is added, as a part.
-    fn more(&self) -> f64 {
-        self.with / self.without - 1.0
-    }
-}
-
 /// Measures and writes the page.
 pub fn run(arguments: &Arguments) -> Result<()> {
-    if arguments.off {
-        return what_is_off();
-    }
     if !callgrind::is_installed() {
         eprintln!(
             "{}, so instructions are not counted: nanoseconds alone",
@@ -101,12 +77,11 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     };
     let measurement = measure(extent, &progress)?;
     progress.finish_and_clear();
-    let off = page::nothing(&measurement).unwrap_or_default();
     fs::write(&arguments.page, page::page(&measurement))
         .with_context(|| format!("cannot write {}", arguments.page.display()))?;
-    println!("{}\n{off}", markdown_table(&page::costs(&measurement)));
+    println!("{}", markdown_table(&page::costs(&measurement)));
     println!("{}", arguments.page.display());
-    check(measurement.off.as_ref())
+    Ok(())
 }
 
 /// Measures: first times, one after the other, then what does not depend on what else the machine does.
@@ -165,42 +140,5 @@ pub fn measure(extent: Extent, progress: &ProgressBar) -> Result<Measurement> {
         extent,
         minimal: *minimal,
         effects,
-        off: counter.as_ref().map(off).transpose()?,
     })
-}
-
-/// Checks what the effects that are off cost, and tells.
-pub fn what_is_off() -> Result<()> {
-    if !callgrind::is_installed() {
-        bail!(callgrind::MISSING);
-    }
-    let off = off(&Counter::build()?)?;
-    println!("{}", page::off(&off));
-    check(Some(&off))
-}
-
-/// What the effects that are off cost.
-fn off(counter: &Counter) -> Result<[Off; 2]> {
-    let count = |(run, amplitude): (&'static str, &str)| {
-        let changes = [("excitation.amplitude".to_owned(), amplitude.to_owned())];
-        let (with, without) = counter.both(&changes)?;
-        Ok::<_, anyhow::Error>(Off { run, with, without })
-    };
-    let (closed, opening) = (("closed contact, 98 m/s²", "98"), ("opening contact, 400 m/s²", "400"));
-    Ok([count(closed)?, count(opening)?])
-}
-
-/// An error where what is off costs too much.
-fn check(off: Option<&[Off; 2]>) -> Result<()> {
-    for off in off.into_iter().flatten() {
-        if off.more() > ALLOWED {
-            bail!(
-                "disabled effects cost {:+.2} % ({}); allowed: {} %",
-                100.0 * off.more(),
-                off.run,
-                100.0 * ALLOWED
-            );
-        }
-    }
-    Ok(())
 }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::cost::{Cost, LENGTH};
 use super::influence::{CLOSED, Influence, OPENING};
 use super::list::{self, MINIMAL};
-use super::{Measured, Measurement, Off};
+use super::{Measured, Measurement};
 use crate::content::Table;
 use crate::markdown::table as markdown_table;
 use crate::numbers::two_digits;
@@ -100,26 +100,6 @@ pub fn when(measurement: &Measurement) -> String {
     })
 }
 
-/// What the effects that are off cost, as a sentence and a list.
-pub fn off(off: &[Off; 2]) -> String {
-    let mut text = String::from(
-        "The component can be built without contact damping, chatter, extremes, energy balance, the axial force from the \
-         deflection and all excitations but the sine (feature `bare`). Instructions per millisecond of the minimal scene in \
-         the usual build, and in that one; `cargo xtask test` fails where it is more than 1 %:\n",
-    );
-    for off in off {
-        let _ = write!(
-            text,
-            "\n- {}: {:.0} and {:.0}, {:+.2} %",
-            off.run,
-            off.with,
-            off.without,
-            100.0 * off.more()
-        );
-    }
-    text
-}
-
 /// What instructions and times are, as a sentence.
 pub fn how(measurement: &Measurement) -> String {
     let counted = if measurement.minimal.instructions.is_some() {
@@ -133,11 +113,6 @@ pub fn how(measurement: &Measurement) -> String {
     )
 }
 
-/// What the effects that are off cost, where that was measured.
-pub fn nothing(measurement: &Measurement) -> Option<String> {
-    measurement.off.as_ref().map(off)
-}
-
 /// How often each was timed.
 fn runs(measurement: &Measurement) -> usize {
     measurement.extent.runs
@@ -149,7 +124,6 @@ pub fn page(measurement: &Measurement) -> String {
     let changes = influences(measurement);
     let caption = changes.as_ref().map_or("", |table| &table.caption);
     let changed = changes.as_ref().map_or(String::new(), markdown_table);
-    let off = nothing(measurement).unwrap_or("Not measured.".to_owned());
     format!(
         "<!-- Written by cargo xtask effects. -->\n# Cost and influence of each effect\n\n    cargo xtask effects\n\n\
          runs [`scenes/minimal.toml`](../scenes/minimal.toml), in which every effect is off that can be, and adds each effect \
@@ -157,8 +131,7 @@ pub fn page(measurement: &Measurement) -> String {
          of the effect are read. Instructions are counted by valgrind's callgrind in a build for any processor, nanoseconds taken on \
          this machine in the usual build, the shortest of {} runs.\n\n{table}\n\n\
          ## When each matters\n\n{sentences}\n\
-         {caption}\n\n{changed}\n\n\
-         ## Disabled effects add no cost\n\n{off}\n",
+         {caption}\n\n{changed}\n",
         LENGTH * 1e3,
         runs(measurement),
     )

@@ -21,7 +21,6 @@ pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
     let mut blocks = vec![Block::Text(text), Block::Table(page::costs(&measurement))];
     blocks.extend(page::influences(&measurement).map(Block::Table));
     blocks.push(Block::Text(page::when(&measurement)));
-    blocks.extend(page::nothing(&measurement).map(Block::Text));
     Ok(vec![Section {
         id: "effects",
         title: "Cost and influence of each effect",

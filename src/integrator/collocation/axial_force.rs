@@ -1,12 +1,13 @@
-//! A step where the axial force follows the deflection ([`Feedback`]): loads on all modes that follow from all of them.
+//! A step with an axial force that follows the deflection ([`Feedback`]): loads that couple all modes.
 //!
-//! The loads are polynomials through the nodes, as the contact force is, and weak against the stiffness of the modes
-//! over a step. So they are found by iteration: the motion under the forces known, the loads in it, the contact forces
-//! under those loads. What the polynomials of the loads miss at the start goes into the estimate of the error as what
-//! that of the base acceleration misses does. A step in which the loads do not settle is too long.
+//! The loads are collocation polynomials like the contact force, and weak compared with the modal stiffness. They are
+//! found by fixed-point iteration: motion under the current forces, loads of that motion, contact forces under those
+//! loads. The defect of the load polynomials at the start of the step enters the error estimate in the same way as that
+//! of the base acceleration. If the iteration does not converge, the step is too long.
 //!
-//! In violent motion the axial force may exceed the buckling load for a while: the beam then moves away from where it is,
-//! until the sine in the law of the axial force turns to tension. That is followed like any other motion, in shorter steps.
+//! In violent motion the axial force may temporarily exceed the buckling load: the beam then moves away from its
+//! position until the sine in the law of the axial force turns to tension. Such motion is integrated like any other, in
+//! shorter steps.
 
 use crate::beam::axial::Feedback;
 use crate::beam::mode::{MAX_MODES, Modal};
@@ -18,26 +19,26 @@ use crate::math::simd::{Arithmetic, LANES};
 use crate::model::Model;
 use crate::state::State;
 
-/// Rounds before a step is judged too long.
+/// Fixed-point iterations before the step is rejected.
 const ROUNDS: u32 = 8;
 
-/// Rounding of the loads, relative to them.
+/// Relative rounding of the loads.
 const ROUNDING: f64 = 1e-13;
 
 /// A value at each node for each mode.
 pub(crate) type NodalModes<const S: usize> = [Nodal<S>; MAX_MODES];
 
-/// The loads that belong to the motion, with the contact forces under them.
+/// Converged loads and contact forces.
 pub(crate) struct Settled<const S: usize> {
     /// The contact forces.
     pub(crate) solution: Solution<S>,
     /// The loads on the modes at the nodes.
     pub(crate) loads: NodalModes<S>,
-    /// What the polynomials of base acceleration and loads miss at the start makes of the indentation.
+    /// Effect on the indentation of the defects of base acceleration and loads at the start.
     pub(crate) error: ErrorColumn<S>,
 }
 
-/// Finds the loads, with the contact forces under them; `None` where they do not settle.
+/// Iterates loads and contact forces; `None` if they do not converge.
 #[inline(always)]
 pub(crate) fn settle<const S: usize, A: Arithmetic>(
     model: &Model,
@@ -73,7 +74,7 @@ pub(crate) fn settle<const S: usize, A: Arithmetic>(
                 let error = load_error::<S, A>(model, free, &start, &loads, (step, collocation));
                 let free = FreeResponse {
                     error: &error,
-                    missed: 1.0,
+                    start_defect: 1.0,
                     ..with_loads::<S, A>(model, free, step, &loads)
                 };
                 closed_forces::<S, A>(model, step, &free, forces, newton)?
@@ -87,7 +88,7 @@ pub(crate) fn settle<const S: usize, A: Arithmetic>(
     None
 }
 
-/// The modes at the nodes under contact forces, base acceleration and the loads.
+/// Modal displacements at the nodes under contact forces, base acceleration and loads.
 #[inline(always)]
 fn motion_of_modes<const S: usize, A: Arithmetic>(
     model: &Model,
@@ -110,7 +111,7 @@ fn motion_of_modes<const S: usize, A: Arithmetic>(
     motion
 }
 
-/// Sets the loads on the modes in their motion at the nodes.
+/// Computes the modal loads of a motion at the nodes.
 #[inline(always)]
 fn set_loads<const S: usize, A: Arithmetic>(
     model: &Model,
@@ -124,7 +125,7 @@ fn set_loads<const S: usize, A: Arithmetic>(
         add::<S, A>(&mut tip, mode.tip, q);
     }
     let change = tip.map(|y| axial.change(y));
-    // Several rows at once, which do not wait for one another.
+    // Several independent rows at once.
     let blocks = loads.chunks_exact_mut(LANES).zip(axial.slopes.chunks_exact(LANES));
     for (block, (loads, slopes)) in blocks.enumerate().take(count.div_ceil(LANES)) {
         let mut sums = [[0.0; S]; LANES];
@@ -144,8 +145,8 @@ fn set_loads<const S: usize, A: Arithmetic>(
     }
 }
 
-/// The force on the tip that would bend the spring as much as the difference of the loads, and as much as the loads,
-/// N: the largest over the nodes.
+/// Static tip force of the same strain energy as the change of the loads, and as the loads, N: the largest over the
+/// nodes.
 #[inline(always)]
 fn force_of_change<const S: usize>(model: &Model, loads: &NodalModes<S>, next: &NodalModes<S>) -> (f64, f64) {
     let (mut change, mut size, mut unit) = ([0.0; S], [0.0; S], f64::MIN_POSITIVE);
@@ -157,7 +158,7 @@ fn force_of_change<const S: usize>(model: &Model, loads: &NodalModes<S>, next: &
             *size += next * next * compliance;
         }
     }
-    // Not `max`, which would hide what is not a number.
+    // Not `max`, which would hide NaN.
     let root = |values: Nodal<S>| {
         values
             .iter()
@@ -166,7 +167,7 @@ fn force_of_change<const S: usize>(model: &Model, loads: &NodalModes<S>, next: &
     ((root(change) / unit).sqrt(), (root(size) / unit).sqrt())
 }
 
-/// The indentation without contact force, with the loads.
+/// Adds the effect of the loads to the free response.
 #[inline(always)]
 pub(crate) fn with_loads<'a, const S: usize, A: Arithmetic>(
     model: &Model,
@@ -184,7 +185,7 @@ pub(crate) fn with_loads<'a, const S: usize, A: Arithmetic>(
     with
 }
 
-/// What the polynomials of base acceleration and loads miss at the start makes of the indentation.
+/// Effect on the indentation of the defects of base acceleration and loads at the start.
 #[inline(always)]
 fn load_error<const S: usize, A: Arithmetic>(
     model: &Model,
@@ -194,14 +195,14 @@ fn load_error<const S: usize, A: Arithmetic>(
     (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
 ) -> ErrorColumn<S> {
     let mut error = ErrorColumn {
-        displacement: free.error.displacement.map(|d| free.missed * d),
-        velocity: free.error.velocity.map(|r| free.missed * r),
+        displacement: free.error.displacement.map(|d| free.start_defect * d),
+        velocity: free.error.velocity.map(|r| free.start_defect * r),
     };
     let modes = model.modes.iter().zip(&step.columns).zip(start).zip(loads);
     for (((mode, columns), start), load) in modes {
-        let missed = -mode.tip * (start - dot::<S, A>(load, &collocation.at_start));
-        add::<S, A>(&mut error.displacement, missed, &columns.error.displacement);
-        add::<S, A>(&mut error.velocity, missed, &columns.error.velocity);
+        let start_defect = -mode.tip * (start - dot::<S, A>(load, &collocation.at_start));
+        add::<S, A>(&mut error.displacement, start_defect, &columns.error.displacement);
+        add::<S, A>(&mut error.velocity, start_defect, &columns.error.velocity);
     }
     error
 }
@@ -261,7 +262,7 @@ mod tests {
                     );
                     (trial.unwrap(), end)
                 };
-                // By steps to the nodes: the work is the integral of the power, by the Radau quadrature.
+                // Radau quadrature of the power, from steps to the nodes.
                 let powers = collocation.nodes.map(|node| {
                     let (_, modes) = moved(node * length);
                     let loads = axial.loads(&model.modes, &modes);
@@ -274,7 +275,7 @@ mod tests {
                     model.energy(&end, trial.indentation),
                 );
                 if let Source::Given([force, ..]) = source {
-                    // The tip goes against the contact's energy and is pushed by the force instead.
+                    // The given force does the work on the tip in place of the contact.
                     let contact = |d| model.law.energy_above_tangent(model.preload.indentation, d);
                     before += contact(trial.indentation) - contact(state.indentation);
                     before -= force * (trial.indentation - state.indentation);
@@ -291,8 +292,9 @@ mod tests {
                 }
             }
             assert!(most > 1e-3 * start, "{most:e} of {start:e} J");
-            // The fastest mode turns by x = 1.3 in a step: of its motion the polynomials of degree 8 miss x^9 / 9!, some
-            // 1e-5, at most, and of its work in the mean the square of that.
+            // The phase of the fastest mode advances by x = 1.3 rad per step: polynomials of degree 8 have an error of
+            // at most x^9 / 9!, some 1e-5, of its motion, and of the order of the square of that in the mean of its
+            // work.
             assert!(wrong < 1e-8 * most, "{wrong:e} of {most:e} J");
         }
     }

@@ -1,4 +1,4 @@
-//! Everything of a step that depends on its length alone, and a cache of it.
+//! The coefficients of a step, which depend on its length only, and a cache of them.
 
 use crate::beam::mode::{MAX_MODES, Modal, Mode};
 use crate::excitation::generator::Turns;
@@ -11,20 +11,20 @@ use crate::math::nodal::{Nodal, add, scaled};
 use crate::math::simd::{Arithmetic, compiled_for};
 use crate::model::Model;
 
-/// How a mode moves the tip over a step, at the nodes: the rows carry the factor of the mode's tip displacement.
+/// Free motion of the tip at the nodes due to one mode; includes the factor of the mode's tip displacement.
 #[derive(Clone, Copy, Debug)]
 pub struct NodeRows<const S: usize> {
-    /// Tip displacement at the nodes per initial q, and per initial v.
+    /// Tip displacement per initial q, and per initial v.
     pub tip_from_q: Nodal<S>,
     /// See [`NodeRows::tip_from_q`].
     pub tip_from_v: Nodal<S>,
-    /// Tip velocity at the nodes per initial q, and per initial v.
+    /// Tip velocity per initial q, and per initial v.
     pub rate_from_q: Nodal<S>,
     /// See [`NodeRows::rate_from_q`].
     pub rate_from_v: Nodal<S>,
 }
 
-/// How the modes end a step, mode by mode so that several are computed at once.
+/// State of the modes at the end of the step; arrays over the modes, for vector arithmetic.
 #[derive(Clone, Copy, Debug)]
 pub struct EndRows<const S: usize> {
     /// q and v at the end per initial q and v, and per load at each node.
@@ -39,9 +39,9 @@ pub struct EndRows<const S: usize> {
     pub q_from_load: [Modal; S],
     /// See [`EndRows::q_from_q`].
     pub v_from_load: [Modal; S],
-    /// Load per force on the tip, and tip displacement per q.
+    /// Modal load per tip force, and tip displacement per q.
     pub tip: Modal,
-    /// Load per base acceleration.
+    /// Modal load per base acceleration, with opposite sign.
     pub participation: Modal,
 }
 
@@ -74,7 +74,7 @@ impl<const S: usize> EndRows<S> {
     }
 }
 
-/// Displacement and velocity of the tip at the nodes per unit of the load at a node, one load after the other.
+/// Tip displacement and velocity at the nodes per unit load at each node.
 #[derive(Clone, Copy, Debug)]
 pub struct TipColumns<const S: usize> {
     /// Displacement.
@@ -83,7 +83,7 @@ pub struct TipColumns<const S: usize> {
     pub velocity: [Nodal<S>; S],
 }
 
-/// Displacement and velocity of the tip at the nodes per unit of the shape of the error estimate.
+/// Tip displacement and velocity at the nodes per unit defect at the start: under the shape of the error estimate.
 #[derive(Clone, Copy, Debug)]
 pub struct ErrorColumn<const S: usize> {
     /// Displacement.
@@ -92,7 +92,7 @@ pub struct ErrorColumn<const S: usize> {
     pub velocity: Nodal<S>,
 }
 
-/// How one mode moves over a step, at the nodes.
+/// Motion of one mode at the nodes.
 #[derive(Clone, Copy, Debug)]
 pub struct ModeColumns<const S: usize> {
     /// Displacement per initial q, and per initial v.
@@ -101,7 +101,7 @@ pub struct ModeColumns<const S: usize> {
     pub q_from_v: Nodal<S>,
     /// Displacement and velocity per load on the mode.
     pub load: TipColumns<S>,
-    /// Displacement and velocity per load on the mode that the nodal polynomial misses.
+    /// Displacement and velocity per defect of the load on the mode.
     pub error: ErrorColumn<S>,
 }
 
@@ -110,21 +110,21 @@ pub struct ModeColumns<const S: usize> {
 pub struct StepCoefficients<const S: usize> {
     /// The length, s.
     pub length: f64,
-    /// How the modes move the tip, mode by mode.
+    /// Free motion of the tip, mode by mode.
     pub modes: Vec<NodeRows<S>>,
-    /// How the modes move, where there are loads on each of them; else empty.
+    /// Motion of each mode, for an axial force that follows the deflection; else empty.
     pub columns: Vec<ModeColumns<S>>,
-    /// How the modes end.
+    /// The modes at the end.
     pub end: EndRows<S>,
-    /// Per force on the tip.
+    /// Tip motion per tip force.
     pub force: TipColumns<S>,
-    /// Per base acceleration acting on the modes as `participation`.
+    /// Tip motion per base acceleration that loads the modes with `participation`.
     pub acceleration: TipColumns<S>,
-    /// Of the generator.
+    /// Phase advance of the generator.
     pub turns: Turns<S>,
-    /// Per force on the tip that the nodal polynomial misses.
+    /// Tip motion per defect of the contact force.
     pub force_error: ErrorColumn<S>,
-    /// Per base acceleration that the nodal polynomial misses.
+    /// Tip motion per defect of the base acceleration.
     pub acceleration_error: ErrorColumn<S>,
 }
 
@@ -143,7 +143,7 @@ impl<const S: usize> ErrorColumn<S> {
 }
 
 impl<const S: usize> StepCoefficients<S> {
-    /// Room for the model, no length yet.
+    /// Allocates for the model; no length yet.
     fn empty(model: &Model) -> Self {
         let mode = NodeRows {
             tip_from_q: [0.0; S],
@@ -172,7 +172,7 @@ impl<const S: usize> StepCoefficients<S> {
         }
     }
 
-    /// Computes the coefficients of the length in place.
+    /// Computes the coefficients for a length in place.
     fn fill(&mut self, length: f64, model: &Model, collocation: &Collocation<S>) {
         compiled_for!(model.simd, A => self.compute::<A>(length, model, collocation));
     }
@@ -216,7 +216,7 @@ impl<const S: usize> StepCoefficients<S> {
     }
 }
 
-/// Tables in units of the step length `h` (s) as columns in seconds.
+/// Scales tables in units of the step length `h` (s) to seconds.
 fn in_seconds<const S: usize>(tables: Pair<Table<S>>, h: f64) -> (TipColumns<S>, ErrorColumn<S>) {
     let Pair { mut q, mut v } = tables;
     for (q, v) in q.nodal.iter_mut().zip(&mut v.nodal) {
@@ -233,21 +233,21 @@ fn in_seconds<const S: usize>(tables: Pair<Table<S>>, h: f64) -> (TipColumns<S>,
     (columns, error)
 }
 
-/// Coefficients by step length. What is in the cache never changes a result, only the time it takes.
+/// Cache of coefficients by step length. Its content never affects results, only the time they take.
 #[derive(Clone, Debug)]
 pub struct Cache<const S: usize> {
     collocation: Collocation<S>,
-    /// For lengths that come again, each in the slot that its bits tell.
+    /// For recurring lengths, each in the slot of its hash.
     slots: Vec<StepCoefficients<S>>,
-    /// For the last of the others.
+    /// For the last other length.
     other: StepCoefficients<S>,
 }
 
-/// Slots for step lengths that come again, a power of two.
+/// Slots for recurring step lengths, a power of two.
 const SLOTS: usize = 32;
 
 impl<const S: usize> Cache<S> {
-    /// For the model.
+    /// Allocates for the model.
     pub fn new(model: &Model) -> Self {
         Self {
             collocation: Collocation::new(),
@@ -261,14 +261,14 @@ impl<const S: usize> Cache<S> {
         &self.collocation
     }
 
-    /// The coefficients of the length for the model; `recurring` says whether to keep them for later.
+    /// The coefficients for a length; `recurring`: keep them in a slot.
     pub fn get(&mut self, length: f64, recurring: bool, model: &Model) -> (&StepCoefficients<S>, &Collocation<S>) {
         let Self {
             collocation,
             slots,
             other,
         } = self;
-        // Halvings of a length come to lie beside each other, those of another length (Fibonacci hashing) elsewhere.
+        // Dyadic fractions of a length occupy neighbouring slots; another length starts elsewhere (Fibonacci hashing).
         let bits = length.to_bits();
         let (exponent, mantissa) = (bits >> 52, bits << 12);
         let elsewhere = mantissa.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> (64 - SLOTS.ilog2());

@@ -1,10 +1,10 @@
 //! Exact response of a mode `q'' + c q' + omega^2 q = r(t)` over a step to its initial state and to a load that is a
 //! polynomial in time, at any step length and any damping.
 //!
-//! With times in steps the response to a load shape is a combination of what depends on the shape alone: where the mode
-//! is slow against the step, of the shape's repeated integrals (the power series of the impulse response integrated by
-//! parts); where it is fast, of the shape's derivatives (the motion that follows the load) and a free motion that takes
-//! away what this has at the start. A strongly overdamped mode with one fast and one slow root is one of each.
+//! In units of the step length, the response to a load shape is a combination of functions of the shape alone. For a
+//! mode slow compared with the step: repeated integrals of the shape (the power series of the impulse response,
+//! integrated by parts). For a fast mode: derivatives of the shape (the quasi-static particular solution) and a free
+//! motion that cancels its initial value. A strongly overdamped mode with one fast and one slow root uses one of each.
 
 use crate::integrator::collocation::shapes::{MAX_SHAPES, Row, Shapes, TERMS};
 use crate::integrator::collocation::superposition::{Combination, Fading, Pair, Response};
@@ -12,16 +12,16 @@ use crate::math::free_motion::FreeMotion;
 use crate::math::nodal::{Nodal, add, scaled};
 use crate::math::simd::Arithmetic;
 
-/// Root times step length up to which the power series keeps its digits: its terms grow to about `7^6 / 7!`.
+/// |root| times step length up to which the power series is accurate: its terms grow to about `7^6 / 7!`.
 const SLOW: f64 = 6.7;
-/// Root times step length from which the derivatives of a shape fall fast enough against its powers.
+/// |root| times step length from which the series in the derivatives of a shape is accurate.
 const FAST: f64 = 5.0;
-/// Root times step length up to which the power series of the free motion keeps its digits: `2^2 / 2!`.
+/// |root| times step length up to which the power series of the free motion is accurate: its terms grow to `2^2 / 2!`.
 const FREE: f64 = 2.0;
-/// Terms of a power series this small are left out.
+/// Truncation threshold of the power series.
 const NEGLIGIBLE: f64 = 1e-19;
 
-/// Which of the roots of a mode are slow against a step.
+/// Which characteristic roots of a mode are slow compared with the step.
 #[derive(Clone, Copy, Debug)]
 enum Regime {
     /// Both roots are slow.
@@ -168,7 +168,7 @@ impl ModeOverStep {
         factors
     }
 
-    /// The derivatives of the impulse response at the start: its power series. Returns how many count.
+    /// Derivatives of the impulse response at the start: its power series. Returns the number of terms used.
     #[inline(always)]
     fn series<const S: usize, A: Arithmetic>(&self, shapes: &Shapes<S>, series: &mut [f64; TERMS]) -> usize {
         let (c, w) = (-self.damping * self.h, -self.omega_squared * self.h * self.h);
@@ -186,7 +186,7 @@ impl ModeOverStep {
         terms
     }
 
-    /// Displacement and velocity at the nodes per initial velocity (of h q: per step length), in free motion.
+    /// Free motion: displacement (per step length) and velocity at the nodes per initial velocity.
     #[inline(always)]
     fn impulse<const S: usize, A: Arithmetic>(
         &self,
@@ -231,13 +231,13 @@ impl ModeOverStep {
         Pair { q, v }
     }
 
-    /// The fast root's decay down to the nodes.
+    /// Decay of the fast root up to the nodes.
     #[inline(always)]
     fn decay<const S: usize>(&self, nodes: &Nodal<S>) -> Nodal<S> {
         let mut decay = [0.0; S];
         if let Regime::Split(_, fast) = self.regime {
             for (decay, x) in decay.iter_mut().zip(nodes) {
-                // Far below rounding.
+                // Below `e^-50` the decay is far below rounding.
                 if fast * x > -50.0 {
                     *decay = (fast * x).exp();
                 }
@@ -307,9 +307,9 @@ mod tests {
                 let sizes = (size(|pair| pair.0), size(|pair| pair.1));
                 for (i, exact) in exact.iter().enumerate() {
                     for (j, exact) in exact.iter().enumerate() {
-                        // The digits that the sums lose are relative to the largest response of the step: four of
-                        // sixteen where a pair of fast roots begins, 6.7 per step, against the highest derivatives of
-                        // eight nodes, 1e8 and more. Those of the error estimate's shape are ten times as large.
+                        // Cancellation relative to the largest response of the step: four of sixteen digits at the
+                        // limit of the fast regime, 6.7 per step, where the highest derivatives for eight nodes are 1e8
+                        // and more; ten times that for the shape of the error estimate.
                         let tolerance = match (S, j < S) {
                             (8, true) => 2e-12,
                             (8, false) => 1e-11,

@@ -1,6 +1,5 @@
-//! Newton's method for the nodal forces on the closed branch: the forces of the law at the motion that they give.
+//! Newton's method for the nodal forces on the closed branch: each is that of the law at the motion that they cause.
 
-use crate::BARE;
 use crate::integrator::collocation::coefficients::{ErrorColumn, StepCoefficients};
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::math::nodal::{Nodal, add_columns, end, scaled};
@@ -8,25 +7,25 @@ use crate::math::simd::Arithmetic;
 use crate::model::Model;
 use crate::state::State;
 
-/// Rounding of the motion at the nodes, relative to what it would be without contact force.
+/// Rounding of the motion at the nodes, relative to the free response.
 const MOTION_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// A pivot this small would multiply the rounding by its inverse in each elimination.
+/// Pivots below this require a row exchange, as each elimination amplifies rounding by the inverse of the pivot.
 const SMALL_PIVOT: f64 = 0.1;
 
-/// Newton iterations before a step is judged too long.
+/// Newton iterations before the step is rejected.
 const ITERATIONS: u64 = 12;
 
 /// Where the contact force of a step comes from.
 #[derive(Clone, Copy, Debug)]
 pub enum Source<const S: usize> {
-    /// The law at the nodes while the contact is closed, met by Newton's method to this, N; nothing while it is open.
+    /// The contact law at the nodes, with this Newton tolerance, N; no force while the contact is open.
     Law(f64),
-    /// This at the nodes, as deviation from the preload force, N.
+    /// Given nodal forces, as deviation from the preload force, N.
     Given(Nodal<S>),
 }
 
-/// What acts on the tip in a step besides the contact force.
+/// Response to everything but the contact force.
 #[derive(Clone)]
 pub(crate) struct FreeResponse<'a, const S: usize> {
     /// Base acceleration at the nodes, m/s2.
@@ -35,20 +34,20 @@ pub(crate) struct FreeResponse<'a, const S: usize> {
     pub(crate) free: Nodal<S>,
     /// Its velocity, m/s.
     pub(crate) free_rate: Nodal<S>,
-    /// What the nodal polynomials miss of it at the start, m/s2 where it is the base acceleration.
-    pub(crate) missed: f64,
-    /// Displacement and velocity of the fixed contact relative to the tip per what is missed.
+    /// Defect of the load polynomial at the start, m/s2 for the base acceleration.
+    pub(crate) start_defect: f64,
+    /// Indentation and its velocity at the nodes per unit of that defect.
     pub(crate) error: &'a ErrorColumn<S>,
 }
 
-/// How the law answers within a step; nothing where the force does not depend on the motion.
+/// Tangent of the contact law within a step; zero if the force does not depend on the motion.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Tangent {
     /// Greatest stiffness at the nodes, N/m.
     pub stiffness: f64,
     /// Greatest damping at the nodes, N s/m.
     pub damping: f64,
-    /// Change of the law's force at the end, at these, per force on the tip throughout the step.
+    /// Loop gain: change of the law's force at the end, at this tangent, per constant tip force over the step.
     pub gain: f64,
 }
 
@@ -56,13 +55,13 @@ pub struct Tangent {
 pub(crate) struct Solution<const S: usize> {
     /// Deviation from the preload force, N.
     pub(crate) forces: Nodal<S>,
-    /// Spent on them.
+    /// Newton iterations.
     pub(crate) iterations: u64,
-    /// Displacement and velocity of the tip at the end per force that the polynomial misses at the start.
+    /// Displacement and velocity of the tip at the end per defect of the contact force at the start.
     pub(crate) by_force: (f64, f64),
-    /// The same per what is missed of the other loads.
+    /// The same per defect of the other loads.
     pub(crate) by_load: (f64, f64),
-    /// Of the law.
+    /// Tangent of the contact law.
     pub(crate) tangent: Tangent,
 }
 
@@ -78,9 +77,9 @@ impl<const S: usize> Solution<S> {
         }
     }
 
-    /// Of the law at the last iterate, whose greatest stiffness and damping are given; `force_error` is the nodal forces
-    /// that the error of the force causes, `load_error` what the error of the other loads does without contact and the
-    /// nodal forces that it causes. Their effects at the end are formed.
+    /// Of the last iterate, with the greatest stiffness and damping at its nodes. `force_error`: nodal forces per
+    /// defect of the contact force; `load_error`: free response per defect of the other loads, and the nodal forces it
+    /// causes. From these the effects at the end are formed.
     #[inline(always)]
     fn new(
         step: &StepCoefficients<S>,
@@ -116,7 +115,7 @@ impl<const S: usize> Solution<S> {
     }
 }
 
-/// The nodal forces as those of the last step predict them.
+/// Nodal forces extrapolated from the last step.
 #[inline(always)]
 fn predicted_forces<const S: usize, A: Arithmetic>(
     model: &Model,
@@ -131,7 +130,7 @@ fn predicted_forces<const S: usize, A: Arithmetic>(
     }
 }
 
-/// The nodal forces to begin with: of the source where it gives them, or as those of the last step predict them.
+/// Initial guess of the nodal forces: given by the source, or extrapolated from the last step.
 #[inline(always)]
 pub(crate) fn first_forces<const S: usize, A: Arithmetic>(
     model: &Model,
@@ -147,8 +146,8 @@ pub(crate) fn first_forces<const S: usize, A: Arithmetic>(
     }
 }
 
-/// The nodal forces, from those guessed, which differ from the law's by at most `newton` (N) or rounding; `None`
-/// where the iteration does not converge. A contact that does not damp is spared the velocities.
+/// Solves for the nodal forces from an initial guess, to residuals of at most `newton` (N) or rounding; `None` if the
+/// iteration does not converge. Velocities are computed only for a contact with damping.
 #[inline(always)]
 pub(crate) fn closed_forces<const S: usize, A: Arithmetic>(
     model: &Model,
@@ -157,14 +156,14 @@ pub(crate) fn closed_forces<const S: usize, A: Arithmetic>(
     guess: Nodal<S>,
     newton: f64,
 ) -> Option<Solution<S>> {
-    if model.law.damping() > 0.0 && !BARE {
+    if model.law.damping() > 0.0 {
         iterated::<S, A, true>(model, step, free, guess, newton)
     } else {
         iterated::<S, A, false>(model, step, free, guess, newton)
     }
 }
 
-/// [`closed_forces`] of a law that damps, or of one that does not.
+/// [`closed_forces`], compiled with and without contact damping.
 #[inline(always)]
 fn iterated<const S: usize, A: Arithmetic, const DAMPED: bool>(
     model: &Model,
@@ -200,8 +199,8 @@ fn iterated<const S: usize, A: Arithmetic, const DAMPED: bool>(
             *residual -= law.force - model.preload.force;
             (*stiffness, *damping) = (law.stiffness, law.damping);
         }
-        // The motion has to obey the law, not only the nodal forces to be right: on a stiff contact they hardly
-        // depend on it. What rounding leaves of the motion is all that can be asked.
+        // Convergence is judged by the residual of the law, not by the change of the nodal forces, which on a stiff
+        // contact hardly depend on the law. Rounding of the motion limits the residual.
         let rounding = MOTION_ROUNDING * (greatest(&stiffness) * farthest + greatest(&damping) * fastest);
         if let Some((by_force, by_load)) = by_errors.filter(|_| greatest(&residual) <= newton.max(rounding)) {
             return Some(Solution::new(
@@ -213,7 +212,7 @@ fn iterated<const S: usize, A: Arithmetic, const DAMPED: bool>(
                 (error, &by_load),
             ));
         }
-        // The derivative of the residuals by each nodal force.
+        // Derivatives of the residuals with respect to each nodal force.
         let mut jacobian = step.force.displacement;
         for (column, velocity) in jacobian.iter_mut().zip(&step.force.velocity) {
             *column = react::<S, A, DAMPED>(column, velocity, &stiffness, &damping);
@@ -231,9 +230,9 @@ fn iterated<const S: usize, A: Arithmetic, const DAMPED: bool>(
     None
 }
 
-/// Solves `(1 + A) x = b` for several `b`, `A` column by column, by Gauss-Jordan elimination, whose inner loops run
-/// down columns; rows are exchanged only where a pivot is small, which happens in violent steps alone. `None` where the
-/// matrix is singular.
+/// Solves `(1 + A) x = b` for several `b`, `A` by columns, by Gauss-Jordan elimination, whose inner loops run down
+/// columns. Rows are exchanged only for a small pivot, which occurs in violent steps only. `None` if the matrix is
+/// singular.
 #[expect(
     clippy::indexing_slicing,
     reason = "every index runs over the fixed size of the arrays"
@@ -255,7 +254,7 @@ fn solve<const S: usize, const R: usize, A: Arithmetic>(
         }
         let pivot = a[p];
         let inverse = 1.0 / pivot[p];
-        // Two loops, not a chain: that may be left out of line, compiled for any processor.
+        // Two loops, as a chained iterator may not be inlined and would then be compiled for the generic processor.
         for column in a.iter_mut().skip(p + 1) {
             eliminate::<S, A>(column, p, &pivot, inverse);
         }
@@ -266,7 +265,7 @@ fn solve<const S: usize, const R: usize, A: Arithmetic>(
     right.iter().flatten().all(|x| x.is_finite()).then_some(right)
 }
 
-/// Takes row `p` of a column out of the rows below and above it, and divides it by its pivot.
+/// Eliminates row `p` of a column from all other rows, and divides it by the pivot.
 #[expect(
     clippy::indexing_slicing,
     reason = "every index runs over the fixed size of the arrays"
@@ -280,7 +279,7 @@ fn eliminate<const S: usize, A: Arithmetic>(column: &mut Nodal<S>, p: usize, piv
     column[p] = share;
 }
 
-/// Forces of the law at the nodes that belong to displacements and velocities of the tip.
+/// Linearised law: nodal forces for displacements and velocities of the tip.
 #[inline(always)]
 fn react<const S: usize, A: Arithmetic, const DAMPED: bool>(
     displacement: &Nodal<S>,
@@ -313,7 +312,7 @@ pub(crate) fn at_nodes<const S: usize, A: Arithmetic>(
     )
 }
 
-/// What is at the nodes without contact force, and what of it is left under the nodal forces.
+/// The free response less the response to the nodal forces.
 #[inline(always)]
 fn displaced<const S: usize, A: Arithmetic>(free: &Nodal<S>, columns: &[Nodal<S>; S], forces: &Nodal<S>) -> Nodal<S> {
     let mut left = *free;

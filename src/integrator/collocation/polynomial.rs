@@ -1,8 +1,8 @@
-//! The polynomial in time that stands for contact force and base acceleration within a step.
+//! The collocation polynomial in time for contact force and base acceleration within a step.
 //!
-//! A step has `S` Radau nodes, the last at its end, so that the contact force there obeys the contact law exactly,
-//! however stiff its damping is (Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.5): eight for
-//! long steps, four where a short one is wanted (a communication step of a microsecond, the time just after a blow).
+//! A step has `S` Radau IIA nodes, the last one at its end, so that the contact force there satisfies the contact law
+//! however stiff its damping (Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.5): eight for long
+//! steps, four for short ones (communication steps of a microsecond, the time just after an impact).
 
 use crate::integrator::collocation::shapes::{MAX_SHAPES, Shapes};
 use crate::math::legendre;
@@ -10,16 +10,16 @@ use crate::math::nodal::{LONG, Nodal, add, dot, scaled};
 use crate::math::prediction::{Prediction, Predictions};
 use crate::math::simd::{Arithmetic, Separate, Simd, compiled_for};
 
-/// Points at which a nodal polynomial is looked at where it comes near zero.
+/// Sample points in the search for a zero crossing of a nodal polynomial.
 const LOOKS: u32 = 32;
 
-/// The golden section.
+/// Golden ratio, of the golden-section search.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// Share of its greatest value above which a nodal polynomial stays between its nodes if it does at them.
+/// A nodal polynomial above this share of its greatest value at all nodes is taken to be positive between them.
 const NEAR: f64 = 0.25;
 
-/// Nodes that a flat prediction goes through.
+/// Nodes of the low-order prediction.
 const FLAT: usize = 4;
 
 /// The polynomials of a step with `S` nodes.
@@ -34,21 +34,21 @@ pub struct Collocation<const S: usize> {
     pub at_start: Nodal<S>,
     /// Mean of the Lagrange polynomials over the step: the weights of the Radau quadrature.
     weights: Nodal<S>,
-    /// Row by row the coefficients of y^0, y^1, ..., `y = x - 1`, of the polynomial that is 1 at the start (the first
-    /// row) or at one of the nodes, and 0 at the others.
+    /// Lagrange polynomials of the start and the nodes, by coefficients of y^0, y^1, ..., `y = x - 1`; the first row is
+    /// that of the start.
     steep: Vec<Prediction>,
-    /// The same with the last nodes alone, which long extrapolation suits better.
+    /// The same for the last few nodes only, which is better for long extrapolation.
     flat: Vec<Prediction>,
 }
 
 impl<const S: usize> Collocation<S> {
-    /// The nodes and shapes.
+    /// Computes the nodes and shapes.
     pub fn new() -> Self {
         let mut nodes = [0.0; S];
         for (node, x) in nodes.iter_mut().zip(legendre::radau(S)) {
             *node = f64::midpoint(1.0, x);
         }
-        // Expanded about the instant, whose coefficients of `(x - at)^m` times m! are the derivatives.
+        // Derivatives from the Taylor coefficients about `at`.
         let derivatives_at = |at: f64| -> Vec<_> {
             let vanishing = nodes
                 .iter()
@@ -81,7 +81,7 @@ impl<const S: usize> Collocation<S> {
         }
     }
 
-    /// The nodal polynomial through `values`, at `x` (in steps).
+    /// The nodal polynomial through `values` at `x`, 0 to 1 over the step.
     pub fn interpolate(&self, values: &Nodal<S>, x: f64) -> f64 {
         let mut sum = 0.0;
         for (value, &own) in values.iter().zip(&self.nodes) {
@@ -91,16 +91,17 @@ impl<const S: usize> Collocation<S> {
         sum
     }
 
-    /// Whether the nodal polynomial through `values`, which was `start` where the step begins, may reach zero within it.
+    /// Whether the nodal polynomial through `values`, with the value `start` at the start of the step, may reach zero
+    /// in it.
     pub fn comes_near_zero(start: f64, values: &Nodal<S>) -> bool {
         let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
         let highest = values.iter().copied().fold(start, f64::max);
         lowest <= NEAR * highest
     }
 
-    /// Where in the step (in steps) the nodal polynomial through `values` is first seen below zero, before the place
-    /// `until`: at one of the looks, or at the lowest place about the lowest of them. It is not looked at before the first
-    /// node, where it extrapolates and is no evidence.
+    /// First place in the step (0 to 1) before `until` where the nodal polynomial through `values` is found below zero:
+    /// at a sample point, or at the minimum near the lowest of them. It is not searched before the first node, where
+    /// the polynomial extrapolates.
     pub fn first_dip(&self, values: &Nodal<S>, until: f64) -> Option<f64> {
         let value = |x: f64| self.interpolate(values, x);
         let look = 1.0 / f64::from(LOOKS);
@@ -110,7 +111,7 @@ impl<const S: usize> Collocation<S> {
         if let Some(dip) = looks.clone().take_while(|x| *x < until).find(|x| value(*x) < 0.0) {
             return Some(dip);
         }
-        // By golden section.
+        // Golden-section search.
         let lowest = looks.min_by(|a, b| value(*a).total_cmp(&value(*b))).unwrap_or_default();
         let (mut a, mut b) = ((lowest - look).max(first), (lowest + look).min(1.0));
         for _ in 0..25 {
@@ -126,8 +127,9 @@ impl<const S: usize> Collocation<S> {
         dot::<S, Separate>(values, &self.weights)
     }
 
-    /// The predictions from the values at the start and at the nodes of a step, after those that led to it, which held
-    /// for a step `ratio` times as long as the one before.
+    /// Predictions for the next step from the values at the start and at the nodes of this one. The previous
+    /// predictions, made for a step `ratio` times as long as the one before, are compared with the values to choose
+    /// between the two.
     pub fn predictions(
         &self,
         simd: Simd,
@@ -153,12 +155,12 @@ impl<const S: usize> Collocation<S> {
         }
     }
 
-    /// The polynomial through the values at the start and at the nodes, about the end.
+    /// The polynomial through the values at the start and at the nodes, expanded about the end.
     pub fn through(&self, start: f64, values: &Nodal<S>) -> Prediction {
         combine::<Separate>(&self.steep, [start].iter().chain(values))
     }
 
-    /// Values predicted at the nodes of a step `ratio` times as long as the one the predictions are from.
+    /// Predicted values at the nodes of a step `ratio` times as long as the one that the predictions were made from.
     #[inline(always)]
     pub fn predict<A: Arithmetic>(&self, predictions: &Predictions, ratio: f64) -> Nodal<S> {
         self.evaluate::<A>(
@@ -190,7 +192,7 @@ impl<const S: usize> Default for Collocation<S> {
     }
 }
 
-/// Coefficients of the polynomials that are 1 at one of the points and 0 at the others.
+/// Coefficients of the Lagrange polynomials of the points.
 fn lagrange<const N: usize>(points: &[f64]) -> Vec<[f64; N]> {
     points
         .iter()
@@ -203,7 +205,7 @@ fn lagrange<const N: usize>(points: &[f64]) -> Vec<[f64; N]> {
         .collect()
 }
 
-/// The polynomial that takes the values, of a basis of those that are 1 at one of their places.
+/// The interpolation polynomial of the values in a Lagrange basis.
 #[inline(always)]
 fn combine<'a, A: Arithmetic>(basis: &[Prediction], values: impl Iterator<Item = &'a f64>) -> Prediction {
     let mut sum = [0.0; LONG + 1];
@@ -231,7 +233,7 @@ fn times<const N: usize>(shape: [f64; N], a: f64, b: f64) -> [f64; N] {
     })
 }
 
-/// Coefficients of `x^m / m!` instead of `x^m`.
+/// Converts coefficients of `x^m` to those of `x^m / m!`.
 fn by_factorials(mut shape: [f64; MAX_SHAPES]) -> [f64; MAX_SHAPES] {
     let mut factorial = 1.0;
     for (m, coefficient) in shape.iter_mut().enumerate() {

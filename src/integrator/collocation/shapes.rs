@@ -1,14 +1,15 @@
-//! Integrals and derivatives of the load shapes of a step: the Lagrange polynomials of its nodes, and the polynomial of
-//! one degree more that vanishes at the nodes and is 1 at the start, which the error estimate uses.
+//! Integrals and derivatives of the load shapes of a step: the Lagrange polynomials of its nodes, and for the error
+//! estimate the polynomial of one degree more that vanishes at the nodes and is 1 at the start.
 
 use crate::math::legendre;
 use crate::math::nodal::{LONG, Nodal, add, end};
 use crate::math::simd::Arithmetic;
 
-/// Most terms of a power series: `7^n / n!` is below rounding from there on ([`crate::integrator::collocation::modal_response`]).
+/// Largest number of terms of a power series: from there on `7^n / n!` is below rounding
+/// ([`crate::integrator::collocation::modal_response`]).
 pub const TERMS: usize = 48;
 
-/// Points of the quadrature for the integrals; later ones than it is exact for are small.
+/// Points of the quadrature for the integrals; those of a higher order than it is exact for are small.
 const POINTS: usize = 20;
 
 /// Largest number of load shapes: one for each node, one for the error estimate.
@@ -32,20 +33,20 @@ pub struct Row<const S: usize> {
     pub error: f64,
 }
 
-/// What the load shapes look like in units of the step length.
+/// Values, integrals and derivatives of the load shapes, in units of the step length.
 #[derive(Clone, Debug)]
 pub struct Shapes<const S: usize> {
     /// `x^n / n!` at the nodes, n = 0, 1, ...
     pub powers: Vec<Nodal<S>>,
     /// n-fold integrals from the start, n = 1, 2, ...
     pub integrals: Vec<Table<S>>,
-    /// Those of the Lagrange polynomials up to the end of the step.
+    /// Integrals of the Lagrange polynomials up to the end of the step.
     pub end_integrals: Vec<Nodal<S>>,
     /// m-th derivatives, m = 0, ..., S.
     pub derivatives: Vec<Table<S>>,
-    /// Those of the Lagrange polynomials at the end of the step.
+    /// Derivatives of the Lagrange polynomials at the end of the step.
     pub end_derivatives: Vec<Nodal<S>>,
-    /// Those at the start of the step.
+    /// Derivatives at the start of the step.
     pub start_derivatives: Vec<Row<S>>,
 }
 
@@ -76,7 +77,7 @@ impl<const S: usize> Table<S> {
 }
 
 impl<const S: usize> Shapes<S> {
-    /// For the nodes on [0, 1] and the shapes' derivatives (m = 0, ..., S) at an instant, shape by shape.
+    /// From the nodes on [0, 1] and a function that gives the derivatives (m = 0, ..., S) of each shape at an instant.
     pub fn new(nodes: &Nodal<S>, derivatives_at: impl Fn(f64) -> Vec<[f64; MAX_SHAPES]>) -> Self {
         let mut power = [1.0; S];
         let powers = (0..=TERMS).map(|n| {
@@ -101,7 +102,8 @@ impl<const S: usize> Shapes<S> {
     }
 }
 
-/// `n`-fold integrals by Cauchy's formula, `(x - s)^(n-1) / (n-1)!` times the shape from 0 to x, and Gauss quadrature.
+/// `n`-fold integrals by Cauchy's formula, the integral of `(x - s)^(n-1) / (n-1)!` times the shape, by Gauss
+/// quadrature.
 fn integrals<const S: usize>(nodes: &Nodal<S>) -> Vec<Table<S>> {
     let mut tables = vec![(Table::<S>::ZERO, Table::<S>::ZERO); TERMS];
     let points: Vec<_> = legendre::gauss(POINTS).collect();
@@ -137,7 +139,7 @@ fn shape_values<const S: usize>(nodes: &Nodal<S>, s: f64) -> impl Iterator<Item 
     lagrange.into_iter().chain([vanishing])
 }
 
-/// Derivatives of one order after the other, from those shape by shape.
+/// Transposes derivatives given shape by shape into rows of one order each.
 fn rows<const S: usize>(shapes: &[[f64; MAX_SHAPES]]) -> Vec<Row<S>> {
     let row = |m: usize| {
         let mut values = shapes.iter().filter_map(|shape| shape.get(m)).copied();
@@ -161,7 +163,7 @@ fn table<const S: usize>(at_nodes: &[Vec<Row<S>>; S], m: usize) -> Table<S> {
     table
 }
 
-/// What cancels down to rounding is nothing.
+/// Sets values that are mere rounding to zero.
 fn significant<const S: usize>(mut table: Table<S>, mut sizes: Table<S>) -> Table<S> {
     for (column, sizes) in table.columns_mut().zip(sizes.columns_mut()) {
         for (value, size) in column.iter_mut().zip(sizes) {

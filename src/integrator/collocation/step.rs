@@ -1,5 +1,5 @@
-//! One step on trial: the nodal contact forces ([`crate::integrator::collocation::newton`]), the motion they give, and an estimate of their
-//! error.
+//! A trial step: the nodal contact forces ([`crate::integrator::collocation::newton`]), the motion they cause, and the
+//! error estimate.
 
 use crate::beam::axial::Feedback;
 use crate::beam::mode::{Modal, ModeStates};
@@ -15,7 +15,7 @@ use crate::math::simd::{Arithmetic, LANES, compiled_for};
 use crate::model::Model;
 use crate::state::State;
 
-/// A step computed but not yet taken.
+/// A step computed but not yet accepted.
 #[derive(Clone, Copy, Debug)]
 pub struct Trial<const S: usize> {
     /// Nodal forces as deviation from the preload force, N.
@@ -32,34 +32,34 @@ pub struct Trial<const S: usize> {
     pub rate: f64,
     /// Estimate of the error this step adds to the contact force, N.
     pub error: f64,
-    /// Error below which it says nothing, being lost in rounding, N.
+    /// Rounding of the contact force, N: an error estimate below it is meaningless.
     pub rounding: f64,
-    /// Contact force that the polynomial misses at the start, N.
-    pub missed: f64,
-    /// Newton iterations spent.
+    /// Defect of the force polynomial at the start: difference from the contact force there, N.
+    pub start_defect: f64,
+    /// Newton iterations.
     pub iterations: u64,
-    /// Of the law.
+    /// Tangent of the contact law.
     pub tangent: Tangent,
 }
 
 /// The loads on [`LANES`] modes at the nodes.
 type LaneLoads<const S: usize> = [[f64; LANES]; S];
 
-/// Rounding of a contact force, relative to it.
+/// Relative rounding of a contact force.
 const ROUNDING: f64 = 1e-13;
 
-/// Roundings in a sum over the modes.
+/// Rounding of a sum over the modes, in units of machine epsilon.
 const ROUNDINGS: f64 = 4.0;
 
-/// Mean over a step of what the nodal polynomial misses of the square root of time from its start, over what it misses
-/// at the start.
+/// Ratio of the mean error over the step to the defect at the start, for a force that grows with the square root of
+/// time.
 const KINKED: f64 = 0.015;
 
-/// Steps from a kink beyond which it is not felt.
+/// Distance from a kink, in step lengths, beyond which it has no effect.
 const FAR: f64 = 20.0;
 
-/// The step from `state` with the given coefficients, on the branch the state is on, with the modes at its end in
-/// `end_modes`; `None` where Newton's method does not converge, or the axial force.
+/// Computes the step from `state` with the given coefficients, contact closed or open as in `state`; writes the modes
+/// at its end to `end_modes`. `None` if the iteration for contact or axial force does not converge.
 pub fn trial<const S: usize>(
     model: &Model,
     state: &State,
@@ -77,7 +77,7 @@ pub fn trial<const S: usize>(
     }
 }
 
-/// [`trial`] with the constant axial force, which the modes hold.
+/// [`trial`] with constant axial force, which is part of the modes.
 #[inline(always)]
 fn compute<const S: usize, A: Arithmetic>(
     model: &Model,
@@ -112,7 +112,7 @@ fn compute<const S: usize, A: Arithmetic>(
     ))
 }
 
-/// [`trial`] with the axial force that follows the deflection, as loads on the modes.
+/// [`trial`] with an axial force that follows the deflection, as loads on the modes.
 #[inline(always)]
 fn compute_with_axial_force<const S: usize, A: Arithmetic>(
     model: &Model,
@@ -126,10 +126,10 @@ fn compute_with_axial_force<const S: usize, A: Arithmetic>(
     let free = free_response::<S, A>(model, state, drive, step, collocation);
     let Settled { solution, loads, error } =
         axial_force::settle::<S, A>(model, axial, state, (step, collocation), source, &free)?;
-    // The contact answers to what is missed of all loads together.
+    // One combined defect of all loads.
     let free = FreeResponse {
         error: &error,
-        missed: 1.0,
+        start_defect: 1.0,
         ..axial_force::with_loads::<S, A>(model, &free, step, &loads)
     };
     let tip = end_of_modes::<S, A>(
@@ -158,7 +158,7 @@ fn compute_with_axial_force<const S: usize, A: Arithmetic>(
     ))
 }
 
-/// What acts on the tip besides the contact force.
+/// Response of the tip to everything but the contact force.
 #[inline(always)]
 fn free_response<'a, const S: usize, A: Arithmetic>(
     model: &Model,
@@ -179,7 +179,7 @@ fn free_response<'a, const S: usize, A: Arithmetic>(
     let mut free = [state.support; S];
     add::<S, A>(&mut free, drive.support_rate * h, &collocation.nodes);
     let mut free_rate = [drive.support_rate; S];
-    // A sum of its own for q and v each: they do not wait for one another.
+    // Separate sums for q and v, which the processor computes in parallel.
     let [mut from_q, mut from_v, mut rate_from_q, mut rate_from_v] = [[0.0; S]; 4];
     for (mode, row) in state.modes.iter().zip(&step.modes) {
         add::<S, A>(&mut from_q, mode.q, &row.tip_from_q);
@@ -192,7 +192,7 @@ fn free_response<'a, const S: usize, A: Arithmetic>(
     add_columns::<S, A>(&mut free, &step.acceleration.displacement, &accelerations);
     add_columns::<S, A>(&mut free_rate, &step.acceleration.velocity, &accelerations);
     FreeResponse {
-        missed: driven + generated.start - dot::<S, A>(&accelerations, &collocation.at_start),
+        start_defect: driven + generated.start - dot::<S, A>(&accelerations, &collocation.at_start),
         error: &step.acceleration_error,
         accelerations,
         free,
@@ -200,7 +200,7 @@ fn free_response<'a, const S: usize, A: Arithmetic>(
     }
 }
 
-/// The trial, once the nodal forces are found and with them displacement and velocity of the tip at the end.
+/// The trial with its error estimate, from the nodal forces and the displacement and velocity of the tip at the end.
 #[inline(always)]
 fn judged<const S: usize, A: Arithmetic>(
     model: &Model,
@@ -219,12 +219,12 @@ fn judged<const S: usize, A: Arithmetic>(
     let largest = forces.iter().fold(f64::MIN_POSITIVE, |largest, force| {
         largest.max((model.preload.force + force).abs())
     });
-    let missed = if state.closed {
+    let start_defect = if state.closed {
         state.force - model.preload.force - dot::<S, A>(&forces, &collocation.at_start)
     } else {
         0.0
     };
-    let error = error(model, state, step, solution, missed, free, largest);
+    let error = error(model, state, step, solution, start_defect, free, largest);
     Trial {
         forces,
         indentations,
@@ -234,76 +234,76 @@ fn judged<const S: usize, A: Arithmetic>(
         rate,
         error,
         rounding: ROUNDING * largest.max(model.preload.force),
-        missed: missed.abs(),
+        start_defect: start_defect.abs(),
         iterations,
         tangent: solution.tangent,
     }
 }
 
-/// Estimate of what a step adds to the error of the contact force, N.
+/// Estimate of the error that a step adds to the contact force, N.
 ///
-/// At the nodes the polynomials are right; what they miss at the start tells how much of the shape that vanishes at
-/// the nodes they lack. What that does to the nodal forces is known to first order ([`Solution`]). Modes slow
-/// against the step hardly feel it at the end (the shape is orthogonal to polynomials of low degree); they see an
-/// error of twice the order, about three times the square of what is missed (an impact of a free mass on a Hertz
-/// contact). Just after a touch or a jump the force is no polynomial of any degree, and they see more.
+/// The polynomials are exact at the nodes; their defect at the start gives the amplitude of the next term, the shape
+/// that vanishes at the nodes. Its effect on the nodal forces is known to first order ([`Solution`]). At the end of the
+/// step, modes slow compared with the step are hardly affected by it (the shape is orthogonal to polynomials of low
+/// degree); their error is of twice the order, about three times the square of the defect (calibrated with a free mass
+/// impacting a Hertz contact). Just after first touch or a jump the force is not smooth, and their error is larger.
 ///
-/// `missed` (N) is what the force's polynomial misses at the start, `largest` (N) the largest nodal force.
+/// `start_defect` (N) is the defect of the force polynomial, `largest` (N) the largest nodal force.
 #[inline(always)]
 fn error<const S: usize>(
     model: &Model,
     state: &State,
     step: &StepCoefficients<S>,
     solution: &Solution<S>,
-    missed: f64,
+    start_defect: f64,
     free: &FreeResponse<S>,
     largest: f64,
 ) -> f64 {
     if state.closed {
         let (by_force, by_load) = (solution.by_force, solution.by_load);
-        let wrong_d = by_load.0 * free.missed - by_force.0 * missed;
-        let wrong_r = by_load.1 * free.missed - by_force.1 * missed;
+        let wrong_d = by_load.0 * free.start_defect - by_force.0 * start_defect;
+        let wrong_r = by_load.1 * free.start_defect - by_force.1 * start_defect;
         let fast = (solution.tangent.stiffness * wrong_d).abs() + (solution.tangent.damping * wrong_r).abs();
         let elapsed = state.time - state.last_kink;
         let kinked = if elapsed < FAR * step.length {
-            KINKED * missed.abs() * analytic::<S>(elapsed / step.length)
+            KINKED * start_defect.abs() * analytic::<S>(elapsed / step.length)
         } else {
             0.0
         };
-        let slow = 3.0 * missed * missed / largest + kinked;
+        let slow = 3.0 * start_defect * start_defect / largest + kinked;
         fast + slow * solution.tangent.gain / (1.0 + solution.tangent.gain)
     } else {
-        let last = |values: &Nodal<S>| (end(values) * free.missed).abs();
+        let last = |values: &Nodal<S>| (end(values) * free.start_defect).abs();
         let rows = free.error;
         let wrong = last(&rows.displacement) + model.law.damping() * last(&rows.velocity);
         model.law.tangent_stiffness(model.force_scale) * wrong
     }
 }
 
-/// Whether the error of a step from `state` is what the rounding of the sums over the modes makes of the contact
-/// force. After a blow the velocities of the modes are large and their sum at the tip is small.
+/// Whether the error of a step from `state` is explained by rounding of the sums over the modes: after an impact the
+/// modal velocities are large and their sum at the tip is small.
 pub(crate) fn is_rounding<const S: usize>(model: &Model, state: &State, trial: &Trial<S>) -> bool {
     let (mut displacement, mut velocity) = (0.0, 0.0);
     for (mode, at) in model.modes.iter().zip(&state.modes) {
         displacement += (mode.tip * at.q).abs();
         velocity += (mode.tip * at.v).abs();
     }
-    // The force at the first node reacts upon itself over the time up to it alone, some 1 / S^2 of the step.
+    // The force at the first node feeds back only over the time up to it, some 1 / S^2 of the step.
     let reaction = 1.0 + trial.tangent.gain / (S * S) as f64;
     let Tangent { stiffness, damping, .. } = trial.tangent;
     trial.error <= ROUNDINGS * f64::EPSILON * (stiffness * displacement + damping * velocity) / reaction
 }
 
-/// How much less of a root of time its quadrature with `S` nodes misses, over what the nodal polynomial misses, where
-/// its branch point lies `distance` steps before the step: the polynomial converges with the power `S` of the size of
-/// the ellipse in which the root is analytic, the quadrature with the power `2 S - 1` (L. N. Trefethen, Approximation
-/// Theory and Approximation Practice, 2013, chapters 8 and 19).
+/// Ratio of the quadrature error to the interpolation error with `S` nodes for a square root of time whose branch point
+/// lies `distance` step lengths before the step. Interpolation converges with the power `S` of the size of the
+/// Bernstein ellipse, quadrature with the power `2 S - 1` (L. N. Trefethen, Approximation Theory and Approximation
+/// Practice, 2013, chapters 8 and 19).
 fn analytic<const S: usize>(distance: f64) -> f64 {
     let ellipse = 1.0 + 2.0 * distance + 2.0 * (distance * (distance + 1.0)).sqrt();
     (1..S).fold(1.0, |product, _| product / ellipse)
 }
 
-/// The loads of forces and base acceleration on the modes from `first` on.
+/// Loads of contact force and base acceleration on [`LANES`] modes from `first` on.
 #[inline(always)]
 #[expect(
     clippy::indexing_slicing,
@@ -325,8 +325,8 @@ fn loads_on_modes<const S: usize, A: Arithmetic>(
     }
 }
 
-/// The modes in use at the end of a step, into `ends`; `loads` gives those on the modes from a first one on. Returns
-/// displacement and velocity of the tip.
+/// Writes the modes at the end of a step to `ends`; `loads_from` computes the loads on [`LANES`] modes from a given one
+/// on. Returns displacement and velocity of the tip.
 #[inline(always)]
 #[expect(
     clippy::indexing_slicing,
@@ -369,7 +369,7 @@ fn end_of_modes<const S: usize, A: Arithmetic>(
     (tip.iter().sum(), tip_rate.iter().sum())
 }
 
-/// Takes away both.
+/// Subtracts `a` and `b`.
 #[inline(always)]
 fn subtract<const S: usize>(values: &mut Nodal<S>, a: &Nodal<S>, b: &Nodal<S>) {
     for ((value, a), b) in values.iter_mut().zip(a).zip(b) {

@@ -1,6 +1,6 @@
-//! What modes make of a load whose course over a step is a combination of the load shapes: factors of the shapes'
-//! integrals and derivatives, and free motions that fade ([`crate::integrator::collocation::modal_response`]). The factors of many modes add up
-//! before they meet the shapes.
+//! Superposition of modal responses to the load shapes: factors of the shapes' integrals and derivatives, and decaying
+//! free motions ([`crate::integrator::collocation::modal_response`]). The factors of many modes are summed before they
+//! are multiplied by the shapes.
 
 use crate::integrator::collocation::shapes::{MAX_SHAPES, Row, Shapes, TERMS, Table};
 use crate::math::nodal::{Nodal, add, end};
@@ -20,7 +20,7 @@ pub struct Pair<T> {
 pub(crate) struct Combination {
     /// Factors of the integrals.
     pub(crate) integrals: Pair<[f64; TERMS]>,
-    /// How many of them count.
+    /// Number of integrals in use.
     pub(crate) terms: usize,
     /// Factors of the derivatives.
     pub(crate) derivatives: Pair<[f64; MAX_SHAPES]>,
@@ -40,12 +40,12 @@ impl Combination {
     };
 }
 
-/// A free motion that takes away what a combination has at the start.
+/// A free motion that cancels the initial value of a combination.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fading<const S: usize> {
-    /// What there is at the start, for each shape.
+    /// Initial value for each shape.
     pub(crate) start: Row<S>,
-    /// How it fades down to the nodes.
+    /// Free motion at the nodes per initial value.
     pub(crate) fade: Pair<Nodal<S>>,
 }
 
@@ -53,22 +53,22 @@ pub(crate) struct Fading<const S: usize> {
 #[derive(Clone, Copy, Debug)]
 pub struct Response<const S: usize> {
     pub(crate) combination: Combination,
-    /// None, one for a fast root, or two for a pair of them.
+    /// None, one for a single fast root, or two for a pair.
     pub(crate) fading: [Option<Fading<S>>; 2],
-    /// The free motion per initial velocity at the nodes.
+    /// Free motion at the nodes per initial velocity.
     pub impulse: Pair<Nodal<S>>,
 }
 
-/// The responses of many modes to the load shapes, added up.
+/// Sum of the responses of many modes to the load shapes.
 #[derive(Clone, Copy, Debug)]
 pub struct Sum<const S: usize> {
     combination: Combination,
-    /// What has faded at the nodes.
+    /// Sum of the free motions at the nodes.
     faded: Pair<Table<S>>,
 }
 
 impl<const S: usize> Response<S> {
-    /// Per load on the oscillator with each of the nodal shapes, at the end of the step.
+    /// At the end of the step, per load with each of the nodal shapes.
     #[inline(always)]
     pub fn at_end<A: Arithmetic>(&self, shapes: &Shapes<S>) -> Pair<Nodal<S>> {
         let (mut q, mut v) = ([0.0; S], [0.0; S]);

@@ -1,10 +1,11 @@
-//! The balance of the energy (`effects.energy`): what was put in since initialisation, less what is stored, less what
-//! was dissipated. Positive: the integration has lost energy; negative: it has made some.
+//! The energy balance (`effects.energy`): the numerical energy error of the integration in time. Energy supplied since
+//! initialisation, minus energy stored, minus energy dissipated, J. Positive: the integration has lost energy;
+//! negative: it has created energy.
 //!
-//! Put in are the works of the base acceleration `a` and of the moving fixed contact (displacement `u`). Stored are the
-//! kinetic and strain energy of the beam and the elastic energy `V` of the contact. Dissipated is `D_b` in the beam and,
-//! in the contact, the work of `F_d`, the force of the law less its elastic part `V'(d)`. Where damping makes the force
-//! vanish before the surfaces part, `F_d = -V'(d)`: the energy left in the overlap does no work and is dissipated.
+//! Supplied: the work of the base acceleration `a` and of the moving fixed contact (displacement `u`). Stored: kinetic
+//! and strain energy of the beam and the elastic energy `V` of the contact. Dissipated: `D_b` in the beam and, in the
+//! contact, the work of `F_d`, the force of the law minus its elastic part `V'(d)`. If damping makes the force vanish
+//! before the surfaces part, `F_d = -V'(d)`: the energy left in the indentation does no work and is dissipated.
 //!
 //! A step moves the tip by a force `F_p`, a polynomial, and for that force the motion of the modes is exact. So for
 //! the beam, with the preload force `F_0` and `E_b = sum (v_i^2 + omega_i^2 q_i^2) / 2`, both about the preload,
@@ -20,24 +21,23 @@
 //! balance = integral of (F_p - F_d) d' dt - change of V = integral of (F_p - F) d' dt,
 //! ```
 //!
-//! the work of the force by which the polynomial misses the law `F` at the motion it gives. At the nodes it misses
-//! nothing, so a quadrature there would see nothing; the motion is therefore computed once more in two halves of the
-//! step, from the same start under the same `F_p` and the base acceleration at more instants, and the integral taken by
-//! the Radau quadratures of both, with eight nodes each. The end of that motion is not the one that the step has taken:
-//! where their energies differ, the step has made or lost the difference, by its polynomial of the base acceleration,
-//! by an impulse that it gave, or by a mistake in it. That counts too.
+//! the work of the difference between the polynomial and the law `F` at the motion. This difference vanishes at the
+//! nodes, where a quadrature would not see it. The motion is therefore computed again in two half steps, from the same
+//! start under the same `F_p`, with the base acceleration at more instants, and the integral is taken by the Radau
+//! quadratures of both, with eight nodes each. The energy at the end of that motion may differ from that of the step
+//! taken, by the step's polynomial of the base acceleration, by an impulse it applied, or by a programming error. This
+//! difference is included.
 //!
-//! So the balance tells of the integration in time. It says nothing on the number of modes, and nothing on the exact
-//! solution of a single mode, which it relies on. A contact at rest and an exact step of the linear scene add nothing
-//! to it: one does not move, the other has no polynomial, its motion obeys the law at every instant to rounding.
+//! So the balance measures the integration in time, not the truncation to a number of modes, nor the exact solution of
+//! a single mode, which it relies on. A contact at rest and exact linear steps contribute nothing: one does not move,
+//! the other has no polynomial and satisfies the law at every instant to rounding.
 //!
-//! The balance is drawn up at the ends of the integrator's steps: at a communication point inside a step it is that of
-//! the step's start.
+//! The balance is updated at the ends of integration steps: at a communication point inside a step it is that of the
+//! step's start.
 //!
-//! A force wrong by `e` over a way `s` of the tip is worth `e s` at most. That is what to hold the balance against: the
-//! tolerance times the force scale times the way.
+//! A force error `e` over a tip path `s` changes the energy by at most `e s`. So compare the balance with the tolerance
+//! times the force scale times the path.
 
-use crate::BARE;
 use crate::integrator::collocation::newton::Source;
 use crate::integrator::collocation::step::{self, Trial};
 use crate::integrator::grid::Target;
@@ -47,13 +47,13 @@ use crate::math::nodal::LONG;
 use crate::state::State;
 
 impl Integration<'_> {
-    /// What the energy above that of the preload is at the end of a step about to be taken, if the step neither loses
-    /// nor makes any, J; nothing where nobody asks for it.
-    pub(crate) fn energy_due<const S: usize>(&mut self, trial: &Trial<S>, target: &Target) -> Option<f64>
+    /// Energy relative to the preload at the end of a step about to be accepted, if the step were free of error, J;
+    /// `None` without `effects.energy`.
+    pub(crate) fn expected_energy<const S: usize>(&mut self, trial: &Trial<S>, target: &Target) -> Option<f64>
     where
         Workspace: Room<S>,
     {
-        if BARE || !self.model.scene.effects.energy {
+        if !self.model.scene.effects.energy {
             return None;
         }
         let half = 0.5 * target.length;
@@ -84,16 +84,16 @@ impl Integration<'_> {
         Some(if state.closed {
             model.energy(&at.modes, state.indentation) + work
         } else {
-            // Without force what leaves the contact is dissipated.
+            // Without contact force, all elastic energy that leaves the contact is dissipated.
             model.energy(&at.modes, at.indentation)
         })
     }
 
-    /// Enters a step just taken, at whose end the energy was to be `due` (J).
-    pub(crate) fn balance(&mut self, due: Option<f64>) {
-        if let Some(due) = due {
+    /// Adds a step just accepted, at whose end the energy should be `expected` (J).
+    pub(crate) fn balance(&mut self, expected: Option<f64>) {
+        if let Some(expected) = expected {
             let Self { model, state, .. } = self;
-            state.energy_balance += due - model.energy(&state.modes, state.indentation);
+            state.energy_balance += expected - model.energy(&state.modes, state.indentation);
         }
     }
 }
@@ -117,8 +117,7 @@ mod tests {
     const MODES: usize = 6;
     type Along = SVector<f64, { 2 * MODES + 2 }>;
 
-    /// The specimen under way: shaken by the generator and by the input, which grows, with the fixed contact
-    /// moving.
+    /// The specimen in motion: shaken by the generator and by an input that grows, with the fixed contact moving.
     fn moving() -> (Model, State, Drive) {
         let mut scene = Scene::default();
         scene.effects.excitation = ExcitationKind::Sine;
@@ -141,7 +140,7 @@ mod tests {
         (model, state, drive)
     }
 
-    /// What a step of `length` (s) that was changed adds to the balance, J.
+    /// What a modified step of `length` (s) adds to the balance, J.
     fn balance<const S: usize>(
         model: &Model,
         state: &mut State,
@@ -173,8 +172,8 @@ mod tests {
         (state.energy_balance, trial)
     }
 
-    /// The same, with every work, energy and loss summed up along the motion under the force of the step, integrated by
-    /// the classical Runge-Kutta method, J.
+    /// The same from all works, energies and losses, integrated along the motion under the force of the step by the
+    /// classical Runge-Kutta method, J.
     #[expect(clippy::indexing_slicing, reason = "as many entries as the modes need")]
     fn summed<const S: usize>(
         model: &Model,
@@ -186,7 +185,7 @@ mod tests {
     ) -> f64 {
         const STEPS: u32 = 20_000;
         let collocation = Collocation::<S>::new();
-        // Displacement and velocity of each mode in turn, energy put in, energy dissipated.
+        // Displacement and velocity of each mode, energy supplied, energy dissipated.
         let rates = |t: f64, y: &Along| {
             let force = collocation.interpolate(&trial.forces, t / length);
             let base = drive.acceleration(start.time + t) + model.generator.phasor(start.time + t).0;
@@ -227,14 +226,14 @@ mod tests {
 
     #[test]
     fn a_step_is_balanced_as_the_sum_of_its_works_and_losses_is() {
-        // With four nodes, and far longer than the error allows, so that there is something to balance.
+        // Four nodes, and steps far longer than the error allows, so that there is an energy error.
         for length in [6e-5, 1.2e-4, 2.4e-4] {
             let (model, start, drive) = moving();
             let mut end = start;
             let (entered, trial) = balance::<SHORT>(&model, &mut end, drive, length, |_, _| ());
             let sum = summed(&model, &start, &end, drive, length, &trial);
-            // What the polynomial misses at the start sets the modes swinging for about a microsecond, which the nodes
-            // of the halves do not follow.
+            // The defect at the start excites oscillations of about a microsecond, which the nodes of the half steps do
+            // not resolve.
             assert!(
                 (entered - sum).abs() < 0.1 * sum.abs(),
                 "{length} s: entered {entered:e} J, summed {sum:e} J"
@@ -255,7 +254,7 @@ mod tests {
             (entered - sum).abs() < 1e-3 * sum.abs(),
             "entered {entered:e} J, summed {sum:e} J"
         );
-        // More than the wrong force itself is worth: the tip it leads astray meets other forces of the law.
+        // More than the work of the wrong force itself: the changed motion meets other forces of the law.
         let worth = wrong * (end.indentation - start.indentation).abs();
         assert!(entered.abs() > worth, "entered {entered:e} J, worth {worth:e} J");
     }
@@ -267,9 +266,9 @@ mod tests {
         let mut made = 0.0;
         let (entered, _) = balance::<LONG>(&model, &mut end, drive, 6e-5, |_, modes| {
             let first = modes.first_mut().unwrap();
-            let due = first.v;
+            let expected = first.v;
             first.v *= 1.0 + 1e-6;
-            made = 0.5 * (first.v * first.v - due * due);
+            made = 0.5 * (first.v * first.v - expected * expected);
         });
         assert!(
             (entered + made).abs() < 1e-3 * made,

@@ -1,9 +1,9 @@
-//! The account of the energy where nothing dissipates and no generator runs.
+//! Energy conservation in scenes without damping and without generator.
 //!
-//! The energy about the preload then changes by the work of the base acceleration, which the modal displacements tell
-//! exactly, and of the moving contact, which is its velocity times the impulse of the force: the polynomial's, exactly.
-//! What else a step makes of it is its error, and is returned by a small impulse on the tip in this step or in later
-//! ones, so that nothing adds up over any number of impacts.
+//! The energy relative to the preload then changes only by the work of the base acceleration, known exactly from the
+//! modal displacements, and of the moving fixed contact: its velocity times the impulse of the force, known exactly
+//! from the polynomial. Any other change is an error of the step. It is corrected by a small impulse on the tip in this
+//! step or in later ones, so that errors do not accumulate over any number of impacts.
 
 use crate::excitation::drive::Drive;
 use crate::excitation::generator::Generator;
@@ -12,10 +12,10 @@ use crate::integrator::integration::Integration;
 use crate::integrator::workspace::{Room, Workspace};
 use crate::model::Model;
 
-/// Share of the tolerance that the contact force may be wrong by to return energy.
+/// Error of the contact force allowed for the energy correction, relative to the tolerance.
 const RETURNED: f64 = 0.05;
 
-/// Whether nothing dissipates, and the work done on the motion is known.
+/// Whether there is no dissipation and the work of the drive is known exactly.
 pub(crate) fn conserves(model: &Model, drive: &Drive) -> bool {
     let undamped = model.modes.iter().all(|mode| mode.damping == 0.0);
     // An axial force that follows the deflection has no potential.
@@ -27,8 +27,8 @@ pub(crate) fn conserves(model: &Model, drive: &Drive) -> bool {
 }
 
 impl Integration<'_> {
-    /// Energy that the step makes beyond the work done on it, and what rounding may make of it, J. The modes at its end
-    /// are those of the last attempt.
+    /// Energy error of the step (gain beyond the work done), and its rounding, J. The modes at its end are those of the
+    /// last [`Integration::attempt`].
     fn surplus<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> (f64, f64)
     where
         Workspace: Room<S>,
@@ -43,15 +43,15 @@ impl Integration<'_> {
         let loads = moved.map(|(mode, (start, end))| mode.participation * (end.q - start.q));
         let by_base = -drive.acceleration(state.time) * loads.sum::<f64>();
         let by_support = drive.support_rate * length * cache.collocation().mean(&trial.forces);
-        // Displacement and velocity of each mode are rounded, sums of two products and a load; so are the forces on the way.
+        // Rounding of displacement and velocity of each mode, sums of two products and a load, and of the forces.
         let way = (trial.indentation - state.indentation).abs() + (drive.support_rate * length).abs();
         let size = start.max(finish) + (state.force + model.preload.force) * way;
         let rounding = 4.0 * f64::EPSILON * model.modes.len() as f64 * size;
         (finish - start - by_base - by_support, rounding)
     }
 
-    /// Whether the step makes or loses as much energy as a force wrong by more than the tolerance over the way of the
-    /// tip would. The error estimate, one number, can be small by chance.
+    /// Whether the energy error of the step exceeds that of a force error of one tolerance along the path of the tip.
+    /// The error estimate, a single number, can be small by chance.
     pub(crate) fn breaks_account<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> bool
     where
         Workspace: Room<S>,
@@ -67,7 +67,7 @@ impl Integration<'_> {
         surplus.abs() > rounding + self.tolerance * length * fastest
     }
 
-    /// Enters a step about to be taken in the account.
+    /// Adds the energy error of a step about to be accepted.
     pub(crate) fn enter<const S: usize>(&mut self, trial: &Trial<S>, length: f64)
     where
         Workspace: Room<S>,
@@ -77,8 +77,8 @@ impl Integration<'_> {
         }
     }
 
-    /// Returns what was made too much or too little, by an impulse on the tip not larger than that of a small error of
-    /// the force over the step just taken. What is left is for later steps.
+    /// Corrects the accumulated energy error by an impulse on the tip, limited to that of a small force error over the
+    /// step just taken. The remainder is left to later steps.
     pub(crate) fn settle(&mut self, length: f64) {
         if !self.conserves || !self.state.closed || self.state.energy_surplus == 0.0 {
             return;

@@ -1,4 +1,4 @@
-//! The energy that steps make or lose.
+//! Energy: the numerical balance as an output, and its conservation in undamped scenes.
 
 pub mod balance;
 pub mod conservation;

@@ -1,9 +1,9 @@
-//! The contact closes: the first instant within a step of free flight at which the force leaves zero.
+//! Event location of closing: the first instant within a step of free flight at which there is a contact force.
 //!
-//! Looking at signs alone would miss a grazing touch. Between neighbouring instants at which indentation and velocity
-//! are known, the indentation is a cubic but for an error that the middle one of any three shows. Where the cubic's
-//! highest point clears zero by more than that error there is no touch; elsewhere the interval is halved. Modes that
-//! swing within the interval unseen count with their amplitudes.
+//! Sign changes alone would miss a grazing contact. Between two samples of indentation and velocity the indentation is
+//! approximated by the Hermite cubic, whose error is estimated at a sample between them. If the maximum of the cubic
+//! stays below first touch by more than this error there is no contact; otherwise the interval is bisected. Modes that
+//! oscillate faster than the interval resolves are added with their amplitudes.
 
 use crate::beam::mode::Mode;
 use crate::integrator::collocation::step::Trial;
@@ -13,13 +13,13 @@ use crate::integrator::workspace::{Room, Workspace};
 use crate::math::nodal::LONG;
 use crate::math::roots;
 
-/// Halvings before an interval counts as an instant.
+/// Largest depth of the bisection.
 const DEPTH: u32 = 40;
 
-/// Part of what the engagement changes by between two samples that may go unseen.
+/// Largest unresolved oscillation, relative to the change of the engagement between two samples.
 const UNSEEN: f64 = 1e-2;
 
-/// Part of the flight looked at that a contact stays open at least.
+/// Shortest flight after an opening, relative to the interval searched.
 const SHORTEST_FLIGHT: f64 = 1e-3;
 
 /// Indentation and its velocity at an instant of the step.
@@ -34,8 +34,8 @@ struct Sample {
 }
 
 impl Integration<'_> {
-    /// Where in the step of free flight of `length` seconds (in steps) the contact may first close: the start of the
-    /// first interval between samples in which it is not clear of it.
+    /// Where in the step of free flight of `length` seconds the contact may first close, 0 to 1: the start of the first
+    /// interval between samples in which closing cannot be excluded.
     pub(crate) fn first_near<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> Option<f64>
     where
         Workspace: Room<S>,
@@ -48,7 +48,7 @@ impl Integration<'_> {
         })
     }
 
-    /// Where the step of free flight of `length` seconds has to end because the contact closes, if it does.
+    /// Locates the closing in the step of free flight of `length` seconds; `None` if the contact stays open.
     pub(crate) fn closing<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> Option<Cut>
     where
         Workspace: Room<S>,
@@ -62,7 +62,7 @@ impl Integration<'_> {
         Some(Cut { length, switches: true })
     }
 
-    /// Start and nodes of a step, and by how much the cubics between them are wrong, m.
+    /// Samples at the start and the nodes of a step, and the error of the cubics between them, m.
     fn samples<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> ([Sample; LONG + 1], f64)
     where
         Workspace: Room<S>,
@@ -96,23 +96,23 @@ impl Integration<'_> {
         (samples, error)
     }
 
-    /// Whether the contact stays open between two open samples.
+    /// Whether the contact certainly stays open between two open samples.
     fn is_clear(&self, a: &Sample, b: &Sample, error: f64) -> bool {
-        // An overlap whose force is lost in the tolerance need not be found.
+        // A contact whose force is far below the tolerance need not be found.
         let negligible = self.model.law.overlap(1e-3 * self.tolerance);
         let (ripple, ripple_rate) = self.ripple(b.at - a.at);
         let (d, rate) = (highest(a, b) + ripple, a.rate.max(b.rate) + ripple_rate);
         self.model.engagement(d, rate) + error < negligible
     }
 
-    /// Whether no mode swings between two samples unseen.
+    /// Whether oscillations faster than the interval between two samples are negligible.
     fn is_resolved(&self, a: &Sample, b: &Sample) -> bool {
         let (ripple, ripple_rate) = self.ripple(b.at - a.at);
         let [from, to] = [a, b].map(|sample| self.model.engagement(sample.d, sample.rate));
         ripple + self.model.law.damping() * ripple_rate <= UNSEEN * (to - from).abs()
     }
 
-    /// How far and how fast at most the modes that swing within `interval` seconds or less move the tip, m and m/s.
+    /// Bound of tip displacement (m) and velocity (m/s) of the modes that oscillate within `interval` seconds or less.
     fn ripple(&self, interval: f64) -> (f64, f64) {
         let Self {
             model, state, drive, ..
@@ -131,8 +131,8 @@ impl Integration<'_> {
         (displacement, velocity)
     }
 
-    /// The first instant between two samples (s from the start of the step) at which the contact closes; their cubic is
-    /// wrong by about `error` (m).
+    /// The first instant of closing between two samples, s from the start of the step; `error` (m) is the error of
+    /// their cubic.
     fn touch_between<const S: usize>(&mut self, a: &Sample, b: &Sample, error: f64, depth: u32) -> Option<f64>
     where
         Workspace: Room<S>,
@@ -143,7 +143,7 @@ impl Integration<'_> {
             }
         } else if a.rate >= 0.0 && highest(a, b) <= b.d && self.is_resolved(a, b) || depth > DEPTH {
             let touch = self.crossing::<S>(a, b);
-            // A contact that closes as it opens has been open all the same: the steps have to get on.
+            // A contact that closes at the instant of opening still gets a short flight, so that time advances.
             let released = self.state.last_opening == self.state.time;
             return Some(if released {
                 touch.max(SHORTEST_FLIGHT * b.at)
@@ -157,14 +157,14 @@ impl Integration<'_> {
             .or_else(|| self.touch_between::<S>(&middle, b, error, depth + 1))
     }
 
-    /// The instant of closing between an open and a closed sample.
+    /// The instant of closing between an open and a closed sample, s from the start of the step.
     fn crossing<const S: usize>(&mut self, a: &Sample, b: &Sample) -> f64
     where
         Workspace: Room<S>,
     {
         let model = self.model;
         let engagement = |sample: &Sample| model.engagement(sample.d, sample.rate);
-        // A flight starts at the release itself; rounding must not make it look closed.
+        // A flight starts at the opening itself, where rounding may give a positive engagement.
         let start = engagement(a).min(-f64::MIN_POSITIVE);
         let resolution = self.resolution();
         let overlap = |at| engagement(&self.sample::<S>(at));
@@ -186,7 +186,7 @@ impl Integration<'_> {
     }
 }
 
-/// The cubic through two samples and their velocities, at an instant.
+/// The Hermite cubic of two samples at an instant, m.
 fn cubic(a: &Sample, b: &Sample, at: f64) -> f64 {
     let h = b.at - a.at;
     let x = (at - a.at) / h;
@@ -196,11 +196,11 @@ fn cubic(a: &Sample, b: &Sample, at: f64) -> f64 {
         + h * (a.rate * (x * y * y) - b.rate * (x * x * y))
 }
 
-/// Highest value of the cubic between the two samples.
+/// Maximum of the Hermite cubic between the two samples, m.
 fn highest(a: &Sample, b: &Sample) -> f64 {
     let h = b.at - a.at;
     let ends = a.d.max(b.d);
-    // Slope of the cubic, h w' = p x^2 + q x + r.
+    // Slope of the cubic: h d' = p x^2 + q x + r.
     let rise = b.d - a.d;
     let p = 3.0 * (h * (a.rate + b.rate) - 2.0 * rise);
     let q = 6.0 * rise - 2.0 * h * (2.0 * a.rate + b.rate);

@@ -1,5 +1,5 @@
-//! An interruption begins or ends: where the contact force passes that of the threshold resistance inside a step.
-use crate::BARE;
+//! Event location of interruptions: where the contact force crosses that of the threshold resistance within a step.
+
 use crate::chatter::Criterion;
 use crate::error::StepError;
 use crate::integrator::collocation::polynomial::Collocation;
@@ -11,16 +11,16 @@ use crate::integrator::workspace::{Room, Workspace};
 use crate::math::nodal::{self, SHORT};
 use crate::math::roots;
 
-/// Places in a step at which the force is looked for clearly on its old side of the threshold.
+/// Sample points searched for a force clearly on its old side of the threshold.
 const PLACES: u32 = 8;
 
 impl Integration<'_> {
-    /// Where in a step of the closed contact (in steps) the force first passes that of an interruption, where it does.
+    /// Where in a step of the closed contact the force first crosses the threshold, 0 to 1; `None` if it does not.
     pub(crate) fn first_passage<const S: usize>(&mut self, trial: &Trial<S>) -> Option<f64>
     where
         Workspace: Room<S>,
     {
-        let criterion = self.model.criterion.filter(|_| !BARE)?;
+        let criterion = self.model.criterion?;
         if !self.state.closed {
             return None;
         }
@@ -32,7 +32,7 @@ impl Integration<'_> {
         self.collocation::<S>().first_dip(&excess, f64::INFINITY)
     }
 
-    /// How far a force, as deviation from the preload force, is on the side of the threshold on which it was, N.
+    /// Distance of a force (deviation from the preload force) from the threshold, positive on the side of before, N.
     fn excess(&self, criterion: &Criterion, force: f64) -> f64 {
         let above = self.model.preload.force + force - criterion.force;
         if self.state.interruptions.in_progress() {
@@ -42,7 +42,7 @@ impl Integration<'_> {
         }
     }
 
-    /// The same after a step of `length` seconds, N.
+    /// [`Integration::excess`] after a probe step of `length` seconds, N.
     fn excess_after<const S: usize>(&mut self, criterion: &Criterion, length: f64) -> f64
     where
         Workspace: Room<S>,
@@ -51,13 +51,14 @@ impl Integration<'_> {
         trial.map_or(f64::NAN, |trial| self.excess(criterion, nodal::end(&trial.forces)))
     }
 
-    /// Ends the step at the passage that shows after the part `passed` of it; nothing where it may go on to its end.
+    /// Ends the step at the crossing found at or before the part `passed` of it; `None` if the step need not be
+    /// shortened.
     pub(crate) fn stop_at_threshold<const S: usize>(
         &mut self,
         passed: f64,
         target: &Target,
         growth: f64,
-        wanted: f64,
+        requested: f64,
     ) -> Result<Option<StepOutcome>, StepError>
     where
         Workspace: Room<S>,
@@ -68,7 +69,7 @@ impl Integration<'_> {
         };
         let latest = passed * target.length;
         if S != SHORT {
-            // Events are located in short steps; long ones end before.
+            // Events are located in 4-node steps; 8-node steps end before them.
             return Ok(Some(self.reject(0.9 * latest)));
         }
         let cut_at = |length| Cut {
@@ -77,15 +78,15 @@ impl Integration<'_> {
         };
         let end = self.excess_after::<S>(criterion, latest);
         if end > 0.0 {
-            // The polynomial passes, the force does not: the next step starts here.
+            // The polynomial crosses, the force does not: the next step starts here.
             return (latest < target.length)
-                .then(|| self.end_at::<S>(&cut_at(latest), growth, wanted))
+                .then(|| self.end_at::<S>(&cut_at(latest), growth, requested))
                 .transpose();
         }
         let start = self.excess(criterion, self.state.force - model.preload.force);
         let resolution = self.resolution();
-        // Where an interruption has just begun or ended, rounding may show the force where it was before: it is then taken
-        // from where it is clearly beyond.
+        // Where an interruption has just begun or ended, rounding may put the force on the wrong side: start from a
+        // sample clearly on the right side.
         let clear = if start > 0.0 {
             Some((0.0, start))
         } else {
@@ -102,28 +103,29 @@ impl Integration<'_> {
         let length = match length {
             Some(length) if length > resolution => length,
             _ if self.state.interruptions.turned_at(self.state.time) && start <= 0.0 => {
-                // It never was beyond, or for less than can be told: it has turned back by the end of this piece.
-                return self.end_at::<S>(&cut_at(latest), growth, wanted).map(Some);
+                // On the new side for less than the resolution of time: the force has crossed back by the end of this
+                // piece.
+                return self.end_at::<S>(&cut_at(latest), growth, requested).map(Some);
             }
             _ => {
-                // Nothing of the step is left.
+                // The crossing is at the start of the step.
                 self.state.interruptions.turn(criterion, self.state.time);
                 return Ok(Some(self.reject(target.length)));
             }
         };
-        let outcome = self.end_at::<S>(&cut_at(length), growth, wanted)?;
+        let outcome = self.end_at::<S>(&cut_at(length), growth, requested)?;
         if outcome.taken {
             self.state.interruptions.turn(criterion, self.state.time);
         }
         Ok(Some(outcome))
     }
 
-    /// Notes the contact force as it is now, and an interruption that begins or ends with it.
+    /// Records the present contact force in the extremes, and an interruption that begins or ends with it.
     pub(crate) fn note_force(&mut self) {
         if let Some(extremes) = &mut self.extremes {
             extremes.add(self.state.force);
         }
-        let Some(criterion) = self.model.criterion.as_ref().filter(|_| !BARE) else {
+        let Some(criterion) = self.model.criterion.as_ref() else {
             return;
         };
         let state = &mut *self.state;

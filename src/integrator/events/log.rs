@@ -1,28 +1,27 @@
-//! Openings and closings as the integrator meets them, for whoever wants to be told of each.
+//! Log of openings and closings, for reference runs that need every event.
 
-/// The contact opens or closes.
+/// An opening or closing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Event {
-    /// s.
+    /// Instant, s.
     pub time: f64,
     /// Whether it closes.
     pub closes: bool,
 }
 
-/// How many are kept of a communication step.
+/// Largest number of events kept.
 const ROOM: usize = 1024;
 
-/// The events of a communication step, and those the integrator has met ahead of its end. The first ones, where there is
-/// no room for all.
+/// Events of a communication step, and those located ahead of its end; the first ones if there are too many.
 #[derive(Clone, Debug)]
 pub struct Events {
     list: Vec<Event>,
-    /// How many there was no room for.
+    /// Number of events not kept.
     pub left_out: u64,
 }
 
 impl Events {
-    /// None.
+    /// An empty log.
     pub fn new() -> Self {
         Self {
             list: Vec::with_capacity(ROOM),
@@ -30,7 +29,7 @@ impl Events {
         }
     }
 
-    /// One more.
+    /// Adds an event.
     pub(crate) fn record(&mut self, event: Event) {
         if self.list.len() < ROOM {
             self.list.push(event);
@@ -39,7 +38,7 @@ impl Events {
         }
     }
 
-    /// Forgets those up to an instant (s): a communication step begins there.
+    /// Removes events up to an instant (s), at which a communication step begins.
     pub(crate) fn forget_until(&mut self, time: f64) {
         if self.list.is_empty() {
             return;
@@ -48,12 +47,12 @@ impl Events {
         self.list.retain(|event| event.time > time);
     }
 
-    /// Forgets those after an instant (s): the motion is taken back.
+    /// Removes events after an instant (s), from which integration restarts.
     pub(crate) fn forget_after(&mut self, time: f64) {
         self.list.retain(|event| event.time <= time);
     }
 
-    /// Those up to an instant, s.
+    /// Events up to an instant (s).
     pub fn until(&self, time: f64) -> impl Iterator<Item = &Event> {
         self.list.iter().filter(move |event| event.time <= time)
     }

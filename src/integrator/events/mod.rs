@@ -1,4 +1,5 @@
-//! The contact opens or closes, or the force jumps: where a step has to end because of it, and how the next one begins.
+//! Events: openings, closings, interruptions and jumps of the force. Steps end at an event, and integration restarts
+//! there.
 
 pub mod closing;
 pub mod interruption;
@@ -11,7 +12,7 @@ use crate::integrator::events::log::Event;
 use crate::integrator::integration::{Integration, StepOutcome};
 use crate::integrator::workspace::{Room, Workspace};
 
-/// A step that ends before it was meant to.
+/// A step shortened to end at an event.
 pub(crate) struct Cut {
     /// Its length, s.
     pub(crate) length: f64,
@@ -20,7 +21,7 @@ pub(crate) struct Cut {
 }
 
 impl Integration<'_> {
-    /// Where in the step (in steps) the contact first looks as if it switched.
+    /// Where in the step the contact may first open or close, 0 to 1.
     pub(crate) fn first_event_candidate<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> Option<f64>
     where
         Workspace: Room<S>,
@@ -32,8 +33,8 @@ impl Integration<'_> {
         }
     }
 
-    /// Where the step of `length` seconds has to end, which looks like an event after the part `candidate` of it; `None` where
-    /// it may go on to its end.
+    /// Locates the event suspected at the part `candidate` of the step of `length` seconds; `None` if the step need not
+    /// be shortened.
     pub(crate) fn cut<const S: usize>(&mut self, candidate: f64, trial: &Trial<S>, length: f64) -> Option<Cut>
     where
         Workspace: Room<S>,
@@ -45,19 +46,19 @@ impl Integration<'_> {
         }
     }
 
-    /// The step that ends at the cut, taken or rejected, in place of one whose length wanted was `wanted` (s) and which
-    /// may have grown by `growth`.
+    /// A step that ends at the cut, accepted or rejected, in place of one of `requested` seconds with the growth factor
+    /// `growth`.
     pub(crate) fn end_at<const S: usize>(
         &mut self,
         cut: &Cut,
         growth: f64,
-        wanted: f64,
+        requested: f64,
     ) -> Result<StepOutcome, StepError>
     where
         Workspace: Room<S>,
     {
         if cut.length <= 0.0 {
-            // Nothing of the step is left: the contact switches now.
+            // The event is at the start of the step.
             let length = self.switch(!self.state.closed);
             return Ok(self.reject(length));
         }
@@ -65,7 +66,7 @@ impl Integration<'_> {
         let attempt = self.attempt::<S>(&target);
         let Some(trial) = attempt.filter(|trial| self.is_acceptable(self.relative_error(trial, &target), &target))
         else {
-            // What the law does close to the event may be too much for one step up to it.
+            // Close to the event the law may vary too fast for one step up to it.
             if self.is_shortest(&target) {
                 return self.take_with_constant_force(&target);
             }
@@ -75,15 +76,15 @@ impl Integration<'_> {
         if cut.switches {
             return Ok(StepOutcome {
                 taken: true,
-                // The steps find their length anew from here; this one tells nothing of it.
+                // The step size starts anew after an event.
                 growth: f64::INFINITY,
                 length: self.switch(!self.state.closed),
             });
         }
-        Ok(StepOutcome::after(target.length, wanted, growth))
+        Ok(StepOutcome::after(target.length, requested, growth))
     }
 
-    /// The contact opens or closes at the instant of the state; the step to take next.
+    /// Opens or closes the contact at the instant of the state; returns the length of the next step, s.
     pub(crate) fn switch(&mut self, closed: bool) -> f64 {
         self.state.closed = closed;
         self.workspace.events.record(Event {
@@ -102,7 +103,7 @@ impl Integration<'_> {
         }
     }
 
-    /// A new velocity of the fixed contact changes the dissipative force at once.
+    /// Applies a jump of the velocity of the fixed contact, with which the dissipative force jumps.
     pub(crate) fn set_support_rate(&mut self) {
         let jump = self.drive.support_rate - self.state.support_rate;
         if jump == 0.0 {
@@ -127,9 +128,8 @@ impl Integration<'_> {
         self.state.long_step = self.state.long_step.min(next);
     }
 
-    /// First step after the surfaces meet, s. The dissipative force starts as the square root of time, which no
-    /// polynomial follows: the step is chosen so short that what it misses moves the contact by less than a step's
-    /// share of the error.
+    /// First step after closing, s. The dissipative force starts as the square root of time, which no polynomial
+    /// approximates well: the step is so short that its error moves the force by less than the error allowed per step.
     fn first_closed_step(&self) -> f64 {
         let Self { model, state, .. } = self;
         let d = model.preload.indentation + state.indentation;

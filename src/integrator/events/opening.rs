@@ -1,4 +1,4 @@
-//! The contact opens: the instant within a step at which the force reaches zero.
+//! Event location of opening: the instant within a step at which the contact force reaches zero.
 
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::step::Trial;
@@ -8,8 +8,7 @@ use crate::integrator::workspace::{Room, Workspace};
 use crate::math::roots;
 
 impl Integration<'_> {
-    /// Where the step of `length` seconds has to end because the contact opens, which it has done after `latest`
-    /// seconds if it does at all.
+    /// Locates the opening in the step of `length` seconds, suspected within its first `latest` seconds.
     pub(crate) fn opening<const S: usize>(&mut self, latest: f64, length: f64) -> Option<Cut>
     where
         Workspace: Room<S>,
@@ -25,7 +24,7 @@ impl Integration<'_> {
                 switches: false,
             });
         }
-        // The contact is closed at the start; just after a touch rounding could hide it.
+        // Closed at the start; just after first touch rounding may give a negative engagement.
         let start = model
             .engagement(self.state.indentation, self.state.indentation_rate)
             .max(f64::MIN_POSITIVE);
@@ -37,8 +36,8 @@ impl Integration<'_> {
         })
     }
 
-    /// Where in the step (in steps) the contact first looks open: a node or the end with no force left, or a place
-    /// where the polynomial through the nodes dips below zero between them.
+    /// Where in the step the contact may first open, 0 to 1: a node or the end where it is open, or a place between
+    /// nodes where the force polynomial is below zero.
     pub(crate) fn first_open<const S: usize>(&mut self, trial: &Trial<S>) -> Option<f64>
     where
         Workspace: Room<S>,
