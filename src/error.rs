@@ -49,7 +49,9 @@ pub enum SceneError {
         allowed: &'static str,
     },
     /// An axial force above the buckling load of the spring without contact.
-    #[error("{name} = {value} N: the spring buckles once the contact opens, allowed is less than {limit} N (pi^2 E I / (4 L^2))")]
+    #[error(
+        "{name} = {value} N: the spring buckles once the contact opens, allowed is less than {limit} N (pi^2 E I / (4 L^2))"
+    )]
     Buckled {
         /// The variable or result that holds the force.
         name: &'static str,
