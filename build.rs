@@ -1,6 +1,6 @@
 //! Turns `modelDescription.xml` into Rust: one enum for each group of variables, the table of their
-//! properties, the enumeration types, and the GUID (a hash of the file). Also writes the C header, with GUID, value
-//! references and choices as constants.
+//! properties, the enumeration types, and the GUID (a hash of the file). Also writes the C header, with GUID,
+//! value references and choices as constants.
 
 use std::error::Error;
 use std::fmt::Write as _;
@@ -124,13 +124,12 @@ fn variables(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> 
     }
     writeln!(
         code,
-        "/// Every variable of the component, in the order of \
-         `modelDescription.xml`.\n#[allow(clippy::unreadable_literal)]\npub static VARIABLES: [Variable; {count}] = [\n{table}];"
+        "/// Every variable of the component, in the order of `modelDescription.xml`.\n#[allow(clippy::unreadable_literal)]\npub static VARIABLES: [Variable; {count}] = [\n{table}];"
     )?;
     writeln!(code, "{}", by_reference(&list)?)?;
     writeln!(
         code,
-        "/// A variable as a value of the enum of its group.\n#[derive(Clone, Copy, Debug, PartialEq, Eq)]\npub enum Group {{"
+        "/// A variable, as a value of the enum of its group.\n#[derive(Clone, Copy, Debug, PartialEq, Eq)]\npub enum Group {{"
     )?;
     for (name, doc) in GROUPS {
         writeln!(code, "    /// {doc}\n    {name}({name}),")?;
@@ -140,8 +139,7 @@ fn variables(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> 
         writeln!(
             code,
             "/// {doc}\n#[derive(Clone, Copy, Debug, PartialEq, Eq)]\npub enum {name} {{\n{}}}\n\
-             impl {name} {{\n    /// All of them.\n    pub const ALL: &[Self] = &[{}];\n    /// Name, unit, range and \
-             start value.\n    \
+             impl {name} {{\n    /// All of them.\n    pub const ALL: &[Self] = &[{}];\n    /// Name, unit, range and start value.\n    \
              pub fn variable(self) -> &'static Variable {{\n        match self {{\n{}        }}\n    }}\n}}",
             members[position], all[position], arms[position]
         )?;
@@ -203,8 +201,7 @@ fn enumeration(code: &mut String, definition: Node, list: Node) -> Result<(), Bo
     writeln!(
         code,
         "}}\nimpl {name} {{\n    /// Names and values of the choices.\n    pub const CHOICES: &[(&str, i32)] = &[{table}];\n    \
-         /// The choice with this value.\n    pub fn from_value(value: i32) -> Option<Self> {{\n        match value
-         /// {{\n{from}            _ => None,\n        }}\n    }}\n}}"
+         /// The choice with this value.\n    pub fn from_value(value: i32) -> Option<Self> {{\n        match value {{\n{from}            _ => None,\n        }}\n    }}\n}}"
     )?;
     Ok(())
 }
@@ -241,7 +238,7 @@ fn upper(name: &str) -> String {
 /// For C: the GUID, the value reference of every variable, and the choices of the enumerations.
 fn constants(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> {
     let mut code = format!(
-        "\n/**\n * The argument fmuGUID of `fmi2Instantiate`: a hash of modelDescription.xml.\n */\n#define RELAY_CONTACT_GUID \"{guid}\"\n"
+        "\n/**\n * The argument `fmuGUID` of `fmi2Instantiate`: a hash of modelDescription.xml.\n */\n#define RELAY_CONTACT_GUID \"{guid}\"\n"
     );
     for variable in document
         .descendants()

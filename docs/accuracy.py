@@ -147,7 +147,7 @@ def first_figure(rows: list[Row], path: Path) -> None:
 
 
 def second_figure(rows: list[Row], path: Path) -> None:
-    """The component's error, from modes and from time steps."""
+    """Draw the error of the component, from modes and from time steps."""
     figure, grid = plt.subplots(1, 2, figsize=(WIDTH, 4.6), dpi=DPI, layout="constrained", sharey=True)
     modes_axes, steps_axes = grid
     colors = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")

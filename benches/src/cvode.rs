@@ -144,7 +144,7 @@ fn compile() -> Result<PathBuf, Failure> {
             let text = String::from_utf8_lossy(&output.stderr);
             let cause = text.lines().find(|line| line.contains("error")).unwrap_or("cc failed");
             Err(Failure::Unavailable(format!(
-                "SUNDIALS 6 not found (on Debian: apt-get install libsundials-dev): {cause}"
+                "the C program cannot be compiled with SUNDIALS 6 (on Debian: apt-get install libsundials-dev): {cause}"
             )))
         }
         Err(error) => Err(Failure::Unavailable(format!("no C compiler cc: {error}"))),
