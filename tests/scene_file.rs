@@ -177,12 +177,12 @@ fn a_value_of_the_wrong_type_is_reported_with_the_type_expected() {
         (
             "[parameters]\nbeam.length = [1]",
             5,
-            "invalid type: sequence, expected a number, true or false, a text or a table",
+            "invalid type: sequence, expected a number, true or false, a string or a table",
         ),
         (
             "[parameters]\nbeam.length = 1979-05-27",
             5,
-            "invalid type: date or time, expected a number, true or false, a text or a table",
+            "invalid type: date or time, expected a number, true or false, a string or a table",
         ),
     ] {
         let message = message(rest);
