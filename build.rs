@@ -1,6 +1,6 @@
 //! Turns `modelDescription.xml` into Rust: one enum for each group of variables, the table of their
-//! properties, the enumeration types, and the GUID (a hash of the file). Writes the C header beside it, with the same facts
-//! as constants.
+//! properties, the enumeration types, and the GUID (a hash of the file). Also writes the C header, with GUID,
+//! value references and choices as constants.
 
 use std::error::Error;
 use std::fmt::Write as _;
@@ -18,7 +18,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let guid = guid(&xml);
     let described = xml.replacen("guid=\"\"", &format!("guid=\"{guid}\""), 1);
     if described == xml {
-        return Err("modelDescription.xml: guid=\"\" not found, it is filled in here".into());
+        return Err("modelDescription.xml: guid=\"\" not found".into());
     }
     fs::write(out.join("modelDescription.xml"), &described)?;
     let document = Document::parse(&xml)?;
@@ -36,13 +36,13 @@ fn guid(xml: &str) -> String {
     format!("{{{hash:032x}}}")
 }
 
-/// The groups of variables; each becomes an enum of its own, so that a `match` over it must serve every variable.
+/// The groups of variables; each becomes an enum, so that a `match` over it must handle every variable.
 const GROUPS: [(&str, &str); 8] = [
     ("RealInput", "Continuous inputs."),
     ("RealParameter", "Real parameters."),
     ("IntegerParameter", "Integer parameters."),
-    ("BooleanParameter", "Parameters that are true or false."),
-    ("EnumerationParameter", "Parameters that choose from a list."),
+    ("BooleanParameter", "Boolean parameters."),
+    ("EnumerationParameter", "Enumeration parameters."),
     ("RealOutput", "Real outputs and calculated parameters."),
     ("IntegerOutput", "Integer outputs and calculated parameters."),
     ("BooleanOutput", "Boolean outputs."),
@@ -65,7 +65,7 @@ fn variables(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> 
             .ok_or(format!("modelDescription.xml has no {name}"))
     };
     let mut code = format!(
-        "/// Identifies the variables this library serves: a hash of `modelDescription.xml`.\npub const GUID: &str = \"{guid}\";\n"
+        "/// Identifies the variables of this library: a hash of `modelDescription.xml`.\npub const GUID: &str = \"{guid}\";\n"
     );
 
     let types = element("TypeDefinitions")?;
@@ -129,7 +129,7 @@ fn variables(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> 
     writeln!(code, "{}", by_reference(&list)?)?;
     writeln!(
         code,
-        "/// The group a variable belongs to, and which of the group it is.\n#[derive(Clone, Copy, Debug, PartialEq, Eq)]\npub enum Group {{"
+        "/// A variable, as a value of the enum of its group.\n#[derive(Clone, Copy, Debug, PartialEq, Eq)]\npub enum Group {{"
     )?;
     for (name, doc) in GROUPS {
         writeln!(code, "    /// {doc}\n    {name}({name}),")?;
@@ -159,7 +159,7 @@ fn unit<'a>(document: &'a Document, value: Node) -> &'a str {
         .unwrap_or("")
 }
 
-/// For each value reference up to the largest, the position of its variable in the table; `u16::MAX` for none.
+/// For each value reference up to the largest, the index of its variable in the table; `u16::MAX` for none.
 fn by_reference(list: &Node) -> Result<String, Box<dyn Error>> {
     let mut positions = Vec::new();
     for (index, variable) in list.children().filter(Node::is_element).enumerate() {
@@ -238,7 +238,7 @@ fn upper(name: &str) -> String {
 /// For C: the GUID, the value reference of every variable, and the choices of the enumerations.
 fn constants(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> {
     let mut code = format!(
-        "\n/**\n * What `fmi2Instantiate` has to be given: a hash of the variables below.\n */\n#define RELAY_CONTACT_GUID \"{guid}\"\n"
+        "\n/**\n * The argument `fmuGUID` of `fmi2Instantiate`: a hash of modelDescription.xml.\n */\n#define RELAY_CONTACT_GUID \"{guid}\"\n"
     );
     for variable in document
         .descendants()

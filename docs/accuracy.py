@@ -16,7 +16,7 @@ from matplotlib.patheffects import withStroke
 
 Row = dict[str, str]
 
-# Okabe and Ito's colours, told apart without colour vision; the markers differ too.
+# Okabe and Ito's colours, distinguishable with colour blindness; the markers differ too.
 STYLES = {
     "relay-contact": ("#000000", "o"),
     "CVODE BDF": ("#D55E00", "s"),
@@ -50,7 +50,7 @@ def label(row: Row) -> str:
 
 
 def curve(axes: Axes, rows: list[Row], column: str, limits: tuple[float, float], **style: object) -> list[Row]:
-    """Draw time against error; give back the rows that could not be drawn."""
+    """Draw time over error; return the rows that could not be drawn."""
     low, high = limits
     good = [row for row in rows if row["outcome"] == "ok" and number(row, column) <= high]
     bad = [row for row in rows if row not in good]
@@ -61,7 +61,7 @@ def curve(axes: Axes, rows: list[Row], column: str, limits: tuple[float, float],
 
 
 def work_precision(axes: Axes, rows: list[Row], column: str, reference: str, limits: tuple[float, float]) -> None:
-    """One panel: a curve for each integrator, crosses at the right edge for what failed or is beyond it."""
+    """One panel: a curve for each integrator, crosses at the right edge for failed runs and those beyond it."""
     by_name: dict[str, list[Row]] = defaultdict(list)
     for row in rows:
         if row["part"] == "peers":
@@ -91,7 +91,7 @@ def work_precision(axes: Axes, rows: list[Row], column: str, reference: str, lim
                     path_effects=[withStroke(linewidth=2, foreground="white")],
                     zorder=6,
                 )
-        # Without a time of their own (failures) they stand at the bottom, beside each other.
+        # Failed runs have no time: they are drawn at the bottom, side by side.
         stack = 0
         for row in bad:
             y = number(row, "seconds_per_second")
@@ -115,7 +115,7 @@ def work_precision(axes: Axes, rows: list[Row], column: str, reference: str, lim
 
 
 def first_figure(rows: list[Row], path: Path) -> None:
-    """Time per simulated second against force error, and against the error of opening durations."""
+    """Time per simulated second over force error, and over the error of opening durations."""
     figure, grid = plt.subplots(3, 2, figsize=(WIDTH, 12.5), dpi=DPI, layout="constrained")
     panels = list(grid.flat)
     for axes, (scene, title) in zip(panels[:4], SCENES.items(), strict=True):
@@ -138,8 +138,8 @@ def first_figure(rows: list[Row], path: Path) -> None:
         for name, (color, marker) in STYLES.items()
     ]
     handles += [
-        Line2D([], [], color=GREY, linestyle="--", label="relay-contact with its own choice of modes"),
-        Line2D([], [], color=GREY, marker="x", linestyle="none", label="failed, or error beyond the edge"),
+        Line2D([], [], color=GREY, linestyle="--", label="relay-contact, modes chosen automatically"),
+        Line2D([], [], color=GREY, marker="x", linestyle="none", label="failed, or error beyond the axis"),
         Line2D([], [], color="#dddddd", linewidth=8, label="error of the reference"),
     ]
     figure.legend(handles=handles, loc="outside upper center", ncols=3, fontsize=9, frameon=False)
@@ -147,7 +147,7 @@ def first_figure(rows: list[Row], path: Path) -> None:
 
 
 def second_figure(rows: list[Row], path: Path) -> None:
-    """Our error split into modes and time steps."""
+    """Draw the error of the component, from modes and from time steps."""
     figure, grid = plt.subplots(1, 2, figsize=(WIDTH, 4.6), dpi=DPI, layout="constrained", sharey=True)
     modes_axes, steps_axes = grid
     colors = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
@@ -161,8 +161,8 @@ def second_figure(rows: list[Row], path: Path) -> None:
         steps = [row for row in own if row["part"] == "steps"]
         x = [number(row, "value") for row in steps]
         steps_axes.loglog(x, [number(row, "force_error") for row in steps], **style)
-    asked = [1e-12, 1e-1]
-    steps_axes.plot(asked, asked, color=GREY, linestyle="--", linewidth=1, label="requested error")
+    tolerances = [1e-12, 1e-1]
+    steps_axes.plot(tolerances, tolerances, color=GREY, linestyle="--", linewidth=1, label="tolerance")
     modes_axes.set_xlabel("number of modes, at the smallest tolerance [-]")
     steps_axes.set_xlabel("tolerance, with 20 modes [-]")
     modes_axes.set_ylabel("largest error of the contact force,\nrelative to the preload [-]")

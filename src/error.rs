@@ -1,5 +1,5 @@
-//! What can go wrong, by layer: setting up a scene, and integrating it. Every error names the thing, its value
-//! and what is allowed, so that it can be shown to a user as it is.
+//! Errors of setting up a scene and of integrating it. Every message names the variable, its value and what is
+//! allowed, so that it can be shown to the user unchanged.
 
 use crate::variables::Variable;
 
@@ -18,24 +18,24 @@ pub enum SceneError {
         /// The range allowed.
         allowed: String,
     },
-    /// A choice that the variable does not have.
+    /// A choice that the enumeration does not have.
     #[error("{name} = {value}: no such choice, allowed are {allowed}")]
     UnknownChoice {
         /// Name of the variable.
         name: &'static str,
-        /// The choice asked for.
+        /// The requested choice.
         value: String,
-        /// The choices there are.
+        /// The existing choices.
         allowed: String,
     },
-    /// A name that no variable of the wanted kind has.
-    #[error("{name}: no such {what}; nearest: {nearest}")]
+    /// A name that no variable of the expected kind has.
+    #[error("{name}: no such {what}; similar: {nearest}")]
     UnknownName {
-        /// The name asked for.
+        /// The unknown name.
         name: String,
-        /// What was looked for: parameter, input or output.
+        /// The expected kind: parameter, input or output.
         what: &'static str,
-        /// The names that come nearest.
+        /// The most similar names.
         nearest: String,
     },
     /// A value of the wrong type.
@@ -48,8 +48,10 @@ pub enum SceneError {
         /// The type allowed.
         allowed: &'static str,
     },
-    /// An axial force above the buckling load of the spring, which stands alone once the contact opens.
-    #[error("{name} = {value} N: the spring buckles, allowed is less than {limit} N (pi^2 E I / (4 L^2))")]
+    /// An axial force above the buckling load of the spring without contact.
+    #[error(
+        "{name} = {value} N: the spring buckles once the contact opens, allowed is less than {limit} N (pi^2 E I / (4 L^2))"
+    )]
     Buckled {
         /// The variable or result that holds the force.
         name: &'static str,
@@ -58,48 +60,48 @@ pub enum SceneError {
         /// The buckling load of the cantilever, N.
         limit: f64,
     },
-    /// A random acceleration whose band of frequencies is empty.
+    /// A random acceleration whose frequency band is empty.
     #[error(
-        "excitation.endFrequency = {end_frequency} Hz with excitation.frequency = {frequency} Hz: no band for \
+        "excitation.endFrequency = {end_frequency} Hz with excitation.frequency = {frequency} Hz: empty band for \
          effects.excitation = Random, allowed is excitation.endFrequency above excitation.frequency"
     )]
     NoBand {
-        /// Lower end asked for, Hz.
+        /// Lower limit, Hz.
         frequency: f64,
-        /// Upper end asked for, Hz.
+        /// Upper limit, Hz.
         end_frequency: f64,
     },
-    /// Interruptions asked for without a resistance to tell them by.
+    /// Counting of interruptions, which are defined by the resistance, without a resistance.
     #[error("effects.chatter = true: not allowed with effects.resistance = None, allowed is false")]
     NoResistance,
     /// A linear contact law without a contact force to linearise about.
     #[error("effects.contactLaw: Linearised and Bonded need a contact that is closed at rest, preload.force is 0 N")]
     NoPreload,
-    /// A scene for which a number of the model is not finite.
-    #[error("{name} is {value} for this scene: the parameters are too extreme together")]
+    /// A scene for which a quantity of the model is not finite.
+    #[error("{name} is {value} for this scene: this combination of parameters is too extreme")]
     NotFinite {
-        /// The number that failed.
+        /// The quantity.
         name: &'static str,
         /// Its value.
         value: f64,
     },
     /// A scene file that lacks a key.
-    #[error("{name}: missing, wanted is {allowed}")]
+    #[error("{name}: missing; expected {allowed}")]
     MissingKey {
         /// Name of the key.
         name: &'static str,
-        /// What it has to hold.
+        /// The expected value.
         allowed: &'static str,
     },
-    /// A name that stands where another of its kind does.
+    /// A name given twice.
     #[error("{name}: given twice, allowed is {allowed}")]
     GivenTwice {
         /// The name.
         name: String,
-        /// What it may be given as.
+        /// Where it may be given.
         allowed: &'static str,
     },
-    /// Any of these, with the line of the scene file or table it stands on.
+    /// Any of these, with its line of the scene file or table.
     #[error("line {line}: {error}")]
     AtLine {
         /// Line, counted from 1.
@@ -126,7 +128,7 @@ pub enum SceneError {
     Unreadable {
         /// Path of the file.
         file: String,
-        /// What the system says.
+        /// The message of the operating system.
         cause: String,
     },
 }
@@ -149,37 +151,37 @@ fn spaced(unit: &str) -> String {
     }
 }
 
-/// A communication step that could not be integrated. The state stays what it was before.
+/// A communication step that could not be integrated. The state remains that before the step.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("integration stopped at t = {time:?} s: {cause}")]
 pub struct StepError {
-    /// The instant reached, s.
+    /// The time reached, s.
     pub time: f64,
-    /// What stopped it.
+    /// The cause.
     pub cause: StepErrorCause,
 }
 
 /// Why a communication step could not be integrated.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum StepErrorCause {
-    /// A length that is not a positive finite number.
+    /// A step size that is not a positive finite number.
     #[error("the communication step size must be positive and finite")]
     StepSize,
-    /// More integration steps than a communication step may take.
-    #[error("more than the work of {0} integration steps within one communication step")]
+    /// More integration steps than allowed within a communication step.
+    #[error("the work limit of {0} integration steps within one communication step is exceeded")]
     Budget(u64),
-    /// An instant so late that floating-point numbers there are too far apart for the motion.
-    #[error("time is known to {spacing:e} s only, allowed is {allowed:e} s")]
+    /// A time so large that the spacing of floating-point numbers exceeds what the motion needs.
+    #[error("the floating-point spacing of time is {spacing:e} s, allowed is {allowed:e} s")]
     Resolution {
         /// Spacing of floating-point numbers at the end of the communication step, s.
         spacing: f64,
-        /// What the motion needs, s.
+        /// The largest spacing allowed, s.
         allowed: f64,
     },
-    /// A fixed contact that is to move faster than light.
+    /// A fixed contact faster than light.
     #[error("support.displacement would move at {0:e} m/s, allowed is the speed of light")]
     Speed(f64),
-    /// A number in the state stopped being finite.
-    #[error("the motion is no longer a finite number")]
+    /// A number in the state is no longer finite.
+    #[error("the state is no longer finite")]
     NotFinite,
 }

@@ -1,4 +1,4 @@
-//! The continuous inputs, as they stand at the start of a communication step, and how they change over it.
+//! The continuous inputs at the start of a communication step, and their rates over it.
 
 use crate::error::SceneError;
 use crate::scene::check_range;
@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 pub struct Inputs {
     /// Acceleration of the frame, positive presses the contact, m/s2.
     pub base_acceleration: f64,
-    /// Displacement of the fixed contact, positive closes, m. From where it is the contact moves linearly to where this
-    /// and its rate lead to at the end of the step: without a rate it lags one step behind.
+    /// Displacement of the fixed contact, positive closes, m. Over the step the contact moves linearly from its
+    /// present position to this value plus rate times step size: without a rate it lags one step behind.
     pub support_displacement: f64,
     /// Current through the contact, A.
     pub contact_current: f64,
@@ -51,7 +51,7 @@ impl Inputs {
     /// Sets the rate of an input, in its unit per second.
     ///
     /// # Errors
-    /// [`SceneError::OutOfRange`] for what is no finite number; the inputs are then unchanged.
+    /// [`SceneError::OutOfRange`] for a value that is not finite; the inputs are then unchanged.
     pub fn set_rate(&mut self, input: RealInput, rate: f64) -> Result<(), SceneError> {
         if !rate.is_finite() {
             let allowed = "allowed as derivative is any finite number";
@@ -74,10 +74,10 @@ impl Inputs {
         }
     }
 
-    /// Whether the rates lead to values within the ranges after `size` seconds.
+    /// Checks that the values after `size` seconds are in range.
     ///
     /// # Errors
-    /// [`SceneError::OutOfRange`] for the first that does not.
+    /// [`SceneError::OutOfRange`] for the first that is not.
     pub fn check_after(&self, size: f64) -> Result<(), SceneError> {
         let mut changing = RealInput::ALL.iter().filter(|input| self.rate(**input) != 0.0);
         changing.try_for_each(|input| {
@@ -86,14 +86,14 @@ impl Inputs {
         })
     }
 
-    /// Whether every value is in its range and every rate finite.
+    /// Whether every value is in its range and every rate is finite.
     pub fn are_sound(&self) -> bool {
         RealInput::ALL.iter().all(|input| {
             check_range(input.variable(), self.real(*input), false).is_ok() && self.rate(*input).is_finite()
         })
     }
 
-    /// Whether the inputs do not change over the step.
+    /// Whether the inputs are constant over the step.
     pub fn are_held(&self) -> bool {
         self.base_acceleration_rate == 0.0 && self.support_displacement_rate == 0.0 && self.contact_current_rate == 0.0
     }

@@ -1,4 +1,4 @@
-//! Model and state: everything computed once from a scene, and the numbers that move.
+//! The model: everything computed once from a scene.
 
 use crate::beam::axial::Feedback;
 use crate::beam::characteristic;
@@ -20,36 +20,37 @@ use crate::scene::Scene;
 use crate::state::State;
 use crate::variables::{AxialForceKind, ContactLawKind, RealParameter};
 
-/// Everything that stays the same during a simulation.
+/// Everything that is constant during a simulation.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// What was asked for.
+    /// The scene.
     pub(crate) scene: Scene,
     /// The spring.
     pub(crate) section: Section,
     /// The contact.
     pub(crate) law: Law,
-    /// The equilibrium the motion is counted from.
+    /// The static equilibrium, the reference of the motion.
     pub(crate) preload: Preload,
     /// The modes, frequency ascending.
     pub(crate) modes: Vec<Mode>,
-    /// The axial force, where it follows the deflection at all times.
+    /// The axial force, if it follows the deflection continuously.
     pub(crate) axial: Option<Feedback>,
-    /// Modes and contact together, where they are linear, the generator harmonic, and nobody looks inside steps.
+    /// Modes and contact as one linear system, if the scene is linear, the generator harmonic, and nothing within a
+    /// step is requested.
     pub(crate) closed_loop: Option<ClosedLoop>,
-    /// The base acceleration generated inside.
+    /// Generated base acceleration.
     pub(crate) generator: Generator,
     /// `support.displacement` at the start, m: part of the preload.
     pub(crate) initial_support: f64,
-    /// What the tolerance is relative to, N: max(F_0, 3 E I max(|s|, 0.1 mm) / L^3).
+    /// Force scale of the tolerance, N: max(F_0, 3 E I max(|s|, 0.1 mm) / L^3).
     pub(crate) force_scale: f64,
     /// Lowest natural frequency with the contact as a spring, from the exact characteristic equation, Hz.
     pub(crate) frequency: f64,
-    /// What current sees of it.
+    /// Electrical model of the contact.
     pub(crate) electrical: Option<ElectricalContact>,
-    /// What counts as an interruption, where they are asked for.
+    /// Criterion for interruptions, if they are counted.
     pub(crate) criterion: Option<Criterion>,
-    /// What the steps are computed with.
+    /// Instruction set used for the steps.
     pub(crate) simd: Simd,
 }
 
@@ -60,11 +61,11 @@ pub struct Parts {
     pub modes: Vec<Mode>,
     /// The contact law.
     pub law: Law,
-    /// The equilibrium the motion is counted from.
+    /// The static equilibrium, the reference of the motion.
     pub preload: Preload,
-    /// The base acceleration generated inside.
+    /// Generated base acceleration.
     pub generator: Generator,
-    /// What the tolerance is relative to, N.
+    /// Force scale of the tolerance, N.
     pub force_scale: f64,
 }
 
@@ -72,7 +73,7 @@ impl Model {
     /// The model of a scene, with the fixed contact displaced by `support` (m) at the start.
     ///
     /// # Errors
-    /// A [`SceneError`] where the scene cannot be simulated.
+    /// A [`SceneError`] if the scene cannot be simulated.
     pub fn new(scene: &Scene, support: f64) -> Result<Self, SceneError> {
         scene.validate()?;
         let section = Section::new(scene);
@@ -160,7 +161,7 @@ impl Model {
         })
     }
 
-    /// The same with other parts, for problems that are no springs. It takes no exact steps.
+    /// The same model with other parts, for test problems without a spring. It takes no exact steps.
     #[must_use]
     pub fn with(mut self, change: impl FnOnce(&mut Parts)) -> Self {
         let mut parts = Parts {
@@ -177,7 +178,7 @@ impl Model {
         self
     }
 
-    /// What was asked for.
+    /// The scene.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
@@ -202,7 +203,7 @@ impl Model {
         &self.modes
     }
 
-    /// What the tolerance is relative to, N: max(F_0, 3 E I max(|s|, 0.1 mm) / L^3).
+    /// Force scale of the tolerance, N: max(F_0, 3 E I max(|s|, 0.1 mm) / L^3).
     pub fn force_scale(&self) -> f64 {
         self.force_scale
     }
@@ -217,8 +218,8 @@ impl Model {
         self.axial.as_ref()
     }
 
-    /// The law's engagement at an indentation given as deviation from the preload (m) that grows at `rate` (m/s), m: positive
-    /// while the contact is closed.
+    /// The engagement of the contact law, m, positive while the contact is closed; the indentation is given as
+    /// deviation from the preload (m), `rate` is its rate (m/s).
     pub fn engagement(&self, indentation: f64, rate: f64) -> f64 {
         self.law.engagement(self.preload.indentation + indentation, rate)
     }
@@ -254,8 +255,8 @@ impl Model {
         }
     }
 
-    /// Energy above that of the preload, J: kinetic and strain energy of the modes and the elastic energy of the contact, about
-    /// the preload, at an indentation given as deviation from it (m).
+    /// Energy relative to the preload, J: kinetic and strain energy of the modes and elastic energy of the contact, at
+    /// an indentation given as deviation from the preload (m).
     pub fn energy(&self, modes: &ModeStates, indentation: f64) -> f64 {
         let pairs = self.modes.iter().zip(modes);
         let beam: f64 = pairs
@@ -269,7 +270,7 @@ impl Model {
         self.modes.iter().map(|mode| mode.tip * mode.tip).sum()
     }
 
-    /// Longest step from the instant `time` (s) on, s: of the scene, and of the generator.
+    /// Longest step allowed from `time` (s) on by scene and generator, s.
     pub fn longest_step(&self, time: f64) -> f64 {
         let generated = self.generator.longest_step(time);
         if self.scene.solver.maximum_step > 0.0 {
@@ -279,14 +280,14 @@ impl Model {
         }
     }
 
-    /// A step short against the motion that may begin at the instant `time` (s), s.
+    /// A step short compared with any motion that may begin at `time` (s), s.
     pub fn first_step(&self, time: f64) -> f64 {
         (0.02 / self.frequency.max(1.0)).min(0.1 * self.generator.longest_step(time))
     }
 }
 
-/// Modes for a tolerance: what is left out is felt most in the first microsecond after the contact has closed with a blow,
-/// where the error of the contact force falls tenfold with every 1.6 modes (`tests/calibration.rs`).
+/// Number of modes for a tolerance. Omitted modes matter most in the first microsecond after an impact, where the
+/// error of the contact force decreases tenfold with every 1.6 modes (`tests/calibration.rs`).
 fn modes_for(tolerance: f64) -> usize {
     let digits = (0..11).take_while(|digits| tolerance < 10f64.powi(-digits)).count();
     12 + (8 * digits).div_ceil(5)

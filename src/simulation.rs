@@ -1,4 +1,4 @@
-//! A scene under way: the model, its state, and the scratch the steps need.
+//! A running simulation: model, state, and workspace of the steps.
 
 use crate::chatter::Summary;
 use crate::error::{SceneError, StepError};
@@ -13,7 +13,7 @@ use crate::variables::{BooleanOutput, Group, IntegerOutput, RealOutput, Variable
 pub use crate::integrator::events::log::Event;
 pub use crate::integrator::motion::Motion;
 
-/// A simulation from its preload onwards.
+/// A simulation, which starts at rest in the preload.
 #[derive(Clone, Debug)]
 pub struct Simulation {
     model: Model,
@@ -25,7 +25,7 @@ impl Simulation {
     /// The scene at rest in its preload at `start_time`, s. The initial `support.displacement` belongs to the preload.
     ///
     /// # Errors
-    /// A [`SceneError`] where the scene cannot be simulated.
+    /// A [`SceneError`] if the scene cannot be simulated.
     pub fn new(scene: &Scene, inputs: &Inputs, start_time: f64) -> Result<Self, SceneError> {
         let model = Model::new(scene, inputs.support_displacement)?;
         let mut motion = Motion::new(model.initial_state(start_time));
@@ -38,7 +38,7 @@ impl Simulation {
         })
     }
 
-    /// A model at any state: a reference run, or one that goes on from another with other parameters.
+    /// A model with any initial state: for reference runs, or to continue a run with other parameters.
     pub fn from_state(model: Model, state: &State) -> Self {
         let workspace = Workspace::new(&model);
         Self {
@@ -48,20 +48,21 @@ impl Simulation {
         }
     }
 
-    /// The whole motion at the communication point, of which [`Simulation::state`] may lie before it.
+    /// The state at the communication point; [`Simulation::state`] may be earlier.
     ///
     /// # Errors
-    /// A [`StepError`] where it cannot be found.
+    /// A [`StepError`] if it cannot be computed.
     pub fn state_now(&mut self) -> Result<State, StepError> {
         communication_step::state(&self.model, &self.motion, &mut self.workspace)
     }
 
-    /// Advances over the communication step from `time` to `time + step_size`, s, with inputs that are held or change linearly.
+    /// Advances over the communication step from `time` to `time + step_size`, s, with inputs that are held or change
+    /// linearly.
     ///
     /// `time` may differ from [`Simulation::time`] by rounding.
     ///
     /// # Errors
-    /// A [`StepError`]; the state is then what it was before the call.
+    /// A [`StepError`]; the state is then that before the call.
     pub fn step(&mut self, inputs: &Inputs, time: f64, step_size: f64) -> Result<(), StepError> {
         communication_step::step(
             &self.model,
@@ -73,11 +74,11 @@ impl Simulation {
         )
     }
 
-    /// As it stood in another simulation of the same scene, which began with the fixed contact displaced by
+    /// With the state of another simulation of the same scene, which started with the fixed contact displaced by
     /// `initial_support` (m).
     ///
     /// # Errors
-    /// A [`SceneError`] where the scene cannot be simulated.
+    /// A [`SceneError`] if the scene cannot be simulated.
     pub fn resume(scene: &Scene, initial_support: f64, motion: &Motion) -> Result<Self, SceneError> {
         let model = Model::new(scene, initial_support)?;
         let workspace = Workspace::new(&model);
@@ -90,12 +91,12 @@ impl Simulation {
         Ok(simulation)
     }
 
-    /// All that moves: with the scene and the initial displacement of the fixed contact, all there is to save.
+    /// The state: together with the scene and the initial displacement of the fixed contact, all that has to be saved.
     pub fn motion(&self) -> &Motion {
         &self.motion
     }
 
-    /// Goes on from where a simulation of the same model stood.
+    /// Continues from the state of a simulation of the same model.
     pub fn go_on_from(&mut self, motion: &Motion) {
         self.motion = *motion;
         self.workspace.events.forget_after(f64::NEG_INFINITY);
@@ -104,14 +105,14 @@ impl Simulation {
         }
     }
 
-    /// Openings and closings within the last communication step, or the first thousand of them, and how many more there
-    /// were. None after the motion was taken from elsewhere.
+    /// Openings and closings within the last communication step, at most a thousand, and the number of others. None
+    /// after a state was set.
     pub fn events(&self) -> (impl Iterator<Item = &Event>, u64) {
         let events = &self.workspace.events;
         (events.until(self.motion.time), events.left_out)
     }
 
-    /// The instant reached, s.
+    /// The time reached, s.
     pub fn time(&self) -> f64 {
         self.motion.time
     }
@@ -163,8 +164,8 @@ impl Simulation {
         }
     }
 
-    /// Rate of a continuous output at the communication point, as it has been reached, in its SI unit per second; `None`
-    /// for outputs that are not continuous. At the start nothing moves.
+    /// Rate of a continuous output at the communication point (limit from the left), in its SI unit per second; `None`
+    /// for outputs that are not continuous; 0 at the start.
     pub fn rate(&self, output: RealOutput) -> Option<f64> {
         let Self { model, motion, .. } = self;
         let rates = || motion.tip_rates(model);
@@ -214,7 +215,7 @@ impl Simulation {
         })
     }
 
-    /// Interruptions up to the communication point; none where they are not asked for.
+    /// Interruptions up to the communication point; none if they are not counted.
     pub fn interruptions(&self) -> Summary {
         let criterion = self.model.criterion.as_ref();
         criterion.map_or_else(Summary::default, |criterion| {
@@ -222,7 +223,7 @@ impl Simulation {
         })
     }
 
-    /// An integer output or calculated parameter; counts beyond the range of an integer stay at its end.
+    /// An integer output or calculated parameter; counts saturate at the integer range.
     pub fn integer(&self, output: IntegerOutput) -> i32 {
         let count = |n: u64| i32::try_from(n).unwrap_or(i32::MAX);
         match output {
@@ -234,7 +235,7 @@ impl Simulation {
         }
     }
 
-    /// An output or calculated parameter as a number, Booleans as 0 or 1; `None` for what is set.
+    /// An output or calculated parameter as a number, Booleans as 0 or 1; `None` for inputs and parameters.
     pub fn output(&self, variable: &Variable) -> Option<f64> {
         match variable.group {
             Group::RealOutput(output) => Some(self.real(output)),

@@ -1,4 +1,4 @@
-//! All that moves: the numbers that change during a simulation, plain and of fixed size, so that saving them is a copy.
+//! The state: all numbers that change during a simulation, of fixed size, so that saving it is a copy.
 
 use serde::{Deserialize, Serialize};
 use serde_big_array::BigArray;
@@ -7,7 +7,7 @@ use crate::beam::mode::ModeStates;
 use crate::chatter::Interruptions;
 use crate::math::prediction::Predictions;
 
-/// The motion at an instant.
+/// The state at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// Time, s.
@@ -27,36 +27,36 @@ pub struct State {
     pub force: f64,
     /// Whether the contact force is positive.
     pub closed: bool,
-    /// Instant at which the force last reached zero, s; -1: not yet.
+    /// Time at which the force last reached zero, s; -1: not yet.
     pub last_opening: f64,
-    /// Instant at which the force last left zero, s; -1: not yet.
+    /// Time at which the force last left zero, s; -1: not yet.
     pub last_closing: f64,
-    /// Instant at which the force last left zero or jumped, s: after it, it moves like a root of time for a while.
+    /// Time at which the force last left zero or jumped, s: just after it, it varies as a root of time.
     pub last_kink: f64,
     /// Longest step with few nodes that the error estimate allows, s.
     pub short_step: f64,
     /// Longest step with many nodes that the error estimate allows, s.
     pub long_step: f64,
-    /// Force over the last step, as deviation from the preload force, N: it predicts that of the next.
+    /// Force over the last step as deviation from the preload force, N; used to predict that of the next.
     pub predictions: Predictions,
-    /// Length of the step they belong to, s; 0: none.
+    /// Length of that step, s; 0: none.
     pub last_step: f64,
-    /// Energy that the steps so far have made and not yet returned, J, where nothing dissipates.
+    /// Energy error of the steps so far that is not yet corrected, J, in scenes without damping.
     pub energy_surplus: f64,
-    /// Energy put in less stored less dissipated since initialisation, J, where that is asked for.
+    /// Energy supplied less stored less dissipated since initialisation, J, if requested.
     pub energy_balance: f64,
     /// Interruptions so far.
     pub interruptions: Interruptions,
     /// Accepted steps.
     pub steps: u64,
-    /// Steps discarded and repeated shorter.
+    /// Rejected steps, repeated with a shorter step size.
     pub rejected_steps: u64,
     /// Newton iterations.
     pub iterations: u64,
 }
 
 impl State {
-    /// Whether every number is one that a simulation can have come to.
+    /// Whether a simulation can reach these numbers.
     pub fn is_sound(&self) -> bool {
         let Self {
             time,

@@ -1,20 +1,20 @@
-//! The variables of the component, generated from `modelDescription.xml` by `build.rs`: an enum for each group,
-//! so that a `match` over a group is refused by the compiler until every variable is served.
+//! The variables of the component, generated from `modelDescription.xml` by `build.rs`: an enum for each group, so
+//! that the compiler checks that a `match` over a group handles every variable.
 
 include!(concat!(env!("OUT_DIR"), "/variables.rs"));
 
-/// What `modelDescription.xml` declares of a variable.
+/// The declaration of a variable in `modelDescription.xml`.
 #[derive(Clone, Copy, Debug)]
 pub struct Variable {
-    /// Name as users write it, for example `contact.overtravel`.
+    /// Name, for example `contact.overtravel`.
     pub name: &'static str,
     /// FMI value reference.
     pub value_reference: u32,
-    /// Which variable it is, in Rust.
+    /// The variable as a Rust enum value.
     pub group: Group,
-    /// SI unit; empty for numbers that have none to declare.
+    /// SI unit; may be empty.
     pub unit: &'static str,
-    /// Start value (of enumerations the value of the choice, of Booleans 1 or 0).
+    /// Start value (for enumerations the value of the choice, for Booleans 1 or 0).
     pub start: f64,
     /// Smallest value allowed.
     pub min: f64,

@@ -89,15 +89,15 @@ fn errors_in_a_table_are_reported_with_their_place() -> Result<(), Box<dyn Error
     for (table, expected) in [
         (
             "time,contact.curent\n0,1\n",
-            "line 1: contact.curent: no such input; nearest: contact.current,",
+            "line 1: contact.curent: no such input; similar: contact.current,",
         ),
         (
             "time,contact.force\n0,1\n",
-            "line 1: contact.force: no such input; nearest: contact.current,",
+            "line 1: contact.force: no such input; similar: contact.current,",
         ),
         (
             "contact.current\n1\n",
-            "line 1: time: missing, wanted is a column of instants in s",
+            "line 1: time: missing; expected a column of times in s",
         ),
         (
             "time,contact.current,contact.current\n0,1,1\n",
@@ -121,7 +121,7 @@ fn errors_in_a_table_are_reported_with_their_place() -> Result<(), Box<dyn Error
         ),
         (
             "time,contact.current\n1,0\n1,1\n",
-            "line 3: time = 1 s: not allowed, allowed is any finite number above that of the row before, 1 s",
+            "line 3: time = 1 s: not allowed, allowed is any finite number above that of the previous row, 1 s",
         ),
         (
             "time,contact.current\n0,1,2\n",
@@ -129,7 +129,7 @@ fn errors_in_a_table_are_reported_with_their_place() -> Result<(), Box<dyn Error
         ),
         (
             "time,contact.current\n",
-            "not a table of inputs: no row below the names",
+            "not a table of inputs: no row below the header",
         ),
     ] {
         let message = folder.message(table, "");
@@ -143,7 +143,8 @@ fn errors_in_a_table_are_reported_with_their_place() -> Result<(), Box<dyn Error
 fn a_missing_table_and_an_input_given_twice_are_reported() -> Result<(), Box<dyn Error>> {
     let folder = Folder::new("missing")?;
     let twice = folder.message("time,contact.current\n0,1\n", "contact.current = 1\n");
-    let expected = "scene.toml: line 6: contact.current: given twice, allowed is a value here or a column of the file";
+    let expected =
+        "scene.toml: line 6: contact.current: given twice, allowed is either a value here or a column of the file";
     assert_eq!(twice, expected);
     let missing = format!("{HEAD}[inputs]\nfile = \"no-such.csv\"\n").parse::<SceneFile>();
     let missing = missing.map_or_else(|error| error.to_string(), |_| "accepted".to_owned());
@@ -155,7 +156,7 @@ fn a_missing_table_and_an_input_given_twice_are_reported() -> Result<(), Box<dyn
     let number = number.map_or_else(|error| error.to_string(), |_| "accepted".to_owned());
     assert_eq!(
         number,
-        "line 5: file = 3: wrong type, allowed is the path of a table of inputs, as a text"
+        "line 5: file = 3: wrong type, allowed is the path of an input table, as a string"
     );
     assert!(matches!(
         SceneFile::read(Path::new("no-such.toml")),

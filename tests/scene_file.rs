@@ -69,12 +69,12 @@ fn inputs_and_outputs_are_taken() -> Result<(), SceneError> {
 fn an_unknown_name_is_reported_with_its_line_and_the_nearest_names() {
     let misspelt = message("[parameters]\nbeam.lenght = 0.02\n");
     assert!(
-        misspelt.starts_with("line 5: beam.lenght: no such parameter; nearest: beam.length,"),
+        misspelt.starts_with("line 5: beam.lenght: no such parameter; similar: beam.length,"),
         "{misspelt}"
     );
     let omitted = message("[parameters]\n\novertravel = 1e-4\n");
     assert!(
-        omitted.starts_with("line 6: overtravel: no such parameter; nearest: contact.overtravel,"),
+        omitted.starts_with("line 6: overtravel: no such parameter; similar: contact.overtravel,"),
         "{omitted}"
     );
     let key = message("communicationStepp = 1\n");
@@ -96,7 +96,7 @@ fn an_unknown_name_is_reported_with_its_line_and_the_nearest_names() {
     assert!(output.is_err_and(|error| {
         error
             .to_string()
-            .starts_with("line 3: contact.forse: no such output; nearest: contact.force,")
+            .starts_with("line 3: contact.forse: no such output; similar: contact.force,")
     }));
 }
 
@@ -149,7 +149,7 @@ fn a_value_of_the_wrong_type_is_reported_with_the_type_expected() {
         ),
         (
             "effects.excitation = 2",
-            "line 5: effects.excitation = 2: wrong type, allowed is the name of a choice, as a text",
+            "line 5: effects.excitation = 2: wrong type, allowed is the name of a choice, as a string",
         ),
         (
             "effects.chatter = 1",
@@ -165,7 +165,7 @@ fn a_value_of_the_wrong_type_is_reported_with_the_type_expected() {
         ),
         (
             "effects.excitation = false",
-            "line 5: effects.excitation = false: wrong type, allowed is the name of a choice, as a text",
+            "line 5: effects.excitation = false: wrong type, allowed is the name of a choice, as a string",
         ),
     ] {
         assert_eq!(message(&format!("[parameters]\n{rest}\n")), expected);
@@ -177,12 +177,12 @@ fn a_value_of_the_wrong_type_is_reported_with_the_type_expected() {
         (
             "[parameters]\nbeam.length = [1]",
             5,
-            "invalid type: sequence, expected a number, true or false, a text or a table",
+            "invalid type: sequence, expected a number, true or false, a string or a table",
         ),
         (
             "[parameters]\nbeam.length = 1979-05-27",
             5,
-            "invalid type: date or time, expected a number, true or false, a text or a table",
+            "invalid type: date or time, expected a number, true or false, a string or a table",
         ),
     ] {
         let message = message(rest);
@@ -208,11 +208,11 @@ fn the_run_must_have_a_length_and_a_step() {
     };
     assert_eq!(
         parse("communicationStep = 1\noutputs = []"),
-        "stop: missing, wanted is a positive number of seconds"
+        "stop: missing; expected a positive number of seconds"
     );
     assert_eq!(
         parse("stop = 1\ncommunicationStep = 1"),
-        "outputs: missing, wanted is a list of output names"
+        "outputs: missing; expected a list of output names"
     );
     assert_eq!(
         parse("stop = 1\ncommunicationStep = 0\noutputs = []"),

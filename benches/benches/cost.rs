@@ -1,5 +1,6 @@
-//! What a communication step costs through the C interface, and what starting costs:
-//! `cargo bench --package benches --bench cost`. Medians of several turns; the scene is the published one at tolerance 1e-6.
+//! Cost of a communication step through the C interface, and of starting:
+//! `cargo bench --package benches --bench cost`. Medians of several repetitions; the scene is the published one at
+//! tolerance 1e-6.
 
 use benches::machine;
 use cpu_time::ThreadTime;
@@ -39,7 +40,7 @@ fn main() {
     println!("\ninstantiate, set up, initialise, free: {:.1} us", 1e6 * starts);
 }
 
-/// Runs the communication steps several times over, each from the start, and prints what one cost.
+/// Runs the communication steps several times, each from the start, and prints the cost of one.
 fn report(name: &str, shaken: bool, sizes: &[f64]) {
     let simulated: f64 = sizes.iter().sum();
     let mut steps = 0;
@@ -86,7 +87,7 @@ fn check(status: fmi2Status) {
     assert_eq!(status, fmi2OK);
 }
 
-/// Numbers from 0 to 1 that look random and are the same every time (splitmix64).
+/// Pseudorandom numbers from 0 to 1 (splitmix64).
 struct Random(u64);
 
 impl Random {

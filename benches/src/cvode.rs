@@ -1,7 +1,7 @@
 //! SUNDIALS CVODE by a C program, `cvode/cvode.c`: BDF, dense analytic Jacobian, root finding, restart at events.
 //!
-//! The absolute tolerance is the tolerance asked for in units of [`Problem::scales`], the relative one [`Problem::relative`] times it. The
-//! program is compiled on first use, against the system's libraries.
+//! The absolute tolerance is the tolerance in units of [`Problem::scales`], the relative one [`Problem::relative`]
+//! times it. The program is compiled on first use, against the system's libraries.
 
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -24,7 +24,7 @@ impl Cvode {
         Self { program: compile() }
     }
 
-    /// Version of the SUNDIALS library, if it is there.
+    /// Version of the SUNDIALS library, if installed.
     pub fn version(&self) -> Option<String> {
         let problem = crate::scenes::linear().ok()?;
         let answer = self.answer(&problem, 1e-2).ok()?;
@@ -70,7 +70,7 @@ impl Integrator for Cvode {
             return Err(Failure::Stopped(failure.to_owned()));
         }
         let numbers = |key: &str| -> Result<Vec<f64>, Failure> {
-            let text = line(key).ok_or_else(|| Failure::Stopped("the C program broke off".to_owned()))?;
+            let text = line(key).ok_or_else(|| Failure::Stopped("the C program stopped".to_owned()))?;
             Ok(text.split_whitespace().filter_map(|word| word.parse().ok()).collect())
         };
         let work = numbers("work")?;
@@ -144,7 +144,7 @@ fn compile() -> Result<PathBuf, Failure> {
             let text = String::from_utf8_lossy(&output.stderr);
             let cause = text.lines().find(|line| line.contains("error")).unwrap_or("cc failed");
             Err(Failure::Unavailable(format!(
-                "SUNDIALS 6 cannot be compiled against (on Debian: apt-get install libsundials-dev): {cause}"
+                "the C program cannot be compiled with SUNDIALS 6 (on Debian: apt-get install libsundials-dev): {cause}"
             )))
         }
         Err(error) => Err(Failure::Unavailable(format!("no C compiler cc: {error}"))),

@@ -1,7 +1,7 @@
 //! The Rust library diffsol: BDF and an ESDIRK of order 3, dense, with analytic Jacobian-vector products and root finding.
 //!
-//! The absolute tolerance is the tolerance asked for in units of [`Problem::scales`], the relative one [`Problem::relative`] times it. At an
-//! opening or a closing the solver is started anew on the other branch.
+//! The absolute tolerance is the tolerance in units of [`Problem::scales`], the relative one [`Problem::relative`]
+//! times it. At an opening or a closing the solver is restarted on the other branch.
 
 use cpu_time::ThreadTime;
 
@@ -12,7 +12,7 @@ use ::diffsol::{
 use crate::integrator::{BUDGET, Failure, Integrator, Run, Setting};
 use crate::problem::Problem;
 
-/// More openings and closings than this are no result.
+/// Runs with more openings and closings than this fail.
 const MOST_EVENTS: usize = 10_000;
 
 /// A method of diffsol.
@@ -49,12 +49,12 @@ impl Integrator for Diffsol {
                 .branch(problem, &branch, setting.value(), start, &mut run)
                 .map_err(|error| stopped(&error))?;
             if run.events.len() > MOST_EVENTS {
-                return Err(Failure::Stopped("openings and closings without end".to_owned()));
+                return Err(Failure::Stopped("too many openings and closings".to_owned()));
             }
             match next {
                 Some(next) => branch = next,
                 None if start.elapsed().as_secs_f64() > BUDGET => {
-                    return Err(Failure::Stopped("out of its time budget".to_owned()));
+                    return Err(Failure::Stopped("time limit exceeded".to_owned()));
                 }
                 None => break,
             }
@@ -72,7 +72,7 @@ struct Start {
 }
 
 impl Diffsol {
-    /// Runs on one branch, to where it ends or to the end of the simulation.
+    /// Runs on one branch, to its end or to the end of the simulation.
     fn branch(
         self,
         problem: &Problem,
@@ -95,13 +95,13 @@ impl Diffsol {
             .init(|_, _, state| state.copy_from_slice(&from.state), from.state.len())
             .root(
                 |state, _, time, root| {
-                    // Of a contact that cannot open the engagement is infinite.
+                    // If the contact cannot open, the engagement is infinite.
                     root.fill(problem.engagement(time, state).min(1.0));
                 },
                 1,
             )
             .build()?;
-        // The first steps after a blow are short.
+        // The first steps after an impact are short.
         ode.ode_options.min_timestep = 1e-20;
         match self {
             Self::Bdf => drive(problem, closed, ode.bdf::<Lu>()?, clock, run),
@@ -125,14 +125,14 @@ where
     let mut cell = u32::try_from(run.forces.len()).unwrap_or(u32::MAX);
     let mut steps = 0_u32;
     while cell <= problem.cells && next.is_none() {
-        // Reading the processor time costs as much as half a step: not every time.
+        // Reading the processor time costs as much as half a step, so not every step.
         steps += 1;
         if steps.is_multiple_of(1000) && clock.elapsed().as_secs_f64() > BUDGET {
             break;
         }
         let mut reached = f64::INFINITY;
         if let OdeSolverStopReason::RootFound(root, _) = solver.step()? {
-            // A branch starts where the engagement is zero but for rounding: crossing into the branch is no end of it.
+            // A branch starts at zero engagement up to rounding: crossing into the branch does not end it.
             let state = solver.state();
             if (problem.engagement(state.t, state.y.batch_as_slice(0)) > 0.0) != closed {
                 reached = root;

@@ -1,9 +1,9 @@
 //! The fixed-step methods of structural dynamics: Newmark's average acceleration (J. Eng. Mech. Div. ASCE 85 (1959) 67) and
 //! the generalised-alpha method (Chung, Hulbert, J. Appl. Mech. 60 (1993) 371), of which it is a special case.
 //!
-//! At the end of a step displacement and velocity of the tip are linear in the contact force there, so one scalar equation
-//! is solved a step, by Newton's method within a bracket. There is no root finding: openings and closings are interpolated
-//! linearly between the ends of a step, as is usual with these methods.
+//! At the end of a step displacement and velocity of the tip are linear in the contact force there, so each step
+//! solves one scalar equation, by bracketed Newton iteration. There is no root finding: openings and closings are
+//! interpolated linearly between the ends of a step, as is usual with these methods.
 
 use cpu_time::ThreadTime;
 
@@ -88,7 +88,7 @@ impl Integrator for GeneralisedAlpha {
     }
 }
 
-/// A mode under way.
+/// The state of a mode.
 #[derive(Clone, Copy, Debug, Default)]
 struct ModeMotion {
     q: f64,
@@ -204,7 +204,7 @@ impl<'a> Motion<'a> {
         Some(iterations)
     }
 
-    /// The contact force where indentation and rate are these without it.
+    /// The contact force, for indentation and rate without it.
     fn solve(&self, d: f64, rate: f64) -> Option<(f64, u64)> {
         let Self {
             problem, compliance, ..
@@ -239,7 +239,7 @@ impl<'a> Motion<'a> {
                 low = force;
             }
             let mut next = force - residual / (1.0 + slope);
-            // Newton's method alone can cycle across the kink at zero force.
+            // Unbracketed, Newton's method can cycle across the kink at zero force.
             if !bonded && (iteration > 8 && iteration % 2 == 0 || !(low..=high).contains(&next)) {
                 next = f64::midpoint(low, high);
             }

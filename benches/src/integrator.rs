@@ -1,28 +1,28 @@
-//! What every integrator here does.
+//! Interface of the integrators.
 
 use crate::problem::Problem;
 
 /// Processor time an integrator may take for a run, s.
 pub const BUDGET: f64 = 20.0;
 
-/// What an integrator is told about accuracy.
+/// Accuracy setting of an integrator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Setting {
-    /// Error asked for in the force, relative to the force scale.
+    /// Tolerance of the force, relative to the force scale.
     Tolerance(f64),
     /// Length of all steps, s.
     Step(f64),
 }
 
 impl Setting {
-    /// The number without its meaning.
+    /// The number.
     pub fn value(self) -> f64 {
         match self {
             Self::Tolerance(value) | Self::Step(value) => value,
         }
     }
 
-    /// The meaning without the number.
+    /// The kind of setting.
     pub fn kind(self) -> &'static str {
         match self {
             Self::Tolerance(_) => "tolerance",
@@ -31,24 +31,24 @@ impl Setting {
     }
 }
 
-/// A run that came to its end.
+/// A completed run.
 #[derive(Clone, Debug, Default)]
 pub struct Run {
-    /// Contact force at the grid's instants, N, the first at 0.
+    /// Contact force at the grid times, N, the first at 0.
     pub forces: Vec<f64>,
-    /// Instants at which the contact opened and closed in turn, s.
+    /// Times at which the contact opened and closed, alternating, s.
     pub events: Vec<f64>,
-    /// Processor time the integration took on its one thread, without setting it up, s. The machine's other work does not count.
+    /// Processor time of the integration on its one thread, without setup, s; unaffected by other load.
     pub time: f64,
     /// Steps taken.
     pub steps: u64,
-    /// Steps discarded.
+    /// Rejected steps.
     pub rejected: u64,
     /// Newton iterations.
     pub iterations: u64,
 }
 
-/// A run that did not.
+/// A failed run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Failure {
     /// The integrator is not installed here.
@@ -68,10 +68,10 @@ impl std::fmt::Display for Failure {
 
 /// An integrator of the contact's equations.
 pub trait Integrator {
-    /// What it is called in tables and figures.
+    /// Name in tables and figures.
     fn name(&self) -> &'static str;
 
-    /// Whether it works at a fixed step, and not to a tolerance.
+    /// Whether it uses a fixed step instead of a tolerance.
     fn fixed_step(&self) -> bool {
         false
     }

@@ -1,14 +1,14 @@
-//! What accuracy costs: the component beside general integrators on the same equations, with the same error measure.
+//! Cost of accuracy: the component compared with general integrators on the same equations, with the same error measure.
 //!
 //! ```text
 //! scenes      what is simulated
-//! problem     the modal equations of a scene, as a general integrator wants them
-//! integrator  what all of them do: forces on a grid, instants of opening and closing, time and work spent
+//! problem     the modal equations of a scene, in the form general integrators need
+//! integrator  their interface: forces on a grid, times of opening and closing, time and work spent
 //! component, cvode, diffsol, generalised_alpha    the integrators
-//! radau       the reference, with its own error
+//! radau       the reference, with its own error estimate
 //! plan        what is measured
-//! study       runs them against the reference, interleaved;   table    what came of it
-//! machine     where it ran
+//! study       runs them against the reference, interleaved;   table    the results
+//! machine     processor and versions
 //! ```
 
 pub mod component;

@@ -1,4 +1,4 @@
-//! What is measured: which integrators on which scenes at which settings.
+//! The measurements: which integrators on which scenes at which settings.
 
 use std::rc::Rc;
 
@@ -39,10 +39,10 @@ fn reference(problem: &Problem, quick: bool) -> Result<Rc<Reference>> {
     ))
 }
 
-/// All that is measured: each scene by all integrators, and by the component alone.
+/// All measurements: each scene by all integrators, and by the component alone.
 ///
 /// # Errors
-/// Where a scene cannot be simulated or its reference fails, as for all here.
+/// If a scene cannot be simulated or its reference fails; the same for all functions here.
 pub fn all(quick: bool) -> Result<Vec<Case>> {
     let mut cases = Vec::new();
     for problem in scenes::all()? {
@@ -52,7 +52,7 @@ pub fn all(quick: bool) -> Result<Vec<Case>> {
     Ok(cases)
 }
 
-/// All integrators on the modes the component chooses at its default tolerance.
+/// All integrators with the number of modes that the component chooses at its default tolerance.
 fn peers(problem: &Problem, quick: bool) -> Result<Vec<Case>> {
     let reference = reference(problem, quick)?;
     let problem = Rc::new(problem.clone());
@@ -71,7 +71,8 @@ fn peers(problem: &Problem, quick: bool) -> Result<Vec<Case>> {
     Ok(cases)
 }
 
-/// The component against the motion with many modes: as delivered, and split into modes and time steps.
+/// The component compared with a reference of many modes: with automatic modes, and the error of modes and time steps
+/// separately.
 fn own(problem: &Problem, quick: bool) -> Result<Vec<Case>> {
     let many = problem.with_modes(scenes::MANY_MODES)?;
     let reference = reference(&many, quick)?;

@@ -1,10 +1,10 @@
-//! The equations of a scene in the modes of its beam, as a general integrator wants them:
+//! The modal equations of a scene in the form general integrators need:
 //!
 //! `q_i'' + c_i q_i' + omega_i^2 q_i = T_i (F - F_0) - g_i a(t)`, `F` by the contact law from `d = d_0 + u(t) - sum T_i q_i`
 //! and its rate. The state is `q_1 ... q_n, v_1 ... v_n`, as deviation from the preload.
 //!
-//! The law has two branches, open (`F = 0`) and closed. Which one holds is told to the equations and not found by them, so
-//! that each is smooth: an integrator with root finding changes it where the engagement changes its sign.
+//! The law has two branches, open (`F = 0`) and closed. The branch is an argument of the equations, so that each is
+//! smooth: an integrator with root finding switches where the engagement changes sign.
 
 use std::f64::consts::TAU;
 
@@ -13,22 +13,22 @@ use relay_contact::reference::{Branch, Model};
 use relay_contact::scene::Scene;
 use relay_contact::variables::ExcitationKind;
 
-/// A scene with what is to be known of its motion.
+/// A scene and the requested results.
 #[derive(Clone, Debug)]
 pub struct Problem {
-    /// What it is called in tables and figures.
+    /// Name in tables and figures.
     pub name: &'static str,
-    /// Modes, contact law and preload; the component works on the same.
+    /// Modes, contact law and preload, shared with the component.
     pub model: Model,
     /// Velocity of the fixed contact from the start, m/s.
     pub support_rate: f64,
     /// Length of the simulation, s.
     pub end: f64,
-    /// Equal communication steps within it, at whose ends the force is wanted.
+    /// Number of equal communication steps, at whose ends the force is recorded.
     pub cells: u32,
-    /// Relative tolerance of the states per tolerance of the force, for general integrators: of 1 and 0.01 the one that takes
-    /// them less time at equal error. Where the contact opens, the indentation is a small difference of modal displacements
-    /// up to a thousand times larger.
+    /// Relative tolerance of the states per tolerance of the force, for general integrators: of 1 and 0.01 the one
+    /// that is faster at equal error. If the contact opens, the indentation is a small difference of modal
+    /// displacements up to a thousand times larger.
     pub relative: f64,
 }
 
@@ -36,7 +36,7 @@ impl Problem {
     /// The problem of a scene.
     ///
     /// # Errors
-    /// A [`SceneError`] where the scene cannot be simulated.
+    /// A [`SceneError`] if the scene cannot be simulated.
     pub fn new(name: &'static str, scene: &Scene, support_rate: f64, end: f64, cells: u32) -> Result<Self, SceneError> {
         Ok(Self {
             name,
@@ -51,7 +51,7 @@ impl Problem {
     /// The same with another number of modes.
     ///
     /// # Errors
-    /// A [`SceneError`] where the scene cannot be simulated.
+    /// A [`SceneError`] if the scene cannot be simulated.
     pub fn with_modes(&self, modes: i32) -> Result<Self, SceneError> {
         let mut scene = *self.model.scene();
         scene.solver.modes = modes;
@@ -64,7 +64,7 @@ impl Problem {
         self.model.modes().len()
     }
 
-    /// The grid's instant `cell`, s.
+    /// Grid time number `cell`, s.
     pub fn instant(&self, cell: u32) -> f64 {
         self.end * f64::from(cell) / f64::from(self.cells)
     }
@@ -72,7 +72,7 @@ impl Problem {
     /// Amplitude (m/s2), angular frequency (rad/s) and phase of the base acceleration; the scenes here start it at 0.
     ///
     /// # Panics
-    /// Under a generator of another waveform, of which the scenes here have none.
+    /// For other waveforms, which the scenes here do not use.
     pub fn sine(&self) -> (f64, f64, f64) {
         let Scene {
             effects, excitation, ..
@@ -80,7 +80,7 @@ impl Problem {
         match effects.excitation {
             ExcitationKind::None => (0.0, 0.0, 0.0),
             ExcitationKind::Sine => (excitation.amplitude, TAU * excitation.frequency, excitation.phase),
-            other => panic!("the peers know no {other:?}"),
+            other => panic!("the other integrators do not support {other:?}"),
         }
     }
 
@@ -132,7 +132,7 @@ impl Problem {
         }
     }
 
-    /// Contact force as it is reported on the grid, N.
+    /// Contact force on the grid, N.
     pub fn force(&self, closed: bool, time: f64, state: &[f64]) -> f64 {
         let force = self.branch(closed, time, state).force;
         if self.can_open() { force.max(0.0) } else { force }

@@ -1,6 +1,6 @@
 //! The reference: Radau IIA with five stages (order 9; Hairer, Wanner, Solving Ordinary Differential Equations II, IV.5), an
 //! implicit Runge-Kutta method with short fixed steps, graded geometrically after each opening and closing, where the force
-//! begins as the square root of time. Twice the steps give its own error.
+//! begins as the square root of time. Its error is estimated by doubling the number of steps.
 //!
 //! The modes are integrated by the Runge-Kutta method and not by exact exponentials as in the component. Within a
 //! step every stage of every mode is linear in the contact forces at the stages, which leaves five equations for Newton.
@@ -16,21 +16,21 @@ const GROWTH: f64 = 1.1;
 type Matrix = SMatrix<f64, STAGES, STAGES>;
 type Vector = SVector<f64, STAGES>;
 
-/// What the others are measured against.
+/// The reference solution.
 #[derive(Clone, Debug)]
 pub struct Reference {
-    /// Contact force at the grid's instants, N.
+    /// Contact force at the grid times, N.
     pub forces: Vec<f64>,
-    /// Instants at which the contact opened and closed in turn, s.
+    /// Times at which the contact opened and closed, alternating, s.
     pub events: Vec<f64>,
-    /// Its own error in the force, relative to the force scale.
+    /// Its error in the force, relative to the force scale.
     pub force_error: f64,
-    /// Its own error in the instants, s.
+    /// Its error in these times, s.
     pub event_error: f64,
 }
 
 impl Reference {
-    /// Of a problem, with steps of at most `step` seconds and half of it.
+    /// The reference of a problem, with steps of at most `step` seconds and of half of that.
     ///
     /// # Errors
     /// A [`Failure`] where Newton's method fails at any step length, or the two runs do not open equally often.
@@ -39,7 +39,7 @@ impl Reference {
         let (forces, events) = Motion::new(problem, 0.5 * step, GROWTH.sqrt()).run()?;
         if coarse_events.len() != events.len() {
             return Err(Failure::Stopped(
-                "the reference does not open equally often with halved steps".to_owned(),
+                "the reference has another number of openings with halved steps".to_owned(),
             ));
         }
         let difference = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
@@ -112,8 +112,7 @@ impl Tableau {
     }
 }
 
-/// Displacement and velocity of a mode, each with the part that is lost where a step's change is added to it: over many
-/// short steps that would cost three digits.
+/// Displacement and velocity of a mode with compensated summation: over many short steps rounding would cost three digits.
 #[derive(Clone, Copy, Default)]
 struct ModeMotion {
     q: f64,
@@ -212,13 +211,11 @@ impl<'a> Motion<'a> {
                     events.push(start + done);
                     self.closed = !self.closed;
                     self.force = 0.0;
-                    // So short that the square root is lost in the error asked for.
+                    // So short that the square root is negligible.
                     wanted = 1e-15;
                 }
                 if events.len() > 10_000 {
-                    return Err(Failure::Stopped(
-                        "reference: openings and closings without end".to_owned(),
-                    ));
+                    return Err(Failure::Stopped("reference: too many openings and closings".to_owned()));
                 }
             }
             forces.push(self.force);
@@ -244,7 +241,7 @@ impl<'a> Motion<'a> {
         if self.closed { engagement } else { -engagement }
     }
 
-    /// The step, or the part of it that stays on the branch; whether the branch ends there.
+    /// The step, or its part on this branch; whether the branch ends there.
     fn cut(&self, trial: Trial, time: f64, h: f64) -> (Trial, f64, bool) {
         let end = STAGES - 1;
         let outside = (0..STAGES).find(|i| self.inside(trial.d[*i], trial.rate[*i]) <= 0.0);
@@ -283,8 +280,8 @@ impl<'a> Motion<'a> {
         let a = tableau.a * h;
         let ones = Vector::repeat(1.0);
         let base = tableau.c.map(|c| problem.acceleration(time + c * h));
-        // With v = v_0 + w at the stages: M w = hA (r - c v_0 - omega^2 (q_0 + h c_i v_0)), M = 1 + c hA + omega^2 (hA)^2, and
-        // q = q_0 + h c_i v_0 + hA w.
+        // With v = v_0 + w at the stages: M w = hA (r - c v_0 - omega^2 (q_0 + h c_i v_0)), M = 1 + c hA + omega^2
+        // (hA)^2, and q = q_0 + h c_i v_0 + hA w.
         let inverses: Option<Vec<Matrix>> = model
             .modes()
             .iter()
@@ -352,7 +349,7 @@ impl<'a> Motion<'a> {
             if !size.is_finite() {
                 return None;
             }
-            // Down to where rounding keeps it from falling further.
+            // Until limited by rounding.
             if size <= 1e-17 || (size <= 1e-11 * model.force_scale() && size >= 0.5 * last) {
                 return Some(forces);
             }
@@ -367,8 +364,8 @@ mod tests {
     use super::*;
     use crate::scenes;
 
-    /// At 400 m/s2 and 1000 Hz the specimen's contact opens at 708.827593 us and closes at 1089.427605 us: converged in modes
-    /// and time by two other methods, all digits given.
+    /// At 400 m/s2 and 1000 Hz the specimen's contact opens at 708.827593 us and closes at 1089.427605 us: converged
+    /// in modes and time by two other methods, all digits given.
     #[test]
     fn the_reference_opens_and_closes_when_two_other_methods_say() -> Result<(), Box<dyn std::error::Error>> {
         let problem = scenes::chatter()?.with_modes(scenes::MANY_MODES)?;

@@ -8,13 +8,13 @@ use relay_contact::variables::{AxialForceKind, ContactLawKind, ExcitationKind, I
 
 use crate::problem::Problem;
 
-/// Modes of the references that stand for the continuum.
+/// Number of modes of the references that represent the continuum.
 pub const MANY_MODES: i32 = 20;
 
 /// The published case: 98 m/s2 at 1000 Hz, 50 ms; the contact stays closed.
 ///
 /// # Errors
-/// A [`SceneError`] where the scene cannot be simulated, as for all here.
+/// A [`SceneError`] if the scene cannot be simulated; the same for all functions here.
 pub fn paper() -> Result<Problem, SceneError> {
     with_default_modes("paper", shaken(98.0), 0.0, 0.05, 500)
 }
@@ -30,8 +30,8 @@ pub fn chatter() -> Result<Problem, SceneError> {
     })
 }
 
-/// The contact starts open by 20 um, and the fixed contact comes at 60 mm/s: it closes with a blow and bounces. Contact
-/// damping is 1 us here; with the specimen's it would not bounce. 5 ms.
+/// The contact is open by 20 um at the start, and the fixed contact approaches at 60 mm/s: it closes and bounces.
+/// Contact damping is 1 us; with that of the specimen it would not bounce. 5 ms.
 ///
 /// # Errors
 /// See [`paper`].
@@ -60,7 +60,7 @@ pub fn all() -> Result<Vec<Problem>, SceneError> {
     Ok(vec![paper()?, chatter()?, closing_bounce()?, linear()?])
 }
 
-/// Number of modes that the component takes for a scene.
+/// Number of modes that the component uses for a scene.
 ///
 /// # Errors
 /// See [`paper`].
@@ -72,7 +72,7 @@ pub fn modes_chosen(scene: &Scene) -> Result<i32, SceneError> {
 fn still() -> Scene {
     let mut scene = Scene::default();
     scene.effects.axial_force = AxialForceKind::None;
-    // What the others do not do either: none of them looks for interruptions and extremes inside steps.
+    // Off, as the other integrators do not search for interruptions and extremes within steps.
     scene.effects.chatter = false;
     scene.effects.extremes = false;
     scene
@@ -86,7 +86,7 @@ fn shaken(amplitude: f64) -> Scene {
     scene
 }
 
-/// With as many modes as the component itself chooses at its default tolerance.
+/// With the number of modes that the component chooses at its default tolerance.
 fn with_default_modes(
     name: &'static str,
     mut scene: Scene,

@@ -1,4 +1,4 @@
-//! Runs of integrators against references, timed in turns so that a busy moment of the machine hits all of them.
+//! Runs of integrators against references, interleaved so that other load affects all of them.
 
 use std::rc::Rc;
 
@@ -8,28 +8,28 @@ use crate::integrator::{Failure, Integrator, Run, Setting};
 use crate::problem::Problem;
 use crate::radau::Reference;
 
-/// Runs shorter than this, s, are repeated within a turn.
+/// Runs shorter than this, s, are repeated within a round.
 const SHORT: f64 = 2e-3;
 
-/// Runs longer than this, s, get one turn only.
+/// Runs longer than this, s, are timed once.
 const LONG: f64 = 0.5;
 
 /// One integrator at one setting.
 #[derive(Clone)]
 pub struct Case {
-    /// What the case is for, a word.
+    /// The part of the study.
     pub part: &'static str,
-    /// What is integrated.
+    /// The problem.
     pub problem: Rc<Problem>,
-    /// What it is measured against.
+    /// The reference.
     pub reference: Rc<Reference>,
-    /// By whom.
+    /// The integrator.
     pub integrator: Rc<dyn Integrator>,
-    /// How accurately.
+    /// The accuracy setting.
     pub setting: Setting,
 }
 
-/// What came of a case.
+/// The result of a case.
 pub struct Row {
     /// The case.
     pub case: Case,
@@ -39,28 +39,28 @@ pub struct Row {
     pub outcome: Result<Measured, Failure>,
 }
 
-/// A run that came to its end, measured.
+/// A completed run, measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// Processor time per simulated time, median of all turns.
+    /// Processor time per simulated time, median of all rounds.
     pub cost: f64,
     /// Largest deviation of the contact force on the grid, relative to the force scale.
     pub force_error: f64,
     /// Openings and closings found.
     pub events: usize,
-    /// Largest deviation of their instants, s; none where there are more or fewer than there should be.
+    /// Largest deviation of their times, s; none if their number is wrong.
     pub event_error: Option<f64>,
     /// Largest deviation of the length of an opening, s; none as before.
     pub duration_error: Option<f64>,
     /// Steps taken.
     pub steps: u64,
-    /// Steps discarded.
+    /// Rejected steps.
     pub rejected: u64,
     /// Newton iterations.
     pub iterations: u64,
 }
 
-/// Runs all cases, `turns` times over.
+/// Runs all cases in `turns` rounds.
 pub fn run(cases: &[Case], turns: usize) -> Vec<Row> {
     let mut times = vec![Vec::new(); cases.len()];
     let mut first: Vec<Option<Result<Run, Failure>>> = cases.iter().map(|_| None).collect();
@@ -105,7 +105,7 @@ pub fn run(cases: &[Case], turns: usize) -> Vec<Row> {
 fn measure(case: &Case, run: &Run, time: f64) -> Result<Measured, Failure> {
     let Case { problem, reference, .. } = case;
     if run.forces.len() != reference.forces.len() || run.forces.iter().any(|force| !force.is_finite()) {
-        return Err(Failure::Stopped("not a finite force at every instant".to_owned()));
+        return Err(Failure::Stopped("the force is not finite at every time".to_owned()));
     }
     let found = (run.events.len() == reference.events.len()).then_some(run.events.as_slice());
     Ok(Measured {

@@ -1,24 +1,25 @@
-//! Measurements as text: a CSV of all of them, and tables of the cheapest run at equal or better error.
+//! Measurements as text: a CSV of all, and tables of the fastest run at equal or better error.
 
 use std::fmt::Write as _;
 
 use crate::integrator::Failure;
 use crate::study::{Measured, Row};
 
-/// The part of a study in which the component chooses its own modes.
+/// The part of a study in which the component chooses the number of modes automatically.
 pub const DELIVERED: &str = "delivered";
 
 /// The part of a study in which all integrators work on the same modes.
 pub const PEERS: &str = "peers";
 
-/// Picks an error of a run; none where it has none.
+/// Selects an error of a run; none if it has none.
 type Error = fn(&Measured) -> Option<f64>;
 
-/// All tables, with the machine and what failed.
+/// All tables, with machine, date and failed runs.
 pub fn report(rows: &[Row]) -> String {
     let mut text = format!(
-        "Measured on: {}.\n\nWhat the component delivers:\n\n{}\nBeside others, on the same modes. Each cell: processor time per simulated second of the cheapest run whose error is at most that of the \
-         column, and in brackets how many times the component's.\n",
+        "Measured on: {}.\n\nThe component, with modes chosen automatically:\n\n{}\nCompared with other integrators, \
+         on the same modes. Each cell: processor time per simulated second of the fastest run whose error is at most that of the \
+         column, and in brackets its ratio to that of the component.\n",
         crate::machine::description(),
         delivered(rows),
     );
@@ -31,7 +32,7 @@ pub fn report(rows: &[Row]) -> String {
         force,
     );
     let of_instants = (
-        "instants of opening and closing",
+        "times of opening and closing",
         [1e-6, 1e-7, 1e-8, 1e-9, 1e-10],
         " s",
         instants,
@@ -47,12 +48,12 @@ pub fn report(rows: &[Row]) -> String {
         let _ = write!(text, "\nScene *{scene}*, error of the {quantity}:\n\n");
         text += &ratios(rows, scene, &levels, unit, error);
     }
-    text += "\nRuns that gave no result:\n\n";
+    text += "\nFailed runs:\n\n";
     let failures = failures(rows);
     text + if failures.is_empty() { "- none\n" } else { &failures }
 }
 
-/// What the component delivers at each tolerance, with the modes it chooses itself, against the motion with many modes.
+/// The component at each tolerance, with modes chosen automatically, compared with a reference of many modes.
 fn delivered(rows: &[Row]) -> String {
     let rows: Vec<&Row> = rows.iter().filter(|row| row.case.part == DELIVERED).collect();
     let mut tolerances: Vec<f64> = rows.iter().map(|row| row.case.setting.value()).collect();
@@ -146,8 +147,8 @@ pub fn csv(rows: &[Row]) -> String {
     text
 }
 
-/// Time per simulated second of the cheapest run of each integrator that is at least as accurate as each level, and how many
-/// times that of the component; a table in Markdown. The error is the one `error` picks.
+/// A table in Markdown: time per simulated second of the fastest run of each integrator that is at least as accurate
+/// as each level, and its ratio to that of the component. `error` selects the error.
 fn ratios(rows: &[Row], scene: &str, levels: &[f64], unit: &str, error: fn(&Measured) -> Option<f64>) -> String {
     let rows: Vec<&Row> = rows
         .iter()
@@ -190,7 +191,7 @@ fn ratios(rows: &[Row], scene: &str, levels: &[f64], unit: &str, error: fn(&Meas
     text
 }
 
-/// The runs that gave no result, a line each; an integrator that is not installed has one line.
+/// The failed runs, a line each; an integrator that is not installed has one line.
 fn failures(rows: &[Row]) -> String {
     let mut lines = Vec::new();
     for row in rows {
@@ -213,7 +214,7 @@ fn failures(rows: &[Row]) -> String {
     lines.concat()
 }
 
-/// A time in a unit that fits.
+/// A time in s or ms.
 fn seconds(time: f64) -> String {
     match time {
         t if t >= 1.0 => format!("{} s", digits(t)),
@@ -225,7 +226,7 @@ fn factor(ratio: f64) -> String {
     format!("{}×", digits(ratio))
 }
 
-/// Two digits, or all before the point.
+/// Two significant digits, or all digits before the decimal point.
 fn digits(x: f64) -> String {
     if x < 9.95 { format!("{x:.1}") } else { format!("{x:.0}") }
 }

@@ -30,12 +30,12 @@ macro_rules! functions {
         #[derive(Debug)]
         pub struct Api {
             $(pub $name: unsafe extern "C" fn($($argument),*) -> $result,)*
-            /// Keeps the functions in memory.
+            /// Keeps the library loaded.
             _library: Option<Library>,
         }
 
         impl Api {
-            /// The functions of the library that is linked into this program.
+            /// The functions of the library linked into this program.
             pub fn linked() -> Self {
                 Self { $($name: relay_contact::fmi2::$name,)* _library: None }
             }
@@ -43,9 +43,9 @@ macro_rules! functions {
             /// The functions of a library file.
             ///
             /// # Errors
-            /// No library, or one that lacks a function.
+            /// If there is no library or a function is missing.
             pub fn load(path: &Path) -> Result<Self, libloading::Error> {
-                // SAFETY: the component does nothing when it is loaded; names and types are those of the standard.
+                // SAFETY: the component does nothing on loading; names and types are those of the standard.
                 unsafe {
                     let library = Library::new(path)?;
                     Ok(Self { $($name: *library.get(concat!(stringify!($name), "\0"))?,)* _library: Some(library) })

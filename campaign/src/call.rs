@@ -1,13 +1,13 @@
-//! A call as plain data: it can be made at any moment, repeated and printed.
+//! A call as plain data, which can be made at any time, repeated and printed.
 
 use relay_contact::fmi2::fmi2LastSuccessfulTime;
 
 use crate::description::{DESCRIPTION, Kind};
 
-/// Saved states that a sequence of calls can hold at once; each slot has its bytes beside it.
+/// Number of slots for saved states of a sequence of calls; each slot also holds the serialized bytes.
 pub const SLOTS: usize = 3;
 
-/// What is wrong with the pointers of a call.
+/// Faults in the pointers of a call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     /// Nothing.
@@ -18,18 +18,18 @@ pub enum Fault {
     MiddleNull,
     /// The last array or pointer is null.
     LastNull,
-    /// The last array or pointer has an address that its type cannot have.
+    /// The last array or pointer is misaligned.
     Misaligned,
     /// The arrays are null, their length is the largest number.
     NullAndEndless,
     /// The arrays have the largest number as length.
     Endless,
-    /// The saved state is foreign memory; the room or the bytes are one too few.
+    /// The saved state is foreign memory; the buffer is one byte too short.
     Foreign,
 }
 
 impl Fault {
-    /// All that are one.
+    /// All faults.
     pub const ALL: [Self; 7] = [
         Self::FirstNull,
         Self::MiddleNull,
@@ -41,21 +41,21 @@ impl Fault {
     ];
 }
 
-/// The instant a step is to start from.
+/// The communication point passed to a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Point {
-    /// Where the instance stands.
+    /// The time of the instance.
     Here,
-    /// So many spacings of floating-point numbers off.
+    /// Off by a number of floating-point spacings.
     Rounded(i32),
-    /// So many steps off.
+    /// Off by a number of steps.
     Off(f64),
-    /// This instant, s.
+    /// This time, s.
     At(f64),
 }
 
 impl Point {
-    /// The instant, s, for an instance that stands at `time` and a step of `size`.
+    /// The communication point, s, for an instance at `time` and a step of `size`.
     pub fn instant(self, time: f64, size: f64) -> f64 {
         match self {
             Self::Here => time,
@@ -69,16 +69,16 @@ impl Point {
     }
 }
 
-/// What happens to the bytes of a saved state.
+/// Damage to the bytes of a saved state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Damage {
     /// Nothing.
     None,
-    /// A bit flips; counted from the start, round and round.
+    /// A flipped bit; its number is taken modulo the length.
     Flip(u32),
-    /// The bytes end early; the length counts round and round.
+    /// Truncated bytes; the length is taken modulo the full length.
     Cut(u32),
-    /// Bytes follow.
+    /// Additional bytes.
     Longer(u8),
 }
 
@@ -100,7 +100,7 @@ impl StatusFunction {
 
 /// A call.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)] // named as the functions and arguments of the standard
+#[allow(missing_docs)] // named after the functions and arguments of the standard
 pub enum Call {
     SetDebugLogging {
         on: bool,
@@ -144,7 +144,7 @@ pub enum Call {
         slot: usize,
         fault: Fault,
     },
-    /// The bytes stay with the slot.
+    /// The bytes are stored in the slot.
     Serialize {
         slot: usize,
         fault: Fault,
@@ -176,7 +176,7 @@ pub enum Call {
         kind: u32,
         fault: Fault,
     },
-    /// Twice: the state of the slot set, the inputs set, steps made. Both must give the same bits.
+    /// Performed twice: set the state of the slot, set the inputs, make steps. Both must give the same bits.
     Replay {
         slot: usize,
         inputs: Vec<(u32, f64)>,
@@ -229,10 +229,10 @@ impl Call {
         }
     }
 
-    /// Initialisation from begin to end.
+    /// The calls of a complete initialisation.
     pub const INITIALISE: [Self; 2] = [Self::EnterInitializationMode, Self::ExitInitializationMode];
 
-    /// Initialisation of an instance that a sine of this amplitude shakes, m/s2.
+    /// Initialisation with a sine excitation of this amplitude, m/s2.
     pub fn shaken(amplitude: f64) -> [Self; 4] {
         let excitation = vec![(DESCRIPTION.reference("effects.excitation"), 2.0)];
         let amplitude = vec![(DESCRIPTION.reference("excitation.amplitude"), amplitude)];
@@ -245,7 +245,7 @@ impl Call {
         ]
     }
 
-    /// Reads variables, no pointer wrong, as with all below.
+    /// Reads variables; pointers are valid, as in all functions below.
     pub fn get(kind: Kind, references: Vec<u32>) -> Self {
         let fault = Fault::None;
         Self::Get {
@@ -266,7 +266,7 @@ impl Call {
         Self::set(Kind::Real, values)
     }
 
-    /// A step from where the instance stands.
+    /// A step from the time of the instance.
     pub fn step(size: f64) -> Self {
         let point = Point::Here;
         Self::DoStep { point, size }
@@ -287,19 +287,19 @@ impl Call {
         Self::GetState { slot, fault }
     }
 
-    /// Goes back to a saved state.
+    /// Restores a saved state.
     pub fn restore(slot: usize) -> Self {
         let fault = Fault::None;
         Self::SetState { slot, fault }
     }
 
-    /// Makes bytes of a saved state.
+    /// Serializes a saved state.
     pub fn serialize(slot: usize) -> Self {
         let fault = Fault::None;
         Self::Serialize { slot, fault }
     }
 
-    /// Makes a saved state of the bytes, undamaged.
+    /// Restores a saved state from undamaged bytes.
     pub fn deserialize(slot: usize) -> Self {
         let (damage, fault) = (Damage::None, Fault::None);
         Self::Deserialize { slot, damage, fault }

@@ -1,6 +1,6 @@
-//! Choices drawn from bytes: of a random generator, or of a fuzzer.
+//! Choices drawn from bytes, of a random generator or a fuzzer.
 
-/// Draws from bytes until none are left; zeros follow.
+/// Draws from bytes, then zeros.
 #[derive(Clone, Debug)]
 pub struct Choices<'a> {
     bytes: &'a [u8],
@@ -12,7 +12,7 @@ impl<'a> Choices<'a> {
         Self { bytes }
     }
 
-    /// Whether there is nothing left to choose from.
+    /// Whether all bytes are used.
     pub fn is_empty(&self) -> bool {
         self.bytes.is_empty()
     }
@@ -29,7 +29,7 @@ impl<'a> Choices<'a> {
         (usize::from(high) * 256 + usize::from(self.byte())) % count.max(1)
     }
 
-    /// True in about `percent` of a hundred cases.
+    /// True with a probability of about `percent` %.
     pub fn percent(&mut self, percent: usize) -> bool {
         self.below(100) < percent
     }
@@ -52,7 +52,7 @@ impl<'a> Choices<'a> {
 
 /// Bytes of a generator (xorshift64*): the same for the same seed.
 pub fn bytes(seed: u64, count: usize) -> Vec<u8> {
-    // Neighbouring seeds are to have nothing in common, and the state must not be zero.
+    // Neighbouring seeds must give unrelated sequences, and the state must not be zero.
     let mut state = seed.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
     let mut next = || {
         state ^= state >> 12;

@@ -1,4 +1,4 @@
-//! What an importer knows of the component: `modelDescription.xml`.
+//! `modelDescription.xml`, read as by an importer.
 
 use std::sync::LazyLock;
 
@@ -23,7 +23,7 @@ impl Kind {
     pub const ALL: [Self; 4] = [Self::Real, Self::Integer, Self::Boolean, Self::String];
 }
 
-/// Where the value of a variable comes from.
+/// Who sets the value of a variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// The importer, before every step.
@@ -37,28 +37,28 @@ pub enum Role {
 /// A variable.
 #[derive(Clone, Debug)]
 pub struct Variable {
-    /// As in the description.
+    /// Name in the description.
     pub name: String,
     /// Value reference.
     pub reference: u32,
     /// Type.
     pub kind: Kind,
-    /// Where its value comes from.
+    /// Who sets its value.
     pub role: Role,
-    /// Whether it may change at any time.
+    /// Whether it is continuous.
     pub continuous: bool,
     /// Start value; 0 for outputs.
     pub start: f64,
-    /// Least value.
+    /// Smallest value allowed.
     pub min: f64,
-    /// Largest value.
+    /// Largest value allowed.
     pub max: f64,
     /// Values of an enumeration.
     pub choices: Vec<f64>,
 }
 
 impl Variable {
-    /// Whether the value may be set. The bounds of Poisson's ratio are excluded, as their description says.
+    /// Whether the value is allowed. The bounds of Poisson's ratio are excluded, as its description states.
     pub fn allows(&self, value: f64) -> bool {
         let open = self.name.ends_with("poissonRatio") && (value == self.min || value == self.max);
         value.is_finite()
@@ -72,7 +72,7 @@ impl Variable {
 /// The description.
 #[derive(Clone, Debug)]
 pub struct Description {
-    /// Identifies the description.
+    /// The GUID.
     pub guid: String,
     /// In the order of the file.
     pub variables: Vec<Variable>,
@@ -109,7 +109,7 @@ impl Description {
         }
     }
 
-    /// The position of a variable.
+    /// The index of a variable.
     pub fn position(&self, reference: u32) -> Option<usize> {
         self.variables
             .iter()
@@ -134,7 +134,7 @@ impl Description {
         self.references(|variable| variable.role == Role::Output && variable.kind == kind)
     }
 
-    /// The references of the variables that are wanted.
+    /// The references of the selected variables.
     pub fn references(&self, wanted: impl Fn(&Variable) -> bool) -> Vec<u32> {
         let wanted = self.variables.iter().filter(|variable| wanted(variable));
         wanted.map(|variable| variable.reference).collect()

@@ -1,4 +1,4 @@
-//! A random call: mostly one that the state of the instance allows, so that sequences get far, with wrong ones among them.
+//! Random calls: mostly ones allowed in the state of the instance, so that sequences continue, and some wrong ones.
 
 use crate::call::{Call, Damage, Fault, Point, SLOTS, StatusFunction};
 use crate::choices::Choices;
@@ -6,7 +6,7 @@ use crate::description::{DESCRIPTION, Kind, Role, Variable};
 use crate::moment::Moment;
 use crate::states::Phase;
 
-/// Steps are drawn up to this length, s, so that stiff scenes do not take minutes.
+/// Longest step drawn, s, so that stiff scenes do not take minutes.
 const LONGEST_STEP: f64 = 1e-4;
 
 /// The next call of an instance.
@@ -53,7 +53,7 @@ pub fn call(choices: &mut Choices, now: &Moment) -> Call {
     }
 }
 
-/// Any call, whatever the state.
+/// Any call, independent of the state.
 fn anything(choices: &mut Choices, now: &Moment) -> Call {
     match choices.below(18) {
         0 => logging(choices),
@@ -83,7 +83,7 @@ fn any_kind(choices: &mut Choices) -> Kind {
     choices.one(&Kind::ALL)
 }
 
-/// Mostly none.
+/// A fault of the pointers, mostly none.
 fn fault(choices: &mut Choices) -> Fault {
     if choices.percent(2) {
         choices.one(&Fault::ALL)
@@ -129,7 +129,7 @@ fn setup(choices: &mut Choices) -> Call {
     }
 }
 
-/// A variable of the type if there is one; rarely any at all, or a reference that no variable has.
+/// A variable of the type if there is one; rarely of any type, or an unknown reference.
 fn reference(choices: &mut Choices, wanted: impl Fn(&Variable) -> bool) -> u32 {
     if choices.percent(2) {
         return choices.bits();
@@ -179,7 +179,7 @@ fn set(choices: &mut Choices, now: &Moment, kind: Kind) -> Call {
     }
 }
 
-/// Mostly near the start value, sometimes a bound, seldom out of range.
+/// Mostly near the start value, sometimes a bound, rarely out of range.
 fn value(choices: &mut Choices, reference: u32) -> f64 {
     let Some(variable) = DESCRIPTION.variable(reference) else {
         return choices.unit();
@@ -245,7 +245,7 @@ fn step(choices: &mut Choices) -> Call {
     Call::DoStep { point, size }
 }
 
-/// Four decades, often the same.
+/// A step size within four decades, often the previous one.
 fn step_size(choices: &mut Choices) -> f64 {
     if choices.percent(50) {
         choices.one(&[1e-6, 1e-5, LONGEST_STEP])

@@ -1,5 +1,5 @@
-//! Saved states with hostile contents and a right checksum: what an attacker can make, or a bug of a transport that
-//! computes its own checksums.
+//! Saved states with manipulated contents and a correct checksum, as by an attacker or a faulty transport that
+//! computes checksums itself.
 
 use relay_contact::fmi2::*;
 
@@ -10,7 +10,7 @@ use crate::description::{DESCRIPTION, Kind};
 use crate::importer::Importer;
 use crate::judge::Judge;
 
-/// Bytes before the contents: mark, version, GUID, length.
+/// Bytes before the contents: magic number, version, GUID, length.
 pub fn head() -> usize {
     8 + 4 + DESCRIPTION.guid.len() + 8
 }
@@ -18,7 +18,7 @@ pub fn head() -> usize {
 /// Bytes after the contents: the checksum.
 const TAIL: usize = 4;
 
-/// The bytes of a contact under way: shaken by a sine until it has opened.
+/// The serialized state of a contact under sine excitation that has opened.
 pub fn specimen(api: &Api) -> Vec<u8> {
     let mut judge = Judge::new(api);
     let steps = [1e-3, 1.3e-6, 1.3e-6].map(Call::step);
@@ -28,7 +28,7 @@ pub fn specimen(api: &Api) -> Vec<u8> {
     judge.importer.bytes(0).clone()
 }
 
-/// The bytes with length and checksum set right for what is between head and tail.
+/// The bytes with length and checksum corrected for the contents.
 pub fn repaired(mut bytes: Vec<u8>) -> Vec<u8> {
     if let Some(length) = bytes.len().checked_sub(head() + TAIL) {
         bytes[head() - 8..head()].copy_from_slice(&(length as u64).to_le_bytes());
@@ -39,7 +39,7 @@ pub fn repaired(mut bytes: Vec<u8>) -> Vec<u8> {
     bytes
 }
 
-/// Numbers that go wrong where numbers can.
+/// Critical floating-point values.
 const NUMBERS: [f64; 14] = [
     f64::NAN,
     f64::INFINITY,
@@ -57,7 +57,7 @@ const NUMBERS: [f64; 14] = [
     1.0,
 ];
 
-/// The specimen changed as the choices say, head and checksum right.
+/// The serialized state with random changes, header and checksum correct.
 pub fn changed(specimen: &[u8], choices: &mut Choices) -> Vec<u8> {
     let mut bytes = specimen.to_vec();
     for _ in 0..=choices.below(4) {
@@ -77,23 +77,23 @@ pub fn changed(specimen: &[u8], choices: &mut Choices) -> Vec<u8> {
     repaired(bytes)
 }
 
-/// What became of hostile bytes.
+/// The outcome of manipulated bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Outcome {
-    /// They are no saved state.
+    /// Rejected on deserialization.
     NotRead,
-    /// They are one, which no instance can be taken back to.
+    /// Deserialized, but rejected by the instance.
     NotSet,
-    /// An instance stood there; a step failed.
+    /// Restored; a step failed.
     StepFailed,
-    /// An instance went on from there.
+    /// Restored, and all steps succeeded.
     WentOn,
 }
 
-/// Reads the bytes, takes an instance there, and goes on for `steps` communication steps.
+/// Deserializes the bytes, restores the state, and makes `steps` communication steps.
 ///
 /// # Errors
-/// A panic in the component, told by its message, or a status that FMI does not allow.
+/// A panic in the component, recognised by its message, or a status that FMI does not allow.
 pub fn meet(api: &Api, bytes: &[u8], steps: u32) -> Result<Outcome, String> {
     let mut importer = Importer::new(api);
     *importer.bytes(0) = bytes.to_vec();
@@ -104,7 +104,7 @@ pub fn meet(api: &Api, bytes: &[u8], steps: u32) -> Result<Outcome, String> {
         return Ok(Outcome::NotSet);
     }
     for step in 0..=steps {
-        // Where does it stand? There alone it goes on.
+        // Steps must start at the time of the instance.
         let (_, time) = answer(&mut importer, &Call::time(), 0.0)?;
         let time = time.first().copied().unwrap_or(f64::NAN);
         for kind in [Kind::Real, Kind::Integer, Kind::Boolean] {
@@ -116,7 +116,7 @@ pub fn meet(api: &Api, bytes: &[u8], steps: u32) -> Result<Outcome, String> {
     }
     for call in [Call::save(1), Call::serialize(1), Call::Reset] {
         if answer(&mut importer, &call, 0.0)?.0 != fmi2OK {
-            return Err(format!("{call:?} is refused"));
+            return Err(format!("{call:?} is rejected"));
         }
     }
     Ok(Outcome::WentOn)

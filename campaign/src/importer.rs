@@ -1,4 +1,4 @@
-//! Makes calls on an instance through the C functions, and keeps what was logged.
+//! Makes calls on an instance through the C functions, and records the log.
 
 use std::ffi::CString;
 use std::ptr;
@@ -16,18 +16,18 @@ use crate::pointers::{arguments, middle, place, places};
 #[derive(Debug)]
 pub struct Importer<'a> {
     api: &'a Api,
-    /// The instance. Not always its own: a test may put something else here.
+    /// The instance; a test may replace it.
     pub component: fmi2Component,
     states: [fmi2FMUstate; SLOTS],
     bytes: [Vec<u8>; SLOTS],
-    // Boxed, so that the address the callback holds stays.
+    // Boxed, so that the address held by the callback stays valid.
     log: Box<Log>,
 }
 
 /// A function that reads or writes variables.
 type Function<Values> = unsafe extern "C" fn(fmi2Component, *const fmi2ValueReference, usize, Values) -> fmi2Status;
 
-/// What a call gave back: status, and the values read where there were any.
+/// The result of a call: status, and the values read, if any.
 pub type Answer = (fmi2Status, Vec<f64>);
 
 impl<'a> Importer<'a> {
@@ -37,7 +37,7 @@ impl<'a> Importer<'a> {
         let component = instantiate(api, &log);
         assert!(
             !component.is_null(),
-            "no instance: is this the library that belongs to the tests? {log:?}"
+            "no instance: is the library from the same build as the tests? {log:?}"
         );
         let states = [ptr::null_mut(); SLOTS];
         let bytes = [const { Vec::new() }; SLOTS];
@@ -50,7 +50,7 @@ impl<'a> Importer<'a> {
         }
     }
 
-    /// The messages since the last look.
+    /// The messages since the last call of this function.
     pub fn messages(&self) -> Vec<Message> {
         self.log
             .lock()
@@ -63,7 +63,7 @@ impl<'a> Importer<'a> {
         &mut self.bytes[slot]
     }
 
-    /// Makes a call. `time` is where the instance stands.
+    /// Makes a call. `time` is the time of the instance.
     #[allow(clippy::too_many_lines)] // one line a function
     pub fn make(&mut self, call: &Call, time: f64) -> Answer {
         let (api, c) = (self.api, self.component);
@@ -144,7 +144,7 @@ impl<'a> Importer<'a> {
                 Call::DoStep { point, size } => (api.fmi2DoStep)(c, point.instant(time, *size), *size, fmi2True),
                 Call::CancelStep => (api.fmi2CancelStep)(c),
                 Call::Status { function, kind, fault } => return self.status(*function, *kind, *fault),
-                Call::Replay { .. } => unreachable!("a replay is made of other calls"),
+                Call::Replay { .. } => unreachable!("a replay consists of other calls"),
             }
         };
         (status, Vec::new())
@@ -172,7 +172,7 @@ impl<'a> Importer<'a> {
         (unsafe { function(self.component, vr, count, value) }, values)
     }
 
-    #[allow(clippy::cast_possible_truncation)] // saturates, as wanted of values beyond the integers
+    #[allow(clippy::cast_possible_truncation)] // saturates, as intended for values beyond the integers
     fn set(&self, kind: Kind, values: &[(u32, f64)], fault: Fault) -> fmi2Status {
         let (api, write) = (self.api, (values, fault));
         match kind {
@@ -198,7 +198,7 @@ impl<'a> Importer<'a> {
         let (api, c) = (self.api, self.component);
         let mut memory = [0_u64; 8];
         let mut foreign: fmi2FMUstate = memory.as_mut_ptr().cast();
-        // The state itself, as some functions want it.
+        // The state itself, as some functions expect it.
         let state = |slot: usize, fault| match fault {
             Fault::Foreign => foreign,
             Fault::FirstNull => ptr::null_mut(),
@@ -262,10 +262,10 @@ impl<'a> Importer<'a> {
                     };
                     (api.fmi2DeSerializeFMUstate)(c, bytes, size, place)
                 }
-                _ => unreachable!("no call about saved states: {call:?}"),
+                _ => unreachable!("not a call on saved states: {call:?}"),
             }
         };
-        assert_eq!(memory, [0; 8], "{call:?}: wrote to memory that is no saved state");
+        assert_eq!(memory, [0; 8], "{call:?}: wrote to memory that is not a saved state");
         (status, Vec::new())
     }
 
@@ -301,7 +301,7 @@ impl Drop for Importer<'_> {
     }
 }
 
-/// The bytes with their damage.
+/// The damaged bytes.
 pub fn damaged(bytes: &[u8], damage: Damage) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     match damage {
@@ -317,7 +317,7 @@ pub fn damaged(bytes: &[u8], damage: Damage) -> Vec<u8> {
     bytes
 }
 
-/// A new instance by the description's own GUID.
+/// A new instance with the GUID of the description.
 fn instantiate(api: &Api, log: &Log) -> fmi2Component {
     let arguments = Arguments {
         guid: Some(&DESCRIPTION.guid),

@@ -1,4 +1,4 @@
-//! A call made, and compared with what the life cycle says.
+//! Makes a call and compares it with the expected life cycle.
 
 use std::collections::BTreeSet;
 
@@ -11,18 +11,18 @@ use crate::importer::{Answer, Importer};
 use crate::life_cycle::{LifeCycle, of_kind};
 use crate::states::{Phase, allowed};
 
-/// An instance under judgement.
+/// An instance under test.
 #[derive(Debug)]
 pub struct Judge<'a> {
     /// The instance.
     pub importer: Importer<'a>,
-    /// What should be true of it.
+    /// Its expected state.
     pub life: LifeCycle,
     /// Calls made.
     pub calls: u64,
     /// Communication steps made.
     pub steps: u64,
-    /// Functions with the statuses they answered.
+    /// Functions with the statuses they returned.
     pub met: BTreeSet<(&'static str, fmi2Status)>,
 }
 
@@ -49,7 +49,7 @@ impl<'a> Judge<'a> {
     /// Makes a call.
     ///
     /// # Errors
-    /// What the component did wrong.
+    /// A wrong result of the component.
     pub fn call(&mut self, call: &Call) -> Result<(), String> {
         if let Call::Replay {
             slot,
@@ -113,7 +113,7 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// Once an output can be read in Initialization Mode, initialisation must end well, and the other way round.
+    /// If outputs can be read in Initialization Mode, initialisation must succeed, and vice versa.
     fn learn_whether_it_fits(&mut self, call: &Call) -> Result<(), String> {
         let asks = matches!(call, Call::Get { references, .. } if references.len() > 1);
         let unknown = !self.life.now.computed && self.life.now.fits != Some(false);
@@ -156,7 +156,7 @@ impl<'a> Judge<'a> {
         Ok(())
     }
 
-    /// The outputs after calls that could have changed them, and the values after calls that set them all or none.
+    /// Checks the outputs after calls that may change them, and the values after calls that set all or none.
     fn check_state(&mut self, call: &Call, status: fmi2Status) -> Result<(), String> {
         let moves = match call {
             Call::DoStep { .. } => true,

@@ -1,20 +1,20 @@
-//! The life-cycle campaign: wrong and random calls to the component, made as an importer makes them, by what
-//! `modelDescription.xml` says and through the C functions alone.
+//! The life-cycle campaign: wrong and random calls to the component as from an importer, based on
+//! `modelDescription.xml` and through the C functions only.
 //!
 //! ```text
 //! description  the variables and log categories, read from the XML
 //! api          the 34 functions, of a loaded library or of the one linked here
 //! call         one call as plain data; choices makes random ones
-//! importer     makes a call on an instance and gives what came back
+//! importer     makes a call on an instance and returns the result
 //! states       the states, and which function is allowed in which
-//! moment       what is true of an instance at a moment
-//! life_cycle   the standard's state machine in our own words: which status a call must have, and what is true after it
-//! judge        a call made, and compared with what the life cycle says
+//! moment       the expected state of an instance at a time
+//! life_cycle   the standard's state machine, independent of the component: expected status and state after a call
+//! judge        makes a call and compares it with the life cycle
 //! random       sequences of random calls; the shortest that still fails
-//! hostile      saved states with damaged contents and a right checksum
+//! hostile      saved states with manipulated contents and a correct checksum
 //! ```
-#![allow(clippy::undocumented_unsafe_blocks)] // every block calls a C function with what it needs, or, as the call says, without
-#![allow(clippy::missing_panics_doc)] // tests are made of this
+#![allow(clippy::undocumented_unsafe_blocks)] // every block calls a C function with valid arguments, or with wrong ones on purpose
+#![allow(clippy::missing_panics_doc)] // used only by tests
 #![allow(clippy::wildcard_imports)] // of the standard's types and statuses
 #![allow(non_upper_case_globals)] // the statuses in patterns are named as in the standard
 

@@ -1,13 +1,12 @@
-//! The life of an instance as FMI 2.0 has it for co-simulation (sections 2.1 and 4.2), in our own words and apart from
-//! the component's own code: which status a call must have, and what is true after it.
-//!
-//! Where the standard leaves room, this is what the component promises:
-//! - the first wrong thing of a call decides its status: a state that does not allow it, a pointer, then the elements of
+//! The life cycle of an instance in FMI 2.0 for co-simulation (sections 2.1 and 4.2), implemented independently of the
+//! component: the expected status of a call, and the state after it. Where the standard leaves a choice, the component
+//! guarantees:
+//! - the first error of a call determines its status: a state that does not allow it, a pointer, then the elements of
 //!   its arrays in their order;
 //! - inputs and parameters can be read before initialisation; outputs cannot;
-//! - a value out of range is `fmi2Discard` and nothing of its call is taken over; any other wrong call is `fmi2Error`;
-//! - after `fmi2Error`, values and status can be read, a saved state be set, the instance be reset or freed; but a capability that
-//!   is not offered, or outputs asked for while parameters do not fit yet, leave the instance as it was.
+//! - a value out of range is `fmi2Discard` and its call changes nothing; any other wrong call is `fmi2Error`;
+//! - after `fmi2Error`, values and status can be read, a saved state restored, the instance reset or freed; but
+//!   unsupported capabilities, or outputs read while the parameters are inconsistent, do not change the instance.
 
 use relay_contact::fmi2::*;
 
@@ -18,12 +17,12 @@ use crate::states::{Phase, allowed};
 
 use Phase::{Error, InitializationMode, Instantiated, StepComplete, Terminated};
 
-/// The statuses a call may have, and what an error among them does.
+/// The expected status of a call, and the effect of an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// `fmi2OK`.
     Accept,
-    /// `fmi2Warning`: done but for what the log tells.
+    /// `fmi2Warning`: done except for what the log reports.
     Remark,
     /// `fmi2Discard`, nothing changed.
     Discard,
@@ -31,9 +30,9 @@ pub enum Verdict {
     Fail,
     /// `fmi2Error`, nothing changed.
     Refuse,
-    /// `Accept` or `Fail`, as the physics wants.
+    /// `Accept` or `Fail`, depending on the physics.
     AcceptOrFail,
-    /// `Accept` or `Refuse`, as the physics wants.
+    /// `Accept` or `Refuse`, depending on the physics.
     AcceptOrRefuse,
 }
 
@@ -59,7 +58,7 @@ pub struct LifeCycle {
     pub now: Moment,
     /// The saved states.
     pub saved: [Option<Moment>; SLOTS],
-    /// What the bytes of each slot hold.
+    /// The contents of the bytes of each slot.
     pub written: [Option<Moment>; SLOTS],
     /// Whether errors are logged.
     pub errors: bool,
@@ -80,7 +79,7 @@ impl Default for LifeCycle {
 }
 
 impl LifeCycle {
-    /// What a call must come to.
+    /// The expected outcome of a call.
     pub fn verdict(&self, call: &Call) -> Verdict {
         if !allowed(call.function(), self.now.phase) {
             return Fail;
@@ -157,7 +156,7 @@ impl LifeCycle {
                     Fail
                 }
             }
-            Call::Replay { .. } => unreachable!("a replay is made of other calls"),
+            Call::Replay { .. } => unreachable!("a replay consists of other calls"),
         }
     }
 
@@ -202,8 +201,8 @@ impl LifeCycle {
         if !(size.is_finite() && size > 0.0 && point.is_finite() && end.is_finite() && end > point) {
             return Fail;
         }
-        // The importer's time and the component's may differ by a few roundings, and must not by a thousandth of a
-        // step; what lies between is the component's affair. The same holds for the stop time.
+        // The importer's time may differ from the component's by a few roundings, but not by a thousandth of a step;
+        // between these the component decides. The same holds for the stop time.
         let rounding = f64::EPSILON * point.abs().max(end.abs());
         let off = (point - self.now.time).abs();
         if off > 1e2 * rounding + 1e-3 * size {
@@ -228,7 +227,7 @@ impl LifeCycle {
         Accept
     }
 
-    /// What is true after the call came to `status`, which the verdict allows.
+    /// Updates the expected state after the call returned `status`, which the verdict allows.
     pub fn follow(&mut self, call: &Call, status: fmi2Status) {
         let verdict = self.verdict(call);
         let now = &mut self.now;
@@ -265,7 +264,7 @@ impl LifeCycle {
             }
             Call::EnterInitializationMode => {
                 now.phase = InitializationMode;
-                // The start values fit together.
+                // The start values are consistent.
                 now.fits = now.is_untouched().then_some(true);
             }
             Call::ExitInitializationMode => (now.phase, now.fits, now.computed) = (StepComplete, Some(true), true),
@@ -308,7 +307,7 @@ impl LifeCycle {
     }
 }
 
-/// Communication steps (s) in which no input can change faster, and no time get coarser, than numbers can follow.
+/// Communication steps (s) for which inputs and time stay within the floating-point range.
 const ORDINARY_STEPS: std::ops::RangeInclusive<f64> = 1e-9..=1e3;
 
 /// The variable of the reference, if it has the type.
@@ -320,7 +319,7 @@ fn continuous(reference: u32, role: Role) -> bool {
     of_kind(Kind::Real, reference).is_some_and(|variable| variable.role == role && variable.continuous)
 }
 
-/// The value as a variable of the type holds it.
+/// The value as stored by a variable of the type.
 fn as_held(kind: Kind, value: f64) -> f64 {
     #[allow(clippy::cast_possible_truncation)] // saturates
     match kind {
@@ -335,7 +334,7 @@ fn first_wrong(verdicts: impl Iterator<Item = Verdict>) -> Verdict {
     wrong.next().unwrap_or(Accept)
 }
 
-/// The verdict on the pointers of arrays of some length, unless they are right. Empty arrays may be anything.
+/// The verdict on the pointers of arrays of a length, unless they are valid. Pointers of empty arrays are not checked.
 fn arrays(fault: Fault, length: usize) -> Option<Verdict> {
     let wrong = match fault {
         Fault::None | Fault::MiddleNull | Fault::Foreign => false,

@@ -1,28 +1,28 @@
-//! What is true of an instance at a moment.
+//! The expected state of an instance.
 
 use crate::description::DESCRIPTION;
 use crate::states::Phase;
 
-/// All that is true of an instance at a moment, and that a saved state brings back.
+/// The expected state of an instance, which a saved state restores.
 #[derive(Clone, Debug)]
 pub struct Moment {
-    /// Where in its life.
+    /// State in the life cycle.
     pub phase: Phase,
     /// Values of the inputs and parameters, in the order of the description.
     pub values: Vec<f64>,
     /// Derivatives of the inputs over the next step, in the same order.
     pub rates: Vec<f64>,
-    /// Where it stands, s.
+    /// Its time, s.
     pub time: f64,
-    /// End of the experiment, s.
+    /// Stop time, s.
     pub stop: f64,
     /// Whether outputs have been computed.
     pub computed: bool,
-    /// Whether the parameters fit together, once that is known.
+    /// Whether the parameters are consistent, once known.
     pub fits: Option<bool>,
-    /// Whether it was driven by more than numbers can follow, so that a step may fail.
+    /// Whether inputs were so extreme that a step may fail.
     pub extreme: bool,
-    /// The bits of the outputs, once read at this communication point.
+    /// The bits of the outputs, if read at this communication point.
     pub outputs: Option<Vec<u64>>,
 }
 
@@ -51,13 +51,13 @@ impl Moment {
             .map_or(f64::NAN, |position| self.values[position])
     }
 
-    /// Whether inputs and parameters are as they were at the start.
+    /// Whether inputs and parameters have their start values.
     pub fn is_untouched(&self) -> bool {
         let mut pairs = DESCRIPTION.variables.iter().zip(&self.values);
         pairs.all(|(variable, value)| *value == variable.start)
     }
 
-    /// Whether the inputs are beyond what the ranges of the generated excitation allow, which are meant to be wide.
+    /// Whether the inputs exceed the ranges of the generated excitation.
     pub fn pushed_hard(&self) -> bool {
         let acceleration = DESCRIPTION.reference("base.acceleration");
         let rate = DESCRIPTION

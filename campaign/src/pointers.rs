@@ -1,4 +1,4 @@
-//! Pointers to arrays, right or wrong on purpose.
+//! Pointers to arrays, valid or wrong on purpose.
 
 use std::ptr;
 
@@ -39,7 +39,7 @@ pub fn middle(fault: Fault, orders: &[i32]) -> *const i32 {
     }
 }
 
-/// A single place to write.
+/// A single element to write.
 pub fn place<T>(fault: Fault, at: &mut T) -> *mut T {
     match fault {
         Fault::LastNull => ptr::null_mut(),

@@ -1,4 +1,4 @@
-//! Sequences of random calls, and the shortest that still fails.
+//! Sequences of random calls, and their reduction to the shortest that fails.
 
 use std::time::{Duration, Instant};
 
@@ -8,7 +8,7 @@ use crate::choices::{Choices, bytes};
 use crate::draw;
 use crate::judge::Judge;
 
-/// What a sequence did.
+/// Counters of a sequence.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Count {
     /// Calls made.
@@ -20,7 +20,7 @@ pub struct Count {
 /// Bytes a sequence is drawn from: some hundreds of calls.
 const LENGTH: usize = 2000;
 
-/// Makes random calls until there are `wanted` of them, from the sequence with the number `seed` on.
+/// Makes at least `wanted` random calls, starting with the sequence of number `seed`.
 ///
 /// # Panics
 /// At the first wrong answer, with the seed and the shortest sequence found that shows it.
@@ -37,7 +37,7 @@ pub fn campaign(api: &Api, seed: u64, wanted: u64) -> Count {
     count
 }
 
-/// Makes the calls that the bytes choose.
+/// Makes the calls drawn from the bytes.
 ///
 /// # Errors
 /// The first wrong answer, with the shortest sequence found that shows it.
@@ -69,10 +69,10 @@ pub fn run(api: &Api, calls: &[Call]) -> Result<(), String> {
     Judge::new(api).run(calls)
 }
 
-/// How long a shorter sequence is looked for.
+/// Time limit of the search for a shorter sequence.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Leaves out what is not needed for a failure: halves first, single calls last.
+/// Removes calls that are not needed for the failure: halves first, single calls last.
 fn shortened(api: &Api, mut calls: Vec<Call>, mut reason: String) -> (Vec<Call>, String) {
     let start = Instant::now();
     let mut piece = calls.len().div_ceil(2);

@@ -1,13 +1,11 @@
 //! The states of FMI 2.0 for co-simulation, and which function is allowed in which: the table of the standard, section
-//! 4.2.4, and nowhere else but in the component itself.
-//!
-//! It has no column for a step in progress, as none ever is, and three rows are wider: variables can be read in the state
-//! instantiated too (outputs not, see [`crate::life_cycle`]), the status functions answer in the state error, and what is
-//! not supported is refused in every state.
+//! 4.2.4, independent of that in the component. It has no column for a step in progress, which does not occur, and
+//! three rows are wider: inputs and parameters can also be read in the state instantiated (see [`crate::life_cycle`]),
+//! the status functions work in the state error, and unsupported functions report this in every state.
 
 use Phase::{Error, InitializationMode, Instantiated, StepComplete, Terminated};
 
-/// Where an instance is in its life.
+/// State in the life cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)] // the states of the standard
 pub enum Phase {
@@ -22,7 +20,7 @@ impl Phase {
     /// Every state.
     pub const ALL: [Self; 5] = [Instantiated, InitializationMode, StepComplete, Terminated, Error];
 
-    /// As messages name it.
+    /// Its name in messages.
     pub fn name(self) -> &'static str {
         match self {
             Instantiated => "instantiated",
@@ -90,7 +88,7 @@ pub fn functions() -> impl Iterator<Item = &'static str> {
 /// Whether the function is allowed in the state.
 pub fn allowed(function: &str, phase: Phase) -> bool {
     let row = TABLE.iter().find(|(functions, _)| functions.contains(&function));
-    row.unwrap_or_else(|| panic!("{function} is no function of an instance"))
+    row.unwrap_or_else(|| panic!("{function} is not a function of an instance"))
         .1
         .contains(&phase)
 }

@@ -1,18 +1,19 @@
-//! Instances made and freed again and again take no more memory. Alone in its process, as it looks at the whole of it.
+//! Creating and freeing instances repeatedly does not leak memory. Alone in its process, as the memory of the whole
+//! process is measured.
 #![cfg(target_os = "linux")]
 
 use campaign::api::LIBRARY;
 use campaign::call::Call;
 use campaign::judge::Judge;
 
-/// Memory of this process that is its own and in use, bytes.
+/// Private resident memory of this process, bytes.
 fn resident() -> u64 {
     let statm = std::fs::read_to_string("/proc/self/statm").unwrap();
     let pages: u64 = statm.split_whitespace().nth(1).unwrap().parse().unwrap();
     pages * 4096
 }
 
-/// A whole life with a saved state, its bytes, an error and a reset.
+/// A complete life cycle with a saved state, its bytes, an error and a reset.
 fn live() {
     let [enter, exit] = Call::INITIALISE;
     let life = [
@@ -39,7 +40,7 @@ fn a_thousand_instances_made_and_freed_leave_nothing_behind() {
     thousand();
     let grown = resident().saturating_sub(before);
     println!("{grown} bytes more after 1000 instances, {before} before");
-    // None. The allocator moves its top in pieces of 128 KiB (M_TOP_PAD); a leak of one small allocation of 100 bytes in each life
-    // would be nearly as much, one of an instance or a saved state a hundred times more.
+    // No growth is expected. The allocator grows in units of 128 KiB (M_TOP_PAD); a leak of 100 bytes in each life
+    // cycle would be about as much, that of an instance or a saved state a hundred times more.
     assert!(grown <= 128 * 1024, "{grown} bytes more after 1000 instances");
 }

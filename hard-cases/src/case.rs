@@ -1,15 +1,15 @@
-//! A case, and a measured value beside its bound.
+//! A case, and a measured value with its bound.
 
 use std::fmt;
 
 use anyhow::{Result, ensure};
 
-/// A scene that breaks integrators, and what must hold in it.
+/// A scene that is hard for integrators, and the properties that must hold.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
-    /// What is simulated.
+    /// The scene.
     pub name: &'static str,
-    /// What makes it hard.
+    /// The difficulty.
     pub difficulty: &'static str,
     /// Simulates it and measures each property.
     pub(crate) measure: fn() -> Result<Vec<Check>>,
@@ -28,11 +28,11 @@ macro_rules! cases {
 pub(crate) use cases;
 
 impl Case {
-    /// The properties, all of them kept.
+    /// The properties, if all hold.
     ///
     /// # Errors
-    /// Where one is not kept or the simulation itself fails: a step that cannot be taken, a number that is not finite, a
-    /// contact that pulls, more integration steps than the case allows.
+    /// If one does not hold or the simulation fails: a failed step, a number that is not finite, a tensile contact
+    /// force, more integration steps than the case allows.
     pub fn keeps_its_properties(&self) -> Result<Vec<Check>> {
         let checks = (self.measure)()?;
         let broken = checks.iter().filter(|check| !check.is_kept());
@@ -42,18 +42,18 @@ impl Case {
     }
 }
 
-/// A property and how well it is kept.
+/// A property and its deviation.
 #[derive(Clone, Debug)]
 pub struct Check {
-    /// What must hold.
+    /// The property.
     pub property: &'static str,
-    /// Deviation from it, at most `allowed` where the property is kept.
+    /// Deviation from it, at most `allowed` if the property holds.
     pub measured: f64,
     /// The bound.
     pub allowed: f64,
     /// Unit of both; empty for a pure number.
     pub unit: &'static str,
-    /// Where the bound comes from.
+    /// Origin of the bound.
     pub reason: &'static str,
 }
 
@@ -78,7 +78,7 @@ impl Check {
         Self::new(property, (measured, 0.0), unit, "exact")
     }
 
-    /// A result is as right as the tolerance says.
+    /// A result is accurate to the tolerance.
     pub(crate) fn tolerance(property: &'static str, measured: f64, allowed: f64, unit: &'static str) -> Self {
         Self::new(property, (measured, allowed), unit, "the tolerance")
     }
@@ -89,7 +89,7 @@ impl Check {
         Self::new(property, (difference, 2.0 * tolerance), "N", reason)
     }
 
-    /// A force wrong by the tolerance along the path of the tip makes or loses energy (J).
+    /// A force error of the tolerance along the path of the tip generates or removes energy (J).
     pub(crate) fn energy(property: &'static str, measured: f64, allowed: f64) -> Self {
         Self::new(property, (measured, allowed), "J", "force error × path of the tip")
     }
@@ -100,13 +100,12 @@ impl Check {
         Self::new("integration steps", counts, "", "bounded work")
     }
 
-    /// False also for what is not a number.
+    /// False also for NaN.
     pub fn is_kept(&self) -> bool {
         self.measured <= self.allowed
     }
 
-    /// How many times smaller the measured value is than the bound: infinite where the property is kept exactly, 0 for what is
-    /// not a number.
+    /// How many times smaller the measured value is than the bound: infinite if the property holds exactly, 0 for NaN.
     pub fn margin(&self) -> f64 {
         match self.measured {
             0.0 => f64::INFINITY,
@@ -115,7 +114,7 @@ impl Check {
         }
     }
 
-    /// An amount in the unit of the check.
+    /// A value in the unit of the check.
     pub fn amount(&self, value: f64) -> String {
         let digits = if value == 0.0 {
             "0".to_owned()
@@ -152,7 +151,7 @@ pub(crate) fn closest(simulations: impl IntoIterator<Item = Result<Vec<Check>>>)
     Ok(closest)
 }
 
-/// The larger deviation; what is not a number stays.
+/// The larger deviation; NaN is kept.
 pub(crate) fn worst(a: f64, b: f64) -> f64 {
     if b.is_nan() || b > a { b } else { a }
 }

@@ -12,7 +12,7 @@ use crate::ride::{Ride, Segment, throw};
 use testing::rig::{Rig, compose, hertz, oscillator, undamped};
 
 cases! { CASES:
-    "Contact 100 times stiffer", "it rings at ever higher frequencies"
+    "Contact 100 times stiffer", "contact oscillations of high frequency"
         => shaken(with_stiffness(100.0));
     "Contact 100 times softer", "indentation 21 times as deep: far from the linearised contact"
         => shaken(with_stiffness(0.01));
@@ -21,8 +21,7 @@ cases! { CASES:
     // Times the tangent stiffness of 3.5e6 N/m on some milligrams: an eigenvalue beyond -1e9 1/s.
     "Overdamped contact", "contact damping of 1 s: an eigenvalue beyond −10⁹ 1/s, stiff beyond any explicit step"
         => shaken(with_damping(1.0));
-    "Linearised and bonded contact, damped and undamped",
-        "constant stiffness, and the bonded contact also pulls"
+    "Linearised and bonded contact, damped and undamped", "constant stiffness, and the bonded contact also carries tension"
         => linear_laws();
     "Neither gap nor overtravel", "the contact opens and closes from a preload of zero"
         => Ride::shaken(with_overtravel(0.0)).checks();
@@ -31,18 +30,18 @@ cases! { CASES:
     "Impact at 10 m/s, undamped contact", "the impact excites every mode"
         => impact(0.0);
     "Impact at 10 m/s, no damping at all",
-        "600 N that excite every mode, and nothing dissipates"
+        "600 N that excite every mode, without dissipation"
         => undamped_impact();
     "Impact of a mass on a contact without damping",
-        "flight, impact and release in one communication step; the force starts as a power 3/2"
+        "free flight, impact and rebound in one communication step; the force starts as a power of 3/2"
         => restitution(0.0, 1.0);
     "Impact of a mass on a damped contact",
-        "flight, impact and release in one communication step; the force starts as a power 3/2"
+        "free flight, impact and rebound in one communication step; the force starts as a power of 3/2"
         => restitution(0.3, 0.623_642_991_4);
     "Spring pressed against the contact across a gap of 10 µm", "weakly damped: it bounces until it rests"
         => pressed();
     "A mass bouncing to rest under its weight, in one communication step and in 50 000",
-        "more and more impacts in less and less time"
+        "ever more impacts in ever shorter time"
         => accumulating();
 }
 
@@ -108,15 +107,15 @@ fn undamped_impact() -> Result<Vec<Check>> {
         path += (rig.state.indentation - before).abs();
         off = worst(off, (rig.energy() - start).abs());
     }
-    // Rounding: the last of thirteen digits of it.
+    // Rounding: the last of thirteen digits.
     let allowed = scene.solver.effective_tolerance() * rig.model.force_scale() * path + 1e-13 * start;
-    let property = "the energy put in is kept";
+    let property = "the energy supplied is conserved";
     Ok(vec![Check::energy(property, off, allowed)])
 }
 
-/// Unit mass on a Hertzian contact of unit stiffness at unit speed, with the damping of Kuwabara and Kono. Without damping
-/// the speed comes back whole; else as in Ramirez, Poeschel, Brilliantov, Schwager, Phys. Rev. E 60 (1999) 4465, with the
-/// digits of a Runge-Kutta method in a variable in which the equation is smooth.
+/// Unit mass on a Hertzian contact of unit stiffness at unit speed, with the damping of Kuwabara and Kono. Without
+/// damping the rebound speed equals the impact speed; otherwise reference values as in Ramirez, Poeschel, Brilliantov,
+/// Schwager, Phys. Rev. E 60 (1999) 4465, computed by a Runge-Kutta method in a variable in which the equation is smooth.
 fn restitution(damping: f64, exact: f64) -> Result<Vec<Check>> {
     let tolerance = 1e-8;
     let mut rig = Rig::new(compose(
@@ -133,7 +132,7 @@ fn restitution(damping: f64, exact: f64) -> Result<Vec<Check>> {
         "coefficient of restitution as in the literature, or 1 (tolerance 1e-8)",
         (off, 4.0 * tolerance + 1e-10),
         "",
-        "impulse of the force error over less than 4 s of contact; ten digits are published",
+        "impulse of the force error over less than 4 s of contact; the reference has ten digits",
     )])
 }
 
@@ -165,7 +164,7 @@ fn accumulating() -> Result<Vec<Check>> {
     closest([&coarse, &fine].map(|rig| {
         let off = (rig.state.force - mass * weight).abs();
         Ok(vec![
-            Check::tolerance("at the end the force is the weight", off, 1e-6 * mass * weight, "N"),
+            Check::tolerance("the final force is the weight", off, 1e-6 * mass * weight, "N"),
             Check::steps(rig.state.steps, 99_999),
         ])
     }))

@@ -1,4 +1,4 @@
-//! Long runs: what is small in a step must not add up.
+//! Long runs: small errors per step must not accumulate.
 
 use anyhow::{Result, ensure};
 use relay_contact::inputs::Inputs;
@@ -13,22 +13,22 @@ use testing::rig::{Rig, undamped};
 
 cases! { CASES:
     "1000 contact cycles and more, no damping at all, 1 ms communication steps",
-        "no damping removes the energy that errors add; the contact rings at tens of kHz"
+        "no damping removes energy added by errors; the contact oscillates at tens of kHz"
         => contact_cycles(1000, 1e-6, 1e-3);
     "1000 contact cycles, no damping at all, 10 µs communication steps, tolerance 1e-4, 1e-6, 1e-8",
-        "no damping removes the energy that errors add; the contact rings at tens of kHz"
+        "no damping removes energy added by errors; the contact oscillates at tens of kHz"
         => closest([1e-4, 1e-6, 1e-8].map(|tolerance| contact_cycles(1000, tolerance, 1e-5)));
-    "98 m/s² at 1 kHz for 10⁷ communication steps of 1 µs", "errors of steps add up to drift"
+    "98 m/s² at 1 kHz for 10⁷ communication steps of 1 µs", "errors of steps accumulate to drift"
         => drift();
 }
 
 cases! { LONG:
-    "A million contact cycles, no damping at all", "no damping removes the energy that errors add; the contact rings at tens of kHz"
+    "A million contact cycles, no damping at all", "no damping removes energy added by errors; the contact oscillates at tens of kHz"
         => contact_cycles(1_000_000, 1e-6, 1e-5);
 }
 
-/// The published run for 10 000 periods of the sine at 1000 communication steps each: the force at whole periods stays what it
-/// was once the start has died away.
+/// The published run for 10 000 periods of the sine with 1000 communication steps each: after the transients, the
+/// force at whole periods stays constant.
 fn drift() -> Result<Vec<Check>> {
     let mut scene = Scene::default();
     scene.effects.excitation = ExcitationKind::Sine;
@@ -48,7 +48,7 @@ fn drift() -> Result<Vec<Check>> {
         }
     }
     ensure!(settled > 0.0, "the contact is open");
-    let property = "the force at whole periods stays what it was at the 41st";
+    let property = "the force at whole periods remains that at the 41st";
     Ok(vec![Check::two_runs(
         property,
         off,
@@ -56,8 +56,8 @@ fn drift() -> Result<Vec<Check>> {
     )])
 }
 
-/// The specimen without damping, thrown so that it bounces until it has closed `cycles` times, with a communication step (s):
-/// energy made or lost, relative to the energy thrown in.
+/// The specimen without damping, with an initial velocity, bouncing until it has closed `cycles` times, with a
+/// communication step (s): energy error relative to the initial kinetic energy.
 fn contact_cycles(cycles: u32, tolerance: f64, step: f64) -> Result<Vec<Check>> {
     let mut scene = undamped();
     scene.solver.tolerance = tolerance;
@@ -75,6 +75,6 @@ fn contact_cycles(cycles: u32, tolerance: f64, step: f64) -> Result<Vec<Check>> 
             closings += 1;
         }
     }
-    let property = "the energy put in is kept (relative)";
+    let property = "the energy supplied is conserved (relative)";
     Ok(vec![Check::tolerance(property, off, tolerance, "")])
 }

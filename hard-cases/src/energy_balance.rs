@@ -1,4 +1,4 @@
-//! The component's own account of the energy, `energy.balance`. `tests/energy_balance.rs` checks it from outside.
+//! The energy balance of the component, `energy.balance`. `tests/energy_balance.rs` checks it independently.
 
 use anyhow::Result;
 use relay_contact::inputs::Inputs;
@@ -33,7 +33,7 @@ pub(crate) fn balances(mut scene: Scene, stop: f64, acceleration: impl Fn(f64) -
     let allowed = scene.solver.effective_tolerance() * contact.model().force_scale() * path;
     Ok(vec![
         Check::energy("energy in = stored + dissipated", off, allowed),
-        Check::exact("the contact never pulls", pull, "N"),
+        Check::exact("the contact force is never tensile", pull, "N"),
     ])
 }
 

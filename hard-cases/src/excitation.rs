@@ -1,4 +1,4 @@
-//! Extreme accelerations. A jump at a communication point is in every [`Ride::shaken`].
+//! Extreme accelerations. Every [`Ride::shaken`] has jumps at communication points.
 
 use anyhow::Result;
 use relay_contact::scene::Scene;
@@ -10,13 +10,13 @@ use crate::energy_balance::balances;
 use crate::ride::{Ride, Segment};
 
 cases! { CASES:
-    "Base acceleration of ±10 000 g", "flight and impacts"
+    "Base acceleration of ±10 000 g", "free flight and impacts"
         => shaken_by_ten_thousand_g(8.063e-5);
-    "Base acceleration of ±10 000 g, undamped contact", "flight and impacts on a contact that gives back all energy"
+    "Base acceleration of ±10 000 g, undamped contact", "free flight and impacts on a contact without dissipation"
         => shaken_by_ten_thousand_g(0.0);
-    "Shock of 10⁶ m/s² (100 000 g), 0.1 ms", "forces up to 150 N, then flight and impacts"
+    "Shock of 10⁶ m/s² (100 000 g), 0.1 ms", "forces up to 150 N, then free flight and impacts"
         => shock();
-    "A jump of the base acceleration every 10 µs", "each excites every mode anew"
+    "A jump of the base acceleration every 10 µs", "each jump excites every mode"
         => jumps();
 }
 

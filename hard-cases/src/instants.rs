@@ -1,4 +1,4 @@
-//! Openings and closings: found wherever the communication points are, none missed, none made up.
+//! Openings and closings: located independently of the communication points, none missed, no spurious ones.
 
 use std::f64::consts::PI;
 
@@ -18,13 +18,13 @@ cases! { CASES:
         "a step of 10 ms contains all openings and closings, a step of 1 µs only part of an impact"
         => communication_steps();
     "Communication points at openings and closings, and 10⁻¹⁵ and 10⁻¹² s before and after",
-        "an event at the end of a step is easily lost or counted twice"
+        "an event at the end of a step may be missed or counted twice"
         => points_at_events();
-    "Grazing: a throw that overlaps or misses by 10⁻², 10⁻⁶, 10⁻⁹ of the gap",
-        "where the surfaces only graze, the gap hardly changes sign, which is what a search looks for"
+    "Grazing mass: overlaps and misses of 10⁻², 10⁻⁶, 10⁻⁹ of the gap",
+        "in grazing contact the gap hardly changes sign, which event location depends on"
         => grazing_mass();
     "Grazing spring: overlaps of 10⁻², 10⁻⁴, 10⁻⁶ and misses of 10⁻², 10⁻⁶, 10⁻¹² of the gap",
-        "four modes: the closest approach lies anywhere within the one communication step"
+        "four modes: the closest approach is anywhere within the single communication step"
         => grazing_spring();
     "Very stiff contact, 10¹⁰ N/m", "a contact of 1 µs in a communication step of 1 ms"
         => stiff_contact();
@@ -33,7 +33,7 @@ cases! { CASES:
 /// Length of the chatter runs, s.
 const STOP: f64 = 0.01;
 
-/// Openings and closings, s, of the specimen at 400 m/s2 and 1 kHz, with communication points at the instants.
+/// Times of the openings and closings, s, of the specimen at 400 m/s2 and 1 kHz, with the given communication points.
 fn events(points: impl IntoIterator<Item = f64>) -> Result<Vec<f64>> {
     let mut scene = Scene::default();
     scene.effects.excitation = ExcitationKind::Sine;
@@ -52,7 +52,7 @@ fn equal(count: u32) -> impl Iterator<Item = f64> {
     (1..=count).map(move |point| STOP * f64::from(point) / f64::from(count))
 }
 
-/// Largest difference, s; infinite where there are more or fewer of them.
+/// Largest difference, s; infinite if their numbers differ.
 fn difference(found: &[f64], expected: &[f64]) -> f64 {
     if found.len() != expected.len() || expected.is_empty() {
         return f64::INFINITY;
@@ -63,12 +63,12 @@ fn difference(found: &[f64], expected: &[f64]) -> f64 {
 
 fn same_instants(differences: impl IntoIterator<Item = f64>) -> Vec<Check> {
     let difference = differences.into_iter().fold(0.0, f64::max);
-    let property = "the same openings and closings at the same instants";
+    let property = "the same openings and closings at the same times";
     vec![Check::new(
         property,
         (difference, 1e-9),
         "s",
-        "accuracy promised for instants",
+        "accuracy guaranteed for event times",
     )]
 }
 
@@ -92,17 +92,17 @@ fn points_at_events() -> Result<Vec<Check>> {
     Ok(same_instants(differences))
 }
 
-/// Whether each throw, with its excess over the speed that just reaches the contact, touches as expected.
+/// Whether each launch, with its relative excess over the speed that just reaches the contact, touches as expected.
 fn grazes(touches: impl Fn(f64) -> Result<bool>, excesses: [f64; 6]) -> Result<Vec<Check>> {
     let mut wrong = 0;
     for excess in excesses {
         wrong += u32::from(touches(excess)? != (excess > 0.0));
     }
-    let property = "touches are found, misses are none (wrong answers of 6)";
+    let property = "contacts are detected, misses are not (wrong results of 6)";
     Ok(vec![Check::exact(property, f64::from(wrong), "")])
 }
 
-/// A mass on a spring, thrown at a contact that it just reaches or just misses: it gets `speed / omega` far.
+/// A mass on a spring, launched at a contact that it just reaches or misses: its amplitude is `speed / omega`.
 fn grazing_mass() -> Result<Vec<Check>> {
     let (gap, omega) = (1e-5, 1e4);
     let touches = |excess: f64| {
@@ -116,7 +116,7 @@ fn grazing_mass() -> Result<Vec<Check>> {
     grazes(touches, [1e-2, 1e-6, 1e-9, -1e-9, -1e-6, -1e-2])
 }
 
-/// A spring thrown at a contact it just reaches, or just misses, within one long communication step.
+/// A spring launched at a contact that it just reaches or misses, within one long communication step.
 fn grazing_spring() -> Result<Vec<Check>> {
     let (gap, duration) = (1e-5, 1.7e-3);
     let mut scene = Scene::default();
@@ -133,7 +133,7 @@ fn grazing_spring() -> Result<Vec<Check>> {
         rig.run_to(&Inputs::default(), time)?;
         Ok(rig.state)
     };
-    // How far a throw with 1 m/s goes: free motion, so it goes with the speed.
+    // Amplitude for 1 m/s; the free motion is proportional to the speed.
     let mut far = scene;
     far.contact.overtravel = -5e-3;
     let mut rig = thrown(&far, 1.0)?;
@@ -161,7 +161,7 @@ fn grazing_spring() -> Result<Vec<Check>> {
     grazes(touches, [1e-2, 1e-4, 1e-6, -1e-12, -1e-6, -1e-2])
 }
 
-/// A linear contact that only pushes, of a stiffness (N/m).
+/// A linear unilateral contact of a stiffness (N/m).
 fn pushing(stiffness: f64) -> Law {
     Law::Linear(Linear {
         stiffness,
@@ -186,12 +186,12 @@ fn stiff_contact() -> Result<Vec<Check>> {
         (lasted / exact - 1.0).abs(),
         10.0 * tolerance + 1e-3 * f64::EPSILON / exact,
     );
-    let rounding = "error of the force and rounding of an instant of 1 ms";
+    let rounding = "error of the force and rounding of a time of 1 ms";
     let back = rig.state.modes.first().context("no mode")?.v / mass.sqrt();
     let speed = ((back / speed - 1.0).abs(), tolerance * PI);
-    let impulse = "impulse of the force error over the momentum";
+    let impulse = "impulse of the force error relative to the momentum";
     Ok(vec![
-        Check::new("the contact lasts π √(m/k) (relative)", duration, "", rounding),
-        Check::new("the speed comes back whole (relative)", speed, "", impulse),
+        Check::new("the contact duration is π √(m/k) (relative)", duration, "", rounding),
+        Check::new("rebound speed equals impact speed (relative)", speed, "", impulse),
     ])
 }

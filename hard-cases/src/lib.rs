@@ -1,12 +1,10 @@
-//! Scenes that break integrators, each with the properties that must hold in it: one list, which the tests of this crate run
-//! case by case, and the report prints with the margins.
-//!
-//! [`case`]: a case, and a measured value beside its bound;   [`ride`]: a scene with prescribed motions, and the properties that
-//! every scene keeps;   [`energy_balance`]: the component's own account of the energy.   Cases: [`contact`], [`spring`], [`excitation`], [`support`] (a fixed contact that moves), [`instants`] (of opening and
-//! closing), [`solver`] (tolerances, numbers of modes, communication steps), [`endurance`].
-//!
-//! Bounds are what theory leaves: a contact force wrong by the tolerance makes at most that force times the path of the tip in
-//! energy, and two runs within the tolerance differ by at most twice that.
+//! Scenes that are hard for integrators, with the properties that must hold: one list, run by the tests of this crate
+//! and printed with margins by the report. [`case`]: a case, and a measured value with its bound;   [`ride`]: a scene
+//! with prescribed motions, and the properties that hold in every scene;   [`energy_balance`]: the energy balance of
+//! the component.   Cases: [`contact`], [`spring`], [`excitation`], [`support`] (a fixed contact that moves),
+//! [`instants`] (of opening and closing), [`solver`] (tolerances, numbers of modes, communication steps),
+//! [`endurance`]. The bounds follow from theory: a force error of the tolerance generates at most that force times the
+//! path of the tip in energy, and two runs within the tolerance differ by at most twice the tolerance.
 
 pub mod case;
 mod contact;

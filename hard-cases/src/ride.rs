@@ -1,7 +1,6 @@
-//! A scene with prescribed base acceleration and motion of the fixed contact, and the properties that every scene keeps.
-//!
-//! Every number stays finite, the contact never pulls (bonded excepted), no energy is made, the work is bounded, and the force
-//! does not depend on the communication step.
+//! A scene with prescribed base acceleration and motion of the fixed contact, and the properties that hold in every scene.
+//! Every number is finite, the contact force is never tensile (except bonded), no energy is generated, the work is
+//! bounded, and the force does not depend on the communication step.
 
 use anyhow::{Context, Result, bail};
 use relay_contact::inputs::Inputs;
@@ -11,13 +10,14 @@ use relay_contact::scene::Scene;
 use crate::case::{Check, closest};
 use testing::rig::Rig;
 
-/// Tip displacement per impulse of the mode that measures the impulse of the contact force: too heavy to move.
+/// Tip displacement per impulse of the auxiliary mode that measures the impulse of the contact force; its mass is so
+/// large that it hardly moves.
 const METER: f64 = 1e-9;
 
-/// What happens over a stretch of time.
+/// A time interval with prescribed motion.
 #[derive(Clone, Copy, Debug)]
 pub struct Segment {
-    /// s.
+    /// Duration, s.
     pub duration: f64,
     /// Base acceleration, held, m/s2.
     pub acceleration: f64,
@@ -45,26 +45,26 @@ impl Segment {
     }
 }
 
-/// A scene and what is done to it.
+/// A scene with prescribed motion.
 #[derive(Clone, Debug)]
 pub struct Ride {
     /// The scene.
     pub scene: Scene,
     /// Velocity of the whole spring at the start, m/s; negative toward the fixed contact.
     pub speed: f64,
-    /// What happens, one after the other.
+    /// The intervals, in order.
     pub segments: Vec<Segment>,
-    /// Integration steps, taken and repeated, that must suffice.
+    /// Limit of integration steps, accepted and rejected.
     pub steps: u64,
 }
 
-/// What came out.
+/// The result.
 pub struct Outcome {
     /// Force at the end of each segment, N.
     pub(crate) forces: Vec<f64>,
-    /// Longest rise of the energy over what was put in, J.
+    /// Largest excess of the energy over that supplied, J.
     made: f64,
-    /// Energy at the start, also that of the preload, and all work, taken positive, J.
+    /// Initial energy, including that of the preload, plus the magnitude of all work, J.
     throughput: f64,
     /// Path of the indentation and of the fixed contact, m.
     path: f64,
@@ -92,8 +92,8 @@ impl Ride {
     /// Simulates it with each segment in `parts` communication steps.
     ///
     /// # Errors
-    /// Where it cannot be simulated, at a communication point a number is not finite or the contact pulls, or the integration
-    /// steps do not suffice.
+    /// If it cannot be simulated, a number is not finite or the contact force is tensile at a communication point, or
+    /// the step limit is exceeded.
     pub fn run(&self, parts: u32) -> Result<Outcome> {
         let mut model = Model::new(&self.scene, 0.0)?;
         let metered = model.modes().len() < MAX_MODES;
@@ -157,7 +157,7 @@ impl Ride {
         Ok(outcome)
     }
 
-    /// What must hold at every communication point.
+    /// Checks at every communication point.
     fn inspect(&self, Rig { model, state, .. }: &Rig) -> Result<()> {
         let numbers = [
             state.time,
@@ -171,7 +171,7 @@ impl Ride {
             bail!("not finite at {} s: {numbers:?}", state.time);
         }
         if state.force < 0.0 && !model.law().never_opens() {
-            bail!("the contact pulls at {} s: {:e} N", state.time, state.force);
+            bail!("tensile contact force at {} s: {:e} N", state.time, state.force);
         }
         if state.steps + state.rejected_steps > self.steps {
             bail!("more than {} integration steps until {} s", self.steps, state.time);
@@ -179,7 +179,8 @@ impl Ride {
         Ok(())
     }
 
-    /// The outcome with 64 communication steps in each segment, and the properties that every scene keeps, also with 1 and 7.
+    /// The outcome with 64 communication steps in each segment, and the properties that hold in every scene, also with
+    /// 1 and 7.
     pub(crate) fn checked(&self) -> Result<(Outcome, Vec<Check>)> {
         let fine = self.run(64)?;
         let mut checks = vec![Ok(vec![fine.energy()])];
@@ -190,30 +191,30 @@ impl Ride {
         Ok((fine, closest(checks)?))
     }
 
-    /// The properties that every scene keeps.
+    /// The properties that hold in every scene.
     pub(crate) fn checks(&self) -> Result<Vec<Check>> {
         Ok(self.checked()?.1)
     }
 }
 
 impl Outcome {
-    /// Error allowed in the contact force, N.
+    /// Allowed error of the contact force, N.
     fn force_error(&self) -> f64 {
         self.rig.model.force_scale() * self.rig.model.scene().solver.effective_tolerance()
     }
 
-    /// No energy is made. A contact force wrong by the tolerance makes at most that force times the path of the tip; rounding,
-    /// the last of thirteen digits of what goes through.
+    /// No energy is generated. A force error of the tolerance generates at most that force times the path of the tip;
+    /// rounding adds the last of thirteen digits of the energy transferred.
     pub fn energy(&self) -> Check {
         let allowed = self.force_error() * self.path + 1e-13 * self.throughput;
-        Check::energy("no energy is made", self.made, allowed)
+        Check::energy("no energy is generated", self.made, allowed)
     }
 
-    /// The forces at the ends of the segments are those of another simulation.
+    /// The forces at the ends of the segments agree with those of another simulation.
     pub fn same_force(&self, other: &Self) -> Check {
         let pairs = self.forces.iter().zip(&other.forces);
         let difference = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        let property = "the same force whatever the communication step";
+        let property = "the force is independent of the communication step";
         Check::two_runs(property, difference, self.force_error())
     }
 }
@@ -225,7 +226,7 @@ pub(crate) fn throw(rig: &mut Rig, speed: f64) {
     rig.launch(&velocities);
 }
 
-/// Impulse of the contact force above the preload force since the start, N s.
+/// Impulse of the contact force in excess of the preload force since the start, N s.
 fn meter(rig: &Rig) -> f64 {
     rig.model
         .modes()
@@ -234,7 +235,7 @@ fn meter(rig: &Rig) -> f64 {
         .map_or(0.0, |_| rig.state.modes[0].v / METER)
 }
 
-/// Work of one metre per second squared of base acceleration from the preload to here, J.
+/// Work of a base acceleration of 1 m/s2 since the preload, J.
 fn base_work(rig: &Rig) -> f64 {
     let pairs = rig.model.modes().iter().zip(&rig.state.modes);
     -pairs.map(|(mode, at)| mode.participation * at.q).sum::<f64>()

@@ -22,23 +22,23 @@ cases! { CASES:
             ensure!(scene.solver.effective_tolerance() == Solver::TOLERANCE_FLOOR);
             with_tolerance(1e-12)
         };
-    "Light spring thrown at 6.5 m/s, tolerance 10⁻¹⁰",
+    "Light spring launched at 6.5 m/s, tolerance 10⁻¹⁰",
         "the tolerance, relative to the preload, is below the rounding error of the impact force"
         => below_rounding();
-    "1 mode", "the coarsest spring"
+    "1 mode", "the coarsest model of the spring"
         => with_modes(1);
-    "40 modes", "the highest oscillates above a megahertz"
+    "40 modes", "the highest is above 1 MHz"
         => with_modes(40);
     "Bonded contact, 1 to 2 s in one communication step, tolerance 0.1 to 1e-11, 1 to 40 modes",
-        "a thousand periods in a step, one mode or forty"
+        "a thousand periods in one step, with one or forty modes"
         => linear();
-    "An hour at rest, in one communication step and in 3600", "rounding errors add up; nothing moves, so no step should be taken"
+    "An hour at rest, in one communication step and in 3600", "rounding errors accumulate; nothing moves, so no integration step should be taken"
         => hour_at_rest();
     "5000 g for 50 µs in two communication steps, and in steps around a nanosecond",
         "steps of 10⁻⁹ s: differences of nearly equal numbers everywhere"
         => nanoseconds();
     "98 m/s² at 1 kHz in communication steps of a second, against 10 µs",
-        "a thousand periods per step; errors of steps add up to drift"
+        "a thousand periods per step; errors of steps accumulate to drift"
         => seconds();
 }
 
@@ -72,14 +72,14 @@ fn below_rounding() -> Result<Vec<Check>> {
     Ok(vec![Check::steps(state.steps + state.rejected_steps, ride.steps)])
 }
 
-/// The bonded contact, shaken: F = F_0 + Re(-i A R(omega) exp(i omega t)) once the start has died away.
+/// The bonded contact under vibration: F = F_0 + Re(-i A R(omega) exp(i omega t)) after the transients.
 fn linear() -> Result<Vec<Check>> {
     let mut off = 0.0;
     for (tolerance, modes) in [(1e-1, 1), (1e-2, 0), (1e-6, 0), (1e-11, 40)] {
         let mut scene = Scene::default();
         scene.effects.excitation = ExcitationKind::Sine;
         scene.effects.contact_law = ContactLawKind::Bonded;
-        // Extremes are looked for inside steps; without them a step is exact.
+        // Extremes require values within steps; without them each step is one exact step.
         scene.effects.extremes = false;
         scene.effects.chatter = false;
         scene.solver.tolerance = tolerance;
@@ -95,7 +95,7 @@ fn linear() -> Result<Vec<Check>> {
         }
     }
     Ok(vec![Check::new(
-        "the force is that of the frequency domain (relative to the preload force)",
+        "the force agrees with the frequency domain (relative to the preload force)",
         (off, 1e4 * PI * f64::EPSILON),
         "",
         "rounding of the phase of 2 s at 1 kHz and of the force",
@@ -113,12 +113,12 @@ fn hour_at_rest() -> Result<Vec<Check>> {
     let off = worst((force(&whole) - preload).abs(), (force(&seconds) - preload).abs());
     let steps = whole.integer(IntegerOutput::SolverSteps) + seconds.integer(IntegerOutput::SolverSteps);
     Ok(vec![
-        Check::exact("the force stays the preload force", off, "N"),
+        Check::exact("the force remains the preload force", off, "N"),
         Check::exact("no integration step is taken", f64::from(steps), ""),
     ])
 }
 
-/// The contact opens, flies, and closes again.
+/// The contact opens and closes again.
 fn nanoseconds() -> Result<Vec<Check>> {
     let segments = [
         Segment::accelerated(10e-6, -50_000.0),
@@ -126,7 +126,10 @@ fn nanoseconds() -> Result<Vec<Check>> {
     ];
     let ride = Ride::new(Scene::default(), segments);
     let nanoseconds = ride.run(25_000)?;
-    ensure!(nanoseconds.rig.state.last_closing > 0.0, "it does not close again");
+    ensure!(
+        nanoseconds.rig.state.last_closing > 0.0,
+        "the contact does not close again"
+    );
     let compared = [1, 64].map(|parts| Ok(vec![nanoseconds.same_force(&ride.run(parts)?)]));
     closest([ride.checks()].into_iter().chain(compared))
 }
@@ -148,7 +151,7 @@ fn seconds() -> Result<Vec<Check>> {
     let steps = seconds.integer(IntegerOutput::SolverSteps).try_into()?;
     Ok(vec![
         Check::two_runs(
-            "after whole periods the same force, however long it has run",
+            "the same force after whole periods, independent of the run time",
             off,
             tolerance,
         ),

@@ -18,14 +18,14 @@ cases! { CASES:
         => with_damping(0.0);
     "Spring with damping of 10 ms", "every mode is overdamped"
         => with_damping(1e-2);
-    "System without damping, shaken", "no damping removes the energy that errors add"
+    "System without damping, under vibration", "no damping removes energy added by errors"
         => Ride::shaken(undamped()).checks();
-    "System without damping, thrown at the contact at 4 m/s", "no damping removes the energy that errors add"
+    "System without damping, launched at the contact at 4 m/s", "no damping removes energy added by errors"
         => thrown();
     "System without damping, pushed by some 10 nm, tolerance 1e-10",
-        "from rest the energy gives no scale for rounding errors"
+        "starting from rest, the energy gives no scale for rounding errors"
         => pushed();
-    "Spring without rivet", "without its mass the high modes move the tip most"
+    "Spring without rivet", "without its mass the tip follows the high modes most"
         => {
             let mut scene = Scene::default();
             scene.tip.mass = 0.0;
@@ -34,19 +34,19 @@ cases! { CASES:
     "Short light spring without damping, pushed within the tolerance",
         "modes above a gigahertz, which need not be resolved: at most 1000 integration steps"
         => pushed_within_tolerance();
-    "Axial force at 0.999 of the buckling load", "the spring alone has almost no stiffness left"
+    "Axial force at 0.999 of the buckling load", "the open spring has almost no stiffness left"
         => Ride::shaken(pressed(0.999 * buckling_load())).checks();
     "Axial force a millionth below the buckling load", "the spring has almost no stiffness left"
         => {
             let refused = limit(0.999_999 * buckling_load())?.is_some();
             Ok(vec![Check::exact(
-                "simulated (times refused)",
+                "simulated (number of rejections)",
                 f64::from(u8::from(refused)),
                 "",
             )])
         };
     "Axial force a millionth above the buckling load, and up to 10⁶ N",
-        "the contact may open, and the spring alone would buckle"
+        "the contact may open, and the open spring would buckle"
         => buckling();
 }
 
@@ -74,7 +74,7 @@ fn pushed() -> Result<Vec<Check>> {
     .checks()
 }
 
-/// A push so weak that the force stays within the tolerance: there is nothing to resolve.
+/// A push so weak that the force change stays within the tolerance and need not be resolved.
 fn pushed_within_tolerance() -> Result<Vec<Check>> {
     let mut scene = Scene::default();
     scene.beam.length = 1e-3;
@@ -102,7 +102,7 @@ fn pressed(axial_force: f64) -> Scene {
     scene
 }
 
-/// The limit that is named where the axial force is refused.
+/// The limit stated when the axial force is rejected.
 fn limit(axial_force: f64) -> Result<Option<f64>> {
     match Simulation::new(&pressed(axial_force), &Inputs::default(), 0.0) {
         Err(SceneError::Buckled { name, value, limit }) => {
@@ -116,15 +116,15 @@ fn limit(axial_force: f64) -> Result<Option<f64>> {
 
 fn buckling() -> Result<Vec<Check>> {
     let exact = buckling_load();
-    let named = limit(1.000_001 * exact)?.context("a spring beyond buckling is not refused")?;
+    let named = limit(1.000_001 * exact)?.context("an axial force beyond buckling is not rejected")?;
     for force in [named, 1.001 * named, 2.0 * named, 100.0 * named, 1e6] {
         ensure!(
             limit(force)? == Some(named),
-            "{force} N is not refused, or by another limit"
+            "{force} N is not rejected, or with another limit"
         );
     }
     Ok(vec![Check::new(
-        "refused, and the limit named is π² E I / (4 L²) (relative)",
+        "rejected, and the limit stated is π² E I / (4 L²) (relative)",
         ((named / exact - 1.0).abs(), 12.0 * f64::EPSILON),
         "",
         "a dozen roundings",

@@ -11,20 +11,20 @@ use crate::contact::with_overtravel;
 use crate::ride::{Ride, Segment};
 
 cases! { CASES:
-    "Fixed contact that moves in from a touch without force", "the contact closes at the very start"
+    "Fixed contact that closes from contact without force", "the contact closes at the very start"
         => touch_at_the_start();
     "Open for a second, then closing", "a second of free motion, then an impact"
         => open_for_a_second();
-    "Fixed contact that crushes by 1 mm in 10, 1 and 0.1 ms",
+    "Fixed contact that closes by 1 mm in 10, 1 and 0.1 ms",
         "five times the overtravel of the specimen, at up to 10 m/s"
         => crushing();
-    "Fixed contact that crushes by 1 mm in 0.1 ms, withdraws for a second and comes back",
+    "Fixed contact that closes by 1 mm in 0.1 ms, retracts for a second and returns",
         "impacts of the fixed contact at 10 and 0.3 m/s, and a second without contact"
         => crushed_and_back();
-    "Fixed contact that withdraws at 1 mm/s", "the force passes every power of ten on its way to zero"
+    "Fixed contact that retracts at 1 mm/s", "the force passes through all orders of magnitude to zero"
         => withdrawing();
     "Overtravels from 10⁻²⁰ m down to the smallest number above zero",
-        "forces so small that the numbers themselves lose digits (subnormal)"
+        "forces so small that floating-point numbers lose digits (subnormal)"
         => closest([1e-20, 1e-100, 1e-200, 1e-290, 1e-306, 1e-312, 5e-324].map(|overtravel| {
             Ride::shaken(with_overtravel(overtravel)).checks()
         }));
@@ -33,9 +33,9 @@ cases! { CASES:
 fn touch_at_the_start() -> Result<Vec<Check>> {
     let ride = Ride::new(with_overtravel(0.0), [Segment::moved(1e-3, 1e-4)]);
     let closing = ride.run(1)?.rig.state.last_closing;
-    ensure!(closing >= 0.0, "no closing is reported");
+    ensure!(closing >= 0.0, "no closing reported");
     let mut checks = ride.checks()?;
-    let reason = "accuracy promised for instants";
+    let reason = "accuracy guaranteed for event times";
     checks.push(Check::new(
         "the contact closes at the start",
         (closing, 1e-9),
@@ -54,7 +54,7 @@ fn open_for_a_second() -> Result<Vec<Check>> {
     let off = (outcome.forces[3] - preload).abs();
     checks.extend([
         Check::exact("no force after a second without contact", outcome.forces[1].abs(), "N"),
-        Check::tolerance("the force comes back to the preload force", off, 1e-6 * preload, "N"),
+        Check::tolerance("the force returns to the preload force", off, 1e-6 * preload, "N"),
     ]);
     Ok(checks)
 }
@@ -95,16 +95,16 @@ fn crushed_and_back() -> Result<Vec<Check>> {
     to(-3e-4, 1.0)?;
     to(0.0, 1e-3)?;
     let back = to(0.0, 0.05)?;
-    let at_statics = "the force comes to that of statics at 1 mm more overtravel";
+    let at_statics = "the force reaches the static one of 1 mm more overtravel";
     Ok(vec![
         Check::tolerance(at_statics, (crushed - expected).abs(), tolerance * expected, "N"),
         Check::tolerance(
-            "the force comes back to the preload force",
+            "the force returns to the preload force",
             (back - preload).abs(),
             allowed,
             "N",
         ),
-        Check::exact("the contact never pulls", -least.min(0.0), "N"),
+        Check::exact("the contact force is never tensile", -least.min(0.0), "N"),
     ])
 }
 

@@ -1,6 +1,5 @@
 //! Each case of the list as a test of its name: `cargo test -p hard-cases --test cases stiffer`.
-//!
-//! Long ones, a million contact cycles, are left out of the default run:
+//! Long cases, a million contact cycles, are not part of the default run:
 //! `cargo test --release -p hard-cases --test cases -- --ignored`.
 
 use std::process::ExitCode;

@@ -1,11 +1,10 @@
-//! Scenes drawn from the whole range of every parameter, shaken and pushed at random: each is refused with an error that
-//! says why, or runs and keeps the properties that every scene keeps.
+//! Random scenes from the whole range of every parameter, with random motions: each is rejected with an error that
+//! gives the reason, or runs with the properties that hold in every scene.
 //!
 //! `PROPTEST_CASES=100000 cargo test --release -p hard-cases --test random_scenes` draws that many
-//! (`PROPTEST_RNG_SEED=...` draws others; `-- --include-ignored` asks for all properties).
-//!
-//! Ranges that span decades are drawn with a uniform logarithm. Most parameters keep their start value in a scene, so that
-//! scenes differ in a few things at a time, and a failure shrinks to those that matter.
+//! (`PROPTEST_RNG_SEED=...` draws others; `-- --include-ignored` checks all properties).
+//! Ranges that span decades are drawn uniformly on a logarithmic scale. Most parameters of a scene keep their start
+//! value, so that a failure shrinks to the few that matter.
 
 use hard_cases::ride::{Ride, Segment};
 use proptest::prelude::*;
@@ -15,11 +14,11 @@ use relay_contact::scene::{Scene, choices};
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{AxialForceKind, ExcitationKind, Group, ResistanceKind, VARIABLES, Variable};
 
-/// Longest communication step drawn, s. With the shortest oscillations of the stiffest scenes some 1e-8 s long it keeps the work within
-/// seconds.
+/// Longest communication step drawn, s. With the shortest oscillations of the stiffest scenes some 1e-8 s long it
+/// keeps the work within seconds.
 const LONGEST: f64 = 1e-3;
 
-/// Integration steps that are enough for a ride, taken and repeated: the high modes of an undamped spring 1 mm long want some
+/// Limit of integration steps, accepted and rejected: the high modes of an undamped spring 1 mm long need some
 /// millions in a millisecond.
 const ENOUGH: u64 = 10_000_000;
 
@@ -50,7 +49,7 @@ fn scene(draws: &[Option<f64>], tightest: f64) -> Scene {
         let Some(x) = *draw else { continue };
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 39")]
         let pick = |count: usize| (x * count as f64) as u8;
-        // A bound itself may be refused: then the start value stays.
+        // A bound may be excluded: then the start value is kept.
         let _ = match variable.group {
             Group::RealParameter(parameter) => scene.set_real(parameter, within(variable, x)),
             Group::IntegerParameter(parameter) => scene.set_integer(parameter, i32::from(pick(40))),
@@ -64,7 +63,7 @@ fn scene(draws: &[Option<f64>], tightest: f64) -> Scene {
     if scene.solver.tolerance > 0.0 {
         scene.solver.tolerance = scene.solver.tolerance.max(tightest);
     }
-    // What the generator and an axial force that changes put in is not in the account of the energy.
+    // The energy supplied by the generator and by a varying axial force is not computed.
     scene.effects.excitation = ExcitationKind::None;
     if scene.effects.axial_force == AxialForceKind::FromDeflection {
         scene.effects.axial_force = AxialForceKind::FromPreload;
@@ -74,7 +73,7 @@ fn scene(draws: &[Option<f64>], tightest: f64) -> Scene {
     scene
 }
 
-/// How fast the fixed contact moves at most, m/s.
+/// Largest speed of the fixed contact, m/s.
 const FASTEST: f64 = 10.0;
 
 fn segment() -> impl Strategy<Value = Segment> {
@@ -110,7 +109,7 @@ fn ride(tightest: f64) -> impl Strategy<Value = Ride> {
     })
 }
 
-/// The ride in few words: what differs from the start values, and what is done.
+/// Summary of the ride: differences from the start values, and the motions.
 fn summary(ride: &Ride) -> String {
     let start = Scene::default();
     let value = |scene: &Scene, variable: &Variable| match variable.group {
@@ -125,10 +124,10 @@ fn summary(ride: &Ride) -> String {
         .map(|variable| format!("{} = {:e}", variable.name, value(&ride.scene, variable)))
         .collect();
     let Ride { speed, segments, .. } = ride;
-    format!("{different:?}, thrown with {speed:e} m/s, {segments:?}")
+    format!("{different:?}, initial velocity {speed:e} m/s, {segments:?}")
 }
 
-/// The same scenes on every run, unless `PROPTEST_RNG_SEED` says otherwise.
+/// The same scenes on every run, unless `PROPTEST_RNG_SEED` is set.
 fn config() -> ProptestConfig {
     let config = ProptestConfig::default();
     ProptestConfig {
@@ -169,9 +168,9 @@ proptest! {
         }
     }
 
-    // Without damping a bouncing contact is sensitive to its past, so that the errors of two runs grow apart.
+    // Without damping, a bouncing contact amplifies errors, so that two runs diverge.
     #[test]
-    #[ignore = "one scene in two hundred, with blows some 1e4 times the force scale, differs by up to 30 times the tolerance"]
+    #[ignore = "one scene in two hundred, with impact forces some 1e4 times the force scale, differs by up to 30 times the tolerance"]
     fn damped_scenes_do_not_depend_on_the_communication_step(ride in ride(1e-6)) {
         let damped = ride.scene.beam.stiffness_damping.min(ride.scene.contact.damping) > 1e-6;
         if let (true, (Ok(coarse), Ok(fine))) = (damped, (ride.run(1), ride.run(4))) {

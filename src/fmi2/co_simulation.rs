@@ -1,5 +1,5 @@
 //! Communication steps and their status; derivatives of inputs and outputs.
-// Arguments that are not looked at keep their names for the header.
+// Unused arguments keep their names for the header.
 #![allow(unused_variables)]
 
 use libc::size_t;
@@ -13,8 +13,8 @@ use super::types::{
     fmi2String, fmi2Terminated, fmi2ValueReference,
 };
 
-/// Sets first derivatives of continuous inputs, all or none; they count for the next communication step only, over which
-/// the inputs then change linearly. `fmi2Discard`, and none of them set, for a value that is not finite.
+/// Sets first derivatives of continuous inputs, all or none; they hold for the next communication step only, over
+/// which the inputs change linearly. A value that is not finite gives `fmi2Discard`, and none is set.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
     c: fmi2Component,
@@ -34,8 +34,8 @@ pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
     unsafe { call(c, states::SET_REAL_INPUT_DERIVATIVES, body) }
 }
 
-/// Reads first derivatives of continuous outputs at the communication point, as it has been reached; 0 before the first
-/// step.
+/// Reads first derivatives of continuous outputs at the communication point, as limits from the left; 0 before the
+/// first step.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
     c: fmi2Component,
@@ -58,9 +58,9 @@ pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
     unsafe { call(c, states::GET_REAL_OUTPUT_DERIVATIVES, body) }
 }
 
-/// Advances from the current communication point, which must be where the instance stands up to rounding, by a
-/// positive step. An error, never `fmi2Discard`, where the motion cannot be integrated: the log then tells instant and
-/// cause, and `fmi2GetRealStatus` the last successful time.
+/// Advances by one communication step. `currentCommunicationPoint` must equal the time of the instance up to rounding,
+/// and the step size must be positive. If the motion cannot be integrated, the result is `fmi2Error`, never
+/// `fmi2Discard`: the log reports time and cause, and `fmi2GetRealStatus` the last successful time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2DoStep(
     c: fmi2Component,
@@ -73,7 +73,7 @@ pub unsafe extern "C" fn fmi2DoStep(
     unsafe { call(c, states::DO_STEP, body) }
 }
 
-/// Always an error: a step is complete when `fmi2DoStep` returns, so there is none to cancel.
+/// Always an error: a step is complete when `fmi2DoStep` returns.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2CancelStep(c: fmi2Component) -> fmi2Status {
     let body = |_: &mut Instance| Ok(());
@@ -81,7 +81,7 @@ pub unsafe extern "C" fn fmi2CancelStep(c: fmi2Component) -> fmi2Status {
     unsafe { call(c, states::CANCEL_STEP, body) }
 }
 
-/// Answers a question about the status, `fmi2Discard` where there is no answer.
+/// Returns a status value, or `fmi2Discard` if there is none.
 ///
 /// # Safety
 /// The contract of the module.
@@ -109,7 +109,7 @@ pub unsafe extern "C" fn fmi2GetStatus(c: fmi2Component, s: fmi2StatusKind, valu
     unsafe { status(c, states::GET_STATUS, s, value, |_| None) }
 }
 
-/// The last successful time, also after a step that failed.
+/// The last successful time, also after a failed step.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetRealStatus(c: fmi2Component, s: fmi2StatusKind, value: *mut fmi2Real) -> fmi2Status {
     let answer = |instance: &Instance| (s == fmi2LastSuccessfulTime).then(|| instance.time());
@@ -128,7 +128,7 @@ pub unsafe extern "C" fn fmi2GetIntegerStatus(
     unsafe { status(c, states::GET_INTEGER_STATUS, s, value, |_| None) }
 }
 
-/// Whether the component wants the simulation to end: it never does.
+/// Whether the component asks to terminate: always false.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetBooleanStatus(
     c: fmi2Component,

@@ -1,5 +1,5 @@
 //! Versions, logging and the life cycle.
-// Arguments that are not looked at keep their names for the header.
+// Unused arguments keep their names for the header.
 #![allow(unused_variables)]
 
 use std::ffi::CStr;
@@ -31,10 +31,10 @@ pub unsafe extern "C" fn fmi2GetVersion() -> *const c_char {
     c"2.0".as_ptr()
 }
 
-/// Chooses what is logged. Without a call all errors and warnings are, and with `loggingOn` of [`fmi2Instantiate`]
-/// events too. With categories, true shows these only, and false hides these; without, true shows all, and
-/// false hides events and the solver.
-/// An unknown category is a warning and changes nothing: what a user sees of the log is no reason to stop a simulation.
+/// Selects the log categories. By default all errors and warnings are logged, and with `loggingOn` of
+/// [`fmi2Instantiate`] events too. With categories given, true shows only these and false hides these; without, true
+/// shows all, and false hides events and the solver. An unknown category is a warning and changes nothing, so that it
+/// cannot stop a simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetDebugLogging(
     c: fmi2Component,
@@ -56,9 +56,9 @@ pub unsafe extern "C" fn fmi2SetDebugLogging(
     unsafe { call(c, states::SET_DEBUG_LOGGING, body) }
 }
 
-/// Makes an instance, or null where a name is missing, the type is not co-simulation, or the GUID is that of
-/// another description. The callbacks are copied; of them only the logger is used, which may be null and must not
-/// call back into the instance. The location of resources is not needed and may be null.
+/// Creates an instance. Returns null if the name is missing, the type is not co-simulation, or the GUID belongs to
+/// another description. The callbacks are copied; only the logger is used, which may be null and must not call back
+/// into the instance. The resource location is not needed and may be null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2Instantiate(
     instanceName: fmi2String,
@@ -94,7 +94,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
     })
 }
 
-/// Why no instance can be made.
+/// Why no instance can be created.
 fn refusal(name: Option<&CStr>, kind: fmi2Type, guid: Result<&CStr, Failure>) -> Option<String> {
     if name.is_none() {
         return Some("instanceName is null or empty".to_owned());
@@ -121,8 +121,9 @@ pub unsafe extern "C" fn fmi2FreeInstance(c: fmi2Component) {
     unsafe { take_back(c) }
 }
 
-/// Sets tolerance, start and stop time; without a call the start is at zero and there is no stop.
-/// The tolerance counts where `solver.tolerance` is 0. One that is no positive finite number is left aside with a warning.
+/// Sets tolerance, start and stop time; without a call the start time is zero and there is no stop time.
+/// The tolerance is used if `solver.tolerance` is 0. A tolerance that is not a positive finite number is ignored with
+/// a warning.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetupExperiment(
     c: fmi2Component,
@@ -150,7 +151,7 @@ pub unsafe extern "C" fn fmi2EnterInitializationMode(c: fmi2Component) -> fmi2St
     unsafe { call(c, states::ENTER_INITIALIZATION_MODE, body) }
 }
 
-/// Ends Initialization Mode: the contact is at rest in its preload. An error where the parameters do not fit together.
+/// Ends Initialization Mode: the contact is at rest in its preload. An error if the parameters are inconsistent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2ExitInitializationMode(c: fmi2Component) -> fmi2Status {
     // SAFETY: the contract of the module.
@@ -168,7 +169,7 @@ pub unsafe extern "C" fn fmi2Terminate(c: fmi2Component) -> fmi2Status {
     unsafe { call(c, states::TERMINATE, body) }
 }
 
-/// Brings back the start values and the state after `fmi2Instantiate`.
+/// Restores the start values and the state after `fmi2Instantiate`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2Reset(c: fmi2Component) -> fmi2Status {
     let body = |instance: &mut Instance| {

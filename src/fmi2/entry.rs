@@ -1,5 +1,5 @@
-//! What every function does on its way in and out: is this an instance, may this be called now, what is left after a
-//! failure or a panic. And the checks of pointers.
+//! Entry and exit of every function: checks that the component is an instance and that the call is allowed now,
+//! handles failures and panics. Also the checks of pointers.
 
 use std::any::Any;
 use std::cell::UnsafeCell;
@@ -13,8 +13,8 @@ use super::instance::Instance;
 use super::states::Function;
 use super::types::{fmi2Component, fmi2Error, fmi2OK, fmi2Status, fmi2String};
 
-/// What a component points to. The guard comes first: it tells an instance from other memory, and keeps a second call
-/// out while one is at work, be it from another thread or from the importer's own log callback.
+/// What a component points to. The guard comes first: it distinguishes an instance from other memory, and rejects a
+/// second call during a call, from another thread or from the importer's log callback.
 #[repr(C)]
 struct Handle {
     guard: AtomicU64,
@@ -25,7 +25,7 @@ const IDLE: u64 = u64::from_be_bytes(*b"relay\0id");
 const BUSY: u64 = u64::from_be_bytes(*b"relay\0bu");
 const FREED: u64 = u64::from_be_bytes(*b"relay\0fr");
 
-/// Moves an instance to where C can point to it.
+/// Moves an instance to the heap and returns a pointer for C.
 pub(super) fn hand_out(instance: Instance) -> fmi2Component {
     Box::into_raw(Box::new(Handle {
         guard: AtomicU64::new(IDLE),
@@ -34,7 +34,7 @@ pub(super) fn hand_out(instance: Instance) -> fmi2Component {
     .cast()
 }
 
-/// Takes an instance back and drops it. What is no instance, or is in use, is left alone.
+/// Takes an instance back and drops it. A pointer that is not an instance, or one in use, is ignored.
 ///
 /// # Safety
 /// `component` is null or points to readable memory.
@@ -43,12 +43,12 @@ pub(super) unsafe fn take_back(component: fmi2Component) {
     if let Some(handle) = unsafe { occupy(component, FREED) } {
         // SAFETY: the guard held IDLE, so the memory came from `hand_out` and nobody else uses it.
         let handle = unsafe { Box::from_raw(handle.cast_mut()) };
-        // A panic must not reach C, and there is nobody left to be told.
+        // A panic must not reach C, and no instance is left to report it.
         let _ = catch_unwind(AssertUnwindSafe(move || drop(handle)));
     }
 }
 
-/// The handle behind a component, its guard moved from idle to `next`; nothing for what is no idle instance.
+/// The handle behind a component, its guard moved from idle to `next`; `None` unless it is an idle instance.
 unsafe fn occupy(component: fmi2Component, next: u64) -> Option<*const Handle> {
     let handle = component.cast_const().cast::<Handle>();
     if handle.is_null() || !handle.is_aligned() {
@@ -56,7 +56,7 @@ unsafe fn occupy(component: fmi2Component, next: u64) -> Option<*const Handle> {
     }
     // SAFETY: not null and aligned; the caller promises readable memory. Only a guard that holds IDLE is written.
     let guard = unsafe { &(*handle).guard };
-    // A plain look first, so that memory which is no instance is not written to.
+    // Read first, so that memory that is not an instance is not written to.
     (guard.load(Ordering::Relaxed) == IDLE
         && guard
             .compare_exchange(IDLE, next, Ordering::Acquire, Ordering::Relaxed)
@@ -64,7 +64,7 @@ unsafe fn occupy(component: fmi2Component, next: u64) -> Option<*const Handle> {
     .then_some(handle)
 }
 
-/// Runs one call on an instance: `body` if the state allows it, then the log and the state for what came of it.
+/// Runs one call on an instance: `body` if the state allows it, then logs the outcome and updates the state.
 ///
 /// # Safety
 /// `component` is null or points to readable memory.
@@ -98,7 +98,7 @@ pub(super) unsafe fn call(
     status
 }
 
-/// What a panic said.
+/// The message of a panic.
 pub(super) fn panic_text(panic: &(dyn Any + Send)) -> String {
     panic
         .downcast_ref::<&str>()
@@ -141,7 +141,7 @@ pub(super) unsafe fn array_mut<'a, T>(
     }
 }
 
-/// A single place to write.
+/// A single element to write.
 ///
 /// # Safety
 /// Unless null, `pointer` leads to an element that nobody else uses during the call.
@@ -153,7 +153,7 @@ pub(super) unsafe fn place<'a, T>(pointer: *mut T, name: &'static str) -> Result
     }
 }
 
-/// A text.
+/// A string.
 ///
 /// # Safety
 /// Unless null, `text` ends with a zero byte.

@@ -1,6 +1,6 @@
-//! Saved states: a copy of all that an instance is, many at once if wanted, also as bytes. Directional derivatives are not
-//! supported: the call is an error that leaves the instance as it was.
-// Arguments that are not looked at keep their names for the header.
+//! Saved states: copies of the whole instance, any number at a time, also serialized. Directional derivatives are not
+//! supported: the call is an error that does not change the instance.
+// Unused arguments keep their names for the header.
 #![allow(unused_variables)]
 
 use std::ptr;
@@ -13,7 +13,7 @@ use super::instance::{Instance, Snapshot};
 use super::types::{fmi2Byte, fmi2Component, fmi2FMUstate, fmi2Real, fmi2Status, fmi2ValueReference};
 use super::{serial, states};
 
-/// What a saved state points to. The guard comes first: it tells one from other memory.
+/// What a saved state points to. The guard comes first: it distinguishes it from other memory.
 #[repr(C)]
 struct Saved {
     guard: u64,
@@ -41,7 +41,7 @@ unsafe fn saved<'a>(state: fmi2FMUstate) -> Result<&'a mut Saved, Failure> {
     Ok(unsafe { &mut *state })
 }
 
-/// Keeps a snapshot in the state that `FMUstate` points to or, where that is null, in a new one.
+/// Stores a snapshot in the state that `FMUstate` points to or, if that is null, in a new one.
 ///
 /// # Safety
 /// Unless null, `FMUstate` leads to null or to a saved state.
@@ -66,7 +66,7 @@ unsafe fn keep(FMUstate: *mut fmi2FMUstate, snapshot: &Snapshot) -> Result<(), F
     Ok(())
 }
 
-/// Saves the instance, in the state that `FMUstate` points to or, where that is null, in a new one.
+/// Saves the instance, in the state that `FMUstate` points to or, if that is null, in a new one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetFMUstate(c: fmi2Component, FMUstate: *mut fmi2FMUstate) -> fmi2Status {
     // SAFETY: the contract of the module.
@@ -75,7 +75,7 @@ pub unsafe extern "C" fn fmi2GetFMUstate(c: fmi2Component, FMUstate: *mut fmi2FM
     unsafe { call(c, states::GET_FMU_STATE, body) }
 }
 
-/// Takes the instance back to a saved state. The state stays and can be used again.
+/// Restores a saved state of the instance, which can be used again.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetFMUstate(c: fmi2Component, FMUstate: fmi2FMUstate) -> fmi2Status {
     // SAFETY: the contract of the module.
@@ -106,7 +106,7 @@ pub unsafe extern "C" fn fmi2FreeFMUstate(c: fmi2Component, FMUstate: *mut fmi2F
     unsafe { call(c, states::FREE_FMU_STATE, body) }
 }
 
-/// How many bytes the saved state has.
+/// Size of the serialized state in bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SerializedFMUstateSize(
     c: fmi2Component,
@@ -123,7 +123,7 @@ pub unsafe extern "C" fn fmi2SerializedFMUstateSize(
     unsafe { call(c, states::SERIALIZED_FMU_STATE_SIZE, body) }
 }
 
-/// Writes the saved state as bytes to `serializedState`, whose size has to be that of `fmi2SerializedFMUstateSize`.
+/// Serializes the saved state to `serializedState`, whose size must be that of `fmi2SerializedFMUstateSize`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SerializeFMUstate(
     c: fmi2Component,
@@ -148,7 +148,7 @@ pub unsafe extern "C" fn fmi2SerializeFMUstate(
     unsafe { call(c, states::SERIALIZE_FMU_STATE, body) }
 }
 
-/// Makes a saved state of bytes, in the state that `FMUstate` points to or, where that is null, a new one.
+/// Restores a saved state from bytes, in the state that `FMUstate` points to or, if that is null, in a new one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
     c: fmi2Component,
@@ -168,8 +168,9 @@ pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
     unsafe { call(c, states::DE_SERIALIZE_FMU_STATE, body) }
 }
 
-/// Not supported: an error that leaves the instance as it was. In co-simulation these are the derivatives of outputs by
-/// inputs of the same communication point, and no output depends on any: the description says so for each output.
+/// Not supported: an error that does not change the instance. In co-simulation these are the derivatives of outputs
+/// with respect to inputs at the same communication point, and no output depends on these, as the dependencies in the
+/// description state.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
     c: fmi2Component,

@@ -1,4 +1,4 @@
-//! Messages to the importer, through its callback only.
+//! Log messages to the importer, through its callback only.
 
 use std::ffi::{CStr, CString};
 
@@ -13,7 +13,7 @@ pub enum Category {
     StatusWarning,
     /// Openings and closings of the contact.
     Events,
-    /// What the integrator does.
+    /// Work of the integrator.
     Solver,
 }
 
@@ -33,7 +33,7 @@ impl Category {
         }
     }
 
-    /// Messages of a status, for which there need not be any debug logging.
+    /// Messages of a status, shown without debug logging.
     fn of_status(status: fmi2Status) -> Self {
         if status >= fmi2Error {
             StatusError
@@ -43,14 +43,12 @@ impl Category {
     }
 }
 
-/// The importer's log callback, and the categories it wants to see.
-///
-/// Errors and warnings are shown from the start, whatever `loggingOn` says: that flag is about debug messages, while a
-/// call that fails without a word leaves the user nothing to go by (the standard would have the reason for fmi2Discard
-/// told with `loggingOn` only; importers leave that off by default). With `loggingOn` events are shown too, but not the
-/// solver, which has something to say in every step: some importers set the flag always. `fmi2SetDebugLogging` with named
-/// categories shows these and no others (`loggingOn` true), or hides these (false); without categories, true shows all
-/// and false hides the debug messages.
+/// The importer's log callback, and the categories it has enabled.
+/// Errors and warnings are shown from the start, independent of `loggingOn`: that flag is for debug messages, and a
+/// call that fails must say why (by the standard, the reason for fmi2Discard is logged with `loggingOn` only, which
+/// importers leave off by default). With `loggingOn` events are shown too, but not the solver, which logs every step:
+/// some importers always set the flag. `fmi2SetDebugLogging` with named categories shows only these (`loggingOn`
+/// true), or hides these (false); without categories, true shows all and false hides the debug messages.
 #[derive(Debug)]
 pub(super) struct Logger {
     callback: fmi2CallbackLogger,
@@ -70,7 +68,7 @@ impl Logger {
         }
     }
 
-    /// Chooses what is shown. An unknown category changes nothing.
+    /// Selects what is shown. An unknown category changes nothing.
     ///
     /// # Errors
     /// The first category that is not declared.
@@ -90,13 +88,13 @@ impl Logger {
         Ok(())
     }
 
-    /// Whether debug messages reach anybody.
+    /// Whether any debug category is shown.
     pub(super) fn debugs(&self) -> bool {
         let [_, _, events, solver] = self.shown;
         (events || solver) && self.callback.is_some()
     }
 
-    /// Whether messages of a category are wanted.
+    /// Whether messages of a category are shown.
     fn shows(&self, category: Category) -> bool {
         let [errors, warnings, events, solver] = self.shown;
         match category {
@@ -107,12 +105,12 @@ impl Logger {
         }
     }
 
-    /// Hands the importer the message of a call that did not do what was asked.
+    /// Passes the message of a failed call to the importer.
     pub(super) fn log_status(&self, status: fmi2Status, message: &str) {
         self.log(Category::of_status(status), status, message);
     }
 
-    /// Hands a message to the importer.
+    /// Passes a message to the importer.
     pub(super) fn log(&self, category: Category, status: fmi2Status, message: &str) {
         let Some(callback) = self.callback.filter(|_| self.shows(category)) else {
             return;
@@ -135,9 +133,8 @@ impl Logger {
 }
 
 /// The message as a format without arguments: `%` doubled, zero bytes removed.
-///
-/// Rather this than the format "%s" with the message as argument: importers whose callback cannot take variable
-/// arguments (those in Python, for one) show the format as it is.
+/// Not the format "%s" with the message as argument: importers whose callback cannot take variable arguments (for
+/// example in Python) show the format unchanged.
 fn printf_safe(message: &str) -> String {
     message.replace('\0', "").replace('%', "%%")
 }

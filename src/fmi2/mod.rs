@@ -1,12 +1,11 @@
 //! The C functions of FMI 2.0 for co-simulation: a thin shell over [`crate::simulation::Simulation`].
-//!
-//! All functions take pointers from C. Their common contract: a component comes from [`fmi2Instantiate`] and was not
-//! freed; a string ends with a zero byte; an array holds as many elements as the call says. Null pointers and pointers
-//! that do not suit their type are refused, and so is a component that is in use by another call.
+//! All functions take pointers from C. Their common contract: a component comes from [`fmi2Instantiate`] and has not
+//! been freed; a string is null-terminated; an array has the number of elements given in the call. Null and misaligned
+//! pointers are rejected, and so is a component in use by another call.
 //!
 //! The only unsafe code of the library lives in this folder.
 #![allow(unsafe_code)]
-// The names are those of the standard, and so is the contract for callers, given once above.
+// Names as in the standard; the contract for callers is given once above.
 #![allow(
     non_camel_case_types,
     non_snake_case,

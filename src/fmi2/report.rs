@@ -1,4 +1,4 @@
-//! What the debug messages say.
+//! Texts of the debug messages.
 
 use super::logger::{Category, Logger};
 use super::types::fmi2OK;
@@ -6,7 +6,7 @@ use crate::math::simd::Simd;
 use crate::model::Model;
 use crate::simulation::Simulation;
 
-/// How a scene is simulated.
+/// Number of modes, kind of steps and tolerance of a scene.
 pub(super) fn model(logger: &Logger, model: &Model) {
     let modes = model.modes.len();
     let steps = match model.closed_loop {
@@ -21,12 +21,12 @@ pub(super) fn model(logger: &Logger, model: &Model) {
         Simd::Avx2(_) => "for AVX2 and FMA",
     };
     let text = format!(
-        "fmi2ExitInitializationMode: {modes} modes, {steps}, compiled {machine}, tolerance {tolerance:e}, which is {error:e} N"
+        "fmi2ExitInitializationMode: {modes} modes, {steps}, compiled {machine}, tolerance {tolerance:e}, absolute {error:e} N"
     );
     logger.log(Category::Solver, fmi2OK, &text);
 }
 
-/// A communication step, before which the integration had cost `before`.
+/// A communication step, with the counters `before` it.
 #[cold]
 pub(super) fn step(logger: &Logger, simulation: &Simulation, before: Effort) {
     events(logger, simulation);
@@ -47,7 +47,7 @@ fn events(logger: &Logger, simulation: &Simulation) {
     }
 }
 
-/// What the integration has cost so far.
+/// Counters of the integration.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Effort {
     steps: u64,
@@ -65,7 +65,7 @@ impl Effort {
         }
     }
 
-    /// What it has cost since then.
+    /// Their increase since then.
     fn report(self, logger: &Logger, simulation: &Simulation) {
         let now = Self::of(simulation);
         let text = format!(

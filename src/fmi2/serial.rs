@@ -15,7 +15,7 @@ use crate::variables::GUID;
 
 const MAGIC: &[u8] = b"relay\0st";
 
-/// Raised whenever the contents change.
+/// Incremented whenever the contents change.
 const VERSION: u32 = 1;
 
 /// The bytes of a saved state.
@@ -64,6 +64,6 @@ pub(super) fn from_bytes(bytes: &[u8]) -> Result<Snapshot, Failure> {
     if snapshot.is_sound() {
         Ok(snapshot)
     } else {
-        Err(wrong("no simulation comes to such a state".to_owned()))
+        Err(wrong("no simulation can reach such a state".to_owned()))
     }
 }

@@ -1,16 +1,14 @@
 //! The states of an instance, and for each function the states it may be called in.
-//!
-//! The table is that of the standard for co-simulation (section 4.2.4) with what this component leaves out: a step is
-//! never in progress or cancelled, and a step that fails is an error, so those columns are missing. Three rows are
-//! wider: inputs and parameters can also be read in the state instantiated, where they have their start values (the
-//! outputs have none there and are refused); the status functions answer in the state error too, so that the last
-//! successful time can be asked for after a step that failed; the directional derivatives, which the description
-//! declares unsupported, give that reason in every state.
+//! The table is that of the standard for co-simulation (section 4.2.4), without the columns that do not occur here: a
+//! step is never in progress or cancelled, and a failed step is an error. Three rows are wider: inputs and parameters
+//! can also be read in the state instantiated, where they have their start values (outputs have none there and are
+//! rejected); the status functions also work in the state error, so that the last successful time can be read after a
+//! failed step; the directional derivatives, which the description declares unsupported, report this in every state.
 
-/// Where an instance is in its life.
+/// State in the life cycle of an instance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum State {
-    /// Made or reset; the experiment can be set up.
+    /// Instantiated or reset; the experiment can be set up.
     Instantiated,
     /// Between `fmi2EnterInitializationMode` and `fmi2ExitInitializationMode`.
     InitializationMode,
@@ -29,7 +27,7 @@ impl State {
     /// Every state.
     pub const ALL: &[Self] = &[Instantiated, InitializationMode, StepComplete, Terminated, Error];
 
-    /// The state as messages name it.
+    /// The name of the state in messages.
     pub fn name(self) -> &'static str {
         match self {
             Instantiated => "instantiated",
@@ -90,7 +88,7 @@ pub(super) const GET_INTEGER_STATUS: Function = function("fmi2GetIntegerStatus",
 pub(super) const GET_BOOLEAN_STATUS: Function = function("fmi2GetBooleanStatus", STATUS);
 pub(super) const GET_STRING_STATUS: Function = function("fmi2GetStringStatus", STATUS);
 
-/// Every function that works on an instance, but for `fmi2FreeInstance`, which is always allowed and has no status.
+/// Every function of an instance except `fmi2FreeInstance`, which is always allowed and has no status.
 pub const TABLE: [Function; 30] = [
     SET_DEBUG_LOGGING,
     SETUP_EXPERIMENT,

@@ -1,17 +1,17 @@
 //! C types of FMI 2.0, platform "default".
 //!
-//! Enumerations are unsigned integers with named values, as C compilers hold them: a number from C that is none of
-//! the values is then an ordinary number here, to be refused.
+//! Enumerations are unsigned integers with named values, as C compilers hold them: an unknown value from C is then an
+//! ordinary number, which is rejected.
 
 use libc::{c_char, c_double, c_int, c_uint, c_void, size_t};
 
 /// An instance of the component.
 pub type fmi2Component = *mut c_void;
-/// What the importer wants back in its callbacks.
+/// Passed back to the importer in its callbacks.
 pub type fmi2ComponentEnvironment = *mut c_void;
 /// A saved state of an instance.
 pub type fmi2FMUstate = *mut c_void;
-/// Number of a variable.
+/// Value reference of a variable.
 pub type fmi2ValueReference = c_uint;
 /// Real number.
 pub type fmi2Real = c_double;
@@ -21,7 +21,7 @@ pub type fmi2Integer = c_int;
 pub type fmi2Boolean = c_int;
 /// Character.
 pub type fmi2Char = c_char;
-/// Text that ends with a zero byte, in UTF-8.
+/// Null-terminated string in UTF-8.
 pub type fmi2String = *const fmi2Char;
 /// Byte.
 pub type fmi2Byte = c_char;
@@ -31,19 +31,19 @@ pub const fmi2True: fmi2Boolean = 1;
 /// False.
 pub const fmi2False: fmi2Boolean = 0;
 
-/// How a call went.
+/// Result of a call.
 pub type fmi2Status = c_uint;
-/// All well.
+/// Success.
 pub const fmi2OK: fmi2Status = 0;
-/// Done, with a remark in the log.
+/// Done, with a warning in the log.
 pub const fmi2Warning: fmi2Status = 1;
-/// Refused and nothing changed; the instance goes on.
+/// Rejected and nothing changed; the instance can be used further.
 pub const fmi2Discard: fmi2Status = 2;
 /// Failed; the instance can only be reset or freed.
 pub const fmi2Error: fmi2Status = 3;
-/// All instances are lost. Never returned by this component.
+/// All instances are unusable. Never returned by this component.
 pub const fmi2Fatal: fmi2Status = 4;
-/// Still at work. Never returned by this component.
+/// Step pending. Never returned by this component.
 pub const fmi2Pending: fmi2Status = 5;
 
 /// Kind of component.
@@ -53,15 +53,15 @@ pub const fmi2ModelExchange: fmi2Type = 0;
 /// Co-simulation.
 pub const fmi2CoSimulation: fmi2Type = 1;
 
-/// What the functions `fmi2Get...Status` are asked for.
+/// The status values of the functions `fmi2Get...Status`.
 pub type fmi2StatusKind = c_uint;
-/// Status of a step still at work.
+/// Status of a pending step.
 pub const fmi2DoStepStatus: fmi2StatusKind = 0;
-/// Text about a step still at work.
+/// Message of a pending step.
 pub const fmi2PendingStatus: fmi2StatusKind = 1;
-/// The instant up to which the simulation succeeded.
+/// The last successful time.
 pub const fmi2LastSuccessfulTime: fmi2StatusKind = 2;
-/// Whether the component wants the simulation to end.
+/// Whether the component asks to terminate.
 pub const fmi2Terminated: fmi2StatusKind = 3;
 
 /// Receives messages.
@@ -79,11 +79,11 @@ pub type fmi2CallbackLogger = Option<
 pub type fmi2CallbackAllocateMemory = Option<unsafe extern "C" fn(nobj: size_t, size: size_t) -> *mut c_void>;
 /// Frees memory. Not used by this component.
 pub type fmi2CallbackFreeMemory = Option<unsafe extern "C" fn(obj: *mut c_void)>;
-/// Told of the end of a step that was pending. Not used by this component.
+/// Called at the end of a pending step. Not used by this component.
 pub type fmi2StepFinished =
     Option<unsafe extern "C" fn(componentEnvironment: fmi2ComponentEnvironment, status: fmi2Status)>;
 
-/// What the importer offers to the component.
+/// Callbacks of the importer.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct fmi2CallbackFunctions {
@@ -95,6 +95,6 @@ pub struct fmi2CallbackFunctions {
     pub freeMemory: fmi2CallbackFreeMemory,
     /// Not used.
     pub stepFinished: fmi2StepFinished,
-    /// Handed back in every callback.
+    /// Passed back in every callback.
     pub componentEnvironment: fmi2ComponentEnvironment,
 }

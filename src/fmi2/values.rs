@@ -97,7 +97,7 @@ pub unsafe extern "C" fn fmi2GetBoolean(
     unsafe { get(c, states::GET_BOOLEAN, vr, nvr, value, read) }
 }
 
-/// Reads text variables, of which there are none.
+/// Reads string variables, of which there are none.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetString(
     c: fmi2Component,
@@ -110,7 +110,7 @@ pub unsafe extern "C" fn fmi2GetString(
     unsafe { get(c, states::GET_STRING, vr, nvr, value, read) }
 }
 
-/// Sets real inputs and parameters. `fmi2Discard`, and none of them set, for a value outside its range.
+/// Sets real inputs and parameters. A value outside its range gives `fmi2Discard`, and none is set.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetReal(
     c: fmi2Component,
@@ -122,7 +122,7 @@ pub unsafe extern "C" fn fmi2SetReal(
     unsafe { set(c, states::SET_REAL, vr, nvr, value, Instance::set_reals) }
 }
 
-/// Sets integer and enumeration parameters. `fmi2Discard`, and none of them set, for a value that is not allowed.
+/// Sets integer and enumeration parameters. A value that is not allowed gives `fmi2Discard`, and none is set.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetInteger(
     c: fmi2Component,
@@ -134,7 +134,7 @@ pub unsafe extern "C" fn fmi2SetInteger(
     unsafe { set(c, states::SET_INTEGER, vr, nvr, value, Instance::set_integers) }
 }
 
-/// Sets Boolean parameters. Every value but `fmi2False` is true.
+/// Sets Boolean parameters. Every value except `fmi2False` is true.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetBoolean(
     c: fmi2Component,
@@ -146,7 +146,7 @@ pub unsafe extern "C" fn fmi2SetBoolean(
     unsafe { set(c, states::SET_BOOLEAN, vr, nvr, value, Instance::set_booleans) }
 }
 
-/// Sets text inputs and parameters, of which there are none.
+/// Sets string inputs and parameters, of which there are none.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetString(
     c: fmi2Component,

@@ -1,4 +1,4 @@
-//! Scene files: a scene, its inputs, how long to run it and what to look at, in TOML.
+//! Scene files in TOML: parameters, inputs, length of the run and outputs to record.
 //!
 //! ```toml
 //! title = "Contact at rest, 0.3 mm overtravel"
@@ -6,13 +6,13 @@
 //! communicationStep = 1e-5    # s
 //! outputs = ["contact.force", "contact.resistance"]
 //!
-//! [parameters]                # by variable name, in SI units; what is not named keeps its start value
+//! [parameters]                # by variable name, in SI units; all others keep their start values
 //! contact.overtravel = 3e-4
 //! effects.excitation = "None"
 //!
-//! [inputs]                    # held during the whole run; what is not named is 0
+//! [inputs]                    # held during the whole run; all others are 0
 //! contact.current = 0.1
-//! file = "closing.csv"        # further inputs over time, beside this file: see `input_table`
+//! file = "closing.csv"        # further inputs over time, in the same folder: see `input_table`
 //! ```
 
 use crate::scene::names::{Role, list, variable};
@@ -31,7 +31,7 @@ use crate::scene::input_table::InputTable;
 use crate::scene::{Scene, choices};
 use crate::variables::{Group, Variable};
 
-/// A scene file as read and checked: every name known, every value inside its range.
+/// A scene file, read and checked: all names exist, all values are in range.
 #[derive(Clone, Debug)]
 pub struct SceneFile {
     /// What the scene shows.
@@ -40,17 +40,17 @@ pub struct SceneFile {
     pub stop: f64,
     /// Length of a communication step, s.
     pub communication_step: f64,
-    /// The outputs to look at.
+    /// The outputs to record.
     pub outputs: Vec<&'static Variable>,
     /// Parameters and effects.
     pub scene: Scene,
-    /// Inputs that are held during the whole run.
+    /// Inputs held during the whole run.
     pub inputs: Inputs,
-    /// Inputs that are not.
+    /// Inputs over time.
     pub table: InputTable,
 }
 
-/// The file as it stands; what it says of variables is checked after it is read.
+/// The file as parsed; names and values of variables are checked afterwards.
 #[derive(serde::Deserialize)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 struct Document {
@@ -65,7 +65,7 @@ struct Document {
     inputs: Table,
 }
 
-/// Keys with their place in the file, by which an error finds its line.
+/// Keys with their position in the file, from which errors get their line.
 type Table = BTreeMap<Spanned<String>, Value>;
 
 enum Value {
@@ -83,7 +83,7 @@ impl<'de> Deserialize<'de> for Value {
             type Value = Value;
 
             fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-                formatter.write_str("a number, true or false, a text or a table")
+                formatter.write_str("a number, true or false, a string or a table")
             }
 
             fn visit_i64<E>(self, value: i64) -> Result<Value, E> {
@@ -104,7 +104,7 @@ impl<'de> Deserialize<'de> for Value {
 
             fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Value, A::Error> {
                 let mut table = Table::new();
-                // A date comes as a map too, the only one whose key has no place.
+                // A date is also a map, the only one whose key has no position.
                 let no_place = |_| de::Error::invalid_type(Unexpected::Other("date or time"), &self);
                 while let Some(key) = map.next_key().map_err(no_place)? {
                     table.insert(key, map.next_value()?);
@@ -119,20 +119,20 @@ impl<'de> Deserialize<'de> for Value {
 impl FromStr for SceneFile {
     type Err = SceneError;
 
-    /// Reads the text of a scene file; a table of inputs is looked for in the current folder.
+    /// Parses the text of a scene file; the path of an input table is relative to the current folder.
     ///
     /// # Errors
-    /// The first [`SceneError`] met, with its line; only a missing key has none.
+    /// The first [`SceneError`] found, with its line, except for a missing key.
     fn from_str(text: &str) -> Result<Self, SceneError> {
         Self::parse(text, Path::new(""))
     }
 }
 
 impl SceneFile {
-    /// Reads a scene file, and the table of inputs that it names, from beside it.
+    /// Reads a scene file, and the input table it names, whose path is relative to it.
     ///
     /// # Errors
-    /// The first [`SceneError`] met, with its file and line; only a missing key has no line.
+    /// The first [`SceneError`] found, with its file and line; a missing key has no line.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
         let file = || path.display().to_string();
         let text = fs::read_to_string(path).map_err(|error| SceneError::Unreadable {
@@ -172,9 +172,9 @@ impl SceneFile {
         Ok(file)
     }
 
-    /// The communication steps of the run, s: where each begins, and its length; the last ends with the run.
+    /// The communication steps of the run: start time and length, s; the last ends with the run.
     pub fn steps(&self) -> impl Iterator<Item = (f64, f64)> {
-        // A remainder of rounding alone is no step.
+        // A remainder due to rounding is not a step.
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
@@ -185,22 +185,22 @@ impl SceneFile {
         (0..count).map(move |n| (point(n), point(n + 1) - point(n)))
     }
 
-    /// The inputs over the communication step from `time` by `size` (s): held, or with the rates that lead to their values
-    /// at its end.
+    /// The inputs over the communication step from `time` of length `size` (s): held, or with the rates that take them
+    /// to their values at its end.
     ///
     /// # Errors
-    /// [`SceneError::OutOfRange`] where a rate is not finite.
+    /// [`SceneError::OutOfRange`] if a rate is not finite.
     pub fn inputs_over(&self, time: f64, size: f64) -> Result<Inputs, SceneError> {
         let mut inputs = self.inputs;
         self.table.set(&mut inputs, time, size)?;
         Ok(inputs)
     }
 
-    /// Sets `stop`, `communicationStep`, `outputs` (names with commas between them), a parameter or an input by name, from text
-    /// such as `0.0155` or `Sine`. An input is then held, also where the table had a column for it.
+    /// Sets `stop`, `communicationStep`, `outputs` (names separated by commas), a parameter or an input by name, from
+    /// text such as `0.0155` or `Sine`. An input is then held, even if the table has a column for it.
     ///
     /// # Errors
-    /// A [`SceneError`] for a name that does not exist or a value it cannot take; nothing is changed then.
+    /// A [`SceneError`] for an unknown name or a value that is not allowed; nothing is changed then.
     pub fn set(&mut self, name: &str, value: &str) -> Result<(), SceneError> {
         if name == "outputs" {
             let outputs = value.split(',').map(|name| variable(Role::Output, name.trim()));
@@ -236,7 +236,7 @@ impl SceneFile {
                 if matches!(role, Role::Input) && self.table.drives(input) {
                     return Err(SceneError::GivenTwice {
                         name: name.to_owned(),
-                        allowed: "a value here or a column of the file",
+                        allowed: "either a value here or a column of the file",
                     });
                 }
                 self.inputs.set_real(input, number(name, value)?)?;
@@ -260,7 +260,7 @@ impl SceneFile {
             }
             Group::EnumerationParameter(parameter) => {
                 let Value::Text(choice) = value else {
-                    return Err(wrong_type(name, value, "the name of a choice, as a text"));
+                    return Err(wrong_type(name, value, "the name of a choice, as a string"));
                 };
                 let choices = choices(parameter);
                 let known = choices.iter().find(|(label, _)| label == choice);
@@ -276,11 +276,11 @@ impl SceneFile {
     }
 }
 
-/// The table of inputs that the key `file` names.
+/// The input table named by the key `file`.
 fn input_table(folder: &Path, value: &Value) -> Result<InputTable, SceneError> {
     match value {
         Value::Text(name) => InputTable::read(&folder.join(name)),
-        _ => Err(wrong_type("file", value, "the path of a table of inputs, as a text")),
+        _ => Err(wrong_type("file", value, "the path of an input table, as a string")),
     }
 }
 
@@ -321,7 +321,7 @@ fn wrong_type(name: &str, value: &Value, allowed: &'static str) -> SceneError {
     }
 }
 
-/// Gives an error the line of its place.
+/// Adds the line of a position to an error.
 fn at_line<T, U>(text: &str, place: &Spanned<U>, result: Result<T, SceneError>) -> Result<T, SceneError> {
     result.map_err(|error| SceneError::AtLine {
         line: 1 + text

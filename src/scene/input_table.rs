@@ -5,8 +5,7 @@
 //! 0,0
 //! 0.005,3e-4
 //! ```
-//!
-//! Between its rows the values are linear; before the first row and after the last they stay what they are there.
+//! Values are interpolated linearly between rows, and constant before the first and after the last row.
 
 use std::fs;
 use std::path::Path;
@@ -19,16 +18,16 @@ use crate::scene::check_range;
 use crate::scene::names::{Role, variable};
 use crate::variables::{Group, RealInput};
 
-/// The courses of some inputs; empty: of none.
+/// Some inputs over time; may be empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct InputTable {
-    /// Instants of the rows, ascending, s.
+    /// Times of the rows, ascending, s.
     times: Vec<f64>,
-    /// Values at these instants.
+    /// Values at these times.
     columns: Vec<(RealInput, Vec<f64>)>,
 }
 
-/// What a column holds.
+/// Meaning of a column.
 enum Column {
     Time,
     Input(RealInput),
@@ -38,7 +37,7 @@ impl InputTable {
     /// Reads a file.
     ///
     /// # Errors
-    /// The first [`SceneError`] met, with the file, the line and the column's name.
+    /// The first [`SceneError`] found, with the file, the line and the column's name.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
         let file = path.display().to_string();
         match fs::read_to_string(path) {
@@ -71,7 +70,7 @@ impl InputTable {
             at_line(text, &record, table.add(&columns, &record))?;
         }
         if table.times.is_empty() {
-            return Err(SceneError::InputTable("no row below the names".to_owned()));
+            return Err(SceneError::InputTable("no row below the header".to_owned()));
         }
         Ok(table)
     }
@@ -89,7 +88,7 @@ impl InputTable {
                             name: "time",
                             value: time,
                             unit: "s",
-                            allowed: format!("allowed is any finite number above that of the row before, {last} s"),
+                            allowed: format!("allowed is any finite number above that of the previous row, {last} s"),
                         });
                     }
                     self.times.push(time);
@@ -111,16 +110,16 @@ impl InputTable {
         self.columns.iter().any(|(column, _)| *column == input)
     }
 
-    /// Drops the column of an input.
+    /// Removes the column of an input.
     pub fn release(&mut self, input: RealInput) {
         self.columns.retain(|(column, _)| *column != input);
     }
 
-    /// Sets the inputs of the table to their values at `time` (s), and their rates so that they reach those `size` seconds
-    /// later.
+    /// Sets the inputs of the table to their values at `time` (s), and their rates so that they reach the values
+    /// `size` seconds later.
     ///
     /// # Errors
-    /// [`SceneError::OutOfRange`] where a rate is not finite.
+    /// [`SceneError::OutOfRange`] if a rate is not finite.
     pub fn set(&self, inputs: &mut Inputs, time: f64, size: f64) -> Result<(), SceneError> {
         self.columns.iter().try_for_each(|(input, values)| {
             let value = self.value(values, time);
@@ -143,7 +142,7 @@ impl InputTable {
     }
 }
 
-/// What the columns are called.
+/// The header.
 fn columns(head: &StringRecord) -> Result<Vec<Column>, SceneError> {
     let mut seen = Vec::new();
     let columns = head.iter().map(|name| {
@@ -166,7 +165,7 @@ fn columns(head: &StringRecord) -> Result<Vec<Column>, SceneError> {
     if !columns.iter().any(|column| matches!(column, Column::Time)) {
         return Err(SceneError::MissingKey {
             name: "time",
-            allowed: "a column of instants in s",
+            allowed: "a column of times in s",
         });
     }
     Ok(columns)
@@ -180,10 +179,10 @@ fn number(name: &str, field: &str) -> Result<f64, SceneError> {
     })
 }
 
-/// Gives an error the line of its row.
+/// Adds the line of its row to an error.
 fn at_line<T>(text: &str, row: &StringRecord, result: Result<T, SceneError>) -> Result<T, SceneError> {
     result.map_err(|error| {
-        // Its position is that of the empty lines before it, if there are any.
+        // The position includes preceding empty lines.
         let position = row.position().map_or(0, csv::Position::byte);
         let position = usize::try_from(position).unwrap_or(usize::MAX);
         let empty = text.bytes().skip(position).take_while(|byte| b"\r\n".contains(byte));

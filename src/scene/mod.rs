@@ -1,7 +1,7 @@
-//! What is to be simulated: every parameter with its value, and the effects asked for.
+//! What is simulated: the values of all parameters, and the enabled effects.
 //!
 //! The names, ranges and start values are those of `modelDescription.xml`; [`Scene::default`] is the specimen of
-//! Zhang, Zhang, Meng, Ren, Machines 2025, 13(1), 52, with the values the paper leaves out identified from its results.
+//! Zhang, Zhang, Meng, Ren, Machines 2025, 13(1), 52, with unpublished values identified from published results.
 
 pub mod file;
 pub mod input_table;

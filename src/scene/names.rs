@@ -1,9 +1,9 @@
-//! The names that may stand in a scene file or a table of inputs.
+//! The variable names allowed in a scene file or an input table.
 
 use crate::error::SceneError;
 use crate::variables::{Group, VARIABLES, Variable};
 
-/// What a name may stand for at a place of the file.
+/// The kind of variable allowed at a position of the file.
 #[derive(Clone, Copy)]
 pub(crate) enum Role {
     Parameter,
@@ -34,13 +34,13 @@ impl Role {
     }
 }
 
-/// The variable of this name, or the error with the three names that come nearest.
+/// The variable of this name, or an error with the three most similar names.
 pub(crate) fn variable(role: Role, name: &str) -> Result<&'static Variable, SceneError> {
     let variables = VARIABLES.iter().filter(|variable| role.covers(variable));
     if let Some(variable) = variables.clone().find(|variable| variable.name == name) {
         return Ok(variable);
     }
-    // A user may have left out the group, so the last word counts as much as the whole.
+    // The group may be missing, so the last word counts as much as the whole name.
     let likeness = |known: &str| {
         let word = known.rsplit('.').next().unwrap_or(known);
         strsim::jaro_winkler(name, known).max(strsim::jaro_winkler(name, word))
@@ -54,7 +54,7 @@ pub(crate) fn variable(role: Role, name: &str) -> Result<&'static Variable, Scen
     })
 }
 
-/// Names with commas between them.
+/// Names separated by commas.
 pub(crate) fn list(names: impl Iterator<Item = &'static str>) -> String {
     names.collect::<Vec<_>>().join(", ")
 }

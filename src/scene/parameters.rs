@@ -12,17 +12,17 @@ pub struct Scene {
     pub tip: Tip,
     /// The two contact surfaces.
     pub contact: Contact,
-    /// The electrical side.
+    /// Contact resistance.
     pub resistance: Resistance,
-    /// The base acceleration generated inside.
+    /// Generated base acceleration.
     pub excitation: Excitation,
-    /// What surrounds the contact.
+    /// Surroundings.
     pub environment: Environment,
-    /// What counts as an interruption.
+    /// Criterion for interruptions.
     pub chatter: Chatter,
-    /// What accuracy is bought.
+    /// Accuracy.
     pub solver: Solver,
-    /// What is simulated at all.
+    /// Effects.
     pub effects: Effects,
 }
 
@@ -82,7 +82,7 @@ pub struct Material {
     pub poisson_ratio: f64,
 }
 
-/// Contact resistance, by power law or by Holm, in series with a film, both beside the open resistance.
+/// Contact resistance, by power law or by Holm, in series with a film, both in parallel with the open resistance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Resistance {
     /// H, Ohm at 1 N.
@@ -112,13 +112,13 @@ pub struct Excitation {
     pub start_time: f64,
     /// Frequency at the end of the sweep, or upper end of the band, Hz.
     pub end_frequency: f64,
-    /// Of the sweep or the half sine, s.
+    /// Duration of the sweep or the half sine, s.
     pub duration: f64,
     /// Largest displacement amplitude, m; 0: no limit.
     pub displacement_limit: f64,
-    /// Of the random acceleration, one-sided, (m/s2)^2/Hz.
+    /// One-sided power spectral density of the random acceleration, (m/s2)^2/Hz.
     pub spectral_density: f64,
-    /// Of the random phases and frequencies.
+    /// Seed of the random phases and frequencies.
     pub seed: i32,
 }
 
@@ -131,7 +131,7 @@ pub struct Environment {
     pub temperature: f64,
 }
 
-/// What counts as an interruption.
+/// Criterion for interruptions.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Chatter {
     /// Resistance above which the contact is interrupted, Ohm.
@@ -143,7 +143,7 @@ pub struct Chatter {
 /// Accuracy.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Solver {
-    /// Error allowed in the contact force, relative to its scale; 0: [`Solver::DEFAULT_TOLERANCE`].
+    /// Allowed error of the contact force, relative to its scale; 0: [`Solver::DEFAULT_TOLERANCE`].
     pub tolerance: f64,
     /// Number of beam modes; 0: chosen from the tolerance.
     pub modes: i32,
@@ -152,12 +152,12 @@ pub struct Solver {
 }
 
 impl Solver {
-    /// Tolerance where neither the scene nor the experiment gives one.
+    /// Tolerance if neither the scene nor the experiment sets one.
     pub const DEFAULT_TOLERANCE: f64 = 1e-6;
-    /// Tolerances below are raised to this one.
+    /// Smaller tolerances are raised to this one.
     pub const TOLERANCE_FLOOR: f64 = 1e-11;
 
-    /// The tolerance in force.
+    /// The effective tolerance.
     pub fn effective_tolerance(&self) -> f64 {
         if self.tolerance > 0.0 {
             self.tolerance.max(Self::TOLERANCE_FLOOR)
@@ -167,7 +167,7 @@ impl Solver {
     }
 }
 
-/// Effects asked for.
+/// Effects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a parameter of its own")]
 pub struct Effects {
@@ -177,7 +177,7 @@ pub struct Effects {
     pub contact_law: ContactLawKind,
     /// Axial force.
     pub axial_force: AxialForceKind,
-    /// Whether the contact dissipates.
+    /// Whether the contact is damped.
     pub contact_damping: bool,
     /// Contact resistance.
     pub resistance: ResistanceKind,
@@ -185,9 +185,9 @@ pub struct Effects {
     pub heating: bool,
     /// Whether interruptions are counted.
     pub chatter: bool,
-    /// Whether extremes within communication steps are found.
+    /// Whether extremes within communication steps are computed.
     pub extremes: bool,
-    /// Whether the balance of energy is kept.
+    /// Whether the energy balance is computed.
     pub energy: bool,
 }
 

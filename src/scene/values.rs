@@ -1,4 +1,4 @@
-//! The parameters by variable: reading, setting and checking them against their ranges.
+//! The parameters by variable: reading, setting and range checks.
 
 use crate::error::SceneError;
 use crate::scene::Scene;
@@ -80,7 +80,7 @@ impl Scene {
     /// Sets an enumeration parameter by the number of the choice.
     ///
     /// # Errors
-    /// [`SceneError::UnknownChoice`] for a number that is none of the choices; the scene is then unchanged.
+    /// [`SceneError::UnknownChoice`] for a number without a choice; the scene is then unchanged.
     pub fn set_enumeration(&mut self, parameter: EnumerationParameter, value: i32) -> Result<(), SceneError> {
         let unknown = || SceneError::UnknownChoice {
             name: parameter.variable().name,
@@ -116,7 +116,7 @@ impl Scene {
         let longest = self.solver.maximum_step;
         if longest > 0.0 && longest < SHORTEST_LIMIT {
             let variable = RealParameter::SolverMaximumStep.variable();
-            let allowed = format!("allowed is 0, for no limit, or {SHORTEST_LIMIT} or more");
+            let allowed = format!("allowed is 0 (no limit), or {SHORTEST_LIMIT} or more");
             return Err(SceneError::out_of_range(variable, longest, allowed));
         }
         let mut copy = *self;
@@ -182,10 +182,10 @@ pub fn choices(parameter: EnumerationParameter) -> &'static [(&'static str, i32)
     }
 }
 
-/// Smallest limit that can be put on the integration step, s: the steps of a run have to come to an end.
+/// Smallest limit of the integration step, s, so that the number of steps stays finite in practice.
 const SHORTEST_LIMIT: f64 = 1e-9;
 
-/// Whether the bounds of the range are themselves refused: at a Poisson's ratio of -1 or 0.5 a material has no finite moduli.
+/// Whether the bounds of the range are excluded: at a Poisson's ratio of -1 or 0.5 the moduli are not finite.
 fn bounds_excluded(parameter: RealParameter) -> bool {
     matches!(
         parameter,
@@ -193,7 +193,7 @@ fn bounds_excluded(parameter: RealParameter) -> bool {
     )
 }
 
-/// Refuses a value that is not a number or outside the range of its variable.
+/// Rejects a value that is not a number or outside the range of its variable.
 pub(crate) fn check_range(variable: &Variable, value: f64, excluded: bool) -> Result<(), SceneError> {
     let Variable { min, max, .. } = *variable;
     let inside = if excluded {

@@ -19,7 +19,7 @@ pub type Instantiate = unsafe extern "C" fn(
     fmi2Boolean,
 ) -> fmi2Component;
 
-/// Arguments of `fmi2Instantiate`, right ones by default.
+/// Arguments of `fmi2Instantiate`, valid by default.
 #[derive(Clone, Copy, Debug)]
 #[allow(missing_docs)] // named as in the standard
 pub struct Arguments<'a> {
@@ -62,12 +62,12 @@ impl Arguments<'_> {
     }
 }
 
-/// An instance of the library that is linked into this program, with what it logs. Freed with the value.
+/// An instance of the library linked into this program, with its log. Freed with the value.
 #[derive(Debug)]
 pub struct Instance {
-    /// For calls that are not below.
+    /// For calls without a method below.
     pub component: fmi2Component,
-    // Boxed, so that the address the callback holds stays.
+    // Boxed, so that the address held by the callback stays valid.
     log: Box<Log>,
 }
 
@@ -84,7 +84,7 @@ impl Default for Instance {
 }
 
 impl Instance {
-    /// In the state instantiated.
+    /// An instance in the state instantiated.
     pub fn new() -> Self {
         Self::with(&Arguments::default())
     }
@@ -97,14 +97,14 @@ impl Instance {
         Self { component, log }
     }
 
-    /// In Initialization Mode.
+    /// An instance in Initialization Mode.
     pub fn initializing() -> Self {
         let instance = Self::new();
         assert_eq!(instance.enter_initialization_mode(), fmi2OK);
         instance
     }
 
-    /// At the first communication point, with start values.
+    /// An instance at the first communication point, with start values.
     pub fn initialized() -> Self {
         let instance = Self::new();
         instance.initialize();
@@ -139,7 +139,7 @@ impl Instance {
         unsafe { fmi2SetReal(self.component, names.map(vr).as_ptr(), N, values.as_ptr()) }
     }
 
-    /// Of one variable.
+    /// `fmi2SetReal` of one variable.
     pub fn set_real(&self, name: &str, value: f64) -> fmi2Status {
         self.set_reals([name], [value])
     }
@@ -194,7 +194,7 @@ impl Instance {
         (status, time)
     }
 
-    /// What was logged since the last look.
+    /// The messages since the last call of this function.
     pub fn messages(&self) -> Vec<Message> {
         self.log
             .lock()
@@ -202,13 +202,13 @@ impl Instance {
             .unwrap_or_default()
     }
 
-    /// The call has come to the status, and the only message since the last look holds all `parts`.
+    /// Asserts that the call returned the status, with a single message that contains all `parts`.
     pub fn answers(&self, status: fmi2Status, expected: fmi2Status, parts: &[&str]) {
         assert_eq!(status, expected, "{parts:?}: {:?}", self.log);
         self.expect_message(expected, parts);
     }
 
-    /// The only message since the last look, whose text holds all `parts`.
+    /// Asserts that there is a single message, whose text contains all `parts`.
     pub fn expect_message(&self, status: fmi2Status, parts: &[&str]) {
         let messages = self.messages();
         let [message] = &messages[..] else {

@@ -6,7 +6,7 @@ use std::sync::Mutex;
 
 use relay_contact::fmi2::*;
 
-/// A message as it reached the importer.
+/// A message received by the importer.
 #[derive(Clone, Debug)]
 pub struct Message {
     /// Name of the instance.
@@ -19,7 +19,7 @@ pub struct Message {
     pub text: String,
 }
 
-/// Where the callback writes to.
+/// The log the callback writes to.
 pub type Log = Mutex<Vec<Message>>;
 
 /// The log callback without its variable arguments, which the component never passes.

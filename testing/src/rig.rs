@@ -1,4 +1,4 @@
-//! A model under way, also one put together from modes without a beam, with its energy.
+//! A model with its state and energy, also one built from modes without a beam.
 
 use relay_contact::error::StepError;
 use relay_contact::inputs::Inputs;
@@ -15,7 +15,7 @@ pub use crate::scenes::undamped;
 pub struct Rig {
     /// Modes, contact law and preload.
     pub model: Model,
-    /// The whole motion at the instant reached.
+    /// The state at the time reached.
     pub state: State,
     simulation: Simulation,
 }
@@ -36,13 +36,13 @@ impl Rig {
         }
     }
 
-    /// The same with a sine at the base from the instant 0 on: amplitude (m/s2) and frequency (Hz).
+    /// The same with a sine base acceleration from time 0: amplitude (m/s2) and frequency (Hz).
     pub fn shaken(model: Model, amplitude: f64, frequency: f64) -> Self {
         let generator = Generator::new(&shaken(amplitude, frequency)).expect("a sine");
         Self::new(model.with(|parts| parts.generator = generator))
     }
 
-    /// Sets the modal velocities at the start, in the order of the modes, and what follows from them.
+    /// Sets the initial modal velocities, in the order of the modes, and the dependent values.
     pub fn launch(&mut self, velocities: &[f64]) {
         let (model, mut state) = (&self.model, self.state);
         state.indentation_rate = 0.0;
@@ -56,7 +56,7 @@ impl Rig {
         *self = Self::at(model.clone(), &state);
     }
 
-    /// Lets a bonded contact open from here on.
+    /// Allows a bonded contact to open from now on.
     pub fn unbond(&mut self) {
         let model = self.model.clone().with(|parts| {
             if let Law::Linear(linear) = &mut parts.law {
@@ -69,7 +69,7 @@ impl Rig {
     /// Advances to the instant `time` (s) with the inputs held.
     ///
     /// # Errors
-    /// A [`StepError`] where the motion cannot be integrated.
+    /// A [`StepError`] if the motion cannot be integrated.
     pub fn run_to(&mut self, inputs: &Inputs, time: f64) -> Result<(), StepError> {
         let start = self.simulation.time();
         self.simulation.step(inputs, start, time - start)?;
@@ -77,7 +77,7 @@ impl Rig {
         Ok(())
     }
 
-    /// Energy above that of the preload, J: kinetic and strain energy of the modes about the preload, and the contact's
+    /// Energy relative to the preload, J: kinetic and strain energy of the modes about the preload, and the contact's
     /// elastic energy above its tangent there, `V(d) - V(d_0) - F_0 (d - d_0)`. Never negative, as V is convex.
     pub fn energy(&self) -> f64 {
         let Self { model, state, .. } = self;
@@ -104,11 +104,11 @@ impl Rig {
     }
 }
 
-/// A model put together from modes: `gap` (m) in front of the contact, tolerance relative to `force_scale` (N).
+/// A model built from modes: contact gap `gap` (m), tolerance relative to `force_scale` (N).
 pub fn compose(modes: &[Mode], law: Law, gap: f64, tolerance: f64, force_scale: f64) -> Model {
     let mut scene = Scene::default();
     scene.solver.tolerance = tolerance;
-    // Of a mass there is no current.
+    // A mass carries no current.
     scene.effects.chatter = false;
     Model::new(&scene, 0.0).expect("the specimen").with(|parts| {
         parts.preload = Preload {
@@ -124,7 +124,7 @@ pub fn compose(modes: &[Mode], law: Law, gap: f64, tolerance: f64, force_scale: 
     })
 }
 
-/// A mass (kg) on a spring (N/m), without damping. A base acceleration acts on it as on any mass.
+/// An undamped mass (kg) on a spring (N/m), with base acceleration.
 pub fn oscillator(mass: f64, stiffness: f64) -> Mode {
     Mode {
         omega_squared: stiffness / mass,
@@ -134,7 +134,7 @@ pub fn oscillator(mass: f64, stiffness: f64) -> Mode {
     }
 }
 
-/// A spring (N/m) that only pushes.
+/// A spring (N/m) that acts only in compression.
 pub fn stop(stiffness: f64) -> Law {
     Law::Linear(Linear {
         stiffness,

@@ -1,4 +1,4 @@
-//! Scenes that tests begin with, and what is known of them without the library.
+//! Scenes for tests, with reference values computed without the library.
 
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
@@ -14,7 +14,7 @@ pub fn shaken(amplitude: f64, frequency: f64) -> Scene {
     scene
 }
 
-/// The start values, but without damping of beam or contact.
+/// The start values without damping of beam and contact.
 pub fn undamped() -> Scene {
     let mut scene = Scene::default();
     scene.beam.stiffness_damping = 0.0;
@@ -34,21 +34,21 @@ pub fn tip_stiffness(scene: &Scene) -> f64 {
     3.0 * (beam.youngs_modulus * beam.width * beam.thickness.powi(3) / 12.0) / beam.length.powi(3)
 }
 
-/// What `solver.tolerance` is relative to, N: the preload force, or that of the spring bent by the overtravel (by 0.1 mm where
-/// that is less) if it is greater.
+/// What `solver.tolerance` is relative to, N: the preload force, or, if larger, that of the spring bent by the
+/// overtravel (at least 0.1 mm).
 pub fn force_scale(scene: &Scene) -> f64 {
     let bent = tip_stiffness(scene) * scene.contact.overtravel.abs().max(1e-4);
     at_rest(scene, RealOutput::PreloadForce).max(bent)
 }
 
-/// Mass with which a slow acceleration of the base acts on the contact, kg: that of a propped cantilever with the rivet at
-/// the prop, the prop all but rigid.
+/// Effective mass of the contact force under slow base acceleration, kg: that of a propped cantilever with the rivet
+/// at the nearly rigid prop.
 pub fn propped_mass(scene: &Scene) -> f64 {
     let beam = &scene.beam;
     0.375 * beam.density * beam.width * beam.thickness * beam.length + scene.tip.mass
 }
 
-/// Largest difference of two courses at the same instants.
+/// Largest difference of two time histories at the same times.
 pub fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }

@@ -180,7 +180,7 @@ fn a_number_of_the_experiment_or_of_a_step_is_named() {
         (f64::NAN, ""),
         (f64::INFINITY, ""),
         (f64::NEG_INFINITY, ""),
-        (0.5, "stands at"),
+        (0.5, "the time of the instance is"),
     ] {
         let fmu = Instance::initialized();
         let parts = ["fmi2DoStep", "currentCommunicationPoint", part];
@@ -215,7 +215,7 @@ fn what_there_is_not_is_named() {
     let mut foreign: fmi2FMUstate = memory.as_mut_ptr().cast();
     for wrong in [ptr::null_mut(), foreign] {
         let fmu = Instance::initialized();
-        let parts = ["fmi2SetFMUstate", "FMUstate", "no saved state"];
+        let parts = ["fmi2SetFMUstate", "FMUstate", "not a saved state"];
         fmu.answers(unsafe { fmi2SetFMUstate(fmu.component, wrong) }, fmi2Error, &parts);
     }
     let place = &raw mut foreign;
@@ -223,12 +223,12 @@ fn what_there_is_not_is_named() {
     fmu.answers(
         unsafe { fmi2GetFMUstate(fmu.component, place) },
         fmi2Error,
-        &["fmi2GetFMUstate", "no saved state"],
+        &["fmi2GetFMUstate", "not a saved state"],
     );
     assert_eq!(fmu.reset(), fmi2OK);
     fmu.answers(
         unsafe { fmi2FreeFMUstate(fmu.component, place) },
         fmi2Error,
-        &["fmi2FreeFMUstate", "no saved state"],
+        &["fmi2FreeFMUstate", "not a saved state"],
     );
 }

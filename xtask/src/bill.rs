@@ -1,4 +1,4 @@
-//! The software bill of materials: what the component is made of, as CycloneDX 1.6.
+//! The software bill of materials, as CycloneDX 1.6.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -11,8 +11,8 @@ use serde_json::{Value, json};
 use crate::commands::{command, output, read};
 use crate::linked::{COMPONENT, Crate, Crates};
 
-/// The document. `rustc` is the compiler whose standard library is linked. The document has neither time nor serial number:
-/// the same parts give the same bytes.
+/// The document. `rustc` is the compiler whose standard library is linked. The document has neither time nor serial
+/// number, so that the same parts give the same bytes.
 pub fn text(crates: &Crates, rustc: &Path) -> Result<String> {
     let digests = digests()?;
     let standard = standard_library(rustc)?;
@@ -48,14 +48,14 @@ fn reference((name, version): &Crate) -> String {
 fn described(package: &Package, crate_: &Crate) -> Result<Value> {
     let description = package.description.as_deref().unwrap_or_default();
     let licence = package.license.as_deref();
-    let licence = licence.with_context(|| format!("crate {} names no licence", reference(crate_)))?;
+    let licence = licence.with_context(|| format!("crate {} states no licence", reference(crate_)))?;
     Ok(json!({
         "type": "library",
         "bom-ref": reference(crate_),
         "name": crate_.0,
         "version": crate_.1,
         "description": description.split_whitespace().collect::<Vec<_>>().join(" "),
-        // Before SPDX had expressions, crates separated their licences by a slash.
+        // Older crates separate their licences by a slash instead of an SPDX expression.
         "licenses": [{ "expression": licence.replace('/', " OR ") }],
     }))
 }
@@ -114,7 +114,7 @@ mod tests {
     use crate::linked::crates;
     use crate::release::platform::PLATFORMS;
 
-    /// The crates that `Cargo.toml` asks for directly are known without cargo's help.
+    /// Compares with the direct dependencies in `Cargo.toml`.
     #[test]
     fn every_part_is_listed_once_with_its_digest_and_is_used() -> Result<()> {
         #[derive(Deserialize)]

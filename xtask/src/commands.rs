@@ -7,14 +7,14 @@ use std::{env, fs};
 use anyhow::{Context, Result, bail};
 use cargo_metadata::{Metadata, MetadataCommand};
 
-/// The project's top folder: that of the xtask which cargo runs, or the one that the current folder is in.
+/// The project's top folder: that of the running xtask, or the one containing the current folder.
 pub fn root() -> PathBuf {
-    // At run time: a copy of the project with its `target` folder is another project.
+    // At run time, so that a copy of the project with its `target` folder uses its own files.
     let start = env::var_os("CARGO_MANIFEST_DIR").map_or_else(|| PathBuf::from("."), PathBuf::from);
     workspace(&start).unwrap_or(start)
 }
 
-/// The workspace that a folder is in.
+/// The workspace containing a folder.
 fn workspace(folder: &Path) -> Option<PathBuf> {
     let folder = std::path::absolute(folder).ok()?;
     let is_workspace = |folder: &&Path| {
@@ -30,7 +30,7 @@ pub fn read(path: impl AsRef<Path>) -> Result<Vec<u8>> {
     fs::read(&path).with_context(|| format!("cannot read {}", path.display()))
 }
 
-/// Writes a file of the project, and its folder if there is none yet; gives its whole path.
+/// Writes a file of the project, creating its folder; returns its full path.
 pub fn write(path: impl AsRef<Path>, contents: &[u8]) -> Result<PathBuf> {
     let path = root().join(path);
     fs::create_dir_all(path.parent().context("a file without a folder")?)?;
@@ -50,12 +50,12 @@ pub fn cargo() -> Command {
     command(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
 }
 
-/// What cargo knows about the project.
+/// Metadata of the project from cargo.
 pub fn metadata() -> Result<Metadata> {
     Ok(MetadataCommand::new().current_dir(root()).exec()?)
 }
 
-/// Runs a program and shows its output; the error names the whole command.
+/// Runs a program and shows its output; an error contains the whole command.
 pub fn run(command: &mut Command) -> Result<()> {
     let status = command
         .status()
@@ -66,7 +66,7 @@ pub fn run(command: &mut Command) -> Result<()> {
     Ok(())
 }
 
-/// Runs a program and gives what it printed; the error has all of its output.
+/// Runs a program and returns its output; an error contains all of it.
 pub fn output(command: &mut Command) -> Result<String> {
     let output = command
         .output()
@@ -79,7 +79,7 @@ pub fn output(command: &mut Command) -> Result<String> {
     Ok(String::from_utf8(output.stdout)?)
 }
 
-/// The folder of a Rust compiler, which has its libraries and documentation.
+/// The sysroot of a Rust compiler.
 pub fn sysroot(rustc: impl AsRef<std::ffi::OsStr>) -> Result<PathBuf> {
     let sysroot = output(command(rustc).args(["--print", "sysroot"]))?;
     Ok(PathBuf::from(sysroot.trim()))

@@ -1,4 +1,4 @@
-//! From nothing to the result: the published 1 kHz case under FMPy.
+//! The published 1 kHz case in FMPy, including all preparation.
 
 use anyhow::Result;
 
@@ -6,7 +6,7 @@ use crate::{commands, fmu, python};
 
 /// Prepares Python, builds the component, runs the case.
 pub fn run() -> Result<()> {
-    // Python first: what is missing is reported before anything long starts.
+    // Python first, so that missing programs are reported before the build.
     python::prepare()?;
     let path = fmu::build()?;
     commands::run(

@@ -12,8 +12,8 @@ use crate::commands::{cargo, command, metadata, output, read, run, write};
 use crate::package::{Files, pack};
 use crate::{bill, documentation, licences, linked};
 
-/// Writes `dist/RelayContact.fmu` and gives its path. Beside it, for C programs, the library in `lib` and its header in
-/// `include`.
+/// Writes `dist/RelayContact.fmu` and returns its path. Also writes, for C programs, the library to `lib` and its
+/// header to `include`.
 pub fn build() -> Result<PathBuf> {
     let metadata = metadata()?;
     build_library(&metadata)?;
@@ -26,7 +26,7 @@ pub fn build() -> Result<PathBuf> {
     write("dist/RelayContact.fmu", &pack(&files)?)
 }
 
-/// Cargo's arguments that build the shared library. It alone, as only then it is optimised across crates.
+/// Cargo's arguments to build the shared library only, as otherwise it is not optimised across crates.
 pub const CARGO_RUSTC: [&str; 5] = [
     "rustc",
     "--release",
@@ -38,7 +38,7 @@ pub const CARGO_RUSTC: [&str; 5] = [
 fn build_library(metadata: &Metadata) -> Result<()> {
     let mut build = cargo();
     build.args(CARGO_RUSTC);
-    // Cargo takes rustc's flags from one place alone, so ours go where the user's are.
+    // Cargo takes rustc's flags from one place only, so these are added to the user's.
     let given = |name, separator: char| {
         let flags = env::var(name).ok()?;
         let flags = flags.split(separator).filter(|flag| !flag.is_empty());
@@ -51,15 +51,15 @@ fn build_library(metadata: &Metadata) -> Result<()> {
         build.arg(format!("--config=build.rustflags={ours:?}"));
     }
     let built = run(&mut build);
-    // Rust links with the C compiler, and its own message is less plain.
+    // Rust links with the C compiler; its own message is less clear.
     if built.is_err() && cfg!(unix) && output(command("cc").arg("--version")).is_err() {
         bail!("no C compiler: Rust needs one to link (on Debian: apt-get install gcc libc6-dev)");
     }
     built
 }
 
-/// Flags that keep the folders of this machine out of the library: without them the messages of panics have the whole
-/// paths of source files.
+/// Flags that remove the folders of this machine from the library: without them panic messages contain full paths of
+/// source files.
 pub fn path_flags(metadata: &Metadata) -> Vec<String> {
     let foreign = metadata.packages.iter().filter(|package| package.source.is_some());
     let crates: BTreeSet<_> = foreign
@@ -72,8 +72,8 @@ pub fn path_flags(metadata: &Metadata) -> Vec<String> {
     crates.chain([project]).collect()
 }
 
-/// The contents of the archive. Libraries come with their folder and extension; `rustc` is the compiler whose standard library
-/// they contain; `targets` are their platforms as it calls them, none stands for this machine.
+/// The contents of the archive. Libraries come with their folder and extension; `rustc` is the compiler whose standard
+/// library they contain; `targets` are their platforms as it calls them, none stands for this machine.
 pub fn files<'a>(
     metadata: &Metadata,
     libraries: impl IntoIterator<Item = (&'a str, &'a str, Vec<u8>)>,
@@ -96,7 +96,7 @@ pub fn files<'a>(
     Ok(files)
 }
 
-/// The folder FMI 2.0 gives this machine's platform, and how a shared library is called there.
+/// The folder of this machine's platform in FMI 2.0, and the naming of shared libraries there.
 fn platform() -> Result<(&'static str, &'static str, &'static str)> {
     if cfg!(all(target_os = "linux", target_arch = "x86_64")) {
         Ok(("linux64", "lib", "so"))
@@ -105,7 +105,7 @@ fn platform() -> Result<(&'static str, &'static str, &'static str)> {
     } else if cfg!(target_os = "macos") {
         Ok(("darwin64", "lib", "dylib"))
     } else {
-        bail!("FMI 2.0 has no folder for this platform: it names 64-bit x86 Linux and Windows, and macOS")
+        bail!("FMI 2.0 defines no folder for this platform, only for Linux and Windows on 64-bit x86, and macOS")
     }
 }
 

@@ -1,6 +1,6 @@
-//! The component in other people's importers.
+//! The component in other importers.
 //!
-//! [`prepare`] writes to `out/conformance` our own runs and a system of two contacts, and the scenes' parameter sets to
+//! [`prepare`] writes reference runs and a system of two contacts to `out/conformance`, and the scenes' parameter sets to
 //! `out/ssv`; the tests under `conformance/` compare with them and each write a row of the table of results there.
 
 use std::ffi::OsString;
@@ -17,7 +17,7 @@ use crate::{fmu, python, report};
 
 const FOLDER: &str = "out/conformance";
 
-/// Tests in `conformance/python` that write rows; the others compare with numbers of their own.
+/// Tests in `conformance/python` that write rows of the table.
 const WITH_ROWS: [&str; 6] = [
     "conformance/python/test_ecos.py",
     "conformance/python/test_fmpy.py",
@@ -27,14 +27,14 @@ const WITH_ROWS: [&str; 6] = [
     "conformance/python/test_validate.py",
 ];
 
-/// Builds the component and tests it under all importers.
+/// Builds the component and tests it in all importers.
 pub fn run() -> Result<()> {
     let component = fmu::build()?;
     python::prepare()?;
     stages(&component)
 }
 
-/// The component under all importers, and the table of results.
+/// The component in all importers, and the table of results.
 pub fn stages(component: &Path) -> Result<()> {
     stage("reference runs", || prepare(component))?;
     stage("Python importers", || python::test(&["conformance/python"], component))?;
@@ -45,7 +45,7 @@ pub fn stages(component: &Path) -> Result<()> {
     stage("importers", || report::start("importers", &[""; 0]))
 }
 
-/// The rows that the full report shows: the importers that are called from Python.
+/// The rows shown in the full report: importers called from Python.
 pub fn for_report(arguments: &report::Arguments) -> Result<()> {
     if arguments.has(&["--quick", "--docs", "--help", "-h"]) {
         return Ok(());
@@ -56,7 +56,7 @@ pub fn for_report(arguments: &report::Arguments) -> Result<()> {
     python::test(&WITH_ROWS, &component)
 }
 
-/// Writes our own runs and the system of two contacts, and clears the table.
+/// Writes the reference runs and the system of two contacts, and clears the table.
 fn prepare(component: &Path) -> Result<()> {
     let folder = root().join(FOLDER);
     if folder.exists() {
@@ -73,7 +73,7 @@ fn prepare(component: &Path) -> Result<()> {
 }
 
 /// Cargo's command for the conformance crate. The build of its FMI bindings needs libclang, and the C compiler's own headers
-/// (`stddef.h`), which do not come with the libclang of `.venv`.
+/// (`stddef.h`), which the libclang of `.venv` lacks.
 pub fn conformance(subcommand: &str) -> Result<Command> {
     let mut include = OsString::new();
     if cfg!(unix) {

@@ -9,10 +9,10 @@ use crate::commands::{read, sysroot};
 use crate::linked::{COMPONENT, Crates};
 use crate::package::Files;
 
-/// Where they are in the archive.
+/// Their folder in the archive.
 const FOLDER: &str = "documentation/licenses";
 
-/// Ours, a folder for each crate, and that of the Rust standard library, which is the one of the compiler `rustc`.
+/// The licences of this project, of each crate, and of the Rust standard library of the compiler `rustc`.
 pub fn texts(crates: &Crates, rustc: &Path) -> Result<Files> {
     let mut files = Files::new();
     for name in ["LICENSE-MIT", "LICENSE-APACHE"] {
@@ -52,11 +52,11 @@ fn standard_library(rustc: &Path) -> Result<Option<(&'static str, Vec<u8>)>> {
         }
     }
     let documentation = documentation.display();
-    eprintln!("WARNING: no licence of the Rust standard library in {documentation}: it is left out of the archive");
+    eprintln!("WARNING: no licence of the Rust standard library in {documentation}: the archive does not contain it");
     Ok(None)
 }
 
-/// The files of a crate's top folder whose name says that they are about its licence.
+/// The licence files of a crate, by their names.
 fn of_crate(folder: &Path) -> Result<Files> {
     let mut files = Files::new();
     for entry in fs::read_dir(folder)? {

@@ -15,17 +15,17 @@ pub type Crate = (String, String);
 
 /// A crate that is linked.
 pub struct Linked<'a> {
-    /// What cargo knows about it.
+    /// Its metadata from cargo.
     pub package: &'a Package,
-    /// The crates it uses itself.
+    /// Its direct dependencies.
     pub uses: BTreeSet<Crate>,
 }
 
 /// All of them, the component included.
 pub type Crates<'a> = BTreeMap<Crate, Linked<'a>>;
 
-/// Finds them. `targets` are the platforms as rustc calls them; none stands for this machine. `cargo tree` is asked because,
-/// unlike `cargo metadata`, it resolves features for this one package.
+/// Finds them. `targets` are the target triples; empty for this machine. `cargo tree` is used because, unlike `cargo
+/// metadata`, it resolves features for this package only.
 pub fn crates<'a>(metadata: &'a Metadata, targets: &[&str]) -> Result<Crates<'a>> {
     let mut tree = cargo();
     tree.args(["tree", "--edges=normal,no-proc-macro", "--prefix=depth", "--format={p}"]);

@@ -42,18 +42,18 @@ enum Task {
     Ssv,
     /// Build the component, run the published 1 kHz case under FMPy, compare and plot
     Demo,
-    /// Measure time against accuracy, beside other integrators; rewrite docs/accuracy.csv, its figures and its tables
+    /// Measure time over accuracy, compared with other integrators; rewrite docs/accuracy.csv, its figures and tables
     #[command(disable_help_flag = true)]
     Accuracy(report::Arguments),
     /// Measure the cost and influence of each effect; rewrite docs/effects.md
     #[command(disable_help_flag = true)]
     Effects(report::Arguments),
-    /// Run everything that the report shows and write out/report/index.html
+    /// Run everything shown in the report and write out/report/index.html
     #[command(disable_help_flag = true)]
     Report(report::Arguments),
-    /// Test the component under other people's importers and print the table of results
+    /// Test the component in other importers and print the table of results
     Importers,
-    /// Check the calls of importers for memory errors and leaks, under valgrind
+    /// Check calls as from importers for memory errors and leaks, under valgrind
     Valgrind,
     /// Count the instructions of a communication step, through C and in Rust (needs valgrind)
     Instructions,

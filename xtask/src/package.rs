@@ -1,4 +1,4 @@
-//! A zip archive whose bytes depend on its contents alone: entries sorted, fixed times, fixed permissions.
+//! A zip archive whose bytes depend only on its contents: entries sorted, fixed times, fixed permissions.
 
 use std::collections::BTreeMap;
 use std::io::{Cursor, Write};

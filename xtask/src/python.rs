@@ -35,17 +35,17 @@ pub fn test(tests: &[&str], component: &Path) -> Result<()> {
         .env("RELAY_CONTACT_FMU", component))
 }
 
-/// Makes the environment, unless it is there with the same requirements.
+/// Creates the environment, unless it exists with the same requirements.
 pub fn prepare() -> Result<()> {
     let required = requirements()?;
-    // Written last, so that an unfinished environment is made anew.
+    // Written last, so that an unfinished environment is created again.
     let stamp = root().join(".venv/requirements.txt");
     let current = fs::read_to_string(&stamp).is_ok_and(|installed| installed == required);
     if current && output(python().arg("--version")).is_ok() {
         return Ok(());
     }
     let python3 = system_python()?;
-    println!("making .venv (Python packages of requirements.txt): some minutes the first time");
+    println!("creating .venv (Python packages of requirements.txt): some minutes the first time");
     output(command(python3).args(["-m", "venv", "--clear", ".venv"]))?;
     output(pip().args(["-r", "requirements.txt"]))?;
     Ok(fs::write(stamp, required)?)
@@ -72,7 +72,7 @@ fn package(name: &str) -> Result<PathBuf> {
     Ok(PathBuf::from(path.trim()))
 }
 
-/// zig and cargo-zigbuild, which only the release needs: `prepare` leaves out what requirements.txt marks so.
+/// zig and cargo-zigbuild, which only the release needs: marked in requirements.txt and not installed by `prepare`.
 pub fn zig() -> Result<(PathBuf, PathBuf)> {
     const MARK: &str = "; extra == 'release'";
     prepare()?;
@@ -84,7 +84,7 @@ pub fn zig() -> Result<(PathBuf, PathBuf)> {
     Ok((package("ziglang")?.join(format!("zig{EXE_SUFFIX}")), zigbuild))
 }
 
-/// The machine's Python 3, if it can make environments.
+/// The Python 3 of this machine, if it can create environments.
 fn system_python() -> Result<&'static str> {
     let version = |name: &str| {
         let code = "import sys; print(*sys.version_info[:2])";
@@ -95,7 +95,8 @@ fn system_python() -> Result<&'static str> {
         .find_map(|name| Some((name, version(name)?)));
     let Some((name, version)) = found else {
         bail!(
-            "Python 3 is missing: install Python 3.11 or newer so that python3 is found (on Debian: apt-get install python3 python3-venv)"
+            "Python 3 is missing: install Python 3.11 or newer so that python3 is found (on Debian: apt-get install \
+             python3 python3-venv)"
         );
     };
     let numbers: Vec<u32> = version

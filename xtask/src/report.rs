@@ -1,5 +1,5 @@
-//! Starts the program `report`: the report, the costs of the effects, scenes, what accuracy costs. It is a program of its own,
-//! so that what it needs is compiled where it is asked for alone.
+//! Starts the program `report`: the report, the cost of effects and of accuracy, and scenes. A separate program, so
+//! that its dependencies are compiled only when needed.
 
 use std::ffi::{OsStr, OsString};
 use std::process::Command;
@@ -15,7 +15,7 @@ pub const CHROMIUM_MISSING: &str = "Chromium is missing (on Debian: apt-get inst
 /// Names of Chromium.
 const CHROMIUM: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
 
-/// Arguments that are handed on to the program.
+/// Arguments passed on to the program.
 #[derive(clap::Args)]
 pub struct Arguments {
     #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
@@ -31,7 +31,7 @@ impl Arguments {
     }
 }
 
-/// Does one of the program's tasks.
+/// Prepares Python and runs a task of the program.
 pub fn run(task: &str, arguments: &Arguments) -> Result<()> {
     if !arguments.has(&["--help", "-h"]) {
         python::prepare()?;
@@ -45,7 +45,7 @@ pub fn test() -> Result<()> {
     commands::run(python::python().args(["-m", "pytest", "--quiet", "report/browser"]))
 }
 
-/// Does a task of the program with its arguments.
+/// Runs a task of the program with its arguments.
 pub fn start(task: &str, arguments: &[impl AsRef<OsStr>]) -> Result<()> {
     commands::run(program().arg(task).args(arguments))
 }
@@ -56,7 +56,7 @@ fn program() -> Command {
     program
 }
 
-/// Chromium, by the name under which it is there.
+/// The command name of Chromium, if installed.
 pub fn chromium() -> Option<&'static str> {
     let there = |name: &&str| commands::output(command(name).arg("--version")).is_ok();
     CHROMIUM.into_iter().find(there)

@@ -1,4 +1,4 @@
-//! Every check and test, those that fail fastest first.
+//! All checks and tests, the fastest first.
 
 use std::process::Command;
 use std::{env, thread};
@@ -20,12 +20,12 @@ pub struct Arguments {
     /// For daily work: only format, lint, unit and integration tests
     #[arg(long)]
     quick: bool,
-    /// Only the stages that run beside the Rust tests
+    /// Only the stages that run in parallel with the Rust tests
     #[arg(long, hide = true)]
     component: bool,
 }
 
-/// Runs all stages. The first that fails ends it, but for those that run at the same time.
+/// Runs all stages up to the first failure, but completes those running in parallel.
 pub fn run(arguments: Arguments) -> Result<()> {
     if arguments.component {
         return component();
@@ -47,7 +47,7 @@ pub fn run(arguments: Arguments) -> Result<()> {
     })
 }
 
-/// Does the work of both at the same time, as much of it uses one core. The output of the second is printed at the end.
+/// Runs both in parallel, as most of the work uses one core. The output of the second is printed at the end.
 fn both(first: impl FnOnce() -> Result<()>, second: impl FnOnce() -> Result<String> + Send) -> Result<()> {
     let (first, second) = thread::scope(|scope| {
         let second = scope.spawn(second);
@@ -73,7 +73,7 @@ fn rust(calls: &str) -> Result<()> {
     })
 }
 
-/// The stages with the library alone.
+/// The stages with the library only.
 fn library() -> Result<()> {
     rust("1000000")?;
     if !valgrind::is_installed() {

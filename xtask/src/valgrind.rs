@@ -1,4 +1,4 @@
-//! The calls of importers under valgrind: no error, no leak.
+//! Calls as from importers under valgrind: no error, no leak.
 //!
 //! The library is that of the Rust tests, with its compilation for AVX2 (tried with valgrind 3.19, Debian 12).
 
@@ -24,13 +24,13 @@ const VALGRIND: [&str; 6] = [
     "valgrind",
     "--quiet",
     "--leak-check=full",
-    // To valgrind, what Rust's runtime keeps of its main thread to the end is "possibly lost".
+    // Data of the main thread kept by Rust's runtime are "possibly lost" to valgrind.
     "--show-leak-kinds=definite,indirect",
     "--errors-for-leak-kinds=definite,indirect",
     "--error-exitcode=1",
 ];
 
-/// Whether valgrind is there.
+/// Whether valgrind is installed.
 pub fn is_installed() -> bool {
     output(command("valgrind").arg("--version")).is_ok()
 }
@@ -46,7 +46,7 @@ pub fn run() -> Result<()> {
         command(valgrind)
             .args(options)
             .arg(&campaign)
-            // Thousands of instances, and every call in every state, show nothing new here and take minutes.
+            // Thousands of instances, and every call in every state, take minutes and add nothing here.
             .args([
                 "--test-threads=1",
                 "--skip=thousands",
@@ -65,7 +65,7 @@ pub fn run() -> Result<()> {
     Ok(())
 }
 
-/// Builds the campaign as the Rust tests do, so that nothing is compiled again, and gives its program.
+/// Builds the campaign as the Rust tests do, so that nothing is compiled again, and returns its program.
 fn build_campaign() -> Result<PathBuf> {
     let mut build = cargo();
     build.args(["test", "--no-run", "--test", CAMPAIGN]);

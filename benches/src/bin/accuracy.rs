@@ -1,4 +1,4 @@
-//! Measures what accuracy costs and writes `accuracy.csv`, and the tables of `accuracy.md` between its two markers.
+//! Measures the cost of accuracy and writes `accuracy.csv`, and the tables of `accuracy.md` between its two markers.
 //! `cargo xtask accuracy` calls this and draws the figures.
 
 use std::fs;
@@ -12,12 +12,12 @@ const BEGIN: &str = "<!-- tables: written by cargo xtask accuracy -->";
 const END: &str = "<!-- end of tables -->";
 
 #[derive(Parser)]
-#[command(about = "Measures what accuracy costs")]
+#[command(about = "Measures the cost of accuracy")]
 struct Arguments {
     /// Folder of accuracy.csv and accuracy.md
     #[arg(long, default_value = "docs")]
     folder: PathBuf,
-    /// Few settings and one turn
+    /// Few settings and one round
     #[arg(long)]
     quick: bool,
     /// How often each run is timed; the median counts
@@ -36,7 +36,7 @@ fn main() -> Result<()> {
     update(&arguments.folder.join("accuracy.md"), &table::report(&rows))
 }
 
-/// Replaces what stands between the markers of a page; a page without them becomes the tables alone.
+/// Replaces the text between the markers of a page; a page without them is replaced by the tables.
 fn update(path: &Path, tables: &str) -> Result<()> {
     let page = fs::read_to_string(path).unwrap_or_default();
     let parts = page

@@ -1,6 +1,6 @@
-//! Makes communication steps, for a tool that counts instructions: `steps SCENE WAY COUNT`, the scene `1us` (steps far inside
-//! those of the integrator), `10us` (about as long) or `shaken` (10 us, and an input that changes every step), the way `fmi2DoStep` (of the library file
-//! beside this program) or `library` (the same steps without C).
+//! Makes communication steps, for counting instructions: `steps SCENE INTERFACE COUNT`, the scene `1us` (steps far
+//! shorter than those of the integrator), `10us` (about as long) or `shaken` (10 us, and an input that changes every
+//! step), the interface `fmi2DoStep` (of the library file beside this program) or `library` (the same steps without C).
 
 use campaign::api::LIBRARY;
 use campaign::call::Call;
@@ -20,20 +20,20 @@ fn plan(scene: &str) -> (f64, fn(u32) -> f64) {
         "1us" => (1e-6, |_| 0.0),
         "10us" => (1e-5, |_| 0.0),
         "shaken" => (1e-5, |k| f64::from(k % 5)),
-        other => panic!("no scene {other}"),
+        other => panic!("unknown scene {other}"),
     }
 }
 
 fn main() {
     let arguments: Vec<String> = std::env::args().collect();
     let [_, scene, way, count] = &arguments[..] else {
-        panic!("usage: steps SCENE WAY COUNT");
+        panic!("usage: steps SCENE INTERFACE COUNT");
     };
     let count = count.parse().expect("a count of steps");
     let force = match way.as_str() {
         "fmi2DoStep" => through_c(plan(scene), count),
         "library" => alone(plan(scene), count),
-        other => panic!("no way {other}"),
+        other => panic!("unknown interface {other}"),
     };
     println!("{force}");
 }

@@ -1,4 +1,4 @@
-//! Every function in every state, with right and with wrong arguments.
+//! Every function in every state, with valid and with wrong arguments.
 
 use std::collections::BTreeSet;
 use std::ptr;
@@ -29,7 +29,7 @@ fn in_phase(phase: Phase) -> Judge<'static> {
     judge
 }
 
-/// Every function with arguments that are right, and with each fault.
+/// Every function with valid arguments, and with each fault.
 fn calls() -> Vec<Call> {
     let mut calls = vec![
         Call::SetupExperiment {
@@ -135,7 +135,7 @@ fn get_derivative(reference: u32, order: i32) -> Call {
     }
 }
 
-/// Wrong values, references and instants.
+/// Wrong values, references and communication points.
 fn wrong_numbers() -> Vec<Call> {
     let mut calls = Vec::new();
     let current = DESCRIPTION.reference("contact.current");
@@ -144,14 +144,14 @@ fn wrong_numbers() -> Vec<Call> {
         for kind in Kind::ALL {
             calls.push(Call::get(kind, vec![variable.reference]));
             let near = [variable.min, variable.max, variable.min - 1.0, variable.max + 1.0];
-            // The value matters where the function suits the variable.
+            // The value matters only if the function matches the variable.
             let count = if kind == variable.kind {
                 strange.len() + near.len()
             } else {
                 1
             };
             for value in strange.iter().chain(&near).take(count) {
-                // After a right one, of which nothing is taken over where the value is wrong.
+                // After a valid one, which is not set if the value is wrong.
                 let before = (kind == Kind::Real).then_some((current, 3.0));
                 let values = before.into_iter().chain([(variable.reference, *value)]);
                 calls.push(Call::set(kind, values.collect()));
@@ -218,7 +218,7 @@ fn every_call_in_every_state_gets_the_answer_of_the_standard() {
             let mut judge = in_phase(phase);
             judge.call(call).unwrap();
             met.extend(judge.met.iter().map(|(function, _)| *function));
-            // Whatever it was: after an error nothing more can be set, and the way out is open.
+            // In any case, after an error no more values can be set, and the instance can be reset.
             judge.run(&[set.clone(), Call::restore(2)]).unwrap();
             judge.run(&reset_and_run()).unwrap();
         }
@@ -252,7 +252,7 @@ fn what_is_no_instance_is_refused_by_every_function_and_left_alone() {
     let foreign: fmi2Component = memory.as_mut_ptr().cast();
     for component in [ptr::null_mut(), foreign, foreign.wrapping_byte_add(1)] {
         for call in calls() {
-            // Renew makes an instance; its half that frees is below.
+            // Renew creates an instance; its other half, freeing, is tested below.
             if call == Call::Renew {
                 continue;
             }

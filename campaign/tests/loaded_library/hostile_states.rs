@@ -1,4 +1,4 @@
-//! Saved states with hostile contents and a right checksum.
+//! Saved states with manipulated contents and a correct checksum.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ fn a_repaired_specimen_is_the_specimen() {
     assert_eq!(
         repaired(specimen.clone()),
         specimen,
-        "the form of saved states has changed"
+        "the format of saved states has changed"
     );
     assert_eq!(meet(&LIBRARY, &specimen, 10), Ok(Outcome::WentOn));
 }
@@ -20,14 +20,14 @@ fn a_repaired_specimen_is_the_specimen() {
 #[test]
 fn hostile_contents_are_refused_or_gone_on_from() {
     let specimen = specimen(&LIBRARY);
-    // Under valgrind, where each takes thirty times as long.
+    // Shorter under valgrind, which is thirty times slower.
     let short = std::env::var_os("CAMPAIGN_CALLS").is_some();
     let mut outcomes = BTreeMap::new();
     for seed in 0..1000 {
         let drawn = bytes(seed, 32);
         let hostile = changed(&specimen, &mut Choices::new(&drawn));
-        // One of some hundred leads to where a step takes its whole budget, which is some ten seconds: the fuzz
-        // target makes them all.
+        // In about one of several hundred, a step reaches the work limit, which takes some ten seconds: these are left
+        // to the fuzz target.
         let steps = if seed < 400 && !short { 2 } else { 0 };
         let outcome = meet(&LIBRARY, &hostile, steps).unwrap_or_else(|reason| panic!("seed {seed}: {reason}"));
         *outcomes.entry(outcome).or_insert(0) += 1;

@@ -1,4 +1,4 @@
-//! Instances: what makes none, many at once, many threads.
+//! Instances: failed instantiation, many at once, many threads.
 
 use std::ffi::CStr;
 
@@ -15,10 +15,10 @@ fn the_library_is_the_one_of_this_build() {
     let text = |text| unsafe { CStr::from_ptr(text) };
     assert_eq!(text(unsafe { (LIBRARY.fmi2GetVersion)() }), c"2.0");
     assert_eq!(text(unsafe { (LIBRARY.fmi2GetTypesPlatform)() }), c"default");
-    // Same description, same results to the last bit: an old file would have to be very lucky.
+    // Same description and bitwise the same results: this excludes a file of another build.
     assert!(
         run(&LIBRARY, 0) == run(&Api::linked(), 0),
-        "the library file gives other results than the library linked into this test: it is of another build"
+        "the library file gives other results than the library linked into this test: it is from another build"
     );
 }
 
@@ -53,7 +53,7 @@ fn a_wrong_guid_type_name_or_no_callbacks_make_no_instance() {
     assert!(right.instantiate(LIBRARY.fmi2Instantiate, None).is_null());
 }
 
-/// The bits of all real outputs over a run in which the contact opens; each number its own run.
+/// The bits of all real outputs over a run in which the contact opens; the run depends on the number.
 fn run(api: &Api, number: u32) -> Vec<u64> {
     let mut judge = Judge::new(api);
     let mut bits = Vec::new();
@@ -75,7 +75,7 @@ fn eight_threads_with_an_instance_each_get_the_bits_of_a_single_one() {
             .collect();
         threads.into_iter().map(|thread| thread.join().unwrap()).collect()
     });
-    assert!(alone == together, "results depend on what other threads do");
+    assert!(alone == together, "results depend on other threads");
     assert_ne!(alone[0], alone[1]);
 }
 

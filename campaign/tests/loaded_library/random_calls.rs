@@ -5,7 +5,7 @@ use std::time::Instant;
 use campaign::api::LIBRARY;
 use campaign::random::campaign;
 
-/// How many calls are made, unless the environment variable CAMPAIGN_CALLS says otherwise.
+/// Number of calls, unless the environment variable CAMPAIGN_CALLS is set.
 const CALLS: u64 = 100_000;
 
 #[test]

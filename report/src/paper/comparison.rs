@@ -1,4 +1,4 @@
-//! Published numbers beside ours.
+//! Published numbers compared with those of this model.
 
 use anyhow::Result;
 use relay_contact::variables::AxialForceKind;
@@ -16,15 +16,16 @@ const FIT: &str = " †";
 pub fn introduction() -> Block {
     Block::Text(format!(
         "Source: Y. Zhang, C. Zhang, Y. Meng, W. Ren, *Machines* 2025, 13(1), 52, \
-         [doi:10.3390/machines13010052](https://doi.org/10.3390/machines13010052): finite elements and measurements of one relay \
-         contact. Ours are runs of the library with its start values, made when this page was written.\n\n\
-         Rows marked † are what the unpublished parameters were fitted to: they show that the fit holds, not that the model \
-         predicts. All others are predictions.\n\n\
-         The published stiffness coefficients beta cannot be used as they are printed (see *Findings*). Here a published damping \
-         ratio stands for damping times of beam and contact of {} µs times the ratio: the printed coefficient over 4 π². The mass \
-         coefficients alpha are used as printed.\n\n\
-         Amplitudes are half the distance between the greatest and the least value of a period, after all transients have \
-         decayed. The axial force is that of eq. 9 at the preload unless something else is said.",
+         [doi:10.3390/machines13010052](https://doi.org/10.3390/machines13010052): finite elements and measurements \
+         of one relay contact. Values of this model are runs of the library with its start values, made when this \
+         page was written.\n\n\
+         The unpublished parameters were fitted to the rows marked †: these show the quality of the fit. All other \
+         rows are predictions.\n\n\
+         The published stiffness coefficients beta cannot be used as they are printed (see *Findings*). Here a \
+         published damping ratio means damping times of beam and contact of {} µs times the ratio, the printed \
+         coefficient divided by 4 π². The mass coefficients alpha are used as printed.\n\n\
+         Amplitudes are half the difference between maximum and minimum over a period, after all transients have \
+         decayed. Unless stated otherwise, the axial force is that of eq. 9 at the preload.",
         number(1e6 * runs::damping_per_ratio(), 3)
     ))
 }
@@ -111,7 +112,7 @@ pub fn time_domain(results: &Results) -> Result<Block> {
             "section 3.2, Fig. 6",
         ),
         row(
-            "the same over that of the base",
+            "ratio of that amplitude to the base amplitude",
             paper::DISPLACEMENT_RATIO,
             displacement / base,
             3,
@@ -132,7 +133,7 @@ pub fn time_domain(results: &Results) -> Result<Block> {
         let (found, highest) = peak(runs.iter().map(|run| (run.frequency, run.amplitude())));
         let name = format!("ratio {ratio}");
         rows.push(row(
-            &format!("greatest force amplitude, {name}"),
+            &format!("maximum force amplitude, {name}"),
             published,
             highest,
             2,
@@ -140,7 +141,7 @@ pub fn time_domain(results: &Results) -> Result<Block> {
             "section 3.2, Fig. 7",
         ));
         rows.push(difference(
-            &format!("its frequency in the grid, {name}"),
+            &format!("frequency of the maximum in the grid, {name}"),
             at,
             found,
             0,
@@ -172,7 +173,8 @@ pub fn grid(results: &Results) -> Result<Block> {
         .chain(ratios.iter().map(String::as_str))
         .collect();
     Ok(table(
-        "Force amplitude in cN over the published excitation grid, ours; the published figure prints no numbers but the peaks above",
+        "Force amplitude of this model in cN over the published excitation grid; the published figure gives numbers \
+         only for the peaks above",
         &columns,
         rows,
     ))
@@ -187,19 +189,26 @@ pub fn frequency_domain(results: &Results) -> Result<Block> {
         let name = format!("alpha = {alpha} 1/s");
         let place = "section 3.2, Fig. 9";
         rows.push(row(
-            &format!("greatest force amplitude, {name}"),
+            &format!("maximum force amplitude, {name}"),
             published,
             highest,
             2,
             "cN",
             place,
         ));
-        rows.push(difference(&format!("its frequency, {name}"), at, found, 0, "Hz", place));
+        rows.push(difference(
+            &format!("frequency of the maximum, {name}"),
+            at,
+            found,
+            0,
+            "Hz",
+            place,
+        ));
     }
-    Ok(comparison("Frequency domain, 98 m/s², mass damping alone", rows))
+    Ok(comparison("Frequency domain, 98 m/s², mass damping only", rows))
 }
 
-/// Both domains against each other.
+/// Frequency domain compared with time domain.
 pub fn domains(results: &Results) -> Result<Block> {
     let mut rows = Vec::new();
     for (ratio, alpha) in paper::EQUIVALENT {
@@ -215,7 +224,7 @@ pub fn domains(results: &Results) -> Result<Block> {
         };
         let cell = |value: f64| format!("{} %", number(100.0 * value, 1));
         rows.push(cells(&[
-            &format!("alpha = {alpha} 1/s against ratio {ratio}"),
+            &format!("alpha = {alpha} 1/s and ratio {ratio}"),
             &format!("within {} %", paper::EQUIVALENT_DEVIATION),
             &cell(worst(&whole, 2000.0)?),
             &cell(worst(&elastic, 2000.0)?),
@@ -224,15 +233,15 @@ pub fn domains(results: &Results) -> Result<Block> {
         ]));
     }
     Ok(table(
-        "Largest deviation of the force amplitude between frequency and time domain over the grid, 250 to 2000 Hz; the elastic part is the \
-         contact force without what the damping of the contact adds",
+        "Largest deviation of the force amplitude between frequency and time domain over the grid, 250 to 2000 Hz; \
+         the elastic part is the contact force without the contribution of contact damping",
         &[
             "damping",
             "published",
-            "ours",
-            "ours, elastic part",
-            "the same up to 1500 Hz",
-            "where in the publication",
+            "this model",
+            "this model, elastic part",
+            "elastic part, up to 1500 Hz",
+            "location in the publication",
         ],
         rows,
     ))
@@ -248,7 +257,7 @@ pub fn displacements(results: &Results) -> Result<Block> {
     }
     let ours = 1e6 * results.at(paper::BEST, 1000.0)?.displacement;
     rows.push(row(
-        "the same measured, beside ratio 10",
+        "measured amplitude, compared with ratio 10",
         paper::MEASURED_DISPLACEMENT,
         ours,
         3,
@@ -258,7 +267,7 @@ pub fn displacements(results: &Results) -> Result<Block> {
     for (ratio, published) in paper::DISPLACEMENT_DEVIATIONS {
         let ours = 100.0 * (results.at(ratio, 1250.0)?.displacement / excitation(1250.0) - 1.0);
         rows.push(cells(&[
-            &format!("displacement amplitude above that of the base, 1250 Hz, ratio {ratio}"),
+            &format!("displacement amplitude in excess of the base, 1250 Hz, ratio {ratio}"),
             &format!("{published} %"),
             &format!("{} %", number(ours, 2)),
             &format!("{} points", signed(ours - published, 1)),

@@ -1,4 +1,4 @@
-//! Axes and curves that the figures share.
+//! Axes and curves shared by the figures.
 
 use super::runs::Periodic;
 use crate::content::{Axis, Curve, Style};

@@ -1,4 +1,4 @@
-//! The displacement of the contact, and where on the spring the published one may have been read.
+//! The displacement of the contact, and the points of the spring at which the published one may have been measured.
 
 use anyhow::{Context, Result};
 use relay_contact::reference;
@@ -33,12 +33,12 @@ pub fn blocks(results: &Results) -> Result<Vec<Block>> {
     let indentation = results.specimen.preload().indentation;
     let text = format!(
         "### The displacement of the contact\n\n\
-         The base moves by {} µm at 1000 Hz and 98 m/s². A closed contact moves with it: a force amplitude of {} cN over a contact stiffness of \
-         {} N/µm is at most {} nm of motion between the two, and the whole indentation at rest is {} nm. Published is up to {} µm more than the \
-         base. No contact of the published stiffness can do that with the published force, so the published displacement must have been read \
-         at another place: somewhere on the spring, or on a contact that turns or slides in the three-dimensional model. Where is not \
-         published. The same holds for the measured {} µm: where the laser pointed is not published. The phase of 90° between \
-         force and displacement belongs to that place too.",
+         The base moves by {} µm at 1000 Hz and 98 m/s². A closed contact moves with it: a force amplitude of {} cN \
+         at a contact stiffness of {} N/µm is at most {} nm of relative motion, and the whole indentation at rest is \
+         {} nm. The published displacement exceeds that of the base by up to {} µm. The published stiffness and force \
+         do not allow this, so the displacement was measured elsewhere: at another point of the spring, or on a \
+         contact that rotates or slides in the three-dimensional model. The point is not published; neither is that \
+         of the laser for the measured {} µm. The phase of 90° between force and displacement belongs to the same point.",
         number(base, 3),
         number(run.amplitude(), 2),
         number(1e-6 * stiffness, 2),
@@ -50,10 +50,10 @@ pub fn blocks(results: &Results) -> Result<Vec<Block>> {
     let columns = [
         "ratio",
         "published",
-        "ours",
+        "this model",
         "deviation",
-        "published above that of the base",
-        "ours relative to the base",
+        "published, in excess of the base",
+        "this model, relative to the base",
     ];
     let mut blocks = vec![
         Block::Text(text),
@@ -67,7 +67,7 @@ pub fn blocks(results: &Results) -> Result<Vec<Block>> {
     Ok(blocks)
 }
 
-/// Points of the spring whose displacement is compared with the published one, in parts of the length.
+/// Points of the spring whose displacement is compared with the published one, as fractions of the length.
 const POINTS: [f64; 4] = [0.8, 0.85, 0.9, 0.95];
 
 /// The displacement of other points of the spring.
@@ -87,7 +87,7 @@ fn elsewhere() -> Result<Vec<Block>> {
     for (ratio, published) in paper::DISPLACEMENT_DEVIATIONS {
         let model = runs::model(&runs::specimen(ratio))?;
         let mut row = vec![
-            format!("1250 Hz, ratio {ratio}, above the base"),
+            format!("1250 Hz, ratio {ratio}, in excess of the base"),
             format!("{} %", signed(published, 1)),
         ];
         for part in POINTS.into_iter().chain([fitted]) {
@@ -106,20 +106,20 @@ fn elsewhere() -> Result<Vec<Block>> {
         furthest = furthest.max(100.0 * (ours / published - 1.0).abs());
     }
     let text = format!(
-        "A place on the spring would explain much of it. At {} of the length from the clamp, {} mm before the contact, our spring has the \
-         published amplitude for ratio 10 at 1000 Hz, and those for the ratios from 5 to 30 within {} %. The weakly damped ones and \
-         those at 1250 Hz are not found at that point.",
+        "A point on the spring would explain much of the difference. At {} of the length from the clamp, {} mm before \
+         the contact, the spring of this model has the published amplitude for ratio 10 at 1000 Hz, and those for \
+         ratios of 5 to 30 within {} %. At that point it reproduces neither the amplitudes of weak damping nor those at 1250 Hz.",
         number(fitted, 3),
         number(1e3 * (1.0 - fitted) * specimen.section().length, 2),
         number(furthest, 1),
     );
     let heads = ["run".to_owned(), "published".to_owned()].into_iter();
-    let points = POINTS.iter().map(|part| format!("ours, at {part} L"));
+    let points = POINTS.iter().map(|part| format!("this model, at {part} L"));
     let columns: Vec<String> = heads
         .chain(points)
-        .chain([format!("ours, at {} L", number(fitted, 3))])
+        .chain([format!("this model, at {} L", number(fitted, 3))])
         .collect();
     let columns: Vec<_> = columns.iter().map(String::as_str).collect();
-    let caption = "Displacement amplitude of points of our spring, base included, linear";
+    let caption = "Displacement amplitude at points of the spring of this model, base included, linear response";
     Ok(vec![Block::Text(text), table(caption, &columns, rows)])
 }

@@ -1,4 +1,4 @@
-//! Twice and three times the damping, and which force the publication may show.
+//! Two and three times the damping, and which force the publication may show.
 
 use anyhow::{Context, Result, anyhow};
 use relay_contact::reference::{self, Model};
@@ -72,15 +72,18 @@ pub fn blocks(results: &Results) -> Result<Vec<Block>> {
         ]));
     }
     let text = format!(
-        "### Twice and three times the damping\n\n\
-         With ratios of 20 and 30 our force amplitude falls less than the published one, and its peak stays higher up, where the published \
-         one moves to 750 and 250 Hz. For the same reason frequency and time domain are not within 8 % of each other.\n\n\
-         One reading would explain most of it. With stiffness damping, a growing part of our contact force is that of the contact's damping. \
-         If the publication's program reports the elastic force alone, the elastic part of ours is to be compared. All else equal, the \
-         amplitudes at 20 and 30 then come near the published ones, and up to 1500 Hz the two domains near each other (table of the \
-         domains in *The publication reproduced*), though the amplitudes at 10 are too low. If rivet mass and damping are fitted anew, so that \
-         the elastic part has the published amplitudes at 1000 and 1250 Hz ({} mg, and {} times the damping), all three peaks are at the \
-         published frequencies. The publication does not say which force it shows. The start values are fitted to the whole force.",
+        "### Two and three times the damping\n\n\
+         With ratios of 20 and 30 the force amplitude of this model falls less than the published one, and its peak \
+         stays at a higher frequency, while the published one moves to 750 and 250 Hz. For the same reason frequency \
+         and time domain do not agree within 8 %.\n\n\
+         One interpretation would explain most of it. With stiffness damping, contact damping contributes a growing \
+         part of the contact force. If the publication reports only the elastic force, it should be compared with the \
+         elastic part of this model. All else equal, the amplitudes at 20 and 30 are then close to the published \
+         ones, and up to 1500 Hz the two domains approach each other (table of the domains in *The publication \
+         reproduced*), but the amplitudes at 10 are too low. If rivet mass and damping are fitted again so that the \
+         elastic part has the published amplitudes at 1000 and 1250 Hz ({} mg, and {} times the damping), all three \
+         peaks are at the published frequencies. The publication does not state which force it shows. The start \
+         values are fitted to the total force.",
         number(1e6 * fit.section().tip_mass, 1),
         number(
             fit.scene().contact.damping / results.specimen.scene().contact.damping,
@@ -90,38 +93,38 @@ pub fn blocks(results: &Results) -> Result<Vec<Block>> {
     let peaks = [
         "ratio",
         "published",
-        "ours, whole force",
-        "ours, elastic part",
-        "elastic part, fitted to it",
+        "this model, total force",
+        "this model, elastic part",
+        "elastic part, parameters refitted",
     ];
     let resistance = [
         "ratio",
         "published (no sign)",
-        "ours, whole force",
-        "ours, elastic part",
+        "this model, total force",
+        "this model, elastic part",
     ];
     Ok(vec![
         Block::Text(text),
         table(
-            "Greatest force amplitude over the grid, time domain, 98 m/s²",
+            "Maximum force amplitude over the grid, time domain, 98 m/s²",
             &peaks,
             rows,
         ),
         Block::Figure(figure(results, &fit)?),
         table(
-            "Deviation of greatest and least resistance from the measured 63 and 25 mΩ at 1000 Hz (Table 6)",
+            "Deviation of maximum and minimum resistance from the measured 63 and 25 mΩ at 1000 Hz (Table 6)",
             &resistance,
             deviations,
         ),
     ])
 }
 
-/// Published value, ours and deviation of a force amplitude, cN.
+/// Force amplitude of this model, cN, and its deviation from the published value.
 fn amplitude_cells(ours: f64, published: f64) -> [String; 2] {
     [format!("{} cN", number(ours, 2)), deviation(ours, published)]
 }
 
-/// Whole force as fitted, and the elastic part fitted to the same amplitudes, over the frequency.
+/// Total force as fitted, and the elastic part fitted to the same amplitudes, over frequency.
 fn figure(results: &Results, fit: &Model) -> Result<Figure> {
     let mut curves = Vec::new();
     for (colour, (ratio, at, highest)) in paper::PEAKS.into_iter().enumerate() {
@@ -129,14 +132,14 @@ fn figure(results: &Results, fit: &Model) -> Result<Figure> {
         let over = |value: &dyn Fn(f64) -> f64| results.frequencies.iter().map(|f| (*f, value(*f))).collect::<Vec<_>>();
         let elastic = over(&|f| elastic_force(&other, f));
         curves.push(Curve::new(
-            &format!("elastic part, fitted to it, ratio {ratio}"),
+            &format!("elastic part, parameters refitted, ratio {ratio}"),
             elastic,
             Style::Line,
             colour,
         ));
         let whole = over(&|f| linear_force(&model, f));
         curves.push(Curve::new(
-            &format!("whole force, ratio {ratio}"),
+            &format!("total force, ratio {ratio}"),
             whole,
             Style::Dashed,
             colour,
@@ -153,8 +156,8 @@ fn figure(results: &Results, fit: &Model) -> Result<Figure> {
         x: FREQUENCY,
         y: FORCE_AMPLITUDE,
         curves,
-        caption: "Linear response, 98 m/s². The elastic part is fitted to the two published points of ratio 10 alone; those of 20 and 30 \
-                  follow. Dashed: the start values."
+        caption: "Linear response, 98 m/s². The elastic part is fitted only to the two published points of ratio 10; \
+                  those of 20 and 30 are predictions. Dashed: total force with the start values."
             .to_owned(),
     })
 }

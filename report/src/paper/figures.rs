@@ -1,4 +1,4 @@
-//! The publication's figures of frequencies, courses in time, and resistance.
+//! The publication's figures of frequencies, time histories and resistance.
 
 use anyhow::{Context, Result};
 use relay_contact::reference::ElectricalContact;
@@ -56,8 +56,9 @@ pub fn frequencies(quick: bool) -> Result<Figure> {
         x: Axis::linear("overtravel", "mm"),
         y: Axis::linear("first frequency", "Hz"),
         curves,
-        caption: "Ours from the exact characteristic equation with the contact as a spring. Published are the values its text \
-                  states. With and without the axial force of eq. 9 our curves lie on each other, and overtravel hardly matters."
+        caption: "This model: exact characteristic equation with the contact as a spring. Published: values from the \
+                  text. The curves of this model with and without the axial force of eq. 9 coincide, and overtravel \
+                  has almost no influence."
             .to_owned(),
     })
 }
@@ -77,14 +78,14 @@ fn repeated(run: &Periodic, periods: u32, value: impl Fn(&(f64, f64, f64)) -> f6
     points
 }
 
-/// The points at which a course is greatest and least, so that something published can stand beside them.
+/// The points at which a time history is greatest and least, at which published values are drawn.
 fn turning(points: &[(f64, f64)]) -> Option<[f64; 2]> {
     let greatest = points.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
     let least = points.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
     Some([greatest.0, least.0])
 }
 
-/// Fig. 6: courses of force and displacement at 1000 Hz.
+/// Fig. 6: force and displacement over time at 1000 Hz.
 pub fn courses(results: &Results) -> Result<[Figure; 2]> {
     let run = results.at(paper::BEST, 1000.0)?;
     let rest = 100.0 * results.specimen.preload().force;
@@ -99,9 +100,12 @@ pub fn courses(results: &Results) -> Result<[Figure; 2]> {
         title: "Contact force at 1000 Hz, 98 m/s² (Fig. 6)".to_owned(),
         x: Axis::linear("time", "ms"),
         y: Axis::linear("contact force", "cN"),
-        curves: vec![Curve::new("ours", force, Style::Line, 0), published("amplitude", amplitude, 0)],
-        caption: "Three periods after the transients have decayed, damping ratio 10. Published is the amplitude; it is drawn about the \
-                  static force, at the instants of our extremes."
+        curves: vec![
+            Curve::new("this model", force, Style::Line, 0),
+            published("amplitude", amplitude, 0),
+        ],
+        caption: "Three periods after the transients have decayed, damping ratio 10. Published is only the amplitude; \
+                  it is drawn about the static force, at the times of the extremes of this model."
             .to_owned(),
     };
     let displacement = repeated(run, 3, |point| 1e6 * point.2);
@@ -119,12 +123,16 @@ pub fn courses(results: &Results) -> Result<[Figure; 2]> {
         x: Axis::linear("time", "ms"),
         y: Axis::linear("displacement", "µm"),
         curves: vec![
-            Curve::new("ours", displacement, Style::Line, 0),
+            Curve::new("this model", displacement, Style::Line, 0),
             Curve::new("base", shaken, Style::Dashed, 1),
-            published("amplitude", [(top, paper::DISPLACEMENT), (bottom, -paper::DISPLACEMENT)], 0),
+            published(
+                "amplitude",
+                [(top, paper::DISPLACEMENT), (bottom, -paper::DISPLACEMENT)],
+                0,
+            ),
         ],
-        caption: "Base included. Our contact moves with the base but for nanometres; the published displacement must have been read \
-                  elsewhere."
+        caption: "Base included. The contact of this model moves with the base within nanometres; the published \
+                  displacement was measured elsewhere."
             .to_owned(),
     };
     Ok([force, displacement])
@@ -153,13 +161,13 @@ pub fn laws() -> Result<Figure> {
             Curve::new("Holm", law(ResistanceKind::Holm)?, Style::Dashed, 1),
             published("eq. 29", points, 0),
         ],
-        caption: "The component's power law is the published fit. Holm's law, with the hardness the publication measured and the resistivity of \
-                  AgSnO2, is that of one clean spot."
+        caption: "The component's power law is the published fit. Holm's law, with the hardness the publication \
+                  measured and the resistivity of AgSnO2, is that of a single clean spot."
             .to_owned(),
     })
 }
 
-/// Fig. 16: course of the resistance at 1000 Hz.
+/// Fig. 16: resistance over time at 1000 Hz.
 pub fn resistance_course(results: &Results) -> Result<Figure> {
     let run = results.at(paper::BEST, 1000.0)?;
     let (low, high) = paper::MEASURED_RESISTANCE;
@@ -170,13 +178,18 @@ pub fn resistance_course(results: &Results) -> Result<Figure> {
         x: Axis::linear("time", "ms"),
         y: Axis::linear("contact resistance", "mΩ"),
         curves: vec![
-            Curve::new("ours", repeated(run, 10, |point| resistance(point.1)), Style::Line, 0),
-            Curve::new("measured, greatest", band(high), Style::Dashed, 1),
-            Curve::new("measured, least", band(low), Style::Dashed, 2),
+            Curve::new(
+                "this model",
+                repeated(run, 10, |point| resistance(point.1)),
+                Style::Line,
+                0,
+            ),
+            Curve::new("measured, maximum", band(high), Style::Dashed, 1),
+            Curve::new("measured, minimum", band(low), Style::Dashed, 2),
         ],
         caption: format!(
-            "Ten periods. Measured from {low} to {high} mΩ, ours from {} to {} mΩ. The publication's own simulation is {} % from the least \
-             measured value.",
+            "Ten periods. Measured: {low} to {high} mΩ; this model: {} to {} mΩ. The publication's own simulation \
+             deviates by {} % from the measured minimum.",
             number(resistance(run.greatest), 1),
             number(resistance(run.least), 1),
             paper::RESISTANCE_DEVIATIONS[0].1
@@ -200,18 +213,18 @@ pub fn deviations(results: &Results) -> Result<[Figure; 2]> {
     let published_greatest = paper::RESISTANCE_DEVIATIONS.map(|(ratio, _, greatest)| (ratio, greatest));
     let time = Figure {
         id: "paper-fig17",
-        title: "Resistance against measured, time domain, 1000 Hz (Fig. 17, Table 6)".to_owned(),
+        title: "Deviation of the resistance from the measurement, time domain, 1000 Hz (Fig. 17, Table 6)".to_owned(),
         x: Axis::linear("damping ratio", ""),
-        y: Axis::linear("size of the deviation", "%"),
+        y: Axis::linear("magnitude of the deviation", "%"),
         curves: vec![
-            Curve::new("ours, greatest", greatest, Style::LineAndMarkers, 0),
-            published("greatest", published_greatest, 0),
-            Curve::new("ours, least", least, Style::LineAndMarkers, 1),
-            published("least", published_least, 1),
+            Curve::new("this model, maximum", greatest, Style::LineAndMarkers, 0),
+            published("maximum", published_greatest, 0),
+            Curve::new("this model, minimum", least, Style::LineAndMarkers, 1),
+            published("minimum", published_least, 1),
         ],
         caption: format!(
-            "Sizes, as the publication gives no signs. Ours is at most {} % from the greatest measured value, and at least {} % above the \
-             least.",
+            "Absolute values, as the publication gives no signs. This model deviates by at most {} % from the \
+             measured maximum, and is at least {} % above the measured minimum.",
             number(furthest, 1),
             number(nearest, 1)
         ),
@@ -231,16 +244,17 @@ pub fn deviations(results: &Results) -> Result<[Figure; 2]> {
         .map_or(f64::NAN, |point| point.0);
     let frequency = Figure {
         id: "paper-fig18",
-        title: "Greatest resistance against measured, frequency domain, 1000 Hz (Fig. 18)".to_owned(),
+        title: "Deviation of the maximum resistance from the measurement, frequency domain, 1000 Hz (Fig. 18)"
+            .to_owned(),
         x: Axis::linear("mass coefficient", "1/s"),
-        y: Axis::linear("size of the deviation", "%"),
+        y: Axis::linear("magnitude of the deviation", "%"),
         curves: vec![
-            Curve::new("ours", points, Style::Line, 0),
+            Curve::new("this model", points, Style::Line, 0),
             published("5125 1/s", [(5125.0, paper::FREQUENCY_DOMAIN_DEVIATIONS[1].1)], 0),
         ],
         caption: format!(
-            "At the other frequencies the measured values are not published. Ours is closest at {} 1/s; the publication finds 5125 1/s \
-             best over its frequencies.",
+            "Measured values at other frequencies are not published. The deviation of this model is smallest at {} \
+             1/s; over its frequencies, the publication finds 5125 1/s best.",
             number(best, 0)
         ),
     };

@@ -1,4 +1,4 @@
-//! Two places where the publication's numbers do not follow from its formulas.
+//! Two cases in which the publication's numbers do not follow from its formulas.
 
 use std::f64::consts::{PI, TAU};
 
@@ -19,7 +19,7 @@ pub fn blocks(results: &Results) -> Result<Vec<Block>> {
     Ok(blocks)
 }
 
-/// The published beta taken literally.
+/// The published beta as printed.
 fn damping(results: &Results) -> Result<Vec<Block>> {
     let beta = paper::BETAS[3];
     let amplitudes: Vec<f64> = results.literal.iter().map(runs::Periodic::amplitude).collect();
@@ -30,14 +30,14 @@ fn damping(results: &Results) -> Result<Vec<Block>> {
     let omega = paper::ALPHA_PER_BETA.sqrt();
     let first = results.specimen.frequency();
     let text = format!(
-        "### The published stiffness coefficient cannot be meant as printed\n\n\
+        "### The published stiffness coefficient cannot be used as printed\n\n\
          The publication damps with C = beta K and prints beta = {beta:.4e} s, which is 2 ζ/ω at 1000 Hz with a \"damping ratio\" \
-         ζ of 10 (eq. 15). With that number in SI units nothing resonates: the force amplitude is {} to {} cN from 250 to \
+         ζ of 10 (eq. 15). With that number in SI units there is no resonance: the force amplitude is {} to {} cN from 250 to \
          2000 Hz. The publication shows a resonance, 4.812 cN at 1000 Hz and 5.2 cN near 1250 Hz (Figs. 6 and 7).\n\n\
-         Its own relation between the two damping coefficients, alpha = 1610065 beta (eq. 33), should be alpha = beta ω² with ω the first \
-         angular frequency (eq. 32). The factor is the square of {}: near the first frequency in Hz ({}), not in rad/s ({}). \
-         So the coefficient seems to belong to frequencies in Hz, and in SI units it is smaller by 4 π²: {} s. That is a \
-         calibration which this supports, not a proof. With it the resonance is there.",
+         Its own relation between the two damping coefficients, alpha = 1610065 beta (eq. 33), should be alpha = beta \
+         ω² with ω the first angular frequency (eq. 32). The factor is the square of {}: near the first frequency in \
+         Hz ({}), not in rad/s ({}). The coefficient therefore seems to refer to frequencies in Hz; in SI units it is \
+         smaller by a factor of 4 π²: {} s. This supports the calibration but does not prove it. With it the resonance appears.",
         number(least, 3),
         number(greatest, 3),
         number(omega, 1),
@@ -61,8 +61,8 @@ fn damping(results: &Results) -> Result<Vec<Block>> {
             &format!("{} cN", number(run.amplitude(), 3)),
         ]));
     }
-    let caption = format!("Force amplitude with beta = {beta:.4e} s as printed, and over 4 π²; 98 m/s²");
-    let columns = ["frequency", "published", "as printed", "over 4 π²"];
+    let caption = format!("Force amplitude with beta = {beta:.4e} s as printed, and divided by 4 π²; 98 m/s²");
+    let columns = ["frequency", "published", "as printed", "divided by 4 π²"];
     Ok(vec![
         Block::Text(text),
         table(&caption, &columns, rows),
@@ -73,20 +73,19 @@ fn damping(results: &Results) -> Result<Vec<Block>> {
 fn literal_figure(results: &Results) -> Figure {
     let mut curves = vec![amplitudes("beta as printed", &results.literal, Style::Dashed, 1)];
     if let Some((_, runs)) = results.curves.iter().find(|(ratio, _)| *ratio == paper::BEST) {
-        curves.push(amplitudes("beta over 4 π²", runs, Style::Line, 0));
+        curves.push(amplitudes("beta / 4 π²", runs, Style::Line, 0));
     }
     let points = [(1000.0, paper::FORCE_AMPLITUDE), (paper::PEAKS[0].1, paper::PEAKS[0].2)];
     curves.push(published("ratio 10", points, 0));
     Figure {
         id: "finding-beta",
-        title: "The published beta as printed, and over 4 π²".to_owned(),
+        title: "The published beta as printed, and divided by 4 π²".to_owned(),
         x: FREQUENCY,
         y: FORCE_AMPLITUDE,
         curves,
-        caption:
-            "As printed, damping is so strong that beam and contact creep: the same force at every frequency. The \
-                  published points lie on a resonance."
-                .to_owned(),
+        caption: "As printed, beam and contact are strongly overdamped: the force is the same at every frequency. The \
+             published points lie on a resonance."
+            .to_owned(),
     }
 }
 
@@ -102,12 +101,13 @@ fn axial_force(results: &Results) -> Result<Vec<Block>> {
     let needed = runs::axial_force_for(part * without.frequency())?;
     let text = format!(
         "### Equation 9 does not explain the published effect of prestress\n\n\
-         Eq. 9 gives the axial force from the tip's deflection, N = (3 E I y / L³) sin(3 y / (2 L)). At the specimen that is {} mN: the \
-         first frequency falls by {} Hz. The publication has {} Hz (1397.6 to 1354.5 Hz), {} times as much. To lower the frequency of \
-         this spring by the same part takes {} N, {} % of the load at which it buckles once the contact opens ({} N).\n\n\
-         The published shift comes from a three-dimensional model with friction, and its two frequencies also differ in how the \
-         contact is held: bonded in all directions with prestress, by one spring without. A flat contact without friction exerts \
-         no force along the spring at all. The component has eq. 9 because the publication does.",
+         Eq. 9 gives the axial force from the tip's deflection, N = (3 E I y / L³) sin(3 y / (2 L)). For the specimen \
+         this is {} mN, which lowers the first frequency by {} Hz. The publication states {} Hz (1397.6 to 1354.5 \
+         Hz), {} times as much. Lowering the frequency of this spring by the same ratio takes {} N, {} % of the \
+         buckling load of the open contact ({} N).\n\n\
+         The published shift comes from a three-dimensional model with friction, and its two frequencies also differ \
+         in the boundary condition: bonded in all directions with prestress, a single spring without. A flat contact \
+         without friction exerts no force along the spring. The component uses eq. 9 because the publication does.",
         number(1e3 * force, 2),
         number(shift, 3),
         number(published, 1),
@@ -123,7 +123,7 @@ fn axial_force(results: &Results) -> Result<Vec<Block>> {
             &format!("{} Hz", number(shift, 3)),
         ]),
         cells(&[
-            "axial force for the published part of the frequency",
+            "axial force for the published relative shift",
             &format!("{} N", significant(needed)),
             &format!("{} Hz", number(without.frequency() * (1.0 - part), 1)),
         ]),

@@ -1,4 +1,4 @@
-//! How the unpublished parameters follow from published results: the table of `examples/identify`.
+//! Identification of the unpublished parameters from published results: the table of `examples/identify`.
 
 use anyhow::{Context, Result, anyhow};
 use relay_contact::scene::Scene;
@@ -25,13 +25,15 @@ pub fn blocks() -> Result<Vec<Block>> {
     };
     let elastic = Specimen::identify(&elastic).map_err(|error| anyhow!(error))?;
     let text = format!(
-        "Width, thickness, rivet mass, camber radius and a usable damping are not published. They follow from published results by root \
-         finding on the library's own functions: `cargo run --release --example identify` does it again.\n\n\
-         Width and thickness are those of an equivalent uniform section, not of the real spring: {} mm of width on a spring of 15.5 mm \
-         would be a plate.\n\n\
-         The rivet mass is weakly determined: it rests on one force amplitude, and a first frequency that is 1 % higher would change it \
-         by {} (by the slope), half a digit of the static force by {} %. If the published force amplitude is that of the elastic part alone (see *Not reproduced*), it \
-         is {} mg. The damping is not found but a calibration (see *Findings*).",
+        "Width, thickness, rivet mass, camber radius and a usable damping are not published. They follow from \
+         published results by root finding on the library's own functions: `cargo run --release --example identify` \
+         repeats it.\n\n\
+         Width and thickness are those of an equivalent uniform section, not of the real spring: {} mm of width on a \
+         spring of 15.5 mm would be a plate.\n\n\
+         The rivet mass is weakly determined: it depends on one force amplitude. A first frequency higher by 1 % \
+         would change it by {} (linearised), half a unit in the last digit of the static force by {} %. If the \
+         published force amplitude is that of the elastic part only (see *Not reproduced*), it is {} mg. The damping \
+         is a calibration (see *Findings*).",
         number(found.values[width], 1),
         percent(slopes[2][rivet]),
         number(precision[0][rivet], 1),
@@ -50,13 +52,7 @@ pub fn blocks() -> Result<Vec<Block>> {
                 deviation(start, found),
             ]
         });
-    let columns = [
-        "parameter",
-        "follows from",
-        "identified",
-        "start value",
-        "off by rounding",
-    ];
+    let columns = ["parameter", "determined by", "identified", "start value", "difference"];
     let parameters = table("Identified parameters", &columns, rows.collect());
 
     let matrix = |caption: &str, cell: &dyn Fn(usize, usize) -> String| {
@@ -78,11 +74,11 @@ pub fn blocks() -> Result<Vec<Block>> {
         table(caption, &columns, rows.collect())
     };
     let sensitivity = matrix(
-        "Change of each parameter where a published result is 1 % higher, by the slope",
+        "Change of each parameter for a published result higher by 1 %, linearised",
         &|source, parameter| percent(slopes[source][parameter]),
     );
     let units = matrix(
-        "The same as derivatives: parameter per published result, in the units of both",
+        "The same sensitivities as derivatives, in units",
         &|source, parameter| {
             let slope = slopes[source][parameter] * found.values[parameter] / SOURCES[source].value;
             if percent(slopes[source][parameter]) == "0.00 %" {
@@ -95,7 +91,7 @@ pub fn blocks() -> Result<Vec<Block>> {
         },
     );
     let digits = matrix(
-        "How far each parameter is uncertain because a published result is rounded: half of its last printed digit",
+        "Uncertainty of each parameter due to the rounding of a published result: half a unit in its last printed digit",
         &|source, parameter| format!("±{} %", number(precision[source][parameter], 2)),
     );
     Ok(vec![Block::Text(text), parameters, sensitivity, units, digits])

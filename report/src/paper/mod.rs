@@ -1,6 +1,6 @@
-//! The publication beside the model.
+//! The publication compared with this model.
 //!
-//! [`published`]: its numbers;   [`runs`], [`results`]: ours;   the crate `identify`: the identification, shared with its example.
+//! [`published`]: its numbers;   [`runs`], [`results`]: those of this model;   the crate `identify`: the identification.
 //! Sections, of blocks by [`comparison`], [`resistance`], [`figures`], [`responses`]; [`not_reproduced`] with [`displacement`],
 //! [`elastic`]; [`findings`]; [`identification`].   [`table`], [`curves`]: what these are made with;   [`spring`]: the motion
 //! between clamp and contact;   [`validation`]: the same as `docs/validation.md`.
@@ -49,8 +49,8 @@ pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
         section(
             "not-reproduced",
             "Not reproduced",
-            "the shift of the first frequency by prestress, short springs, displacements of the contact, and damping far from \
-             that of the specimen, each with its reason."
+            "the shift of the first frequency by prestress, short springs, displacements of the contact, and damping \
+             far from that of the specimen, with the reasons."
                 .to_owned(),
             not_reproduced::blocks(&results)?,
         ),
@@ -67,14 +67,14 @@ fn lead(results: &Results) -> Result<String> {
     Ok(format!(
         "fitted to the published static force, stiffness, first frequency and one force amplitude, the model gives a \
          resistance of {:.1} to {:.1} mΩ under 98 m/s² at 1000 Hz (measured: {low} \
-         to {high} mΩ), and a greatest force amplitude of {:.2} cN at {frequency} Hz (published: {peak} cN).",
+         to {high} mΩ), and a maximum force amplitude of {:.2} cN at {frequency} Hz (published: {peak} cN).",
         runs::resistance(at_1000.greatest),
         runs::resistance(at_1000.least),
         results.at(ratio, frequency)?.amplitude(),
     ))
 }
 
-/// The publication's tables and figures beside ours.
+/// The publication's tables and figures compared with those of this model.
 fn paper(results: &Results, quick: bool) -> Result<Vec<Block>> {
     let [resistances, consistency] = resistance::resistances(results)?;
     let [force, displacement] = figures::courses(results)?;

@@ -1,4 +1,4 @@
-//! What the model does not reproduce, how far off it is, and why.
+//! What the model does not reproduce, by how much, and why.
 
 use anyhow::Result;
 use relay_contact::variables::AxialForceKind;
@@ -27,8 +27,9 @@ fn prestress(results: &Results) -> Result<Block> {
     let published = paper::WITHOUT_PRESTRESS - paper::WITH_PRESTRESS;
     Ok(Block::Text(format!(
         "### The shift of the first frequency by prestress\n\n\
-         Published: {} Hz lower with prestress (1397.6 to 1354.5 Hz). Ours: {} Hz. The mass per length is fitted to the lower of the two, so \
-         the higher one is off by {} ({} against 1397.6 Hz). Why: see *Findings*, eq. 9.",
+         Published: {} Hz lower with prestress (1397.6 to 1354.5 Hz). This model: {} Hz. The mass per length is \
+         fitted to the lower frequency, so the higher one deviates by {} ({} instead of 1397.6 Hz). For the reason \
+         see *Findings*, eq. 9.",
         number(published, 1),
         number(shift, 3),
         deviation(without, paper::WITHOUT_PRESTRESS),
@@ -59,17 +60,18 @@ fn short_springs(results: &Results) -> Result<Vec<Block>> {
     let ratio = results.specimen.preload().contact_stiffness / results.specimen.section().tip_stiffness();
     let text = format!(
         "### The frequencies of the shorter springs\n\n\
-         The frequencies of a uniform beam go with 1/L² (last column, from 15.5 mm); the published ones follow no single power of the \
-         length, being higher at 11.5 mm and lower at 7.5 mm. Rivet, holes, shear and the compliance of the support count for more \
-         the shorter the spring, and a uniform beam has none of them but the rivet's mass.\n\n\
-         Nor is the course over the overtravel reproduced. Published, L = 11.5 mm: {} Hz from 0.45 to 0.5 mm of overtravel. Ours: {} Hz. \
-         The contact is {} times as stiff as the spring at its tip, so to the spring it is a fixed support at any overtravel, and \
-         eq. 9 gives next to no axial force.",
+         The frequencies of a uniform beam are proportional to 1/L² (last column, from 15.5 mm); the published ones \
+         follow no single power of the length, being higher at 11.5 mm and lower at 7.5 mm. The shorter the spring, \
+         the greater the influence of rivet, holes, shear and compliance of the support; of these, the model of a \
+         uniform beam includes only the rivet's mass.\n\n\
+         The dependence on overtravel is not reproduced either. Published, L = 11.5 mm: {} Hz from 0.45 to 0.5 mm of \
+         overtravel. This model: {} Hz. The contact is {} times as stiff as the spring at its tip, so it acts as a \
+         rigid support at any overtravel, and the axial force of eq. 9 is negligible.",
         number(published, 1),
         significant(change),
         number(ratio, 0),
     );
-    let columns = ["spring", "published", "ours", "deviation", "by 1/L²"];
+    let columns = ["spring", "published", "this model", "deviation", "by 1/L²"];
     Ok(vec![
         Block::Text(text),
         table("First frequency of shorter springs, with prestress", &columns, rows),
@@ -98,23 +100,24 @@ fn undamped(results: &Results) -> Result<Vec<Block>> {
         ]));
     }
     let text = format!(
-        "### The undamped end of the damping grid\n\n\
-         With ratios of {} the linear force amplitude rises above the static force: the contact opens and hammers. The \
-         force is then no sine and need not repeat from period to period, and its blows are far above the static force. The publication \
-         gives an amplitude for every point of its grid. What the model gives there depends on the damping of the contact and of the highest modes, \
-         which nothing published fixes; so no number of ours is shown beside the published ones.",
+        "### Weak damping\n\n\
+         With ratios of {} the linear force amplitude exceeds the static force: the contact opens, and each closing \
+         is an impact. The force is then neither sinusoidal nor necessarily periodic, and the impact forces are far \
+         above the static force. The publication gives an amplitude for every point of its grid. The amplitudes of \
+         this model depend there on the damping of the contact and of the highest modes, which no published result \
+         determines; they are therefore not compared.",
         opening.join(" and ")
     );
     let columns = [
         "ratio",
-        "damping of the first mode, of critical",
-        "greatest linear force amplitude",
-        "of the static force",
+        "damping ratio of the first mode",
+        "maximum linear force amplitude",
+        "relative to the static force",
         "contact",
     ];
     Ok(vec![
         Block::Text(text),
-        table("The weakly damped end of the grid, 98 m/s²", &columns, rows),
+        table("Weakly damped part of the grid, 98 m/s²", &columns, rows),
     ])
 }
 
@@ -130,12 +133,13 @@ fn mass_damping(results: &Results) -> Result<Block> {
         .collect::<Result<_>>()?;
     Ok(Block::Text(format!(
         "### Amplitudes in the frequency domain\n\n\
-         With mass damping alone, the greatest force amplitudes differ from the published ones by {} (alpha = 3000 and 7000 1/s). Mass and stiffness were \
-         fitted in the time domain; nothing was fitted here.\n\n\
-         ### What an expert will object to\n\n\
-         The indentation at rest is {} nm, far below the published roughness of 12.84 µm: the Hertz law stands for the whole \
-         interface, and its radius is a fit. The damping of the first mode is {} of critical, which no metal spring has by itself: it is \
-         a fit too. Where the contact opens, the force of closing again is set by the damping of the contact.",
+         With mass damping only, the maximum force amplitudes differ from the published ones by {} (alpha = 3000 and \
+         7000 1/s). Mass and stiffness were fitted in the time domain; nothing was fitted here.\n\n\
+         ### Known objections\n\n\
+         The indentation at rest is {} nm, far below the published roughness of 12.84 µm: the Hertz law represents \
+         the whole interface, and its radius is a fit. The damping ratio of the first mode is {}, which a metal \
+         spring alone does not have: it is a fit too. If the contact opens, the impact force of re-closing is \
+         determined by the contact damping.",
         peaks.join(" and "),
         number(1e9 * results.specimen.preload().indentation, 1),
         number(

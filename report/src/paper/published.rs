@@ -1,4 +1,4 @@
-//! What the publication states: Zhang, Zhang, Meng, Ren, Machines 2025, 13(1), 52.
+//! Published values: Zhang, Zhang, Meng, Ren, Machines 2025, 13(1), 52.
 
 /// Base acceleration of the excitation grid, m/s2 (Table 3).
 pub const ACCELERATION: f64 = 98.0;
@@ -42,7 +42,8 @@ pub const MEASURED_DISPLACEMENT: f64 = 2.9;
 pub const ALPHAS: [f64; 5] = [3000.0, 4000.0, 5000.0, 6000.0, 7000.0];
 /// Peaks there: mass coefficient, Hz, cN (section 3.2, Fig. 9).
 pub const FREQUENCY_DOMAIN_PEAKS: [(f64, f64, f64); 2] = [(3000.0, 1300.0, 8.7), (7000.0, 1100.0, 4.2)];
-/// The mass coefficients that go with the ratios 10, 20, 30, 1/s, and the largest deviation between the domains, % (Fig. 19).
+/// The mass coefficients that go with the ratios 10, 20, 30, 1/s, and the largest deviation between the domains, %
+/// (Fig. 19).
 pub const EQUIVALENT: [(f64, f64); 3] = [(10.0, 5125.0), (20.0, 10_250.0), (30.0, 15_375.0)];
 pub const EQUIVALENT_DEVIATION: f64 = 8.0;
 /// Mass coefficient over stiffness coefficient, 1/s2 (eq. 33).

@@ -1,4 +1,4 @@
-//! Published contact resistances beside ours.
+//! Published contact resistances compared with those of this model.
 
 use anyhow::Result;
 
@@ -25,7 +25,7 @@ pub fn resistances(results: &Results) -> Result<[Block; 2]> {
     let place = "section 4.2, Fig. 16";
     let mut rows = vec![
         row(
-            "least resistance, 1000 Hz, measured",
+            "minimum resistance, 1000 Hz, measured",
             low,
             resistance(run.greatest),
             2,
@@ -33,7 +33,7 @@ pub fn resistances(results: &Results) -> Result<[Block; 2]> {
             place,
         ),
         row(
-            "greatest resistance, 1000 Hz, measured",
+            "maximum resistance, 1000 Hz, measured",
             high,
             resistance(run.least),
             2,
@@ -53,15 +53,15 @@ pub fn resistances(results: &Results) -> Result<[Block; 2]> {
     for (ratio, least, greatest) in paper::RESISTANCE_DEVIATIONS {
         let run = results.at(ratio, 1000.0)?;
         let (ours_least, ours_greatest) = resistance_deviations(run.least, run.greatest);
-        let name = |what: &str| format!("{what} resistance against measured, ratio {ratio}");
-        rows.push(points(&name("greatest"), greatest, ours_greatest, "Table 6"));
-        rows.push(points(&name("least"), least, ours_least, "Table 6"));
+        let name = |what: &str| format!("deviation of {what} resistance from measurement, ratio {ratio}");
+        rows.push(points(&name("maximum"), greatest, ours_greatest, "Table 6"));
+        rows.push(points(&name("minimum"), least, ours_least, "Table 6"));
     }
     let force = results.specimen.preload().force;
     let model = results.alpha(5125.0)?;
     for (frequency, published) in paper::FREQUENCY_DOMAIN_DEVIATIONS {
         let ours = resistance(force - linear_force(model, frequency) / 100.0);
-        let name = format!("greatest resistance against measured, alpha = 5125 1/s, {frequency} Hz");
+        let name = format!("deviation of maximum resistance from measurement, alpha = 5125 1/s, {frequency} Hz");
         if frequency == 1000.0 {
             let deviation = 100.0 * (ours / high - 1.0);
             rows.push(points(&name, published, deviation, "section 4.2, Fig. 18"));
@@ -78,14 +78,14 @@ pub fn resistances(results: &Results) -> Result<[Block; 2]> {
         }
     }
     let table = comparison(
-        "Contact resistance, 98 m/s²; published deviations have no sign, so sizes are compared, in percentage points. Table 6 names no \
-         frequency; it is taken for 1000 Hz",
+        "Contact resistance, 98 m/s²; published deviations have no sign, so absolute values are compared, in \
+         percentage points. Table 6 states no frequency; 1000 Hz is assumed",
         rows,
     );
     Ok([table, consistency()])
 }
 
-/// What the publication's own force gives by its own power law.
+/// The publication's own force inserted into its own power law.
 fn consistency() -> Block {
     let (coefficient, exponent) = paper::RESISTANCE;
     let (low, high) = paper::MEASURED_RESISTANCE;
@@ -93,9 +93,10 @@ fn consistency() -> Block {
     let amplitude = paper::FORCE_AMPLITUDE / 100.0;
     let (_, least, greatest) = paper::RESISTANCE_DEVIATIONS[0];
     Block::Text(format!(
-        "Table 6 does not follow from the publication's other numbers, if it belongs to 1000 Hz: the published force amplitude of {} cN about the published static force of {} N gives, \
-         by the published power law, {} for the greatest and {} for the least resistance against the measured ones, where Table 6 has \
-         {greatest} % and {least} %. Those are ours.",
+        "If Table 6 refers to 1000 Hz, it does not follow from the publication's other numbers: with the published \
+         power law, the published force amplitude of {} cN about the published static force of {} N gives deviations \
+         of {} for the maximum and {} for the minimum resistance, where Table 6 has {greatest} % and {least} %. The \
+         former agree with this model.",
         paper::FORCE_AMPLITUDE,
         paper::FORCE,
         percent(100.0 * (law(paper::FORCE - amplitude) / high - 1.0)),

@@ -33,13 +33,14 @@ pub fn time_domain(results: &Results) -> Figure {
         x: FREQUENCY,
         y: FORCE_AMPLITUDE,
         curves,
-        caption: "Published are the peaks of three damping ratios and the amplitude at 1000 Hz, to which ratio 10 is fitted. Ratios of 0.1 and 1 are \
-                  in the table of the grid alone: where the contact opens there is no one amplitude."
+        caption: "Published are the peaks of three damping ratios and the amplitude at 1000 Hz, to which ratio 10 is \
+                  fitted. Ratios of 0.1 and 1 are only in the table of the grid: where the contact opens, no single \
+                  amplitude exists."
             .to_owned(),
     }
 }
 
-/// Fig. 8: displacement amplitude against that of the base.
+/// Fig. 8: displacement amplitude in excess of the base.
 pub fn displacement(results: &Results) -> Figure {
     let base = 1e6 * excitation(1000.0);
     let mut curves = Vec::new();
@@ -69,13 +70,13 @@ pub fn displacement(results: &Results) -> Figure {
         .fold(0.0, f64::max);
     Figure {
         id: "paper-fig8",
-        title: "Displacement amplitude of the contact above that of the base (Fig. 8)".to_owned(),
+        title: "Displacement amplitude of the contact in excess of the base (Fig. 8)".to_owned(),
         x: FREQUENCY,
-        y: Axis::linear("above the base", "%"),
+        y: Axis::linear("excess over the base", "%"),
         curves,
         caption: format!(
-            "Published at 1000 Hz from its Table 4, at 1250 Hz from its text. Ours differs from the base by {} % at most: see *Not \
-             reproduced*.",
+            "Published values: at 1000 Hz from Table 4, at 1250 Hz from the text. This model differs from the base by \
+             {} % at most: see *Not reproduced*.",
             number(most, 1)
         ),
     }
@@ -99,11 +100,13 @@ pub fn frequency_domain(results: &Results) -> Result<Figure> {
         x: FREQUENCY,
         y: FORCE_AMPLITUDE,
         curves,
-        caption: "Linear response with mass damping alone. Published are the peaks of the least and the greatest coefficient.".to_owned(),
+        caption: "Linear response with mass damping only. Published are the peaks for the smallest and the largest \
+                  coefficient."
+            .to_owned(),
     })
 }
 
-/// Fig. 19: time against frequency domain.
+/// Fig. 19: time and frequency domain.
 pub fn domains(results: &Results) -> Result<Figure> {
     let mut curves = Vec::new();
     for (colour, (ratio, alpha)) in paper::EQUIVALENT.into_iter().enumerate() {
@@ -132,8 +135,8 @@ pub fn domains(results: &Results) -> Result<Figure> {
         x: FREQUENCY,
         y: FORCE_AMPLITUDE,
         curves,
-        caption: "The publication finds both within 8 % of each other. Ours part where frequency and damping are high: in the time domain \
-                  the damping of the contact adds to the force; see *Not reproduced*."
+        caption: "In the publication both agree within 8 %. In this model they differ at high frequency and damping: \
+                  in the time domain contact damping adds to the force; see *Not reproduced*."
             .to_owned(),
     })
 }

@@ -1,4 +1,4 @@
-//! All that the sections show, computed once.
+//! The results shown by all sections, computed once.
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;
@@ -7,7 +7,7 @@ use relay_contact::reference::Model;
 use super::published::{ALPHAS, BETAS, FREQUENCIES, RATIOS};
 use super::runs::{self, Periodic};
 
-/// Damping ratios drawn over the frequency: with those below, the contact opens near the resonance.
+/// Damping ratios drawn over frequency; with smaller ones the contact opens near the resonance.
 pub const DRAWN: [f64; 4] = [5.0, 10.0, 20.0, 30.0];
 
 /// The runs.
@@ -18,7 +18,7 @@ pub struct Results {
     pub frequencies: Vec<f64>,
     /// Over these, for each of [`DRAWN`].
     pub curves: Vec<(f64, Vec<Periodic>)>,
-    /// With the published stiffness coefficient of the ratio 10 taken literally, over the grid.
+    /// Over the grid, with the published stiffness coefficient of ratio 10 as printed.
     pub literal: Vec<Periodic>,
     /// The specimen.
     pub specimen: Model,
@@ -27,7 +27,7 @@ pub struct Results {
 }
 
 impl Results {
-    /// Runs everything; `quick` makes the curves coarse and leaves every number of the tables.
+    /// Runs everything; `quick` makes the curves coarser but does not change the tables.
     pub fn compute(quick: bool) -> Result<Self> {
         let step = if quick { 125 } else { 25 };
         let frequencies: Vec<f64> = (250..=2000).step_by(step).map(f64::from).collect();

@@ -12,17 +12,17 @@ use relay_contact::variables::{AxialForceKind, ExcitationKind, RealOutput};
 use super::published::{ACCELERATION, BEST};
 use identify::Amplitude;
 
-/// Communication steps of the last period, whose course is kept.
+/// Communication steps of the last period, which is recorded.
 const SAMPLES: u32 = 1000;
-/// A motion repeats where the extremes of the force change by less than this part of the preload from one period to
-/// the next: below the digits shown.
+/// A motion is periodic if the extremes of the force change by less than this fraction of the preload from one period
+/// to the next; below the digits shown.
 const PERIODIC: f64 = 1e-6;
-/// Transients are left to fall to this part.
+/// Transients decay to this fraction.
 const DECAYED: f64 = 1e-8;
-/// Of the runs: far below the digits shown.
+/// Tolerance of the runs: far below the digits shown.
 const TOLERANCE: f64 = 1e-9;
 
-/// The damping times per published ratio, s: those of the start values belong to the ratio 10.
+/// The damping times per published ratio, s; the start values correspond to ratio 10.
 pub fn damping_per_ratio() -> f64 {
     Scene::default().beam.stiffness_damping / BEST
 }
@@ -40,7 +40,7 @@ pub fn with_damping(damping: f64) -> Scene {
     scene
 }
 
-/// The specimen of the frequency domain, damped by mass alone, with a mass coefficient in 1/s.
+/// The specimen of the frequency domain with mass damping only; mass coefficient in 1/s.
 pub fn with_mass_damping(alpha: f64) -> Scene {
     let mut scene = with_damping(0.0);
     scene.beam.mass_damping = alpha;
@@ -71,7 +71,7 @@ pub fn linear_force(model: &Model, frequency: f64) -> f64 {
     Amplitude::Whole.of(model, frequency)
 }
 
-/// That of its elastic part, cN: without what the damping of the contact adds.
+/// That of its elastic part, cN, without the contribution of contact damping.
 pub fn elastic_force(model: &Model, frequency: f64) -> f64 {
     Amplitude::Elastic.of(model, frequency)
 }
@@ -90,9 +90,9 @@ pub struct Periodic {
     pub greatest: f64,
     /// Amplitude of the displacement of the contact with the base, m.
     pub displacement: f64,
-    /// By which the force leads that displacement, degrees from 0 to 180.
+    /// Phase by which the force leads that displacement, degrees from 0 to 180.
     pub phase: f64,
-    /// Whether each period is as the one before. Else the extremes are those of the last period alone.
+    /// Whether the motion is periodic. Otherwise the extremes are those of the last period.
     pub repeats: bool,
     /// Whether the force reaches zero in the last ten periods.
     pub opens: bool,
@@ -101,16 +101,15 @@ pub struct Periodic {
 }
 
 impl Periodic {
-    /// Half of the distance between the extremes of the force, cN.
+    /// Half the difference between the extremes of the force, cN.
     pub fn amplitude(&self) -> f64 {
         50.0 * (self.greatest - self.least)
     }
 }
 
-/// The motion that a scene comes to from rest under the published vibration at a frequency, Hz.
-///
-/// The run lasts until what depends on the start has fallen below the digits shown: the slowest transient that the damping
-/// of the linear model has, or the relaxation time where damping is so strong that motion creeps.
+/// The periodic motion that a scene reaches from rest under the published vibration at a frequency, Hz.
+/// The run lasts until the transients have fallen below the digits shown: the slowest one of the damped linear model,
+/// or the relaxation time if the motion is overdamped.
 pub fn periodic(scene: &Scene, frequency: f64) -> Result<Periodic> {
     let mut scene = *scene;
     scene.effects.excitation = ExcitationKind::Sine;
@@ -166,7 +165,7 @@ pub fn periodic(scene: &Scene, frequency: f64) -> Result<Periodic> {
     Ok(found)
 }
 
-/// Angle of the part of a course that moves with the excitation, rad.
+/// Phase of the component of a signal at the excitation frequency, rad.
 fn angle(course: &[(f64, f64, f64)], value: impl Fn(&(f64, f64, f64)) -> f64) -> f64 {
     let (mut sine, mut cosine) = (0.0, 0.0);
     for (k, point) in (1..).zip(course) {
@@ -177,7 +176,7 @@ fn angle(course: &[(f64, f64, f64)], value: impl Fn(&(f64, f64, f64)) -> f64) ->
     f64::atan2(cosine, sine)
 }
 
-/// Axial compression that gives the specimen a first frequency (Hz), N.
+/// Axial compression at which the specimen has a given first frequency (Hz), N.
 pub fn axial_force_for(frequency: f64) -> Result<f64> {
     let with = |force: f64| {
         let mut scene = Scene::default();

@@ -1,10 +1,8 @@
 //! The linear motion of the spring between clamp and contact, in closed form.
-//!
-//! The displacement with the base, `W e^(i omega t)`, obeys `E I (1 + i omega beta) W'''' = rho A omega^2 W` where mass is
-//! not damped and no axial force acts. It is a sum of `cos, sin, cosh, sinh(g x)`,
-//! `g^4 = rho A omega^2 / (E I (1 + i omega beta))`, with `W = W_0`, `W' = 0` at the clamp, and at the tip `W'' = 0`,
-//! `E I (1 + i omega beta) W''' = -m omega^2 W + k (W - W_0)`, `k` the contact's stiffness with its damping. `W_0` is the
-//! displacement of the base.
+//! The displacement including the base, `W e^(i omega t)`, obeys `E I (1 + i omega beta) W'''' = rho A omega^2 W`
+//! without mass damping and axial force. It is a sum of `cos, sin, cosh, sinh(g x)`, `g^4 = rho A omega^2 / (E I (1 +
+//! i omega beta))`, with `W = W_0`, `W' = 0` at the clamp, and at the tip `W'' = 0`, `E I (1 + i omega beta) W''' = -m
+//! omega^2 W + k (W - W_0)`, `k` the contact's stiffness with its damping. `W_0` is the displacement of the base.
 
 use std::f64::consts::TAU;
 
@@ -14,8 +12,8 @@ use relay_contact::reference::Model;
 
 use super::published::ACCELERATION;
 
-/// Amplitude of the displacement with the base at a part of the spring's length under the published vibration at a
-/// frequency (Hz), m.
+/// Amplitude of the displacement including the base at a fraction of the spring's length, under the published
+/// vibration at a frequency (Hz), m.
 pub fn displacement(model: &Model, frequency: f64, part: f64) -> Result<f64> {
     let section = model.section();
     let omega = TAU * frequency;

@@ -1,9 +1,9 @@
-//! Rows of published numbers beside ours.
+//! Rows of published values compared with those of this model.
 
 use crate::content::{Block, Table};
 use crate::numbers::{deviation, number, signed};
 
-/// quantity | published | ours | deviation | place
+/// quantity | published | this model | deviation | location
 pub fn row(quantity: &str, published: f64, ours: f64, digits: usize, unit: &str, place: &str) -> Vec<String> {
     cells(&[
         quantity,
@@ -14,7 +14,7 @@ pub fn row(quantity: &str, published: f64, ours: f64, digits: usize, unit: &str,
     ])
 }
 
-/// The same where a difference says more than a ratio.
+/// The same with the difference in place of the relative deviation.
 pub fn difference(quantity: &str, published: f64, ours: f64, digits: usize, unit: &str, place: &str) -> Vec<String> {
     let mut row = row(quantity, published, ours, digits, unit, place);
     row[3] = format!("{} {unit}", signed(ours - published, digits));
@@ -28,7 +28,13 @@ pub fn cells(cells: &[&str]) -> Vec<String> {
 
 /// A table of [`row`]s.
 pub fn comparison(caption: &str, rows: Vec<Vec<String>>) -> Block {
-    let columns = ["quantity", "published", "ours", "deviation", "where in the publication"];
+    let columns = [
+        "quantity",
+        "published",
+        "this model",
+        "deviation",
+        "location in the publication",
+    ];
     table(caption, &columns, rows)
 }
 

@@ -10,7 +10,7 @@ use crate::content::{Arguments, Section};
 use crate::markdown::markdown;
 use crate::programs::root;
 
-/// The sections of the page. Their numbers have fewer digits than differ from machine to machine.
+/// The sections of the page. Their numbers are rounded so that they are the same on every machine.
 pub fn validation(arguments: Arguments) -> Result<Vec<Section>> {
     sections(arguments)
 }
@@ -25,15 +25,15 @@ pub fn write() -> Result<PathBuf> {
     Ok(path())
 }
 
-/// The page. The curves are not in it, so they may be coarse.
+/// The page. It does not contain the curves, so they may be coarse.
 fn text() -> Result<String> {
     let sections = validation(Arguments {
         quick: true,
         ..Arguments::default()
     })?;
     Ok(format!(
-        "<!-- Written by cargo xtask report --docs. -->\n# Validation\n\n    cargo xtask report --docs\n\nruns the model and writes this \
-         page: what the model's source publishes, beside what the component computes.\n\n{}",
+        "<!-- Written by cargo xtask report --docs. -->\n# Validation\n\n    cargo xtask report --docs\n\nruns the \
+         model and writes this page: published values of the model's source compared with those of this component.\n\n{}",
         markdown(&sections)
     ))
 }

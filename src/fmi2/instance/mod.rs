@@ -1,4 +1,4 @@
-//! One instance of the component: what was set, the simulation once there is one, and where in its life it is.
+//! One instance of the component: the values set, the simulation once it exists, and the state in the life cycle.
 
 mod variables;
 
@@ -16,10 +16,10 @@ use crate::integrator::motion::Motion;
 use crate::scene::Scene;
 use crate::simulation::Simulation;
 
-/// Tolerances of the experiment above are lowered to this one, the largest that `solver.tolerance` allows.
+/// Larger tolerances of the experiment are reduced to this one, the largest that `solver.tolerance` allows.
 const LARGEST_TOLERANCE: f64 = 0.1;
 
-/// What `fmi2SetupExperiment` says. Start at zero, no tolerance and no end where it is not called.
+/// The arguments of `fmi2SetupExperiment`; without a call start time zero, no tolerance, no stop time.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Experiment {
     tolerance: Option<f64>,
@@ -28,7 +28,7 @@ struct Experiment {
 }
 
 impl Experiment {
-    /// The scene with the tolerance of the experiment where it has none of its own.
+    /// The scene, with the tolerance of the experiment if it has none of its own.
     fn scene(&self, scene: &Scene) -> Scene {
         let mut scene = *scene;
         if let Some(tolerance) = self.tolerance.filter(|_| scene.solver.tolerance == 0.0) {
@@ -38,20 +38,20 @@ impl Experiment {
     }
 }
 
-/// An instance at one moment, but for what is logged, which is the importer's choice and not the simulation's.
+/// A snapshot of an instance, without the log settings, which belong to the importer.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Snapshot {
     state: State,
     scene: Scene,
     inputs: Inputs,
     experiment: Experiment,
-    /// Where the simulation stands, and the displacement of the fixed contact that it began with, m.
+    /// The state of the simulation, and the initial displacement of the fixed contact, m.
     simulation: Option<(Motion, f64)>,
     time: f64,
 }
 
 impl Snapshot {
-    /// Whether every number is one that an instance can have come to. What the scene may not be, the model refuses.
+    /// Whether an instance can reach these numbers. The scene itself is checked by the model.
     pub(super) fn is_sound(&self) -> bool {
         let Experiment {
             tolerance,
@@ -76,9 +76,9 @@ pub(super) struct Instance {
     scene: Scene,
     inputs: Inputs,
     experiment: Experiment,
-    /// In Initialization Mode: made when an output is read, forgotten when something is set.
+    /// In Initialization Mode: created when an output is read, dropped when a value is set.
     simulation: Option<Simulation>,
-    /// The instant up to which the simulation succeeded, s.
+    /// The last successful time, s.
     time: f64,
     logger: Logger,
 }
@@ -104,7 +104,7 @@ impl Instance {
         self.time
     }
 
-    /// Logs a failure, moves to the state it leads to, and gives its status.
+    /// Logs a failure, changes the state accordingly, and returns its status.
     pub(super) fn fail(&mut self, function: Function, failure: &Failure) -> fmi2Status {
         if failure.ends_instance() {
             self.state = State::Error;
@@ -114,7 +114,7 @@ impl Instance {
         status
     }
 
-    /// Drops a simulation that may be half changed.
+    /// Drops a simulation that may be inconsistent.
     pub(super) fn abandon(&mut self) {
         self.simulation = None;
     }
@@ -175,7 +175,7 @@ impl Instance {
         self.state = State::Terminated;
     }
 
-    /// Back to the start values. The choice of what is logged stays: it is the importer's, not the simulation's.
+    /// Restores the start values. The log settings, which belong to the importer, remain.
     pub(super) fn reset(&mut self) {
         self.state = State::Instantiated;
         self.scene = Scene::default();
@@ -185,7 +185,7 @@ impl Instance {
         self.time = 0.0;
     }
 
-    /// The instance as it is now.
+    /// A snapshot of the instance.
     pub(super) fn snapshot(&self) -> Snapshot {
         let simulation = self.simulation.as_ref();
         Snapshot {
@@ -198,7 +198,7 @@ impl Instance {
         }
     }
 
-    /// The instance as it was. A simulation of the same model only changes where it stands.
+    /// Restores a snapshot. If the model is the same, only the state of the simulation is replaced.
     pub(super) fn restore(&mut self, snapshot: &Snapshot) -> Result<(), Failure> {
         let Snapshot {
             state,
@@ -226,7 +226,7 @@ impl Instance {
         Ok(())
     }
 
-    /// The simulation of what is set now.
+    /// The simulation of the values set.
     fn prepare(&mut self) -> Result<&Simulation, SceneError> {
         let simulation = match self.simulation.take() {
             Some(simulation) => simulation,
@@ -250,12 +250,12 @@ impl Instance {
         let slack = rounding(point, size);
         if !(end.is_finite() && (point - self.time).abs() <= slack) {
             let allowed = format!(
-                "the instance stands at {} s, allowed difference {slack:.1e} s",
+                "the time of the instance is {} s, allowed difference {slack:.1e} s",
                 self.time
             );
             return refused("currentCommunicationPoint", point, allowed);
         }
-        // An importer that adds up its steps gathers rounding errors, far below a thousandth of a step in any run.
+        // Importers that sum up their steps accumulate rounding errors, far below a thousandth of a step in any run.
         if let Some(stop) = self
             .experiment
             .stop_time
@@ -284,11 +284,10 @@ impl Instance {
     }
 }
 
-/// By how much two instants may differ and still be the same communication point, s.
-///
-/// An importer gets the end of a step as `t + h`, as `n h` or from a grid in another unit: three or four roundings, each
-/// of half a spacing of the floating-point numbers at that time, on its side and on this one. The second term is for
-/// importers that carry time or step with fewer digits; a shift of a thousand-millionth of a step cannot be seen in the result.
+/// Largest difference of two times that are the same communication point, s.
+/// An importer computes the end of a step as `t + h`, as `n h` or from a grid in another unit: three or four roundings
+/// of half a floating-point spacing at that time, on both sides. The second term is for importers that store time or
+/// step size with fewer digits; a shift of 1e-9 of a step does not affect the result.
 fn rounding(point: f64, size: f64) -> f64 {
     8.0 * f64::EPSILON * point.abs().max((point + size).abs()) + 1e-9 * size
 }

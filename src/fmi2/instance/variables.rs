@@ -1,4 +1,4 @@
-//! The variables of an instance by value reference: who may be read and set when.
+//! The variables of an instance by value reference: which may be read and set in which state.
 
 use super::Instance;
 use crate::fmi2::failure::Failure;
@@ -179,7 +179,7 @@ fn find(kind: &'static str, reference: u32) -> Result<&'static Variable, Failure
     })
 }
 
-/// Derivatives of order 1 are all there are.
+/// Only derivatives of order 1 are supported.
 fn first_order(variable: &Variable, order: i32) -> Result<(), Failure> {
     let name = variable.name;
     (order == 1).then_some(()).ok_or(Failure::Order { name, order })

@@ -27,8 +27,8 @@ pub struct Arguments {
     platforms: Vec<String>,
 }
 
-/// Builds, checks and tries the libraries, and writes `dist/release/RelayContact.fmu` with `SHA256SUMS` beside it. A platform
-/// that cannot be built is left out, and the command fails in the end.
+/// Builds, checks and tries the libraries, and writes `dist/release/RelayContact.fmu` with `SHA256SUMS` beside it. A
+/// platform that cannot be built is omitted, and the command fails at the end.
 pub fn run(arguments: &Arguments) -> Result<()> {
     let metadata = metadata()?;
     let tools = Tools::find()?;

@@ -1,4 +1,4 @@
-//! What the builds for all platforms need.
+//! Tools for the builds for all platforms.
 
 use std::env::consts::EXE_SUFFIX;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ pub struct Tools {
     pub sources: [PathBuf; 2],
     /// Compiles and links C for Linux and Windows.
     pub zig: PathBuf,
-    /// Has cargo link by zig.
+    /// Lets cargo link with zig.
     pub zigbuild: PathBuf,
 }
 
@@ -29,7 +29,8 @@ impl Tools {
     pub fn find() -> Result<Self> {
         let Some((rustc, sources)) = ["rustc", "/usr/bin/rustc"].into_iter().find_map(with_sources) else {
             bail!(
-                "no sources of Rust's standard library: rustup component add rust-src (or on Debian: apt-get install rustc-web rust-web-src)"
+                "no sources of Rust's standard library: rustup component add rust-src (or on Debian: apt-get install \
+                 rustc-web rust-web-src)"
             );
         };
         let (zig, zigbuild) = python::zig()?;

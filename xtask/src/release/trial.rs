@@ -1,4 +1,4 @@
-//! Tries a built library where it can be run: on this machine, on Arm Linux under qemu, on Windows under Wine.
+//! Runs a built library where possible: on this machine, on Arm Linux under qemu, on Windows under Wine.
 //!
 //! Two C programs use the generated header: `life_cycle.c`, linked with the library, uses two instances from beginning to
 //! end; `paper_scene.c` loads the library as an importer does and runs the published 1 kHz case. The forces of that run are
@@ -28,7 +28,7 @@ const ARM: &str = "/usr/aarch64-linux-gnu";
 /// Names of Wine; the last is Debian's `wine64` without the package `wine`.
 const WINE: [&str; 3] = ["wine", "wine64", "/usr/lib/wine/wine64"];
 
-/// Tries the library of a platform and gives the result in words: what both programs showed, or why they could not be run.
+/// Runs the library of a platform and returns the result as text: the output of both programs, or why they could not be run.
 /// `zig` compiles programs for other machines than this one.
 ///
 /// # Errors
@@ -159,7 +159,7 @@ impl Trial {
     /// Makes the folder below `target/trial`.
     pub fn prepare(runner: Runner, name: &str, library: &Path) -> Result<Self> {
         let folder = root().join("target/trial").join(name);
-        // No earlier library may be found.
+        // So that no earlier library is found.
         if folder.exists() {
             fs::remove_dir_all(&folder).with_context(|| format!("cannot clear {}", folder.display()))?;
         }
@@ -177,7 +177,7 @@ impl Trial {
 
     /// Compiles a program of `tests/c` without a warning, runs it and gives what it printed.
     pub fn output(&self, name: &str, libraries: &[&str], arguments: &[&str]) -> Result<String> {
-        // Windows wants the extension; the others do not mind.
+        // Windows requires the extension; the others ignore it.
         let program = self.folder.join(name).with_extension("exe");
         let mut compiler = words(&self.runner.compiler)?;
         compiler

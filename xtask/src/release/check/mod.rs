@@ -1,4 +1,4 @@
-//! Checks of a built library by its bytes: that it loads where it should, and contains nothing that does not belong there.
+//! Checks of the bytes of a built library: that it loads on its platform, and contains no private or unexpected data.
 
 mod elf;
 mod macho;
