@@ -3,16 +3,11 @@
 use crate::error::{StepError, StepErrorCause};
 use crate::integrator::collocation::newton::Source;
 use crate::integrator::collocation::step::{Trial, is_rounding, trial};
+use crate::integrator::constants::{INSIDE, NEWTON};
 use crate::integrator::grid::Target;
 use crate::integrator::integration::{Integration, StepOutcome};
 use crate::integrator::workspace::{Room, Workspace, work};
 use crate::math::nodal::{self, SHORT};
-
-/// Error of the contact force within a step, relative to the defect of its polynomial at the start of the step.
-pub(crate) const INSIDE: f64 = 0.3;
-
-/// Newton tolerance: largest residual of a nodal force, relative to the error allowed per step.
-const NEWTON: f64 = 0.2;
 
 impl Integration<'_> {
     /// Estimated error of a trial to the target, relative to the error allowed; 0 where it is mere rounding, which no

@@ -4,6 +4,7 @@
 use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
 use crate::inputs::Inputs;
+use crate::integrator::constants::MANY_STEPS;
 use crate::integrator::extremes::Extremes;
 use crate::integrator::integration::Steps;
 use crate::integrator::motion::Motion;
@@ -11,9 +12,6 @@ use crate::integrator::step_control::advance;
 use crate::integrator::workspace::{Budget, Workspace};
 use crate::model::Model;
 use crate::state::State;
-
-/// Shortest communication step that ends with an integration step, in integration steps; shorter ones use dense output.
-const MANY_STEPS: f64 = 4.0;
 
 /// Advances over the communication step from `time` to `time + size` (s) with inputs that are held or change linearly.
 ///

@@ -16,9 +16,6 @@ use crate::integrator::workspace::Room;
 use crate::math::nodal::{SHORT, end};
 use crate::math::roots;
 
-/// Successive rejections after which a discrete-gradient step is taken.
-pub(crate) const REFUSALS: u32 = 40;
-
 impl Integration<'_> {
     /// Takes a discrete-gradient step to the target.
     pub(crate) fn take_with_constant_force(&mut self, target: &Target) -> Result<StepOutcome, StepError> {

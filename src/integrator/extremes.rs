@@ -1,5 +1,6 @@
 //! Extremes of the contact force inside steps, from the polynomials of the steps.
 
+use crate::integrator::constants::PIECES;
 use crate::math::prediction::value_and_slope;
 use serde::{Deserialize, Serialize};
 
@@ -15,9 +16,6 @@ pub struct Extremes {
     /// Greatest force, N.
     pub greatest: f64,
 }
-
-/// Intervals of a step searched for a sign change of the slope.
-const PIECES: u32 = 8;
 
 impl Extremes {
     /// Of a single force, N.

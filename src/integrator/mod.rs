@@ -1,42 +1,222 @@
-//! The transient integrator.
+//! The transient integrator: **the method**, and the files that carry it out.
 //!
-//! The beam is linear and only its tip is loaded, so the modes are propagated exactly and the whole nonlinearity is one
-//! scalar function of one scalar, the tip. A communication step goes down through these files:
+//! The spring is linear and only its tip is loaded. So each mode is propagated exactly, whatever its stiffness and
+//! damping, and what is left to solve is one scalar equation in time: the contact force is the contact law at the
+//! motion of the tip, and the motion of the tip follows from the contact force. A step represents the force by a
+//! polynomial through collocation nodes and solves for the nodal forces. Stiff modes cost nothing, as they are
+//! evaluated and never integrated.
 //!
-//! - [`dense`]: a communication step, also where its end lies inside a step of the integrator; [`workspace`]: the room
-//!   for it, made once.
-//! - [`advance`]: integration steps one after the other; [`attempt`]: on trial, taken or rejected by an estimate of the
-//!   error of the force; [`grid`]: the grid they end on; [`budget`]: how many there may be; [`rest`]: a contact at
-//!   rest takes none.
-//! - [`switching`]: steps end where the contact opens ([`release`]) or closes ([`touchdown`]), and begin anew;
-//!   [`events`] keeps a list.
-//! - [`watch`]: extremes of the force within steps, and where it passes that of an interruption.
-//! - [`fallback`]: a step with a constant force, where the collocation cannot go on.
-//! - [`energy`]: where nothing dissipates, the energy is kept. [`ledger`]: what a step loses or makes of it.
+//! Numbers that were chosen stand in [`constants`], each with its unit, its source and the test that pins it; this page
+//! names them and does not repeat them.
 //!
-//! One step, in which the contact force is a polynomial through Radau nodes ([`collocation`]):
+//! # Equations
 //!
-//! - [`nodal`]: the forces at the nodes, the motion they give, the estimate of the error; [`newton`]: Newton's method
-//!   on the nodal forces alone.
-//! - [`coefficients`]: everything of it that depends on its length alone, kept for lengths that come again.
-//! - [`mode_over_step`]: a mode's exact response to the polynomial ([`free_motion`] without load); [`shapes`]:
-//!   integrals and derivatives of the polynomials; [`response`]: the responses of many modes added up.
-//! - [`machine`]: the kernel is compiled for the processor; [`vector`]: the arithmetic in it.
+//! All quantities are deviations from the static preload (`F_0`, `d_0`): the indentation is tens of nanometres beside
+//! an overtravel of tenths of a millimetre, and forming the difference at each step would lose four digits. With the
+//! modes of the cantilever without contact ([`Mode`](crate::beam::mode::Mode): `omega_i`, `c_i = alpha + beta
+//! omega_i^2`, tip displacement `T_i`, participation `g_i`, modal mass 1 kg), base acceleration `a`, displacement `u`
+//! of the fixed contact and contact law `F(d, d')`:
 //!
-//! Where the axial force follows the deflection:
+//! ```text
+//! q_i'' + c_i q_i' + omega_i^2 q_i = T_i (F - F_0) - g_i a          i = 1 ... n
+//! d - d_0 = u - sum T_i q_i
+//! F = F(d, d') while the contact is closed, 0 while it is open
+//! ```
 //!
-//! - [`axial`]: the step with loads on every mode that follow from the motion.
+//! (Machines 2025, 13(1), 52, eqs. 1, 2, 7, 8, 14, 22; the contact's damping is that of Kuwabara and Kono.) With the
+//! axial force that follows the deflection every mode has a further load, see *Axial force*.
 //!
-//! Where the contact is linear and stays closed, a communication step is one exact step:
+//! The modes are Ritz vectors in a space of polynomials that contains the deflection under a static tip load
+//! ([`galerkin`](crate::beam::galerkin)). The static compliance of the tip is therefore exact with any number of them,
+//! and the contact force converges exponentially; eigenvectors of the continuum cut off at `n` would converge like `1 /
+//! n^3`.
 //!
-//! - [`linear`]: the step, in the eigenvectors of beam and contact; [`oscillator`]: each pair of eigenvalues on its
-//!   own; [`propagator`]: its motion over a step, kept for lengths that come again.
-//! - [`secular`]: eigenvalues and eigenvectors; [`zeros`]: the eigenvalues where beam and contact are damped
-//!   differently.
+//! # One step
+//!
+//! Over a step of length `h`, `x = (t - t_0) / h`, force and base acceleration are polynomials `sum F_j l_j(x)`, `sum
+//! a_j l_j(x)` through `S` nodes `x_j` (`l_j`: Lagrange polynomials; [`collocation::polynomial`]). The response of a
+//! mode to a polynomial is known in closed form. Summed over the modes, indentation and velocity at the nodes are
+//! linear in the nodal forces,
+//!
+//! ```text
+//! d_k  = d_k(free)  - sum_j D_kj F_j        D  = sum_i T_i^2 (response of mode i at x_k to l_j)
+//! d'_k = d'_k(free) - sum_j D'_kj F_j
+//! ```
+//!
+//! where *free* is the motion under the initial modal state, the base acceleration and the fixed contact, without a
+//! change of the contact force ([`collocation::step`]). `D` and `D'` are `S` by `S`, however many modes there are, and
+//! depend on `h` alone. They are kept by step length ([`collocation::coefficients`]), and step lengths are chosen so
+//! that they recur ([`grid`]).
+//!
+//! *Response of one mode* ([`collocation::modal_response`]). Integrated by parts, the response to `l_j` is either a
+//! series of the repeated integrals of `l_j` (power series of the impulse response), or a finite sum of the derivatives
+//! of `l_j` (the motion that follows the load) and a free motion that cancels its start. The first keeps its digits
+//! where the roots of the mode times `h` are below [`constants::SLOW`], the second where they are above
+//! [`constants::FAST`]; an overdamped mode with one root of each kind splits into both. The sums over the modes are
+//! formed on these coefficients, before they meet the tables of the shapes ([`collocation::superposition`],
+//! [`collocation::shapes`]). At the end of the step each mode has its own row.
+//!
+//! *Nodes.* They are those of Radau IIA: the last one is the end of the step. The force there obeys the law exactly, so
+//! an overdamped contact, which is nearly the algebraic constraint `d' = 0`, does not excite the step that follows;
+//! with Gauss nodes the force at the end is an extrapolation, and errors in it do not decay (Hairer, Wanner, Solving
+//! Ordinary Differential Equations II, 1996, section IV.5 and VI.1). The quadrature has order `2 S - 1`, which is what
+//! slow modes see at the end of the step; at the inner nodes the error is of order `h^(S + 1)`.
+//!
+//! *Four or eight of them* ([`SHORT`](crate::math::nodal::SHORT), [`LONG`](crate::math::nodal::LONG)). Both have a step
+//! length of their own in the state. Eight are used where they reach at least [`constants::WORTH`] times as far as four
+//! within what is left to integrate, four in short communication steps, at events, and as long after a closing as a
+//! long step would be: until then the force is not smooth. Below a tolerance of [`constants::LONG_FLOOR`] the rounding
+//! of the polynomials of degree eight shows, and four are used throughout.
+//!
+//! # Newton's method
+//!
+//! The unknowns are the `S` nodal forces ([`collocation::newton`]). The residual is `F_k - F(d_k, d'_k)` on the closed
+//! branch of the law, continued smoothly beyond the point at which the force vanishes. With stiffness `k_k` and damping
+//! `c_k` of the law at the nodes the Jacobian is
+//!
+//! ```text
+//! 1 + diag(k_k) D + diag(c_k) D'
+//! ```
+//!
+//! and is solved by Gauss-Jordan elimination together with the right-hand sides of the error estimate. The first guess
+//! extrapolates the force of the last step: the polynomial through all of its nodes or the one through its last few,
+//! whichever predicted the last step better. That makes most solutions one or two iterations. Iteration ends when all
+//! residuals are below [`constants::NEWTON`] of the error allowed in a step, or below what the rounding of the motion
+//! makes of the law ([`constants::MOTION_ROUNDING`]); after [`constants::ITERATIONS`] the step is rejected. In free
+//! flight the nodal forces are known and there is no iteration.
+//!
+//! # Error estimate
+//!
+//! The shape of lowest degree that the nodal polynomials lack is the one of degree `S` that vanishes at the nodes and
+//! is 1 at the start of the step. How much of it the force lacks shows at the start: `m`, the force there less the
+//! nodal polynomial extrapolated to it; likewise `m_a` for the base acceleration. The response of the modes to that
+//! shape is part of the coefficients, so what `m` and `m_a` do to indentation and velocity at the end is known to first
+//! order, with the reaction of the contact (the two further right-hand sides of Newton's method). Three parts are added
+//! ([`collocation::step`]):
+//!
+//! - stiffness and damping of the law times these errors of indentation and velocity: the part of modes that are fast
+//!   against the step;
+//! - the part of slow modes, which hardly feel the shape, as it is orthogonal to polynomials of low degree: three times
+//!   `m^2` over the largest force (fitted to the impact of a free mass on a Hertz contact);
+//! - after a closing or a jump, where the force moves like the root of time: a share [`constants::KINKED`] of `m`,
+//!   which falls with the distance from the kink as the convergence of a polynomial near a branch point does (Trefethen, Approximation Theory and Approximation Practice, 2013, chapters 8 and 19).
+//!
+//! The last two are reduced by `g / (1 + g)`, `g` the force of the law at the end of the step per force on the tip throughout it.
+//!
+//! In flight the estimate is what `m_a` does to the indentation, times the stiffness the contact would have at the
+//! force scale. An estimate below what rounding makes of the sums over the modes counts as zero: no shorter step makes
+//! it smaller.
+//!
+//! # Step size control
+//!
+//! A step may add [`constants::SHARE`] of `solver.tolerance` times the force scale ([`attempt`], [`step_control`]). Its
+//! length is multiplied by `0.9 (allowed / estimate)^(1 / (S + 1))`, at most fourfold per step taken; after a rejection
+//! by a factor between 0.1 and 0.5. Step ends lie on a grid: binary fractions of the communication step, or lengths of
+//! 1 and 1.5 times powers of two where the integrator runs ahead ([`grid`]), so that coefficients recur; the
+//! generator's corners (start, end, crossover) end a step. A step is never longer than a quarter of the generator's
+//! shortest period, nor than `solver.maximumStep`. Without damping, a step that makes more energy than a force wrong by
+//! the tolerance would is rejected too.
+//!
+//! Work is counted and bounded per communication step ([`constants::STEPS`], [`constants::RATE`]; [`workspace`]):
+//! beyond it the step ends with an error that names the time.
+//!
+//! # Number of modes
+//!
+//! What too few modes miss is felt most in the microsecond after an impact, which excites all of them. Its error falls
+//! tenfold with every 1.6 modes at the damping of the specimen (`tests/calibration.rs`), so their number follows from
+//! the tolerance alone ([`Model`](crate::model::Model)). **This holds for springs with strongly damped high modes**;
+//! with the damping of a plain metal spring the ringing after several impacts needs more (`solver.modes`), and the
+//! tolerance is then not kept by the default number.
+//!
+//! # Events
+//!
+//! A step ends where the contact opens or closes, or where the force passes that of an interruption ([`events`]). Long
+//! steps are shortened to end before an event; a short step is cut at it and repeated to the located instant. Instants
+//! are located to the spacing of floating-point numbers by Chandrupatla's bracketing method
+//! ([`roots`](crate::math::roots)) on steps of trial length, not on an interpolant.
+//!
+//! - *Opening* ([`events::opening`]): the law's force reaches zero, at a node or in a dip of the nodal polynomial
+//!   between nodes. With contact damping that is before the surfaces part.
+//! - *Closing* ([`events::closing`]): in flight, indentation and velocity at the nodes define cubics, whose error is
+//!   estimated from neighbouring nodes. Intervals in which the highest point of the cubic, plus that error, plus the
+//!   amplitudes of modes that vibrate faster than the interval, stays open are clear; others are halved. A grazing
+//!   touch is therefore not missed, as it is by a search for changes of sign.
+//! - *Interruption* ([`events::interruption`]): as the opening, at the force of the threshold resistance.
+//!
+//! After a closing the dissipative part of the force starts like the root of time (`k_j ~ d^(1/2)`, `d ~ t`), which no
+//! polynomial follows. The first step is so short that missing this part moves the force by less than the error
+//! allowed; the following steps grow by the error estimate, with the part for the kink described above.
+//!
+//! # Communication steps
+//!
+//! While inputs do not change, the integrator takes steps of its own, also beyond the communication point, and outputs
+//! are read from the polynomials of its last step ([`communication_step`], [`motion`]): dense output of the force
+//! (through the start and all nodes), the indentation and its velocity. A long step that will be read inside must keep
+//! the tolerance there too: [`constants::INSIDE`] times `m` is the error inside. A short step that cannot is integrated
+//! once more, up to the communication point. A changed input takes the motion back to the communication point: it is integrated again from the start of the step, under the former inputs. A communication step much longer than the
+//! integrator's steps ends one of them exactly. Inputs act linearly in time within a communication step; a jump of
+//! their rate changes the dissipative force at once and restarts the step length.
+//!
+//! Extremes of the force in a communication step come from the same polynomials ([`extremes`]).
+//!
+//! # Rest
+//!
+//! Under constant inputs, the energy above the equilibrium bounds the force that is still to come: potential energy is
+//! convex, so a residual load `r` on a mode holds at most `r^2 / (2 omega^2)`, and a force that differs by `e` needs at
+//! least `e^2 / (2 k)`. Where that bound is below [`constants::UNREST`] of the tolerance nothing is integrated until
+//! something changes ([`rest`]).
+//!
+//! # Discrete gradient
+//!
+//! Where Newton's method or the error estimate fails repeatedly, and at the shortest step, the force is taken constant
+//! over the step: the discrete gradient of the contact's elastic energy between both ends, `(V(d_1) - V(d_0)) / (d_1 -
+//! d_0)`, and a dissipative part that opposes the motion ([`discrete_gradient`]; O. Gonzalez, J. Nonlinear Sci. 6
+//! (1996) 449). With exact modes the energy is then conserved without damping and never made with damping, at any step
+//! length, opening and closing within the step included. The force at the end of the step is a monotone scalar equation
+//! between brackets and always has its solution. Order two.
+//!
+//! # Energy
+//!
+//! Where nothing dissipates, what a step makes of energy is its error, and is returned by small impulses on the tip
+//! within a share of the tolerance ([`energy::conservation`]), so that nothing adds up over millions of impacts.
+//! `energy.balance` ([`energy::balance`]) is the work of the force by which the polynomial misses the law; it costs two
+//! further evaluations of each step, where it is asked for.
+//!
+//! # Axial force
+//!
+//! Where the axial force follows the deflection, modes have loads that depend on all of them
+//! ([`Feedback`](crate::beam::axial::Feedback)). They are weak over a step, so they are nodal polynomials too, found by
+//! fixed-point iteration around Newton's method ([`collocation::axial_force`]); what they miss at the start enters the
+//! error estimate as the base acceleration does.
+//!
+//! # Exact steps
+//!
+//! Where beam and contact are linear, the generator is a sine or none, and neither extremes nor near interruptions are
+//! asked for, a communication step is one exact step of any length ([`exact_step`]), in the eigenvectors of beam and
+//! contact together ([`closed_loop`](crate::closed_loop)): the eigenvalues are the zeros of a secular equation, in
+//! pairs, each a damped oscillator with a closed form. A bound on its swing shows whether the contact may open within
+//! the step; then the collocation takes over.
+//!
+//! # The promise of `solver.tolerance`
+//!
+//! The error of `contact.force` at communication points and of the extremes within steps is below `solver.tolerance`
+//! times the force scale, `max(F_0, 3 E I max(|s|, 0.1 mm) / L^3)`. Shown for closed and opening contacts with strongly
+//! damped springs by `tests/calibration.rs` and the package `benches` (`docs/accuracy.md`); limits: undamped and
+//! lightly damped springs once the contact opens (number of modes, above), and the first instants after an impact of
+//! newtons, in which the force is known to 1e-9 of the preload at best, as 1e-17 s of its instant show.
+//!
+//! # Files
+//!
+//! A communication step goes down through these: [`communication_step`], [`step_control`] (steps one after the other),
+//! [`attempt`] (a step on trial, taken or rejected), [`collocation`] (one step). [`integration`]: what they share;
+//! [`workspace`]: room made once, so that no step allocates. [`State`](crate::state::State) and [`motion`] are all that
+//! moves: plain numbers, a saved state is a copy. The step is compiled twice, for any processor and for AVX2 with fused
+//! multiply-add ([`simd`](crate::math::simd)).
 
 pub mod attempt;
 pub mod collocation;
 pub mod communication_step;
+pub mod constants;
 pub mod discrete_gradient;
 pub mod energy;
 pub mod events;

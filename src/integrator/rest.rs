@@ -1,17 +1,9 @@
 //! A contact at rest needs no integration until its loads change.
 
 use crate::excitation::drive::Drive;
+use crate::integrator::constants::{REST_ROUNDING, UNREST, WEAK};
 use crate::model::Model;
 use crate::state::State;
-
-/// Largest possible later change of the contact force at rest, relative to the tolerance.
-const UNREST: f64 = 1e-2;
-
-/// Relative rounding of a contact force.
-const ROUNDING: f64 = 1e-14;
-
-/// Relative change of the modal stiffness up to which an axial force from the deflection counts as weak.
-const WEAK: f64 = 0.1;
 
 /// The instant (s), at most `end`, until which the contact force stays within a hundredth of `tolerance` (N) of its
 /// present value; `None` if the contact is not at rest. Requires constant base acceleration and a fixed contact that
@@ -39,7 +31,7 @@ pub(crate) fn rests_until(model: &Model, state: &State, drive: &Drive, tolerance
     if let Some(feedback) = model.axial() {
         let damped = model.law.damping() > 0.0 || model.modes.iter().all(|mode| mode.damping > 0.0);
         if !damped || feedback.strength(&model.modes, &state.modes) > WEAK {
-            let rounding = ROUNDING * force.max(model.preload.force);
+            let rounding = REST_ROUNDING * force.max(model.preload.force);
             least = rounding * rounding / (2.0 * model.law.tangent_stiffness(force));
         }
         axial = Some(feedback.loads(&model.modes, &state.modes));

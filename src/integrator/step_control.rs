@@ -3,7 +3,7 @@
 use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
 use crate::integrator::attempt::step_factor;
-use crate::integrator::discrete_gradient::REFUSALS;
+use crate::integrator::constants::{COARSEST, GROWING, LONG_FLOOR, LONGER, REFUSALS, SHARE, WORTH};
 use crate::integrator::energy::conservation::conserves;
 use crate::integrator::exact_step::step_exactly;
 use crate::integrator::extremes::Extremes;
@@ -15,27 +15,8 @@ use crate::math::nodal::{LONG, SHORT};
 use crate::model::Model;
 use crate::state::State;
 
-/// Largest spacing of floating-point numbers at an instant, relative to the first step, that allows integration.
-const COARSEST: f64 = 0.1;
-
 /// Limit of the velocity of the fixed contact, m/s.
 const SPEED_OF_LIGHT: f64 = 299_792_458.0;
-
-/// Error allowed per step, relative to the tolerance. Calibrated by comparing errors with tolerances over many scenes
-/// (`tests/calibration.rs`): an impact amplifies earlier errors a hundredfold, and without damping errors accumulate.
-const SHARE: f64 = 0.004;
-
-/// Growth factor of the step size from which the step size is taken to be still adapting.
-const GROWING: f64 = 1.5;
-
-/// Ratio of an 8-node step to a 4-node step from which the longer one is cheaper.
-const WORTH: f64 = 2.0;
-
-/// Relative tolerance below which the rounding of the 8-node polynomials shows; 4 nodes are used there.
-const LONG_FLOOR: f64 = 3e-11;
-
-/// Largest expected ratio of an 8-node step to a 4-node step of the same error.
-const LONGER: f64 = 16.0;
 
 /// Advances the state.
 ///

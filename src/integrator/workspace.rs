@@ -4,6 +4,7 @@ use crate::beam::mode::{MAX_MODES, ModeState, ModeStates};
 use crate::closed_loop::propagator::Propagators;
 use crate::error::{StepError, StepErrorCause};
 use crate::integrator::collocation::coefficients::Cache;
+use crate::integrator::constants::{NEW_LENGTH, RATE, STEPS};
 use crate::integrator::events::log::Events;
 use crate::math::nodal::{LONG, SHORT};
 use crate::model::Model;
@@ -57,14 +58,6 @@ impl Room<LONG> for Workspace {
         (&mut self.long, &mut self.end, &mut self.probe)
     }
 }
-
-/// Largest work of a communication step, in steps with cached coefficients.
-const STEPS: u64 = 10_000_000;
-/// Further work allowed per simulated second, 1/s.
-const RATE: f64 = 1e7;
-
-/// Work of a step whose coefficients must be computed, in steps with cached coefficients.
-const NEW_LENGTH: u64 = 10;
 
 /// Work of a step with cached coefficients, or with new ones.
 pub(crate) fn work(recurring: bool) -> u64 {

@@ -4,8 +4,7 @@ use anyhow::{Result, bail};
 use hard_cases::CASES;
 use hard_cases::case::{Case, Check};
 
-use crate::content::Arguments;
-use crate::content::{Block, Section, Table};
+use crate::content::{Arguments, Block, Section, Table};
 use rayon::prelude::*;
 
 /// The section; an error where a property is not kept.

@@ -14,16 +14,11 @@ use crate::beam::mode::{MAX_MODES, Modal};
 use crate::integrator::collocation::coefficients::{ErrorColumn, ModeColumns, StepCoefficients};
 use crate::integrator::collocation::newton::{FreeResponse, Solution, Source, closed_forces, first_forces};
 use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::constants::{FORCE_ROUNDING, ROUNDS};
 use crate::math::nodal::{Nodal, add, add_columns, dot};
 use crate::math::simd::{Arithmetic, LANES};
 use crate::model::Model;
 use crate::state::State;
-
-/// Fixed-point iterations before the step is rejected.
-const ROUNDS: u32 = 8;
-
-/// Relative rounding of the loads.
-const ROUNDING: f64 = 1e-13;
 
 /// A value at each node for each mode.
 pub(crate) type NodalModes<const S: usize> = [Nodal<S>; MAX_MODES];
@@ -62,7 +57,7 @@ pub(crate) fn settle<const S: usize, A: Arithmetic>(
         let mut next = [[0.0; S]; MAX_MODES];
         set_loads::<S, A>(model, axial, &motion, &mut next);
         let (change, size) = force_of_change(model, &loads, &next);
-        let settled = change <= tolerance + ROUNDING * size;
+        let settled = change <= tolerance + FORCE_ROUNDING * size;
         if let Some(mut solution) = solved.take_if(|_| settled) {
             solution.iterations = iterations;
             let error = load_error::<S, A>(model, free, &start, &loads, (step, collocation));

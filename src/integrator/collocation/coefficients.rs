@@ -6,6 +6,7 @@ use crate::integrator::collocation::modal_response::ModeOverStep;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::Table;
 use crate::integrator::collocation::superposition::{Pair, Sum};
+use crate::integrator::constants::SLOTS;
 use crate::math::free_motion::FreeMotion;
 use crate::math::nodal::{Nodal, add, scaled};
 use crate::math::simd::{Arithmetic, compiled_for};
@@ -242,9 +243,6 @@ pub struct Cache<const S: usize> {
     /// For the last other length.
     other: StepCoefficients<S>,
 }
-
-/// Slots for recurring step lengths, a power of two.
-const SLOTS: usize = 32;
 
 impl<const S: usize> Cache<S> {
     /// Allocates for the model.

@@ -6,20 +6,13 @@
 //! integrated by parts). For a fast mode: derivatives of the shape (the quasi-static particular solution) and a free
 //! motion that cancels its initial value. A strongly overdamped mode with one fast and one slow root uses one of each.
 
-use crate::integrator::collocation::shapes::{MAX_SHAPES, Row, Shapes, TERMS};
+use crate::integrator::collocation::shapes::{MAX_SHAPES, Row, Shapes};
 use crate::integrator::collocation::superposition::{Combination, Fading, Pair, Response};
+use crate::integrator::constants::TERMS;
+use crate::integrator::constants::{FAST, FREE, NEGLIGIBLE, SLOW};
 use crate::math::free_motion::FreeMotion;
 use crate::math::nodal::{Nodal, add, scaled};
 use crate::math::simd::Arithmetic;
-
-/// |root| times step length up to which the power series is accurate: its terms grow to about `7^6 / 7!`.
-const SLOW: f64 = 6.7;
-/// |root| times step length from which the series in the derivatives of a shape is accurate.
-const FAST: f64 = 5.0;
-/// |root| times step length up to which the power series of the free motion is accurate: its terms grow to `2^2 / 2!`.
-const FREE: f64 = 2.0;
-/// Truncation threshold of the power series.
-const NEGLIGIBLE: f64 = 1e-19;
 
 /// Which characteristic roots of a mode are slow compared with the step.
 #[derive(Clone, Copy, Debug)]

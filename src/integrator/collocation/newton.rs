@@ -2,19 +2,11 @@
 
 use crate::integrator::collocation::coefficients::{ErrorColumn, StepCoefficients};
 use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::constants::{ITERATIONS, MOTION_ROUNDING, SMALL_PIVOT};
 use crate::math::nodal::{Nodal, add_columns, end, scaled};
 use crate::math::simd::Arithmetic;
 use crate::model::Model;
 use crate::state::State;
-
-/// Rounding of the motion at the nodes, relative to the free response.
-const MOTION_ROUNDING: f64 = 4.0 * f64::EPSILON;
-
-/// Pivots below this require a row exchange, as each elimination amplifies rounding by the inverse of the pivot.
-const SMALL_PIVOT: f64 = 0.1;
-
-/// Newton iterations before the step is rejected.
-const ITERATIONS: u64 = 12;
 
 /// Where the contact force of a step comes from.
 #[derive(Clone, Copy, Debug)]

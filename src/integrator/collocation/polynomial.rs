@@ -5,22 +5,14 @@
 //! steps, four for short ones (communication steps of a microsecond, the time just after an impact).
 
 use crate::integrator::collocation::shapes::{MAX_SHAPES, Shapes};
+use crate::integrator::constants::{FLAT, LOOKS, NEAR};
 use crate::math::legendre;
 use crate::math::nodal::{LONG, Nodal, add, dot, scaled};
 use crate::math::prediction::{Prediction, Predictions};
 use crate::math::simd::{Arithmetic, Separate, Simd, compiled_for};
 
-/// Sample points in the search for a zero crossing of a nodal polynomial.
-const LOOKS: u32 = 32;
-
 /// Golden ratio, of the golden-section search.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
-
-/// A nodal polynomial above this share of its greatest value at all nodes is taken to be positive between them.
-const NEAR: f64 = 0.25;
-
-/// Nodes of the low-order prediction.
-const FLAT: usize = 4;
 
 /// The polynomials of a step with `S` nodes.
 #[derive(Clone, Debug)]

@@ -1,16 +1,10 @@
 //! Integrals and derivatives of the load shapes of a step: the Lagrange polynomials of its nodes, and for the error
 //! estimate the polynomial of one degree more that vanishes at the nodes and is 1 at the start.
 
+use crate::integrator::constants::{POINTS, TERMS};
 use crate::math::legendre;
 use crate::math::nodal::{LONG, Nodal, add, end};
 use crate::math::simd::Arithmetic;
-
-/// Largest number of terms of a power series: from there on `7^n / n!` is below rounding
-/// ([`crate::integrator::collocation::modal_response`]).
-pub const TERMS: usize = 48;
-
-/// Points of the quadrature for the integrals; those of a higher order than it is exact for are small.
-const POINTS: usize = 20;
 
 /// Largest number of load shapes: one for each node, one for the error estimate.
 pub const MAX_SHAPES: usize = LONG + 1;

@@ -10,6 +10,7 @@ use crate::integrator::collocation::newton::{
     FreeResponse, Solution, Source, Tangent, at_nodes, closed_forces, first_forces,
 };
 use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::constants::{FAR, FORCE_ROUNDING, KINKED, SUM_ROUNDINGS};
 use crate::math::nodal::{Nodal, add, add_columns, add_products, dot, end};
 use crate::math::simd::{Arithmetic, LANES, compiled_for};
 use crate::model::Model;
@@ -44,19 +45,6 @@ pub struct Trial<const S: usize> {
 
 /// The loads on [`LANES`] modes at the nodes.
 type LaneLoads<const S: usize> = [[f64; LANES]; S];
-
-/// Relative rounding of a contact force.
-const ROUNDING: f64 = 1e-13;
-
-/// Rounding of a sum over the modes, in units of machine epsilon.
-const ROUNDINGS: f64 = 4.0;
-
-/// Ratio of the mean error over the step to the defect at the start, for a force that grows with the square root of
-/// time.
-const KINKED: f64 = 0.015;
-
-/// Distance from a kink, in step lengths, beyond which it has no effect.
-const FAR: f64 = 20.0;
 
 /// Computes the step from `state` with the given coefficients, contact closed or open as in `state`; writes the modes
 /// at its end to `end_modes`. `None` if the iteration for contact or axial force does not converge.
@@ -233,7 +221,7 @@ fn judged<const S: usize, A: Arithmetic>(
         indentation,
         rate,
         error,
-        rounding: ROUNDING * largest.max(model.preload.force),
+        rounding: FORCE_ROUNDING * largest.max(model.preload.force),
         start_defect: start_defect.abs(),
         iterations,
         tangent: solution.tangent,
@@ -291,7 +279,7 @@ pub(crate) fn is_rounding<const S: usize>(model: &Model, state: &State, trial: &
     // The force at the first node feeds back only over the time up to it, some 1 / S^2 of the step.
     let reaction = 1.0 + trial.tangent.gain / (S * S) as f64;
     let Tangent { stiffness, damping, .. } = trial.tangent;
-    trial.error <= ROUNDINGS * f64::EPSILON * (stiffness * displacement + damping * velocity) / reaction
+    trial.error <= SUM_ROUNDINGS * f64::EPSILON * (stiffness * displacement + damping * velocity) / reaction
 }
 
 /// Ratio of the quadrature error to the interpolation error with `S` nodes for a square root of time whose branch point

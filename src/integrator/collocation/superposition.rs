@@ -2,7 +2,8 @@
 //! free motions ([`crate::integrator::collocation::modal_response`]). The factors of many modes are summed before they
 //! are multiplied by the shapes.
 
-use crate::integrator::collocation::shapes::{MAX_SHAPES, Row, Shapes, TERMS, Table};
+use crate::integrator::collocation::shapes::{MAX_SHAPES, Row, Shapes, Table};
+use crate::integrator::constants::TERMS;
 use crate::math::nodal::{Nodal, add, end};
 use crate::math::simd::Arithmetic;
 

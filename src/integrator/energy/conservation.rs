@@ -8,12 +8,10 @@
 use crate::excitation::drive::Drive;
 use crate::excitation::generator::Generator;
 use crate::integrator::collocation::step::Trial;
+use crate::integrator::constants::RETURNED;
 use crate::integrator::integration::Integration;
 use crate::integrator::workspace::{Room, Workspace};
 use crate::model::Model;
-
-/// Error of the contact force allowed for the energy correction, relative to the tolerance.
-const RETURNED: f64 = 0.05;
 
 /// Whether there is no dissipation and the work of the drive is known exactly.
 pub(crate) fn conserves(model: &Model, drive: &Drive) -> bool {

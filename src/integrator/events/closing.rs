@@ -7,20 +7,12 @@
 
 use crate::beam::mode::Mode;
 use crate::integrator::collocation::step::Trial;
+use crate::integrator::constants::{DEPTH, SHORTEST_FLIGHT, UNSEEN};
 use crate::integrator::events::Cut;
 use crate::integrator::integration::Integration;
 use crate::integrator::workspace::{Room, Workspace};
 use crate::math::nodal::LONG;
 use crate::math::roots;
-
-/// Largest depth of the bisection.
-const DEPTH: u32 = 40;
-
-/// Largest unresolved oscillation, relative to the change of the engagement between two samples.
-const UNSEEN: f64 = 1e-2;
-
-/// Shortest flight after an opening, relative to the interval searched.
-const SHORTEST_FLIGHT: f64 = 1e-3;
 
 /// Indentation and its velocity at an instant of the step.
 #[derive(Clone, Copy, Debug)]

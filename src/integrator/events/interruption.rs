@@ -4,15 +4,13 @@ use crate::chatter::Criterion;
 use crate::error::StepError;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::step::Trial;
+use crate::integrator::constants::PLACES;
 use crate::integrator::events::Cut;
 use crate::integrator::grid::Target;
 use crate::integrator::integration::{Integration, StepOutcome};
 use crate::integrator::workspace::{Room, Workspace};
 use crate::math::nodal::{self, SHORT};
 use crate::math::roots;
-
-/// Sample points searched for a force clearly on its old side of the threshold.
-const PLACES: u32 = 8;
 
 impl Integration<'_> {
     /// Where in a step of the closed contact the force first crosses the threshold, 0 to 1; `None` if it does not.

@@ -1,4 +1,5 @@
 //! Log of openings and closings, for reference runs that need every event.
+use crate::integrator::constants::EVENTS_KEPT;
 
 /// An opening or closing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -8,9 +9,6 @@ pub struct Event {
     /// Whether it closes.
     pub closes: bool,
 }
-
-/// Largest number of events kept.
-const ROOM: usize = 1024;
 
 /// Events of a communication step, and those located ahead of its end; the first ones if there are too many.
 #[derive(Clone, Debug)]
@@ -24,14 +22,14 @@ impl Events {
     /// An empty log.
     pub fn new() -> Self {
         Self {
-            list: Vec::with_capacity(ROOM),
+            list: Vec::with_capacity(EVENTS_KEPT),
             left_out: 0,
         }
     }
 
     /// Adds an event.
     pub(crate) fn record(&mut self, event: Event) {
-        if self.list.len() < ROOM {
+        if self.list.len() < EVENTS_KEPT {
             self.list.push(event);
         } else {
             self.left_out += 1;
