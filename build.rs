@@ -133,7 +133,7 @@ fn variables(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> 
     )?;
     writeln!(
         code,
-        "/// The start value of every parameter.\n#[allow(clippy::unreadable_literal)]\npub(crate) mod start {{\n    use super::*;\n{starts}}}"
+        "/// The start value of every parameter.\n#[allow(clippy::unreadable_literal)]\npub(crate) mod start {{\n{starts}}}"
     )?;
     writeln!(code, "{}", by_reference(&list)?)?;
     writeln!(
@@ -157,12 +157,12 @@ fn variables(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> 
 }
 
 /// The Rust type of a parameter, and its start value.
-fn start<'a>(document: &'a Document, value: Node<'a, '_>) -> Result<(&'a str, String), Box<dyn Error>> {
+fn start(document: &Document, value: Node) -> Result<(String, String), Box<dyn Error>> {
     let start = attribute(value, "start")?;
     Ok(match value.tag_name().name() {
-        "Real" => ("f64", format!("{start}_f64")),
-        "Integer" => ("i32", start.to_owned()),
-        "Boolean" => ("bool", start.to_owned()),
+        "Real" => ("f64".to_owned(), format!("{start}_f64")),
+        "Integer" => ("i32".to_owned(), start.to_owned()),
+        "Boolean" => ("bool".to_owned(), start.to_owned()),
         _ => {
             let kind = attribute(value, "declaredType")?;
             let choice = declared(document, value)
@@ -170,7 +170,10 @@ fn start<'a>(document: &'a Document, value: Node<'a, '_>) -> Result<(&'a str, St
                 .flat_map(|definition| definition.descendants())
                 .find(|item| item.attribute("value") == Some(start))
                 .ok_or(format!("{kind} has no choice {start}"))?;
-            (kind, format!("{kind}::{}", attribute(choice, "name")?))
+            (
+                format!("super::{kind}"),
+                format!("super::{kind}::{}", attribute(choice, "name")?),
+            )
         }
     })
 }

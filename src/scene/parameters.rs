@@ -1,4 +1,4 @@
-//! The parameters and effects, grouped by what they describe, and their start values: the specimen.
+//! The parameters and effects, grouped by what they describe, and their start values, those of `modelDescription.xml`: the specimen.
 
 use crate::variables::{AxialForceKind, ContactLawKind, ExcitationKind, ResistanceKind, start};
 use serde::{Deserialize, Serialize};
