@@ -10,9 +10,9 @@ order over an opening or closing, which falls anywhere within the step. Three ma
 fixed            steps of one length.
 adaptive         step doubling: one step of h, back to the start (fmi2SetFMUstate), two of h / 2. A third of the
                  difference of the circuit's states estimates the error of the two. Above the tolerance: back again,
-                 with a shorter h. Knows nothing of the contact, so it has to close in on every opening by halving; and it is
-                 blind to an opening in the second half of a step, as the mean of a closed and an open contact conducts
-                 as well as a closed one: then both ways agree, and both are wrong.
+                 with a shorter h. Knows nothing of the contact, so it has to close in on every opening by halving; and
+                 it is blind to an opening in the second half of a step, as the mean of a closed and an open contact
+                 conducts as well as a closed one: then both ways agree, and both are wrong.
 adaptive, told   the same, but where the component reports an instant in contact.lastOpening or contact.lastClosing that
                  lies within the step, it goes back and puts a communication point there. The rest is
                  smooth, and as the tolerance bounds the error h^3 of each step, that of the run, of order h^2,

@@ -16,8 +16,8 @@ that of the circuit: contact.voltage of the contact multiplies a current of the 
 which at an opening is not the voltage at any time.
 
 Both FMUs step at the same time with inputs held (a Jacobi coupling), so its error is of first order in the
-communication step h: a sine held over h is a sine h/2 late, and so are the openings. The circuit sees an opening at the next
-communication point, another h/2 late on average. The reference: the contact shaken by its own generator (the
+communication step h: a sine held over h is a sine h/2 late, and so are the openings. The circuit sees an opening at the
+next communication point, another h/2 late on average. The reference: the contact shaken by its own generator (the
 same sine without a step), with the circuit at a finer step.
 
 libcosim
