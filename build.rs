@@ -75,7 +75,7 @@ fn variables(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> 
         }
     }
 
-    let mut table = String::new();
+    let (mut table, mut starts) = (String::new(), String::new());
     let mut members = GROUPS.map(|_| String::new());
     let mut arms = GROUPS.map(|_| String::new());
     let mut all = GROUPS.map(|_| String::new());
@@ -87,7 +87,12 @@ fn variables(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> 
         let value = variable.first_element_child().ok_or("a variable without a type")?;
         let kind = value.tag_name().name();
         let unit = unit(document, value);
-        let group = group(attribute(variable, "causality")?, kind);
+        let causality = attribute(variable, "causality")?;
+        if causality == "parameter" {
+            let (kind, start) = start(document, value)?;
+            writeln!(starts, "    pub const {}: {kind} = {start};", upper(name))?;
+        }
+        let group = group(causality, kind);
         let position = GROUPS
             .iter()
             .position(|(name, _)| *name == group)
@@ -126,6 +131,10 @@ fn variables(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> 
         code,
         "/// Every variable of the component, in the order of `modelDescription.xml`.\n#[allow(clippy::unreadable_literal)]\npub static VARIABLES: [Variable; {count}] = [\n{table}];"
     )?;
+    writeln!(
+        code,
+        "/// The start value of every parameter.\n#[allow(clippy::unreadable_literal)]\npub(crate) mod start {{\n{starts}}}"
+    )?;
     writeln!(code, "{}", by_reference(&list)?)?;
     writeln!(
         code,
@@ -147,13 +156,39 @@ fn variables(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> 
     Ok(code)
 }
 
-/// The unit of a value, by the type it is declared as; empty where there is none.
-fn unit<'a>(document: &'a Document, value: Node) -> &'a str {
-    let declared = value.attribute("declaredType");
+/// The Rust type of a parameter, and its start value.
+fn start(document: &Document, value: Node) -> Result<(String, String), Box<dyn Error>> {
+    let start = attribute(value, "start")?;
+    Ok(match value.tag_name().name() {
+        "Real" => ("f64".to_owned(), format!("{start}_f64")),
+        "Integer" => ("i32".to_owned(), start.to_owned()),
+        "Boolean" => ("bool".to_owned(), start.to_owned()),
+        _ => {
+            let kind = attribute(value, "declaredType")?;
+            let choice = declared(document, value)
+                .into_iter()
+                .flat_map(|definition| definition.descendants())
+                .find(|item| item.attribute("value") == Some(start))
+                .ok_or(format!("{kind} has no choice {start}"))?;
+            (
+                format!("super::{kind}"),
+                format!("super::{kind}::{}", attribute(choice, "name")?),
+            )
+        }
+    })
+}
+
+/// The definition of the type a value is declared as.
+fn declared<'a, 'input>(document: &'a Document<'input>, value: Node) -> Option<Node<'a, 'input>> {
+    let declared = value.attribute("declaredType")?;
     document
         .descendants()
-        .filter(|node| node.has_tag_name("SimpleType"))
-        .find(|definition| declared.is_some() && definition.attribute("name") == declared)
+        .find(|node| node.has_tag_name("SimpleType") && node.attribute("name") == Some(declared))
+}
+
+/// The unit of a value, by the type it is declared as; empty where there is none.
+fn unit<'a>(document: &'a Document, value: Node) -> &'a str {
+    declared(document, value)
         .and_then(|definition| definition.first_element_child())
         .and_then(|real| real.attribute("unit"))
         .unwrap_or("")

@@ -3,12 +3,12 @@
 The contact is the FMU, under FMPy, shaken by 400 m/s2 (41 g) at 1 kHz. The circuit (its diagram and its equations:
 circuit.py) is ngspice, through its shared library, or solved in closed form (`--circuit built-in`).
 
-Both sides step in parallel. At every communication point the circuit takes `contact.resistance` and the component
-takes the contact current that the circuit has with it; each holds what it took until the next point. So the circuit
+Both sides step in parallel. At every communication point the circuit takes `contact.resistance`, and the component
+takes the contact current that results; each holds its input until the next point. So the circuit
 learns of an opening or closing up to one step late, and the load current, whose slope changes by up to V / L there, is
-wrong by up to h V / L: order one in the step h. No smoother interpolation of the resistance would help, as nearly all
-its change, from milliohms to the open contact, falls within one step. (rollback.py shows what does: communication
-points at those instants.)
+wrong by up to h V / L: first order in the step h. No smoother interpolation of the resistance would help, as nearly all
+of its change, from milliohms to the open contact, happens within one step. Communication points at those instants
+help: rollback.py.
 
 The error is taken against the circuit in closed form on steps of 50 ns, with a point at each opening and closing
 (halving these steps changes the load current by 2 uA at most).

@@ -1,6 +1,6 @@
 """Make and break of a relay contact under FMPy: bounce over the speed of the actuator and the damping of the contact.
 
-The other side is an actuator that moves the fixed contact, the input support.displacement. From a gap g in front of the
+An actuator moves the fixed contact, by the input support.displacement. From a gap g in front of the
 spring at rest it comes at a speed v, passes the point of touch and half of the overtravel s, and is then stopped by a
 constant deceleration over the other half (v**2/s). After 10 ms it goes back the same way: accelerated over half of the
 overtravel, then at v, and is stopped at the gap. The input is linear over each communication step, its derivative is
@@ -8,7 +8,7 @@ set, so travel at a constant speed is exact in steps of any length; the parabola
 with 100, the kinks themselves open a heavily damped contact at 0.2 m/s.
 
 The spring is that of the component's start values: the equivalent beam identified from Zhang et al., "Machines" 2025,
-13(1), 52. Its identified contact damping, 80.63 us, lets nothing bounce on make below 0.2 m/s; clean metal
+13(1), 52. Its identified contact damping, 80.63 us, prevents bounce on make below 0.2 m/s; clean metal
 has less, so it is varied.
 
 Definitions. Interruption: the contact resistance is above 60 Ohm (chatter.resistanceThreshold) for --minimum or longer.

@@ -1,4 +1,4 @@
-"""What the examples share beside the component: command line, tables and pictures."""
+"""Command line, tables and figures of the examples. Copy it along with an example that imports it."""
 
 import argparse
 from collections.abc import Callable

@@ -1,6 +1,7 @@
 """The relay contact from Python: its scenes run under FMPy, and the component stepped by hand.
 
-To copy along with an example. It needs FMPy and NumPy; scenes and component are found in this project's folders.
+Copy it along with an example that imports it. It needs FMPy and NumPy; scenes and component are found in this
+project's folders.
 
     result = run(Scene.read(scenes()["chatter-41g"]), {"excitation.amplitude": 300.0})
     print(result["contact.force"].min())

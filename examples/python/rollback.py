@@ -1,4 +1,4 @@
-"""An adaptive co-simulation master that takes steps back, around the contact and a circuit: what a step's error costs.
+"""An adaptive co-simulation master that repeats steps, for the contact and a circuit: error over work.
 
 The contact is the FMU, under FMPy, shaken by 400 m/s2 (41 g) at 1 kHz: it opens in every period. The circuit is that
 of circuit.py, solved in closed form over a step, with the conductance of the contact held.
@@ -9,14 +9,14 @@ order over an opening or closing, which falls anywhere within the step. Three ma
 
 fixed            steps of one length.
 adaptive         step doubling: one step of h, back to the start (fmi2SetFMUstate), two of h / 2. A third of the
-                 difference of the circuit's states is the error of the two. Above the tolerance: back again, with a
-                 shorter h. Knows nothing of the contact, so it has to close in on every opening by halving; and it is
-                 blind to an opening in the second half of a step, as the mean of a closed and an open contact conducts
-                 as well as a closed one: then both ways agree, and both are wrong.
-adaptive, told   the same, but where the component tells an instant in contact.lastOpening or contact.lastClosing that
-                 lies within the step, it goes back and puts a communication point there. Then all that is left is
-                 smooth, and as the tolerance bounds the error h^3 of each step, that of the run, which goes with h^2,
-                 falls with its power 2/3.
+                 difference of the circuit's states estimates the error of the two. Above the tolerance: back again,
+                 with a shorter h. Knows nothing of the contact, so it has to close in on every opening by halving; and
+                 it is blind to an opening in the second half of a step, as the mean of a closed and an open contact
+                 conducts as well as a closed one: then both ways agree, and both are wrong.
+adaptive, told   the same, but where the component reports an instant in contact.lastOpening or contact.lastClosing that
+                 lies within the step, it goes back and puts a communication point there. The rest is
+                 smooth, and as the tolerance bounds the error h^3 of each step, that of the run, of order h^2,
+                 is proportional to the tolerance to the power of 2/3.
 
 The work is the number of doStep calls, those of rejected steps included. The error is that of the load current, the
 largest of instants 1 us apart, against the third master at a tolerance of 1e-8.

@@ -1,6 +1,6 @@
 """Couple the relay contact to a partner FMU, by libcosim and by FMPy, wired by hand and as a system (SSP 1.0).
 
-The partner, two_fmus_bench.py made TestBench.fmu by PythonFMU, is a vibration table and a circuit: a source of
+The partner, TestBench.fmu, which PythonFMU makes of two_fmus_bench.py, is a vibration table and a circuit: a source of
 V = 6 V, a load of R = 60 Ohm and L = 1 mH in series, the contact, and across the contact a quench of Rq = 47 Ohm and
 Cq = 220 nF in series. Its states are the current i of the load and the voltage vC of the capacitor:
 
@@ -13,16 +13,16 @@ at rest. The acceleration of the table is amplitude x sin(2 pi frequency t). Thr
 point: table.acceleration to base.acceleration, contact.resistance to contact.resistance, contact.current back.
 The contact is valid below about 12 V and 0.4 A, where nothing arcs; the summary says what was reached. The voltage is
 that of the circuit: contact.voltage of the contact multiplies a current of the step before with the resistance of now,
-which at an opening is no voltage that ever was.
+which at an opening is not the voltage at any time.
 
-Both FMUs step at the same time with inputs held (a Jacobi coupling), so its error is of order 1 in the communication
-step h: a sine held over h is a sine h/2 late, and so are the openings. The circuit hears of an opening at the next
-communication point, another h/2 late on the average. What is compared: the contact shaken by its own generator (the
+Both FMUs step at the same time with inputs held (a Jacobi coupling), so its error is of first order in the
+communication step h: a sine held over h is a sine h/2 late, and so are the openings. The circuit sees an opening at the
+next communication point, another h/2 late on average. The reference: the contact shaken by its own generator (the
 same sine without a step), with the circuit at a finer step.
 
 libcosim
-- knows no enumerations, so effects.excitation stays None and the table shakes the contact;
-- reckons time in whole nanoseconds and hands over differences of instants. Given the same instants FMPy gives the same
+- cannot set enumerations, so effects.excitation stays None and the table shakes the contact;
+- counts time in whole nanoseconds and passes differences of instants. Given the same instants FMPy gives the same
   bits; given n h it differs by what the rounding of time does;
 - applies of each component of an .ssp its first ParameterBinding, inline or by source, and leaves out without a word
   all others and those of the system: here each component has one. It knows the prefixes ssd, ssc, ssv by their letters;

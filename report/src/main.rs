@@ -15,7 +15,6 @@ mod numbers;
 mod opening;
 mod page;
 mod paper;
-mod programs;
 mod scene;
 mod sections;
 mod stability;

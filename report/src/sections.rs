@@ -4,7 +4,7 @@ use anyhow::Result;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::content::{Arguments, Block, Section};
-use crate::{accuracy, effects, importers, opening, page, paper, programs, stability};
+use crate::{accuracy, effects, importers, opening, page, paper, stability};
 
 /// Runs what sections are made of.
 type Part = fn(Arguments) -> Result<Vec<Section>>;
@@ -34,7 +34,7 @@ pub fn run(arguments: Arguments) -> Result<()> {
     sections.insert(0, summary(&sections));
     let path = page::write(&sections, arguments.quick)?;
     if arguments.pictures {
-        programs::run(programs::python().arg("report/browser/pictures.py"))?;
+        commands::run(commands::python().arg("report/browser/pictures.py"))?;
     }
     println!("{}", path.display());
     Ok(())

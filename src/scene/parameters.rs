@@ -1,6 +1,6 @@
-//! The parameters and effects, grouped by what they describe, and their start values: the specimen.
+//! The parameters and effects, grouped by what they describe, and their start values, those of `modelDescription.xml`: the specimen.
 
-use crate::variables::{AxialForceKind, ContactLawKind, ExcitationKind, RealParameter, ResistanceKind};
+use crate::variables::{AxialForceKind, ContactLawKind, ExcitationKind, ResistanceKind, start};
 use serde::{Deserialize, Serialize};
 
 /// Parameters and effects of a simulation. SI units.
@@ -193,79 +193,77 @@ pub struct Effects {
 
 impl Default for Scene {
     fn default() -> Self {
-        use RealParameter as P;
-        let start = |parameter: P| parameter.variable().start;
         Self {
             beam: Beam {
-                length: start(P::BeamLength),
-                width: start(P::BeamWidth),
-                thickness: start(P::BeamThickness),
-                youngs_modulus: start(P::BeamYoungsModulus),
-                density: start(P::BeamDensity),
-                mass_damping: start(P::BeamMassDamping),
-                stiffness_damping: start(P::BeamStiffnessDamping),
-                axial_force: start(P::BeamAxialForce),
+                length: start::BEAM_LENGTH,
+                width: start::BEAM_WIDTH,
+                thickness: start::BEAM_THICKNESS,
+                youngs_modulus: start::BEAM_YOUNGS_MODULUS,
+                density: start::BEAM_DENSITY,
+                mass_damping: start::BEAM_MASS_DAMPING,
+                stiffness_damping: start::BEAM_STIFFNESS_DAMPING,
+                axial_force: start::BEAM_AXIAL_FORCE,
             },
             tip: Tip {
-                mass: start(P::TipMass),
-                rotary_inertia: start(P::TipRotaryInertia),
+                mass: start::TIP_MASS,
+                rotary_inertia: start::TIP_ROTARY_INERTIA,
             },
             contact: Contact {
-                overtravel: start(P::ContactOvertravel),
-                curvature_radius: start(P::ContactCurvatureRadius),
-                damping: start(P::ContactDamping),
-                melting_voltage: start(P::ContactMeltingVoltage),
+                overtravel: start::CONTACT_OVERTRAVEL,
+                curvature_radius: start::CONTACT_CURVATURE_RADIUS,
+                damping: start::CONTACT_DAMPING,
+                melting_voltage: start::CONTACT_MELTING_VOLTAGE,
                 moving: Material {
-                    youngs_modulus: start(P::ContactMovingYoungsModulus),
-                    poisson_ratio: start(P::ContactMovingPoissonRatio),
+                    youngs_modulus: start::CONTACT_MOVING_YOUNGS_MODULUS,
+                    poisson_ratio: start::CONTACT_MOVING_POISSON_RATIO,
                 },
                 fixed: Material {
-                    youngs_modulus: start(P::ContactFixedYoungsModulus),
-                    poisson_ratio: start(P::ContactFixedPoissonRatio),
+                    youngs_modulus: start::CONTACT_FIXED_YOUNGS_MODULUS,
+                    poisson_ratio: start::CONTACT_FIXED_POISSON_RATIO,
                 },
             },
             resistance: Resistance {
-                coefficient: start(P::ResistanceCoefficient),
-                exponent: start(P::ResistanceExponent),
-                film: start(P::ResistanceFilm),
-                open: start(P::ResistanceOpen),
-                resistivity: start(P::ResistanceResistivity),
-                hardness: start(P::ResistanceHardness),
+                coefficient: start::RESISTANCE_COEFFICIENT,
+                exponent: start::RESISTANCE_EXPONENT,
+                film: start::RESISTANCE_FILM,
+                open: start::RESISTANCE_OPEN,
+                resistivity: start::RESISTANCE_RESISTIVITY,
+                hardness: start::RESISTANCE_HARDNESS,
             },
             excitation: Excitation {
-                amplitude: start(P::ExcitationAmplitude),
-                frequency: start(P::ExcitationFrequency),
-                phase: start(P::ExcitationPhase),
-                start_time: start(P::ExcitationStartTime),
-                end_frequency: start(P::ExcitationEndFrequency),
-                duration: start(P::ExcitationDuration),
-                displacement_limit: start(P::ExcitationDisplacementLimit),
-                spectral_density: start(P::ExcitationSpectralDensity),
-                seed: 1,
+                amplitude: start::EXCITATION_AMPLITUDE,
+                frequency: start::EXCITATION_FREQUENCY,
+                phase: start::EXCITATION_PHASE,
+                start_time: start::EXCITATION_START_TIME,
+                end_frequency: start::EXCITATION_END_FREQUENCY,
+                duration: start::EXCITATION_DURATION,
+                displacement_limit: start::EXCITATION_DISPLACEMENT_LIMIT,
+                spectral_density: start::EXCITATION_SPECTRAL_DENSITY,
+                seed: start::EXCITATION_SEED,
             },
             environment: Environment {
-                gravity: start(P::EnvironmentGravity),
-                temperature: start(P::EnvironmentTemperature),
+                gravity: start::ENVIRONMENT_GRAVITY,
+                temperature: start::ENVIRONMENT_TEMPERATURE,
             },
             chatter: Chatter {
-                resistance_threshold: start(P::ChatterResistanceThreshold),
-                minimum_duration: start(P::ChatterMinimumDuration),
+                resistance_threshold: start::CHATTER_RESISTANCE_THRESHOLD,
+                minimum_duration: start::CHATTER_MINIMUM_DURATION,
             },
             solver: Solver {
-                tolerance: start(P::SolverTolerance),
-                modes: 0,
-                maximum_step: start(P::SolverMaximumStep),
+                tolerance: start::SOLVER_TOLERANCE,
+                modes: start::SOLVER_MODES,
+                maximum_step: start::SOLVER_MAXIMUM_STEP,
             },
             effects: Effects {
-                excitation: ExcitationKind::None,
-                contact_law: ContactLawKind::Hertz,
-                axial_force: AxialForceKind::FromPreload,
-                contact_damping: true,
-                resistance: ResistanceKind::PowerLaw,
-                heating: false,
-                chatter: true,
-                extremes: true,
-                energy: false,
+                excitation: start::EFFECTS_EXCITATION,
+                contact_law: start::EFFECTS_CONTACT_LAW,
+                axial_force: start::EFFECTS_AXIAL_FORCE,
+                contact_damping: start::EFFECTS_CONTACT_DAMPING,
+                resistance: start::EFFECTS_RESISTANCE,
+                heating: start::EFFECTS_HEATING,
+                chatter: start::EFFECTS_CHATTER,
+                extremes: start::EFFECTS_EXTREMES,
+                energy: start::EFFECTS_ENERGY,
             },
         }
     }

@@ -5,10 +5,10 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 use cargo_metadata::Package;
+use commands::{command, output, read};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use crate::commands::{command, output, read};
 use crate::linked::{COMPONENT, Crate, Crates};
 
 /// The document. `rustc` is the compiler whose standard library is linked. The document has neither time nor serial
@@ -110,8 +110,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
-    use crate::commands::metadata;
-    use crate::linked::crates;
+    use crate::linked::{crates, metadata};
     use crate::release::platform::PLATFORMS;
 
     /// Compares with the direct dependencies in `Cargo.toml`.

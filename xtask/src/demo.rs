@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 
-use crate::{commands, fmu, python};
+use crate::{fmu, python};
 
 /// Prepares Python, builds the component, runs the case.
 pub fn run() -> Result<()> {
@@ -10,7 +10,7 @@ pub fn run() -> Result<()> {
     python::prepare()?;
     let path = fmu::build()?;
     commands::run(
-        python::python()
+        commands::python()
             .arg("examples/python/paper_1khz.py")
             .arg("--fmu")
             .arg(path),

@@ -6,16 +6,16 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use cargo_metadata::Metadata;
+use commands::{cargo, command, output, read, run, write};
 use relay_contact::{C_HEADER, MODEL_DESCRIPTION};
 
-use crate::commands::{cargo, command, metadata, output, read, run, write};
 use crate::package::{Files, pack};
 use crate::{bill, documentation, licences, linked};
 
 /// Writes `dist/RelayContact.fmu` and returns its path. Also writes, for C programs, the library to `lib` and its
 /// header to `include`.
 pub fn build() -> Result<PathBuf> {
-    let metadata = metadata()?;
+    let metadata = linked::metadata()?;
     build_library(&metadata)?;
     let (folder, prefix, extension) = platform()?;
     let name = format!("{prefix}relay_contact.{extension}");
@@ -115,7 +115,7 @@ mod tests {
 
     #[test]
     fn everything_but_the_library_is_the_same_bytes_every_time() -> Result<()> {
-        let metadata = metadata()?;
+        let metadata = linked::metadata()?;
         let files = || files(&metadata, [], Path::new("rustc"), &[]);
         let first = files()?;
         assert!(first.contains_key("documentation/licenses/LICENSE-MIT"));

@@ -9,8 +9,8 @@ use std::path::Path;
 use std::process::Command;
 
 use anyhow::{Context, Result};
+use commands::{cargo, command, output, read, root, run as run_command, write};
 
-use crate::commands::{cargo, command, output, read, root, run as run_command, write};
 use crate::package::{Files, pack};
 use crate::stage::stage;
 use crate::{fmu, python, report};

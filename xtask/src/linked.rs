@@ -3,9 +3,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use anyhow::{Context, Result};
-use cargo_metadata::{Metadata, Package};
+use cargo_metadata::{Metadata, MetadataCommand, Package};
+use commands::{cargo, output, root};
 
-use crate::commands::{cargo, output};
+/// What cargo knows about the project.
+pub fn metadata() -> Result<Metadata> {
+    Ok(MetadataCommand::new().current_dir(root()).exec()?)
+}
 
 /// The component itself among the crates.
 pub const COMPONENT: &str = "relay-contact";

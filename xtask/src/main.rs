@@ -1,7 +1,6 @@
 //! The project's tasks: `cargo xtask --help`.
 
 mod bill;
-mod commands;
 mod demo;
 mod documentation;
 mod fmu;

@@ -6,26 +6,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result, bail};
-
-use crate::commands::{command, output, root, run};
+use commands::{command, output, python, root, run};
 
 /// Oldest Python for which the pinned packages exist.
 const OLDEST: (u32, u32) = (3, 11);
-
-/// The environment's interpreter.
-fn interpreter() -> PathBuf {
-    let below = if cfg!(windows) {
-        "Scripts/python.exe"
-    } else {
-        "bin/python"
-    };
-    root().join(".venv").join(below)
-}
-
-/// A command of the environment's Python, in the project's top folder.
-pub fn python() -> Command {
-    command(interpreter())
-}
 
 /// Runs the Python tests in folders or files, with the component.
 pub fn test(tests: &[&str], component: &Path) -> Result<()> {
@@ -80,7 +64,7 @@ pub fn zig() -> Result<(PathBuf, PathBuf)> {
     println!("installing zig (Python package of requirements.txt)");
     let marked = required.lines().filter_map(|line| line.strip_suffix(MARK));
     output(pip().args(marked.map(str::trim)))?;
-    let zigbuild = interpreter().with_file_name(format!("cargo-zigbuild{EXE_SUFFIX}"));
+    let zigbuild = Path::new(python().get_program()).with_file_name(format!("cargo-zigbuild{EXE_SUFFIX}"));
     Ok((package("ziglang")?.join(format!("zig{EXE_SUFFIX}")), zigbuild))
 }
 

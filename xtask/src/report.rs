@@ -5,8 +5,8 @@ use std::ffi::{OsStr, OsString};
 use std::process::Command;
 
 use anyhow::Result;
+use commands::{cargo, command};
 
-use crate::commands::{self, cargo, command};
 use crate::python;
 
 /// The message where Chromium is missing.
@@ -42,7 +42,7 @@ pub fn run(task: &str, arguments: &Arguments) -> Result<()> {
 /// The report in its quick form, in a browser.
 pub fn test() -> Result<()> {
     start("report", &["--quick"])?;
-    commands::run(python::python().args(["-m", "pytest", "--quiet", "report/browser"]))
+    commands::run(commands::python().args(["-m", "pytest", "--quiet", "report/browser"]))
 }
 
 /// Runs a task of the program with its arguments.

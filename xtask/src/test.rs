@@ -4,8 +4,8 @@ use std::process::Command;
 use std::{env, thread};
 
 use anyhow::{Result, anyhow, bail};
+use commands::{cargo, output, run as run_command};
 
-use crate::commands::{cargo, output, run as run_command};
 use crate::stage::stage;
 use crate::{fmu, importers, python, report, valgrind};
 
@@ -87,7 +87,7 @@ fn library() -> Result<()> {
 fn component() -> Result<()> {
     let component = stage("component", fmu::build)?;
     stage("Python environment", python::prepare)?;
-    let tool = |arguments: &[&str]| run_command(python::python().arg("-m").args(arguments).args(PYTHON));
+    let tool = |arguments: &[&str]| run_command(commands::python().arg("-m").args(arguments).args(PYTHON));
     stage("Python lint", || tool(&["ruff", "check"]))?;
     stage("Python format", || tool(&["ruff", "format", "--check"]))?;
     stage("Python types", || tool(&["mypy"]))?;

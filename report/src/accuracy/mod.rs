@@ -12,13 +12,12 @@ pub mod study;
 use anyhow::Result;
 
 use crate::content::{Arguments, Block, Section};
-use crate::programs;
 
 /// The section.
 pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
     let folder = if arguments.peers { "out/accuracy" } else { "docs" };
     if arguments.peers {
-        programs::output(study::measurement().args(["--folder", folder, "--turns", "1"]))?;
+        commands::output(study::measurement().args(["--folder", folder, "--turns", "1"]))?;
     }
     let (rows, machine) = rows::read(folder)?;
     let source = if arguments.peers {

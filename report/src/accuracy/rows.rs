@@ -3,9 +3,8 @@
 use std::fs;
 
 use anyhow::{Context, Result};
+use commands::root;
 use serde::Deserialize;
-
-use crate::programs::root;
 
 /// A line of `accuracy.csv`.
 #[derive(Deserialize)]

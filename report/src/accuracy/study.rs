@@ -3,8 +3,7 @@
 use std::process::Command;
 
 use anyhow::Result;
-
-use crate::programs::{self, cargo};
+use commands::cargo;
 
 /// How much is measured.
 #[derive(clap::Args)]
@@ -18,8 +17,8 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<()> {
     let folder = if arguments.quick { "out/accuracy" } else { "docs" };
     let quick = arguments.quick.then_some("--quick");
-    programs::run(measurement().args(["--folder", folder]).args(quick))?;
-    programs::run(programs::python().args(["docs/accuracy.py", folder]))
+    commands::run(measurement().args(["--folder", folder]).args(quick))?;
+    commands::run(commands::python().args(["docs/accuracy.py", folder]))
 }
 
 /// The program that measures, to be given its arguments.

@@ -5,8 +5,7 @@ use std::path::Path;
 use std::process::Command;
 
 use anyhow::{Context, Result, bail};
-
-use crate::programs::{cargo, command, output, root, run};
+use commands::{cargo, command, output, root, run};
 
 /// Said where valgrind is missing.
 pub const MISSING: &str = "valgrind is missing (on Debian: apt-get install valgrind)";

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 use std::process::Command;
 
 use anyhow::{Context, Result};
+use commands::{cargo, command, output, root, run};
 
 use super::callgrind;
-use crate::programs::{cargo, command, output, root, run};
 
 /// Names of variables and their values.
 pub type Changes = [(String, String)];
@@ -41,7 +41,7 @@ impl RunScene {
     pub fn nanoseconds(&self, scene: &str, changes: &Changes, runs: usize) -> Result<f64> {
         let mut shortest = f64::INFINITY;
         for _ in 0..runs {
-            let [printed, _] = output(arguments(&mut command(&self.0), scene, changes))?;
+            let printed = output(arguments(&mut command(&self.0), scene, changes))?;
             let words = printed
                 .lines()
                 .find_map(|line| line.strip_suffix(" ns per simulated millisecond"));

@@ -5,9 +5,8 @@ use std::time::SystemTime;
 use std::{fs, io};
 
 use anyhow::{Context, Result, bail};
+use commands::root;
 use serde::Deserialize;
-
-use crate::programs::root;
 
 /// Where the tests leave their rows.
 pub fn folder() -> PathBuf {

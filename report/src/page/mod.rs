@@ -12,13 +12,13 @@ use std::fs;
 use std::path::PathBuf;
 
 use anyhow::{Context, Result};
+use commands::{output, python, root};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use relay_contact::MODEL_DESCRIPTION;
 use roxmltree::Document;
 
 use self::html::{head, markdown as html_of};
 use crate::content::{Block, Figure, Section};
-use crate::programs::{output, python, root};
 
 const SCRIPT: &str = include_str!("figures.js");
 
@@ -28,7 +28,7 @@ const SUMMARY: &str = "summary";
 /// Writes `out/report/index.html`, or, if `quick`, `out/report-quick/index.html`.
 pub fn write(sections: &[Section], quick: bool) -> Result<PathBuf> {
     let code = "import pathlib, plotly; print(pathlib.Path(plotly.__file__).parent / 'package_data/plotly.min.js')";
-    let [library, _] = output(python().args(["-c", code]))?;
+    let library = output(python().args(["-c", code]))?;
     let library = fs::read_to_string(library.trim()).with_context(|| format!("cannot read {}", library.trim()))?;
     let folder = root().join(if quick { "out/report-quick" } else { "out/report" });
     fs::create_dir_all(&folder)?;

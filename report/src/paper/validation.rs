@@ -4,11 +4,11 @@ use std::fs;
 use std::path::PathBuf;
 
 use anyhow::{Context, Result};
+use commands::root;
 
 use super::sections;
 use crate::content::{Arguments, Section};
 use crate::markdown::markdown;
-use crate::programs::root;
 
 /// The sections of the page. Their numbers are rounded so that they are the same on every machine.
 pub fn validation(arguments: Arguments) -> Result<Vec<Section>> {

@@ -9,12 +9,12 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail};
+use commands::root;
 use indicatif::{ProgressBar, ProgressStyle};
 pub use relay_contact::scene::file::SceneFile;
 use relay_contact::simulation::Simulation;
 
 use self::summary::Summary;
-use crate::programs::{self, root};
 
 /// Which scene, and what to change in it.
 #[derive(clap::Args)]
@@ -50,8 +50,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     println!("{title}");
     let summary = simulate(&file, &table)?;
     println!("{summary}\n{}", table.display());
-    programs::run(
-        programs::python()
+    commands::run(
+        commands::python()
             .args(["examples/python/plot_scene.py", "--title", &title])
             .arg(&table),
     )

@@ -3,6 +3,7 @@
 use std::fs;
 
 use anyhow::{Context, Result};
+use commands::root;
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
 use relay_contact::scene::choices;
@@ -10,7 +11,6 @@ use relay_contact::scene::file::SceneFile;
 use relay_contact::variables::{Group, VARIABLES};
 
 use super as scene;
-use crate::programs::root;
 
 const NAMESPACE: &str = "http://ssp-standard.org/SSP1/SystemStructureParameterValues";
 

@@ -7,6 +7,7 @@ mod description;
 use std::fs;
 
 use anyhow::{Context, Result, ensure};
+use commands::root;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use pulldown_cmark::Parser;
 use relay_contact::MODEL_DESCRIPTION;
@@ -14,7 +15,6 @@ use roxmltree::{Document, Node};
 
 use self::block::block;
 use self::description::{attribute, start, unit};
-use crate::commands::root;
 
 /// That of the report.
 const STYLE: &str = include_str!("../../../report/src/page/style.css");

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use cargo_metadata::Metadata;
+use commands::{cargo, command, read, run, write};
 
 use super::check::{declared, without_time};
 use super::tools::{Tools, lld};
-use crate::commands::{cargo, command, read, run, write};
 use crate::fmu;
 
 /// Oldest C library of Linux, and oldest macOS, on which the libraries load.

@@ -12,13 +12,13 @@ use std::path::PathBuf;
 use anyhow::{Result, bail};
 use cargo_metadata::Metadata;
 use clap::builder::PossibleValuesParser;
+use commands::write;
 use sha2::{Digest, Sha256};
 
 use self::platform::{PLATFORMS, Platform};
 use self::tools::Tools;
-use crate::commands::{metadata, write};
 use crate::package::pack;
-use crate::{fmu, python};
+use crate::{fmu, linked, python};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -30,7 +30,7 @@ pub struct Arguments {
 /// Builds, checks and tries the libraries, and writes `dist/release/RelayContact.fmu` with `SHA256SUMS` beside it. A
 /// platform that cannot be built is omitted, and the command fails at the end.
 pub fn run(arguments: &Arguments) -> Result<()> {
-    let metadata = metadata()?;
+    let metadata = linked::metadata()?;
     let tools = Tools::find()?;
     let asked = |platform: &&Platform| {
         arguments.platforms.is_empty() || arguments.platforms.iter().any(|name| name == platform.folder)

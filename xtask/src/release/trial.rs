@@ -11,13 +11,13 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result, bail};
+use commands::{command, output, root};
 use relay_contact::C_HEADER;
 use relay_contact::scene::file::SceneFile;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::RealOutput;
 
 use super::platform::Platform;
-use crate::commands::{command, output, root};
 
 /// The scene that `paper_scene.c` runs.
 const SCENE: &str = "scenes/paper-1khz.toml";

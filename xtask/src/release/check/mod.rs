@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use cargo_metadata::Metadata;
+use commands::sysroot;
 use goblin::mach::MultiArch;
 use relay_contact::variables;
 
@@ -21,7 +22,6 @@ pub use self::pe::without_time;
 pub use self::report::declared;
 use self::report::{Report, processor};
 use super::platform::Platform;
-use crate::commands::sysroot;
 
 /// Size limit of a library, in bytes; of each part of a universal library.
 const SIZE: usize = 1_000_000;

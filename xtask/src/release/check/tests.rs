@@ -4,12 +4,12 @@ use std::fs;
 use std::process::Command;
 
 use anyhow::Result;
+use commands::output;
 use object::write::{Object, Symbol, SymbolSection};
 use object::{Architecture, BinaryFormat, Endianness, SectionKind, SymbolFlags, SymbolKind, SymbolScope};
 use relay_contact::variables::GUID;
 
 use super::*;
-use crate::commands::output;
 use crate::release::platform::PLATFORMS;
 use crate::release::tools::lld;
 

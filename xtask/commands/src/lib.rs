@@ -1,13 +1,12 @@
-//! Running other programs in the project's folder, and its files.
+//! Running other programs in the project's folder, and its files: for the task runner and the report.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
 
 use anyhow::{Context, Result, bail};
-use cargo_metadata::{Metadata, MetadataCommand};
 
-/// The project's top folder: that of the running xtask, or the one containing the current folder.
+/// The project's top folder: that of the program which cargo runs, or the one that the current folder is in.
 pub fn root() -> PathBuf {
     // At run time, so that a copy of the project with its `target` folder uses its own files.
     let start = env::var_os("CARGO_MANIFEST_DIR").map_or_else(|| PathBuf::from("."), PathBuf::from);
@@ -25,12 +24,18 @@ fn workspace(folder: &Path) -> Option<PathBuf> {
 }
 
 /// Reads a file of the project.
+///
+/// # Errors
+/// Where it cannot be read.
 pub fn read(path: impl AsRef<Path>) -> Result<Vec<u8>> {
     let path = root().join(path);
     fs::read(&path).with_context(|| format!("cannot read {}", path.display()))
 }
 
-/// Writes a file of the project, creating its folder; returns its full path.
+/// Writes a file of the project, and its folder if there is none yet; gives its whole path.
+///
+/// # Errors
+/// Where it cannot be written.
 pub fn write(path: impl AsRef<Path>, contents: &[u8]) -> Result<PathBuf> {
     let path = root().join(path);
     fs::create_dir_all(path.parent().context("a file without a folder")?)?;
@@ -45,17 +50,24 @@ pub fn command(program: impl AsRef<std::ffi::OsStr>) -> Command {
     command
 }
 
-/// The cargo that runs this task.
+/// The cargo that runs this program.
 pub fn cargo() -> Command {
     command(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
 }
 
-/// Metadata of the project from cargo.
-pub fn metadata() -> Result<Metadata> {
-    Ok(MetadataCommand::new().current_dir(root()).exec()?)
+/// The Python of `.venv`, which `cargo xtask` makes.
+pub fn python() -> Command {
+    command(root().join(if cfg!(windows) {
+        ".venv/Scripts/python.exe"
+    } else {
+        ".venv/bin/python"
+    }))
 }
 
-/// Runs a program and shows its output; an error contains the whole command.
+/// Runs a program and shows its output; the error names the whole command.
+///
+/// # Errors
+/// Where it does not start, or fails.
 pub fn run(command: &mut Command) -> Result<()> {
     let status = command
         .status()
@@ -66,7 +78,10 @@ pub fn run(command: &mut Command) -> Result<()> {
     Ok(())
 }
 
-/// Runs a program and returns its output; an error contains all of it.
+/// Runs a program and gives what it printed; the error has all of its output.
+///
+/// # Errors
+/// Where it does not start, fails, or prints what is not UTF-8.
 pub fn output(command: &mut Command) -> Result<String> {
     let output = command
         .output()
@@ -79,7 +94,10 @@ pub fn output(command: &mut Command) -> Result<String> {
     Ok(String::from_utf8(output.stdout)?)
 }
 
-/// The sysroot of a Rust compiler.
+/// The folder of a Rust compiler, which has its libraries and documentation.
+///
+/// # Errors
+/// Where the compiler does not start.
 pub fn sysroot(rustc: impl AsRef<std::ffi::OsStr>) -> Result<PathBuf> {
     let sysroot = output(command(rustc).args(["--print", "sysroot"]))?;
     Ok(PathBuf::from(sysroot.trim()))
