@@ -10,7 +10,13 @@ use crate::stage::stage;
 use crate::{fmu, importers, python, report, valgrind};
 
 /// Folders and files with Python in them.
-const PYTHON: [&str; 4] = ["examples/python", "conformance/python", "docs", "report/browser"];
+const PYTHON: [&str; 5] = [
+    "examples/python",
+    "tests/python",
+    "conformance/python",
+    "docs",
+    "report/browser",
+];
 
 /// Arguments of cargo's lint after the packages.
 const LINT: [&str; 4] = ["--all-targets", "--", "-D", "warnings"];
@@ -94,6 +100,8 @@ fn component() -> Result<()> {
     stage("conformance lint", || {
         run_command(importers::conformance("clippy")?.args(LINT))
     })?;
-    stage("Python examples", || python::test(&["examples/python"], &component))?;
+    stage("Python tests and examples", || {
+        python::test(&["examples/python", "tests/python"], &component)
+    })?;
     importers::stages(&component)
 }

@@ -74,8 +74,12 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     write("dist/release/SHA256SUMS", sum("RelayContact.fmu", &packed).as_bytes())?;
     println!("== FMPy");
     if runs_here {
-        for tests in ["test_validate.py", "test_check_values.py", "test_paper.py"] {
-            python::test(&[&format!("conformance/python/{tests}")], &archive)?;
+        for tests in [
+            "conformance/python/test_validate.py",
+            "tests/python/test_check_values.py",
+            "tests/python/test_paper.py",
+        ] {
+            python::test(&[tests], &archive)?;
         }
     } else {
         println!("NOT RUN, the archive has no library for this machine");
