@@ -8,11 +8,12 @@
 //! beam        section -> modes of the cantilever, exact frequencies, static compliance
 //! contact     indentation -> contact force (Hertz, with dissipation)
 //! preload     static equilibrium of beam and contact
-//! model       Scene -> Model (never changes) and State (all that moves)
-//! transient   Model, State, inputs -> State after a communication step
+//! model       Scene -> Model (never changes);   state  all that moves
+//! integrator  Model, State, inputs -> State after a communication step: "The method" at its head
+//! closed_loop the same where spring and contact are linear: exact steps
 //! chatter     interruptions of the current
 //! electrical  contact force -> resistance;   harmonic  the same contact in the frequency domain
-//! simulation  Model and State together, read by output
+//! simulation  Model and State together, read by output;   reference  the model's parts, for reference solutions
 //! fmi2        all of it behind the C interface of FMI 2.0
 //! ```
 //!

@@ -81,22 +81,15 @@ fn compute<const S: usize, A: Arithmetic>(
         Source::Law(newton) if state.closed => closed_forces::<S, A>(model, step, &free, guess, newton)?,
         _ => Solution::given(guess),
     };
-    let tip = end_of_modes::<S, A>(
-        state,
-        step,
-        model.modes.len(),
-        #[inline(always)]
-        |first, lanes| loads_on_modes::<S, A>(&step.end, first, &solution.forces, &free.accelerations, lanes),
-        end_modes,
-    );
+    let coefficients = (step, collocation);
     Some(judged::<S, A>(
         model,
         state,
         drive,
-        (step, collocation),
-        &solution,
+        coefficients,
+        (&solution, &[]),
         &free,
-        tip,
+        end_modes,
     ))
 }
 
@@ -120,29 +113,15 @@ fn compute_with_axial_force<const S: usize, A: Arithmetic>(
         start_defect: 1.0,
         ..axial_force::with_loads::<S, A>(model, &free, step, &loads)
     };
-    let tip = end_of_modes::<S, A>(
-        state,
-        step,
-        model.modes.len(),
-        #[inline(always)]
-        |first, lanes| {
-            loads_on_modes::<S, A>(&step.end, first, &solution.forces, &free.accelerations, lanes);
-            for (i, load) in loads.iter().skip(first).take(LANES).enumerate() {
-                for (lanes, load) in lanes.iter_mut().zip(load) {
-                    lanes.iter_mut().skip(i).take(1).for_each(|lane| *lane += load);
-                }
-            }
-        },
-        end_modes,
-    );
+    let coefficients = (step, collocation);
     Some(judged::<S, A>(
         model,
         state,
         drive,
-        (step, collocation),
-        &solution,
+        coefficients,
+        (&solution, &loads),
         &free,
-        tip,
+        end_modes,
     ))
 }
 
@@ -188,17 +167,33 @@ fn free_response<'a, const S: usize, A: Arithmetic>(
     }
 }
 
-/// The trial with its error estimate, from the nodal forces and the displacement and velocity of the tip at the end.
+/// The trial with its error estimate, from the nodal forces and the loads on the modes, where there are such; the modes at
+/// its end go to `end_modes`.
 #[inline(always)]
 fn judged<const S: usize, A: Arithmetic>(
     model: &Model,
     state: &State,
     drive: &Drive,
     (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
-    solution: &Solution<S>,
+    (solution, mode_loads): (&Solution<S>, &[Nodal<S>]),
     free: &FreeResponse<S>,
-    (tip, tip_rate): (f64, f64),
+    end_modes: &mut ModeStates,
 ) -> Trial<S> {
+    let (tip, tip_rate) = end_of_modes::<S, A>(
+        state,
+        step,
+        model.modes.len(),
+        #[inline(always)]
+        |first, lanes| {
+            loads_on_modes::<S, A>(&step.end, first, &solution.forces, &free.accelerations, lanes);
+            for (i, load) in mode_loads.iter().skip(first).take(LANES).enumerate() {
+                for (lanes, load) in lanes.iter_mut().zip(load) {
+                    lanes.iter_mut().skip(i).take(1).for_each(|lane| *lane += load);
+                }
+            }
+        },
+        end_modes,
+    );
     let Solution { forces, iterations, .. } = *solution;
     let (indentations, rates) = at_nodes::<S, A>(step, &free.free, &free.free_rate, &forces);
     let support = state.support + drive.support_rate * step.length;
