@@ -238,7 +238,7 @@ impl LifeCycle {
             if reads_output && now.fits.is_none() && verdict == AcceptOrRefuse {
                 now.fits = Some(status == fmi2OK);
             }
-            now.computed |= reads_output && now.fits == Some(true);
+            now.computed |= reads_output && status == fmi2OK;
         }
         if status == fmi2Error {
             if !matches!(verdict, Refuse | AcceptOrRefuse) {
