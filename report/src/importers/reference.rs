@@ -1,4 +1,4 @@
-//! The runs that importers reproduce: `out/conformance/reference.csv`, and every scene.
+//! The runs that importers reproduce: `out/conformance/reference.csv`, and every scene, with its parameter set in `out/ssv`.
 
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -31,7 +31,7 @@ pub fn write() -> Result<()> {
     for (name, file) in scene::all()? {
         scene::simulate(&file, &scenes.join(format!("{name}.csv")))?;
     }
-    Ok(())
+    scene::ssv::write()
 }
 
 /// For each communication point the acceleration over the step that begins there, and the contact forces of both runs.
