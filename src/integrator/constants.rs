@@ -1,7 +1,7 @@
 //! Every number that was chosen for the integrator: meaning, unit (1: a ratio), source, and the test that pins it.
 //!
 //! *Pinned*: with the number changed as told, that test fails. *Cost*: results do not depend on it, only the work, which the
-//! bench `cost` and `cargo xtask instructions` show. *Not pinned*: no test was found that fails; whoever changes the number
+//! bench `cost` and `cargo xtask instructions` show. *Not pinned*: no test that fails is known; whoever changes the number
 //! adds one. The number of modes is chosen in [`Model`](crate::model::Model).
 
 // Step size.
