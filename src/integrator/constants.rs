@@ -11,6 +11,24 @@
 /// errors add up. Pinned: × 100, `tests/calibration.rs`.
 pub const SHARE: f64 = 0.004;
 
+/// Factor on the length that the error estimate allows, 1. Chosen, as usual in step size control. Not pinned by a test.
+pub const SAFETY: f64 = 0.9;
+
+/// The same after a rejection, 1. Chosen. Not pinned by a test.
+pub const AFTER_REJECTION: f64 = 0.8;
+
+/// Least factor on the length after a rejection, 1. Chosen. Not pinned by a test.
+pub const LEAST_SHRINK: f64 = 0.1;
+
+/// Largest factor on the length after a rejection, and the least after a step taken, 1. Chosen. Not pinned by a test.
+pub const MOST_SHRINK: f64 = 0.5;
+
+/// Largest growth that a step taken reports, 1. Chosen. Not pinned by a test.
+pub const MOST_GROWTH: f64 = 64.0;
+
+/// Largest growth from one step to the next, 1. Chosen. Not pinned by a test.
+pub const STEP_GROWTH: f64 = 4.0;
+
 /// Growth from step to step that shows that short steps still find their length, 1. Chosen by the work in the scenes.
 /// Cost.
 pub const GROWING: f64 = 1.5;

@@ -3,6 +3,7 @@
 use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::constants::STEP_GROWTH;
 use crate::integrator::extremes::Extremes;
 use crate::integrator::grid::{Grid, Target};
 use crate::integrator::workspace::{Room, Workspace};
@@ -78,7 +79,7 @@ pub(crate) struct StepOutcome {
 impl StepOutcome {
     /// After an accepted step of `length` seconds where `requested` seconds were proposed.
     pub(crate) fn after(length: f64, requested: f64, growth: f64) -> Self {
-        let next = growth.min(4.0) * length;
+        let next = growth.min(STEP_GROWTH) * length;
         Self {
             taken: true,
             growth,

@@ -110,8 +110,8 @@
 //! # Step size control
 //!
 //! A step may add [`constants::SHARE`] of `solver.tolerance` times the force scale ([`attempt`], [`step_control`]). Its
-//! length is multiplied by `0.9 (allowed / estimate)^(1 / (S + 1))`, at most fourfold per step taken; after a rejection
-//! by a factor between 0.1 and 0.5. Step ends lie on a grid: binary fractions of the communication step, or lengths of
+//! length is multiplied by `(allowed / estimate)^(1 / (S + 1))` and [`constants::SAFETY`], with bounds on growth and
+//! shrinkage beside it. Step ends lie on a grid: binary fractions of the communication step, or lengths of
 //! 1 and 1.5 times powers of two where the integrator runs ahead ([`grid`]), so that coefficients recur; the
 //! generator's corners (start, end, crossover) end a step. A step is never longer than a quarter of the generator's
 //! shortest period, nor than `solver.maximumStep`. Without damping, a step that makes more energy than a force wrong by

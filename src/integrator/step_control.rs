@@ -3,7 +3,10 @@
 use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
 use crate::integrator::attempt::step_factor;
-use crate::integrator::constants::{COARSEST, GROWING, LONG_FLOOR, LONGER, REFUSALS, SHARE, WORTH};
+use crate::integrator::constants::{
+    AFTER_REJECTION, COARSEST, GROWING, LEAST_SHRINK, LONG_FLOOR, LONGER, MOST_GROWTH, MOST_SHRINK, REFUSALS, SAFETY,
+    SHARE, WORTH,
+};
 use crate::integrator::energy::conservation::conserves;
 use crate::integrator::exact_step::step_exactly;
 use crate::integrator::extremes::Extremes;
@@ -146,11 +149,11 @@ impl Integration<'_> {
             }
             // Without an error estimate, shrink by the largest factor.
             let shrink = if ratio.is_finite() {
-                0.8 * step_factor::<S>(ratio)
+                AFTER_REJECTION * step_factor::<S>(ratio)
             } else {
                 0.0
             };
-            return Ok(self.reject(target.length * shrink.clamp(0.1, 0.5)));
+            return Ok(self.reject(target.length * shrink.clamp(LEAST_SHRINK, MOST_SHRINK)));
         };
         // The energy may reveal an error that the estimate misses.
         if !self.is_shortest(&target) && self.breaks_account(&trial, target.length) {
@@ -158,9 +161,9 @@ impl Integration<'_> {
         }
         // From the error of the whole step, also if an event shortens it.
         let growth = if ratio < 1e-7 {
-            64.0
+            MOST_GROWTH
         } else {
-            (0.9 * step_factor::<S>(ratio)).clamp(0.5, 64.0)
+            (SAFETY * step_factor::<S>(ratio)).clamp(MOST_SHRINK, MOST_GROWTH)
         };
         let candidate = self.first_event_candidate(&trial, target.length);
         if let Some(passed) = self.first_passage(&trial)

@@ -8,8 +8,7 @@
 
 use crate::integrator::collocation::shapes::{MAX_SHAPES, Row, Shapes};
 use crate::integrator::collocation::superposition::{Combination, Fading, Pair, Response};
-use crate::integrator::constants::TERMS;
-use crate::integrator::constants::{FAST, FREE, NEGLIGIBLE, SLOW};
+use crate::integrator::constants::{FAST, FREE, NEGLIGIBLE, SLOW, TERMS};
 use crate::math::free_motion::FreeMotion;
 use crate::math::nodal::{Nodal, add, scaled};
 use crate::math::simd::Arithmetic;
