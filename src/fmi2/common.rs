@@ -9,6 +9,7 @@ use std::ptr;
 use libc::{c_char, size_t};
 
 use super::entry::{array, call, hand_out, panic_text, take_back, text};
+use super::environment::with_default;
 use super::failure::Failure;
 use super::instance::Instance;
 use super::logger::Logger;
@@ -76,16 +77,18 @@ pub unsafe extern "C" fn fmi2Instantiate(
     // SAFETY: the contract of the module.
     let (name, guid) = unsafe { (text(instanceName, "instanceName"), text(fmuGUID, "fmuGUID")) };
     let name = name.ok().filter(|name| !name.is_empty());
-    let made = catch_unwind(AssertUnwindSafe(|| {
-        let logger = Logger::new(functions, name.unwrap_or(c"RelayContact"), loggingOn != fmi2False);
-        match refusal(name, fmuType, guid) {
-            None => hand_out(Instance::new(logger)),
-            Some(reason) => {
-                logger.log_status(fmi2Error, &format!("fmi2Instantiate: {reason}"));
-                ptr::null_mut()
+    let made = with_default(|| {
+        catch_unwind(AssertUnwindSafe(|| {
+            let logger = Logger::new(functions, name.unwrap_or(c"RelayContact"), loggingOn != fmi2False);
+            match refusal(name, fmuType, guid) {
+                None => hand_out(Instance::new(logger)),
+                Some(reason) => {
+                    logger.log_status(fmi2Error, &format!("fmi2Instantiate: {reason}"));
+                    ptr::null_mut()
+                }
             }
-        }
-    }));
+        }))
+    });
     made.unwrap_or_else(|panic| {
         let reason = panic_text(panic.as_ref());
         let logger = Logger::new(functions, c"RelayContact", false);

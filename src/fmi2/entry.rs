@@ -8,6 +8,7 @@ use std::mem::MaybeUninit;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use super::environment::with_default;
 use super::failure::Failure;
 use super::instance::Instance;
 use super::states::Function;
@@ -79,21 +80,23 @@ pub(super) unsafe fn call(
     };
     // SAFETY: the guard held IDLE, so the memory came from `hand_out`; it holds BUSY now, so nobody else has a reference.
     let (guard, instance) = unsafe { (&(*handle).guard, &mut *(*handle).instance.get()) };
-    let result = if function.allowed.contains(&instance.state()) {
-        catch_unwind(AssertUnwindSafe(|| body(instance))).unwrap_or_else(|panic| {
-            instance.abandon();
-            Err(Failure::Panic(panic_text(panic.as_ref())))
-        })
-    } else {
-        Err(Failure::CallOrder {
-            function,
-            state: instance.state(),
-        })
-    };
-    let status = match result {
-        Ok(()) => fmi2OK,
-        Err(failure) => instance.fail(function, &failure),
-    };
+    let status = with_default(|| {
+        let result = if function.allowed.contains(&instance.state()) {
+            catch_unwind(AssertUnwindSafe(|| body(instance))).unwrap_or_else(|panic| {
+                instance.abandon();
+                Err(Failure::Panic(panic_text(panic.as_ref())))
+            })
+        } else {
+            Err(Failure::CallOrder {
+                function,
+                state: instance.state(),
+            })
+        };
+        match result {
+            Ok(()) => fmi2OK,
+            Err(failure) => instance.fail(function, &failure),
+        }
+    });
     guard.store(IDLE, Ordering::Release);
     status
 }

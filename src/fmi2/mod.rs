@@ -16,6 +16,7 @@
 mod co_simulation;
 mod common;
 mod entry;
+mod environment;
 mod failure;
 mod fmu_state;
 mod instance;

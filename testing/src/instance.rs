@@ -4,7 +4,9 @@ use std::ffi::{CStr, CString};
 use std::ptr;
 
 use relay_contact::fmi2::*;
-use relay_contact::variables::{GUID, Variable};
+use relay_contact::inputs::Inputs;
+use relay_contact::scene::Scene;
+use relay_contact::variables::{GUID, Group, VARIABLES, Variable};
 
 use crate::log::{Log, Message, callbacks};
 
@@ -153,6 +155,40 @@ impl Instance {
     pub fn set_boolean(&self, name: &str, value: bool) -> fmi2Status {
         let value = value.into();
         unsafe { fmi2SetBoolean(self.component, [vr(name)].as_ptr(), 1, &raw const value) }
+    }
+
+    /// Sets all parameters to those of a scene.
+    pub fn set_scene(&self, scene: &Scene) {
+        for Variable { name, group, .. } in &VARIABLES {
+            let status = match *group {
+                Group::RealParameter(parameter) => self.set_real(name, scene.real(parameter)),
+                Group::IntegerParameter(parameter) => self.set_integer(name, scene.integer(parameter)),
+                Group::BooleanParameter(parameter) => self.set_boolean(name, scene.boolean(parameter)),
+                Group::EnumerationParameter(parameter) => self.set_integer(name, scene.enumeration(parameter)),
+                _ => fmi2OK,
+            };
+            assert_eq!(status, fmi2OK, "{name}: {:?}", self.log);
+        }
+    }
+
+    /// Sets the inputs with their derivatives.
+    pub fn set_inputs(&self, inputs: &Inputs) {
+        let names = ["base.acceleration", "support.displacement", "contact.current"];
+        let values = [
+            inputs.base_acceleration,
+            inputs.support_displacement,
+            inputs.contact_current,
+        ];
+        let rates = [
+            inputs.base_acceleration_rate,
+            inputs.support_displacement_rate,
+            inputs.contact_current_rate,
+        ];
+        assert_eq!(self.set_reals(names, values), fmi2OK, "{:?}", self.log);
+        let (references, orders) = (names.map(vr), [1; 3]);
+        let (references, orders, rates) = (references.as_ptr(), orders.as_ptr(), rates.as_ptr());
+        let status = unsafe { fmi2SetRealInputDerivatives(self.component, references, 3, orders, rates) };
+        assert_eq!(status, fmi2OK, "{:?}", self.log);
     }
 
     /// `fmi2GetReal`: status and value.
