@@ -168,8 +168,8 @@ pub enum StepErrorCause {
     #[error("the communication step size must be positive and finite")]
     StepSize,
     /// More integration steps than allowed within a communication step.
-    #[error("the work limit of {0} integration steps within one communication step is exceeded")]
-    Budget(u64),
+    #[error("one communication step takes too many integration steps; use shorter communication steps")]
+    Budget,
     /// A time so large that the spacing of floating-point numbers exceeds what the motion needs.
     #[error("the floating-point spacing of time is {spacing:e} s, allowed is {allowed:e} s")]
     Resolution {

@@ -141,7 +141,7 @@ fn go_ahead(
         ahead.add_dense(extremes, model, since, ahead.end.time);
         extremes.add(ahead.end.force);
     }
-    let budget = Budget::new(workspace, time - since);
+    let budget = Budget::new(workspace);
     while ahead.end.time < time {
         budget.check(workspace, ahead.end.time)?;
         ahead.start = ahead.end;

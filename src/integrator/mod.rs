@@ -117,7 +117,7 @@
 //! shortest period, nor than `solver.maximumStep`. Without damping, a step that makes more energy than a force wrong by
 //! the tolerance would is rejected too.
 //!
-//! Work is counted and bounded per communication step ([`constants::STEPS`], [`constants::RATE`]; [`workspace`]):
+//! Work is counted and bounded per communication step, however long that is ([`constants::STEPS`]; [`workspace`]):
 //! beyond it the step ends with an error that names the time.
 //!
 //! # Number of modes

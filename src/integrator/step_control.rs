@@ -76,7 +76,7 @@ impl Integration<'_> {
         }
         self.set_support_rate();
         self.note_force();
-        let budget = Budget::new(self.workspace, self.grid.size);
+        let budget = Budget::new(self.workspace);
         while self.grid.done < 1.0 {
             budget.check(self.workspace, self.state.time)?;
             self.advance()?;

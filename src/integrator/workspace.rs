@@ -4,7 +4,7 @@ use crate::beam::mode::{MAX_MODES, ModeState, ModeStates};
 use crate::closed_loop::propagator::Propagators;
 use crate::error::{StepError, StepErrorCause};
 use crate::integrator::collocation::coefficients::Cache;
-use crate::integrator::constants::{NEW_LENGTH, RATE, STEPS};
+use crate::integrator::constants::{NEW_LENGTH, STEPS};
 use crate::integrator::events::log::Events;
 use crate::math::nodal::{LONG, SHORT};
 use crate::model::Model;
@@ -67,32 +67,23 @@ pub(crate) fn work(recurring: bool) -> u64 {
 /// Limit of the work of a communication step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Budget {
-    steps: u64,
     /// Value of [`Workspace::work`] at which it is exhausted.
     limit: u64,
 }
 
 impl Budget {
-    /// For a communication step of `size` seconds that begins now.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a count of steps, saturating"
-    )]
-    pub(crate) fn new(workspace: &Workspace, size: f64) -> Self {
-        let steps = STEPS.saturating_add((size * RATE) as u64);
-        Self {
-            steps,
-            limit: workspace.work.saturating_add(steps),
-        }
+    /// For a communication step that begins now.
+    pub(crate) fn new(workspace: &Workspace) -> Self {
+        let limit = workspace.work.saturating_add(STEPS);
+        Self { limit }
     }
 
     /// Checks the limit at the instant `time` (s).
     ///
     /// # Errors
     /// [`StepErrorCause::Budget`] if it is exhausted.
-    pub(crate) fn check(&self, workspace: &Workspace, time: f64) -> Result<(), StepError> {
-        let cause = StepErrorCause::Budget(self.steps);
+    pub(crate) fn check(self, workspace: &Workspace, time: f64) -> Result<(), StepError> {
+        let cause = StepErrorCause::Budget;
         let within_limit = workspace.work < self.limit;
         within_limit.then_some(()).ok_or(StepError { time, cause })
     }

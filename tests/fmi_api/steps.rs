@@ -102,3 +102,26 @@ fn a_motion_that_cannot_be_integrated_is_an_error_with_time_and_cause() {
     assert!(fmu.real("contact.force").is_finite());
     assert_eq!(fmu.reset(), fmi2OK);
 }
+
+#[test]
+fn a_communication_step_of_any_length_answers() {
+    // Eleven days at rest are nothing; shaken, they are more work than a step may take.
+    let fmu = Instance::initialized();
+    assert_eq!(fmu.step(0.0, 1e6), fmi2OK);
+    let fmu = experiment(None, 0.0);
+    assert_eq!(fmu.step(0.0, 1e-3), fmi2OK);
+    assert_eq!(fmu.step(1e-3, 1e6), fmi2Error);
+    let messages = fmu.messages();
+    let text = messages
+        .first()
+        .map(|message| message.text.as_str())
+        .unwrap_or_default();
+    let reached = text.split_once("t = ").and_then(|(_, rest)| rest.split_once(" s: "));
+    let (reached, advice) = reached.unwrap_or_else(|| panic!("{messages:?}"));
+    // A second of the scene takes some ten milliseconds, so that it comes to minutes.
+    let reached: f64 = reached.parse().unwrap();
+    assert!((10.0..1e4).contains(&reached), "{text}");
+    assert!(advice.contains("use shorter communication steps"), "{text}");
+    assert_eq!(fmu.last_successful_time(), (fmi2OK, 1e-3));
+    assert_eq!(fmu.reset(), fmi2OK);
+}

@@ -26,7 +26,7 @@ fn hostile_contents_are_refused_or_gone_on_from() {
     for seed in 0..1000 {
         let drawn = bytes(seed, 32);
         let hostile = changed(&specimen, &mut Choices::new(&drawn));
-        // In about one of several hundred, a step reaches the work limit, which takes some ten seconds: these are left
+        // In about one of several hundred, a step reaches the work limit, which takes seconds: these are left
         // to the fuzz target.
         let steps = if seed < 400 && !short { 2 } else { 0 };
         let outcome = meet(&LIBRARY, &hostile, steps).unwrap_or_else(|reason| panic!("seed {seed}: {reason}"));
