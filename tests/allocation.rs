@@ -1,33 +1,9 @@
 //! A time step, and setting and reading around it, allocates nothing.
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
-
 use relay_contact::fmi2::fmi2OK;
 use relay_contact::variables::ExcitationKind;
+use testing::allocator::Counting;
 use testing::instance::Instance;
-
-/// The system's allocator, which counts what this thread asks for.
-struct Counting;
-
-thread_local! {
-    static COUNT: Cell<usize> = const { Cell::new(0) };
-}
-
-// SAFETY: every call goes to the system's allocator as it came.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        COUNT.set(COUNT.get() + 1);
-        // SAFETY: passed on to the caller.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        COUNT.set(COUNT.get() + 1);
-        // SAFETY: passed on to the caller.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
 
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
@@ -45,7 +21,7 @@ fn check(excitation: i32) {
     assert_eq!(contact.set_integer("effects.excitation", excitation), fmi2OK);
     assert_eq!(contact.set_boolean("effects.energy", true), fmi2OK);
     contact.initialize();
-    let before = COUNT.get();
+    let before = Counting::calls();
     assert!(before > 0, "nothing is counted");
     for n in 0..1000 {
         let time = f64::from(n) * 1e-5;
@@ -56,7 +32,7 @@ fn check(excitation: i32) {
         assert_eq!(contact.step(time, 1e-5), fmi2OK);
         assert!(contact.real("contact.force").is_finite() && contact.real("contact.resistance").is_finite());
     }
-    assert_eq!(COUNT.get(), before, "allocated in a step");
+    assert_eq!(Counting::calls(), before, "allocated in a step");
     let opening = contact.real("contact.lastOpening");
     assert!(opening > 0.0, "the contact never opened: events are not covered");
 }

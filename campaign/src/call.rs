@@ -116,7 +116,7 @@ pub enum Call {
     ExitInitializationMode,
     Terminate,
     Reset,
-    /// `fmi2FreeInstance` and `fmi2Instantiate`; the saved states stay.
+    /// `fmi2FreeInstance`, which frees the saved states too, and `fmi2Instantiate`; the bytes stay.
     Renew,
     Get {
         kind: Kind,

@@ -12,7 +12,7 @@ use crate::call::{Call, Damage, Fault, SLOTS, StatusFunction};
 use crate::description::{DESCRIPTION, Kind};
 use crate::pointers::{arguments, middle, place, places};
 
-/// An instance, the states saved of it and their bytes. All freed with the value.
+/// An instance, the states saved of it, which are freed with it, and their bytes.
 #[derive(Debug)]
 pub struct Importer<'a> {
     api: &'a Api,
@@ -98,6 +98,7 @@ impl<'a> Importer<'a> {
                 Call::Reset => (api.fmi2Reset)(c),
                 Call::Renew => {
                     (api.fmi2FreeInstance)(c);
+                    self.states = [ptr::null_mut(); SLOTS];
                     self.component = instantiate(api, &self.log);
                     if self.component.is_null() { fmi2Error } else { fmi2OK }
                 }
@@ -292,12 +293,7 @@ impl<'a> Importer<'a> {
 
 impl Drop for Importer<'_> {
     fn drop(&mut self) {
-        unsafe {
-            for state in &mut self.states {
-                (self.api.fmi2FreeFMUstate)(self.component, state);
-            }
-            (self.api.fmi2FreeInstance)(self.component);
-        }
+        unsafe { (self.api.fmi2FreeInstance)(self.component) };
     }
 }
 

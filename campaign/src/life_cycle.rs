@@ -270,7 +270,12 @@ impl LifeCycle {
             Call::ExitInitializationMode => (now.phase, now.fits, now.computed) = (StepComplete, Some(true), true),
             Call::Terminate => now.phase = Terminated,
             Call::Reset => *now = Moment::default(),
-            Call::Renew => (*now, self.errors, self.warnings) = (Moment::default(), true, true),
+            Call::Renew => {
+                *self = Self {
+                    written: std::mem::take(&mut self.written),
+                    ..Self::default()
+                }
+            }
             Call::Set { kind, values, .. } => {
                 for &(reference, value) in values {
                     if let Some(position) = DESCRIPTION.position(reference) {

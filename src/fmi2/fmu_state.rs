@@ -1,5 +1,6 @@
-//! Saved states: copies of the whole instance, any number at a time, also serialized. Directional derivatives are not
-//! supported: the call is an error that does not change the instance.
+//! Saved states: copies of the whole instance, any number at a time, also serialized, each until it or the instance it
+//! was made by is freed. Directional derivatives are not supported: the call is an error that does not change the
+//! instance.
 // Unused arguments keep their names for the header.
 #![allow(unused_variables)]
 
@@ -9,43 +10,17 @@ use libc::size_t;
 
 use super::entry::{array, array_mut, call, place};
 use super::failure::Failure;
-use super::instance::{Instance, Snapshot};
+use super::instance::Instance;
+use super::instance::snapshot::Snapshot;
+use super::saved::saved;
 use super::types::{fmi2Byte, fmi2Component, fmi2FMUstate, fmi2Real, fmi2Status, fmi2ValueReference};
 use super::{serial, states};
-
-/// What a saved state points to. The guard comes first: it distinguishes it from other memory.
-#[repr(C)]
-struct Saved {
-    guard: u64,
-    snapshot: Snapshot,
-}
-
-const SAVED: u64 = u64::from_be_bytes(*b"relay\0st");
-const FREED: u64 = u64::from_be_bytes(*b"relay\0fs");
-
-/// The saved state behind a pointer.
-///
-/// # Safety
-/// `state` is null or points to readable memory.
-unsafe fn saved<'a>(state: fmi2FMUstate) -> Result<&'a mut Saved, Failure> {
-    let foreign = Failure::ForeignState("FMUstate");
-    let state = state.cast::<Saved>();
-    if state.is_null() || !state.is_aligned() {
-        return Err(foreign);
-    }
-    // SAFETY: not null and aligned; the caller promises readable memory.
-    if unsafe { (&raw const (*state).guard).read() } != SAVED {
-        return Err(foreign);
-    }
-    // SAFETY: the guard says that the memory came from `fmi2GetFMUstate`; the caller promises that nobody else uses it.
-    Ok(unsafe { &mut *state })
-}
 
 /// Stores a snapshot in the state that `FMUstate` points to or, if that is null, in a new one.
 ///
 /// # Safety
 /// Unless null, `FMUstate` leads to null or to a saved state.
-unsafe fn keep(FMUstate: *mut fmi2FMUstate, snapshot: &Snapshot) -> Result<(), Failure> {
+unsafe fn keep(instance: &mut Instance, FMUstate: *mut fmi2FMUstate, snapshot: &Snapshot) -> Result<(), Failure> {
     // SAFETY: passed on to the caller.
     let place = unsafe { array_mut(FMUstate, 1, "FMUstate") }?;
     let [place] = place else {
@@ -54,11 +29,7 @@ unsafe fn keep(FMUstate: *mut fmi2FMUstate, snapshot: &Snapshot) -> Result<(), F
     // SAFETY: the standard has the importer set it to null or to a saved state.
     let state = unsafe { place.assume_init_mut() };
     if state.is_null() {
-        *state = Box::into_raw(Box::new(Saved {
-            guard: SAVED,
-            snapshot: *snapshot,
-        }))
-        .cast();
+        *state = instance.saved_states().hand_out(snapshot);
     } else {
         // SAFETY: passed on to the caller.
         unsafe { saved(*state) }?.snapshot = *snapshot;
@@ -69,8 +40,11 @@ unsafe fn keep(FMUstate: *mut fmi2FMUstate, snapshot: &Snapshot) -> Result<(), F
 /// Saves the instance, in the state that `FMUstate` points to or, if that is null, in a new one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetFMUstate(c: fmi2Component, FMUstate: *mut fmi2FMUstate) -> fmi2Status {
-    // SAFETY: the contract of the module.
-    let body = |instance: &mut Instance| unsafe { keep(FMUstate, &instance.snapshot()) };
+    let body = |instance: &mut Instance| {
+        let snapshot = instance.snapshot();
+        // SAFETY: the contract of the module.
+        unsafe { keep(instance, FMUstate, &snapshot) }
+    };
     // SAFETY: the contract of the module.
     unsafe { call(c, states::GET_FMU_STATE, body) }
 }
@@ -84,20 +58,17 @@ pub unsafe extern "C" fn fmi2SetFMUstate(c: fmi2Component, FMUstate: fmi2FMUstat
     unsafe { call(c, states::SET_FMU_STATE, body) }
 }
 
-/// Frees a saved state and sets the pointer to null. Null is ignored.
+/// Frees a saved state and sets the pointer to null. Null is ignored. Those left are freed with their instance.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2FreeFMUstate(c: fmi2Component, FMUstate: *mut fmi2FMUstate) -> fmi2Status {
-    let body = |_: &mut Instance| {
+    let body = |instance: &mut Instance| {
         // SAFETY: the contract of the module: null or initialised.
         let state = match unsafe { array(FMUstate, 1, "FMUstate") } {
             Ok([state]) if !state.is_null() => *state,
             _ => return Ok(()),
         };
         // SAFETY: the contract of the module.
-        let saved = unsafe { saved(state) }?;
-        saved.guard = FREED;
-        // SAFETY: the guard held SAVED, so the memory came from `fmi2GetFMUstate`, and it does not any more.
-        drop(unsafe { Box::from_raw(ptr::from_mut(saved)) });
+        unsafe { instance.saved_states().free(state) }?;
         // SAFETY: not null, as it was read from; the importer's to write to.
         unsafe { FMUstate.write(ptr::null_mut()) };
         Ok(())
@@ -156,13 +127,13 @@ pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
     size: size_t,
     FMUstate: *mut fmi2FMUstate,
 ) -> fmi2Status {
-    let body = |_: &mut Instance| {
+    let body = |instance: &mut Instance| {
         // SAFETY: the contract of the module.
         let bytes = unsafe { array(serializedState, size, "serializedState") }?;
         let bytes: Vec<u8> = bytes.iter().flat_map(|byte| byte.to_ne_bytes()).collect();
         let snapshot = serial::from_bytes(&bytes)?;
         // SAFETY: the contract of the module.
-        unsafe { keep(FMUstate, &snapshot) }
+        unsafe { keep(instance, FMUstate, &snapshot) }
     };
     // SAFETY: the contract of the module.
     unsafe { call(c, states::DE_SERIALIZE_FMU_STATE, body) }

@@ -10,7 +10,7 @@
 //! ```
 
 use super::failure::Failure;
-use super::instance::Snapshot;
+use super::instance::snapshot::Snapshot;
 use crate::variables::GUID;
 
 const MAGIC: &[u8] = b"relay\0st";

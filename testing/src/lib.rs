@@ -4,12 +4,14 @@
 //! rig       a model with its state and energy, also one built from modes without a beam
 //! scenes    scenes for tests, with reference values computed without the library
 //! log       the messages of an instance
+//! allocator counts allocations
 //! instance  fmi2Instantiate with any arguments, and an instance of the library linked into the program
 //! ```
 #![allow(clippy::undocumented_unsafe_blocks)] // every block calls a C function with valid arguments, or with wrong ones on purpose
 #![allow(clippy::missing_panics_doc)] // used only by tests
 #![allow(clippy::wildcard_imports)] // of the standard's types and statuses
 
+pub mod allocator;
 pub mod instance;
 pub mod log;
 pub mod rig;

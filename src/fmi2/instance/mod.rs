@@ -1,74 +1,22 @@
 //! One instance of the component: the values set, the simulation once it exists, and the state in the life cycle.
 
+pub(super) mod snapshot;
 mod variables;
 
-use serde::{Deserialize, Serialize};
 use std::ffi::CStr;
+
+use snapshot::{Experiment, LARGEST_TOLERANCE, Snapshot};
 
 use super::failure::Failure;
 use super::logger::Logger;
 use super::report::{self, Effort};
+use super::saved::SavedStates;
 use super::states::{Function, State};
 use super::types::fmi2Status;
 use crate::error::SceneError;
 use crate::inputs::Inputs;
-use crate::integrator::motion::Motion;
 use crate::scene::Scene;
 use crate::simulation::Simulation;
-
-/// Larger tolerances of the experiment are reduced to this one, the largest that `solver.tolerance` allows.
-const LARGEST_TOLERANCE: f64 = 0.1;
-
-/// The arguments of `fmi2SetupExperiment`; without a call start time zero, no tolerance, no stop time.
-#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-struct Experiment {
-    tolerance: Option<f64>,
-    start_time: f64,
-    stop_time: Option<f64>,
-}
-
-impl Experiment {
-    /// The scene, with the tolerance of the experiment if it has none of its own.
-    fn scene(&self, scene: &Scene) -> Scene {
-        let mut scene = *scene;
-        if let Some(tolerance) = self.tolerance.filter(|_| scene.solver.tolerance == 0.0) {
-            scene.solver.tolerance = tolerance;
-        }
-        scene
-    }
-}
-
-/// A snapshot of an instance, without the log settings, which belong to the importer.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(super) struct Snapshot {
-    state: State,
-    scene: Scene,
-    inputs: Inputs,
-    experiment: Experiment,
-    /// The state of the simulation, and the initial displacement of the fixed contact, m.
-    simulation: Option<(Motion, f64)>,
-    time: f64,
-}
-
-impl Snapshot {
-    /// Whether an instance can reach these numbers. The scene itself is checked by the model.
-    pub(super) fn is_sound(&self) -> bool {
-        let Experiment {
-            tolerance,
-            start_time,
-            stop_time,
-        } = self.experiment;
-        let simulation = self.simulation.as_ref();
-        self.inputs.are_sound()
-            && tolerance.is_none_or(|tolerance| tolerance > 0.0 && tolerance <= LARGEST_TOLERANCE)
-            && start_time.is_finite()
-            && stop_time.is_none_or(|stop| stop >= start_time)
-            && self.time >= start_time
-            && self.time.is_finite()
-            && simulation
-                .is_none_or(|(motion, support)| motion.is_sound() && motion.time == self.time && support.is_finite())
-    }
-}
 
 #[derive(Debug)]
 pub(super) struct Instance {
@@ -81,6 +29,7 @@ pub(super) struct Instance {
     /// The last successful time, s.
     time: f64,
     logger: Logger,
+    saved_states: SavedStates,
 }
 
 impl Instance {
@@ -93,6 +42,7 @@ impl Instance {
             simulation: None,
             time: 0.0,
             logger,
+            saved_states: SavedStates::default(),
         }
     }
 
@@ -102,6 +52,11 @@ impl Instance {
 
     pub(super) fn time(&self) -> f64 {
         self.time
+    }
+
+    /// The saved states made by this instance.
+    pub(super) fn saved_states(&mut self) -> &mut SavedStates {
+        &mut self.saved_states
     }
 
     /// Logs a failure, changes the state accordingly, and returns its status.
