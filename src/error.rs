@@ -7,7 +7,7 @@ use crate::variables::Variable;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SceneError {
     /// A value outside its range, or not a number.
-    #[error("{name} = {value}{unit}: not allowed, {allowed}", unit = spaced(unit))]
+    #[error("{name} = {}{}: not allowed, {allowed}", number(*value), spaced(unit))]
     OutOfRange {
         /// Name of the variable or key.
         name: &'static str,
@@ -50,7 +50,8 @@ pub enum SceneError {
     },
     /// An axial force above the buckling load of the spring without contact.
     #[error(
-        "{name} = {value} N: the spring buckles once the contact opens, allowed is less than {limit} N (pi^2 E I / (4 L^2))"
+        "{name} = {} N: the spring buckles once the contact opens, allowed is less than {} N (pi^2 E I / (4 L^2))",
+        number(*value), number(*limit)
     )]
     Buckled {
         /// The variable or result that holds the force.
@@ -62,8 +63,9 @@ pub enum SceneError {
     },
     /// A random acceleration whose frequency band is empty.
     #[error(
-        "excitation.endFrequency = {end_frequency} Hz with excitation.frequency = {frequency} Hz: empty band for \
-         effects.excitation = Random, allowed is excitation.endFrequency above excitation.frequency"
+        "excitation.endFrequency = {} Hz with excitation.frequency = {} Hz: empty band for \
+         effects.excitation = Random, allowed is excitation.endFrequency above excitation.frequency",
+        number(*end_frequency), number(*frequency)
     )]
     NoBand {
         /// Lower limit, Hz.
@@ -78,7 +80,7 @@ pub enum SceneError {
     #[error("effects.contactLaw: Linearised and Bonded need a contact that is closed at rest, preload.force is 0 N")]
     NoPreload,
     /// A scene for which a quantity of the model is not finite.
-    #[error("{name} is {value} for this scene: this combination of parameters is too extreme")]
+    #[error("{name} is {} for this scene: this combination of parameters is too extreme", number(*value))]
     NotFinite {
         /// The quantity.
         name: &'static str,
@@ -144,6 +146,15 @@ impl SceneError {
     }
 }
 
+/// A number in a message: with an exponent where that is shorter, below 1e-4 and from 1e16 on.
+pub(crate) fn number(value: f64) -> String {
+    let mut text = format!("{value:?}");
+    if text.ends_with(".0") {
+        text.truncate(text.len() - 2);
+    }
+    text
+}
+
 fn spaced(unit: &str) -> String {
     match unit {
         "" | "1" => String::new(),
@@ -153,7 +164,7 @@ fn spaced(unit: &str) -> String {
 
 /// A communication step that could not be integrated. The state remains that before the step.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("integration stopped at t = {time:?} s: {cause}")]
+#[error("integration stopped at t = {} s: {cause}", number(*time))]
 pub struct StepError {
     /// The time reached, s.
     pub time: f64,

@@ -2,7 +2,7 @@
 
 use super::states::{Function, State};
 use super::types::{fmi2Discard, fmi2Error, fmi2Status, fmi2Warning};
-use crate::error::{SceneError, StepError};
+use crate::error::{SceneError, StepError, number};
 
 /// Why a call failed.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -46,14 +46,14 @@ pub(super) enum Failure {
     #[error("{0}; reached by its derivative in this step")]
     Course(SceneError),
     /// A time, step size or other argument that is not allowed.
-    #[error("{name} = {value}: not allowed, {allowed}")]
+    #[error("{name} = {}: not allowed, {allowed}", number(*value))]
     Argument {
         name: &'static str,
         value: f64,
         allowed: String,
     },
     /// An unusable tolerance of the experiment.
-    #[error("tolerance = {0}: ignored, as it is not a positive finite number")]
+    #[error("tolerance = {}: ignored, as it is not a positive finite number", number(*.0))]
     Tolerance(f64),
     /// A log category that is not declared.
     #[error(

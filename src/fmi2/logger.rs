@@ -132,9 +132,10 @@ impl Logger {
     }
 }
 
-/// The message as a format without arguments: `%` doubled, zero bytes removed.
+/// The message as a format without arguments: `%` doubled, zero bytes removed. `#` is doubled too, as the standard has
+/// it: a single one would begin a reference to a variable.
 /// Not the format "%s" with the message as argument: importers whose callback cannot take variable arguments (for
 /// example in Python) show the format unchanged.
 fn printf_safe(message: &str) -> String {
-    message.replace('\0', "").replace('%', "%%")
+    message.replace('\0', "").replace('%', "%%").replace('#', "##")
 }

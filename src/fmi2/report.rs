@@ -2,6 +2,7 @@
 
 use super::logger::{Category, Logger};
 use super::types::fmi2OK;
+use crate::error::number;
 use crate::math::simd::Simd;
 use crate::model::Model;
 use crate::simulation::Simulation;
@@ -38,7 +39,7 @@ fn events(logger: &Logger, simulation: &Simulation) {
     let (events, left_out) = simulation.events();
     for event in events {
         let verb = if event.closes { "closes" } else { "opens" };
-        let text = format!("fmi2DoStep: the contact {verb} at {} s", event.time);
+        let text = format!("fmi2DoStep: the contact {verb} at {} s", number(event.time));
         logger.log(Category::Events, fmi2OK, &text);
     }
     if left_out > 0 {
@@ -70,7 +71,7 @@ impl Effort {
         let now = Self::of(simulation);
         let text = format!(
             "fmi2DoStep: to {} s: {} steps, {} rejected, {} iterations",
-            simulation.time(),
+            number(simulation.time()),
             now.steps.saturating_sub(self.steps),
             now.rejected.saturating_sub(self.rejected),
             now.iterations.saturating_sub(self.iterations)

@@ -88,7 +88,10 @@ impl InputTable {
                             name: "time",
                             value: time,
                             unit: "s",
-                            allowed: format!("allowed is any finite number above that of the previous row, {last} s"),
+                            allowed: format!(
+                                "allowed is any finite number above that of the previous row, {} s",
+                                crate::error::number(last)
+                            ),
                         });
                     }
                     self.times.push(time);

@@ -1,6 +1,6 @@
 //! The parameters by variable: reading, setting and range checks.
 
-use crate::error::SceneError;
+use crate::error::{SceneError, number};
 use crate::scene::Scene;
 use crate::variables::{
     AxialForceKind, BooleanParameter, ContactLawKind, EnumerationParameter, ExcitationKind, Group, IntegerParameter,
@@ -116,7 +116,7 @@ impl Scene {
         let longest = self.solver.maximum_step;
         if longest > 0.0 && longest < SHORTEST_LIMIT {
             let variable = RealParameter::SolverMaximumStep.variable();
-            let allowed = format!("allowed is 0 (no limit), or {SHORTEST_LIMIT} or more");
+            let allowed = format!("allowed is 0 (no limit), or {} or more", number(SHORTEST_LIMIT));
             return Err(SceneError::out_of_range(variable, longest, allowed));
         }
         let mut copy = *self;
@@ -204,9 +204,10 @@ pub(crate) fn check_range(variable: &Variable, value: f64, excluded: bool) -> Re
     if inside && value.is_finite() {
         return Ok(());
     }
+    let (least, greatest) = (number(min), number(max));
     let allowed = match (min.is_finite(), max.is_finite()) {
-        (true, true) if excluded => format!("allowed is more than {min} and less than {max}"),
-        (true, true) => format!("allowed is {min} to {max}"),
+        (true, true) if excluded => format!("allowed is more than {least} and less than {greatest}"),
+        (true, true) => format!("allowed is {least} to {greatest}"),
         _ => "allowed is any finite number".to_owned(),
     };
     Err(SceneError::out_of_range(variable, value, allowed))

@@ -56,13 +56,14 @@ fn errors_and_warnings_are_logged_unless_their_category_is_switched_off() {
 #[test]
 fn an_unknown_category_is_a_warning_that_changes_nothing() {
     let fmu = Instance::new();
-    assert_eq!(choose(&fmu, fmi2False, &[c"logStatusError", c"log%sAll"]), fmi2Warning);
-    // As a printf format this reads "log%sAll".
+    let unknown = c"log%s#r103#All";
+    assert_eq!(choose(&fmu, fmi2False, &[c"logStatusError", unknown]), fmi2Warning);
+    // As a printf format this reads "log%s##r103##All", and there "##" stands for "#", "#r103#" for a variable.
     fmu.expect_message(
         fmi2Warning,
         &[
             "fmi2SetDebugLogging",
-            "log%%sAll",
+            "log%%s##r103##All",
             "logStatusError, logStatusWarning, logEvents and logSolver",
         ],
     );

@@ -47,8 +47,15 @@ fn an_array_that_is_null_misaligned_or_endless_is_named() {
 
 #[test]
 fn a_value_out_of_range_is_named_with_its_unit_and_the_range() {
-    let cases: [(&str, f64, &[&str]); 7] = [
+    let cases: [(&str, f64, &[&str]); 10] = [
         ("beam.width", -1.0, &["beam.width = -1 m", "0.0001 to 1"]),
+        ("beam.width", 1e300, &["beam.width = 1e300 m"]),
+        ("beam.width", -5e-324, &["beam.width = -5e-324 m"]),
+        (
+            "beam.thickness",
+            123_456.5,
+            &["beam.thickness = 123456.5 m", "1e-5 to 0.005"],
+        ),
         ("beam.width", f64::NAN, &["beam.width = NaN"]),
         ("beam.width", f64::INFINITY, &["beam.width = inf"]),
         (
@@ -157,13 +164,14 @@ fn a_derivative_that_there_is_not_is_named_with_its_order() {
 fn a_number_of_the_experiment_or_of_a_step_is_named() {
     for tolerance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let fmu = Instance::new();
-        let parts = ["fmi2SetupExperiment", &format!("tolerance = {tolerance}")];
+        let parts = ["fmi2SetupExperiment", &format!("tolerance = {tolerance}: ")];
         fmu.answers(fmu.setup(Some(tolerance), 2.0, None), fmi2Warning, &parts);
     }
     for (start, stop, part) in [
         (f64::NAN, None, "startTime = NaN"),
         (f64::INFINITY, None, "startTime = inf"),
         (1.0, Some(0.5), "stopTime = 0.5"),
+        (1e300, Some(1.0), "startTime = 1e300 s or more"),
         (0.0, Some(f64::NAN), "stopTime = NaN"),
     ] {
         let fmu = Instance::new();
@@ -190,7 +198,7 @@ fn a_number_of_the_experiment_or_of_a_step_is_named() {
     assert_eq!(fmu.setup(None, 0.0, Some(1e-5)), fmi2OK);
     fmu.initialize();
     assert_eq!(fmu.step(0.0, 1e-5), fmi2OK);
-    fmu.answers(fmu.step(1e-5, 1e-5), fmi2Error, &["stop time 0.00001 s"]);
+    fmu.answers(fmu.step(1e-5, 1e-5), fmi2Error, &["stop time 1e-5 s"]);
 }
 
 #[test]

@@ -77,7 +77,7 @@ fn the_communication_point_may_differ_by_rounding_only() {
         fmi2Error,
         &[
             "fmi2DoStep",
-            "currentCommunicationPoint = 0.00001",
+            "currentCommunicationPoint = 1e-5",
             "the time of the instance is",
         ],
     );

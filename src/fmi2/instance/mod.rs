@@ -13,7 +13,7 @@ use super::report::{self, Effort};
 use super::saved::SavedStates;
 use super::states::{Function, State};
 use super::types::fmi2Status;
-use crate::error::SceneError;
+use crate::error::{SceneError, number};
 use crate::inputs::Inputs;
 use crate::scene::Scene;
 use crate::simulation::Simulation;
@@ -97,7 +97,7 @@ impl Instance {
             return Err(Failure::Argument {
                 name: "stopTime",
                 value: stop,
-                allowed: format!("allowed is startTime = {start_time} s or more"),
+                allowed: format!("allowed is startTime = {} s or more", number(start_time)),
             });
         }
         let usable = tolerance.filter(|tolerance| tolerance.is_finite() && *tolerance > 0.0);
@@ -206,7 +206,7 @@ impl Instance {
         if !(end.is_finite() && (point - self.time).abs() <= slack) {
             let allowed = format!(
                 "the time of the instance is {} s, allowed difference {slack:.1e} s",
-                self.time
+                number(self.time)
             );
             return refused("currentCommunicationPoint", point, allowed);
         }
@@ -216,6 +216,7 @@ impl Instance {
             .stop_time
             .filter(|stop| end > stop + slack.max(1e-3 * size))
         {
+            let (end, stop) = (number(end), number(stop));
             let allowed = format!("the step ends at {end} s, after the stop time {stop} s of the experiment");
             return refused("communicationStepSize", size, allowed);
         }
