@@ -232,7 +232,7 @@ fn step(choices: &mut Choices) -> Call {
         step_size(choices)
     };
     let point = match choices.below(100) {
-        0 => choices.one(&[Point::Off(-1.0), Point::Off(1.0), Point::Off(0.01), Point::Off(-0.3)]),
+        0 => Point::Off(choices.one(&[-1.0, 1.0, 0.01, -0.3, 2e-5, -2e-5])),
         1 => choices.one(&[
             Point::At(f64::NAN),
             Point::At(f64::INFINITY),

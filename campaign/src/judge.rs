@@ -169,7 +169,7 @@ impl<'a> Judge<'a> {
             || (self.life.now.phase == Phase::Error && self.life.now.computed);
         if moves && readable {
             let outputs = self.outputs()?;
-            let anew = matches!(call, Call::DoStep { .. } | Call::ExitInitializationMode) && status == fmi2OK;
+            let anew = matches!(call, Call::DoStep { .. } | Call::ExitInitializationMode) && status <= fmi2Warning;
             if let Some(before) = self
                 .life
                 .now
@@ -181,7 +181,7 @@ impl<'a> Judge<'a> {
             }
             self.life.now.outputs = Some(outputs);
         }
-        if matches!(call, Call::DoStep { .. }) && status == fmi2OK {
+        if matches!(call, Call::DoStep { .. }) && status <= fmi2Warning {
             self.steps += 1;
             self.call(&Call::time())?;
         }

@@ -55,6 +55,13 @@ pub(super) enum Failure {
     /// An unusable tolerance of the experiment.
     #[error("tolerance = {}: ignored, as it is not a positive finite number", number(*.0))]
     Tolerance(f64),
+    /// A communication point that differs from the time of the instance by more than rounding. The step is done.
+    #[error(
+        "currentCommunicationPoint = {}: the time of the instance was {} s; the step went from there to \
+         currentCommunicationPoint + communicationStepSize. Further differences of this kind are not reported",
+        number(*point), number(*time)
+    )]
+    Offset { point: f64, time: f64 },
     /// A log category that is not declared.
     #[error(
         "category {0}: no such log category, allowed are logStatusError, logStatusWarning, logEvents and logSolver; \
@@ -91,7 +98,7 @@ impl Failure {
     /// The status the call returns.
     pub(super) fn status(&self) -> fmi2Status {
         match self {
-            Self::Tolerance(_) | Self::Category(_) => fmi2Warning,
+            Self::Tolerance(_) | Self::Offset { .. } | Self::Category(_) => fmi2Warning,
             Self::Value(_) | Self::StatusKind(_) => fmi2Discard,
             Self::CallOrder { .. }
             | Self::Pointer(_)
@@ -117,11 +124,13 @@ impl Failure {
     /// Whether the instance is put into the state error.
     /// After fmi2Error the standard requires the importer to reset or free the instance; it does not require the
     /// component to reject other calls. A call of an unsupported capability changes nothing, so the instance
-    /// continues. Neither does an output that cannot be computed in Initialization Mode: parameters are set one after
-    /// the other, and the next may make them consistent. (fmi2Discard is not available here: the standard does not
-    /// list the fmi2Get functions among those that may return it in co-simulation.)
+    /// continues. Neither does an output read before initialisation, as some importers try, or one that cannot be
+    /// computed in Initialization Mode: parameters are set one after the other, and the next may make them consistent.
+    /// (fmi2Discard is not available here: the standard does not list the fmi2Get functions among those that may return
+    /// it in co-simulation.)
     pub(super) fn ends_instance(&self) -> bool {
-        self.status() == fmi2Error && !matches!(self, Self::Unsupported(_) | Self::Preview(_))
+        let harmless = matches!(self, Self::Unsupported(_) | Self::Preview(_) | Self::NotComputed { .. });
+        self.status() == fmi2Error && !harmless
     }
 }
 

@@ -1,8 +1,8 @@
 //! The states of an instance, and for each function the states it may be called in.
 //! The table is that of the standard for co-simulation (section 4.2.4), without the columns that do not occur here: a
 //! step is never in progress or cancelled, and a failed step is an error. Three rows are wider: inputs and parameters
-//! can also be read in the state instantiated, where they have their start values (outputs have none there and are
-//! rejected); the status functions also work in the state error, so that the last successful time can be read after a
+//! can also be read in the state instantiated, where they have their start values (outputs have none there: reading one is
+//! an error of that call alone); the status functions also work in the state error, so that the last successful time can be read after a
 //! failed step; the directional derivatives, which the description declares unsupported, report this in every state.
 
 /// State in the life cycle of an instance.

@@ -107,6 +107,8 @@ fn a_variable_that_the_call_cannot_have_is_named_with_the_reason() {
     let fmu = Instance::new();
     let parts = ["fmi2GetReal", "contact.force", "instantiated"];
     fmu.answers(fmu.try_real("contact.force").0, fmi2Error, &parts);
+    // Of that call alone.
+    fmu.initialize();
 
     let set = |fmu: &Instance, name| match name {
         "effects.excitation" | "solver.steps" => fmu.set_integer(name, 2),

@@ -182,6 +182,8 @@ fn wrong_numbers() -> Vec<Call> {
         Point::Off(-1.0),
         Point::Off(1.0),
         Point::Off(0.01),
+        Point::Off(2e-5),
+        Point::Off(-2e-5),
         Point::At(f64::NAN),
         Point::At(f64::INFINITY),
         Point::At(f64::NEG_INFINITY),
