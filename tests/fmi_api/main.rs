@@ -2,10 +2,11 @@
 //! of every call, does not look at.
 //!
 //! [`messages`], [`logging`]: what is said, and where;   [`values`], [`derivatives`], [`steps`]: what a call does to the
-//! simulation;   [`fmu_state`]: a saved state goes on bit by bit;   [`importers`]: habits of importers;
-//! `environment`: hosts with another floating-point environment.
+//! simulation;   [`dependencies`]: of initial unknowns;   [`fmu_state`]: a saved state goes on bit by bit;
+//! [`importers`]: habits of importers;   `environment`: hosts with another floating-point environment.
 #![allow(clippy::undocumented_unsafe_blocks)] // every block calls a C function with what it needs, or, as the test says, without
 
+mod dependencies;
 mod derivatives;
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 mod environment;

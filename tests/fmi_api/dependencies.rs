@@ -1,0 +1,187 @@
+//! The dependencies of initial unknowns that the description declares, against what changes when a known is changed.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use relay_contact::MODEL_DESCRIPTION;
+use relay_contact::error::SceneError;
+use relay_contact::inputs::Inputs;
+use relay_contact::scene::{Scene, choices};
+use relay_contact::simulation::Simulation;
+use relay_contact::variables::{Group, RealOutput, VARIABLES, Variable};
+use roxmltree::Document;
+
+/// Values by name, choices and Booleans by number.
+type Values = &'static [(&'static str, f64)];
+
+/// In all scenes.
+const ALWAYS: Values = &[("effects.heating", 1.0), ("contact.current", 0.1)];
+
+/// Scenes in which every known that matters at all matters somewhere: the start values with these changes. A threshold of
+/// [`CRITICAL`] is the resistance at rest, an overtravel of it closes the contact without force.
+const SCENES: [Values; 20] = [
+    &[],
+    &[("effects.axialForce", 2.0)],
+    &[("effects.axialForce", 3.0)],
+    &[("effects.axialForce", 3.0), ("solver.modes", 5.0)],
+    &[("effects.axialForce", 4.0)],
+    &[("effects.contactLaw", 2.0), ("solver.tolerance", 1e-3)],
+    &[("effects.contactLaw", 3.0), ("effects.contactDamping", 0.0)],
+    &[("environment.gravity", 9.81), ("effects.axialForce", 3.0)],
+    &[PULLED, ("contact.overtravel", CRITICAL)],
+    &[
+        PULLED,
+        ("effects.axialForce", 4.0),
+        ("beam.axialForce", 2.0),
+        ("contact.overtravel", CRITICAL),
+    ],
+    &[
+        PULLED,
+        ALL_COUNT,
+        ("effects.axialForce", 4.0),
+        ("chatter.resistanceThreshold", CRITICAL),
+    ],
+    &[
+        PULLED,
+        ALL_COUNT,
+        ("effects.resistance", 2.0),
+        ("chatter.resistanceThreshold", CRITICAL),
+    ],
+    &[("contact.overtravel", -2e-5), ("support.displacement", 1e-4)],
+    &[ALL_COUNT, ("contact.overtravel", -2e-5)],
+    &[("resistance.film", 0.1), ("contact.current", 100.0)],
+    &[("resistance.film", 100.0), ("contact.current", -1.0)],
+    &[("effects.resistance", 3.0), ("effects.chatter", 0.0)],
+    &[("effects.heating", 0.0), ("effects.extremes", 0.0)],
+    &[("effects.excitation", 2.0), ("effects.energy", 1.0)],
+    &[("effects.excitation", 5.0), ("beam.massDamping", 100.0)],
+];
+const CRITICAL: f64 = f64::NAN;
+const PULLED: (&str, f64) = ("environment.gravity", -9.81);
+const ALL_COUNT: (&str, f64) = ("chatter.minimumDuration", 0.0);
+
+/// What is known at initialisation.
+#[derive(Clone, Copy)]
+struct Known {
+    scene: Scene,
+    inputs: Inputs,
+}
+
+impl Known {
+    fn set(&mut self, variable: &Variable, value: f64) -> Result<(), SceneError> {
+        #[allow(clippy::cast_possible_truncation)] // whole numbers
+        let number = value as i32;
+        match variable.group {
+            Group::RealInput(input) => self.inputs.set_real(input, value),
+            Group::RealParameter(parameter) => self.scene.set_real(parameter, value),
+            Group::IntegerParameter(parameter) => self.scene.set_integer(parameter, number),
+            Group::EnumerationParameter(parameter) => self.scene.set_enumeration(parameter, number),
+            Group::BooleanParameter(parameter) => {
+                self.scene.set_boolean(parameter, value != 0.0);
+                Ok(())
+            }
+            Group::RealOutput(_) | Group::IntegerOutput(_) | Group::BooleanOutput(_) => panic!("{}", variable.name),
+        }
+    }
+
+    /// These values, critical ones for those set so far.
+    fn with(values: impl Iterator<Item = &'static (&'static str, f64)>) -> Self {
+        let (scene, inputs) = (Scene::default(), Inputs::default());
+        let mut known = Self { scene, inputs };
+        for &(name, value) in values {
+            let variable = Variable::by_name(name).unwrap();
+            let value = match name {
+                "chatter.resistanceThreshold" if value.is_nan() => known.at_rest(RealOutput::ContactResistance),
+                "contact.overtravel" if value.is_nan() => {
+                    // The same distance further than where the contact is open.
+                    known.scene.contact.overtravel = -1e-3;
+                    -1e-3 - known.at_rest(RealOutput::ContactIndentation)
+                }
+                _ => value,
+            };
+            known.set(variable, value).unwrap();
+        }
+        known
+    }
+
+    fn at_rest(&self, output: RealOutput) -> f64 {
+        Simulation::new(&self.scene, &self.inputs, 0.0).unwrap().real(output)
+    }
+
+    /// Other values of a known to try; some may not fit.
+    fn others(&self, variable: &Variable) -> Vec<f64> {
+        let near = |value: f64| {
+            let Variable { min, max, .. } = *variable;
+            let step = if value == 0.0 {
+                1e-3 * max.min(1.0)
+            } else {
+                1e-3 * value
+            };
+            vec![value + step, value - step, min, max]
+        };
+        match variable.group {
+            Group::RealInput(input) => near(self.inputs.real(input)),
+            Group::RealParameter(parameter) => near(self.scene.real(parameter)),
+            Group::IntegerParameter(parameter) => {
+                let value = f64::from(self.scene.integer(parameter));
+                vec![value + 1.0, value + 10.0]
+            }
+            Group::EnumerationParameter(parameter) => choices(parameter)
+                .iter()
+                .map(|(_, number)| f64::from(*number))
+                .collect(),
+            Group::BooleanParameter(parameter) => vec![f64::from(u8::from(!self.scene.boolean(parameter)))],
+            Group::RealOutput(_) | Group::IntegerOutput(_) | Group::BooleanOutput(_) => vec![],
+        }
+    }
+
+    /// The bits of the initial unknowns by name, if these values fit.
+    fn unknowns(&self) -> Option<BTreeMap<&'static str, u64>> {
+        let simulation = Simulation::new(&self.scene, &self.inputs, 0.0).ok()?;
+        let unknown = |variable: &'static Variable| Some((variable.name, simulation.output(variable)?.to_bits()));
+        Some(VARIABLES.iter().filter_map(unknown).collect())
+    }
+}
+
+/// Unknowns with a known each.
+type Pairs = BTreeSet<(&'static str, &'static str)>;
+
+fn declared() -> Pairs {
+    let document = Document::parse(MODEL_DESCRIPTION).unwrap();
+    let unknowns = document
+        .descendants()
+        .find(|node| node.has_tag_name("InitialUnknowns"))
+        .unwrap();
+    let name = |index: &str| VARIABLES[index.parse::<usize>().unwrap() - 1].name;
+    let pairs = unknowns
+        .children()
+        .filter(roxmltree::Node::is_element)
+        .flat_map(|unknown| {
+            let knowns = unknown.attribute("dependencies").unwrap().split_whitespace();
+            knowns.map(move |known| (name(unknown.attribute("index").unwrap()), name(known)))
+        });
+    pairs.collect()
+}
+
+#[test]
+fn initial_unknowns_depend_on_what_the_description_says() {
+    let mut found = Pairs::new();
+    for values in SCENES {
+        let base = Known::with(ALWAYS.iter().chain(values));
+        let before = base.unknowns().unwrap_or_else(|| panic!("{values:?} do not fit"));
+        for known in &VARIABLES {
+            for other in base.others(known) {
+                let mut changed = base;
+                let Some(after) = changed.set(known, other).ok().and_then(|()| changed.unknowns()) else {
+                    continue;
+                };
+                let moved = before.iter().filter(|(name, bits)| after[*name] != **bits);
+                found.extend(moved.map(|(unknown, _)| (*unknown, known.name)));
+            }
+        }
+    }
+    let declared = declared();
+    let undeclared: Vec<_> = found.difference(&declared).collect();
+    assert!(undeclared.is_empty(), "not declared: {undeclared:#?}");
+    let idle: Vec<_> = declared.difference(&found).collect();
+    assert!(idle.is_empty(), "declared, but nothing changes: {idle:#?}");
+}
