@@ -82,15 +82,15 @@ impl ElectricalContact {
     }
 
     /// Temperature of the contact spot at a force (N) and a current (A), K: `T^2 = T_0^2 + V^2 / (4 L)` with the
-    /// voltage across constriction and film, at most the melting voltage (R. Holm, Electric Contacts, 1967, section 15;
-    /// L the Lorenz number).
+    /// voltage across constriction and film, at most that of the source and the melting voltage (R. Holm, Electric
+    /// Contacts, 1967, section 15; L the Lorenz number).
     pub fn temperature(&self, scene: &Scene, force: f64, current: f64) -> f64 {
         let surroundings = scene.environment.temperature;
         if force <= 0.0 {
             return surroundings;
         }
         let voltage = current.abs() * (self.constriction(force) + self.film);
-        let voltage = voltage.min(scene.contact.melting_voltage);
+        let voltage = voltage.min(highest_voltage(scene));
         surroundings.hypot(voltage / (2.0 * LORENZ.sqrt()))
     }
 
@@ -102,7 +102,7 @@ impl ElectricalContact {
         let constriction = self.constriction(force);
         let resistance = constriction + self.film;
         let voltage = current.abs() * resistance;
-        if voltage >= scene.contact.melting_voltage {
+        if voltage >= highest_voltage(scene) {
             return (0.0, 0.0);
         }
         let by_voltage = voltage / (4.0 * LORENZ * self.temperature(scene, force, current));
@@ -111,6 +111,11 @@ impl ElectricalContact {
             by_voltage * resistance,
         )
     }
+}
+
+/// The largest voltage that heats the contact spot, V.
+fn highest_voltage(scene: &Scene) -> f64 {
+    scene.contact.melting_voltage.min(scene.contact.open_voltage)
 }
 
 #[cfg(test)]
@@ -167,6 +172,11 @@ mod tests {
         assert!((electrical.temperature(&scene, 0.15, 1e3) - 1218.9).abs() < 0.1);
         assert_eq!(electrical.temperature(&scene, 0.15, 0.0), 298.15);
         assert_eq!(electrical.temperature(&scene, 0.0, 1e3), 298.15);
+        // A source of less than that, and its derivatives: 0.1 V gives sqrt(298.15^2 + 0.1^2 / (4 2.45e-8)).
+        let mut weak = scene;
+        weak.contact.open_voltage = 0.1;
+        assert!((electrical.temperature(&weak, 0.15, 1e3) - 436.960).abs() < 1e-3);
+        assert_eq!(electrical.temperature_slopes(&weak, 0.15, 1e3), (0.0, 0.0));
         // Below it the derivatives are the slopes.
         let (force, current, step) = (0.15, -3.0, 1e-6);
         let slopes = electrical.temperature_slopes(&scene, force, current);

@@ -137,7 +137,10 @@ impl Simulation {
             RealOutput::ContactForce => tip().force,
             RealOutput::ContactConductance => conductance().unwrap_or_default(),
             RealOutput::ContactResistance => conductance().map_or(0.0, |conductance| 1.0 / conductance),
-            RealOutput::ContactVoltage => conductance().map_or(0.0, |conductance| motion.current / conductance),
+            RealOutput::ContactVoltage => conductance().map_or(0.0, |conductance| {
+                let highest = model.scene.contact.open_voltage;
+                (motion.current / conductance).clamp(-highest, highest)
+            }),
             RealOutput::ContactTemperature => match model.electrical.filter(|_| model.scene.effects.heating) {
                 Some(electrical) => electrical.temperature(&model.scene, tip().force, motion.current),
                 None => model.scene.environment.temperature,
@@ -186,7 +189,11 @@ impl Simulation {
                 conducting().map_or(0.0, |(conductance, rate)| -rate / conductance.powi(2))
             }
             RealOutput::ContactVoltage => conducting().map_or(0.0, |(conductance, rate)| {
-                (motion.current_rate - motion.current / conductance * rate) / conductance
+                let voltage = motion.current / conductance;
+                if voltage.abs() >= model.scene.contact.open_voltage {
+                    return 0.0;
+                }
+                (motion.current_rate - voltage * rate) / conductance
             }),
             RealOutput::ContactTemperature => match model.electrical.filter(|_| model.scene.effects.heating) {
                 Some(electrical) => {

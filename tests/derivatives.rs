@@ -152,6 +152,38 @@ fn the_voltage_follows_the_current() {
     assert_eq!(simulation.rate(RealOutput::ContactVoltage), Some(0.0));
 }
 
+/// A current through an open contact is the source's affair: without a limit 10 A over 1 GOhm would be 1e10 V.
+#[test]
+fn an_open_contact_has_the_voltage_of_the_source_at_most() {
+    let mut scene = Scene::default();
+    scene.contact.overtravel = -2e-5;
+    for (limit, current, expected) in [
+        (scene.contact.open_voltage, 10.0, 1e3),
+        (scene.contact.open_voltage, -10.0, -1e3),
+        (6.0, 10.0, 6.0),
+        (6.0, 1e-9, 1.0),
+        (1e21, 1e6, 1e15),
+    ] {
+        scene.contact.open_voltage = limit;
+        let inputs = Inputs {
+            contact_current: current,
+            contact_current_rate: current,
+            ..Inputs::default()
+        };
+        let mut simulation = Simulation::new(&scene, &inputs, 0.0).unwrap();
+        let voltage = simulation.real(RealOutput::ContactVoltage);
+        assert!((voltage / expected - 1.0).abs() < 1e-15, "{current} A: {voltage} V");
+        // Where it is limited it does not grow with the current.
+        simulation.step(&inputs, 0.0, 1e-6).unwrap();
+        let rate = simulation.rate(RealOutput::ContactVoltage).unwrap();
+        let expected = if expected.abs() < limit { expected } else { 0.0 };
+        assert!(
+            (rate - expected).abs() <= 1e-15 * expected.abs(),
+            "{current} A: {rate} V/s"
+        );
+    }
+}
+
 const CONTINUOUS: [RealOutput; 7] = [
     RealOutput::ContactForce,
     RealOutput::ContactResistance,

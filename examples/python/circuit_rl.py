@@ -125,8 +125,8 @@ energy: {", ".join(f"{name} {value:.6f} uJ" for name, value in energies.items())
 energy balance: missed by {abs(miss):.2e} uJ; quadrature and integrator explain {1e6 * result.error:.2e} uJ
 interface: contact.voltage times contact.current misses the contact's heat by {1e6 * gap:.4f} uJ of
     {1e6 * heat[both].sum():.4f} uJ while closed, as one of them is a step old. Where it opens, contact.voltage reads
-    up to {columns["contact.voltage"].max():.1e} V for one step, the current of before times the resistance of now:
-    take the voltage from the circuit."""
+    {columns["contact.voltage"].max():g} V for one step, its limit contact.openVoltage, as the current of before
+    cannot flow over the resistance of now: take the voltage from the circuit."""
 
 
 def draw(result: Result, study: Array, order: float, title: str, path: Path) -> None:

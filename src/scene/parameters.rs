@@ -67,6 +67,8 @@ pub struct Contact {
     pub damping: f64,
     /// Voltage at which the constriction melts, V.
     pub melting_voltage: f64,
+    /// Voltage of the source, which the contact has at most, V.
+    pub open_voltage: f64,
     /// The contact at the tip of the spring.
     pub moving: Material,
     /// The fixed contact.
@@ -213,6 +215,7 @@ impl Default for Scene {
                 curvature_radius: start::CONTACT_CURVATURE_RADIUS,
                 damping: start::CONTACT_DAMPING,
                 melting_voltage: start::CONTACT_MELTING_VOLTAGE,
+                open_voltage: start::CONTACT_OPEN_VOLTAGE,
                 moving: Material {
                     youngs_modulus: start::CONTACT_MOVING_YOUNGS_MODULUS,
                     poisson_ratio: start::CONTACT_MOVING_POISSON_RATIO,

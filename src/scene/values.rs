@@ -144,6 +144,7 @@ impl Scene {
             P::ContactCurvatureRadius => &mut self.contact.curvature_radius,
             P::ContactDamping => &mut self.contact.damping,
             P::ContactMeltingVoltage => &mut self.contact.melting_voltage,
+            P::ContactOpenVoltage => &mut self.contact.open_voltage,
             P::ContactMovingYoungsModulus => &mut self.contact.moving.youngs_modulus,
             P::ContactMovingPoissonRatio => &mut self.contact.moving.poisson_ratio,
             P::ContactFixedYoungsModulus => &mut self.contact.fixed.youngs_modulus,

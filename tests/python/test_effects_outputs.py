@@ -36,9 +36,12 @@ def conductance(kind: str, force: Array, film: float, open_: float) -> Array:
 
 @pytest.mark.parametrize("kind", ["PowerLaw", "Holm"])
 @pytest.mark.parametrize(("film", "open_"), [(0.0, OPEN), (0.02, OPEN), (0.0, 10.0)])
-@pytest.mark.parametrize("law", ["Hertz", "Bonded"])
-def test_resistance_and_voltage_follow_from_the_force(kind: str, film: float, open_: float, law: str) -> None:
+@pytest.mark.parametrize(("law", "source"), [("Hertz", 1e21), ("Bonded", 1e3)])
+def test_resistance_and_voltage_follow_from_the_force(
+    kind: str, film: float, open_: float, law: str, source: float
+) -> None:
     values: Values = {
+        "contact.openVoltage": source,
         "effects.resistance": kind,
         "effects.contactLaw": law,
         "resistance.film": film,
@@ -54,7 +57,7 @@ def test_resistance_and_voltage_follow_from_the_force(kind: str, film: float, op
     expected = conductance(kind, force, film, open_)
     assert result["contact.conductance"] == pytest.approx(expected, rel=ROUNDING, abs=0)
     assert result["contact.resistance"] == pytest.approx(1 / expected, rel=ROUNDING, abs=0)
-    assert result["contact.voltage"] == pytest.approx(-0.1 / expected, rel=ROUNDING, abs=0)
+    assert result["contact.voltage"] == pytest.approx(np.maximum(-0.1 / expected, -source), rel=ROUNDING, abs=0)
 
 
 def test_without_resistance_its_outputs_are_zero_and_the_motion_is_the_same() -> None:
@@ -77,11 +80,13 @@ def test_interruptions_need_a_resistance() -> None:
 
 
 @pytest.mark.parametrize(("current", "melts"), [(-0.05, "never"), (3.0, "sometimes"), (30.0, "always")])
-def test_current_heats_the_closed_contact(current: float, melts: str) -> None:
+@pytest.mark.parametrize("source", [1e3, 0.1])
+def test_current_heats_the_closed_contact(current: float, melts: str, source: float) -> None:
     surroundings, melting, film = 350.0, 0.3, 0.01
     values: Values = {
         "contact.current": current,
         "contact.meltingVoltage": melting,
+        "contact.openVoltage": source,
         "resistance.film": film,
         "environment.temperature": surroundings,
     }
@@ -94,7 +99,7 @@ def test_current_heats_the_closed_contact(current: float, melts: str) -> None:
     closed = force > 0
     assert 0 < np.count_nonzero(closed) < len(force)
     voltage = abs(current) * (constriction("PowerLaw", force[closed]) + film)
-    capped = np.minimum(voltage, melting)
+    capped = np.minimum(voltage, min(melting, source))
     assert bool(np.min(voltage) > melting) == (melts == "always")
     assert bool(np.max(voltage) > melting) == (melts != "never")
     expected = np.full(len(force), surroundings)

@@ -96,8 +96,10 @@ def test_waveforms_energies_and_interface(run: Run, tmp_path: Path, circuit: str
     kept = (COIL * got["load.current"] ** 2 + CAPACITOR * got["capacitor.voltage"] ** 2) / 2
     assert np.abs(got["energy.stored"] - (kept - kept[0])).max() < digits
 
-    # The component's voltage is the current it was handed a step ago, times its resistance of now: so it did get it.
-    assert got["contact.voltage"][1:] == pytest.approx(got["circuit.current"][:-1] * resistance[1:], rel=1e-9)
+    # The component's voltage is the current it was handed a step ago, times its resistance of now, up to
+    # contact.openVoltage: so it did get it.
+    voltage = np.clip(got["circuit.current"][:-1] * resistance[1:], -1e3, 1e3)
+    assert got["contact.voltage"][1:] == pytest.approx(voltage, rel=1e-9)
     # And that current is the circuit's own: closed the load's, open hardly any; never beyond the range without arcs.
     assert got["circuit.current"] == pytest.approx(got["circuit.voltage"] / resistance, rel=1e-9)
     assert "inside the range without arcs" in said
