@@ -76,7 +76,7 @@ impl Generator {
         let shakes = match scene.effects.excitation {
             ExcitationKind::None => false,
             ExcitationKind::Random => excitation.spectral_density > 0.0,
-            ExcitationKind::Sine | ExcitationKind::HalfSine | ExcitationKind::LogSweep => excitation.amplitude > 0.0,
+            ExcitationKind::Sine | ExcitationKind::HalfSine | ExcitationKind::LogSweep => excitation.amplitude != 0.0,
         };
         Ok(match scene.effects.excitation {
             ExcitationKind::Random if excitation.end_frequency <= excitation.frequency => {

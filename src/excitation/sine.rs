@@ -2,14 +2,14 @@
 
 use std::f64::consts::TAU;
 
-use crate::excitation::waveform::{limited_amplitude, turned};
+use crate::excitation::waveform::{displacement_limit, limited, turned};
 use crate::excitation::window::Window;
 use crate::scene::Excitation;
 
 /// `A sin(2 pi f tau + phase)`, `tau = t - t0`, within its window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sine {
-    /// A, m/s2.
+    /// A, m/s2; of either sign, as for every waveform.
     pub amplitude: f64,
     /// f, Hz.
     pub frequency: f64,
@@ -24,7 +24,11 @@ impl Sine {
     /// limit.
     pub fn new(excitation: &Excitation) -> Self {
         Self {
-            amplitude: limited_amplitude(excitation, excitation.frequency),
+            amplitude: limited(
+                excitation.amplitude,
+                displacement_limit(excitation),
+                excitation.frequency,
+            ),
             frequency: excitation.frequency,
             phase: excitation.phase,
             window: Window::from(excitation.start_time),

@@ -5,7 +5,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::excitation::waveform::{Accelerations, turned};
+use crate::excitation::waveform::{Accelerations, displacement_limit, limited, turned};
 use crate::excitation::window::Window;
 use crate::math::nodal::Nodal;
 use crate::scene::Excitation;
@@ -43,12 +43,8 @@ impl LogSweep {
             ..
         } = excitation;
         let rate = logarithm(excitation.end_frequency, frequency) / duration;
-        let displacement_limit = if excitation.displacement_limit > 0.0 {
-            excitation.displacement_limit
-        } else {
-            f64::INFINITY
-        };
-        let crossing = (amplitude / displacement_limit).sqrt() / TAU;
+        let displacement_limit = displacement_limit(excitation);
+        let crossing = (amplitude.abs() / displacement_limit).sqrt() / TAU;
         let window = Window {
             start,
             end: start + duration,
@@ -72,7 +68,7 @@ impl LogSweep {
 
     /// Amplitude at a frequency (Hz), m/s2.
     fn amplitude_at(&self, frequency: f64) -> f64 {
-        self.amplitude.min((TAU * frequency).powi(2) * self.displacement_limit)
+        limited(self.amplitude, self.displacement_limit, frequency)
     }
 
     /// Phase `tau` seconds after the start, reduced by most of its whole turns, rad. At late instants its rounding

@@ -38,13 +38,22 @@ pub(crate) fn turned(frequency: f64, time: f64) -> f64 {
     turns.fract() + frequency.mul_add(time, -turns)
 }
 
-/// Amplitude at a frequency (Hz), m/s2, within the displacement limit: the crossover of vibration standards.
-pub(crate) fn limited_amplitude(excitation: &Excitation, frequency: f64) -> f64 {
+/// The largest displacement amplitude of a scene, m; infinite without a limit.
+pub(crate) fn displacement_limit(excitation: &Excitation) -> f64 {
     if excitation.displacement_limit > 0.0 {
-        excitation
-            .amplitude
-            .min((TAU * frequency).powi(2) * excitation.displacement_limit)
+        excitation.displacement_limit
     } else {
-        excitation.amplitude
+        f64::INFINITY
+    }
+}
+
+/// An amplitude (m/s2) of either sign within a displacement limit (m) at a frequency (Hz): the crossover of vibration
+/// standards.
+pub(crate) fn limited(amplitude: f64, limit: f64, frequency: f64) -> f64 {
+    let largest = (TAU * frequency).powi(2) * limit;
+    if amplitude.abs() > largest {
+        largest.copysign(amplitude)
+    } else {
+        amplitude
     }
 }

@@ -104,7 +104,7 @@ pub struct Resistance {
 /// Generated base acceleration.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Excitation {
-    /// Amplitude of sine, sweep and half sine, m/s2.
+    /// Amplitude of sine, sweep and half sine, m/s2; a negative one begins by pulling.
     pub amplitude: f64,
     /// Frequency of the sine, at the start of the sweep, or lower end of the band, Hz.
     pub frequency: f64,

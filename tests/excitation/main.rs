@@ -59,6 +59,11 @@ fn phased(mut scene: Scene, phase: f64) -> Scene {
     scene
 }
 
+fn pulling(mut scene: Scene) -> Scene {
+    scene.excitation.amplitude = -scene.excitation.amplitude;
+    scene
+}
+
 fn generator(scene: &Scene) -> Generator {
     Generator::new(scene).unwrap()
 }
@@ -90,7 +95,8 @@ fn closed_form(scene: &Scene, time: f64) -> f64 {
     let tau = time - e.start_time;
     let within = |frequency: f64| {
         if e.displacement_limit > 0.0 {
-            e.amplitude.min((TAU * frequency).powi(2) * e.displacement_limit)
+            let limit = (TAU * frequency).powi(2) * e.displacement_limit;
+            e.amplitude.signum() * e.amplitude.abs().min(limit)
         } else {
             e.amplitude
         }
@@ -126,5 +132,14 @@ fn every_waveform() -> Vec<(&'static str, Scene)> {
             limited(sweep(start, 300.0, 3000.0, 2e-3), 3e-6),
         ),
         ("random", random(start, 100.0, 2500.0, 4.0)),
+        ("pulling half sine", half_sine(start, -300.0, 2e-3)),
+        (
+            "pulling limited sine",
+            pulling(limited(excited(ExcitationKind::Sine, start), 1e-6)),
+        ),
+        (
+            "pulling sweep over the crossover",
+            pulling(limited(sweep(start, 300.0, 3000.0, 2e-3), 3e-6)),
+        ),
     ]
 }

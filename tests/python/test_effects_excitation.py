@@ -55,10 +55,16 @@ def sweep(first: float, last: float, limit: float) -> Acceleration:
     return generated(course)
 
 
+def mirrored(course: Acceleration) -> Acceleration:
+    """Give the acceleration in the other direction."""
+    return lambda time: -course(time)
+
+
 SINE: Values = {"effects.excitation": "Sine", "excitation.frequency": FREQUENCY, "excitation.phase": PHASE}
 UP: Values = {**SINE, "effects.excitation": "LogSweep", "excitation.endFrequency": END_FREQUENCY}
 DOWN: Values = {**UP, "excitation.frequency": END_FREQUENCY, "excitation.endFrequency": FREQUENCY}
 LIMITED: Values = {"excitation.displacementLimit": LIMIT}
+PULLING: Values = {"excitation.amplitude": -AMPLITUDE}
 GENERATORS: dict[str, tuple[Values, Acceleration]] = {
     "sine": (SINE, sine(AMPLITUDE)),
     "limited sine": ({**SINE, **LIMITED}, sine((2 * pi * FREQUENCY) ** 2 * LIMIT)),
@@ -66,6 +72,9 @@ GENERATORS: dict[str, tuple[Values, Acceleration]] = {
     "sweep up": (UP, sweep(FREQUENCY, END_FREQUENCY, np.inf)),
     "sweep down": (DOWN, sweep(END_FREQUENCY, FREQUENCY, np.inf)),
     "limited sweep": ({**UP, **LIMITED}, sweep(FREQUENCY, END_FREQUENCY, LIMIT)),
+    "pulling half sine": ({"effects.excitation": "HalfSine", **PULLING}, mirrored(generated(half_sine))),
+    "pulling limited sine": ({**SINE, **LIMITED, **PULLING}, mirrored(sine((2 * pi * FREQUENCY) ** 2 * LIMIT))),
+    "pulling limited sweep": ({**UP, **LIMITED, **PULLING}, mirrored(sweep(FREQUENCY, END_FREQUENCY, LIMIT))),
 }
 
 
