@@ -4,6 +4,7 @@ use crate::beam::axial::Feedback;
 use crate::beam::characteristic;
 use crate::beam::galerkin::Space;
 use crate::beam::mode::{MAX_MODES, Mode, ModeState, ModeStates};
+use crate::beam::mode_count::Blow;
 use crate::beam::section::Section;
 use crate::chatter::{Criterion, Interruptions};
 use crate::closed_loop::system::ClosedLoop;
@@ -96,7 +97,7 @@ impl Model {
         };
         let count = match usize::try_from(scene.solver.modes) {
             Ok(count) if count > 0 => count.min(MAX_MODES),
-            _ => modes_for(scene.solver.effective_tolerance()),
+            _ => modes_for(scene, &section, &hertz).min(MAX_MODES),
         };
         let buckled = || SceneError::Buckled {
             name: RealParameter::BeamAxialForce.variable().name,
@@ -120,7 +121,6 @@ impl Model {
             .unzip();
         let axial = (scene.effects.axial_force == AxialForceKind::FromDeflection)
             .then(|| Feedback::new(&section, &preload, scene.environment.gravity, &space, &modes, &shapes));
-        let reference = section.tip_stiffness() * scene.contact.overtravel.abs().max(1e-4);
         let frequency = characteristic::frequencies(&section, preload.axial_force, preload.contact_stiffness, 1)
             .first()
             .copied();
@@ -153,7 +153,7 @@ impl Model {
             closed_loop,
             generator,
             initial_support: support,
-            force_scale: preload.force.max(reference),
+            force_scale: preload.force.max(bending_force(scene, &section)),
             frequency,
             electrical,
             criterion,
@@ -286,9 +286,22 @@ impl Model {
     }
 }
 
-/// Number of modes for a tolerance. Omitted modes matter most in the first microsecond after an impact, where the
-/// error of the contact force decreases tenfold with every 1.6 modes (`tests/calibration.rs`).
-fn modes_for(tolerance: f64) -> usize {
-    let digits = (0..11).take_while(|digits| tolerance < 10f64.powi(-digits)).count();
-    12 + (8 * digits).div_ceil(5)
+/// Number of modes for the tolerance of the scene.
+fn modes_for(scene: &Scene, section: &Section, hertz: &Hertz) -> usize {
+    // A blow fifty times the force of the bent spring; the number of modes follows it by the 18th root.
+    let force = match scene.effects.contact_law {
+        ContactLawKind::Hertz => 50.0 * bending_force(scene, section),
+        ContactLawKind::Linearised | ContactLawKind::Bonded => bending_force(scene, section),
+    };
+    let blow = Blow {
+        stiffness_damping: scene.beam.stiffness_damping,
+        contact_stiffness: hertz.tangent_stiffness(hertz.indentation(force)),
+        contact_damping: hertz.damping,
+    };
+    blow.modes(section, scene.solver.effective_tolerance())
+}
+
+/// Force of the spring bent by the overtravel, at least by 0.1 mm, N: 3 E I max(|s|, 0.1 mm) / L^3.
+fn bending_force(scene: &Scene, section: &Section) -> f64 {
+    section.tip_stiffness() * scene.contact.overtravel.abs().max(1e-4)
 }

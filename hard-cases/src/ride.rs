@@ -96,19 +96,19 @@ impl Ride {
     /// the step limit is exceeded.
     pub fn run(&self, parts: u32) -> Result<Outcome> {
         let mut model = Model::new(&self.scene, 0.0)?;
-        let metered = model.modes().len() < MAX_MODES;
-        if !metered && self.segments.iter().any(|segment| segment.support != 0.0) {
-            bail!("the work of the support cannot be measured with this many modes");
+        // Room for the mode that meters the work of the support.
+        if model.modes().len() == MAX_MODES {
+            let mut scene = self.scene;
+            scene.solver.modes = i32::try_from(MAX_MODES)? - 1;
+            model = Model::new(&scene, 0.0)?;
         }
-        if metered {
-            let meter = Mode {
-                omega_squared: 0.0,
-                damping: 0.0,
-                tip: METER,
-                participation: 0.0,
-            };
-            model = model.with(|parts| parts.modes.insert(0, meter));
-        }
+        let massless = Mode {
+            omega_squared: 0.0,
+            damping: 0.0,
+            tip: METER,
+            participation: 0.0,
+        };
+        model = model.with(|parts| parts.modes.insert(0, massless));
         let mut rig = Rig::new(model);
         if self.speed != 0.0 {
             throw(&mut rig, self.speed);

@@ -4,5 +4,6 @@ pub mod axial;
 pub mod characteristic;
 pub mod galerkin;
 pub mod mode;
+pub mod mode_count;
 pub mod section;
 pub mod statics;

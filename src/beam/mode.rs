@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// Largest number of modes; a multiple of four, the width of the vectors in a step.
-pub const MAX_MODES: usize = 40;
+pub const MAX_MODES: usize = 64;
 
 /// A value for each mode; those beyond the modes in use are zero.
 pub type Modal = [f64; MAX_MODES];

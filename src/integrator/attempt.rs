@@ -13,7 +13,8 @@ impl Integration<'_> {
     /// Estimated error of a trial to the target, relative to the error allowed; 0 where it is mere rounding, which no
     /// shorter step reduces.
     pub(crate) fn relative_error<const S: usize>(&self, trial: &Trial<S>, target: &Target) -> f64 {
-        let looked_into = self.dense.as_ref().is_some_and(|(until, _)| *until < target.time);
+        let read = self.dense.as_ref().is_some_and(|(until, _)| *until < target.time);
+        let looked_into = read || self.model.scene.effects.extremes;
         // 4-node steps may be inaccurate inside: `DenseOutput::accurate` then prevents dense output.
         let inside = if looked_into && S != SHORT {
             INSIDE / self.tolerance

@@ -2,7 +2,7 @@
 //!
 //! *Pinned*: with the number changed as told, that test fails. *Cost*: results do not depend on it, only the work, which the
 //! bench `cost` and `cargo xtask instructions` show. *Not pinned*: no test that fails is known; whoever changes the number
-//! adds one. The number of modes is chosen in [`Model`](crate::model::Model).
+//! adds one. The number of modes is chosen in [`mode_count`](crate::beam::mode_count).
 
 // Step size.
 

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! rig       a model with its state and energy, also one built from modes without a beam
+//! relays    random plausible relays, run and compared
 //! scenes    scenes for tests, with reference values computed without the library
 //! log       the messages of an instance
 //! allocator counts allocations
@@ -14,5 +15,6 @@
 pub mod allocator;
 pub mod instance;
 pub mod log;
+pub mod relays;
 pub mod rig;
 pub mod scenes;

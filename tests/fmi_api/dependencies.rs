@@ -18,12 +18,13 @@ const ALWAYS: Values = &[("effects.heating", 1.0), ("contact.current", 0.1)];
 
 /// Scenes in which every known that matters at all matters somewhere: the start values with these changes. A threshold of
 /// [`CRITICAL`] is the resistance at rest, an overtravel of it closes the contact without force.
-const SCENES: [Values; 20] = [
+const SCENES: [Values; 21] = [
     &[],
     &[("effects.axialForce", 2.0)],
     &[("effects.axialForce", 3.0)],
     &[("effects.axialForce", 3.0), ("solver.modes", 5.0)],
     &[("effects.axialForce", 4.0)],
+    &[("solver.tolerance", 1e-9), ("beam.stiffnessDamping", 3e-6)],
     &[("effects.contactLaw", 2.0), ("solver.tolerance", 1e-3)],
     &[("effects.contactLaw", 3.0), ("effects.contactDamping", 0.0)],
     &[("environment.gravity", 9.81), ("effects.axialForce", 3.0)],
@@ -116,7 +117,9 @@ impl Known {
             } else {
                 1e-3 * value
             };
-            vec![value + step, value - step, min, max]
+            // Some ends of a range do not fit.
+            let inside = 1e-3 * (max - min);
+            vec![value + step, value - step, min, max, min + inside, max - inside]
         };
         match variable.group {
             Group::RealInput(input) => near(self.inputs.real(input)),
