@@ -10,7 +10,8 @@ pub struct Arguments {
     /// Also draw each figure small, as docs/report/FIGURE.png (needs Chromium)
     #[arg(long)]
     pub pictures: bool,
-    /// Measure the accuracy of this and other integrators anew, instead of showing docs/accuracy.csv (minutes)
+    /// Measure the accuracy and cost of this and other integrators anew, instead of showing docs/accuracy.csv (their build
+    /// takes many minutes)
     #[arg(long)]
     pub peers: bool,
     /// Only rewrite docs/validation.md
@@ -27,6 +28,16 @@ pub struct Section {
     /// The section in a sentence of Markdown, for the summary of the page; empty: it has no place there.
     pub lead: String,
     pub blocks: Vec<Block>,
+}
+
+impl Section {
+    /// Its figures, in order.
+    pub fn figures(&self) -> impl Iterator<Item = &Figure> {
+        self.blocks.iter().filter_map(|block| match block {
+            Block::Figure(figure) => Some(figure),
+            Block::Text(_) | Block::Table(_) => None,
+        })
+    }
 }
 
 /// What a section is made of.

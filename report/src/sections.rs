@@ -9,30 +9,39 @@ use crate::{accuracy, effects, importers, opening, page, paper, stability};
 /// Runs what sections are made of.
 type Part = fn(Arguments) -> Result<Vec<Section>>;
 
+/// What the report is about, and what it rests on.
+const MAIN: [Part; 4] = [
+    opening::sections,
+    accuracy::sections,
+    effects::sections,
+    importers::sections,
+];
+const APPENDIX: [Part; 2] = [paper::sections, stability::sections];
+
 /// Runs everything and writes `out/report/index.html`.
 pub fn run(arguments: Arguments) -> Result<()> {
     if arguments.docs {
         println!("{}", paper::validation::write()?.display());
         return Ok(());
     }
-    let parts: [Part; 6] = [
-        opening::sections,
-        paper::sections,
-        accuracy::sections,
-        stability::sections,
-        effects::section::sections,
-        importers::sections,
-    ];
     let style = ProgressStyle::with_template("{bar:40} {pos}/{len} {msg}")?;
-    let progress = ProgressBar::new(parts.len() as u64).with_style(style);
-    let mut sections = Vec::new();
-    for part in parts {
-        sections.extend(part(arguments)?);
-        progress.inc(1);
-    }
+    let progress = ProgressBar::new((MAIN.len() + APPENDIX.len()) as u64).with_style(style);
+    let run = |parts: &[Part]| {
+        let mut sections = Vec::new();
+        for part in parts {
+            sections.extend(part(arguments)?);
+            progress.inc(1);
+        }
+        Ok::<_, anyhow::Error>(sections)
+    };
+    let (main, appendix) = (run(&MAIN)?, run(&APPENDIX)?);
     progress.finish_and_clear();
-    sections.insert(0, summary(&sections));
-    let path = page::write(&sections, arguments.quick)?;
+    let path = page::write(
+        &summary(main.iter().chain(&appendix)),
+        &main,
+        &appendix,
+        arguments.quick,
+    )?;
     if arguments.pictures {
         commands::run(commands::python().arg("report/browser/pictures.py"))?;
     }
@@ -41,9 +50,9 @@ pub fn run(arguments: Arguments) -> Result<()> {
 }
 
 /// What the sections come to, in a sentence each.
-fn summary(sections: &[Section]) -> Section {
-    let told = sections.iter().filter(|section| !section.lead.is_empty());
-    let lines: Vec<_> = told
+fn summary<'a>(sections: impl Iterator<Item = &'a Section>) -> Section {
+    let lines: Vec<_> = sections
+        .filter(|section| !section.lead.is_empty())
         .map(|section| format!("- [{}](#{}): {}", section.title, section.id, section.lead))
         .collect();
     Section {
