@@ -20,20 +20,10 @@ pub struct Cost {
     pub nanoseconds: f64,
 }
 
-/// A build for any processor, whose instructions are counted.
-pub struct Counter(RunScene);
-
-impl Counter {
-    /// Builds it.
-    pub fn build() -> Result<Self> {
-        RunScene::build_in("target/portable", &["--features=portable"]).map(Self)
-    }
-
-    /// Instructions per simulated millisecond of the minimal scene with changes.
-    pub fn count(&self, changes: &Changes) -> Result<f64> {
-        let counted = |stop| self.0.instructions(SCENE, &until(changes, stop));
-        Ok((counted(LENGTH)? - counted(STEP)?) / (1e3 * (LENGTH - STEP)))
-    }
+/// Instructions per simulated millisecond of the minimal scene with changes, counted in a portable build.
+pub fn instructions(portable: &RunScene, changes: &Changes) -> Result<f64> {
+    let counted = |stop| portable.instructions(SCENE, &until(changes, stop));
+    Ok((counted(LENGTH)? - counted(STEP)?) / (1e3 * (LENGTH - STEP)))
 }
 
 /// Nanoseconds per simulated millisecond of the minimal scene with changes, in the usual build.

@@ -19,7 +19,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
 pub use self::callgrind::instructions;
-use self::cost::{Cost, Counter};
+use self::cost::Cost;
 use self::influence::{Influence, Runs};
 use self::list::{EFFECTS, Effect};
 use self::run_scene::RunScene;
@@ -85,7 +85,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 /// Measures: first times, one after the other, then what does not depend on what else the machine does.
 fn measure(progress: &ProgressBar) -> Result<Measurement> {
     let usual = RunScene::build()?;
-    let counter = callgrind::is_installed().then(Counter::build).transpose()?;
+    let portable = callgrind::is_installed().then(RunScene::build_portable).transpose()?;
     let runs: Vec<Vec<(String, String)>> = [Vec::new()]
         .into_iter()
         .chain(EFFECTS.iter().map(list::changes))
@@ -98,7 +98,10 @@ fn measure(progress: &ProgressBar) -> Result<Measurement> {
     }
     progress.set_message("instructions and influence");
     let count = |changes: &Vec<_>| {
-        let count = counter.as_ref().map(|counter| counter.count(changes)).transpose();
+        let count = portable
+            .as_ref()
+            .map(|portable| cost::instructions(portable, changes))
+            .transpose();
         progress.inc(1);
         count
     };

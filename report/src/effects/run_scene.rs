@@ -15,14 +15,19 @@ pub type Changes = [(String, String)];
 pub struct RunScene(PathBuf);
 
 impl RunScene {
-    /// As it is usually built.
+    /// The usual one.
     pub fn build() -> Result<Self> {
         Self::build_in("target/run_scene", &[])
     }
 
+    /// For any processor.
+    pub fn build_portable() -> Result<Self> {
+        Self::build_in("target/portable", &["--features=portable"])
+    }
+
     /// With features, in a target folder of its own: the file of the library has the same name in all builds, and in one
     /// folder each would build over the others.
-    pub fn build_in(target: &str, features: &[&str]) -> Result<Self> {
+    fn build_in(target: &str, features: &[&str]) -> Result<Self> {
         let folder = root().join(target);
         run(cargo()
             .args(["build", "--release", "--package=relay-contact", "--example=run_scene"])

@@ -29,8 +29,8 @@ pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
         .into_iter()
         .map(|level| verdict(level, &points))
         .collect::<Result<Vec<_>>>()?;
-    let parts = paper::peak_uncertainty()?;
-    let uncertainty = parts.iter().sum();
+    let parts = paper::uncertainties()?;
+    let uncertainty = parts[0].hypot(parts[1]);
     let asked = verdicts.last().context("no levels")?;
     let lead = answer(&verdicts, asked, uncertainty);
     let blocks = vec![
@@ -110,14 +110,14 @@ fn answer(verdicts: &[Verdict], asked: &Verdict, uncertainty: f64) -> String {
 }
 
 /// Where it opens first, and the parts of the uncertainty.
-fn weakest(points: &[Thresholds], parts: [f64; 3]) -> String {
+fn weakest(points: &[Thresholds], parts: [f64; 2]) -> String {
     let (opens, frequency) = least(points.iter().map(|point| (point.opens, point.frequency)));
-    let [difference, maximum, preload] = parts.map(|part| format!("{:.1} %", 100.0 * part));
+    let [maximum, preload] = parts.map(|part| format!("{:.2} %", 100.0 * part));
     format!(
         "The specimen opens most easily near its first resonance: the contact force first reaches zero at {:.1} g ({opens:.0} m/s²) and \
          {frequency:.0} Hz. This acceleration is as uncertain as the preload over the maximum of the force amplitude: the published \
-         maximum differs from that of this model by {difference}, half a unit in its last digit is {maximum}, and in that of the preload \
-         {preload}.",
+         maximum differs from that of this model by {maximum}, and half a unit in the last digit of the published preload is {preload}. \
+         Scatter between contacts is not included.",
         opens / G,
     )
 }
