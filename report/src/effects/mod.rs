@@ -1,6 +1,6 @@
 //! What each effect costs and changes: `docs/effects.md`, which the report shows too.
 //!
-//! [`list`]: the effects;   [`cost`]: instructions and time of the minimal scene with each;   [`influence`]: what each changes
+//! [`list`]: the effects;   [`cost`]: instructions of the minimal scene with each;   [`influence`]: what each changes
 //! in the scenes;   [`page`]: all that as a page.
 
 mod callgrind;
@@ -8,7 +8,6 @@ mod cost;
 mod influence;
 mod list;
 mod page;
-pub mod run_scene;
 
 use std::fs;
 use std::path::PathBuf;
@@ -19,10 +18,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
 pub use self::callgrind::instructions;
-use self::cost::Cost;
+use self::cost::RunScene;
 use self::influence::{Influence, Runs};
 use self::list::{EFFECTS, Effect};
-use self::run_scene::RunScene;
 use crate::content::{Arguments as Extent, Section};
 use crate::markdown;
 
@@ -34,25 +32,23 @@ pub struct Arguments {
     page: PathBuf,
 }
 
-/// Runs of which the shortest is the time.
-const RUNS: usize = 15;
-
 /// All that was measured.
 pub struct Measurement {
-    minimal: Cost,
+    /// Instructions of the minimal scene per simulated millisecond.
+    minimal: f64,
     effects: Vec<Measured>,
 }
 
 /// An effect, measured.
 struct Measured {
     effect: &'static Effect,
-    cost: Cost,
-    /// Of what it is compared with.
-    base: Cost,
+    /// Instructions with it, and with what it is compared with.
+    cost: f64,
+    base: f64,
     influence: Option<Influence>,
 }
 
-/// The section of the report: the page as it was last written, so that no time is taken beside other work.
+/// The section of the report: the page as it was last written.
 pub fn sections(_: Extent) -> Result<Vec<Section>> {
     let path = root().join("docs/effects.md");
     let page = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
@@ -66,65 +62,39 @@ pub fn sections(_: Extent) -> Result<Vec<Section>> {
 
 /// Measures and writes the page.
 pub fn run(arguments: &Arguments) -> Result<()> {
-    if !callgrind::is_installed() {
-        eprintln!(
-            "{}, so instructions are not counted: nanoseconds alone",
-            callgrind::MISSING
-        );
-    }
-    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} {msg}")?;
-    let progress = ProgressBar::new(2 * EFFECTS.len() as u64 + 2).with_style(style);
-    let measurement = measure(&progress)?;
-    progress.finish_and_clear();
+    let measurement = measure()?;
     fs::write(&arguments.page, page::page(&measurement))
         .with_context(|| format!("cannot write {}", arguments.page.display()))?;
     println!("{}", arguments.page.display());
     Ok(())
 }
 
-/// Measures: first times, one after the other, then what does not depend on what else the machine does.
-fn measure(progress: &ProgressBar) -> Result<Measurement> {
-    let usual = RunScene::build()?;
-    let portable = callgrind::is_installed().then(RunScene::build_portable).transpose()?;
-    let runs: Vec<Vec<(String, String)>> = [Vec::new()]
-        .into_iter()
-        .chain(EFFECTS.iter().map(list::changes))
-        .collect();
-    let mut times = Vec::new();
-    progress.set_message("times");
-    for changes in &runs {
-        times.push(cost::nanoseconds(&usual, changes, RUNS)?);
-        progress.inc(1);
-    }
-    progress.set_message("instructions and influence");
-    let count = |changes: &Vec<_>| {
-        let count = portable
-            .as_ref()
-            .map(|portable| cost::instructions(portable, changes))
-            .transpose();
+/// Counts the instructions of each effect, and runs the scenes with and without it.
+fn measure() -> Result<Measurement> {
+    let run_scene = RunScene::build()?;
+    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} instructions")?;
+    let progress = ProgressBar::new(EFFECTS.len() as u64 + 1).with_style(style);
+    let count = |changes: Vec<_>| {
+        let count = run_scene.instructions(&changes);
         progress.inc(1);
         count
     };
-    let counts: Vec<_> = runs.par_iter().map(count).collect::<Result<_>>()?;
-    let costs: Vec<Cost> = times
-        .into_iter()
-        .zip(counts)
-        .map(|(nanoseconds, instructions)| Cost {
-            instructions,
-            nanoseconds,
-        })
-        .collect();
+    let minimal = count(Vec::new())?;
+    let costs: Vec<_> = EFFECTS
+        .par_iter()
+        .map(|effect| count(list::changes(effect)))
+        .collect::<Result<_>>()?;
+    progress.finish_and_clear();
     let influences = Runs::compute()?;
-    let (minimal, costs) = costs.split_first().context("nothing measured")?;
     let base = |effect: &Effect| match effect.beside {
         Some(name) => {
-            let base = EFFECTS.iter().zip(costs).find(|(known, _)| known.name == name);
+            let base = EFFECTS.iter().zip(&costs).find(|(known, _)| known.name == name);
             base.map(|(_, cost)| *cost)
                 .with_context(|| format!("{name}: no such effect"))
         }
-        None => Ok(*minimal),
+        None => Ok(minimal),
     };
-    let measured = |(effect, cost): (&'static Effect, &Cost)| {
+    let measured = |(effect, cost): (&'static Effect, &f64)| {
         Ok(Measured {
             effect,
             cost: *cost,
@@ -132,11 +102,8 @@ fn measure(progress: &ProgressBar) -> Result<Measurement> {
             influence: influences.influence(effect)?,
         })
     };
-    let effects = EFFECTS.iter().zip(costs).map(measured).collect::<Result<_>>()?;
-    Ok(Measurement {
-        minimal: *minimal,
-        effects,
-    })
+    let effects = EFFECTS.iter().zip(&costs).map(measured).collect::<Result<_>>()?;
+    Ok(Measurement { minimal, effects })
 }
 
 #[cfg(test)]

@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::thread::available_parallelism;
 use std::{env, fs};
 
 use anyhow::{Context, Result, bail};
@@ -102,20 +101,6 @@ pub fn output(command: &mut Command) -> Result<String> {
 pub fn sysroot(rustc: impl AsRef<std::ffi::OsStr>) -> Result<PathBuf> {
     let sysroot = output(command(rustc).args(["--print", "sysroot"]))?;
     Ok(PathBuf::from(sysroot.trim()))
-}
-
-/// Date, processor, its cores and the compiler, in one line: of measurements.
-pub fn machine() -> String {
-    let printed =
-        |program: &str, argument: &str| output(command(program).arg(argument)).unwrap_or_else(|_| program.to_owned());
-    let processor = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let model = processor.lines().find(|line| line.starts_with("model name"));
-    let model = model
-        .and_then(|line| Some(line.split_once(": ")?.1))
-        .unwrap_or(env::consts::ARCH);
-    let cores = available_parallelism().map_or(1, usize::from);
-    let (date, rustc) = (printed("date", "+%Y-%m-%d"), printed("rustc", "--version"));
-    format!("{}, {model}, {cores} cores, one used; {}", date.trim(), rustc.trim())
 }
 
 fn line(command: &Command) -> String {
