@@ -68,20 +68,18 @@ impl Table {
         }
     }
 
-    /// Which columns hold numbers, for their alignment: every cell starts like one, or is empty or a dash.
+    /// Which columns hold numbers, for their alignment: most of their cells that are not empty start like one.
     pub fn numeric(&self) -> Vec<bool> {
-        let number = |cell: &String| {
-            let digits = cell.trim_start_matches(['*', '+', '-', '−', '±', '<', '>', '≤', '≥', '≈', ' ']);
-            digits.is_empty()
-                || digits == "–"
-                || digits == "—"
-                || digits.starts_with(|letter: char| letter.is_ascii_digit())
+        let number = |cell: &&String| {
+            let digits = cell.trim_start_matches(['*', '+', '-', '−', '±', '<', '>', '≤', '≥', '≈', '–', '—', ' ']);
+            digits.is_empty() || digits.starts_with(|letter: char| letter.is_ascii_digit())
         };
         let columns = 0..self.columns.len();
         columns
             .map(|column| {
-                let mut cells = self.rows.iter().filter_map(|row| row.get(column)).peekable();
-                cells.peek().is_some() && cells.all(number)
+                let cells = self.rows.iter().filter_map(|row| row.get(column));
+                let cells: Vec<_> = cells.filter(|cell| !cell.is_empty()).collect();
+                2 * cells.iter().copied().filter(number).count() > cells.len()
             })
             .collect()
     }

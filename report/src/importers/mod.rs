@@ -46,7 +46,7 @@ pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
         String::new()
     } else {
         format!(
-            "{passed} of {} tasks in importers of others pass; their contact force differs from that of the Rust library by {worst} N at \
+            "{passed} of {} tasks in other people's importers passed; their contact force differs from that of the Rust library by {worst} N at \
              most.",
             rows.len()
         )
@@ -57,7 +57,7 @@ pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
     }
     Ok(vec![Section {
         id: "importers",
-        title: "Importers of others",
+        title: "Importers",
         lead,
         blocks,
     }])
@@ -75,7 +75,7 @@ fn table(rows: &[Row]) -> Table {
         let difference = match row.difference {
             Some(0.0) => "0 N".to_owned(),
             Some(force) => format!("{force:.1e} N"),
-            None => "-".to_owned(),
+            None => "–".to_owned(),
         };
         let texts = [&row.importer, &row.version, &row.task, &row.result, &difference];
         texts.map(Clone::clone).to_vec()

@@ -23,7 +23,7 @@ pub const LEVELS: [Level; 4] = [
     sine("MIL-STD-202 method 204, condition A", 10.0, 500.0, 1.52e-3),
     sine("MIL-STD-202 method 204, condition B", 15.0, 2000.0, 1.52e-3),
     sine("MIL-STD-202 method 204, condition D", 20.0, 2000.0, 1.52e-3),
-    sine("MIL-PRF-28776F (relays), 4.8.10.1", 30.0, 3000.0, 4.95e-3),
+    sine("MIL-PRF-28776F, 4.8.10.1", 30.0, 3000.0, 4.95e-3),
 ];
 
 /// A level from 10 Hz on.
@@ -52,7 +52,7 @@ impl Level {
         let mut frequencies: Vec<f64> = points.iter().map(|point| point.frequency).chain([crossover]).collect();
         frequencies.retain(|frequency| self.covers(*frequency));
         frequencies.sort_by(f64::total_cmp);
-        let name = format!("{} g: {}", self.acceleration, self.name);
+        let name = format!("{}: {} g", self.name, self.acceleration);
         let points = frequencies
             .into_iter()
             .map(|frequency| (frequency, self.amplitude(frequency) / G));
@@ -127,7 +127,7 @@ pub fn table(verdicts: &[Verdict], uncertainty: f64) -> Table {
             _ => at(longest, verdict.longest_at),
         };
         vec![
-            format!("{} g, {}", level.acceleration, level.name),
+            format!("{}: {} g", level.name, level.acceleration),
             format!("{:.0} to {:.0} Hz", level.frequencies.0, level.frequencies.1),
             verdict.word(uncertainty).to_owned(),
             at(format!("{:.2}", verdict.margin.0), verdict.margin.1),

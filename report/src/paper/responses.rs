@@ -59,8 +59,8 @@ pub fn displacement(results: &Results) -> Result<Figure> {
         curves,
         caption: format!(
             "Published values: at 1000 Hz from Table 4, at 1250 Hz from the text. This model differs from the base by \
-             {} % at most, with larger ratios by less: see *Not reproduced*.",
-            number(most, 1)
+             less than {} %, with larger ratios by less still: see *Not reproduced*.",
+            number(most.ceil(), 0)
         ),
     })
 }
