@@ -1,4 +1,4 @@
-//! What the report says, before it is a page: sections of text, tables and figures.
+//! Contents of the report: sections of text, tables and figures.
 
 /// How much is run.
 #[derive(clap::Args, Clone, Copy, Default)]
@@ -25,7 +25,7 @@ pub struct Section {
     /// Its anchor.
     pub id: &'static str,
     pub title: &'static str,
-    /// The section in a sentence of Markdown, for the summary of the page; empty: it has no place there.
+    /// Summary in a sentence of Markdown, for the head of the page; empty: none.
     pub lead: String,
     pub blocks: Vec<Block>,
 }
@@ -40,7 +40,7 @@ impl Section {
     }
 }
 
-/// What a section is made of.
+/// A part of a section.
 #[derive(Clone, Debug)]
 pub enum Block {
     /// Paragraphs in Markdown.
@@ -94,7 +94,7 @@ pub struct Figure {
     pub x: Axis,
     pub y: Axis,
     pub curves: Vec<Curve>,
-    /// What to see in it, in Markdown.
+    /// Explanation in Markdown.
     pub caption: String,
 }
 

@@ -1,4 +1,4 @@
-//! What stands in the report, in order.
+//! The sections of the report, in order.
 
 use anyhow::Result;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -6,10 +6,10 @@ use indicatif::{ProgressBar, ProgressStyle};
 use crate::content::{Arguments, Block, Section};
 use crate::{accuracy, effects, importers, opening, page, paper, stability};
 
-/// Runs what sections are made of.
+/// Computes sections.
 type Part = fn(Arguments) -> Result<Vec<Section>>;
 
-/// What the report is about, and what it rests on.
+/// Results first, then the comparison and checks behind them.
 const MAIN: [Part; 4] = [
     opening::sections,
     accuracy::sections,
@@ -49,7 +49,7 @@ pub fn run(arguments: Arguments) -> Result<()> {
     Ok(())
 }
 
-/// What the sections come to, in a sentence each.
+/// The sections summarised in a sentence each.
 fn summary<'a>(sections: impl Iterator<Item = &'a Section>) -> Section {
     let lines: Vec<_> = sections
         .filter(|section| !section.lead.is_empty())

@@ -1,4 +1,4 @@
-//! Levels of vibration required by standards, and what each comes to.
+//! Levels of vibration required by standards, and the verdict on each.
 
 use std::f64::consts::TAU;
 
@@ -60,10 +60,10 @@ impl Level {
     }
 }
 
-/// What a level comes to over the frequencies it covers.
+/// The result of a level over the frequencies that it covers.
 pub struct Verdict {
     pub level: Level,
-    /// The worst of each at any frequency.
+    /// The worst values at any frequency.
     worst: Outcome,
     /// Frequencies of the least force and of the longest interruption, Hz.
     least_force_at: f64,

@@ -25,7 +25,7 @@ pub const RESOLUTION: f64 = 1e-4;
 /// Standard acceleration of free fall, m/s2.
 pub const G: f64 = 9.80665;
 
-/// What came of shaking.
+/// The result of a vibration or shock.
 #[derive(Clone, Copy, Debug)]
 pub struct Outcome {
     pub opened: bool,
@@ -53,7 +53,7 @@ impl Outcome {
         ]
     }
 
-    /// Of a run up to now, whose least force is known.
+    /// Of a run so far, with its least force.
     pub fn of(contact: &Simulation, least_force: f64) -> Self {
         Self {
             opened: contact.real(RealOutput::ContactLastOpening) >= 0.0,
@@ -81,7 +81,7 @@ pub enum Start {
     Sudden,
 }
 
-/// What a threshold is sought of.
+/// Criterion of a threshold.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Question {
     /// The contact force reaches zero.
@@ -112,7 +112,7 @@ fn periods(frequency: f64, (time, number): (f64, f64)) -> f64 {
     (time * frequency).max(number).ceil()
 }
 
-/// Shakes with a frequency (Hz) and an amplitude (m/s2), to the end or until the answer is yes.
+/// Vibrates at a frequency (Hz) with an amplitude (m/s2), to the end or until the criterion is met.
 pub fn shake(frequency: f64, amplitude: f64, start: Start, until: Option<Question>) -> Result<Outcome> {
     let mut contact = Simulation::new(&shaken(frequency, amplitude), &Inputs::default(), 0.0)?;
     let preload = contact.real(RealOutput::PreloadForce);
@@ -231,10 +231,13 @@ mod tests {
     #[test]
     fn steady_vibration_above_the_resonance_opens_it_as_linear_theory_says_and_a_sudden_start_earlier() -> Result<()> {
         let found = thresholds(2000.0)?;
-        // The force is linear in the indentation to second order: the amplitude of the force in the closed contact differs
-        // from the linear one by some thousandths, as at the published amplitude (`paper::tests`), ten times smaller.
-        assert!((found.opens / found.linear - 1.0).abs() < 0.02, "{found:?}");
-        assert!(found.sudden < 0.9 * found.interrupts, "{found:?}");
+        // Linear theory is right to a thousandth where the force amplitude is a third of the preload (`paper::tests`), and its
+        // error goes with the square of that amplitude.
+        assert!((found.opens / found.linear - 1.0).abs() < 9e-3, "{found:?}");
+        // Found by an importer's user: 52 g after a sudden start, 65 g in steady vibration.
+        for (threshold, acceleration) in [(found.sudden, 52.0), (found.interrupts, 65.0)] {
+            assert!((threshold / G - acceleration).abs() < 0.5, "{found:?}");
+        }
         Ok(())
     }
 }

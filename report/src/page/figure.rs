@@ -1,11 +1,11 @@
-//! What plotly.js is told to draw.
+//! Figures as data and layout for plotly.js.
 
 use serde_json::{Value, json};
 
 use crate::content::{Axis, Curve, Figure, Style};
 
-/// Okabe and Ito's colours, told apart without colour vision; what starts with `--` is a colour of the style sheet. Their
-/// yellow is left out, too pale on white.
+/// Okabe and Ito's colours, distinguishable with colour blindness, without their yellow, too pale on white; names with `--` are
+/// colours of the style sheet.
 const COLOURS: [&str; 7] = [
     "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "--ink",
 ];
@@ -120,7 +120,7 @@ fn trace(figure: &Figure, curve: &Curve) -> Value {
     trace
 }
 
-/// What is told of a point.
+/// The text shown for a coordinate of a point.
 fn hover(letter: &str, axis: &Axis) -> String {
     format!("{}: %{{{letter}:.5~g}} {}", axis.label, axis.unit)
 }
@@ -177,7 +177,7 @@ fn broken(title: &str, line: usize) -> String {
     }
 }
 
-/// To seven digits, which no eye tells from more.
+/// To seven digits: enough for a figure.
 fn rounded(value: f64) -> f64 {
     format!("{value:.6e}").parse().unwrap_or(value)
 }

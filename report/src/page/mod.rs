@@ -1,6 +1,6 @@
 //! The page: a single file with everything in it.
 //!
-//! [`figure`]: what plotly.js is told to draw;   [`table`]: tables.
+//! [`figure`]: figures for plotly.js;   [`table`]: tables.
 
 mod figure;
 mod html;

@@ -73,8 +73,8 @@ fn elsewhere() -> Result<Vec<Block>> {
         .filter(|point| point.0 >= 5.0);
     let mut furthest = 0.0_f64;
     for (ratio, published) in damped {
-        let ours = 1e6 * displacement(&runs::model(&runs::specimen(ratio))?, 1000.0, fitted)?;
-        furthest = furthest.max(100.0 * (ours / published - 1.0).abs());
+        let found = 1e6 * displacement(&runs::model(&runs::specimen(ratio))?, 1000.0, fitted)?;
+        furthest = furthest.max(100.0 * (found / published - 1.0).abs());
     }
     let text = format!(
         "A point on the spring would explain much of the difference. At {} of the length from the clamp, {} mm before \

@@ -109,8 +109,7 @@ fn find(scene: &str) -> Result<PathBuf> {
     );
 }
 
-/// Runs the scene from 0 to its stop, a row of its outputs for each communication point to `table`, and tells what
-/// happened.
+/// Runs the scene from 0 to its stop, writes its outputs at each communication point as a row of `table`, and summarises.
 pub fn simulate(file: &SceneFile, table: &Path) -> Result<String> {
     let mut rows = BufWriter::new(File::create(table).with_context(|| format!("cannot write {}", table.display()))?);
     write!(rows, "time")?;
