@@ -92,12 +92,19 @@ def panel(axes: Axes, time: Array, name: str, values: Array, unit: Unit | None, 
     axes.grid(alpha=0.3)
 
 
-def draw(table: Path, title: str) -> Path:
-    """Draw the table."""
+def draw(table: Path, title: str, sweep: list[float] | None = None) -> Path:
+    """Draw the table, over time or over the frequency of a sweep (first and last Hz, start and duration s)."""
     columns = read_table(table)
     time = columns.pop("time")
     known = units()
     scale, second = (1.0, "s") if time[-1] > 0.2 else (1e3, "ms")
+    label = f"time [{second}]"
+    if sweep:
+        first, last, start, duration = sweep
+        scale, label = 1.0, "frequency of the sweep [Hz]"
+        inside = (time >= start) & (time <= start + duration)
+        columns = {name: values[inside] for name, values in columns.items()}
+        time = first * (last / first) ** ((time[inside] - start) / duration)
     figure, grid = plt.subplots(
         len(columns), 1, sharex=True, squeeze=False, figsize=(9, 1.2 + 1.7 * len(columns)), layout="constrained"
     )
@@ -112,8 +119,11 @@ def draw(table: Path, title: str) -> Path:
     grid[0, 0].set_title(title, fontsize="medium")
     if is_open.any():
         grid[0, 0].legend(loc="upper right", fontsize="small")
-    grid[-1, 0].set_xlabel(f"time [{second}]")
-    grid[-1, 0].set_xlim(0, scale * time[-1])
+    if sweep:
+        grid[-1, 0].set_xscale("log")
+        grid[-1, 0].xaxis.set_major_formatter("{x:g}")
+    grid[-1, 0].set_xlabel(label)
+    grid[-1, 0].set_xlim(scale * time[0], scale * time[-1])
     figure.align_ylabels()
     path = table.with_name(table.name.removesuffix(".csv") + ".png")
     save(figure, path, dpi=130)
@@ -125,8 +135,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Draw what `cargo xtask scene` wrote.")
     parser.add_argument("table", type=Path, help="the table, such as out/scenes/paper-1khz.csv")
     parser.add_argument("--title", default="", help="title of the figure")
+    sweep = ("FIRST", "LAST", "START", "DURATION")
+    parser.add_argument("--sweep", type=float, nargs=4, metavar=sweep, help="over frequency instead of time [Hz, s]")
     arguments = parser.parse_args()
-    print(draw(arguments.table, arguments.title))
+    print(draw(arguments.table, arguments.title, arguments.sweep))
 
 
 if __name__ == "__main__":

@@ -138,6 +138,22 @@ def test_page_is_no_wider_than_its_window(visit: Visit) -> None:
     assert visit.page.eval_on_selector_all("main > section > *, figure > *", wider) == []
 
 
+def test_a_table_shows_all_columns_or_says_that_there_are_more(visit: Visit) -> None:
+    tables = visit.page.eval_on_selector_all(
+        ".scroll",
+        """tables => tables.map(table =>
+            [table.scrollWidth > table.clientWidth, getComputedStyle(table, "::before").content.includes("scroll")])""",
+    )
+    assert tables
+    assert [pair for pair in tables if pair[0] != pair[1]] == []
+    assert not visit.window.startswith("phone") or any(wider for wider, _ in tables)
+
+
+def test_cells_of_tables_do_not_overlap(visit: Visit) -> None:
+    wide = "cells => cells.filter(cell => cell.scrollWidth > cell.clientWidth + 1).map(cell => cell.textContent)"
+    assert visit.page.eval_on_selector_all("td, th", wide) == []
+
+
 def test_figures_have_the_colours_of_the_page(visit: Visit) -> None:
     paper = visit.page.evaluate("getComputedStyle(document.body).backgroundColor")
     papers = "plots => plots.map(plot => getComputedStyle(plot.querySelector('.main-svg')).backgroundColor)"

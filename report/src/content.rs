@@ -1,4 +1,4 @@
-//! What the report says, before it is a page: sections of text, tables and figures.
+//! Contents of the report: sections of text, tables and figures.
 
 /// How much is run.
 #[derive(clap::Args, Clone, Copy, Default)]
@@ -10,7 +10,8 @@ pub struct Arguments {
     /// Also draw each figure small, as docs/report/FIGURE.png (needs Chromium)
     #[arg(long)]
     pub pictures: bool,
-    /// Measure the accuracy of this and other integrators anew, instead of showing docs/accuracy.csv (minutes)
+    /// Measure the accuracy and cost of this and other integrators anew, instead of showing docs/accuracy.csv (their build
+    /// takes many minutes)
     #[arg(long)]
     pub peers: bool,
     /// Only rewrite docs/validation.md
@@ -24,12 +25,22 @@ pub struct Section {
     /// Its anchor.
     pub id: &'static str,
     pub title: &'static str,
-    /// The section in a sentence of Markdown, for the summary of the page; empty: it has no place there.
+    /// Summary in a sentence of Markdown, for the head of the page; empty: none.
     pub lead: String,
     pub blocks: Vec<Block>,
 }
 
-/// What a section is made of.
+impl Section {
+    /// Its figures, in order.
+    pub fn figures(&self) -> impl Iterator<Item = &Figure> {
+        self.blocks.iter().filter_map(|block| match block {
+            Block::Figure(figure) => Some(figure),
+            Block::Text(_) | Block::Table(_) => None,
+        })
+    }
+}
+
+/// A part of a section.
 #[derive(Clone, Debug)]
 pub enum Block {
     /// Paragraphs in Markdown.
@@ -57,20 +68,18 @@ impl Table {
         }
     }
 
-    /// Which columns hold numbers, for their alignment: every cell starts like one, or is empty or a dash.
+    /// Which columns hold numbers, for their alignment: most of their cells that are not empty start like one.
     pub fn numeric(&self) -> Vec<bool> {
-        let number = |cell: &String| {
-            let digits = cell.trim_start_matches(['*', '+', '-', '−', '±', '<', '>', '≤', '≥', '≈', ' ']);
-            digits.is_empty()
-                || digits == "–"
-                || digits == "—"
-                || digits.starts_with(|letter: char| letter.is_ascii_digit())
+        let number = |cell: &&String| {
+            let digits = cell.trim_start_matches(['*', '+', '-', '−', '±', '<', '>', '≤', '≥', '≈', '–', '—', ' ']);
+            digits.is_empty() || digits.starts_with(|letter: char| letter.is_ascii_digit())
         };
         let columns = 0..self.columns.len();
         columns
             .map(|column| {
-                let mut cells = self.rows.iter().filter_map(|row| row.get(column)).peekable();
-                cells.peek().is_some() && cells.all(number)
+                let cells = self.rows.iter().filter_map(|row| row.get(column));
+                let cells: Vec<_> = cells.filter(|cell| !cell.is_empty()).collect();
+                2 * cells.iter().copied().filter(number).count() > cells.len()
             })
             .collect()
     }
@@ -85,7 +94,7 @@ pub struct Figure {
     pub x: Axis,
     pub y: Axis,
     pub curves: Vec<Curve>,
-    /// What to see in it, in Markdown.
+    /// Explanation in Markdown.
     pub caption: String,
 }
 

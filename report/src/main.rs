@@ -1,10 +1,10 @@
-//! The report, the cost of each effect, runs of scenes: what `cargo xtask report`, `effects`, `scene` and others start.
+//! The report, the cost of each effect, and runs of scenes: started by `cargo xtask report`, `effects`, `scene` and others.
 //!
-//! [`content`]: sections, tables, figures;   [`page`]: the HTML page made of them, [`markdown`]: the same as Markdown;
-//! [`numbers`]: numbers in words.   Sections of the report:   [`opening`]: whether the contact opens;   [`paper`]: the published
-//! results beside ours;   [`accuracy`], [`effects`]: what accuracy and effects cost;   [`stability`]: hard cases and the property
-//! each keeps;   [`importers`]: other people's importers.   [`documentation`]: the page inside the component;   [`scene`]:
-//! runs of scene files.
+//! [`content`]: sections, tables and figures;   [`page`]: the HTML page made of them;   [`markdown`]: the same as Markdown, and
+//! pages of `docs/` read;   [`numbers`]: formatting of numbers.   Sections of the report, listed in [`sections`]: [`opening`]:
+//! whether the contact opens;   [`accuracy`], [`effects`]: what accuracy and effects cost;   [`importers`]: the component in
+//! importers of others;   [`paper`]: comparison with the publication;   [`stability`]: hard cases and the property that each
+//! keeps.   [`scene`]: runs of scene files.
 
 mod accuracy;
 mod content;
@@ -34,21 +34,21 @@ struct CommandLine {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Run what the report shows and write out/report/index.html
+    /// Run everything that the report shows and write out/report/index.html
     Report(Arguments),
-    /// Measure what each effect costs and changes; rewrite docs/effects.md
+    /// Measure the cost and influence of each effect; rewrite docs/effects.md
     Effects(effects::Arguments),
-    /// Run a scene, write what it looks at to out/scenes/NAME.csv and .png, and tell what happened
+    /// Run a scene, write its outputs to out/scenes/NAME.csv and .png, and print a summary
     Scene(scene::Arguments),
     /// Write each scene as a parameter set for SSP tools, out/ssv/NAME.ssv
     Ssv,
-    /// Measure what accuracy costs, beside other integrators; rewrite docs/accuracy.csv, its figures and its tables
+    /// Measure time over accuracy, compared with other integrators; rewrite docs/accuracy.csv and the tables of accuracy.md
     Accuracy(accuracy::study::Arguments),
-    /// Count the instructions of a communication step, through C and in the library alone (needs valgrind)
+    /// Count the instructions of a communication step, through C and in Rust (needs valgrind)
     Instructions,
-    /// Write the runs that importers are compared with
+    /// Write the reference runs that importers are compared with
     ReferenceRuns,
-    /// Print the table of what the importers did
+    /// Print the results of the importers
     Importers,
 }
 

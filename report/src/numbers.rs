@@ -53,30 +53,17 @@ pub fn percent(value: f64) -> String {
     format!("{} %", signed(value, 2))
 }
 
-/// How far ours is from the published value.
-pub fn deviation(ours: f64, published: f64) -> String {
-    percent(100.0 * (ours / published - 1.0))
+/// How far a value is from the published one.
+pub fn deviation(value: f64, published: f64) -> String {
+    percent(100.0 * (value / published - 1.0))
 }
 
 /// A time in a unit that fits, to the nanosecond below a second.
 pub fn seconds(time: f64) -> String {
-    match in_unit(time) {
-        (time, unit @ "ms") => format!("{time:.4} {unit}"),
-        (time, unit) => format!("{time:.3} {unit}"),
-    }
-}
-
-/// A time in a unit that fits, with two digits.
-pub fn seconds_roughly(time: f64) -> String {
-    let (time, unit) = in_unit(time);
-    format!("{} {unit}", two_digits(time))
-}
-
-fn in_unit(time: f64) -> (f64, &'static str) {
     match time.abs() {
-        size if size >= 1.0 => (time, "s"),
-        size if size >= 1e-3 => (1e3 * time, "ms"),
-        _ => (1e6 * time, "us"),
+        size if size >= 1.0 => format!("{time:.3} s"),
+        size if size >= 1e-3 => format!("{:.4} ms", 1e3 * time),
+        _ => format!("{:.3} us", 1e6 * time),
     }
 }
 
@@ -96,6 +83,6 @@ mod tests {
         assert_eq!(deviation(0.9, 1.0), "-10.00 %");
         assert_eq!(two_digits(0.0123), "0.012");
         assert_eq!(two_digits(347.6), "348");
-        assert_eq!(seconds_roughly(0.005_34), "5.3 ms");
+        assert_eq!(seconds(0.005_34), "5.3400 ms");
     }
 }

@@ -1,4 +1,4 @@
-//! What stands in the report, in order.
+//! The sections of the report, in order.
 
 use anyhow::Result;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -6,8 +6,17 @@ use indicatif::{ProgressBar, ProgressStyle};
 use crate::content::{Arguments, Block, Section};
 use crate::{accuracy, effects, importers, opening, page, paper, stability};
 
-/// Runs what sections are made of.
+/// Computes sections.
 type Part = fn(Arguments) -> Result<Vec<Section>>;
+
+/// Results first, then the comparison and checks behind them.
+const MAIN: [Part; 4] = [
+    opening::sections,
+    accuracy::sections,
+    effects::sections,
+    importers::sections,
+];
+const APPENDIX: [Part; 2] = [paper::sections, stability::sections];
 
 /// Runs everything and writes `out/report/index.html`.
 pub fn run(arguments: Arguments) -> Result<()> {
@@ -15,24 +24,24 @@ pub fn run(arguments: Arguments) -> Result<()> {
         println!("{}", paper::validation::write()?.display());
         return Ok(());
     }
-    let parts: [Part; 6] = [
-        opening::sections,
-        paper::sections,
-        accuracy::sections,
-        stability::sections,
-        effects::section::sections,
-        importers::sections,
-    ];
     let style = ProgressStyle::with_template("{bar:40} {pos}/{len} {msg}")?;
-    let progress = ProgressBar::new(parts.len() as u64).with_style(style);
-    let mut sections = Vec::new();
-    for part in parts {
-        sections.extend(part(arguments)?);
-        progress.inc(1);
-    }
+    let progress = ProgressBar::new((MAIN.len() + APPENDIX.len()) as u64).with_style(style);
+    let run = |parts: &[Part]| {
+        let mut sections = Vec::new();
+        for part in parts {
+            sections.extend(part(arguments)?);
+            progress.inc(1);
+        }
+        Ok::<_, anyhow::Error>(sections)
+    };
+    let (main, appendix) = (run(&MAIN)?, run(&APPENDIX)?);
     progress.finish_and_clear();
-    sections.insert(0, summary(&sections));
-    let path = page::write(&sections, arguments.quick)?;
+    let path = page::write(
+        &summary(main.iter().chain(&appendix)),
+        &main,
+        &appendix,
+        arguments.quick,
+    )?;
     if arguments.pictures {
         commands::run(commands::python().arg("report/browser/pictures.py"))?;
     }
@@ -40,10 +49,10 @@ pub fn run(arguments: Arguments) -> Result<()> {
     Ok(())
 }
 
-/// What the sections come to, in a sentence each.
-fn summary(sections: &[Section]) -> Section {
-    let told = sections.iter().filter(|section| !section.lead.is_empty());
-    let lines: Vec<_> = told
+/// The sections summarised in a sentence each.
+fn summary<'a>(sections: impl Iterator<Item = &'a Section>) -> Section {
+    let lines: Vec<_> = sections
+        .filter(|section| !section.lead.is_empty())
         .map(|section| format!("- [{}](#{}): {}", section.title, section.id, section.lead))
         .collect();
     Section {

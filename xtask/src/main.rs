@@ -41,7 +41,7 @@ enum Task {
     Ssv,
     /// Build the component, run the published 1 kHz case under FMPy, compare and plot
     Demo,
-    /// Measure time over accuracy, compared with other integrators; rewrite docs/accuracy.csv, its figures and tables
+    /// Measure time over accuracy, compared with other integrators; rewrite docs/accuracy.csv and the tables of accuracy.md
     #[command(disable_help_flag = true)]
     Accuracy(report::Arguments),
     /// Measure the cost and influence of each effect; rewrite docs/effects.md

@@ -1,7 +1,5 @@
 //! What `cargo xtask accuracy` measured.
 
-use std::fs;
-
 use anyhow::{Context, Result};
 use commands::root;
 use serde::Deserialize;
@@ -9,7 +7,7 @@ use serde::Deserialize;
 /// A line of `accuracy.csv`.
 #[derive(Deserialize)]
 pub struct Row {
-    /// Which part of the measurement: `delivered`, `peers` and others.
+    /// Which part of the measurement: `delivered`, `peers`, `modes` and others.
     pub part: String,
     pub scene: String,
     pub integrator: String,
@@ -19,22 +17,22 @@ pub struct Row {
     pub seconds_per_second: Option<f64>,
     /// Of the contact force, relative to the preload force.
     pub force_error: Option<f64>,
-    /// Of the instants of opening and closing, us.
-    pub event_error_us: Option<f64>,
-    /// Of what the force is compared with.
+    /// Of the durations of openings, us.
+    pub opening_duration_error_us: Option<f64>,
+    /// Of what the force and the durations are compared with.
     pub reference_force_error: f64,
+    pub reference_event_error_us: f64,
 }
 
-/// The rows of a folder, and where they were measured.
-pub fn read(folder: &str) -> Result<(Vec<Row>, String)> {
-    let folder = root().join(folder);
-    let path = folder.join("accuracy.csv");
+/// The rows of a folder.
+pub fn read(folder: &str) -> Result<Vec<Row>> {
+    let path = root().join(folder).join("accuracy.csv");
     let mut reader = csv::Reader::from_path(&path).with_context(|| path.display().to_string())?;
     let rows = reader.deserialize().collect::<Result<_, _>>();
-    let page = fs::read_to_string(folder.join("accuracy.md"))?;
-    let machine = page.lines().find(|line| line.starts_with("Measured on"));
-    Ok((
-        rows.with_context(|| path.display().to_string())?,
-        machine.unwrap_or("Measured on an unknown machine.").to_owned(),
-    ))
+    rows.with_context(|| path.display().to_string())
+}
+
+/// The rows of a part and a scene.
+pub fn of<'a>(rows: &'a [Row], part: &'a str, scene: &'a str) -> impl Iterator<Item = &'a Row> {
+    rows.iter().filter(move |row| row.part == part && row.scene == scene)
 }

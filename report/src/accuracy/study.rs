@@ -1,4 +1,4 @@
-//! What accuracy costs: measures, then draws the figures of `docs/accuracy.md`.
+//! What accuracy costs: starts the measurement.
 
 use std::process::Command;
 
@@ -13,12 +13,11 @@ pub struct Arguments {
     quick: bool,
 }
 
-/// Measures into `docs/accuracy.csv` and the tables of `docs/accuracy.md`, and draws.
+/// Measures into `docs/accuracy.csv` and the tables of `docs/accuracy.md`.
 pub fn run(arguments: &Arguments) -> Result<()> {
     let folder = if arguments.quick { "out/accuracy" } else { "docs" };
     let quick = arguments.quick.then_some("--quick");
-    commands::run(measurement().args(["--folder", folder]).args(quick))?;
-    commands::run(commands::python().args(["docs/accuracy.py", folder]))
+    commands::run(measurement().args(["--folder", folder]).args(quick))
 }
 
 /// The program that measures, to be given its arguments.

@@ -1,39 +1,21 @@
 //! Instructions, counted by valgrind's callgrind.
 
 use std::env::consts::EXE_EXTENSION;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result, bail};
-use commands::{cargo, command, output, root, run};
+use commands::{cargo, command, root, run};
 
 /// Said where valgrind is missing.
-pub const MISSING: &str = "valgrind is missing (on Debian: apt-get install valgrind)";
+const MISSING: &str = "valgrind is missing (on Debian: apt-get install valgrind)";
 
 /// Communication steps of the shorter of the two runs whose instructions are compared.
 const STEPS: u32 = 5000;
 
-/// Whether valgrind is there.
-pub fn is_installed() -> bool {
-    output(command("valgrind").arg("--version")).is_ok()
-}
-
 /// Prints the instructions of a communication step through C and in the library alone.
 pub fn instructions() -> Result<()> {
-    if !is_installed() {
-        bail!(MISSING);
-    }
-    let folder = "target/portable";
-    run(cargo()
-        .args([
-            "build",
-            "--release",
-            "--package=campaign",
-            "--bin=steps",
-            "--features=portable",
-        ])
-        .args(["--target-dir", folder]))?;
-    let program = root().join(folder).join("release/steps").with_extension(EXE_EXTENSION);
+    let program = build(["--package=campaign", "--bin=steps"], "steps")?;
     for scene in ["1us", "10us", "shaken"] {
         let through_c = per_step(&program, scene, "fmi2DoStep")?;
         let alone = per_step(&program, scene, "library")?;
@@ -43,6 +25,17 @@ pub fn instructions() -> Result<()> {
         );
     }
     Ok(())
+}
+
+/// Builds a program for any processor, as valgrind does not know all instructions of this one, in a target folder of its own:
+/// the file of the library has the same name in all builds.
+pub fn build(which: [&str; 2], name: &str) -> Result<PathBuf> {
+    let folder = "target/portable";
+    let mut cargo = cargo();
+    cargo.args(["build", "--release", "--features=portable", "--target-dir", folder]);
+    run(cargo.args(which))?;
+    let program = root().join(folder).join("release").join(name);
+    Ok(program.with_extension(EXE_EXTENSION))
 }
 
 /// Instructions of one step: the difference of two runs, so that all that is done once drops out.
@@ -58,11 +51,11 @@ pub fn count(program: &Path, arguments: impl FnOnce(&mut Command) -> &mut Comman
         .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
         .arg(program);
     let finished = arguments(&mut valgrind).output().context(MISSING)?;
-    let told = String::from_utf8_lossy(&finished.stderr);
+    let printed = String::from_utf8_lossy(&finished.stderr);
     if !finished.status.success() {
-        bail!("{told}");
+        bail!("{printed}");
     }
-    let count = told.lines().find_map(|line| line.split_once("Collected : "));
-    let (_, count) = count.with_context(|| format!("callgrind told no count: {told}"))?;
-    count.trim().parse().context("callgrind told no number")
+    let count = printed.lines().find_map(|line| line.split_once("Collected : "));
+    let (_, count) = count.with_context(|| format!("callgrind printed no count: {printed}"))?;
+    count.trim().parse().context("callgrind printed no number")
 }

@@ -1,47 +1,35 @@
-//! Instructions and nanoseconds that a simulated millisecond takes.
+//! Instructions of the minimal scene with changes, per simulated millisecond.
+
+use std::path::PathBuf;
 
 use anyhow::Result;
 
-use super::run_scene::{Changes, RunScene};
+use super::callgrind;
 
 /// Simulated in a run, s.
 pub const LENGTH: f64 = 0.1;
 
-/// Communication step of the minimal scene, s: a run of one tells what is spent before the steps.
+/// Communication step of the minimal scene, s: a run of one has the instructions spent before the steps.
 const STEP: f64 = 1e-5;
 
-const SCENE: &str = "scenes/minimal.toml";
+/// The example `run_scene`.
+pub struct RunScene(PathBuf);
 
-/// Per simulated millisecond.
-#[derive(Clone, Copy)]
-pub struct Cost {
-    /// Where they are counted.
-    pub instructions: Option<f64>,
-    pub nanoseconds: f64,
-}
-
-/// A build for any processor, whose instructions are counted.
-pub struct Counter(RunScene);
-
-impl Counter {
+impl RunScene {
     /// Builds it.
     pub fn build() -> Result<Self> {
-        RunScene::build_in("target/portable", &["--features=portable"]).map(Self)
+        let which = ["--package=relay-contact", "--example=run_scene"];
+        callgrind::build(which, "examples/run_scene").map(Self)
     }
 
-    /// Instructions per simulated millisecond of the minimal scene with changes.
-    pub fn count(&self, changes: &Changes) -> Result<f64> {
-        let counted = |stop| self.0.instructions(SCENE, &until(changes, stop));
+    /// Instructions per simulated millisecond with names of variables and their values.
+    pub fn instructions(&self, changes: &[(String, String)]) -> Result<f64> {
+        let changes = changes.iter().map(|(name, value)| format!("{name}={value}"));
+        let changes: Vec<_> = changes.collect();
+        let counted = |stop: f64| {
+            let stop = format!("stop={stop}");
+            callgrind::count(&self.0, |run| run.arg("scenes/minimal.toml").args(&changes).arg(stop))
+        };
         Ok((counted(LENGTH)? - counted(STEP)?) / (1e3 * (LENGTH - STEP)))
     }
-}
-
-/// Nanoseconds per simulated millisecond of the minimal scene with changes, in the usual build.
-pub fn nanoseconds(usual: &RunScene, changes: &Changes, runs: usize) -> Result<f64> {
-    usual.nanoseconds(SCENE, &until(changes, LENGTH), runs)
-}
-
-fn until(changes: &Changes, stop: f64) -> Vec<(String, String)> {
-    let stop = [("stop".to_owned(), stop.to_string())];
-    changes.iter().cloned().chain(stop).collect()
 }

@@ -1,8 +1,8 @@
-//! What was measured, as tables, and `docs/effects.md` made of them.
+//! What was measured, as `docs/effects.md`.
 
 use std::fmt::Write;
 
-use super::cost::{Cost, LENGTH};
+use super::cost::LENGTH;
 use super::influence::{CLOSED, Influence, OPENING};
 use super::list::{self, MINIMAL};
 use super::{Measured, Measurement};
@@ -11,63 +11,30 @@ use crate::markdown::table as markdown_table;
 use crate::numbers::two_digits;
 
 /// What each effect costs.
-pub fn costs(measurement: &Measurement) -> Table {
-    let Measurement { minimal, effects, .. } = measurement;
+fn costs(Measurement { minimal, effects, .. }: &Measurement) -> Table {
     let mut rows = vec![vec![
         MINIMAL.to_owned(),
         String::new(),
-        instructions(minimal),
-        String::new(),
-        format!("{:.0}", minimal.nanoseconds),
+        format!("{minimal:.0}"),
         String::new(),
     ]];
-    rows.extend(effects.iter().map(cost));
-    let columns = [
-        "effect",
-        "setting",
-        "instructions per ms",
-        "added",
-        "nanoseconds per ms",
-        "added",
-    ];
-    Table {
-        caption: format!(
-            "Per simulated millisecond of a run of {} ms in communication steps of 10 µs, each effect added alone to the minimal \
-             scene, in which every effect is off that can be.",
-            LENGTH * 1e3
-        ),
-        columns: columns.map(str::to_owned).to_vec(),
-        rows,
-    }
+    rows.extend(effects.iter().map(|measured| {
+        let Measured { effect, cost, base, .. } = measured;
+        let beside = effect
+            .beside
+            .map_or(String::new(), |name| format!(" (compared with {name})"));
+        vec![
+            format!("{}{beside}", effect.name),
+            list::code(effect.setting),
+            format!("{cost:.0}"),
+            format!("{:+.1} %", 100.0 * (cost / base - 1.0)),
+        ]
+    }));
+    Table::new("", &["effect", "setting", "instructions per ms", "added"], rows)
 }
 
-fn cost(measured: &Measured) -> Vec<String> {
-    let Measured { effect, cost, base, .. } = measured;
-    let added = |now: f64, before: f64| format!("{:+.1} %", 100.0 * (now / before - 1.0));
-    let counted = match (cost.instructions, base.instructions) {
-        (Some(now), Some(before)) => added(now, before),
-        _ => String::new(),
-    };
-    let beside = effect
-        .beside
-        .map_or(String::new(), |name| format!(" (compared with {name})"));
-    vec![
-        format!("{}{beside}", effect.name),
-        list::code(effect.setting),
-        instructions(cost),
-        counted,
-        format!("{:.0}", cost.nanoseconds),
-        added(cost.nanoseconds, base.nanoseconds),
-    ]
-}
-
-fn instructions(cost: &Cost) -> String {
-    cost.instructions
-        .map_or("not counted".to_owned(), |count| format!("{count:.0}"))
-}
-
-/// What each effect changes in the scenes; none where that was not looked at.
-pub fn influences(measurement: &Measurement) -> Option<Table> {
+/// What each effect changes in the scenes.
+fn influences(measurement: &Measurement) -> Table {
     let mut columns = vec!["effect".to_owned(), "compared with".to_owned()];
     for name in CLOSED {
         columns.push(format!("*{name}*: change of force, mN"));
@@ -82,57 +49,28 @@ pub fn influences(measurement: &Measurement) -> Option<Table> {
         row.extend(open.iter().map(|time| format!("{:.3}", 1e3 * time)));
         Some(row)
     };
-    let rows: Vec<_> = measurement.effects.iter().filter_map(row).collect();
-    (!rows.is_empty()).then(|| Table {
-        caption: "Each effect on and off in three scenes: the largest difference of contact force and resistance at a communication \
-                  point; in the scene in which the contact opens, the time without contact force."
-            .to_owned(),
-        columns,
-        rows,
-    })
-}
-
-/// When each matters, a list.
-pub fn when(measurement: &Measurement) -> String {
-    measurement.effects.iter().fold(String::new(), |mut list, measured| {
-        let _ = writeln!(list, "- **{}**: {}", measured.effect.name, measured.effect.matters);
-        list
-    })
-}
-
-/// What instructions and times are, as a sentence.
-pub fn how(measurement: &Measurement) -> String {
-    let counted = if measurement.minimal.instructions.is_some() {
-        "Instructions are counted by valgrind in a build for any processor"
-    } else {
-        "Instructions were not counted in this run (the quick report leaves them out; they need valgrind)"
-    };
-    format!(
-        "{counted}; nanoseconds are those of this machine, the shortest of {} runs.",
-        runs(measurement)
-    )
-}
-
-/// How often each was timed.
-fn runs(measurement: &Measurement) -> usize {
-    measurement.extent.runs
+    Table::new("", &columns, measurement.effects.iter().filter_map(row).collect())
 }
 
 /// `docs/effects.md`.
 pub fn page(measurement: &Measurement) -> String {
-    let (table, sentences) = (markdown_table(&costs(measurement)), when(measurement));
-    let changes = influences(measurement);
-    let caption = changes.as_ref().map_or("", |table| &table.caption);
-    let changed = changes.as_ref().map_or(String::new(), markdown_table);
+    let matters = measurement.effects.iter().fold(String::new(), |mut list, measured| {
+        let _ = writeln!(list, "- **{}**: {}", measured.effect.name, measured.effect.matters);
+        list
+    });
+    let tables = [costs(measurement), influences(measurement)].map(|table| markdown_table(&table));
     format!(
-        "<!-- Written by cargo xtask effects. -->\n# Cost and influence of each effect\n\n    cargo xtask effects\n\n\
-         runs [`scenes/minimal.toml`](../scenes/minimal.toml), in which every effect is off that can be, and adds each effect \
-         alone. The run is {} ms long in communication steps of 10 µs; after each, the contact force and the outputs \
-         of the effect are read. Instructions are counted by valgrind's callgrind in a build for any processor, nanoseconds taken on \
-         this machine in the usual build, the shortest of {} runs.\n\n{table}\n\n\
-         ## When each matters\n\n{sentences}\n\
-         {caption}\n\n{changed}\n",
+        "<!-- Written by cargo xtask effects. -->\n\n# Cost and influence of each effect\n\n    cargo xtask effects\n\n\
+         runs `scenes/minimal.toml`, in which every effect is off that can be, and adds each effect alone. The run is {} ms long in \
+         communication steps of 10 µs; after each, the contact force and the outputs of the effect are read. Instructions are counted by \
+         valgrind's callgrind, as they do not depend on what else the machine does, in a build for any processor; vector instructions of \
+         newer ones save more where many numbers are alike: random excitation then adds half as much.\n\n\
+         Instructions per simulated millisecond:\n\n{}\n\n\
+         ## When each matters\n\n{matters}\n\
+         Each effect on and off in three scenes: the largest difference of contact force and resistance at a communication point; \
+         in the scene in which the contact opens, the time without contact force:\n\n{}\n",
         LENGTH * 1e3,
-        runs(measurement),
+        tables[0],
+        tables[1],
     )
 }

@@ -1,15 +1,15 @@
-//! What other people's importers did with the packaged component.
+//! The packaged component in importers of others.
 
 pub mod reference;
 mod rows;
 
 use std::fmt::Write;
 
-use anyhow::Result;
+use anyhow::{Result, bail};
 
 use self::rows::Row;
-pub use self::rows::table as print;
 use crate::content::{Arguments, Block, Section, Table};
+use crate::markdown;
 
 /// The section.
 pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
@@ -46,7 +46,7 @@ pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
         String::new()
     } else {
         format!(
-            "{passed} of {} tasks in importers of others pass; their contact force differs from that of the Rust library by {worst} N at \
+            "{passed} of {} tasks in other people's importers passed; their contact force differs from that of the Rust library by {worst} N at \
              most.",
             rows.len()
         )
@@ -57,7 +57,7 @@ pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
     }
     Ok(vec![Section {
         id: "importers",
-        title: "Other people's importers",
+        title: "Importers",
         lead,
         blocks,
     }])
@@ -72,17 +72,27 @@ fn table(rows: &[Row]) -> Table {
         "largest difference in contact force",
     ];
     let row = |row: &Row| {
-        vec![
-            row.importer.clone(),
-            row.version.clone(),
-            row.task.clone(),
-            row.result.clone(),
-            row.difference(),
-        ]
+        let difference = match row.difference {
+            Some(0.0) => "0 N".to_owned(),
+            Some(force) => format!("{force:.1e} N"),
+            None => "–".to_owned(),
+        };
+        let texts = [&row.importer, &row.version, &row.task, &row.result, &difference];
+        texts.map(Clone::clone).to_vec()
     };
-    Table {
-        caption: "The versions are those of the Python packages or the crate.".to_owned(),
-        columns: columns.map(str::to_owned).to_vec(),
-        rows: rows.iter().map(row).collect(),
+    let caption = "The versions are those of the Python packages or the crate.";
+    Table::new(caption, &columns, rows.iter().map(row).collect())
+}
+
+/// Prints the table. An error where a row is missing; a warning below the table where an importer did not run.
+pub fn print() -> Result<()> {
+    let (rows, missing) = rows::rows()?;
+    println!("{}", markdown::table(&table(&rows)));
+    for row in rows.iter().filter(|row| row.result != "passed") {
+        println!("WARNING: {}, {}: {}", row.importer, row.task, row.result);
     }
+    if !missing.is_empty() {
+        bail!("no result of {}", missing.join(", "));
+    }
+    Ok(())
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::SystemTime;
 use std::{fs, io};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use commands::root;
 use serde::Deserialize;
 
@@ -37,19 +37,8 @@ pub struct Row {
     pub task: String,
     /// `passed`, or `not run: ` and why; what failed has failed its test before.
     pub result: String,
-    /// Largest difference in the contact force from our own run, N, where forces were compared.
+    /// Largest difference in the contact force from the run of the Rust library, N, where forces were compared.
     pub difference: Option<f64>,
-}
-
-impl Row {
-    /// The difference in words.
-    pub fn difference(&self) -> String {
-        match self.difference {
-            Some(0.0) => "0 N".to_owned(),
-            Some(force) => format!("{force:.1e} N"),
-            None => "-".to_owned(),
-        }
-    }
 }
 
 /// The rows that are there, of those the table has to have, and those that are not: importer and task.
@@ -82,30 +71,4 @@ pub fn rows() -> Result<(Vec<Row>, Vec<String>)> {
 /// When the runs to reproduce were written, just before the rows.
 pub fn prepared() -> Result<SystemTime> {
     Ok(fs::metadata(folder().join("reference.csv"))?.modified()?)
-}
-
-/// Prints the table. An error where a row is missing; a warning below the table where an importer did not run.
-pub fn table() -> Result<()> {
-    let (rows, missing) = rows()?;
-    println!(
-        "{:<12} {:<9} {:<17} {:<10} largest difference in force",
-        "importer", "version", "task", "result"
-    );
-    for row in &rows {
-        let (result, _) = row.result.split_once(':').unwrap_or((&row.result, ""));
-        println!(
-            "{:<12} {:<9} {:<17} {result:<10} {}",
-            row.importer,
-            row.version,
-            row.task,
-            row.difference()
-        );
-    }
-    for row in rows.iter().filter(|row| row.result != "passed") {
-        println!("WARNING: {}, {}: {}", row.importer, row.task, row.result);
-    }
-    if !missing.is_empty() {
-        bail!("no result of {}", missing.join(", "));
-    }
-    Ok(())
 }

@@ -1,11 +1,11 @@
-//! What plotly.js is told to draw.
+//! Figures as data and layout for plotly.js.
 
 use serde_json::{Value, json};
 
 use crate::content::{Axis, Curve, Figure, Style};
 
-/// Okabe and Ito's colours, told apart without colour vision; what starts with `--` is a colour of the style sheet. Their
-/// yellow is left out, too pale on white.
+/// Okabe and Ito's colours, distinguishable with colour blindness, without their yellow, too pale on white; names with `--` are
+/// colours of the style sheet.
 const COLOURS: [&str; 7] = [
     "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "--ink",
 ];
@@ -109,7 +109,8 @@ fn trace(figure: &Figure, curve: &Curve) -> Value {
         "mode": mode,
         "x": curve.x.iter().map(|value| rounded(*value)).collect::<Vec<_>>(),
         "y": curve.y.iter().map(|value| rounded(*value)).collect::<Vec<_>>(),
-        "line": {"color": colour, "dash": dash, "width": 2},
+        // plotly.js would leave out points, and with them the tips of peaks.
+        "line": {"color": colour, "dash": dash, "width": 2, "simplify": false},
         "marker": {"color": colour, "symbol": format!("{symbol}{hollow}"), "size": 8, "line": {"width": border}},
         "hovertemplate": format!("{}<br>{}", hover("x", &figure.x), hover("y", &figure.y)),
     });
@@ -119,7 +120,7 @@ fn trace(figure: &Figure, curve: &Curve) -> Value {
     trace
 }
 
-/// What is told of a point.
+/// The text shown for a coordinate of a point.
 fn hover(letter: &str, axis: &Axis) -> String {
     format!("{}: %{{{letter}:.5~g}} {}", axis.label, axis.unit)
 }
@@ -152,11 +153,12 @@ fn axis<'a>(axis: &Axis, line: usize, values: impl Iterator<Item = &'a Vec<f64>>
     });
     let decades = (greatest / least).log10();
     if let (true, Some(settings)) = (axis.logarithmic, settings.as_object_mut()) {
-        // Labels at powers of ten alone, about six of them; over few decades at 2 and 5 too, in full.
+        // Labels at powers of ten alone, about six of them; over few decades in full, at 2 and 5 too.
         let labels = match decades {
             few if few < 0.5 => json!({"tickformat": ".6~g"}),
             few if few < 1.5 => json!({"tickformat": ".6~g", "dtick": "D2"}),
             some if some < 2.5 => json!({"tickformat": ".6~g", "dtick": "D2", NARROW: 1}),
+            some if some < 4.5 => json!({"tickformat": ".6~g", "dtick": 1}),
             many => json!({"dtick": (many / 6.0).ceil(), NARROW: (many / 3.0).ceil()}),
         };
         settings.extend(labels.as_object().cloned().unwrap_or_default());
@@ -175,7 +177,7 @@ fn broken(title: &str, line: usize) -> String {
     }
 }
 
-/// To seven digits, which no eye tells from more.
+/// To seven digits: enough for a figure.
 fn rounded(value: f64) -> f64 {
     format!("{value:.6e}").parse().unwrap_or(value)
 }
@@ -183,17 +185,12 @@ fn rounded(value: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::content::Block;
+    use crate::content::Section;
     use crate::page::sample;
 
     fn plots() -> Vec<Value> {
         let sections = sample::sections();
-        let blocks = sections.iter().flat_map(|section| &section.blocks);
-        let figures = blocks.filter_map(|block| match block {
-            Block::Figure(figure) => Some(plot(figure)),
-            Block::Text(_) | Block::Table(_) => None,
-        });
-        figures.collect()
+        sections.iter().flat_map(Section::figures).map(plot).collect()
     }
 
     #[test]

@@ -1,6 +1,7 @@
 "use strict";
 
-// Draws the figures that the element #figures describes, in the colours of the style sheet.
+// Draws the figures that the element #figures describes, in the colours of the style sheet, and marks tables wider than the
+// window.
 const described = document.getElementById("figures").textContent;
 const config = {
   displaylogo: false,
@@ -30,6 +31,9 @@ function draw() {
     }
     // The same `uirevision` keeps what the reader zoomed and hid.
     Plotly.react(plot, data, { ...layout, width, height, margin, dragmode, uirevision: 1 }, config);
+  }
+  for (const table of document.querySelectorAll(".scroll")) {
+    table.classList.toggle("wider", table.scrollWidth > table.clientWidth);
   }
 }
 

@@ -1,6 +1,6 @@
 //! The page: a single file with everything in it.
 //!
-//! [`figure`]: what plotly.js is told to draw;   [`table`]: tables.
+//! [`figure`]: figures for plotly.js;   [`table`]: tables.
 
 mod figure;
 mod html;
@@ -22,33 +22,25 @@ use crate::content::{Block, Figure, Section};
 
 const SCRIPT: &str = include_str!("figures.js");
 
-/// Anchor of the section that comes before the table of contents.
-const SUMMARY: &str = "summary";
-
 /// Writes `out/report/index.html`, or, if `quick`, `out/report-quick/index.html`.
-pub fn write(sections: &[Section], quick: bool) -> Result<PathBuf> {
+pub fn write(summary: &Section, main: &[Section], appendix: &[Section], quick: bool) -> Result<PathBuf> {
     let code = "import pathlib, plotly; print(pathlib.Path(plotly.__file__).parent / 'package_data/plotly.min.js')";
     let library = output(python().args(["-c", code]))?;
     let library = fs::read_to_string(library.trim()).with_context(|| format!("cannot read {}", library.trim()))?;
     let folder = root().join(if quick { "out/report-quick" } else { "out/report" });
     fs::create_dir_all(&folder)?;
     let path = folder.join("index.html");
-    fs::write(&path, page(sections, quick, &library)?).with_context(|| format!("cannot write {}", path.display()))?;
+    let page = page(summary, main, appendix, quick, &library)?;
+    fs::write(&path, page).with_context(|| format!("cannot write {}", path.display()))?;
     Ok(path)
 }
 
 /// The page as HTML, with the text of plotly.js.
-fn page(sections: &[Section], quick: bool, library: &str) -> Result<String> {
+fn page(summary: &Section, main: &[Section], appendix: &[Section], quick: bool, library: &str) -> Result<String> {
     let document = Document::parse(MODEL_DESCRIPTION)?;
     let attribute = |name| document.root_element().attribute(name).unwrap_or_default();
-    let (summary, others): (Vec<_>, Vec<_>) = sections.iter().partition(|section| section.id == SUMMARY);
-    let blocks = sections.iter().flat_map(|section| &section.blocks);
-    let figures: Vec<_> = blocks
-        .filter_map(|block| match block {
-            Block::Figure(figure) => Some(figure::plot(figure)),
-            Block::Text(_) | Block::Table(_) => None,
-        })
-        .collect();
+    let figures = main.iter().chain(appendix).flat_map(Section::figures);
+    let figures: Vec<_> = figures.map(figure::plot).collect();
     // Within a script element only `<` could end it early.
     let figures = serde_json::to_string(&figures)?.replace('<', "\\u003c");
     let page = html! {
@@ -60,8 +52,8 @@ fn page(sections: &[Section], quick: bool, library: &str) -> Result<String> {
                     h1 { "relay-contact " span.faint { (attribute("version")) } }
                     p { (attribute("description")) "." }
                     p {
-                        "An FMI 2.0 component for co-simulation. \"Ours\" are numbers of this component, computed when this page was written "
-                        "where nothing else is said; published numbers name their source."
+                        "An FMI 2.0 component for co-simulation. Where nothing else is said, its numbers were computed when this page was written; "
+                        "published numbers name their source."
                     }
                     pre { code {
                         "cargo xtask report   # this page\n"
@@ -74,12 +66,16 @@ fn page(sections: &[Section], quick: bool, library: &str) -> Result<String> {
                     noscript { p { strong { "The figures need JavaScript." } } }
                 }
                 main {
-                    @for section in summary { (self::section(section)) }
+                    (section(summary))
                     nav aria-labelledby="contents" {
                         h2 #contents { "Contents" }
-                        ol { @for section in &others { li { a href={ "#" (section.id) } { (section.title) } } } }
+                        (contents(main))
+                        p { "Appendix" }
+                        (contents(appendix))
                     }
-                    @for section in &others { (self::section(section)) }
+                    @for section in main { (self::section(section)) }
+                    h1 #appendix { "Appendix" }
+                    @for section in appendix { (self::section(section)) }
                 }
                 script #figures type="application/json" { (PreEscaped(figures)) }
                 script { (PreEscaped(library)) }
@@ -88,6 +84,10 @@ fn page(sections: &[Section], quick: bool, library: &str) -> Result<String> {
         }
     };
     Ok(page.into_string())
+}
+
+fn contents(sections: &[Section]) -> Markup {
+    html! { ul { @for section in sections { li { a href={ "#" (section.id) } { (section.title) } } } } }
 }
 
 fn section(section: &Section) -> Markup {
@@ -111,7 +111,7 @@ fn figure(figure: &Figure) -> Markup {
         figure id=(figure.id) {
             h3 { (figure.title) }
             div.plot role="img" aria-label={ (figure.title) ": " (axes.0) " over " (axes.1) } {}
-            figcaption { (html_of(&figure.caption)) }
+            @if !figure.caption.is_empty() { figcaption { (html_of(&figure.caption)) } }
         }
     }
 }
@@ -120,9 +120,14 @@ fn figure(figure: &Figure) -> Markup {
 mod tests {
     use super::*;
 
+    fn sample_page(quick: bool) -> Result<String> {
+        let [main, summary] = sample::sections();
+        page(&summary, &[main], &[], quick, "")
+    }
+
     #[test]
     fn every_section_figure_and_table_is_on_the_page_once() -> Result<()> {
-        let page = page(&sample::sections(), false, "")?;
+        let page = sample_page(false)?;
         for id in ["summary", "kinds", "history"] {
             assert_eq!(page.matches(&format!("id=\"{id}\"")).count(), 1, "{id}");
         }
@@ -135,16 +140,15 @@ mod tests {
 
     #[test]
     fn a_quick_page_says_so() -> Result<()> {
-        assert!(page(&[], true, "")?.contains("Quick form"));
-        assert!(!page(&[], false, "")?.contains("Quick form"));
+        assert!(sample_page(true)?.contains("Quick form"));
+        assert!(!sample_page(false)?.contains("Quick form"));
         Ok(())
     }
 
     #[test]
     fn nothing_in_a_figure_ends_the_script_element_of_its_data() -> Result<()> {
-        let mut sections = sample::sections();
-        let figures = sections.iter_mut().flat_map(|section| &mut section.blocks);
-        for block in figures {
+        let [mut main, summary] = sample::sections();
+        for block in &mut main.blocks {
             if let Block::Figure(figure) = block {
                 figure
                     .curves
@@ -152,7 +156,8 @@ mod tests {
                     .for_each(|curve| "</script>".clone_into(&mut curve.name));
             }
         }
-        assert_eq!(page(&sections, false, "")?.matches("</script>").count(), 3);
+        let page = page(&summary, &[main], &[], false, "")?;
+        assert_eq!(page.matches("</script>").count(), 3);
         Ok(())
     }
 }

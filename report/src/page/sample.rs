@@ -15,14 +15,14 @@ fn figure() -> Figure {
         x: Axis::linear("time", "ms"),
         y: Axis::linear("contact force", "N"),
         curves: vec![
-            Curve::new("ours", force(0.0), Style::Line, 0),
+            Curve::new("this component", force(0.0), Style::Line, 0),
             Curve::new("frequency domain", force(0.02), Style::Line, 1),
             Curve::new("linearised", force(0.05), Style::Dashed, 2),
-            Curve::new("allowed", force(0.06), Style::Area, 3),
+            Curve::new("tolerance band", force(0.06), Style::Area, 3),
             Curve::new("other integrator", force(0.07), Style::LineAndMarkers, 4),
             Curve::new("published", force(0.01), Style::Markers, 0),
         ],
-        caption: "The published points lie on ours; see [the table](#kinds).".to_owned(),
+        caption: "The published points lie on the first curve; see [the table](#kinds).".to_owned(),
     }
 }
 
@@ -38,8 +38,8 @@ fn table() -> Table {
     )
 }
 
-/// The sections.
-pub fn sections() -> Vec<Section> {
+/// The first section, and a summary.
+pub fn sections() -> [Section; 2] {
     let text = |text: &str| Block::Text(text.to_owned());
     let section = |id, title, blocks| Section {
         id,
@@ -47,16 +47,13 @@ pub fn sections() -> Vec<Section> {
         lead: String::new(),
         blocks,
     };
-    vec![
-        section(
-            "kinds",
-            "Each kind of block",
-            vec![
-                text("The *published* values beside **ours**, in `N`."),
-                Block::Figure(figure()),
-                Block::Table(table()),
-            ],
-        ),
+    let blocks = vec![
+        text("The *published* values beside those of **this component**, in `N`."),
+        Block::Figure(figure()),
+        Block::Table(table()),
+    ];
+    [
+        section("kinds", "Each kind of block", blocks),
         section("summary", "In short", vec![text("See [the figure](#history).")]),
     ]
 }

@@ -11,8 +11,8 @@ pub fn table(table: &Table) -> Markup {
     let class = |column: usize| numeric.get(column).is_some_and(|numeric| *numeric).then_some("number");
     html! {
         figure {
-            figcaption { (markdown(&table.caption)) }
-            div.scroll role="region" tabindex="0" aria-label=(table.caption) {
+            @if !table.caption.is_empty() { figcaption { (markdown(&table.caption)) } }
+            div.scroll role="region" tabindex="0" aria-label={ "Table. " (table.caption) } {
                 table {
                     thead { tr { @for (column, name) in table.columns.iter().enumerate() {
                         th scope="col" class=[class(column)] { (inline_markdown(name)) }

@@ -5,30 +5,16 @@ use relay_contact::reference;
 
 use super::published as paper;
 use super::results::Results;
-use super::runs::{self, elastic_force, excitation};
+use super::runs::{self, excitation};
 use super::spring::displacement;
-use super::table::{cells, table};
+use super::table::table;
 use crate::content::Block;
-use crate::numbers::{deviation, number, signed};
+use crate::numbers::{number, signed};
 
 /// The blocks.
 pub fn blocks(results: &Results) -> Result<Vec<Block>> {
     let base = 1e6 * excitation(1000.0);
     let stiffness = results.specimen.preload().contact_stiffness;
-    let mut rows = Vec::new();
-    for (ratio, published) in paper::RATIOS.into_iter().zip(paper::DISPLACEMENTS) {
-        let run = results.at(ratio, 1000.0)?;
-        let ours = 1e6 * run.displacement;
-        let relative = elastic_force(&runs::model(&runs::specimen(ratio))?, 1000.0) / stiffness;
-        rows.push(cells(&[
-            &format!("{ratio}"),
-            &format!("{published} µm"),
-            &format!("{} µm", number(ours, 3)),
-            &deviation(ours, published),
-            &format!("{} µm", number(published - base, 3)),
-            &format!("{} nm", number(1e7 * relative, 1)),
-        ]));
-    }
     let run = results.at(paper::BEST, 1000.0)?;
     let indentation = results.specimen.preload().indentation;
     let text = format!(
@@ -47,22 +33,7 @@ pub fn blocks(results: &Results) -> Result<Vec<Block>> {
         number(paper::DISPLACEMENTS[0] - base, 1),
         paper::MEASURED_DISPLACEMENT,
     );
-    let columns = [
-        "ratio",
-        "published",
-        "this model",
-        "deviation",
-        "published, in excess of the base",
-        "this model, relative to the base",
-    ];
-    let mut blocks = vec![
-        Block::Text(text),
-        table(
-            "Displacement amplitude at 1000 Hz, base included (Table 4)",
-            &columns,
-            rows,
-        ),
-    ];
+    let mut blocks = vec![Block::Text(text)];
     blocks.extend(elsewhere()?);
     Ok(blocks)
 }
@@ -102,8 +73,8 @@ fn elsewhere() -> Result<Vec<Block>> {
         .filter(|point| point.0 >= 5.0);
     let mut furthest = 0.0_f64;
     for (ratio, published) in damped {
-        let ours = 1e6 * displacement(&runs::model(&runs::specimen(ratio))?, 1000.0, fitted)?;
-        furthest = furthest.max(100.0 * (ours / published - 1.0).abs());
+        let found = 1e6 * displacement(&runs::model(&runs::specimen(ratio))?, 1000.0, fitted)?;
+        furthest = furthest.max(100.0 * (found / published - 1.0).abs());
     }
     let text = format!(
         "A point on the spring would explain much of the difference. At {} of the length from the clamp, {} mm before \
@@ -119,7 +90,6 @@ fn elsewhere() -> Result<Vec<Block>> {
         .chain(points)
         .chain([format!("this model, at {} L", number(fitted, 3))])
         .collect();
-    let columns: Vec<_> = columns.iter().map(String::as_str).collect();
     let caption = "Displacement amplitude at points of the spring of this model, base included, linear response";
     Ok(vec![Block::Text(text), table(caption, &columns, rows)])
 }

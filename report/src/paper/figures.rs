@@ -9,56 +9,40 @@ use super::curves::published;
 use super::published as paper;
 use super::resistance::resistance_deviations;
 use super::results::Results;
-use super::runs::{self, Periodic, excitation, linear_force, resistance};
+use super::runs::{self, Periodic, linear_force, resistance};
 use crate::content::{Axis, Curve, Figure, Style};
 use crate::numbers::number;
 
 /// Fig. 5: first frequency over overtravel.
 pub fn frequencies(quick: bool) -> Result<Figure> {
     let count = if quick { 10 } else { 46 };
-    let overtravel = |k: i32| 0.05 + 0.45 * f64::from(k) / f64::from(count - 1);
+    let overtravels = (0..count).map(|k| 0.05 + 0.45 * f64::from(k) / f64::from(count - 1));
     let mut curves = Vec::new();
     for (colour, length) in paper::LENGTHS.into_iter().enumerate() {
-        for (name, axial, style) in [
-            ("without axial force", AxialForceKind::None, Style::Line),
-            ("with eq. 9", AxialForceKind::FromPreload, Style::Dashed),
-        ] {
-            let points = (0..count)
-                .map(|k| {
-                    let scene = runs::spring(1e-3 * length, 1e-3 * overtravel(k), axial);
-                    Ok((overtravel(k), runs::model(&scene)?.frequency()))
-                })
-                .collect::<Result<Vec<_>>>()?;
-            curves.push(Curve::new(&format!("L = {length} mm, {name}"), points, style, colour));
-        }
+        let points = overtravels.clone().map(|overtravel| {
+            let scene = runs::spring(1e-3 * length, 1e-3 * overtravel, AxialForceKind::FromPreload);
+            Ok((overtravel, runs::model(&scene)?.frequency()))
+        });
+        let points: Vec<_> = points.collect::<Result<_>>()?;
+        curves.push(Curve::new(&format!("L = {length} mm"), points, Style::Line, colour));
+        let specimen = (15.5, 0.2, paper::WITH_PRESTRESS);
         let points = paper::SHORT
             .into_iter()
-            .filter(|point| point.0 == length)
-            .map(|point| (point.1, point.2));
-        if length == 15.5 {
-            curves.push(published(
-                "15.5 mm, with prestress",
-                [(0.2, paper::WITH_PRESTRESS)],
-                colour,
-            ));
-            curves.push(published(
-                "15.5 mm, without prestress",
-                [(0.2, paper::WITHOUT_PRESTRESS)],
-                3,
-            ));
-        } else {
-            curves.push(published(&format!("{length} mm, with prestress"), points, colour));
-        }
+            .chain([specimen])
+            .filter(|point| point.0 == length);
+        let name = format!("{length} mm, with prestress");
+        curves.extend(published(&name, points.map(|point| (point.1, point.2)), colour));
     }
+    let points = [(0.2, paper::WITHOUT_PRESTRESS)];
+    curves.extend(published("15.5 mm, without prestress", points, 3));
     Ok(Figure {
         id: "paper-fig5",
         title: "First frequency over overtravel (Fig. 5)".to_owned(),
         x: Axis::linear("overtravel", "mm"),
         y: Axis::linear("first frequency", "Hz"),
         curves,
-        caption: "This model: exact characteristic equation with the contact as a spring. Published: values from the \
-                  text. The curves of this model with and without the axial force of eq. 9 coincide, and overtravel \
-                  has almost no influence."
+        caption: "This model: exact characteristic equation with the contact as a spring and the axial force of eq. 9; without it the \
+                  curves are the same to a line's width. Overtravel has almost no influence. Published: values from the text."
             .to_owned(),
     })
 }
@@ -95,43 +79,30 @@ pub fn courses(results: &Results) -> Result<[Figure; 2]> {
         (top, rest + paper::FORCE_AMPLITUDE),
         (bottom, rest - paper::FORCE_AMPLITUDE),
     ];
+    let mut curves = vec![Curve::new("this model", force, Style::Line, 0)];
+    curves.extend(published("amplitude", amplitude, 0));
     let force = Figure {
         id: "paper-fig6-force",
         title: "Contact force at 1000 Hz, 98 m/s² (Fig. 6)".to_owned(),
         x: Axis::linear("time", "ms"),
         y: Axis::linear("contact force", "cN"),
-        curves: vec![
-            Curve::new("this model", force, Style::Line, 0),
-            published("amplitude", amplitude, 0),
-        ],
+        curves,
         caption: "Three periods after the transients have decayed, damping ratio 10. Published is only the amplitude; \
                   it is drawn about the static force, at the times of the extremes of this model."
             .to_owned(),
     };
     let displacement = repeated(run, 3, |point| 1e6 * point.2);
     let [top, bottom] = turning(&displacement).context("empty course")?;
-    let base = 1e6 * excitation(1000.0);
-    let shaken = run.course.iter().step_by(10).map(|point| point.0);
-    let shaken = (0..3).flat_map(|period| {
-        let start = f64::from(period) / run.frequency;
-        shaken.clone().map(move |time| start + time)
-    });
-    let shaken = shaken.map(|time| (1e3 * time, -base * (std::f64::consts::TAU * 1000.0 * time).sin()));
+    let amplitude = [(top, paper::DISPLACEMENT), (bottom, -paper::DISPLACEMENT)];
+    let mut curves = vec![Curve::new("this model, contact and base", displacement, Style::Line, 0)];
+    curves.extend(published("amplitude", amplitude, 0));
     let displacement = Figure {
         id: "paper-fig6-displacement",
         title: "Displacement of the contact at 1000 Hz, 98 m/s² (Fig. 6)".to_owned(),
         x: Axis::linear("time", "ms"),
         y: Axis::linear("displacement", "µm"),
-        curves: vec![
-            Curve::new("this model", displacement, Style::Line, 0),
-            Curve::new("base", shaken, Style::Dashed, 1),
-            published(
-                "amplitude",
-                [(top, paper::DISPLACEMENT), (bottom, -paper::DISPLACEMENT)],
-                0,
-            ),
-        ],
-        caption: "Base included. The contact of this model moves with the base within nanometres; the published \
+        curves,
+        caption: "Base included. The contact of this model moves with the base within nanometres, so both are one curve; the published \
                   displacement was measured elsewhere."
             .to_owned(),
     };
@@ -151,16 +122,17 @@ pub fn laws() -> Result<Figure> {
     };
     let (coefficient, exponent) = paper::RESISTANCE;
     let points = [0.02, 0.05, 0.1, 0.152, 0.2, 0.5, 1.0].map(|force: f64| (force, coefficient * force.powf(-exponent)));
+    let mut curves = vec![
+        Curve::new("power law", law(ResistanceKind::PowerLaw)?, Style::Line, 0),
+        Curve::new("Holm", law(ResistanceKind::Holm)?, Style::Dashed, 1),
+    ];
+    curves.extend(published("eq. 29", points, 0));
     Ok(Figure {
         id: "paper-fig11",
         title: "Contact resistance over contact force (Fig. 11)".to_owned(),
         x: Axis::logarithmic("contact force", "N"),
         y: Axis::logarithmic("contact resistance", "mΩ"),
-        curves: vec![
-            Curve::new("power law", law(ResistanceKind::PowerLaw)?, Style::Line, 0),
-            Curve::new("Holm", law(ResistanceKind::Holm)?, Style::Dashed, 1),
-            published("eq. 29", points, 0),
-        ],
+        curves,
         caption: "The component's power law is the published fit. Holm's law, with the hardness the publication \
                   measured and the resistivity of AgSnO2, is that of a single clean spot."
             .to_owned(),
@@ -172,18 +144,14 @@ pub fn resistance_course(results: &Results) -> Result<Figure> {
     let run = results.at(paper::BEST, 1000.0)?;
     let (low, high) = paper::MEASURED_RESISTANCE;
     let band = |value: f64| [(0.0, value), (10.0, value)];
+    let course = repeated(run, 10, |point| resistance(point.1));
     Ok(Figure {
         id: "paper-fig16",
         title: "Contact resistance at 1000 Hz, 98 m/s² (Fig. 16)".to_owned(),
         x: Axis::linear("time", "ms"),
         y: Axis::linear("contact resistance", "mΩ"),
         curves: vec![
-            Curve::new(
-                "this model",
-                repeated(run, 10, |point| resistance(point.1)),
-                Style::Line,
-                0,
-            ),
+            Curve::new("this model", course, Style::Line, 0),
             Curve::new("measured, maximum", band(high), Style::Dashed, 1),
             Curve::new("measured, minimum", band(low), Style::Dashed, 2),
         ],
@@ -199,29 +167,30 @@ pub fn resistance_course(results: &Results) -> Result<Figure> {
 
 /// Figs. 17 and 18: deviations of the resistance from the measured values at 1000 Hz.
 pub fn deviations(results: &Results) -> Result<[Figure; 2]> {
-    let mut ours = [Vec::new(), Vec::new()];
+    let mut found = [Vec::new(), Vec::new()];
     for (ratio, _, _) in paper::RESISTANCE_DEVIATIONS {
         let run = results.at(ratio, 1000.0)?;
         let (least, greatest) = resistance_deviations(run.least, run.greatest);
-        ours[0].push((ratio, least.abs()));
-        ours[1].push((ratio, greatest.abs()));
+        found[0].push((ratio, least.abs()));
+        found[1].push((ratio, greatest.abs()));
     }
-    let [least, greatest] = ours;
+    let [least, greatest] = found;
     let furthest = greatest.iter().fold(0.0_f64, |most, point| most.max(point.1));
     let nearest = least.iter().fold(f64::INFINITY, |least, point| least.min(point.1));
     let published_least = paper::RESISTANCE_DEVIATIONS.map(|(ratio, least, _)| (ratio, least));
     let published_greatest = paper::RESISTANCE_DEVIATIONS.map(|(ratio, _, greatest)| (ratio, greatest));
+    let mut curves = vec![
+        Curve::new("this model, maximum", greatest, Style::LineAndMarkers, 0),
+        Curve::new("this model, minimum", least, Style::LineAndMarkers, 1),
+    ];
+    curves.extend(published("maximum", published_greatest, 0));
+    curves.extend(published("minimum", published_least, 1));
     let time = Figure {
         id: "paper-fig17",
         title: "Deviation of the resistance from the measurement, time domain, 1000 Hz (Fig. 17, Table 6)".to_owned(),
         x: Axis::linear("damping ratio", ""),
         y: Axis::linear("magnitude of the deviation", "%"),
-        curves: vec![
-            Curve::new("this model, maximum", greatest, Style::LineAndMarkers, 0),
-            published("maximum", published_greatest, 0),
-            Curve::new("this model, minimum", least, Style::LineAndMarkers, 1),
-            published("minimum", published_least, 1),
-        ],
+        curves,
         caption: format!(
             "Absolute values, as the publication gives no signs. This model deviates by at most {} % from the \
              measured maximum, and is at least {} % above the measured minimum.",
@@ -242,16 +211,15 @@ pub fn deviations(results: &Results) -> Result<[Figure; 2]> {
         .iter()
         .min_by(|a, b| a.1.total_cmp(&b.1))
         .map_or(f64::NAN, |point| point.0);
+    let mut curves = vec![Curve::new("this model", points, Style::Line, 0)];
+    curves.extend(published("5125 1/s", [(5125.0, paper::FREQUENCY_DOMAIN_DEVIATION)], 0));
     let frequency = Figure {
         id: "paper-fig18",
         title: "Deviation of the maximum resistance from the measurement, frequency domain, 1000 Hz (Fig. 18)"
             .to_owned(),
         x: Axis::linear("mass coefficient", "1/s"),
         y: Axis::linear("magnitude of the deviation", "%"),
-        curves: vec![
-            Curve::new("this model", points, Style::Line, 0),
-            published("5125 1/s", [(5125.0, paper::FREQUENCY_DOMAIN_DEVIATIONS[1].1)], 0),
-        ],
+        curves,
         caption: format!(
             "Measured values at other frequencies are not published. The deviation of this model is smallest at {} \
              1/s; over its frequencies, the publication finds 5125 1/s best.",

@@ -55,46 +55,28 @@ pub fn blocks() -> Result<Vec<Block>> {
     let columns = ["parameter", "determined by", "identified", "start value", "difference"];
     let parameters = table("Identified parameters", &columns, rows.collect());
 
-    let matrix = |caption: &str, cell: &dyn Fn(usize, usize) -> String| {
-        let names = PARAMETERS.iter().map(|parameter| parameter.symbol);
-        let columns: Vec<_> = ["published result"].into_iter().chain(names).collect();
-        let rows = SOURCES.iter().enumerate().map(|(source, published)| {
-            let value = published.value;
-            let value = if (1e-2..1e5).contains(&value) {
-                format!("{value}")
-            } else {
-                format!("{value:e}")
-            };
-            let head = format!("{}: {value} {}, {}", published.name, published.unit, published.place);
-            [head]
-                .into_iter()
-                .chain((0..PARAMETERS.len()).map(|parameter| cell(source, parameter)))
-                .collect()
+    let names = PARAMETERS.iter().map(|parameter| parameter.symbol);
+    let columns: Vec<_> = ["published result", "half a unit of its last digit"]
+        .into_iter()
+        .chain(names)
+        .collect();
+    let rows = SOURCES.iter().zip(&slopes).map(|(source, slopes)| {
+        let value = match source.value {
+            value if (1e-2..1e5).contains(&value) => format!("{value}"),
+            value => format!("{value:e}"),
+        };
+        let head = format!("{}: {value} {}, {}", source.name, source.unit, source.place);
+        let digit = format!("± {} %", number(50.0 * source.digit / source.value, 3));
+        let slopes = slopes.iter().map(|slope| match percent(*slope).as_str() {
+            "0.00 %" => String::new(),
+            text => text.to_owned(),
         });
-        table(caption, &columns, rows.collect())
-    };
-    let sensitivity = matrix(
-        "Change of each parameter for a published result higher by 1 %, linearised",
-        &|source, parameter| percent(slopes[source][parameter]),
-    );
-    let units = matrix(
-        "The same sensitivities as derivatives, in units",
-        &|source, parameter| {
-            let slope = slopes[source][parameter] * found.values[parameter] / SOURCES[source].value;
-            if percent(slopes[source][parameter]) == "0.00 %" {
-                return "≈ 0".to_owned();
-            }
-            format!(
-                "{slope:.3e} {} per {}",
-                PARAMETERS[parameter].unit, SOURCES[source].unit
-            )
-        },
-    );
-    let digits = matrix(
-        "Uncertainty of each parameter due to the rounding of a published result: half a unit in its last printed digit",
-        &|source, parameter| format!("±{} %", number(precision[source][parameter], 2)),
-    );
-    Ok(vec![Block::Text(text), parameters, sensitivity, units, digits])
+        [head, digit].into_iter().chain(slopes).collect()
+    });
+    let caption = "Change of each parameter for a published result higher by 1 %, linearised (empty: none). The rounding of that result \
+                   to its last digit changes the parameters in proportion";
+    let sensitivity = table(caption, &columns, rows.collect());
+    Ok(vec![Block::Text(text), parameters, sensitivity])
 }
 
 /// Digits after the point for six significant ones.

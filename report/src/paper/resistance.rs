@@ -5,9 +5,9 @@ use anyhow::Result;
 use super::published as paper;
 use super::results::Results;
 use super::runs::{linear_force, resistance};
-use super::table::{cells, comparison, row};
+use super::table::Comparison;
 use crate::content::Block;
-use crate::numbers::{number, percent, signed};
+use crate::numbers::{percent, signed};
 
 /// Deviations of least and greatest resistance from the measured ones at 1000 Hz, %, where the force has extremes (N).
 pub fn resistance_deviations(least: f64, greatest: f64) -> (f64, f64) {
@@ -22,65 +22,30 @@ pub fn resistance_deviations(least: f64, greatest: f64) -> (f64, f64) {
 pub fn resistances(results: &Results) -> Result<[Block; 2]> {
     let run = results.at(paper::BEST, 1000.0)?;
     let (low, high) = paper::MEASURED_RESISTANCE;
-    let place = "section 4.2, Fig. 16";
-    let mut rows = vec![
-        row(
-            "minimum resistance, 1000 Hz, measured",
-            low,
-            resistance(run.greatest),
-            2,
-            "mΩ",
-            place,
-        ),
-        row(
-            "maximum resistance, 1000 Hz, measured",
-            high,
-            resistance(run.least),
-            2,
-            "mΩ",
-            place,
-        ),
-    ];
-    let points = |quantity: &str, published: f64, ours: f64, place: &str| {
-        cells(&[
-            quantity,
-            &format!("{published} %"),
-            &percent(ours),
-            &format!("{} points", signed(ours.abs() - published, 2)),
-            place,
-        ])
+    let mut rows = Comparison::at("section 4.2, Fig. 16");
+    let (least, greatest) = (resistance(run.greatest), resistance(run.least));
+    rows.row("minimum resistance, 1000 Hz, measured", low, least, 2, "mΩ");
+    rows.row("maximum resistance, 1000 Hz, measured", high, greatest, 2, "mΩ");
+    let mut points = |place, what: &str, damping: &str, published: f64, value: f64| {
+        rows.then_at(place);
+        let name = format!("deviation of {what} resistance from measurement, {damping}");
+        let texts = [format!("{published} %"), percent(value)];
+        rows.texts(&name, texts, &format!("{} points", signed(value.abs() - published, 2)));
     };
     for (ratio, least, greatest) in paper::RESISTANCE_DEVIATIONS {
         let run = results.at(ratio, 1000.0)?;
-        let (ours_least, ours_greatest) = resistance_deviations(run.least, run.greatest);
-        let name = |what: &str| format!("deviation of {what} resistance from measurement, ratio {ratio}");
-        rows.push(points(&name("maximum"), greatest, ours_greatest, "Table 6"));
-        rows.push(points(&name("minimum"), least, ours_least, "Table 6"));
+        let (found_least, found_greatest) = resistance_deviations(run.least, run.greatest);
+        let damping = format!("ratio {ratio}");
+        points("Table 6", "maximum", &damping, greatest, found_greatest);
+        points("Table 6", "minimum", &damping, least, found_least);
     }
-    let force = results.specimen.preload().force;
-    let model = results.alpha(5125.0)?;
-    for (frequency, published) in paper::FREQUENCY_DOMAIN_DEVIATIONS {
-        let ours = resistance(force - linear_force(model, frequency) / 100.0);
-        let name = format!("deviation of maximum resistance from measurement, alpha = 5125 1/s, {frequency} Hz");
-        if frequency == 1000.0 {
-            let deviation = 100.0 * (ours / high - 1.0);
-            rows.push(points(&name, published, deviation, "section 4.2, Fig. 18"));
-        } else {
-            let ours = format!("{} mΩ", number(ours, 2));
-            let unknown = "measured value not published";
-            rows.push(cells(&[
-                &name,
-                &format!("{published} %"),
-                &ours,
-                unknown,
-                "section 4.2, Fig. 18",
-            ]));
-        }
-    }
-    let table = comparison(
+    let amplitude = linear_force(results.alpha(5125.0)?, 1000.0) / 100.0;
+    let found = 100.0 * (resistance(results.specimen.preload().force - amplitude) / high - 1.0);
+    let (damping, published) = ("alpha = 5125 1/s, 1000 Hz", paper::FREQUENCY_DOMAIN_DEVIATION);
+    points("section 4.2, Fig. 18", "maximum", damping, published, found);
+    let table = rows.table(
         "Contact resistance, 98 m/s²; published deviations have no sign, so absolute values are compared, in \
          percentage points. Table 6 states no frequency; 1000 Hz is assumed",
-        rows,
     );
     Ok([table, consistency()])
 }

@@ -4,26 +4,27 @@ use anyhow::{Context, Result};
 use rayon::prelude::*;
 use relay_contact::reference::Model;
 
-use super::published::{ALPHAS, BETAS, FREQUENCIES, RATIOS};
+use super::published::{ALPHAS, BETAS, EQUIVALENT, FREQUENCIES, RATIOS};
 use super::runs::{self, Periodic};
 
 /// Damping ratios drawn over frequency; with smaller ones the contact opens near the resonance.
 pub const DRAWN: [f64; 4] = [5.0, 10.0, 20.0, 30.0];
 
+/// Frequencies of linear responses: least and step, Hz.
+pub const LINEAR: (u32, u32) = (250, 5);
+
 /// The runs.
 pub struct Results {
     /// The published excitation grid: ratio after ratio, frequency after frequency.
     grid: Vec<Periodic>,
-    /// Frequencies of the curves, Hz.
-    pub frequencies: Vec<f64>,
-    /// Over these, for each of [`DRAWN`].
+    /// Over the frequencies of the curves, for each of [`DRAWN`].
     pub curves: Vec<(f64, Vec<Periodic>)>,
     /// Over the grid, with the published stiffness coefficient of ratio 10 as printed.
     pub literal: Vec<Periodic>,
     /// The specimen.
     pub specimen: Model,
     /// Models of the frequency domain, by mass coefficient, 1/s.
-    pub mass_damped: Vec<(f64, Model)>,
+    mass_damped: Vec<(f64, Model)>,
 }
 
 impl Results {
@@ -50,15 +51,14 @@ impl Results {
             .map(|ratio| (ratio, done.by_ref().take(frequencies.len()).collect()))
             .to_vec();
         let literal = done.collect();
-        let alphas = ALPHAS.iter().chain(&[5125.0, 10_250.0, 15_375.0]);
+        let alphas = ALPHAS.into_iter().chain(EQUIVALENT.map(|(_, alpha, _)| alpha));
         Ok(Self {
             grid,
-            frequencies,
             curves,
             literal,
             specimen: runs::model(&runs::specimen(10.0))?,
             mass_damped: alphas
-                .map(|alpha| Ok((*alpha, runs::model(&runs::with_mass_damping(*alpha))?)))
+                .map(|alpha| Ok((alpha, runs::model(&runs::with_mass_damping(alpha))?)))
                 .collect::<Result<_>>()?,
         })
     }
@@ -86,6 +86,18 @@ impl Results {
         let found = self.mass_damped.iter().find(|(known, _)| *known == alpha);
         found.map(|(_, model)| model).context("no such mass coefficient")
     }
+
+    /// Force amplitude (cN) of the linear response with a mass coefficient (1/s) over frequency (Hz).
+    pub fn linear(&self, alpha: f64) -> Result<Vec<(f64, f64)>> {
+        let model = self.alpha(alpha)?;
+        Ok(over_frequency(|frequency| runs::linear_force(model, frequency)))
+    }
+}
+
+/// A linear response over frequency, in steps that show its peak where it is stated.
+pub fn over_frequency(value: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+    let frequencies = (LINEAR.0..=2000).step_by(LINEAR.1 as usize).map(f64::from);
+    frequencies.map(|frequency| (frequency, value(frequency))).collect()
 }
 
 fn pairs(ratios: &[f64], frequencies: &[f64]) -> Vec<(f64, f64)> {

@@ -7,13 +7,8 @@ use anyhow::{Context, Result};
 use commands::root;
 
 use super::sections;
-use crate::content::{Arguments, Section};
+use crate::content::Arguments;
 use crate::markdown::markdown;
-
-/// The sections of the page. Their numbers are rounded so that they are the same on every machine.
-pub fn validation(arguments: Arguments) -> Result<Vec<Section>> {
-    sections(arguments)
-}
 
 fn path() -> PathBuf {
     root().join("docs/validation.md")
@@ -25,9 +20,10 @@ pub fn write() -> Result<PathBuf> {
     Ok(path())
 }
 
-/// The page. It does not contain the curves, so they may be coarse.
+/// The page. It does not contain the curves, so they may be coarse; its numbers are rounded so that they are the same on
+/// every machine.
 fn text() -> Result<String> {
-    let sections = validation(Arguments {
+    let sections = sections(Arguments {
         quick: true,
         ..Arguments::default()
     })?;

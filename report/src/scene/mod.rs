@@ -13,6 +13,7 @@ use commands::root;
 use indicatif::{ProgressBar, ProgressStyle};
 pub use relay_contact::scene::file::SceneFile;
 use relay_contact::simulation::Simulation;
+use relay_contact::variables::ExcitationKind;
 
 use self::summary::Summary;
 
@@ -50,11 +51,20 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     println!("{title}");
     let summary = simulate(&file, &table)?;
     println!("{summary}\n{}", table.display());
-    commands::run(
-        commands::python()
-            .args(["examples/python/plot_scene.py", "--title", &title])
-            .arg(&table),
-    )
+    let mut plot = commands::python();
+    plot.args(["examples/python/plot_scene.py", "--title", &title])
+        .arg(&table);
+    if file.scene.effects.excitation == ExcitationKind::LogSweep {
+        let excitation = &file.scene.excitation;
+        let sweep = [
+            excitation.frequency,
+            excitation.end_frequency,
+            excitation.start_time,
+            excitation.duration,
+        ];
+        plot.arg("--sweep").args(sweep.map(|value| value.to_string()));
+    }
+    commands::run(&mut plot)
 }
 
 /// Every file in `scenes/`, by name.
@@ -99,9 +109,8 @@ fn find(scene: &str) -> Result<PathBuf> {
     );
 }
 
-/// Runs the scene from 0 to its stop, a row of its outputs for each communication point to `table`, and tells what
-/// happened.
-pub fn simulate(file: &SceneFile, table: &Path) -> Result<Summary> {
+/// Runs the scene from 0 to its stop, writes its outputs at each communication point as a row of `table`, and summarises.
+pub fn simulate(file: &SceneFile, table: &Path) -> Result<String> {
     let mut rows = BufWriter::new(File::create(table).with_context(|| format!("cannot write {}", table.display()))?);
     write!(rows, "time")?;
     for output in &file.outputs {
@@ -126,8 +135,7 @@ pub fn simulate(file: &SceneFile, table: &Path) -> Result<Summary> {
     })?;
     progress.finish_and_clear();
     rows.flush()?;
-    summary.end(&simulation);
-    Ok(summary)
+    Ok(summary.text(&simulation))
 }
 
 /// A communication step that was made.
@@ -196,7 +204,7 @@ mod tests {
         let mut file = read("chatter-41g")?;
         file.set("stop", "0.0015")?;
         let table = std::env::temp_dir().join(format!("relay-contact-summary-{}.csv", std::process::id()));
-        let summary = simulate(&file, &table)?.to_string();
+        let summary = simulate(&file, &table)?;
         fs::remove_file(&table)?;
         // Found by two other methods, converged in modes and time: 708.827593 us and 1089.427605 us.
         let expected = "opened: once; last opening 708.828 us, last closing 1.0894 ms\n";

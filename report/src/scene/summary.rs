@@ -1,6 +1,5 @@
-//! What happened in a run, in a few lines.
+//! Summary of a run in a few lines.
 
-use std::fmt;
 use std::time::Duration;
 
 use relay_contact::scene::Scene;
@@ -9,22 +8,18 @@ use relay_contact::variables::{IntegerOutput, RealOutput, ResistanceKind};
 
 use crate::numbers::{seconds, significant};
 
-/// Kept up with from step to step.
+/// Collected step by step.
 pub struct Summary {
     scene: Scene,
     openings: u64,
-    /// Openings and closings beyond those that the simulation keeps of a step.
+    /// Openings and closings of a step beyond those that the simulation records.
     left_out: u64,
     /// Least and greatest contact force, N.
     force: (f64, f64),
     /// Ohm.
     worst_resistance: f64,
-    reals: Vec<(RealOutput, f64)>,
-    integers: Vec<(IntegerOutput, i32)>,
     /// Spent on the steps.
     taken: Duration,
-    /// Simulated, s.
-    time: f64,
 }
 
 impl Summary {
@@ -37,10 +32,7 @@ impl Summary {
             left_out: 0,
             force: (force, force),
             worst_resistance: simulation.real(RealOutput::ContactResistance),
-            reals: Vec::new(),
-            integers: Vec::new(),
             taken: Duration::ZERO,
-            time: 0.0,
         }
     }
 
@@ -63,29 +55,8 @@ impl Summary {
         self.taken += taken;
     }
 
-    /// At the end of the run.
-    pub fn end(&mut self, simulation: &Simulation) {
-        self.time = simulation.time();
-        self.reals = RealOutput::ALL
-            .iter()
-            .map(|output| (*output, simulation.real(*output)))
-            .collect();
-        let integers = IntegerOutput::ALL.iter();
-        self.integers = integers.map(|output| (*output, simulation.integer(*output))).collect();
-    }
-
-    fn real(&self, output: RealOutput) -> f64 {
-        let found = self.reals.iter().find(|(known, _)| *known == output);
-        found.map_or(f64::NAN, |(_, value)| *value)
-    }
-
-    fn integer(&self, output: IntegerOutput) -> i32 {
-        let found = self.integers.iter().find(|(known, _)| *known == output);
-        found.map_or(0, |(_, value)| *value)
-    }
-
-    fn opened(&self) -> String {
-        let instant = |output| match self.real(output) {
+    fn opened(&self, simulation: &Simulation) -> String {
+        let instant = |output| match simulation.real(output) {
             time if time < 0.0 => "none".to_owned(),
             time => seconds(time),
         };
@@ -102,7 +73,7 @@ impl Summary {
         )
     }
 
-    fn interruptions(&self) -> String {
+    fn interruptions(&self, simulation: &Simulation) -> String {
         if !self.scene.effects.chatter {
             return "interruptions: not counted (effects.chatter)".to_owned();
         }
@@ -111,53 +82,49 @@ impl Summary {
             "interruptions (above {} Ohm for at least {}): {}, longest {}, in all {}",
             chatter.resistance_threshold,
             seconds(chatter.minimum_duration),
-            self.integer(IntegerOutput::ChatterCount),
-            seconds(self.real(RealOutput::ChatterLongestInterruption)),
-            seconds(self.real(RealOutput::ChatterTotalInterruption)),
+            simulation.integer(IntegerOutput::ChatterCount),
+            seconds(simulation.real(RealOutput::ChatterLongestInterruption)),
+            seconds(simulation.real(RealOutput::ChatterTotalInterruption)),
         )
     }
-}
 
-impl fmt::Display for Summary {
-    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+    /// At the end of the run.
+    pub fn text(&self, simulation: &Simulation) -> String {
         let effects = &self.scene.effects;
         let seen = if effects.extremes {
             ""
         } else {
             " at the communication points"
         };
-        writeln!(formatter, "{}", self.opened())?;
-        writeln!(formatter, "{}", self.interruptions())?;
-        writeln!(
-            formatter,
-            "contact force{seen}: {:.6} to {:.6} N",
-            self.force.0, self.force.1
-        )?;
+        let (least, greatest) = self.force;
+        let mut lines = vec![
+            self.opened(simulation),
+            self.interruptions(simulation),
+            format!("contact force{seen}: {least:.6} to {greatest:.6} N"),
+        ];
         if effects.resistance != ResistanceKind::None {
-            writeln!(
-                formatter,
+            lines.push(format!(
                 "worst resistance{seen}: {} Ohm",
                 significant(self.worst_resistance)
-            )?;
+            ));
         }
-        if effects.energy {
-            writeln!(
-                formatter,
-                "energy balance: {:.3e} J",
-                self.real(RealOutput::EnergyBalance)
-            )?;
+        lines.push(if effects.energy {
+            format!("energy balance: {:.3e} J", simulation.real(RealOutput::EnergyBalance))
         } else {
-            writeln!(formatter, "energy balance: not drawn up (effects.energy)")?;
-        }
-        writeln!(
-            formatter,
-            "solver: {} steps, {} rejected, {} iterations, {} modes",
-            self.integer(IntegerOutput::SolverSteps),
-            self.integer(IntegerOutput::SolverRejectedSteps),
-            self.integer(IntegerOutput::SolverIterations),
-            self.integer(IntegerOutput::SolverModesUsed),
-        )?;
-        let taken = self.taken.as_secs_f64();
-        write!(formatter, "time taken: {} for {}", seconds(taken), seconds(self.time))
+            "energy balance: not computed (effects.energy)".to_owned()
+        });
+        let [steps, rejected, iterations, modes] = [
+            IntegerOutput::SolverSteps,
+            IntegerOutput::SolverRejectedSteps,
+            IntegerOutput::SolverIterations,
+            IntegerOutput::SolverModesUsed,
+        ]
+        .map(|output| simulation.integer(output));
+        lines.push(format!(
+            "solver: {steps} steps, {rejected} rejected, {iterations} iterations, {modes} modes"
+        ));
+        let taken = seconds(self.taken.as_secs_f64());
+        lines.push(format!("time taken: {taken} for {}", seconds(simulation.time())));
+        lines.join("\n")
     }
 }

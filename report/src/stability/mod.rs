@@ -1,4 +1,4 @@
-//! Hard cases, run now: what makes each hard, the properties it has to keep, and by how much it does.
+//! Hard cases: what makes each hard, the properties that it must keep, and with which margin it keeps them.
 
 use anyhow::{Result, bail};
 use hard_cases::CASES;
@@ -7,7 +7,7 @@ use hard_cases::case::{Case, Check};
 use crate::content::{Arguments, Block, Section, Table};
 use rayon::prelude::*;
 
-/// The section; an error where a property is not kept.
+/// The section; an error if a property is violated.
 pub fn sections(_: Arguments) -> Result<Vec<Section>> {
     let cases: Vec<&Case> = CASES.iter().copied().flatten().collect();
     let checks: Vec<_> = cases.par_iter().map(|case| case.keeps_its_properties()).collect();
@@ -27,12 +27,12 @@ pub fn sections(_: Arguments) -> Result<Vec<Section>> {
         (count + 1, least.min(margin))
     });
     let text = format!(
-        "{count} properties in {} scenes that break integrators, measured in this run; the report is not written where one is \
-         not kept. Margin: how many times smaller the measured value is than what is allowed. Where the force is compared between \
-         communication steps, three numbers of them are simulated, and in each the contact never pulls at a communication point \
-         (bonded contacts excepted), every number stays finite, and the work is bounded. Balances of energy are the component's own where they are *in = stored + dissipated* \
-         (`tests/energy_balance.rs` checks them from outside), else computed outside of it. `cargo test -p hard-cases` runs the \
-         same cases and random scenes, `docs/robustness.md` tells what wrong calls do.",
+        "{count} properties in {} scenes that are hard for integrators, measured in this run; if one is violated, no report is written. \
+         Margin: allowed value divided by the measured one. Where results are compared between communication steps, three lengths of \
+         step are simulated; in each of them the contact force at communication points is never tensile (except for bonded contacts), \
+         all numbers are finite and the work is bounded. An energy balance *in = stored + dissipated* is that of the component itself \
+         (`tests/energy_balance.rs` checks it independently), others are computed independently of it. `cargo test -p hard-cases` runs \
+         the same cases and random scenes; for wrong calls see `docs/robustness.md`.",
         kept.len(),
     );
     let columns = [
@@ -41,11 +41,11 @@ pub fn sections(_: Arguments) -> Result<Vec<Section>> {
         "property kept",
         "measured",
         "allowed",
-        "because",
+        "reason",
         "margin",
     ];
     let table = Table {
-        caption: "Tolerance 1e-6 of the preload force where nothing else is said.".to_owned(),
+        caption: "Tolerance 1e-6 of the preload force unless stated otherwise.".to_owned(),
         columns: columns.map(str::to_owned).to_vec(),
         rows: kept.iter().flat_map(|(case, checks)| rows(case, checks)).collect(),
     };
@@ -53,14 +53,14 @@ pub fn sections(_: Arguments) -> Result<Vec<Section>> {
         id: "stability",
         title: "Hard cases",
         lead: format!(
-            "{count} properties are kept in {} scenes that break integrators, the closest with a margin of {least:.1} times.",
+            "{count} properties are kept in {} scenes that are hard for integrators; the smallest margin is {least:.1}.",
             kept.len()
         ),
         blocks: vec![Block::Text(text), Block::Table(table)],
     }])
 }
 
-/// The case is named in the first row only.
+/// Name and difficulty are in the first row only.
 fn rows(case: &Case, checks: &[Check]) -> Vec<Vec<String>> {
     let row = |(index, check): (usize, &Check)| {
         let name = if index == 0 {
