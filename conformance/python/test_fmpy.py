@@ -9,20 +9,21 @@ from fmpy import simulate_fmu
 from fmpy.ssp.ssd import read_ssd
 
 from component import FMU, Instance, run
-from results import STEP, SYSTEM, TOLERANCE, column, compare, record
+from relay_contact import read_table
+from results import FOLDER, STEP, SYSTEM, TOLERANCE, compare, published, record, staircase
 
 
 def test_a_sine_given_at_the_communication_points() -> None:
-    held = column("base.acceleration")
-    time = np.arange(len(held)) * STEP
-    # Two rows at every point, so that FMPy jumps there and does not interpolate.
-    names = ["base.acceleration", "support.displacement", "contact.current"]
-    signals = np.zeros(2 * len(held), dtype=[(name, np.float64) for name in ["time", *names]])
-    signals["time"] = np.repeat(time, 2)
-    signals["base.acceleration"] = np.concatenate(([0.0], np.repeat(held, 2)[:-1]))
-    stop = float(time[-1])
+    signals = staircase(["base.acceleration", "support.displacement", "contact.current"])
+    stop = float(signals["time"][-1])
     result = run({"solver.tolerance": TOLERANCE}, stop, STEP, ["contact.force"], signals)
     compare("FMPy", fmpy.__version__, "run", result["contact.force"].tolist())
+
+
+def test_the_published_run_by_a_choice_that_is_an_integer() -> None:
+    times = [n * STEP for n in range(2001)]
+    expected = read_table(FOLDER / "scenes" / "paper-1khz.csv")["contact.force"].tolist()
+    compare("FMPy", fmpy.__version__, "published run", published(times), expected=expected)
 
 
 def test_the_system_of_two_instances_follows_the_schema_of_ssp() -> None:

@@ -9,6 +9,8 @@ from fmpy import simulate_fmu
 from relay_contact import Array, Component, Contact, Values, fmu_path
 
 FMU = fmu_path()
+# The same with integers in place of enumerations.
+PLAIN = FMU.with_name("RelayContact-plain.fmu")
 COMPONENT = Component(FMU)
 
 # Start values of the parameters.
