@@ -34,17 +34,6 @@ def run(
     return {name: np.asarray(result[name]) for name in ["time", *output]}
 
 
-def extremes(values: Array) -> tuple[float, float]:
-    """Give least and greatest value of a smooth curve sampled evenly, by the parabola through three points."""
-
-    def greatest(samples: Array) -> float:
-        peak = int(np.argmax(samples[1:-1])) + 1
-        left, middle, right = samples[peak - 1 : peak + 2]
-        return float(middle + (right - left) ** 2 / (8 * (2 * middle - left - right)))
-
-    return -greatest(-values), greatest(values)
-
-
 class Instance(Contact):
     """An instance whose messages are kept."""
 
