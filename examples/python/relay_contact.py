@@ -98,8 +98,9 @@ class Unit:
     offset: float = 0.0
 
     def text(self, value: float) -> str:
-        """Give a value in the unit shown."""
-        return f"{self.factor * value + self.offset:g} {self.shown}"
+        """Give a value in the unit shown; in SI units if it is large there."""
+        shown = self.factor * value + self.offset
+        return f"{shown:g} {self.shown}" if abs(shown) < 1e4 else f"{value:g} {self.si}"
 
 
 def units(description: Any) -> dict[str, Unit]:  # noqa: ANN401
