@@ -167,6 +167,10 @@ class Component:
         contact.initialise()
         return contact
 
+    def in_scene(self, name: str) -> "Contact":
+        """Give an instance that is initialised with the parameters of a scene."""
+        return self.started(Scene.read(scenes()[name]).values)
+
 
 class Contact:
     """An instance of the component, its variables known by name, for a `with` block that frees it."""

@@ -1,37 +1,29 @@
-"""Couple the relay contact to a partner FMU, by libcosim and by FMPy, wired by hand and as a system (SSP 1.0).
+"""Couple the relay contact to a partner FMU, in libcosim and in FMPy, connected by hand and as a system (SSP 1.0).
 
-The partner, TestBench.fmu, which PythonFMU makes of two_fmus_bench.py, is a vibration table and a circuit: a source of
-V = 6 V, a load of R = 60 Ohm and L = 1 mH in series, the contact, and across the contact a quench of Rq = 47 Ohm and
-Cq = 220 nF in series. Its states are the current i of the load and the voltage vC of the capacitor:
+The partner, TestBench.fmu, which PythonFMU makes of two_fmus_bench.py, is a vibration table with a sine acceleration
+and the circuit of circuit.py, which starts in its steady state. Three connections, updated at every communication
+point: table.acceleration to base.acceleration, contact.conductance to contact.conductance, contact.current back.
+The voltage shown is that of the circuit; the contact is valid below about 12 V and 0.4 A, where no arc burns.
 
-    v = (i + vC / Rq) / (1 / Rc + 1 / Rq)    voltage of the contact; its current is v / Rc
-    di/dt = (V - R i - v) / L
-    dvC/dt = (v - vC) / (Rq Cq)
-
-The resistance Rc of the contact is held over a communication step, over which the circuit has a closed form. It starts
-at rest. The acceleration of the table is amplitude x sin(2 pi frequency t). Three wires, carried at every communication
-point: table.acceleration to base.acceleration, contact.resistance to contact.resistance, contact.current back.
-The contact is valid below about 12 V and 0.4 A, where nothing arcs; the summary says what was reached. The voltage is
-that of the circuit: contact.voltage of the contact multiplies a current of the step before with the resistance of now,
-which at an opening is not the voltage at any time.
-
-Both FMUs step at the same time with inputs held (a Jacobi coupling), so its error is of first order in the
-communication step h: a sine held over h is a sine h/2 late, and so are the openings. The circuit sees an opening at the
-next communication point, another h/2 late on average. The reference: the contact shaken by its own generator (the
-same sine without a step), with the circuit at a finer step.
+Both FMUs step at the same time with constant inputs (a Jacobi coupling), so the error is of first order in the
+communication step h: a sine held over h is late by h/2, and so are the openings. The circuit receives an opening at the
+next communication point, on average another h/2 later. The reference: the contact with its own generator (the same sine
+without steps), and the circuit at a finer step.
 
 libcosim
-- cannot set enumerations, so effects.excitation stays None and the table shakes the contact;
-- counts time in whole nanoseconds and passes differences of instants. Given the same instants FMPy gives the same
-  bits; given n h it differs by what the rounding of time does;
-- applies of each component of an .ssp its first ParameterBinding, inline or by source, and leaves out without a word
-  all others and those of the system: here each component has one. It knows the prefixes ssd, ssc, ssv by their letters;
-- ends its process where a start value is refused.
-It is installed on 64-bit x86 Linux alone; elsewhere FMPy runs the wiring, and system.ssp is written all the same.
+- cannot set enumerations, so effects.excitation remains None and the table vibrates the contact (the variant of the
+  component that `cargo xtask fmu --plain` makes has integers instead);
+- counts time in whole nanoseconds and passes differences of times. FMPy gives the same bits at the same times, and
+  differs at n h by the effect of rounding the time;
+- applies only the first ParameterBinding of each component of an .ssp, and silently ignores all others and those of the
+  system: here each component has one. It recognises the prefixes ssd, ssc, ssv by their letters;
+- terminates its process if a start value is rejected.
+It is installed on 64-bit x86 Linux only; elsewhere FMPy runs the system, and system.ssp is still written.
 
-TestBench.fmu runs the Python of the process that loads it. It needs no package: the FMU brings its part of PythonFMU.
-A tool that is no Python program must load one: on Linux by LD_PRELOAD=libpython3.11.so.1.0 (the binary in the FMU is
-linked to none), on Windows by python3.dll in the PATH. PythonFMU has binaries for 64-bit x86 Linux and Windows.
+TestBench.fmu runs in the Python of the process that loads it and needs no packages: the FMU contains its part of
+PythonFMU. A tool that is not a Python program must load one: on Linux by LD_PRELOAD=libpython3.11.so.1.0 (the binary in
+the FMU is not linked to any), on Windows by python3.dll in the PATH. PythonFMU has binaries for 64-bit x86 Linux and
+Windows.
 """
 
 import csv
@@ -63,11 +55,11 @@ try:
 except (ImportError, OSError) as error:
     NO_LIBCOSIM = str(error)
 
-BENCH = Path(__file__).with_name("two_fmus_bench.py")
+BENCH, CIRCUIT = (Path(__file__).with_name(f"{name}.py") for name in ("two_fmus_bench", "circuit"))
 FINER = 8  # steps of the reference in a communication step
 
 RECORDED = [("bench", each) for each in ("table.acceleration", "contact.voltage", "contact.current")]
-RECORDED += [("contact", f"contact.{each}") for each in ("force", "resistance", "lastOpening", "lastClosing")]
+RECORDED += [("contact", f"contact.{each}") for each in ("force", "conductance", "lastOpening", "lastClosing")]
 
 Run = dict[str, Array]  # time and what is recorded, SI units
 Bar = Any
@@ -182,16 +174,16 @@ def draw(run: Run, convergence: Array, shaken: str, path: Path) -> None:
     closings = instants(run, "contact.lastClosing")
     gaps = [(opening, min([*closings[closings > opening], end])) for opening in instants(run, "contact.lastOpening")]
     shown = [
-        ("table.acceleration", "base\nacceleration\n[m/s²]", BLACK),
-        ("contact.force", "contact\nforce\n[N]", BLUE),
-        ("contact.resistance", "contact\nresistance\n[Ω]", RED),
-        ("contact.voltage", "contact\nvoltage\n[V]", GREEN),
-        ("contact.current", "contact\ncurrent\n[A]", PURPLE),
+        (run["table.acceleration"], "base\nacceleration\n[m/s²]", BLACK),
+        (run["contact.force"], "contact\nforce\n[N]", BLUE),
+        (1 / run["contact.conductance"], "contact\nresistance\n[Ω]", RED),
+        (run["contact.voltage"], "contact\nvoltage\n[V]", GREEN),
+        (run["contact.current"], "contact\ncurrent\n[A]", PURPLE),
     ]
     begin = gaps[-3][0] - 3e-4 if len(gaps) > 2 else 0.0
     rows = left.subplots(len(shown), 1, sharex=True)
-    for axes, (name, label, colour) in zip(rows, shown, strict=True):
-        axes.plot(time, run[name], color=colour, linewidth=1.2)
+    for axes, (values, label, colour) in zip(rows, shown, strict=True):
+        axes.plot(time, values, color=colour, linewidth=1.2)
         for opening, closing in gaps:
             axes.axvspan(1e3 * opening, 1e3 * closing, color=ORANGE, alpha=0.25, linewidth=0)
         axes.set(ylabel=label, xlim=(1e3 * begin, 1e3 * end))
@@ -274,7 +266,10 @@ def main() -> int:
     coarsest = 2**halvings
     count = coarsest * round(1e9 * periods / given.frequency / nanoseconds / coarsest)
 
-    fmus = {"contact": given.fmu.resolve(), "bench": FmuBuilder.build_FMU(BENCH, dest=given.out).resolve()}
+    fmus = {
+        "contact": given.fmu.resolve(),
+        "bench": FmuBuilder.build_FMU(BENCH, dest=given.out, project_files=[CIRCUIT]).resolve(),
+    }
     bench = {name: start for name, _, start, _ in PARAMETERS}
     bench |= {"supply.voltage": given.voltage, "table.amplitude": given.amplitude, "table.frequency": given.frequency}
     starts: Starts = {"contact": {"solver.tolerance": 1e-7}, "bench": bench}

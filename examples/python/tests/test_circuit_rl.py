@@ -1,23 +1,20 @@
-"""The contact in the RL circuit: waveforms, energies, convergence, what is handed over, and life without ngspice."""
+"""The contact in the RL circuit: waveforms, energies, convergence, and the run without ngspice."""
 
 import ctypes
 import re
-import subprocess
-import sys
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
-from fmpy import simulate_fmu
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from conftest import FMU, FOLDER, Run, is_picture, table
+from conftest import CAPACITOR, COIL, FMU, LOAD, QUENCH, SOURCE, Run, contact_voltage, is_picture, run_inside
+from relay_contact import Array, Component, Scene, read_table, scenes
+from relay_contact import run as simulate
 
-Array = NDArray[np.float64]
-SOURCE, LOAD, COIL, QUENCH, CAPACITOR = 6.0, 60.0, 1e-3, 47.0, 220e-9
-STEP, SOURCE_POWER = 2e-6, 0.6
+STEP = 2e-6
 CIRCUITS = ["built-in", "ngspice"]
 ENERGIES = ["load", "quench", "contact", "stored"]
 # ngspice steps by 0.1 us at most; the fastest the circuit does is 1 / (Rq Cq) = 1e5 1/s. The trapezoidal rule then
@@ -41,15 +38,10 @@ def circuit(request: pytest.FixtureRequest) -> str:
     return str(request.param)
 
 
-def columns(path: Path) -> dict[str, Array]:
-    rows = table(path)
-    return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
-
-
 def slopes(state: Array, conductance: float) -> list[float]:
     """Give the change of current, voltage and energies; the circuit by Kirchhoff's laws, node by node."""
-    current, capacitor = state[:2]
-    voltage = (current + capacitor / QUENCH) / (conductance + 1 / QUENCH)
+    current = state[0]
+    voltage = contact_voltage(state, conductance)
     charging = current - conductance * voltage
     powers = [SOURCE * current, LOAD * current**2, QUENCH * charging**2, conductance * voltage**2]
     return [(SOURCE - LOAD * current - voltage) / COIL, charging / CAPACITOR, *powers]
@@ -57,7 +49,7 @@ def slopes(state: Array, conductance: float) -> list[float]:
 
 def test_waveforms_energies_and_interface(run: Run, tmp_path: Path, circuit: str) -> None:
     said = run("circuit_rl", "--circuit", circuit)
-    got = columns(tmp_path / "circuit-rl.csv")
+    got = read_table(tmp_path / "circuit-rl.csv")
     assert is_picture(tmp_path / "circuit-rl.png")
 
     # The instants of the opening at 400 m/s2 and 1 kHz from rest, converged by two other methods; the component locates
@@ -65,15 +57,15 @@ def test_waveforms_energies_and_interface(run: Run, tmp_path: Path, circuit: str
     assert np.unique(got["contact.lastOpening"])[1] == pytest.approx(708.827593e-6, abs=1e-9)
     assert np.unique(got["contact.lastClosing"])[1] == pytest.approx(1089.427605e-6, abs=1e-9)
 
-    # The circuit with the resistances of the table held, and its energies, by a Runge-Kutta method of order 8.
-    resistance = got["contact.resistance"]
+    # The circuit with the conductances of the table held, and its energies, by a Runge-Kutta method of order 8.
+    conductance = got["contact.conductance"]
     state = np.zeros(6)
-    state[0] = SOURCE / (LOAD + resistance[0])
-    state[1] = state[0] * resistance[0]
+    state[0] = SOURCE / (LOAD + 1 / conductance[0])
+    state[1] = state[0] / conductance[0]
     states = [state]
-    for held in resistance[:-1]:
+    for held in conductance[:-1]:
         solution = solve_ivp(
-            lambda _, y, g: slopes(y, g), (0, STEP), states[-1], "DOP853", args=(1 / held,), rtol=1e-10, atol=1e-14
+            lambda _, y, g: slopes(y, g), (0, STEP), states[-1], "DOP853", args=(held,), rtol=1e-10, atol=1e-14
         )
         states.append(solution.y[:, -1])
     current, capacitor, *heats = np.array(states).T
@@ -85,7 +77,7 @@ def test_waveforms_energies_and_interface(run: Run, tmp_path: Path, circuit: str
         assert np.abs(got[f"energy.{name}"] - heat).max() < slack * heats[0][-1], name
 
     # The balance closes at every communication point within what the example states.
-    stated = re.search(r"missed by (\S+) uJ; quadrature and integrator explain (\S+) uJ", said)
+    stated = re.search(r"error of (\S+) uJ; quadrature and integrator explain (\S+) uJ", said)
     assert stated
     missed, explained = (1e-6 * float(number) for number in stated.groups())
     balance = got["energy.source"] - sum(got[f"energy.{name}"] for name in ENERGIES)
@@ -96,12 +88,8 @@ def test_waveforms_energies_and_interface(run: Run, tmp_path: Path, circuit: str
     kept = (COIL * got["load.current"] ** 2 + CAPACITOR * got["capacitor.voltage"] ** 2) / 2
     assert np.abs(got["energy.stored"] - (kept - kept[0])).max() < digits
 
-    # The component's voltage is the current it was handed a step ago, times its resistance of now, up to
-    # contact.openVoltage: so it did get it.
-    voltage = np.clip(got["circuit.current"][:-1] * resistance[1:], -1e3, 1e3)
-    assert got["contact.voltage"][1:] == pytest.approx(voltage, rel=1e-9)
-    # And that current is the circuit's own: closed the load's, open hardly any; never beyond the range without arcs.
-    assert got["circuit.current"] == pytest.approx(got["circuit.voltage"] / resistance, rel=1e-9)
+    # The circuit's own current: closed that of the load, open hardly any; never beyond the range without arcs.
+    assert got["circuit.current"] == pytest.approx(got["circuit.voltage"] * conductance, rel=1e-9)
     assert "inside the range without arcs" in said
     assert 6 < np.abs(got["circuit.voltage"]).max() < 12
     assert np.abs(got["circuit.current"]).max() < 0.4
@@ -109,7 +97,7 @@ def test_waveforms_energies_and_interface(run: Run, tmp_path: Path, circuit: str
 
 def test_error_falls_with_the_first_power_of_the_step(run: Run, tmp_path: Path, circuit: str) -> None:
     run("circuit_rl", "--circuit", circuit)
-    study = columns(tmp_path / "circuit-rl-convergence.csv")
+    study = read_table(tmp_path / "circuit-rl-convergence.csv")
     step, root, largest = study.values()
     # Four events, each late by a part of the step that is as good as random: a root mean square scatters by a quarter,
     # and a line through six of them, over steps of 1 to 40, by 0.08 in its slope. Three times that.
@@ -119,19 +107,10 @@ def test_error_falls_with_the_first_power_of_the_step(run: Run, tmp_path: Path, 
     assert np.all(largest < step * SOURCE / COIL)
 
     # The error of 2 us against another solution of the whole: conductance every 0.1 us, linear between, Runge-Kutta.
-    got = columns(tmp_path / "circuit-rl.csv")
-    fine = simulate_fmu(
-        str(FMU),
-        stop_time=2.5e-3,
-        output_interval=1e-7,
-        start_values={
-            "effects.excitation": 2,
-            "effects.axialForce": 2,
-            "excitation.amplitude": 400.0,
-            "excitation.frequency": 1000.0,
-        },
-        output=["contact.conductance", "contact.lastOpening", "contact.lastClosing"],
-    )
+    got = read_table(tmp_path / "circuit-rl.csv")
+    scene = Scene.read(scenes()["chatter-41g"])
+    names = ["contact.conductance", "contact.lastOpening", "contact.lastClosing"]
+    fine = simulate(replace(scene, stop=2.5e-3, step=1e-7, outputs=names), component=Component(FMU))
     events = np.concatenate([np.unique(fine[f"contact.last{name}"])[1:] for name in ("Opening", "Closing")])
     times, conductances = np.append(fine["time"], events), np.append(fine["contact.conductance"], 0 * events)
     ordered = np.argsort(times)
@@ -159,32 +138,26 @@ def test_error_falls_with_the_first_power_of_the_step(run: Run, tmp_path: Path, 
     assert np.abs(errors).max() == pytest.approx(largest[row], abs=1e-5)
 
 
-def run_without_ngspice(*arguments: str) -> subprocess.CompletedProcess[str]:
-    hide = """
-import ctypes, runpy, sys
+WITHOUT_NGSPICE = """
+import ctypes
 class Hidden(ctypes.CDLL):
     def __init__(self, name, *arguments, **named):
         if "ngspice" in str(name):
             raise OSError(name)
         super().__init__(name, *arguments, **named)
 ctypes.CDLL = Hidden
-sys.argv = sys.argv[1:]
-sys.path.insert(0, sys.argv[0].rpartition("/")[0])
-runpy.run_path(sys.argv[0], run_name="__main__")
+run()
 """
-    script = (FOLDER / "circuit_rl.py").as_posix()
-    command = [sys.executable, "-c", hide, script, "--quick", "--fmu", str(FMU), *arguments]
-    return subprocess.run(command, capture_output=True, text=True, check=False)
 
 
-def test_without_ngspice_it_says_so_and_takes_its_own_circuit(tmp_path: Path) -> None:
-    free = run_without_ngspice("--out", str(tmp_path))
+def test_without_ngspice_it_says_so_and_uses_the_closed_form(tmp_path: Path) -> None:
+    free = run_inside(WITHOUT_NGSPICE, "circuit_rl", "--out", str(tmp_path))
     assert free.returncode == 0, free.stderr
     assert "libngspice0" in free.stdout.splitlines()[0]
     assert "built-in, communication step" in free.stdout
     assert (tmp_path / "circuit-rl.csv").is_file()
 
-    wanted = run_without_ngspice("--out", str(tmp_path), "--circuit", "ngspice")
+    wanted = run_inside(WITHOUT_NGSPICE, "circuit_rl", "--out", str(tmp_path), "--circuit", "ngspice")
     assert wanted.returncode == 1
     assert "libngspice0" in wanted.stderr
     assert "Traceback" not in wanted.stderr
