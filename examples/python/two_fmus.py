@@ -190,6 +190,7 @@ def draw(run: Run, convergence: Array, shaken: str, path: Path) -> None:
         axes.grid(alpha=0.3)
     # A closing strikes with many times the preload: linear below 1 N, logarithmic above.
     rows[1].set_yscale("symlog", linthresh=1.0)
+    rows[1].set_yticks([0.0, 0.5, 1.0, 10.0], ["0", "0.5", "1", "10"])
     rows[2].set_yscale("log")
     rows[-1].set_xlabel("time [ms]")
     left.align_ylabels()

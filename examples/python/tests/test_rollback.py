@@ -67,7 +67,7 @@ def test_error_falls_with_the_tolerance_and_with_the_step(run: Run, tmp_path: Pa
     order = np.polyfit(np.log(fixed[:, 0]), np.log(fixed[:, 2]), 1)[0]
     assert order == pytest.approx(1, abs=0.25)
 
-    # With events the rest is smooth, so of second order. The error of a step, h^3, is kept at the tolerance, and the sum
+    # With events the rest is smooth, of second order. The error of a step, h^3, is kept at the tolerance, and the sum
     # goes with h^2: the tolerance to the power 2/3. Each error scatters by a fifth, as steps start where they happen
     # to: the slope over four decades by 0.04. Three times that.
     with_events = np.array([entry for entry in work["adaptive with events"] if entry[0] <= 1e-4])
