@@ -1,14 +1,14 @@
-//! The published results, and the parameters found from them.
+//! The published results, and the parameters identified from them.
 
-/// A published result that something is identified from: Zhang, Zhang, Meng, Ren, Machines 2025, 13(1), 52.
+/// A published result used for the identification: Zhang, Zhang, Meng, Ren, Machines 2025, 13(1), 52.
 #[derive(Clone, Copy, Debug)]
 pub struct Source {
     pub name: &'static str,
     pub unit: &'static str,
     pub place: &'static str,
-    /// As printed, in its unit.
+    /// As printed.
     pub value: f64,
-    /// Its last printed digit, in its unit.
+    /// One unit in its last printed digit.
     pub digit: f64,
 }
 
@@ -31,15 +31,15 @@ const fn source(name: &'static str, unit: &'static str, place: &'static str, val
     }
 }
 
-/// The parameters found.
+/// An identified parameter.
 #[derive(Clone, Copy, Debug)]
 pub struct Parameter {
     pub symbol: &'static str,
     pub name: &'static str,
     pub unit: &'static str,
-    /// In SI units, per unit of the table.
+    /// The unit in SI units.
     pub scale: f64,
-    /// From what it follows.
+    /// What determines it.
     pub from: &'static str,
 }
 

@@ -36,10 +36,6 @@ class Circuit:
         """Give the contact voltage; numbers or arrays."""
         return (current + capacitor / self.quench) / (conductance + 1 / self.quench)
 
-    def stored(self, current: float, capacitor: float) -> float:
-        """Give the energy in coil and capacitor."""
-        return (self.inductance * current**2 + self.capacitance * capacitor**2) / 2
-
     def at_rest(self, conductance: float) -> State:
         """Give the steady state."""
         voltage = self.supply / (self.load * conductance + 1)

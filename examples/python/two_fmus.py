@@ -1,4 +1,4 @@
-"""Couple the relay contact to a partner FMU, in libcosim and in FMPy, connected by hand and as a system (SSP 1.0).
+"""Couple the relay contact to a partner FMU: connected by hand in FMPy, and as a system (SSP 1.0) in libcosim.
 
 The partner, TestBench.fmu, which PythonFMU makes of two_fmus_bench.py, is a vibration table with a sine acceleration
 and the circuit of circuit.py, which starts in its steady state. Three connections, updated at every communication
@@ -13,8 +13,7 @@ without steps), and the circuit at a finer step.
 libcosim
 - cannot set enumerations, so effects.excitation remains None and the table vibrates the contact (the variant of the
   component that `cargo xtask fmu --plain` makes has integers instead);
-- counts time in whole nanoseconds and passes differences of times. FMPy gives the same bits at the same times, and
-  differs at n h by the effect of rounding the time;
+- counts time in whole nanoseconds and passes differences of times. FMPy gives the same bits at the same times;
 - applies only the first ParameterBinding of each component of an .ssp, and silently ignores all others and those of the
   system: here each component has one. It recognises the prefixes ssd, ssc, ssv by their letters;
 - terminates its process if a start value is rejected.
@@ -47,7 +46,6 @@ try:
     from libcosimpy.CosimExecution import CosimExecution
     from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
     from libcosimpy.CosimObserver import CosimObserver
-    from libcosimpy.CosimSlave import CosimLocalSlave
 
     # It warns of every variable that is an enumeration.
     log_output_level(CosimLogLevel.ERROR)
@@ -114,21 +112,6 @@ def find(execution: Any, name: str, variable: str) -> tuple[int, int]:  # noqa: 
     index = execution.slave_index_from_instance_name(name)
     variables = execution.slave_variables(index)
     return index, next(each.reference for each in variables if each.name == variable.encode())
-
-
-def wired_in_libcosim(fmus: Fmus, starts: Starts, step: int) -> Any:  # noqa: ANN401
-    """Wire the FMUs by hand in libcosim; step in ns."""
-    execution = CosimExecution.from_step_size(step)
-    done = [execution.add_local_slave(CosimLocalSlave(str(fmu), name)) >= 0 for name, fmu in fmus.items()]
-    for name, values in starts.items():
-        for variable, value in values.items():
-            done.append(execution.real_initial_value(*find(execution, name, variable), value))
-    for source, output, sink, variable, _ in WIRES:
-        ends = *find(execution, source, output), *find(execution, sink, variable)
-        done.append(execution.connect_real_variables(*ends) == 0)
-    if not all(done):
-        raise RuntimeError("libcosim refused an FMU, a start value or a wire")
-    return execution
 
 
 def by_libcosim(execution: Any, time: Array, bar: Bar) -> Run:  # noqa: ANN401
@@ -277,15 +260,13 @@ def main() -> int:
     system = given.out / "system.ssp"
     write_system(system, fmus, starts)
 
-    steps = count * ((2 if NO_LIBCOSIM else 4) + FINER) + sum(count // 2**each for each in range(1, halvings + 1))
+    steps = count * ((1 if NO_LIBCOSIM else 2) + FINER) + sum(count // 2**each for each in range(1, halvings + 1))
     # Whole nanoseconds in s, rounded once, as libcosim has them.
     time = np.arange(count + 1) * nanoseconds / 1e9
     with tqdm(total=steps, unit="step", desc="communication steps") as bar:
         runs = {"FMPy": by_fmpy(fmus, starts, time, bar)}
         if not NO_LIBCOSIM:
-            runs["libcosim"] = by_libcosim(wired_in_libcosim(fmus, starts, nanoseconds), time, bar)
             runs["libcosim SSP"] = by_libcosim(CosimExecution.from_ssp_file(str(system), nanoseconds), time, bar)
-        runs["FMPy, t = n h"] = by_fmpy(fmus, starts, np.arange(count + 1) * (1e-9 * nanoseconds), bar)
         coarser = [by_fmpy(fmus, starts, time[:: 2**halving], bar) for halving in range(1, halvings + 1)]
         fine = np.arange(FINER * count + 1) * (nanoseconds / FINER) / 1e9
         reference = by_fmpy(fmus, starts, fine, bar, generator=True)

@@ -139,6 +139,8 @@ def test_watching_interruptions_leaves_the_motion_as_it_is() -> None:
     assert (watched[0] == unwatched[0]).all()
     # Steps end where an interruption begins or ends. Each run may be wrong by the tolerance.
     assert np.max(np.abs(watched[1] - unwatched[1])) <= 2 * tolerance * FORCE_SCALE
+    for name in CHATTER:
+        assert (run({**OPENING, "effects.chatter": False}, 3e-3, 1e-3, CHATTER)[name] == 0).all()
 
 
 EXTREMES = ["step.minimumForce", "step.maximumForce", "step.maximumResistance"]
