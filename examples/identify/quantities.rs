@@ -44,37 +44,14 @@ pub struct Parameter {
 }
 
 /// The parameters, in the order of [`Specimen::values`].
+#[rustfmt::skip]
 pub const PARAMETERS: [Parameter; 7] = [
     parameter("R", "camber radius", "mm", 1e-3, "F_0 and k_j, by the Hertz law"),
-    parameter(
-        "EI",
-        "bending stiffness",
-        "N mm²",
-        1e-6,
-        "F_0 at the overtravel of 0.2 mm",
-    ),
+    parameter("EI", "bending stiffness", "N mm²", 1e-6, "F_0 at the overtravel of 0.2 mm"),
     parameter("rhoA", "mass per length", "g/m", 1e-3, "f_1, with the rivet mass"),
-    parameter(
-        "b",
-        "width",
-        "mm",
-        1e-3,
-        "EI and mass per length, with E = 124 GPa and 8300 kg/m³",
-    ),
-    parameter(
-        "h",
-        "thickness",
-        "mm",
-        1e-3,
-        "EI and mass per length, with E = 124 GPa and 8300 kg/m³",
-    ),
-    parameter(
-        "m",
-        "rivet mass",
-        "mg",
-        1e-6,
-        "force amplitude at 1000 Hz, with the mass per length",
-    ),
+    parameter("b", "width", "mm", 1e-3, "EI and mass per length, with E = 124 GPa and 8300 kg/m³"),
+    parameter("h", "thickness", "mm", 1e-3, "EI and mass per length, with E = 124 GPa and 8300 kg/m³"),
+    parameter("m", "rivet mass", "mg", 1e-6, "force amplitude at 1000 Hz, with the mass per length"),
     parameter("beta", "damping times", "µs", 1e-6, "beta over 4 π²"),
 ];
 

@@ -192,15 +192,14 @@ def draw_steps(runs: list[Run], stop: float, path: Path) -> None:
         start, length, current, _, _ = np.array(master.rows).T
         colour, marker, label = LOOKS[method]
         above.plot(1e3 * times, 1e3 * master.currents(times), color=colour, linewidth=1)
-        above.plot(
-            1e3 * start,
-            1e3 * current,
-            linestyle="",
-            marker=marker,
-            markersize=4,
-            color=colour,
-            label=label.replace(", ", ",\n"),
-        )
+        dots = {
+            "linestyle": "",
+            "marker": marker,
+            "markersize": 4,
+            "color": colour,
+            "label": label.replace(", ", ",\n"),
+        }
+        above.plot(1e3 * start, 1e3 * current, **dots)
         below.semilogy(1e3 * start, 1e6 * length, marker=marker, markersize=4, color=colour, linewidth=0.6)
     opening, closing = spans(chosen["adaptive with events"], stop)[0]
     for axes in (above, below):

@@ -37,7 +37,21 @@ import numpy as np
 from pythonfmu import FmuBuilder
 from tqdm import tqdm
 
-from common import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, parser, read_arguments, save, within, write_table
+from common import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    PURPLE,
+    RED,
+    order_of,
+    parser,
+    read_arguments,
+    save,
+    within,
+    write_table,
+)
 from relay_contact import Array, Component, Contact
 from two_fmus_bench import PARAMETERS
 from two_fmus_system import WIRES, Fmus, Starts, write_system
@@ -143,12 +157,6 @@ def errors(run: Run, reference: Run) -> tuple[float, float]:
     return late, float(np.mean(np.abs(difference)))
 
 
-def order(steps: Array, values: Array) -> float:
-    """Give the order of convergence: the slope in logarithms."""
-    covariance = np.cov(np.log(steps), np.log(values))
-    return float(covariance[0, 1] / covariance[0, 0])
-
-
 def draw(run: Run, convergence: Array, shaken: str, path: Path) -> None:
     """Draw the last openings and the convergence."""
     figure = plt.figure(figsize=(12, 7), layout="constrained")
@@ -188,7 +196,7 @@ def draw(run: Run, convergence: Array, shaken: str, path: Path) -> None:
         if not np.all(values > 0):
             axes.text(0.5, 0.5, "nothing to compare", ha="center", transform=axes.transAxes)
             continue
-        axes.plot(steps, values, color=colour, marker="o", label=f"computed, order {order(steps, values):.2f}")
+        axes.plot(steps, values, color=colour, marker="o", label=f"computed, order {order_of(steps, values):.2f}")
         first_order = steps * np.exp(np.mean(np.log(values / steps)))
         axes.plot(steps, first_order, color=GREY, linestyle=":", label="order 1")
         axes.set_xscale("log", base=2)
@@ -229,7 +237,7 @@ def summary(runs: dict[str, Run], convergence: Array) -> str:
     lines.append("  step [µs]  openings late [µs]  mean voltage difference [mV]")
     lines += [f"{1e6 * step:11.3f}{1e6 * late:20.4f}{1e3 * difference:30.3f}" for step, late, difference in convergence]
     steps, late, difference = convergence.T
-    lines.append(f"{'order':>11}{order(steps, late):20.2f}{order(steps, difference):30.2f}")
+    lines.append(f"{'order':>11}{order_of(steps, late):20.2f}{order_of(steps, difference):30.2f}")
     return "\n".join(lines)
 
 
