@@ -126,6 +126,12 @@ class Relay:
         return outcome, np.array(rows)
 
 
+def edges(centres: list[float]) -> Array:
+    """Give the edges of cells at equal ratios."""
+    ratio = (centres[1] / centres[0]) ** 0.5
+    return np.append(np.array(centres) / ratio, centres[-1] * ratio)
+
+
 def draw_map(axes: Axes, outcomes: list[Outcome], values: list[float], title: str) -> None:
     """Draw values over speed and damping: numbers of bounces in as many colours, times (s) on a logarithmic scale."""
     speeds = sorted({outcome.speed for outcome in outcomes})
@@ -136,8 +142,7 @@ def draw_map(axes: Axes, outcomes: list[Outcome], values: list[float], title: st
     norm = BoundaryNorm(np.arange(most + 2) - 0.5, 256) if counts else LogNorm()
     shown = grid if counts else np.ma.masked_equal(1e6 * grid, 0)
     axes.set_facecolor("#E5E5E5")
-    x, y = 1e3 * np.array(speeds), 1e6 * np.array(dampings)
-    mesh = axes.pcolormesh(x, y, shown, cmap="cividis", norm=norm, shading="nearest")
+    mesh = axes.pcolormesh(1e3 * edges(speeds), 1e6 * edges(dampings), shown, cmap="cividis", norm=norm)
     bar = axes.figure.colorbar(mesh, ax=axes, pad=0.02)
     if counts:
         bar.set_label("bounces")

@@ -16,7 +16,7 @@ COLOURS = (BLUE, ORANGE, RED)
 
 # Label and look of each curve.
 STYLES: dict[str, tuple[str, dict[str, Any]]] = {
-    "linear": ("linear (contact held)", {"linestyle": "-", "linewidth": 1.4}),
+    "linear": ("linear (contact held closed)", {"linestyle": "-", "linewidth": 1.4}),
     "up": ("nonlinear, stepped up", {"linestyle": "none", "marker": "|", "markersize": 8}),
     "down": ("nonlinear, stepped down", {"linestyle": "none", "marker": "o", "markersize": 4, "fillstyle": "none"}),
 }

@@ -29,7 +29,6 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.ticker import NullFormatter
 from tqdm import tqdm
 
 from circuit import Circuit, State
@@ -163,23 +162,18 @@ def spans(master: Master, stop: float) -> list[tuple[float, float]]:
 
 
 def draw_work(runs: list[Run], path: Path) -> None:
-    """Draw the error over the work."""
-    figure, (left, right) = plt.subplots(1, 2, sharey=True, figsize=(10, 4.5), layout="constrained")
+    """Draw the error over the cost."""
+    figure, axes = plt.subplots(figsize=(7, 4.5), layout="constrained")
     for method, (colour, marker, label) in LOOKS.items():
         chosen = [run for run in runs if run.method == method]
         errors = [1e3 * run.error for run in chosen]
-        left.loglog([run.master.work for run in chosen], errors, marker=marker, color=colour, label=label)
-        right.loglog([1e3 * run.master.seconds for run in chosen], errors, marker=marker, color=colour)
-    left.set_xlabel("calls of doStep")
-    right.set_xlabel("wall time [ms]")
-    left.set_ylabel("maximum error of the load current [mA]")
-    for axes in (left, right):
-        axes.xaxis.set_minor_formatter(NullFormatter())
-        axes.grid(alpha=0.3, which="both")
-    figure.legend(loc="outside lower center", ncols=3, frameon=False)
-    figure.suptitle(
-        "Error over cost: fixed communication steps, and adaptive steps that can be repeated", fontsize="medium"
-    )
+        axes.loglog([run.master.work for run in chosen], errors, marker=marker, color=colour, label=label)
+    axes.set(xlabel="calls of doStep", ylabel="maximum error of the load current [mA]")
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter("{x:g}")
+    axes.grid(alpha=0.3)
+    axes.legend(fontsize="small")
+    axes.set_title("Error over cost of fixed and adaptive communication steps", fontsize="medium")
     save(figure, path)
 
 
@@ -206,6 +200,7 @@ def draw_steps(runs: list[Run], stop: float, path: Path) -> None:
         axes.axvspan(1e3 * opening, 1e3 * closing, color=SKY, alpha=0.25, linewidth=0, label="contact open")
         axes.set_xlim(1e3 * opening - 0.1, 1e3 * closing + 0.1)
         axes.grid(alpha=0.3)
+    below.yaxis.set_major_formatter("{x:g}")
     above.set_ylabel("load current [mA]")
     below.set_ylabel("communication step [µs]")
     below.set_xlabel("time [ms]")
