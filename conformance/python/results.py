@@ -5,9 +5,10 @@
 
 import json
 from itertools import pairwise
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
+import pytest
 
 from component import PLAIN
 from relay_contact import ROOT, Component, read_table
@@ -59,6 +60,13 @@ def record(importer: str, version: str, task: str, difference: float | None = No
     row = {"importer": importer, "version": version, "task": task, "result": result, "difference": difference}
     FOLDER.mkdir(parents=True, exist_ok=True)
     (FOLDER / f"{importer}, {task}.json").write_text(json.dumps(row))
+
+
+def missing(importer: str, tasks: list[str], error: Exception) -> NoReturn:
+    """Write the rows of an importer that is not installed, and skip its tests."""
+    for task in tasks:
+        record(importer, "-", task, result=f"not run: {error}")
+    pytest.skip(str(error), allow_module_level=True)
 
 
 def compare(

@@ -8,9 +8,8 @@ from pathlib import Path
 import pytest
 
 from component import FMU, PLAIN
-from results import JUMP, STEP, SYSTEM, TOLERANCE, column, compare, published, record
+from results import JUMP, STEP, SYSTEM, TOLERANCE, column, compare, missing, published
 
-TASKS = ["run", "published run", "two coupled", "SSP"]
 try:
     # Ecos needs this library of the package tbb, and finds it where it is loaded already.
     for file in files("tbb") or []:
@@ -20,9 +19,7 @@ try:
 
     VERSION = version("ecospy")
 except (ImportError, OSError, PackageNotFoundError) as error:
-    for task in TASKS:
-        record("Ecos", "-", task, result=f"not run: {error}")
-    pytest.skip(str(error), allow_module_level=True)
+    missing("Ecos", ["run", "published run", "two coupled", "SSP"], error)
 
 
 def forces(simulation: EcosSimulation, name: str, steps: int) -> list[float]:

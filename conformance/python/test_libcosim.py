@@ -3,12 +3,9 @@
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-import pytest
-
 from component import FMU, PLAIN
-from results import JUMP, STEP, SYSTEM, TOLERANCE, column, compare, published, record
+from results import JUMP, STEP, SYSTEM, TOLERANCE, column, compare, missing, published
 
-TASKS = ["run", "published run", "two coupled", "SSP"]
 try:
     from libcosimpy.CosimExecution import CosimExecution
     from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
@@ -18,9 +15,7 @@ try:
 
     VERSION = version("libcosimpy")
 except (ImportError, OSError, PackageNotFoundError) as error:
-    for task in TASKS:
-        record("libcosim", "-", task, result=f"not run: {error}")
-    pytest.skip(str(error), allow_module_level=True)
+    missing("libcosim", ["run", "published run", "two coupled", "SSP"], error)
 
 NANOSECONDS = round(1e9 * STEP)
 # It warns of every variable that is an enumeration.

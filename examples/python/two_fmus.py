@@ -25,7 +25,6 @@ the FMU is not linked to any), on Windows by python3.dll in the PATH. PythonFMU 
 Windows.
 """
 
-import csv
 import platform
 import sys
 from contextlib import ExitStack
@@ -208,18 +207,8 @@ def draw(run: Run, convergence: Array, shaken: str, path: Path) -> None:
     save(figure, path)
 
 
-def write_tables(runs: dict[str, Run], convergence: Array, out: Path) -> None:
-    """Write what was recorded in every run, and the convergence, SI units."""
-    with (out / "two-fmus.csv").open("w", newline="", encoding="utf-8") as file:
-        table = csv.writer(file)
-        table.writerow(["run", "time", *(name for _, name in RECORDED)])
-        for name, run in runs.items():
-            table.writerows([name, *row] for row in np.column_stack(list(run.values())).tolist())
-    write_table(out / "two-fmus-convergence.csv", "step,openings.late,voltage.meanDifference", convergence)
-
-
 def summary(runs: dict[str, Run], convergence: Array) -> str:
-    """Say what came out."""
+    """Describe the results."""
     run = runs["FMPy"]
     opened = len(instants(run, "contact.lastOpening"))
     voltage, current = (np.max(np.abs(run[f"contact.{each}"])) for each in ("voltage", "current"))
@@ -227,7 +216,7 @@ def summary(runs: dict[str, Run], convergence: Array) -> str:
         f"{opened} openings, {100 * np.mean(run['contact.force'] <= 0):.1f} % of the time open",
         f"at most {voltage:.3f} V and {current:.4f} A; the contact is valid below 12 V and 0.4 A"
         + ("" if voltage < 12 and current < 0.4 else ": above, it would burn an arc"),
-        "largest difference from FMPy at the instants of libcosim",
+        "largest difference from FMPy at the times of libcosim",
     ]
     for name, other in list(runs.items())[1:]:
         first = len(run["time"]) - len(other["time"])
@@ -274,7 +263,7 @@ def main() -> int:
     with tqdm(total=steps, unit="step", desc="communication steps") as bar:
         runs = {"FMPy": by_fmpy(fmus, starts, time, bar)}
         if not NO_LIBCOSIM:
-            runs["libcosim SSP"] = by_libcosim(CosimExecution.from_ssp_file(str(system), nanoseconds), time, bar)
+            runs["libcosim"] = by_libcosim(CosimExecution.from_ssp_file(str(system), nanoseconds), time, bar)
         coarser = [by_fmpy(fmus, starts, time[:: 2**halving], bar) for halving in range(1, halvings + 1)]
         fine = np.arange(FINER * count + 1) * (nanoseconds / FINER) / 1e9
         reference = by_fmpy(fmus, starts, fine, bar, generator=True)
@@ -283,10 +272,17 @@ def main() -> int:
     if NO_LIBCOSIM:
         print(f"libcosim is not here ({NO_LIBCOSIM}): FMPy alone ran the wiring, nobody ran system.ssp")
     print(summary(runs, convergence))
-    write_tables(runs, convergence, given.out)
+    for name, run in runs.items():
+        write_table(given.out / f"two-fmus-{name}.csv", ",".join(run), np.column_stack(list(run.values())), digits=17)
+    write_table(given.out / "two-fmus-convergence.csv", "step,openings.late,voltage.meanDifference", convergence)
     shaken = f"shaken with {given.amplitude:g} m/s² at {given.frequency:g} Hz"
     draw(runs["FMPy"], convergence, shaken, given.out / "two-fmus.png")
-    for name in ("TestBench.fmu", "system.ssp", "two-fmus.csv", "two-fmus-convergence.csv", "two-fmus.png"):
+    for name in (
+        "TestBench.fmu",
+        "system.ssp",
+        *(f"two-fmus-{run}.csv" for run in [*runs, "convergence"]),
+        "two-fmus.png",
+    ):
         print(given.out / name)
     return 0
 

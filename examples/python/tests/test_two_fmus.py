@@ -5,7 +5,6 @@ import platform
 import subprocess
 import sys
 import zipfile
-from collections import defaultdict
 from collections.abc import Callable
 from pathlib import Path
 
@@ -15,7 +14,9 @@ from fmpy.ssp.ssd import read_ssd
 from fmpy.validation import validate_fmu
 from numpy.typing import NDArray
 
-from conftest import LOAD, SOURCE, Run, advanced, contact_voltage, is_picture, table
+from common import order_of
+from conftest import LOAD, SOURCE, Run, advanced, contact_voltage, is_picture
+from relay_contact import read_table
 
 if platform.machine() not in ("x86_64", "AMD64") or sys.platform == "darwin":
     pytest.skip("PythonFMU has no binary for this machine", allow_module_level=True)
@@ -49,14 +50,6 @@ print(json.dumps({variable: values for variable, (_, _, values) in result.items(
 Columns = dict[str, NDArray[np.float64]]
 
 
-def runs(path: Path) -> dict[str, Columns]:
-    """Read the columns of every run."""
-    rows = defaultdict(list)
-    for row in table(path):
-        rows[row.pop("run")].append(row)
-    return {run: {name: np.array([float(row[name]) for row in each]) for name in each[0]} for run, each in rows.items()}
-
-
 def simulate_alone(system: Path, folder: Path, steps: int, edit: Callable[[str], str] = str) -> Columns:
     """Copy a system alone to a new folder, its texts edited, and run it there; give what libcosim saw."""
     folder.mkdir()
@@ -74,7 +67,7 @@ def test_the_circuit_obeys_its_equations_and_the_coupling_converges(run: Run, tm
     assert "4 openings" in printed
     assert is_picture(tmp_path / "two-fmus.png")
     assert validate_fmu(str(tmp_path / "TestBench.fmu")) == []
-    measured = runs(tmp_path / "two-fmus.csv")["FMPy"]
+    measured = read_table(tmp_path / "two-fmus-FMPy.csv")
 
     # Table: its sine. Circuit: the matrix exponential of its equations, given the conductance of each step.
     time = measured["time"]
@@ -94,32 +87,20 @@ def test_the_circuit_obeys_its_equations_and_the_coupling_converges(run: Run, tm
     assert worst < 2000 * np.spacing(6.0)
 
     # A sine held over h is late by h/2, and all that it causes; what is left is of the next order.
-    steps, late, difference = (np.array(column) for column in convergence(tmp_path))
+    steps, late, difference = read_table(tmp_path / "two-fmus-convergence.csv").values()
     assert np.allclose(1e9 * steps, [NANOSECONDS, 2 * NANOSECONDS, 4 * NANOSECONDS])
     assert np.all(np.abs(late / steps - 0.5) < 0.05)
-    assert abs(order(steps, late) - 1) < 0.05
+    assert abs(order_of(steps, late) - 1) < 0.05
     # Each of 7 jumps of the voltage is late by h/2, and by anything up to h until the next point: h with a standard
     # deviation of h / sqrt(12 * 7) = 0.11 h. Over a factor of 4 in h that makes an order of 1 +- 0.11; twice this.
-    assert abs(order(steps, difference) - 1) < 0.22
-
-
-def convergence(folder: Path) -> list[list[float]]:
-    """Read step, lateness and difference of the voltage."""
-    rows = table(folder / "two-fmus-convergence.csv")
-    return [[float(row[name]) for row in rows] for name in ("step", "openings.late", "voltage.meanDifference")]
-
-
-def order(steps: NDArray[np.float64], values: NDArray[np.float64]) -> float:
-    """Give the order between the largest and the smallest step."""
-    return float(np.log(values[-1] / values[0]) / np.log(steps[-1] / steps[0]))
+    assert abs(order_of(steps, difference) - 1) < 0.22
 
 
 def test_both_ways_give_the_same_and_the_system_runs_alone_by_its_parameters(run: Run, tmp_path: Path) -> None:
     pytest.importorskip("libcosimpy", exc_type=ImportError)
     run("two_fmus")
-    ways = runs(tmp_path / "two-fmus.csv")
-    fmpy = ways["FMPy"]
-    assert all(np.array_equal(column, fmpy[name][1:]) for name, column in ways["libcosim SSP"].items())
+    fmpy, libcosim = (read_table(tmp_path / f"two-fmus-{way}.csv") for way in ("FMPy", "libcosim"))
+    assert all(np.array_equal(column, fmpy[name][1:]) for name, column in libcosim.items())
 
     system = tmp_path / "system.ssp"
     elements = read_ssd(str(system), validate=True).system.elements
@@ -148,4 +129,7 @@ def test_without_libcosim_fmpy_runs_the_wiring_alone(run: Run, tmp_path: Path, m
     (package / "__init__.py").write_text("raise ImportError('not installed')", encoding="utf-8")
     monkeypatch.setenv("PYTHONPATH", str(package.parent))
     assert "libcosim is not here (not installed)" in run("two_fmus")
-    assert list(runs(tmp_path / "two-fmus.csv")) == ["FMPy"]
+    assert sorted(path.name for path in tmp_path.glob("two-fmus-*.csv")) == [
+        "two-fmus-FMPy.csv",
+        "two-fmus-convergence.csv",
+    ]
