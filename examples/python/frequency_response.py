@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from common import BLUE, GRAVITY, GREY, ORANGE, RED, acceleration_in_g
+from common import BLUE, GRAVITY, GREY, ORANGE, RED, acceleration_in_g, save
 
 COLOURS = (BLUE, ORANGE, RED)
 
@@ -85,7 +85,7 @@ def main() -> None:
     for axes in (left, right):
         axes.grid(alpha=0.3)
     path = folder / "frequency-response.png"
-    figure.savefig(path, dpi=150)
+    save(figure, path)
     print(path)
 
 
