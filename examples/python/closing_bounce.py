@@ -200,7 +200,6 @@ def draw(path: Path, relay: Relay, outcomes: list[Outcome], shown: Outcome, rows
         axes.grid(alpha=0.3)
     for axes in (count, length, delay, again):
         axes.xaxis.set_major_formatter("{x:g}")
-    for axes in (count, length, again, delay):
         axes.yaxis.set_major_formatter("{x:g}")
     for axes in (count, length, again):
         axes.plot(1e3 * shown.speed, 1e6 * shown.damping, "x", color="white", markersize=8, markeredgewidth=2)
@@ -232,8 +231,7 @@ def main() -> None:
     relay = Relay(Component(given.fmu), 1e-6 * given.gap, 1e-6 * given.overtravel, 1e-6 * given.minimum)
     shown, rows = relay.run(1e-3 * given.speed, 1e-6 * given.damping, sample=2e-6)
     outcomes = []
-    bar = tqdm(list(itertools.product(speeds, dampings)), unit="make and break")
-    for speed, damping in bar:
+    for speed, damping in (bar := tqdm(list(itertools.product(speeds, dampings)), unit="make and break")):
         bar.set_description(f"{1e3 * speed:5.1f} mm/s, {1e6 * damping:6.2f} µs", refresh=False)
         outcomes.append(relay.run(float(speed), float(damping))[0])
     paths = [given.out / name for name in ("closing-bounce.csv", "closing-bounce-course.csv", "closing-bounce.png")]
@@ -242,17 +240,16 @@ def main() -> None:
     draw(paths[2], relay, outcomes, shown, rows)
     print(f"{given.speed:g} mm/s, contact damping {given.damping:g} µs")
     print(
-        f"make: first touch {1e6 * shown.first_touch:.3f} µs after the start, largest force {shown.largest_force:.2f} N"
+        f"make: first touch after {1e6 * shown.first_touch:.3f} µs, largest force {shown.largest_force:.2f} N, ", end=""
     )
-    bounced = f"bounce time {1e6 * shown.bounce_time:.2f} µs, open {1e6 * shown.open_time:.2f} µs"
-    print(f"make: bounces {shown.bounces}, {bounced}")
+    print(
+        f"bounces {shown.bounces}, for {1e6 * shown.bounce_time:.2f} µs, open for {1e6 * shown.open_time:.2f} µs of it"
+    )
     print(f"break: bounces {shown.break_bounces}, last separation after {1e3 * shown.break_time:.3f} ms")
     most = max(outcomes, key=lambda outcome: outcome.bounce_time)
     where = f"{1e3 * most.speed:.3g} mm/s, {1e6 * most.damping:.3g} µs"
     calm = sum(outcome.bounces == 0 for outcome in outcomes)
-    print(
-        f"map: longest bounce time {1e6 * most.bounce_time:.1f} µs at {where}; no bounce in {calm} of {len(outcomes)}"
-    )
+    print(f"map: longest bounce time {1e6 * most.bounce_time:.1f} µs at {where}, none in {calm} of {len(outcomes)}")
     print(*paths, sep="\n")
 
 

@@ -246,8 +246,7 @@ def main() -> int:
         print(f"{run.method:20} {setting:>10} {cost} {1e3 * run.error:11.5f} mA")
     print(f"the accepted steps again without repetition: {'the same bits' if same else 'DIFFERENT RESULTS'}")
     print(f"FMU states not freed: {sum(run.master.states for run in runs)}")
-    names = ["rollback.csv", "rollback-steps.csv", "rollback.png", "rollback-steps.png"]
-    paths = [given.out / name for name in names]
+    paths = [given.out / f"rollback{end}" for end in (".csv", "-steps.csv", ".png", "-steps.png")]
     with paths[0].open("w", encoding="utf-8") as file:
         file.write("master,setting,steps.done,steps.repeated,wallTime,error.load.current\n")
         for run in runs[1:]:

@@ -73,10 +73,9 @@ RECORDED = [("bench", each) for each in ("table.acceleration", "contact.voltage"
 RECORDED += [("contact", f"contact.{each}") for each in ("force", "conductance", "lastOpening", "lastClosing")]
 
 Run = dict[str, Array]  # time and what is recorded, SI units
-Bar = Any
 
 
-def by_fmpy(fmus: Fmus, starts: Starts, time: Array, bar: Bar, generator: bool = False) -> Run:
+def by_fmpy(fmus: Fmus, starts: Starts, time: Array, bar: tqdm[Any], generator: bool = False) -> Run:
     """Run the wired FMUs through the instants in FMPy; the contact shaken by its own generator if asked."""
     wires, rows = WIRES, []
     sine: dict[str, float | str] = {}
@@ -127,7 +126,7 @@ def find(execution: Any, name: str, variable: str) -> tuple[int, int]:  # noqa: 
     return index, next(each.reference for each in variables if each.name == variable.encode())
 
 
-def by_libcosim(execution: Any, time: Array, bar: Bar) -> Run:  # noqa: ANN401
+def by_libcosim(execution: Any, time: Array, bar: tqdm[Any]) -> Run:  # noqa: ANN401
     """Run what libcosim was given. Values can be read after the first step, not before."""
     observer = CosimObserver.create_last_value()
     execution.add_observer(observer)
@@ -270,7 +269,7 @@ def main() -> int:
     convergence = np.array([(run["time"][1], *errors(run, reference)) for run in [runs["FMPy"], *coarser]])
 
     if NO_LIBCOSIM:
-        print(f"libcosim is not here ({NO_LIBCOSIM}): FMPy alone ran the wiring, nobody ran system.ssp")
+        print(f"libcosim is not here ({NO_LIBCOSIM}): only FMPy ran the coupling, and system.ssp was not run")
     print(summary(runs, convergence))
     for name, run in runs.items():
         write_table(given.out / f"two-fmus-{name}.csv", ",".join(run), np.column_stack(list(run.values())), digits=17)
