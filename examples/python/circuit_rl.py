@@ -23,20 +23,7 @@ import numpy as np
 from tqdm import tqdm
 
 from circuit import Circuit, State
-from common import (
-    BLUE,
-    GREY,
-    ORANGE,
-    RED,
-    SKY,
-    legend_beside,
-    order_of,
-    parser,
-    read_arguments,
-    save,
-    within,
-    write_table,
-)
+from common import BLUE, GREY, ORANGE, RED, SKY, legend_beside, parser, read_arguments, save, within, write_table
 from ngspice import Course, NgSpice
 from relay_contact import Array, Component, Contact
 from rollback import adapt, begin
@@ -192,7 +179,7 @@ def main() -> None:
     except RuntimeError as error:
         raise SystemExit(str(error)) from error
     table = np.array(study)
-    order = order_of(table[:, 0], table[:, 1])
+    order = float(np.polyfit(np.log(table[:, 0]), np.log(table[:, 1]), 1)[0])
     print(f"{name}, communication step {given.step:g} us, {1e3 * stop:g} ms\n{summary(result)}")
     if other:
         gaps = [np.abs(result.columns[each] - other.columns[each]).max() for each in COLUMNS[4:6]]

@@ -14,7 +14,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from relay_contact import ROOT, Array, fmu_path
+from relay_contact import ROOT, fmu_path
 
 GRAVITY = 9.80665  # m/s2
 # Colours of Okabe and Ito, told apart also by the colour-blind.
@@ -54,11 +54,6 @@ def within(low: float, high: float, unit: str) -> Callable[[str], float]:
 def write_table(path: Path, names: str, rows: ArrayLike, digits: int = 12) -> None:
     """Write a CSV file with a line of names."""
     np.savetxt(path, rows, delimiter=",", header=names, comments="", fmt=f"%.{digits}g")
-
-
-def order_of(steps: Array, errors: Array) -> float:
-    """Give the order of convergence: the slope in logarithms."""
-    return float(np.polyfit(np.log(steps), np.log(errors), 1)[0])
 
 
 def save(figure: Figure, path: Path, dpi: int = 150) -> None:

@@ -36,21 +36,7 @@ import numpy as np
 from pythonfmu import FmuBuilder
 from tqdm import tqdm
 
-from common import (
-    BLACK,
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    PURPLE,
-    RED,
-    order_of,
-    parser,
-    read_arguments,
-    save,
-    within,
-    write_table,
-)
+from common import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, parser, read_arguments, save, within, write_table
 from relay_contact import Array, Component, Contact
 from two_fmus_bench import PARAMETERS
 from two_fmus_system import WIRES, Fmus, Starts, write_system
@@ -75,7 +61,7 @@ RECORDED += [("contact", f"contact.{each}") for each in ("force", "conductance",
 Run = dict[str, Array]  # time and what is recorded, SI units
 
 
-def by_fmpy(fmus: Fmus, starts: Starts, time: Array, bar: tqdm[Any], generator: bool = False) -> Run:
+def by_fmpy(fmus: Fmus, starts: Starts, time: Array, bar: "tqdm[Any]", generator: bool = False) -> Run:
     """Run the wired FMUs through the instants in FMPy; the contact shaken by its own generator if asked."""
     wires, rows = WIRES, []
     sine: dict[str, float | str] = {}
@@ -126,7 +112,7 @@ def find(execution: Any, name: str, variable: str) -> tuple[int, int]:  # noqa: 
     return index, next(each.reference for each in variables if each.name == variable.encode())
 
 
-def by_libcosim(execution: Any, time: Array, bar: tqdm[Any]) -> Run:  # noqa: ANN401
+def by_libcosim(execution: Any, time: Array, bar: "tqdm[Any]") -> Run:  # noqa: ANN401
     """Run what libcosim was given. Values can be read after the first step, not before."""
     observer = CosimObserver.create_last_value()
     execution.add_observer(observer)
@@ -153,6 +139,11 @@ def errors(run: Run, reference: Run) -> tuple[float, float]:
     every = (len(reference["time"]) - 1) // (len(run["time"]) - 1)
     difference = run["contact.voltage"] - reference["contact.voltage"][::every]
     return late, float(np.mean(np.abs(difference)))
+
+
+def order(steps: Array, values: Array) -> float:
+    """Give the order of convergence: the slope in logarithms."""
+    return float(np.polyfit(np.log(steps), np.log(values), 1)[0])
 
 
 def draw(run: Run, convergence: Array, shaken: str, path: Path) -> None:
@@ -194,7 +185,7 @@ def draw(run: Run, convergence: Array, shaken: str, path: Path) -> None:
         if not np.all(values > 0):
             axes.text(0.5, 0.5, "nothing to compare", ha="center", transform=axes.transAxes)
             continue
-        axes.plot(steps, values, color=colour, marker="o", label=f"computed, order {order_of(steps, values):.2f}")
+        axes.plot(steps, values, color=colour, marker="o", label=f"computed, order {order(steps, values):.2f}")
         first_order = steps * np.exp(np.mean(np.log(values / steps)))
         axes.plot(steps, first_order, color=GREY, linestyle=":", label="order 1")
         axes.set_xscale("log", base=2)
@@ -225,7 +216,7 @@ def summary(runs: dict[str, Run], convergence: Array) -> str:
     lines.append("  step [µs]  openings late [µs]  mean voltage difference [mV]")
     lines += [f"{1e6 * step:11.3f}{1e6 * late:20.4f}{1e3 * difference:30.3f}" for step, late, difference in convergence]
     steps, late, difference = convergence.T
-    lines.append(f"{'order':>11}{order_of(steps, late):20.2f}{order_of(steps, difference):30.2f}")
+    lines.append(f"{'order':>11}{order(steps, late):20.2f}{order(steps, difference):30.2f}")
     return "\n".join(lines)
 
 
