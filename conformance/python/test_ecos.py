@@ -1,15 +1,15 @@
 """The component in Ecos, which adds up its steps, knows no enumerations and does not look at what the calls return."""
 
 import ctypes
+import itertools
 from importlib.metadata import PackageNotFoundError, files, version
 from pathlib import Path
 
 import pytest
 
-from component import FMU
-from results import JUMP, STEP, SYSTEM, TOLERANCE, column, compare, record
+from component import FMU, PLAIN
+from results import JUMP, STEP, SYSTEM, TOLERANCE, column, compare, missing, published
 
-TASKS = ["run", "two coupled", "SSP"]
 try:
     # Ecos needs this library of the package tbb, and finds it where it is loaded already.
     for file in files("tbb") or []:
@@ -19,9 +19,7 @@ try:
 
     VERSION = version("ecospy")
 except (ImportError, OSError, PackageNotFoundError) as error:
-    for task in TASKS:
-        record("Ecos", "-", task, result=f"not run: {error}")
-    pytest.skip(str(error), allow_module_level=True)
+    missing("Ecos", ["run", "published run", "two coupled", "SSP"], error)
 
 
 def forces(simulation: EcosSimulation, name: str, steps: int) -> list[float]:
@@ -52,6 +50,17 @@ def test_a_sine_given_at_the_communication_points() -> None:
                 simulation.set_real("contact::base.acceleration", acceleration)
                 result += forces(simulation, "contact", 1)[1:]
             compare("Ecos", VERSION, "run", result)
+            simulation.terminate()
+
+
+def test_the_published_run_by_a_choice_that_is_an_integer() -> None:
+    with EcosSimulationStructure() as structure:
+        structure.add_model("contact", str(PLAIN))
+        structure.add_parameter_set("sine", {"contact::effects.excitation": 2})
+        with EcosSimulation(structure=structure, step_size=STEP) as simulation:
+            assert simulation.init(parameter_set="sine")
+            times = list(itertools.accumulate(itertools.repeat(STEP, 2000), initial=0.0))
+            compare("Ecos", VERSION, "published run", forces(simulation, "contact", 2000), expected=published(times))
             simulation.terminate()
 
 

@@ -2,27 +2,30 @@
 
 import math
 from pathlib import Path
+from typing import Any
 
 import fmpy
 import numpy as np
+import pytest
 from fmpy import simulate_fmu
 from fmpy.ssp.ssd import read_ssd
 
-from component import FMU, Instance, run
-from results import STEP, SYSTEM, TOLERANCE, column, compare, record
+from component import COMPONENT, FMU, Instance, run
+from relay_contact import Values, read_table
+from results import FOLDER, STEP, SYSTEM, TOLERANCE, compare, published, record, staircase
 
 
 def test_a_sine_given_at_the_communication_points() -> None:
-    held = column("base.acceleration")
-    time = np.arange(len(held)) * STEP
-    # Two rows at every point, so that FMPy jumps there and does not interpolate.
-    names = ["base.acceleration", "support.displacement", "contact.current"]
-    signals = np.zeros(2 * len(held), dtype=[(name, np.float64) for name in ["time", *names]])
-    signals["time"] = np.repeat(time, 2)
-    signals["base.acceleration"] = np.concatenate(([0.0], np.repeat(held, 2)[:-1]))
-    stop = float(time[-1])
+    signals = staircase(["base.acceleration", "support.displacement", "contact.current"])
+    stop = float(signals["time"][-1])
     result = run({"solver.tolerance": TOLERANCE}, stop, STEP, ["contact.force"], signals)
     compare("FMPy", fmpy.__version__, "run", result["contact.force"].tolist())
+
+
+def test_the_published_run_by_a_choice_that_is_an_integer() -> None:
+    times = [n * STEP for n in range(2001)]
+    expected = read_table(FOLDER / "scenes" / "paper-1khz.csv")["contact.force"].tolist()
+    compare("FMPy", fmpy.__version__, "published run", published(times), expected=expected)
 
 
 def test_the_system_of_two_instances_follows_the_schema_of_ssp() -> None:
@@ -58,6 +61,45 @@ def test_a_folder_with_spaces_and_letters_beyond_ascii(tmp_path: Path) -> None:
         instance.initialise()
         instance.step(0.0, STEP)
         assert instance.messages == []
+
+
+def test_derivatives_of_inputs_are_set_after_each_step() -> None:
+    """Where `set_input_derivatives` fails in FMPy; the error of a sine then falls with the square of the step."""
+    amplitude, omega, steps = 98.0, 2 * math.pi * 1000, 200
+    values: Values = {"solver.tolerance": 1e-8}
+    exact = run({**values, "effects.excitation": "Sine"}, steps * STEP, STEP, ["contact.force"])["contact.force"]
+    signals = staircase(["base.acceleration"])
+    signals["base.acceleration"] = amplitude * np.sin(omega * signals["time"])
+    with pytest.raises(ValueError, match="Can only assign sequence of same size"):
+        simulate_fmu(str(FMU), output_interval=STEP, input=signals, set_input_derivatives=True)
+
+    variable = COMPONENT.variables["base.acceleration"].valueReference
+    errors = []
+    for slope in (0.0, 1.0):
+
+        def drive(fmu: Any, time: float, slope: float = slope) -> bool:  # noqa: ANN401
+            """Set the value of the step that begins, and its slope."""
+            fmu.setReal([variable], [amplitude * math.sin(omega * time)])
+            fmu.setRealInputDerivatives([variable], [1], [slope * amplitude * omega * math.cos(omega * time)])
+            return True
+
+        fmu = Instance().fmu
+        drive(fmu, 0.0)
+        result = simulate_fmu(
+            COMPONENT.folder,
+            model_description=COMPONENT.description,
+            fmu_instance=fmu,
+            stop_time=steps * STEP,
+            output_interval=STEP,
+            start_values=values,
+            output=["contact.force"],
+            step_finished=lambda time, recorder, drive=drive: drive(recorder.fmu, time),
+        )
+        fmu.freeInstance()
+        errors.append(np.max(np.abs(result["contact.force"] - exact)) / (np.ptp(exact) / 2))
+    # With a hundred steps a period: some pi / 100 of the amplitude, and some of its square.
+    assert 0.2 < errors[0] / (math.pi / 100) < 5
+    assert 0.2 < errors[1] / (math.pi / 100) ** 2 < 5
 
 
 def test_no_stop_time() -> None:

@@ -1,13 +1,11 @@
 """The component in libcosim, which reckons time in whole nanoseconds and knows no enumerations."""
 
 from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 
-import pytest
+from component import FMU, PLAIN
+from results import JUMP, STEP, SYSTEM, TOLERANCE, column, compare, missing, published
 
-from component import FMU
-from results import JUMP, STEP, SYSTEM, TOLERANCE, column, compare, record
-
-TASKS = ["run", "two coupled", "SSP"]
 try:
     from libcosimpy.CosimExecution import CosimExecution
     from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
@@ -17,9 +15,7 @@ try:
 
     VERSION = version("libcosimpy")
 except (ImportError, OSError, PackageNotFoundError) as error:
-    for task in TASKS:
-        record("libcosim", "-", task, result=f"not run: {error}")
-    pytest.skip(str(error), allow_module_level=True)
+    missing("libcosim", ["run", "published run", "two coupled", "SSP"], error)
 
 NANOSECONDS = round(1e9 * STEP)
 # It warns of every variable that is an enumeration.
@@ -35,9 +31,9 @@ class Execution:
         self.observer = CosimObserver.create_last_value()
         assert execution.add_observer(self.observer)
 
-    def add(self, name: str) -> None:
+    def add(self, name: str, fmu: Path = FMU) -> None:
         """Add an instance of the component."""
-        assert self.execution.add_local_slave(CosimLocalSlave(str(FMU), name)) >= 0
+        assert self.execution.add_local_slave(CosimLocalSlave(str(fmu), name)) >= 0
 
     def find(self, name: str, variable: str) -> tuple[int, int]:
         """Give the index of an instance and the value reference of its variable."""
@@ -75,6 +71,14 @@ def test_a_sine_given_at_the_communication_points() -> None:
         assert sine.slave_real_values(index, [reference], [acceleration])
         forces += run.forces("contact", 1)
     compare("libcosim", VERSION, "run", forces, start=1)
+
+
+def test_the_published_run_by_a_choice_that_is_an_integer() -> None:
+    run = Execution(CosimExecution.from_step_size(NANOSECONDS))
+    run.add("contact", PLAIN)
+    assert run.execution.integer_initial_value(*run.find("contact", "effects.excitation"), 2)
+    times = [n * NANOSECONDS / 1e9 for n in range(2001)]
+    compare("libcosim", VERSION, "published run", run.forces("contact", 2000), start=1, expected=published(times))
 
 
 def coupled(run: Execution, task: str) -> None:

@@ -4,14 +4,15 @@ import multiprocessing
 
 import fmpy
 
-from component import Instance
+from component import COMPONENT
+from relay_contact import Contact
 from results import record
 
 STEP = 1e-6
 HALF = 900  # the contact opens in the first half and closes in the second
 
 
-def forces(instance: Instance, first: int, count: int) -> list[float]:
+def forces(instance: Contact, first: int, count: int) -> list[float]:
     """Step `count` times from the step `first` on; give the contact force after each."""
     result = []
     for step in range(first, first + count):
@@ -20,18 +21,9 @@ def forces(instance: Instance, first: int, count: int) -> list[float]:
     return result
 
 
-def shaken() -> Instance:
-    """Give an instance whose contact opens."""
-    instance = Instance()
-    instance.set("effects.excitation", "Sine")
-    instance.set("excitation.amplitude", 400.0)
-    instance.initialise()
-    return instance
-
-
 def go_on(serialised: bytes) -> list[float]:
     """Restore a state from bytes in a new instance and go on from it."""
-    with Instance() as instance:
+    with Contact(COMPONENT) as instance:
         state = instance.fmu.deSerializeFMUstate(serialised)
         instance.fmu.setFMUstate(state)
         instance.fmu.freeFMUstate(state)
@@ -40,7 +32,7 @@ def go_on(serialised: bytes) -> list[float]:
 
 def test_a_restored_state_goes_on_bit_by_bit() -> None:
     """Going on gives the same bits as at the first time, wherever it happens."""
-    with shaken() as instance:
+    with COMPONENT.in_scene("chatter-41g") as instance:
         before = forces(instance, 0, HALF)
         state = instance.fmu.getFMUstate()
         serialised = instance.fmu.serializeFMUstate(state)

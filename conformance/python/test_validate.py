@@ -6,13 +6,14 @@ import fmpy
 from fmpy import read_model_description
 from fmpy.validation import validate_fmu
 
-from component import FMU
+from component import FMU, PLAIN
 from relay_contact import ROOT
 from results import record
 
 
 def test_fmpy_finds_no_problem() -> None:
     assert validate_fmu(str(FMU)) == []
+    assert validate_fmu(str(PLAIN)) == []
     record("FMPy", fmpy.__version__, "validation")
 
 

@@ -1,7 +1,7 @@
-//! How the parameters of the specimen that are not published follow from published results.
+//! Identification of the parameters of the specimen that are not published, from published results.
 //!
-//! Each step looks for the root of one function of the library; all without axial force, as the publication's own beam
-//! theory gives next to none:
+//! Each step finds the root of one function of the library, without axial force, which is negligible by the publication's
+//! own beam theory:
 //!
 //! 1. camber radius: the Hertz contact has the published tangent stiffness at the published static force;
 //! 2. bending stiffness: the static equilibrium has the published force at the published overtravel;
@@ -19,7 +19,7 @@ mod quantities;
 
 pub use self::quantities::{PARAMETERS, SOURCES};
 
-/// Why the parameters cannot be found.
+/// Reason why the parameters cannot be identified.
 pub type Error = Box<dyn std::error::Error + Send + Sync>;
 
 /// Base vibration of the published force amplitude, m/s2 (Table 3).
@@ -30,9 +30,9 @@ pub const FREQUENCY: f64 = 1000.0;
 /// Values of [`SOURCES`], in their units.
 #[derive(Clone, Copy, Debug)]
 pub struct Published {
-    /// In the order and units of the sources.
+    /// In the order and units of [`SOURCES`].
     pub values: [f64; 5],
-    /// What the published force amplitude is taken for.
+    /// Interpretation of the published force amplitude.
     pub amplitude: Amplitude,
 }
 
@@ -46,7 +46,7 @@ pub enum Amplitude {
 }
 
 impl Amplitude {
-    /// Of this force in the linear response to the published acceleration at a frequency (Hz), cN.
+    /// Amplitude of this force in the linear response to the published acceleration at a frequency (Hz), cN.
     pub fn of(self, model: &Model, frequency: f64) -> f64 {
         let omega = TAU * frequency;
         let whole = 100.0 * ACCELERATION * reference::response(model, omega).force.norm();
@@ -57,7 +57,7 @@ impl Amplitude {
     }
 }
 
-/// What [`PARAMETERS`] are.
+/// Values of [`PARAMETERS`].
 #[derive(Clone, Copy, Debug)]
 pub struct Specimen {
     /// In the units of the table.
@@ -74,7 +74,7 @@ impl Default for Published {
 }
 
 impl Published {
-    /// With one of the values changed by a part of it.
+    /// One value changed by a fraction of it.
     #[must_use]
     pub fn changed(mut self, source: usize, part: f64) -> Self {
         self.values[source] *= 1.0 + part;
@@ -89,7 +89,7 @@ impl Published {
 }
 
 impl Specimen {
-    /// What a scene has.
+    /// Those of a scene.
     pub fn of(scene: &Scene) -> Self {
         let section = Section::new(scene);
         let values = [
@@ -108,7 +108,7 @@ impl Specimen {
         Self { values: scaled }
     }
 
-    /// What published results lead to. What is published of geometry and materials is what the start values have.
+    /// Those identified from published results. Published geometry and materials are in the start values.
     ///
     /// # Errors
     /// The step that has no solution.
@@ -117,7 +117,7 @@ impl Specimen {
     }
 }
 
-/// The scene with the parameters that published results lead to, without axial force.
+/// The scene with the parameters identified from published results, without axial force.
 ///
 /// # Errors
 /// The step that has no solution.
@@ -204,7 +204,7 @@ pub fn sensitivities() -> Result<Vec<[f64; 7]>, Error> {
         .collect()
 }
 
-/// How far each parameter is uncertain, +- %, because a published result is rounded to its last digit.
+/// Uncertainty of each parameter, +- %, due to the rounding of a published result to its last digit.
 ///
 /// # Errors
 /// A step that has no solution.

@@ -1,5 +1,5 @@
-//! How width, thickness, camber radius, rivet mass and damping of the specimen follow from published results, how strongly
-//! each depends on each, and how far the start values of the parameters are from them.
+//! Identifies width, thickness, camber radius, rivet mass and damping of the specimen from published results; prints their
+//! sensitivities and their differences from the start values of the parameters.
 //!
 //! `cargo run --release --example identify`
 
@@ -16,7 +16,7 @@ fn main() -> Result<(), Error> {
     }
     let found = Specimen::identify(&Published::default())?;
     let start = Specimen::of(&Scene::default());
-    println!("\nIdentified, beside the start value of the parameter");
+    println!("\nIdentified, and the start value of the parameter");
     for ((parameter, found), start) in PARAMETERS.iter().zip(found.values).zip(start.values) {
         println!(
             "  {:4} {:22} {found:12.6} {:5} start value {start:12.6}, {:+.4} %   from {}",
@@ -31,7 +31,7 @@ fn main() -> Result<(), Error> {
         amplitude: Amplitude::Elastic,
         ..Published::default()
     };
-    println!("\nThe same, if the published force amplitude is that of the elastic part of the contact force");
+    println!("\nIf the published force amplitude is that of the elastic part of the contact force");
     for ((parameter, found), value) in PARAMETERS
         .iter()
         .zip(found.values)
@@ -43,27 +43,14 @@ fn main() -> Result<(), Error> {
             parameter.symbol, parameter.unit
         );
     }
-    let slopes = sensitivities()?;
-    println!("\nChange in % where a published result changes by 1 % (small changes)");
+    println!("\nChange in % for a published result higher by 1 %, linearised");
     let names = PARAMETERS.map(|parameter| format!("{:>12}", parameter.symbol)).concat();
     println!("  {:28}{names}", "");
-    for (source, row) in SOURCES.iter().zip(slopes.iter().copied()) {
+    for (source, row) in SOURCES.iter().zip(sensitivities()?) {
         let cells = row.map(|slope| format!("{slope:+12.3}")).concat();
         println!("  {:28}{cells}", source.name);
     }
-    println!("\nThe same as derivatives, parameter per published result in their units");
-    for (source, row) in SOURCES.iter().zip(&slopes) {
-        for ((parameter, slope), value) in PARAMETERS.iter().zip(row).zip(found.values) {
-            if slope.abs() > 1e-6 {
-                let derivative = slope * value / source.value;
-                println!(
-                    "  d {} / d {} = {derivative:.4e} {} per {}",
-                    parameter.name, source.name, parameter.unit, source.unit
-                );
-            }
-        }
-    }
-    println!("\nUncertain by, in %, because a published result is rounded to its last digit (half of it, up or down)");
+    println!("\nUncertainty in % due to the rounding of a published result: half a unit in its last digit");
     println!("  {:28}{names}", "");
     for (source, row) in SOURCES.iter().zip(precision()?) {
         let cells = row.map(|percent| format!("{percent:12.4}")).concat();

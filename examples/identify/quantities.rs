@@ -1,14 +1,14 @@
-//! The published results, and the parameters found from them.
+//! The published results, and the parameters identified from them.
 
-/// A published result that something is identified from: Zhang, Zhang, Meng, Ren, Machines 2025, 13(1), 52.
+/// A published result used for the identification: Zhang, Zhang, Meng, Ren, Machines 2025, 13(1), 52.
 #[derive(Clone, Copy, Debug)]
 pub struct Source {
     pub name: &'static str,
     pub unit: &'static str,
     pub place: &'static str,
-    /// As printed, in its unit.
+    /// As printed.
     pub value: f64,
-    /// Its last printed digit, in its unit.
+    /// One unit in its last printed digit.
     pub digit: f64,
 }
 
@@ -31,50 +31,27 @@ const fn source(name: &'static str, unit: &'static str, place: &'static str, val
     }
 }
 
-/// The parameters found.
+/// An identified parameter.
 #[derive(Clone, Copy, Debug)]
 pub struct Parameter {
     pub symbol: &'static str,
     pub name: &'static str,
     pub unit: &'static str,
-    /// In SI units, per unit of the table.
+    /// The unit in SI units.
     pub scale: f64,
-    /// From what it follows.
+    /// What determines it.
     pub from: &'static str,
 }
 
 /// The parameters, in the order of [`Specimen::values`].
+#[rustfmt::skip]
 pub const PARAMETERS: [Parameter; 7] = [
     parameter("R", "camber radius", "mm", 1e-3, "F_0 and k_j, by the Hertz law"),
-    parameter(
-        "EI",
-        "bending stiffness",
-        "N mm²",
-        1e-6,
-        "F_0 at the overtravel of 0.2 mm",
-    ),
+    parameter("EI", "bending stiffness", "N mm²", 1e-6, "F_0 at the overtravel of 0.2 mm"),
     parameter("rhoA", "mass per length", "g/m", 1e-3, "f_1, with the rivet mass"),
-    parameter(
-        "b",
-        "width",
-        "mm",
-        1e-3,
-        "EI and mass per length, with E = 124 GPa and 8300 kg/m³",
-    ),
-    parameter(
-        "h",
-        "thickness",
-        "mm",
-        1e-3,
-        "EI and mass per length, with E = 124 GPa and 8300 kg/m³",
-    ),
-    parameter(
-        "m",
-        "rivet mass",
-        "mg",
-        1e-6,
-        "force amplitude at 1000 Hz, with the mass per length",
-    ),
+    parameter("b", "width", "mm", 1e-3, "EI and mass per length, with E = 124 GPa and 8300 kg/m³"),
+    parameter("h", "thickness", "mm", 1e-3, "EI and mass per length, with E = 124 GPa and 8300 kg/m³"),
+    parameter("m", "rivet mass", "mg", 1e-6, "force amplitude at 1000 Hz, with the mass per length"),
     parameter("beta", "damping times", "µs", 1e-6, "beta over 4 π²"),
 ];
 

@@ -1,22 +1,18 @@
 """Make and break of a relay contact under FMPy: bounce over the speed of the actuator and the damping of the contact.
 
-An actuator moves the fixed contact, by the input support.displacement. From a gap g in front of the
-spring at rest it comes at a speed v, passes the point of touch and half of the overtravel s, and is then stopped by a
-constant deceleration over the other half (v**2/s). After 10 ms it goes back the same way: accelerated over half of the
-overtravel, then at v, and is stopped at the gap. The input is linear over each communication step, its derivative is
-set, so travel at a constant speed is exact in steps of any length; the parabolas are polygons of 1000 pieces:
-with 100, the kinks themselves open a heavily damped contact at 0.2 m/s.
+An actuator moves the fixed contact (input support.displacement). It approaches the spring at rest across a gap at a
+constant speed v, passes the point of touch and half of the overtravel s, and is stopped by a constant deceleration
+v**2/s over the other half. After 10 ms it returns the same way. The input is linear over each communication step, so
+that travel at a constant speed is exact in a step of any length; the parabolas are polygons of 1000 pieces: with 100,
+the kinks themselves open a heavily damped contact at 0.2 m/s.
 
-The spring is that of the component's start values: the equivalent beam identified from Zhang et al., "Machines" 2025,
-13(1), 52. Its identified contact damping, 80.63 us, prevents bounce on make below 0.2 m/s; clean metal
-has less, so it is varied.
+The identified contact damping of the specimen, 80.63 us, prevents bounce on make below 0.2 m/s; clean metal has less,
+so it is varied.
 
-Definitions. Interruption: the contact resistance is above 60 Ohm (chatter.resistanceThreshold) for --minimum or longer.
-Bounces on make: interruptions after the first touch. Bounce time: from the first touch to the last closing before the
-actuator goes back; 0 where nothing bounces. Break time: from the instant at which the actuator starts back to the last
-separation. Bounces on break: interruptions after that start which end again. The monitor of the component times them
-inside the steps, and contact.lastClosing and contact.lastOpening are the instants at which the force leaves and
-reaches zero: the steps need not be short, and travel at a constant speed is one step.
+Interruption: the contact resistance is above 60 Ohm (chatter.resistanceThreshold) for --minimum or longer. Bounces on
+make: interruptions after the first touch. Bounce time: from the first touch to the last closing before the actuator
+returns; 0 without bounce. Break time: from the start of the return to the last separation. Bounces on break:
+interruptions after that start which end again. The component measures them within its steps.
 """
 
 import itertools
@@ -37,20 +33,10 @@ PIECES = 1000  # of a parabola
 TOUCH = 1e-6  # s after the first touch, a step ends: no bounce is that short
 
 
-@dataclass
-class Course:
-    """How the actuator moves: a polygon."""
-
-    time: Array
-    """s."""
-    position: Array
-    """m."""
-    back: int
-    """Point at which it starts back."""
-
-
-def course(gap: float, overtravel: float, speed: float) -> Course:
-    """Give the course of the actuator (m, m, m/s)."""
+def course(gap: float, overtravel: float, speed: float) -> tuple[Array, Array, float]:
+    """Give times (s) and positions (m) of the actuator for a gap, an overtravel (m) and a speed (m/s), and the start of
+    its return (s).
+    """  # noqa: D205
     half = overtravel / 2
     reach = (gap + half) / speed
     brake = np.linspace(0, 2 * half / speed, PIECES + 1)  # the mean speed is half
@@ -59,16 +45,16 @@ def course(gap: float, overtravel: float, speed: float) -> Course:
     make = np.concatenate([[0, touch], reach + brake])
     position = np.concatenate([[0, speed * touch], gap + half + travelled])
     start = make[-1] + REST
-    # Back it goes as a film run backwards, but for the touch.
+    # The return is the reverse, except for the touch.
     back = start + (make[-1] - np.delete(make, 1)[::-1])
     time = np.concatenate([make, back, [back[-1] + REST]])
     position = np.concatenate([position, np.delete(position, 1)[::-1], [0]])
-    return Course(time, position, len(make))
+    return time, position, start
 
 
 @dataclass
 class Outcome:
-    """What came of a make and a break, SI units."""
+    """Result of a make and a break, SI units."""
 
     speed: float
     damping: float
@@ -104,13 +90,12 @@ class Relay:
 
         Steps are the pieces of the course, cut into shorter ones where a sample time (s) is given.
         """
-        course_ = course(self.gap, self.overtravel, speed)
-        time = course_.time
+        corners, positions, back = course(self.gap, self.overtravel, speed)
+        time = corners
         if sample:
             time = np.union1d(time, np.arange(0, time[-1], sample))
             time = time[np.diff(time, prepend=-1) > 1e-9]
-        position = np.interp(time, course_.time, course_.position)
-        back = course_.time[course_.back]
+        position = np.interp(time, corners, positions)
         values: Values = {
             "contact.overtravel": -self.gap,
             "contact.damping": damping,
@@ -136,17 +121,8 @@ class Relay:
         count, closing, interrupted = made
         # The gap before the first touch is an interruption too, and so is the one after the last separation.
         bounces = count - 1
-        outcome = Outcome(
-            speed,
-            damping,
-            touch,
-            bounces,
-            closing - touch if bounces else 0.0,
-            interrupted - touch if bounces else 0.0,
-            largest,
-            opening - back,
-            broken - count - 1,
-        )
+        times = (closing - touch, interrupted - touch) if bounces else (0.0, 0.0)
+        outcome = Outcome(speed, damping, touch, bounces, *times, largest, opening - back, broken - count - 1)
         return outcome, np.array(rows)
 
 
@@ -192,8 +168,7 @@ def draw(path: Path, relay: Relay, outcomes: list[Outcome], shown: Outcome, rows
     )
     make.fill_between([], [], color=RED, alpha=0.2, label="open")
     make.set(xlabel="time after the first touch [µs]", ylabel="contact force [N]", title="Make")
-    back = course(relay.gap, relay.overtravel, shown.speed)
-    since = 1e3 * (time - back.time[back.back])
+    since = 1e3 * (time - course(relay.gap, relay.overtravel, shown.speed)[2])
     last = 1e3 * shown.break_time
     near = (since > last - 2) & (since < last + 4)
     open_.plot(since[near], -1e6 * indentation[near], color=BLUE, label="gap between the contacts")
@@ -225,7 +200,6 @@ def draw(path: Path, relay: Relay, outcomes: list[Outcome], shown: Outcome, rows
         axes.grid(alpha=0.3)
     for axes in (count, length, delay, again):
         axes.xaxis.set_major_formatter("{x:g}")
-    for axes in (count, length, again, delay):
         axes.yaxis.set_major_formatter("{x:g}")
     for axes in (count, length, again):
         axes.plot(1e3 * shown.speed, 1e6 * shown.damping, "x", color="white", markersize=8, markeredgewidth=2)
@@ -257,8 +231,7 @@ def main() -> None:
     relay = Relay(Component(given.fmu), 1e-6 * given.gap, 1e-6 * given.overtravel, 1e-6 * given.minimum)
     shown, rows = relay.run(1e-3 * given.speed, 1e-6 * given.damping, sample=2e-6)
     outcomes = []
-    bar = tqdm(list(itertools.product(speeds, dampings)), unit="make and break")
-    for speed, damping in bar:
+    for speed, damping in (bar := tqdm(list(itertools.product(speeds, dampings)), unit="make and break")):
         bar.set_description(f"{1e3 * speed:5.1f} mm/s, {1e6 * damping:6.2f} µs", refresh=False)
         outcomes.append(relay.run(float(speed), float(damping))[0])
     paths = [given.out / name for name in ("closing-bounce.csv", "closing-bounce-course.csv", "closing-bounce.png")]
@@ -267,17 +240,16 @@ def main() -> None:
     draw(paths[2], relay, outcomes, shown, rows)
     print(f"{given.speed:g} mm/s, contact damping {given.damping:g} µs")
     print(
-        f"make: first touch {1e6 * shown.first_touch:.3f} µs after the start, largest force {shown.largest_force:.2f} N"
+        f"make: first touch after {1e6 * shown.first_touch:.3f} µs, largest force {shown.largest_force:.2f} N, ", end=""
     )
-    bounced = f"bounce time {1e6 * shown.bounce_time:.2f} µs, open {1e6 * shown.open_time:.2f} µs"
-    print(f"make: bounces {shown.bounces}, {bounced}")
+    print(
+        f"bounces {shown.bounces}, for {1e6 * shown.bounce_time:.2f} µs, open for {1e6 * shown.open_time:.2f} µs of it"
+    )
     print(f"break: bounces {shown.break_bounces}, last separation after {1e3 * shown.break_time:.3f} ms")
     most = max(outcomes, key=lambda outcome: outcome.bounce_time)
     where = f"{1e3 * most.speed:.3g} mm/s, {1e6 * most.damping:.3g} µs"
     calm = sum(outcome.bounces == 0 for outcome in outcomes)
-    print(
-        f"map: longest bounce time {1e6 * most.bounce_time:.1f} µs at {where}; no bounce in {calm} of {len(outcomes)}"
-    )
+    print(f"map: longest bounce time {1e6 * most.bounce_time:.1f} µs at {where}, none in {calm} of {len(outcomes)}")
     print(*paths, sep="\n")
 
 

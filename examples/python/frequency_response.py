@@ -10,13 +10,13 @@ import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from common import BLUE, GRAVITY, GREY, ORANGE, RED, acceleration_in_g
+from common import BLUE, GRAVITY, GREY, ORANGE, RED, acceleration_in_g, save
 
 COLOURS = (BLUE, ORANGE, RED)
 
 # Label and look of each curve.
 STYLES: dict[str, tuple[str, dict[str, Any]]] = {
-    "linear": ("linear (contact held)", {"linestyle": "-", "linewidth": 1.4}),
+    "linear": ("linear (contact held closed)", {"linestyle": "-", "linewidth": 1.4}),
     "up": ("nonlinear, stepped up", {"linestyle": "none", "marker": "|", "markersize": 8}),
     "down": ("nonlinear, stepped down", {"linestyle": "none", "marker": "o", "markersize": 4, "fillstyle": "none"}),
 }
@@ -85,7 +85,7 @@ def main() -> None:
     for axes in (left, right):
         axes.grid(alpha=0.3)
     path = folder / "frequency-response.png"
-    figure.savefig(path, dpi=150)
+    save(figure, path)
     print(path)
 
 

@@ -1,18 +1,19 @@
 """The circuit of circuit.py in ngspice, through its shared library.
 
-One `tran ... uic` analysis for each communication step, with the states as initial conditions: so the integrator of
-ngspice starts afresh after every jump of the contact's resistance. (One analysis with `stop`, `alter` and `resume`
-misses stops in ngspice 39.)
+Each communication step is one `tran ... uic` analysis with the states as initial conditions, so that the integrator of
+ngspice restarts after every jump of the contact's conductance. (One analysis with `stop`, `alter` and `resume` misses
+stops in ngspice 39.)
 """
 
 import contextlib
 import ctypes
 import ctypes.util
 from collections import deque
+from dataclasses import dataclass
 
 import numpy as np
 
-from circuit import CAPACITOR, COIL, LOAD, QUENCH, SOURCE, Course, contact_voltage
+from circuit import Circuit, State
 from relay_contact import Array
 
 INNER_STEP, RELATIVE_TOLERANCE = 1e-7, 1e-7  # s, longest; 1
@@ -20,15 +21,24 @@ LIBRARIES = ["libngspice.so.0", "libngspice.so", "libngspice.0.dylib", "libngspi
 LIBRARIES += ["libngspice-0.dll", "/opt/homebrew/lib/libngspice.dylib"]
 
 
+@dataclass
+class Course:
+    """The circuit within a communication step, at times from its start to its end."""
+
+    time: Array
+    current: Array
+    capacitor: Array
+
+
 class Vector(ctypes.Structure):
-    """A result of ngspice, as its shared library gives it."""
+    """A result of ngspice, as its shared library declares it."""
 
     _fields_ = [("name", ctypes.c_char_p), ("type", ctypes.c_int), ("flags", ctypes.c_short)]
     _fields_ += [("real", ctypes.POINTER(ctypes.c_double)), ("complex", ctypes.c_void_p), ("length", ctypes.c_int)]
 
 
 def load_library() -> ctypes.CDLL:
-    """Load ngspice's shared library; `OSError` where there is none."""
+    """Load ngspice's shared library; `OSError` if there is none."""
     for name in [ctypes.util.find_library("ngspice"), *LIBRARIES]:
         with contextlib.suppress(OSError):
             if name:
@@ -37,9 +47,9 @@ def load_library() -> ctypes.CDLL:
 
 
 class NgSpice:
-    """ngspice by its shared library."""
+    """ngspice through its shared library."""
 
-    def __init__(self) -> None:
+    def __init__(self, circuit: Circuit) -> None:
         """Load the library and the circuit."""
         self.library = load_library()
         self.library.ngGet_Vec_Info.restype = ctypes.POINTER(Vector)
@@ -50,12 +60,12 @@ class NgSpice:
         self.quit = ctypes.CFUNCTYPE(number, number, ctypes.c_bool, ctypes.c_bool, number, pointer)(lambda *_: 0)
         self.library.ngSpice_Init(self.print, None, self.quit, None, None, None, None)
         lines = f"""relay contact
-            V1 supply 0 {SOURCE}
-            R1 supply coil {LOAD}
-            L1 coil contact {COIL} ic=0
+            V1 supply 0 {circuit.supply}
+            R1 supply coil {circuit.load}
+            L1 coil contact {circuit.inductance} ic=0
             RC contact 0 1
-            RQ contact quench {QUENCH}
-            CQ quench 0 {CAPACITOR} ic=0
+            RQ contact quench {circuit.quench}
+            CQ quench 0 {circuit.capacitance} ic=0
             .options method=trap reltol={RELATIVE_TOLERANCE} abstol=1e-13 vntol=1e-10
             .end""".splitlines()
         netlist = (ctypes.c_char_p * (len(lines) + 1))(*[line.strip().encode() for line in lines], None)
@@ -63,12 +73,12 @@ class NgSpice:
             raise RuntimeError(f"ngspice refused the circuit: {' / '.join(self.said)}")
 
     def hear(self, text: bytes, _library: int, _user: object) -> int:
-        """Keep what ngspice says, for errors."""
+        """Keep the messages of ngspice, for errors."""
         self.said.append(text.decode(errors="replace"))
         return 0
 
     def command(self, text: str) -> None:
-        """Have ngspice do something."""
+        """Execute a command of ngspice."""
         if self.library.ngSpice_Command(text.encode()):
             raise RuntimeError(f"ngspice refused `{text}`: {' / '.join(self.said)}")
 
@@ -79,13 +89,13 @@ class NgSpice:
             raise RuntimeError(f"ngspice gave no {name}: {' / '.join(self.said)}")
         return np.ctypeslib.as_array(vector.contents.real, (vector.contents.length,)).copy()
 
-    def advance(self, start: tuple[float, float], resistance: float, step: float) -> Course:
-        """Step once."""
+    def advance(self, start: State, conductance: float, step: float) -> Course:
+        """Simulate a communication step."""
         inner = min(INNER_STEP, step / 10)
-        for name, value in (("RC", resistance), ("@L1[ic]", start[0]), ("@CQ[ic]", start[1])):
+        for name, value in (("RC", 1 / conductance), ("@L1[ic]", start[0]), ("@CQ[ic]", start[1])):
             self.command(f"alter {name} = {value!r}")
         self.command(f"tran {inner!r} {step!r} 0 {inner!r} uic")
-        # What `uic` starts from is not a result, or not in every version.
+        # The initial state of `uic` is not a result, or not in every version.
         late = self.result("time") > 0
         time = np.append(0.0, self.result("time")[late])
         current = np.append(start[0], self.result("l1#branch")[late])
@@ -93,14 +103,4 @@ class NgSpice:
         self.command("destroy all")
         if not abs(time[-1] - step) < 1e-9 * step:
             raise RuntimeError(f"ngspice stopped {time[-1]} s into a step of {step} s: {' / '.join(self.said)}")
-        # Integrator and quadrature are both the trapezoidal rule. By Tellegen's theorem the powers of all branches, and
-        # the products of their changes, sum to zero; so the balance misses by a quarter of the sum of
-        # step * change of voltage * change of current over coil and capacitor, and no more. The first inner step is
-        # backward Euler, which misses half of step * change * value. Besides, ngspice iterates to its tolerance.
-        steps, weights = np.diff(time), np.convolve(np.diff(time), [0.5, 0.5])
-        drop = contact_voltage(current, capacitor, 1 / resistance)
-        coil, charging = np.diff(SOURCE - LOAD * current - drop), np.diff((drop - capacitor) / QUENCH)
-        error = steps @ np.abs(coil * np.diff(current) + charging * np.diff(capacitor)) / 4
-        error += steps[0] * (abs(coil[0] * current[0]) + abs(charging[0] * capacitor[0])) / 2
-        error += RELATIVE_TOLERANCE * SOURCE**2 / LOAD * step
-        return Course(time, current, capacitor, weights, float(error))
+        return Course(time, current, capacitor)

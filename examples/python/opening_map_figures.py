@@ -1,4 +1,4 @@
-"""The pictures of opening_map.py, and what they show in words."""
+"""Figures of opening_map.py, and their results in words."""
 
 import math
 from pathlib import Path
@@ -12,52 +12,62 @@ from scipy.stats import binomtest
 
 from common import BLACK, BLUE, GRAVITY, GREEN, GREY, ORANGE, PURPLE, RED, SKY, acceleration_in_g, save
 from relay_contact import Array
+from standards import LIMIT, RELAYS
 
-STANDARD = 30 * GRAVITY  # m/s2, vibration of relays after MIL-PRF-28776
-LIMIT = 10e-6  # s, MIL-STD-202 method 310
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, RED, SKY, BLACK)
+STANDARD = {"color": RED, "linestyle": ":", "linewidth": 1.6}
+"""Style of the level of the standard."""
 
 
 def boundary(accelerations: Array, longest: Array) -> Array:
-    """Give, for each row, the middle of the step in acceleration at which interruptions come to exceed the limit."""
+    """Give, for each row, the middle of the step in acceleration at which interruptions begin to exceed the limit."""
     opens = longest > LIMIT
     index = np.where(opens.any(axis=1), opens.argmax(axis=1), -1)
     middle = (accelerations[index] + accelerations[np.maximum(index - 1, 0)]) / 2
     return np.where(index > 0, middle, np.nan)
 
 
-def draw_map(table: pa.Table, parameter: str, scales: list[Any], unit: str, path: Path) -> None:
+def draw_map(table: pa.Table, labels: list[str], scales: list[Any], path: Path) -> None:
     """Draw a map for each value of the parameter, and the boundaries together; print where they are lowest."""
     values, frequencies, accelerations = (np.array(axis, dtype=float) for axis in scales)
-    longest = table["longest_interruption"].to_numpy().reshape(len(values), len(frequencies), len(accelerations))
+
+    def grid(name: str) -> Array:
+        shaped: Array = table[name].to_numpy().reshape(len(values), len(frequencies), len(accelerations))
+        return shaped
+
+    longest, sudden = grid("longest_interruption"), grid("longest_after_sudden_start")
     columns = 2 if len(values) < 4 else 3
+    rows = math.ceil((len(values) + 1) / columns)
     figure, panels = plt.subplots(
-        math.ceil((len(values) + 1) / columns),
-        columns,
-        figsize=(5.2 * columns, 7.6),
-        layout="constrained",
-        squeeze=False,
+        rows, columns, figsize=(5.2 * columns, 3.8 * rows), layout="constrained", squeeze=False
     )
     last = panels.flat[len(values)]
-    shades = LogNorm(10, 1e4)
-    for i, (value, axes) in enumerate(zip(values, panels.flat, strict=False)):
-        label, colour = f"{parameter} = {value:g} {unit}", COLOURS[i % len(COLOURS)]
-        edge = boundary(accelerations, longest[i])
+    for i, (label, axes) in enumerate(zip(labels, panels.flat, strict=False)):
+        edge, start = boundary(accelerations, longest[i]), boundary(accelerations, sudden[i])
         interrupted = np.ma.masked_less_equal(1e6 * longest[i].T, 0)
-        mesh = axes.pcolormesh(frequencies, accelerations, interrupted, norm=shades, cmap="viridis", shading="nearest")
-        axes.plot(frequencies, edge, color="black", linewidth=1.6, label="opens for 10 µs")
+        mesh = axes.pcolormesh(
+            frequencies, accelerations, interrupted, norm=LogNorm(10, 1e4), cmap="viridis", shading="nearest"
+        )
+        axes.plot(frequencies, edge, color=BLACK, linewidth=1.6, label="opens for 10 µs")
+        axes.plot(frequencies, start, color=BLACK, linewidth=1.2, linestyle="--", label="the same after a sudden start")
         axes.set_title(label, fontsize="medium")
-        last.plot(frequencies, edge, color=colour, linewidth=1.6, label=label)
+        last.plot(frequencies, edge, color=COLOURS[i % len(COLOURS)], linewidth=1.6, label=label)
         if not np.isfinite(edge).any():
-            print(f"{label}: no step from closed to open between {accelerations[0]:g} and {accelerations[-1]:g} m/s2")
+            print(f"{label}: no step from closed to open between {accelerations[0]:g} and {accelerations[-1]:g} m/s²")
             continue
         least = int(np.nanargmin(edge))
-        lowest, slowest = (f"{a:.1f} m/s2 ({a / GRAVITY:.1f} g)" for a in (edge[least], edge[0]))
+        lowest, slowest = (f"{a:.1f} m/s² ({a / GRAVITY:.1f} g)" for a in (edge[least], edge[0]))
         print(f"{label}: opens from {lowest} at {frequencies[least]:g} Hz, from {slowest} at {frequencies[0]:g} Hz")
+        both = np.isfinite(edge) & np.isfinite(start)
+        if both.any():
+            most = int(np.argmin(np.where(both, start / edge, np.inf)))
+            told = " to ".join(f"{a / GRAVITY:.1f} g" for a in (edge[most], start[most]))
+            print(f"  a sudden start lowers this by the largest factor at {frequencies[most]:g} Hz: from {told}")
+    fine: Array = np.geomspace(frequencies[0], frequencies[-1], 500)
     figure.colorbar(mesh, ax=panels, label="longest interruption [µs] (white: none)", shrink=0.6, extend="both")
     last.set_title("opens for 10 µs: all values", fontsize="medium")
     for axes in panels.flat[: len(values) + 1]:
-        axes.axhline(STANDARD, color=RED, linestyle="--", linewidth=1.2, label="30 g, MIL-PRF-28776")
+        axes.plot(fine, RELAYS.amplitude(fine), label=f"{RELAYS.name}, {RELAYS.acceleration:g} g", **STANDARD)
         axes.set(xscale="log", xlim=frequencies[[0, -1]], ylim=accelerations[[0, -1]])
         axes.set(xlabel="frequency [Hz]", ylabel="base acceleration [m/s²]")
         axes.xaxis.set_major_formatter("{x:g}")
@@ -65,7 +75,7 @@ def draw_map(table: pa.Table, parameter: str, scales: list[Any], unit: str, path
         acceleration_in_g(axes)
     for axes in panels.flat[len(values) + 1 :]:
         axes.axis("off")
-    figure.suptitle("Vibration that opens the contact")
+    figure.suptitle("Steady vibration that opens the contact")
     save(figure, path, dpi=130)
 
 
@@ -98,7 +108,8 @@ def draw_tolerances(table: pa.Table, settings: dict[str, Any], path: Path) -> No
     share, low, high = 100 * np.array(shares).T
     right.errorbar(accelerations, share, [share - low, high - share], color=COLOURS[0], marker="o", capsize=4)
     right.set(xlabel="base acceleration [m/s²]", ylabel="contacts that open for longer than 10 µs [%]", ylim=(-2, 102))
-    right.axvline(STANDARD, color=RED, linestyle="--", label="30 g, MIL-PRF-28776")
+    level = float(RELAYS.amplitude(np.array(settings["frequency"])))
+    right.axvline(level, label=f"{RELAYS.name}, {level / GRAVITY:.3g} g", **STANDARD)
     acceleration_in_g(right, vertical=False)
     right.set_title(f"Share of {settings['samples']} contacts, 95 % confidence", fontsize="medium")
     for axes in (left, right):

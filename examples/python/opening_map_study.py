@@ -1,4 +1,4 @@
-"""What opening_map.py simulates: points in a fixed order, cut into chunks, and the files of what is finished."""
+"""Points of a study of opening_map.py in a fixed order, divided into chunks, and the files of finished chunks."""
 
 import hashlib
 import json
@@ -16,21 +16,22 @@ import pyarrow.parquet as pq
 TOLERANCES = {"contact.overtravel": 10e-6, "contact.curvatureRadius": 1.1e-3, "contact.damping": 12e-6}
 
 Point = dict[str, float]
-Row = tuple[float, float, float, int, str]
+Row = tuple[float, float, float, int, float, str]
 RESULTS = [
     ("longest_interruption", pa.float64()),
     ("least_force", pa.float64()),
     ("interruptions_per_period", pa.float64()),
     ("periods_to_settle", pa.int64()),
+    ("longest_after_sudden_start", pa.float64()),
     ("message", pa.string()),
 ]
 
 
 class Study:
-    """What is simulated: points in a fixed order, cut into chunks, and the files of what is finished."""
+    """Points in a fixed order, divided into chunks."""
 
     def __init__(self, settings: dict[str, Any], out: Path) -> None:
-        """Lay out the points."""
+        """Arrange the points."""
         self.settings = settings
         text = json.dumps(settings, sort_keys=True)
         self.folder = out / f"opening-{settings['study']}-{hashlib.sha256(text.encode()).hexdigest()[:16]}"
@@ -42,14 +43,14 @@ class Study:
             self.names = ["sample", *settings["tolerances"], "excitation.frequency", "excitation.amplitude"]
         self.axes, self.count = axes, math.prod(len(axis) for axis in axes)
         self.chunks = math.ceil(self.count / settings["chunk"])
-        # The size of a chunk is no part of the result.
+        # The result does not depend on the size of a chunk.
         note = json.dumps({key: value for key, value in settings.items() if key != "chunk"}, sort_keys=True)
         versions = f"numpy {np.__version__}, pyarrow {pa.__version__}"
         fields = [(name, pa.int64() if name == "sample" else pa.float64()) for name in self.names]
         self.schema = pa.schema(fields + RESULTS, metadata={"study": note, "versions": versions})
 
     def point(self, index: int) -> Point:
-        """Give a point by its place in the order: the same whatever the chunks are."""
+        """Give a point by its index, which does not depend on the chunks."""
         place = np.unravel_index(index, [len(axis) for axis in self.axes])
         values = [float(axis[i]) for axis, i in zip(self.axes, place, strict=True)]
         if self.settings["study"] == "map":
@@ -68,16 +69,16 @@ class Study:
         return [self.point(index) for index in self.places(chunk)]
 
     def places(self, chunk: int) -> range:
-        """Tell which points a chunk has."""
+        """Give the indices of the points of a chunk."""
         size: int = self.settings["chunk"]
         return range(self.count)[chunk * size : (chunk + 1) * size]
 
     def path(self, chunk: int) -> Path:
-        """Tell where a chunk's results are."""
+        """Give the file of a chunk."""
         return self.folder / f"chunk-{chunk:06}.parquet"
 
     def finished(self, chunk: int) -> bool:
-        """Tell whether a chunk is there, whole and readable."""
+        """Tell whether the file of a chunk is complete."""
         try:
             return bool(pq.read_table(self.path(chunk)).schema.equals(self.schema, check_metadata=True))
         except (OSError, pa.ArrowException):
@@ -101,7 +102,7 @@ class Study:
 
 
 def replace(path: Path, write: Callable[[Path], object]) -> None:
-    """Write a file under another name first: it is whole or not there."""
+    """Write a file under another name first, so that it is complete or missing."""
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(f"{path.name}.{os.getpid()}.part")
     write(part)

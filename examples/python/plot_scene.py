@@ -4,20 +4,18 @@ The figure stands beside the table, as a PNG file of the same name. Units are th
 """
 
 import argparse
-from dataclasses import dataclass
 from pathlib import Path
-from xml.etree import ElementTree
 
 import matplotlib.pyplot as plt
 import numpy as np
+from fmpy import read_model_description
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from common import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, save
-from relay_contact import ROOT, Array, read_table
+from relay_contact import ROOT, Array, Unit, read_table, units
 
 COLOURS = [BLUE, RED, GREEN, PURPLE, BLACK, ORANGE]
-SIGNS = {"Ohm": "Ω", "mOhm": "mΩ", "um": "µm", "us": "µs", "degC": "°C", "m/s2": "m/s²"}
 # Beyond this ratio of greatest to least a logarithmic axis is used.
 DECADES = 1e3
 # What the outputs are called in words, where it is not the words of their names.
@@ -38,39 +36,6 @@ WORDS = {
 }
 
 
-@dataclass
-class Unit:
-    """How values in SI units are shown."""
-
-    si: str
-    shown: str
-    factor: float
-    offset: float
-
-
-def units() -> dict[str, Unit]:
-    """Give the unit of every variable that has one."""
-    description = ElementTree.parse(ROOT / "modelDescription.xml").getroot()
-    shown = {}
-    for unit in description.iter("Unit"):
-        for other in unit.iter("DisplayUnit"):
-            factor, offset = float(other.get("factor", "1")), float(other.get("offset", "0"))
-            shown[unit.get("name", ""), other.get("name", "")] = (factor, offset)
-    types = {}
-    for kind in description.iter("SimpleType"):
-        real = kind.find("Real")
-        if real is not None:
-            si = real.get("unit", "")
-            display: str = real.get("displayUnit", si)
-            types[kind.get("name")] = Unit(si, display, *shown.get((si, display), (1.0, 0.0)))
-    found = {}
-    for variable in description.iter("ScalarVariable"):
-        declared = next(iter(variable)).get("declaredType")
-        if declared in types:
-            found[variable.get("name", "")] = types[declared]
-    return found
-
-
 def panel(axes: Axes, time: Array, name: str, values: Array, unit: Unit | None, colour: str) -> None:
     """Draw one output."""
     least, greatest = float(values.min()), float(values.max())
@@ -87,8 +52,7 @@ def panel(axes: Axes, time: Array, name: str, values: Array, unit: Unit | None, 
         axes.yaxis.set_major_locator(MaxNLocator(integer=True))
         axes.set_ylim(-0.1 * max(1.0, greatest), 1.1 * max(1.0, greatest))
     words = WORDS.get(name, name.replace(".", "\n"))
-    label = SIGNS.get(label, label)
-    axes.set_ylabel(words + (f" [{label}]" if label not in ("", "1") else ""), fontsize="small")
+    axes.set_ylabel(words + (f" [{label}]" if label else ""), fontsize="small")
     axes.grid(alpha=0.3)
 
 
@@ -96,7 +60,7 @@ def draw(table: Path, title: str, sweep: list[float] | None = None) -> Path:
     """Draw the table, over time or over the frequency of a sweep (first and last Hz, start and duration s)."""
     columns = read_table(table)
     time = columns.pop("time")
-    known = units()
+    known = units(read_model_description(str(ROOT / "modelDescription.xml"), validate=False))
     scale, second = (1.0, "s") if time[-1] > 0.2 else (1e3, "ms")
     label = f"time [{second}]"
     if sweep:

@@ -26,6 +26,8 @@ from numpy.typing import NDArray
 
 ROOT = Path(__file__).resolve().parents[2]
 
+SIGNS = {"Ohm": "Ω", "mOhm": "mΩ", "um": "µm", "us": "µs", "degC": "°C", "m/s2": "m/s²", "kg/m3": "kg/m³", "1": ""}
+
 Array = NDArray[np.float64]
 Value = float | str
 """Value of a variable; a choice, such as that of effects.excitation, by its name."""
@@ -86,6 +88,35 @@ class Scene:
         }
 
 
+@dataclass(frozen=True)
+class Unit:
+    """How values of a variable, in SI units, are shown."""
+
+    si: str
+    shown: str
+    factor: float = 1.0
+    offset: float = 0.0
+
+    def text(self, value: float) -> str:
+        """Give a value in the unit shown; in SI units if it is large there."""
+        shown = self.factor * value + self.offset
+        return f"{shown:g} {self.shown}" if abs(shown) < 1e4 else f"{value:g} {self.si}"
+
+
+def units(description: Any) -> dict[str, Unit]:  # noqa: ANN401
+    """Give the unit of every variable of FMPy's model description that has one."""
+    scales = {(unit.name, other.name): other for unit in description.unitDefinitions for other in unit.displayUnits}
+    found = {}
+    for variable in description.modelVariables:
+        kind = variable.declaredType
+        if kind is not None and kind.unit:
+            shown = kind.displayUnit or kind.unit
+            scale = scales.get((kind.unit, shown))
+            si, shown = (SIGNS.get(name, name) for name in (kind.unit, shown))
+            found[variable.name] = Unit(si, shown, scale.factor, scale.offset) if scale else Unit(si, shown)
+    return found
+
+
 def flat(table: dict[str, Any], prefix: str = "") -> dict[str, Value]:
     """Give the values of nested TOML tables by their dotted names."""
     values: dict[str, Value] = {}
@@ -136,20 +167,23 @@ class Component:
         contact.initialise()
         return contact
 
+    def in_scene(self, name: str) -> "Contact":
+        """Give an instance that is initialised with the parameters of a scene."""
+        return self.started(Scene.read(scenes()[name]).values)
+
 
 class Contact:
     """An instance of the component, its variables known by name, for a `with` block that frees it."""
 
     def __init__(self, component: Component, messages: list[str] | None = None) -> None:
-        """Instantiate the component; with a list of messages logging is on and goes there."""
+        """Instantiate the component; errors and warnings are appended to the messages, if a list is given."""
         self.component = component
 
         def keep(_environment: int, _instance: bytes, _status: int, _category: bytes, message: bytes) -> None:
             if messages is not None:
                 messages.append(message.decode())
 
-        logging = {} if messages is None else {"logger": keep, "debug_logging": True}
-        self.fmu = instantiate_fmu(component.folder, component.description, "CoSimulation", **logging)
+        self.fmu = instantiate_fmu(component.folder, component.description, "CoSimulation", logger=keep)
         self.initialised = False
 
     def __enter__(self) -> Self:

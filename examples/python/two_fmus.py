@@ -1,40 +1,30 @@
-"""Couple the relay contact to a partner FMU, by libcosim and by FMPy, wired by hand and as a system (SSP 1.0).
+"""Couple the relay contact to a partner FMU: connected by hand in FMPy, and as a system (SSP 1.0) in libcosim.
 
-The partner, TestBench.fmu, which PythonFMU makes of two_fmus_bench.py, is a vibration table and a circuit: a source of
-V = 6 V, a load of R = 60 Ohm and L = 1 mH in series, the contact, and across the contact a quench of Rq = 47 Ohm and
-Cq = 220 nF in series. Its states are the current i of the load and the voltage vC of the capacitor:
+The partner, TestBench.fmu, which PythonFMU makes of two_fmus_bench.py, is a vibration table with a sine acceleration
+and the circuit of circuit.py, which starts in its steady state. Three connections, updated at every communication
+point: table.acceleration to base.acceleration, contact.conductance to contact.conductance, contact.current back.
+The voltage shown is that of the circuit; the contact is valid below about 12 V and 0.4 A, where no arc burns.
 
-    v = (i + vC / Rq) / (1 / Rc + 1 / Rq)    voltage of the contact; its current is v / Rc
-    di/dt = (V - R i - v) / L
-    dvC/dt = (v - vC) / (Rq Cq)
-
-The resistance Rc of the contact is held over a communication step, over which the circuit has a closed form. It starts
-at rest. The acceleration of the table is amplitude x sin(2 pi frequency t). Three wires, carried at every communication
-point: table.acceleration to base.acceleration, contact.resistance to contact.resistance, contact.current back.
-The contact is valid below about 12 V and 0.4 A, where nothing arcs; the summary says what was reached. The voltage is
-that of the circuit: contact.voltage of the contact multiplies a current of the step before with the resistance of now,
-which at an opening is not the voltage at any time.
-
-Both FMUs step at the same time with inputs held (a Jacobi coupling), so its error is of first order in the
-communication step h: a sine held over h is a sine h/2 late, and so are the openings. The circuit sees an opening at the
-next communication point, another h/2 late on average. The reference: the contact shaken by its own generator (the
-same sine without a step), with the circuit at a finer step.
+Both FMUs step at the same time with constant inputs (a Jacobi coupling), so the error is of first order in the
+communication step h: a sine held over h is late by h/2, and so are the openings. The circuit receives an opening at the
+next communication point, on average another h/2 later. The reference: the contact with its own generator (the same sine
+without steps), and the circuit at a finer step.
 
 libcosim
-- cannot set enumerations, so effects.excitation stays None and the table shakes the contact;
-- counts time in whole nanoseconds and passes differences of instants. Given the same instants FMPy gives the same
-  bits; given n h it differs by what the rounding of time does;
-- applies of each component of an .ssp its first ParameterBinding, inline or by source, and leaves out without a word
-  all others and those of the system: here each component has one. It knows the prefixes ssd, ssc, ssv by their letters;
-- ends its process where a start value is refused.
-It is installed on 64-bit x86 Linux alone; elsewhere FMPy runs the wiring, and system.ssp is written all the same.
+- cannot set enumerations, so effects.excitation remains None and the table vibrates the contact (the variant of the
+  component that `cargo xtask fmu --plain` makes has integers instead);
+- counts time in whole nanoseconds and passes differences of times. FMPy gives the same bits at the same times;
+- applies only the first ParameterBinding of each component of an .ssp, and silently ignores all others and those of the
+  system: here each component has one. It recognises the prefixes ssd, ssc, ssv by their letters;
+- terminates its process if a start value is rejected.
+It is installed on 64-bit x86 Linux only; elsewhere FMPy runs the system, and system.ssp is still written.
 
-TestBench.fmu runs the Python of the process that loads it. It needs no package: the FMU brings its part of PythonFMU.
-A tool that is no Python program must load one: on Linux by LD_PRELOAD=libpython3.11.so.1.0 (the binary in the FMU is
-linked to none), on Windows by python3.dll in the PATH. PythonFMU has binaries for 64-bit x86 Linux and Windows.
+TestBench.fmu runs in the Python of the process that loads it and needs no packages: the FMU contains its part of
+PythonFMU. A tool that is not a Python program must load one: on Linux by LD_PRELOAD=libpython3.11.so.1.0 (the binary in
+the FMU is not linked to any), on Windows by python3.dll in the PATH. PythonFMU has binaries for 64-bit x86 Linux and
+Windows.
 """
 
-import csv
 import platform
 import sys
 from contextlib import ExitStack
@@ -55,7 +45,6 @@ try:
     from libcosimpy.CosimExecution import CosimExecution
     from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
     from libcosimpy.CosimObserver import CosimObserver
-    from libcosimpy.CosimSlave import CosimLocalSlave
 
     # It warns of every variable that is an enumeration.
     log_output_level(CosimLogLevel.ERROR)
@@ -63,17 +52,16 @@ try:
 except (ImportError, OSError) as error:
     NO_LIBCOSIM = str(error)
 
-BENCH = Path(__file__).with_name("two_fmus_bench.py")
+BENCH, CIRCUIT = (Path(__file__).with_name(f"{name}.py") for name in ("two_fmus_bench", "circuit"))
 FINER = 8  # steps of the reference in a communication step
 
 RECORDED = [("bench", each) for each in ("table.acceleration", "contact.voltage", "contact.current")]
-RECORDED += [("contact", f"contact.{each}") for each in ("force", "resistance", "lastOpening", "lastClosing")]
+RECORDED += [("contact", f"contact.{each}") for each in ("force", "conductance", "lastOpening", "lastClosing")]
 
 Run = dict[str, Array]  # time and what is recorded, SI units
-Bar = Any
 
 
-def by_fmpy(fmus: Fmus, starts: Starts, time: Array, bar: Bar, generator: bool = False) -> Run:
+def by_fmpy(fmus: Fmus, starts: Starts, time: Array, bar: "tqdm[Any]", generator: bool = False) -> Run:
     """Run the wired FMUs through the instants in FMPy; the contact shaken by its own generator if asked."""
     wires, rows = WIRES, []
     sine: dict[str, float | str] = {}
@@ -124,22 +112,7 @@ def find(execution: Any, name: str, variable: str) -> tuple[int, int]:  # noqa: 
     return index, next(each.reference for each in variables if each.name == variable.encode())
 
 
-def wired_in_libcosim(fmus: Fmus, starts: Starts, step: int) -> Any:  # noqa: ANN401
-    """Wire the FMUs by hand in libcosim; step in ns."""
-    execution = CosimExecution.from_step_size(step)
-    done = [execution.add_local_slave(CosimLocalSlave(str(fmu), name)) >= 0 for name, fmu in fmus.items()]
-    for name, values in starts.items():
-        for variable, value in values.items():
-            done.append(execution.real_initial_value(*find(execution, name, variable), value))
-    for source, output, sink, variable, _ in WIRES:
-        ends = *find(execution, source, output), *find(execution, sink, variable)
-        done.append(execution.connect_real_variables(*ends) == 0)
-    if not all(done):
-        raise RuntimeError("libcosim refused an FMU, a start value or a wire")
-    return execution
-
-
-def by_libcosim(execution: Any, time: Array, bar: Bar) -> Run:  # noqa: ANN401
+def by_libcosim(execution: Any, time: Array, bar: "tqdm[Any]") -> Run:  # noqa: ANN401
     """Run what libcosim was given. Values can be read after the first step, not before."""
     observer = CosimObserver.create_last_value()
     execution.add_observer(observer)
@@ -170,8 +143,7 @@ def errors(run: Run, reference: Run) -> tuple[float, float]:
 
 def order(steps: Array, values: Array) -> float:
     """Give the order of convergence: the slope in logarithms."""
-    covariance = np.cov(np.log(steps), np.log(values))
-    return float(covariance[0, 1] / covariance[0, 0])
+    return float(np.polyfit(np.log(steps), np.log(values), 1)[0])
 
 
 def draw(run: Run, convergence: Array, shaken: str, path: Path) -> None:
@@ -182,22 +154,23 @@ def draw(run: Run, convergence: Array, shaken: str, path: Path) -> None:
     closings = instants(run, "contact.lastClosing")
     gaps = [(opening, min([*closings[closings > opening], end])) for opening in instants(run, "contact.lastOpening")]
     shown = [
-        ("table.acceleration", "base\nacceleration\n[m/s²]", BLACK),
-        ("contact.force", "contact\nforce\n[N]", BLUE),
-        ("contact.resistance", "contact\nresistance\n[Ω]", RED),
-        ("contact.voltage", "contact\nvoltage\n[V]", GREEN),
-        ("contact.current", "contact\ncurrent\n[A]", PURPLE),
+        (run["table.acceleration"], "base\nacceleration\n[m/s²]", BLACK),
+        (run["contact.force"], "contact\nforce\n[N]", BLUE),
+        (1 / run["contact.conductance"], "contact\nresistance\n[Ω]", RED),
+        (run["contact.voltage"], "contact\nvoltage\n[V]", GREEN),
+        (run["contact.current"], "contact\ncurrent\n[A]", PURPLE),
     ]
     begin = gaps[-3][0] - 3e-4 if len(gaps) > 2 else 0.0
     rows = left.subplots(len(shown), 1, sharex=True)
-    for axes, (name, label, colour) in zip(rows, shown, strict=True):
-        axes.plot(time, run[name], color=colour, linewidth=1.2)
+    for axes, (values, label, colour) in zip(rows, shown, strict=True):
+        axes.plot(time, values, color=colour, linewidth=1.2)
         for opening, closing in gaps:
             axes.axvspan(1e3 * opening, 1e3 * closing, color=ORANGE, alpha=0.25, linewidth=0)
         axes.set(ylabel=label, xlim=(1e3 * begin, 1e3 * end))
         axes.grid(alpha=0.3)
     # A closing strikes with many times the preload: linear below 1 N, logarithmic above.
     rows[1].set_yscale("symlog", linthresh=1.0)
+    rows[1].set_yticks([0.0, 0.5, 1.0, 10.0], ["0", "0.5", "1", "10"])
     rows[2].set_yscale("log")
     rows[-1].set_xlabel("time [ms]")
     left.align_ylabels()
@@ -224,18 +197,8 @@ def draw(run: Run, convergence: Array, shaken: str, path: Path) -> None:
     save(figure, path)
 
 
-def write_tables(runs: dict[str, Run], convergence: Array, out: Path) -> None:
-    """Write what was recorded in every run, and the convergence, SI units."""
-    with (out / "two-fmus.csv").open("w", newline="", encoding="utf-8") as file:
-        table = csv.writer(file)
-        table.writerow(["run", "time", *(name for _, name in RECORDED)])
-        for name, run in runs.items():
-            table.writerows([name, *row] for row in np.column_stack(list(run.values())).tolist())
-    write_table(out / "two-fmus-convergence.csv", "step,openings.late,voltage.meanDifference", convergence)
-
-
 def summary(runs: dict[str, Run], convergence: Array) -> str:
-    """Say what came out."""
+    """Describe the results."""
     run = runs["FMPy"]
     opened = len(instants(run, "contact.lastOpening"))
     voltage, current = (np.max(np.abs(run[f"contact.{each}"])) for each in ("voltage", "current"))
@@ -243,7 +206,7 @@ def summary(runs: dict[str, Run], convergence: Array) -> str:
         f"{opened} openings, {100 * np.mean(run['contact.force'] <= 0):.1f} % of the time open",
         f"at most {voltage:.3f} V and {current:.4f} A; the contact is valid below 12 V and 0.4 A"
         + ("" if voltage < 12 and current < 0.4 else ": above, it would burn an arc"),
-        "largest difference from FMPy at the instants of libcosim",
+        "largest difference from FMPy at the times of libcosim",
     ]
     for name, other in list(runs.items())[1:]:
         first = len(run["time"]) - len(other["time"])
@@ -274,34 +237,42 @@ def main() -> int:
     coarsest = 2**halvings
     count = coarsest * round(1e9 * periods / given.frequency / nanoseconds / coarsest)
 
-    fmus = {"contact": given.fmu.resolve(), "bench": FmuBuilder.build_FMU(BENCH, dest=given.out).resolve()}
+    fmus = {
+        "contact": given.fmu.resolve(),
+        "bench": FmuBuilder.build_FMU(BENCH, dest=given.out, project_files=[CIRCUIT]).resolve(),
+    }
     bench = {name: start for name, _, start, _ in PARAMETERS}
     bench |= {"supply.voltage": given.voltage, "table.amplitude": given.amplitude, "table.frequency": given.frequency}
     starts: Starts = {"contact": {"solver.tolerance": 1e-7}, "bench": bench}
     system = given.out / "system.ssp"
     write_system(system, fmus, starts)
 
-    steps = count * ((2 if NO_LIBCOSIM else 4) + FINER) + sum(count // 2**each for each in range(1, halvings + 1))
+    steps = count * ((1 if NO_LIBCOSIM else 2) + FINER) + sum(count // 2**each for each in range(1, halvings + 1))
     # Whole nanoseconds in s, rounded once, as libcosim has them.
     time = np.arange(count + 1) * nanoseconds / 1e9
     with tqdm(total=steps, unit="step", desc="communication steps") as bar:
         runs = {"FMPy": by_fmpy(fmus, starts, time, bar)}
         if not NO_LIBCOSIM:
-            runs["libcosim"] = by_libcosim(wired_in_libcosim(fmus, starts, nanoseconds), time, bar)
-            runs["libcosim SSP"] = by_libcosim(CosimExecution.from_ssp_file(str(system), nanoseconds), time, bar)
-        runs["FMPy, t = n h"] = by_fmpy(fmus, starts, np.arange(count + 1) * (1e-9 * nanoseconds), bar)
+            runs["libcosim"] = by_libcosim(CosimExecution.from_ssp_file(str(system), nanoseconds), time, bar)
         coarser = [by_fmpy(fmus, starts, time[:: 2**halving], bar) for halving in range(1, halvings + 1)]
         fine = np.arange(FINER * count + 1) * (nanoseconds / FINER) / 1e9
         reference = by_fmpy(fmus, starts, fine, bar, generator=True)
     convergence = np.array([(run["time"][1], *errors(run, reference)) for run in [runs["FMPy"], *coarser]])
 
     if NO_LIBCOSIM:
-        print(f"libcosim is not here ({NO_LIBCOSIM}): FMPy alone ran the wiring, nobody ran system.ssp")
+        print(f"libcosim is not here ({NO_LIBCOSIM}): only FMPy ran the coupling, and system.ssp was not run")
     print(summary(runs, convergence))
-    write_tables(runs, convergence, given.out)
+    for name, run in runs.items():
+        write_table(given.out / f"two-fmus-{name}.csv", ",".join(run), np.column_stack(list(run.values())), digits=17)
+    write_table(given.out / "two-fmus-convergence.csv", "step,openings.late,voltage.meanDifference", convergence)
     shaken = f"shaken with {given.amplitude:g} m/s² at {given.frequency:g} Hz"
     draw(runs["FMPy"], convergence, shaken, given.out / "two-fmus.png")
-    for name in ("TestBench.fmu", "system.ssp", "two-fmus.csv", "two-fmus-convergence.csv", "two-fmus.png"):
+    for name in (
+        "TestBench.fmu",
+        "system.ssp",
+        *(f"two-fmus-{run}.csv" for run in [*runs, "convergence"]),
+        "two-fmus.png",
+    ):
         print(given.out / name)
     return 0
 

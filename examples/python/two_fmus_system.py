@@ -11,7 +11,7 @@ from two_fmus_bench import UNITS
 # From instance and output to instance and input, with the unit. The first is the vibration.
 WIRES = [
     ("bench", "table.acceleration", "contact", "base.acceleration", "m/s2"),
-    ("contact", "contact.resistance", "bench", "contact.resistance", "Ohm"),
+    ("contact", "contact.conductance", "bench", "contact.conductance", "S"),
     ("bench", "contact.current", "contact", "contact.current", "A"),
 ]
 SSP = {

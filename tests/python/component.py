@@ -9,6 +9,8 @@ from fmpy import simulate_fmu
 from relay_contact import Array, Component, Contact, Values, fmu_path
 
 FMU = fmu_path()
+# The same with integers in place of enumerations.
+PLAIN = FMU.with_name("RelayContact-plain.fmu")
 COMPONENT = Component(FMU)
 
 # Start values of the parameters.
@@ -30,17 +32,6 @@ def run(
         str(FMU), stop_time=stop, output_interval=step, start_values=start, output=output, input=signals
     )
     return {name: np.asarray(result[name]) for name in ["time", *output]}
-
-
-def extremes(values: Array) -> tuple[float, float]:
-    """Give least and greatest value of a smooth curve sampled evenly, by the parabola through three points."""
-
-    def greatest(samples: Array) -> float:
-        peak = int(np.argmax(samples[1:-1])) + 1
-        left, middle, right = samples[peak - 1 : peak + 2]
-        return float(middle + (right - left) ** 2 / (8 * (2 * middle - left - right)))
-
-    return -greatest(-values), greatest(values)
 
 
 class Instance(Contact):

@@ -108,13 +108,6 @@ def test_without_a_generator_nothing_moves() -> None:
 RANDOM: Values = {"effects.excitation": "Random", "excitation.frequency": 50.0}
 
 
-def test_random_acceleration_follows_from_its_seed() -> None:
-    first, again, other = (force({**RANDOM, "excitation.seed": seed}) for seed in (1, 1, 2))
-    assert (first == again).all()
-    # Two independent courses differ by more than either of them moves.
-    assert np.std(first - other) > max(np.std(first), np.std(other))
-
-
 @pytest.mark.parametrize(("band", "seed"), [((50.0, 2000.0), 1), ((1200.0, 1500.0), 2)])
 def test_random_force_has_the_mean_square_of_its_spectral_density(band: tuple[float, float], seed: int) -> None:
     density, step, settled, stop = 0.5, 2.0**-12, 0.125, 8.0

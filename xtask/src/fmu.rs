@@ -10,11 +10,23 @@ use commands::{cargo, command, output, read, run, write};
 use relay_contact::{C_HEADER, MODEL_DESCRIPTION};
 
 use crate::package::{Files, pack};
-use crate::{bill, documentation, licences, linked};
+use crate::{bill, documentation, licences, linked, plain};
 
 /// Writes `dist/RelayContact.fmu` and returns its path. Also writes, for C programs, the library to `lib` and its
 /// header to `include`.
 pub fn build() -> Result<PathBuf> {
+    write("dist/RelayContact.fmu", &pack(&contents()?)?)
+}
+
+/// Writes `dist/RelayContact-plain.fmu`, whose choices are integers, and returns its path.
+pub fn build_plain() -> Result<PathBuf> {
+    let mut files = contents()?;
+    files.insert("modelDescription.xml".to_owned(), plain::description()?.into_bytes());
+    write("dist/RelayContact-plain.fmu", &pack(&files)?)
+}
+
+/// The contents of the archive for this machine.
+fn contents() -> Result<Files> {
     let metadata = linked::metadata()?;
     build_library(&metadata)?;
     let (folder, prefix, extension) = platform()?;
@@ -22,8 +34,7 @@ pub fn build() -> Result<PathBuf> {
     let library = read(metadata.target_directory.as_std_path().join("release").join(&name))?;
     write("dist/include/relay_contact.h", C_HEADER.as_bytes())?;
     write(format!("dist/lib/{name}"), &library)?;
-    let files = files(&metadata, [(folder, extension, library)], Path::new("rustc"), &[])?;
-    write("dist/RelayContact.fmu", &pack(&files)?)
+    files(&metadata, [(folder, extension, library)], Path::new("rustc"), &[])
 }
 
 /// Cargo's arguments to build the shared library only, as otherwise it is not optimised across crates.

@@ -18,7 +18,8 @@ use crate::{fmu, python, report};
 const FOLDER: &str = "out/conformance";
 
 /// Tests in `conformance/python` that write rows of the table.
-const WITH_ROWS: [&str; 6] = [
+const WITH_ROWS: [&str; 7] = [
+    "conformance/python/test_container.py",
     "conformance/python/test_ecos.py",
     "conformance/python/test_fmpy.py",
     "conformance/python/test_libcosim.py",
@@ -56,12 +57,13 @@ pub fn for_report(arguments: &report::Arguments) -> Result<()> {
     python::test(&WITH_ROWS, &component)
 }
 
-/// Writes the reference runs and the system of two contacts, and clears the table.
+/// Writes the reference runs, the system of two contacts and the component without enumerations; clears the table.
 fn prepare(component: &Path) -> Result<()> {
     let folder = root().join(FOLDER);
     if folder.exists() {
         fs::remove_dir_all(&folder).context("cannot clear the table of results")?;
     }
+    fmu::build_plain()?;
     report::start("reference-runs", &[""; 0])?;
     let description = "SystemStructure.ssd";
     let system = Files::from([

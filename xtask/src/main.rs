@@ -8,6 +8,7 @@ mod importers;
 mod licences;
 mod linked;
 mod package;
+mod plain;
 mod python;
 mod release;
 mod report;
@@ -33,7 +34,11 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Task {
     /// Build the component and pack it as dist/RelayContact.fmu
-    Fmu,
+    Fmu {
+        /// As dist/RelayContact-plain.fmu, with integers in place of enumerations, for tools that cannot set those
+        #[arg(long)]
+        plain: bool,
+    },
     /// Run a scene, write its outputs to out/scenes/NAME.csv and .png, and print a summary
     #[command(disable_help_flag = true)]
     Scene(report::Arguments),
@@ -67,7 +72,9 @@ const NONE: [&str; 0] = [];
 
 fn main() -> ExitCode {
     let outcome = match Arguments::parse().task {
-        Task::Fmu => fmu::build().map(|path| println!("{}", path.display())),
+        Task::Fmu { plain } => {
+            if plain { fmu::build_plain() } else { fmu::build() }.map(|path| println!("{}", path.display()))
+        }
         Task::Scene(arguments) => report::run("scene", &arguments),
         Task::Ssv => report::start("ssv", &NONE),
         Task::Demo => demo::run(),

@@ -6,9 +6,11 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
+from scipy.linalg import expm
 
-from relay_contact import fmu_path
+from relay_contact import Array, fmu_path
 
 FOLDER = Path(__file__).resolve().parents[1]
 FMU = fmu_path()
@@ -22,7 +24,8 @@ def run(tmp_path: Path) -> Run:
     """Run an example in its short form, its files in the test's folder; fail where it fails."""
 
     def example(name: str, *arguments: str) -> str:
-        command = [sys.executable, str(FOLDER / f"{name}.py"), "--quick", "--fmu", str(FMU), "--out", str(tmp_path)]
+        quick = [] if name == "paper_1khz" else ["--quick"]
+        command = [sys.executable, str(FOLDER / f"{name}.py"), *quick, "--fmu", str(FMU), "--out", str(tmp_path)]
         result = subprocess.run([*command, *arguments], capture_output=True, text=True, check=False)
         assert result.returncode == 0, result.stdout + result.stderr
         return result.stdout
@@ -34,6 +37,38 @@ def table(path: Path) -> list[dict[str, str]]:
     """Read a table with a head."""
     with path.open(newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))
+
+
+def run_inside(code: str, name: str, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """Run an example in its short form within code that calls it by `run()`."""
+    path = (FOLDER / f"{name}.py").as_posix()
+    arguments = (path, "--quick", "--fmu", str(FMU), *arguments)
+    start = f"""import runpy, sys
+def run():
+    sys.argv = {list(arguments)!r}
+    sys.path.insert(0, {FOLDER.as_posix()!r})
+    runpy.run_path({path!r}, run_name="__main__")
+"""
+    return subprocess.run([sys.executable, "-c", start + code], capture_output=True, text=True, check=False)
+
+
+# The circuit of the examples once more: V, Ohm, H, Ohm, F.
+SOURCE, LOAD, COIL, QUENCH, CAPACITOR = 6.0, 60.0, 1e-3, 47.0, 220e-9
+
+
+def contact_voltage(state: Array, conductance: float) -> float:
+    """Give the voltage of the contact: Kirchhoff's law at its node."""
+    return float((state[0] + state[1] / QUENCH) / (conductance + 1 / QUENCH))
+
+
+def advanced(state: Array, conductance: float, length: float) -> Array:
+    """Step the circuit by SciPy's matrix exponential, the source as a third state."""
+    drop = 1 / (conductance + 1 / QUENCH)
+    matrix = np.zeros((3, 3))
+    matrix[0] = [-(LOAD + drop) / COIL, -drop / QUENCH / COIL, SOURCE / COIL]
+    matrix[1] = [(1 - conductance * drop) / CAPACITOR, -conductance * drop / QUENCH / CAPACITOR, 0]
+    after: Array = (expm(matrix * length) @ np.append(state, 1.0))[:2]
+    return after
 
 
 def is_picture(path: Path) -> bool:

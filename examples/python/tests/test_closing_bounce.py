@@ -7,7 +7,7 @@ import pytest
 
 from conftest import Run, is_picture, table
 from reference import Reference, crossings
-from relay_contact import Values
+from relay_contact import Values, read_table
 
 GAP, OVERTRAVEL = 20e-6, 200e-6
 
@@ -17,7 +17,7 @@ def test_bounce_is_that_of_a_second_solution(run: Run, tmp_path: Path) -> None:
     run("closing_bounce")
     shown = {name: float(value) for name, value in table(tmp_path / "closing-bounce.csv")[0].items()}
     assert (shown["speed [m/s]"], shown["contact.damping [s]"]) == (speed, damping)
-    course = np.array([[float(v) for v in row.values()] for row in table(tmp_path / "closing-bounce-course.csv")])
+    course = np.column_stack(list(read_table(tmp_path / "closing-bounce-course.csv").values()))
     # The spring is at rest before: it is touched when the gap is travelled. Instants are located to 1 ns.
     assert abs(shown["first touch [s]"] - GAP / speed) < 1e-9
     after = course[:, 0] - GAP / speed

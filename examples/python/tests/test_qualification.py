@@ -1,5 +1,6 @@
 """Sweep and shock against the exact linear beam, a second nonlinear solution and closed forms."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 
 from conftest import Run, is_picture, table
 from reference import Reference, crossings
+from relay_contact import read_table
 
 G = 9.80665
 Row = dict[str, float]
@@ -31,15 +33,16 @@ def rows(path: Path) -> dict[tuple[str, str], list[Row]]:
 
 def verdicts(printed: str) -> dict[str, list[str]]:
     """Give the lines of the table by test."""
-    lines = [line for line in printed.splitlines() if line.startswith(("method 2", "MIL-PRF"))]
-    return {line[:15].strip(): line[52:].split() for line in lines if "pass " in line or "FAIL " in line}
+    cells = [re.split(r"  +", line) for line in printed.splitlines()]
+    return {row[0]: row[2:] for row in cells if row[2:3] in (["pass"], ["FAIL"], ["undecided"])}
 
 
 def test_sweep_and_shock(run: Run, tmp_path: Path) -> None:
     printed = verdicts(run("qualification"))
-    assert [line[0] for line in printed.values()] == ["pass", "FAIL", "FAIL"]
+    # The parameters are known to some per cent: a margin that differs from 1 by less decides nothing.
+    assert [line[0] for line in printed.values()] == ["pass", "undecided", "FAIL"]
     assert is_picture(tmp_path / "qualification.png")
-    shock = np.array([[float(v) for v in row.values()] for row in table(tmp_path / "qualification-shock.csv")])
+    shock = np.column_stack(list(read_table(tmp_path / "qualification-shock.csv").values()))
     preload = shock[0, 1]
     sweeps = rows(tmp_path / "qualification.csv")
     force_like_exact_beam(sweeps, preload)
@@ -69,12 +72,14 @@ def force_like_exact_beam(sweeps: dict[tuple[str, str], list[Row]], preload: flo
 
 def thirty_g(sweeps: dict[tuple[str, str], list[Row]], printed: list[str], preload: float) -> None:
     """Compare threshold, number and length of interruptions."""
-    longest, weakest, margin = float(printed[2]) * 1e-6, float(printed[6]), float(printed[8])
+    longest, weakest, margin = (float(printed[cell].split()[0]) for cell in (2, 4, 5))
     threshold = min(preload / response(f) / G for f in np.arange(1100, 1300, 1.0))
+    longest *= 1e-6
     assert 1150 < weakest < 1230
     # A sine is below zero for 10 us where it is (10 us omega)^2 / 8 = 7e-4 higher than one that touches it; a contact
-    # that opens stays open for longer; 1e-4 each for the bisection and the printed digits.
-    assert threshold * (1 - 1e-4) < 30 * margin < threshold * (1 + 7e-4 + 2e-4), (threshold, margin)
+    # that opens stays open for longer; 1e-4 for the bisection, half a unit of the third digit printed.
+    assert threshold * (1 - 6e-4) < 30 * margin < threshold * (1 + 7e-4 + 6e-4), (threshold, margin)
+    assert float(printed[5].split()[-1]) == pytest.approx(0.023 * margin, abs=5e-4)
     for way in ("up", "down"):
         bins = sweeps["MIL-PRF-28776", way]
         open_ = [row for row in bins if row["interruptions"] > 0]
@@ -90,26 +95,26 @@ def thirty_g(sweeps: dict[tuple[str, str], list[Row]], printed: list[str], prelo
     motion = SPECIMEN.motion(
         lambda time: 30 * G * float(np.sin(2 * np.pi * frequency * time)), stop, 1e-8, max_step=5e-6
     )
-    opened, closed = crossings(motion, SPECIMEN.force_of_resistance(60.0), np.linspace(0, stop, 9000))
+    opened, closed = crossings(motion, SPECIMEN.force_of_resistance(600.0), np.linspace(0, stop, 9000))
     # The sweep of 60 s lags by some 1/10000, which the root of the excess over the threshold makes 1 %.
     assert np.isclose(longest, closed[-1] - opened[len(closed) - 1], rtol=0.015)
 
 
 def shocked(shock: np.ndarray[tuple[int, int], np.dtype[np.float64]], printed: list[str], preload: float) -> None:
     """Compare the shock with that on a spring without vibration of its own."""
-    time, pressing, pulling = shock.T
+    time, closing, opening = shock.T
     peak = SPECIMEN.carried_mass * 50 * G
     # The pulse has 45 Hz, the spring 1355 Hz: its own vibration, 45/1355 of the peak at first, dies away.
-    assert np.isclose(pressing.max() - preload, peak, rtol=0.01)
+    assert np.isclose(closing.max() - preload, peak, rtol=0.01)
     # Before it opens the spring is linear: what one direction adds the other takes.
-    before = time < time[np.argmax(pulling < 0.05 * preload)]
+    before = time < time[np.argmax(opening < 0.05 * preload)]
     assert before.sum() > 300
-    assert np.max(np.abs(pressing + pulling - 2 * preload)[before]) < 1e-3 * preload
-    assert printed[-2] == "pulling"
-    assert np.isclose(float(printed[-1]), preload / peak, rtol=0.01)
+    assert np.max(np.abs(closing + opening - 2 * preload)[before]) < 1e-3 * preload
+    assert printed[4] == "opening"
+    assert np.isclose(float(printed[5].split()[0]), preload / peak, rtol=0.01)
     # The sampled course is without force as long as the monitor says, to the two samples.
-    open_time = np.sum(pulling < SPECIMEN.force_of_resistance(60.0)) * 1e-5
-    assert abs(open_time - 1e-3 * float(printed[2])) < 3e-5
+    open_time = np.sum(opening < SPECIMEN.force_of_resistance(600.0)) * 1e-5
+    assert abs(open_time - 1e-3 * float(printed[2].split()[0])) < 3e-5
 
 
 def test_wrong_frequencies_are_refused(run: Run) -> None:

@@ -1,59 +1,32 @@
-"""The adaptive master: what it takes back leaves no trace, its error falls with the tolerance, states are freed."""
+"""The adaptive master: rejected steps leave no trace, its error falls with the tolerance, states are freed."""
 
-import os
-import subprocess
-import sys
 from collections import defaultdict
 from pathlib import Path
 
 import numpy as np
 import pytest
-from fmpy import extract, instantiate_fmu, read_model_description
-from numpy.typing import NDArray
-from scipy.linalg import expm
 
-from conftest import FMU, FOLDER, Run, is_picture, table
+from conftest import COIL, FMU, SOURCE, Run, advanced, is_picture, run_inside, table
+from relay_contact import Array, Component, read_table
 
-Array = NDArray[np.float64]
-SOURCE, LOAD, COIL, QUENCH, CAPACITOR = 6.0, 60.0, 1e-3, 47.0, 220e-9
 STOP = 2.5e-3
 
 
-def outputs(folder: Path, steps: Array, names: list[str]) -> list[list[float]]:
+def outputs(steps: Array, names: list[str]) -> Array:
     """Give outputs at the start and after each step: a plain master that never goes back."""
-    description = read_model_description(FMU)
-    references = {variable.name: variable.valueReference for variable in description.modelVariables}
-    fmu = instantiate_fmu(extract(str(FMU), str(folder / "fmu")), description, fmi_type="CoSimulation")
-    fmu.setupExperiment(startTime=0.0)
-    fmu.setInteger([references["effects.excitation"], references["effects.axialForce"]], [2, 2])
-    fmu.setReal([references["excitation.amplitude"], references["excitation.frequency"]], [400.0, 1000.0])
-    fmu.enterInitializationMode()
-    fmu.exitInitializationMode()
-    wanted = [references[name] for name in names]
-    values = [fmu.getReal(wanted)]
-    for time, length in steps:
-        fmu.doStep(time, length)
-        values.append(fmu.getReal(wanted))
-    fmu.terminate()
-    fmu.freeInstance()
-    return values
+    with Component(FMU).in_scene("chatter-41g") as contact:
+        values = [contact.real(*names)]
+        for time, length in steps:
+            contact.step(time, length)
+            values.append(contact.real(*names))
+    return np.array(values)
 
 
-def advanced(state: Array, conductance: float, length: float) -> Array:
-    """Step the circuit by SciPy's matrix exponential, the source as a third state."""
-    drop = 1 / (conductance + 1 / QUENCH)
-    matrix = np.zeros((3, 3))
-    matrix[0] = [-(LOAD + drop) / COIL, -drop / QUENCH / COIL, SOURCE / COIL]
-    matrix[1] = [(1 - conductance * drop) / CAPACITOR, -conductance * drop / QUENCH / CAPACITOR, 0]
-    after: Array = (expm(matrix * length) @ np.append(state, 1.0))[:2]
-    return after
-
-
-def test_steps_taken_back_leave_no_trace(run: Run, tmp_path: Path) -> None:
+def test_rejected_steps_leave_no_trace(run: Run, tmp_path: Path) -> None:
     said = run("rollback")
     assert "the same bits" in said
     assert is_picture(tmp_path / "rollback-steps.png")
-    rows = np.array([[float(value) for value in row.values()] for row in table(tmp_path / "rollback-steps.csv")])
+    rows = np.column_stack(list(read_table(tmp_path / "rollback-steps.csv").values()))
     assert len(rows) > 100
     time, length, current, voltage, mean = rows.T
 
@@ -63,7 +36,7 @@ def test_steps_taken_back_leave_no_trace(run: Run, tmp_path: Path) -> None:
     assert time[-1] + length[-1] == pytest.approx(STOP, abs=2e-9)
 
     # The component gives the very same bits where nobody ever goes back. (The table holds all digits.)
-    values = np.array(outputs(tmp_path, rows[:, :2], ["contact.conductance"]))[:, 0]
+    values = outputs(rows[:, :2], ["contact.conductance"])[:, 0]
     assert np.array_equal((values[:-1] + values[1:]) / 2, mean)
 
     # And the circuit follows from them. Rounding: the exponential of a 3 x 3 matrix of entries up to 6e3 V/H * 50 us.
@@ -94,45 +67,24 @@ def test_error_falls_with_the_tolerance_and_with_the_step(run: Run, tmp_path: Pa
     order = np.polyfit(np.log(fixed[:, 0]), np.log(fixed[:, 2]), 1)[0]
     assert order == pytest.approx(1, abs=0.25)
 
-    # Told: what is left is smooth, so of second order. A step's own error, h^3, is kept at the tolerance, and what adds
-    # up goes with h^2: the tolerance to the power 2/3. Each error scatters by a fifth, as steps start where they happen
-    # to: the slope of four decades by 0.04. Three times that.
-    told = np.array([entry for entry in work["adaptive told"] if entry[0] <= 1e-4])
-    assert len(told) == 4
-    assert np.polyfit(np.log(told[:, 0]), np.log(told[:, 2]), 1)[0] == pytest.approx(2 / 3, abs=0.12)
-    assert np.all(np.diff(told[:, 2]) < 0)
-    assert np.all(np.diff(told[:, 1]) > 0)
-    # Not told: it misses events in the second half of a step, but the error falls.
-    blind = np.array(work["adaptive"])
-    assert blind[-1, 2] < blind[0, 2] / 10
-    # What being told buys: a tenth of the calls of the best fixed master, for a fiftieth of its error.
-    assert told[0, 1] < fixed[-1, 1] / 10
-    assert told[0, 2] < fixed[-1, 2] / 50
-
-    # The reference itself: another master, of fixed steps of 0.1 us with the circuit's steps cut at the events, misses
-    # the current at these points by its own second order only.
-    rows = np.array([[float(value) for value in row.values()] for row in table(tmp_path / "rollback-steps.csv")])
-    grid = np.arange(round(STOP / 1e-7) + 1) * 1e-7
-    names = ["contact.conductance", "contact.lastOpening", "contact.lastClosing"]
-    values = np.array(outputs(tmp_path, np.column_stack([grid[:-1], np.diff(grid)]), names))
-    events = np.unique(values[:, 1:])[1:]
-    assert len(events) == 4
-    points, conductance = np.append(grid, events), np.append(values[:, 0], np.full(4, 1e-9))
-    order = np.argsort(points)
-    points, conductance = points[order], conductance[order]
-    means = (conductance[:-1] + conductance[1:]) / 2
-    states = [rows[0, 2:4]]
-    for mean, length in zip(means, np.diff(points), strict=True):
-        states.append(advanced(states[-1], mean, length))
-    last = np.searchsorted(points, rows[:, 0], side="right") - 1
-    exact = [advanced(states[k], means[k], at - points[k])[0] for k, at in zip(last, rows[:, 0], strict=True)]
-    # 1e5 1/s times 0.1 us, squared, of 0.1 A: 1e-5 A. The table says how much the adaptive run itself misses.
-    assert np.abs(rows[:, 2] - exact).max() < told[0, 2] + 1e-5
+    # With events the rest is smooth, of second order. The error of a step, h^3, is kept at the tolerance, and the sum
+    # goes with h^2: the tolerance to the power 2/3. Each error scatters by a fifth, as steps start where they happen
+    # to: the slope over four decades by 0.04. Three times that.
+    with_events = np.array([entry for entry in work["adaptive with events"] if entry[0] <= 1e-4])
+    assert len(with_events) == 4
+    assert np.polyfit(np.log(with_events[:, 0]), np.log(with_events[:, 2]), 1)[0] == pytest.approx(2 / 3, abs=0.12)
+    assert np.all(np.diff(with_events[:, 2]) < 0)
+    assert np.all(np.diff(with_events[:, 1]) > 0)
+    # Without: it misses events in the second half of a step, but the error falls.
+    without = np.array(work["adaptive"])
+    assert without[-1, 2] < without[0, 2] / 10
+    # What the events are worth: a tenth of the calls of the best fixed master, for a fiftieth of its error.
+    assert with_events[0, 1] < fixed[-1, 1] / 10
+    assert with_events[0, 2] < fixed[-1, 2] / 50
 
 
 def test_every_state_is_freed(tmp_path: Path) -> None:
     count = """
-import runpy, sys
 from fmpy.fmi2 import FMU2Slave
 alive, most, all = set(), 0, 0
 def get(self, get=FMU2Slave.getFMUstate):
@@ -148,16 +100,12 @@ def end(self, end=FMU2Slave.freeInstance):
     assert not alive, "states outlive their instance"
     end(self)
 FMU2Slave.getFMUstate, FMU2Slave.freeFMUstate, FMU2Slave.freeInstance = get, free, end
-sys.argv = sys.argv[1:]
-sys.path.insert(0, sys.argv[0].rpartition("/")[0])
 try:
-    runpy.run_path(sys.argv[0], run_name="__main__")
+    run()
 finally:
     print("states:", all, most, len(alive))
 """
-    script = (FOLDER / "rollback.py").as_posix()
-    command = [sys.executable, "-c", count, script, "--quick", "--fmu", str(FMU), "--out", str(tmp_path)]
-    result = subprocess.run(command, capture_output=True, text=True, check=False, env=os.environ)
+    result = run_inside(count, "rollback", "--out", str(tmp_path))
     assert result.returncode == 0, result.stderr
     saved, most, left = (int(word) for word in result.stdout.splitlines()[-1].split()[1:])
     assert saved > 1000

@@ -1,11 +1,10 @@
-"""The contact and its test bench: three ways of running them, the circuit, the coupling, and the system as a file."""
+"""The contact and its test bench: two ways of running them, the circuit, the coupling, and the system as a file."""
 
 import json
 import platform
 import subprocess
 import sys
 import zipfile
-from collections import defaultdict
 from collections.abc import Callable
 from pathlib import Path
 
@@ -14,9 +13,9 @@ import pytest
 from fmpy.ssp.ssd import read_ssd
 from fmpy.validation import validate_fmu
 from numpy.typing import NDArray
-from scipy.linalg import expm
 
-from conftest import Run, is_picture, table
+from conftest import LOAD, SOURCE, Run, advanced, contact_voltage, is_picture
+from relay_contact import Array, read_table
 
 if platform.machine() not in ("x86_64", "AMD64") or sys.platform == "darwin":
     pytest.skip("PythonFMU has no binary for this machine", allow_module_level=True)
@@ -50,14 +49,6 @@ print(json.dumps({variable: values for variable, (_, _, values) in result.items(
 Columns = dict[str, NDArray[np.float64]]
 
 
-def runs(path: Path) -> dict[str, Columns]:
-    """Read the columns of every run."""
-    rows = defaultdict(list)
-    for row in table(path):
-        rows[row.pop("run")].append(row)
-    return {run: {name: np.array([float(row[name]) for row in each]) for name in each[0]} for run, each in rows.items()}
-
-
 def simulate_alone(system: Path, folder: Path, steps: int, edit: Callable[[str], str] = str) -> Columns:
     """Copy a system alone to a new folder, its texts edited, and run it there; give what libcosim saw."""
     folder.mkdir()
@@ -75,61 +66,44 @@ def test_the_circuit_obeys_its_equations_and_the_coupling_converges(run: Run, tm
     assert "4 openings" in printed
     assert is_picture(tmp_path / "two-fmus.png")
     assert validate_fmu(str(tmp_path / "TestBench.fmu")) == []
-    measured = runs(tmp_path / "two-fmus.csv")["FMPy"]
+    measured = read_table(tmp_path / "two-fmus-FMPy.csv")
 
-    # Table: its sine. Circuit: the matrix exponential of its equations, given the resistance of each step.
+    # Table: its sine. Circuit: the matrix exponential of its equations, given the conductance of each step.
     time = measured["time"]
     sine = 400 * np.sin(2 * np.pi * 1000 * time)
     # What rounding makes of a phase of 25 rad.
     assert np.max(np.abs(measured["table.acceleration"] - sine)) < 400 * 25 * np.finfo(float).eps
-    source, load, inductance, quench, capacitance = 6.0, 60.0, 1e-3, 47.0, 220e-9
-    resistances = measured["contact.resistance"]
-    rest = source / (load + resistances[0])
-    state = np.array([rest, rest * resistances[0], 1.0])
+    conductances = measured["contact.conductance"]
+    rest = SOURCE / (LOAD + 1 / conductances[0])
+    state = np.array([rest, rest / conductances[0]])
     worst = 0.0
-    for n, resistance in enumerate(resistances[:-1]):
-        of_state = np.array([1.0, 1 / quench, 0.0]) / (1 / resistance + 1 / quench)
-        matrix = np.zeros((3, 3))
-        matrix[0] = -of_state / inductance + np.array([-load, 0.0, source]) / inductance
-        matrix[1] = (of_state - np.array([0.0, 1.0, 0.0])) / (quench * capacitance)
-        state = expm(matrix * NANOSECONDS / 1e9) @ state
-        voltage = of_state @ state
+    for n, conductance in enumerate(conductances[:-1]):
+        state = advanced(state, conductance, NANOSECONDS / 1e9)
+        voltage = contact_voltage(state, conductance)
         worst = max(worst, abs(measured["contact.voltage"][n + 1] - voltage))
-        worst = max(worst, abs(measured["contact.current"][n + 1] - voltage / resistance) * load)
+        worst = max(worst, abs(measured["contact.current"][n + 1] - voltage * conductance) * LOAD)
     # Both are exact but for rounding: 2000 steps times the spacing of numbers at 6 V.
     assert worst < 2000 * np.spacing(6.0)
 
     # A sine held over h is late by h/2, and all that it causes; what is left is of the next order.
-    steps, late, difference = (np.array(column) for column in convergence(tmp_path))
+
+    def order(values: Array) -> float:
+        return float(np.polyfit(np.log(steps), np.log(values), 1)[0])
+
+    steps, late, difference = read_table(tmp_path / "two-fmus-convergence.csv").values()
     assert np.allclose(1e9 * steps, [NANOSECONDS, 2 * NANOSECONDS, 4 * NANOSECONDS])
     assert np.all(np.abs(late / steps - 0.5) < 0.05)
-    assert abs(order(steps, late) - 1) < 0.05
+    assert abs(order(late) - 1) < 0.05
     # Each of 7 jumps of the voltage is late by h/2, and by anything up to h until the next point: h with a standard
     # deviation of h / sqrt(12 * 7) = 0.11 h. Over a factor of 4 in h that makes an order of 1 +- 0.11; twice this.
-    assert abs(order(steps, difference) - 1) < 0.22
+    assert abs(order(difference) - 1) < 0.22
 
 
-def convergence(folder: Path) -> list[list[float]]:
-    """Read step, lateness and difference of the voltage."""
-    rows = table(folder / "two-fmus-convergence.csv")
-    return [[float(row[name]) for row in rows] for name in ("step", "openings.late", "voltage.meanDifference")]
-
-
-def order(steps: NDArray[np.float64], values: NDArray[np.float64]) -> float:
-    """Give the order between the largest and the smallest step."""
-    return float(np.log(values[-1] / values[0]) / np.log(steps[-1] / steps[0]))
-
-
-def test_three_ways_give_the_same_and_the_system_runs_alone_by_its_parameters(run: Run, tmp_path: Path) -> None:
+def test_both_ways_give_the_same_and_the_system_runs_alone_by_its_parameters(run: Run, tmp_path: Path) -> None:
     pytest.importorskip("libcosimpy", exc_type=ImportError)
     run("two_fmus")
-    ways = runs(tmp_path / "two-fmus.csv")
-    fmpy = ways["FMPy"]
-    for way in ("libcosim", "libcosim SSP"):
-        assert all(np.array_equal(column, fmpy[name][1:]) for name, column in ways[way].items()), way
-    rounded = np.max(np.abs(ways["FMPy, t = n h"]["contact.force"] - fmpy["contact.force"]))
-    # The rounding of time is felt, by less than the solver's tolerance of 1e-7 of a preload of 0.15 N.
-    assert 0 < rounded < 1e-7 * 0.15
+    fmpy, libcosim = (read_table(tmp_path / f"two-fmus-{way}.csv") for way in ("FMPy", "libcosim"))
+    assert all(np.array_equal(column, fmpy[name][1:]) for name, column in libcosim.items())
 
     system = tmp_path / "system.ssp"
     elements = read_ssd(str(system), validate=True).system.elements
@@ -158,4 +132,7 @@ def test_without_libcosim_fmpy_runs_the_wiring_alone(run: Run, tmp_path: Path, m
     (package / "__init__.py").write_text("raise ImportError('not installed')", encoding="utf-8")
     monkeypatch.setenv("PYTHONPATH", str(package.parent))
     assert "libcosim is not here (not installed)" in run("two_fmus")
-    assert list(runs(tmp_path / "two-fmus.csv")) == ["FMPy", "FMPy, t = n h"]
+    assert sorted(path.name for path in tmp_path.glob("two-fmus-*.csv")) == [
+        "two-fmus-FMPy.csv",
+        "two-fmus-convergence.csv",
+    ]

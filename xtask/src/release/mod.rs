@@ -76,8 +76,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     if runs_here {
         for tests in [
             "conformance/python/test_validate.py",
-            "tests/python/test_check_values.py",
-            "tests/python/test_paper.py",
+            "tests/python/test_effects_outputs.py",
         ] {
             python::test(&[tests], &archive)?;
         }
