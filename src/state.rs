@@ -35,7 +35,7 @@ pub struct State {
     pub last_kink: f64,
     /// Longest step with few nodes that the error estimate allows, s.
     pub short_step: f64,
-    /// Longest step with many nodes that the error estimate allows, s.
+    /// Longest step with many nodes that the error estimate allows, s; 0: none, as an event may follow at once.
     pub long_step: f64,
     /// Force over the last step as deviation from the preload force, N; used to predict that of the next.
     pub predictions: Predictions,
@@ -91,17 +91,18 @@ impl State {
             last_opening,
             last_closing,
             last_kink,
+            short_step,
+            long_step,
             last_step,
             energy_surplus,
             energy_balance,
         ];
-        let positive = |step: &f64| step.is_finite() && *step > 0.0;
         numbers.into_iter().all(|number| number.is_finite())
             && modes.iter().all(|mode| mode.q.is_finite() && mode.v.is_finite())
             && predictions.is_finite()
             && interruptions.is_sound(*time)
-            && positive(short_step)
-            && positive(long_step)
+            && *short_step > 0.0
+            && *long_step >= 0.0
             && [last_opening, last_closing, last_kink]
                 .iter()
                 .all(|event| **event <= time.max(-1.0))

@@ -322,3 +322,36 @@ fn an_interruption_that_hardly_is_one_comes_to_an_end() {
         assert!(count > 0 || force < least + 1e-6, "{force} {least}");
     }
 }
+
+/// However tight the tolerance, a contact whose force is linear up to its opening opens and closes as often, and the
+/// work grows as the steps get shorter.
+#[test]
+fn a_linearised_contact_opens_once_at_every_tolerance() {
+    for amplitude in [389.0, 800.0, 2000.0] {
+        for frequency in [234.0, 792.0, 2500.0] {
+            for (beam, contact) in [(5e-6, 5e-6), (1e-6, 1e-6), (2e-7, 2e-6), (2e-5, 2e-7), (1e-6, 0.0)] {
+                let mut scene = scenes::shaken(amplitude, frequency);
+                scene.effects.contact_law = ContactLawKind::Linearised;
+                scene.beam.stiffness_damping = beam;
+                scene.contact.damping = contact;
+                let mut course = |tolerance| {
+                    scene.solver.tolerance = tolerance;
+                    let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
+                    simulation.step(&Inputs::default(), 0.0, 4e-3).unwrap();
+                    let count = |output| simulation.integer(output);
+                    let steps = count(IntegerOutput::SolverSteps) + count(IntegerOutput::SolverRejectedSteps);
+                    (simulation.events().0.count(), steps)
+                };
+                let (events, steps) = course(1e-8);
+                // Steps of order 9; at the last tolerance of order 5, and up to 16 times as short (`constants::LONGER`).
+                for (tolerance, factor) in [(1e-9, 20), (1e-10, 20), (1e-11, 64)] {
+                    let found = course(tolerance);
+                    assert!(
+                        found.0 == events && found.1 <= factor * steps,
+                        "{amplitude} m/s2, {frequency} Hz, {beam} s, {contact} s, {tolerance}: {found:?}, not {events}, {steps}"
+                    );
+                }
+            }
+        }
+    }
+}

@@ -140,7 +140,8 @@
 //! - *Closing* ([`events::closing`]): in flight, indentation and velocity at the nodes define cubics, whose error is
 //!   estimated from neighbouring nodes. Intervals in which the highest point of the cubic, plus that error, plus the
 //!   amplitudes of modes that vibrate faster than the interval, stays open are clear; others are halved. A grazing
-//!   touch is therefore not missed, as it is by a search for changes of sign.
+//!   touch is therefore not missed, as it is by a search for changes of sign. In the step that begins with an opening,
+//!   an engagement that rounding alone leaves there is no contact.
 //! - *Interruption* ([`events::interruption`]): as the opening, at the force of the threshold resistance.
 //!
 //! After a closing the dissipative part of the force starts like the root of time (`k_j ~ d^(1/2)`, `d ~ t`), which no

@@ -142,6 +142,74 @@ fn a_state_goes_through_bytes_bit_by_bit() {
     }
 }
 
+/// A scene in which the contact opens or starts open, and its communication step, s.
+fn opening(number: u32) -> (Instance, f64) {
+    let mut primes = [2.0_f64, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0].into_iter();
+    // Multiples of irrational numbers fill the unit interval evenly.
+    let mut draw = |least: f64, greatest: f64| {
+        let x = primes
+            .next()
+            .map_or(0.0, |prime| (f64::from(number) * prime.sqrt()).fract());
+        least * (greatest / least).powf(x)
+    };
+    let fmu = Instance::new();
+    assert_eq!(fmu.set_integer("effects.excitation", 2), fmi2OK);
+    for (name, least, greatest) in [
+        ("excitation.amplitude", 200.0, 3000.0),
+        ("excitation.frequency", 100.0, 3000.0),
+        ("beam.stiffnessDamping", 1e-7, 1e-4),
+        ("contact.damping", 1e-7, 1e-4),
+        ("solver.tolerance", 1e-9, 1e-3),
+    ] {
+        assert_eq!(fmu.set_real(name, draw(least, greatest)), fmi2OK);
+    }
+    let overtravel = draw(2e-5, 4e-4);
+    if number.is_multiple_of(3) {
+        assert_eq!(fmu.set_real("contact.overtravel", -overtravel), fmi2OK);
+    } else {
+        assert_eq!(fmu.set_real("contact.overtravel", overtravel), fmi2OK);
+        assert_eq!(
+            fmu.set_integer("effects.contactLaw", if number % 3 == 1 { 1 } else { 2 }),
+            fmi2OK
+        );
+    }
+    fmu.initialize();
+    (fmu, draw(1e-6, 1e-4))
+}
+
+#[test]
+fn every_state_goes_through_bytes() {
+    let mut scenes: Vec<_> = (0..40).map(opening).collect();
+    let fmu = Instance::new();
+    assert_eq!(fmu.set_integer("effects.excitation", 2), fmi2OK);
+    assert_eq!(fmu.set_real("excitation.amplitude", 450.0), fmi2OK);
+    fmu.initialize();
+    scenes.push((fmu, 1e-5));
+    for (number, (fmu, size)) in scenes.into_iter().enumerate() {
+        let other = Instance::new();
+        for k in 0..500 {
+            let state = save(&fmu);
+            let bytes = to_bytes(&fmu, state);
+            let mut made = ptr::null_mut();
+            assert_eq!(
+                from_bytes(&other, &bytes, &mut made),
+                fmi2OK,
+                "scene {number}, step {k}"
+            );
+            assert_eq!(to_bytes(&other, made), bytes);
+            if k % 50 == 0 {
+                assert_eq!(restore(&other, made), fmi2OK);
+                let on = trace(&fmu, k, 60, size);
+                assert_eq!(trace(&other, k, 60, size), on, "scene {number}, step {k}");
+                assert_eq!(restore(&fmu, state), fmi2OK);
+            }
+            free(&fmu, state);
+            free(&other, made);
+            trace(&fmu, k, 1, size);
+        }
+    }
+}
+
 #[test]
 fn bytes_that_are_no_state_are_an_error_that_says_which() {
     let fmu = shaken();

@@ -266,15 +266,22 @@ fn error<const S: usize>(
 /// Whether the error of a step from `state` is explained by rounding of the sums over the modes: after an impact the
 /// modal velocities are large and their sum at the tip is small.
 pub(crate) fn is_rounding<const S: usize>(model: &Model, state: &State, trial: &Trial<S>) -> bool {
+    let (displacement, velocity) = sum_rounding(model, state);
+    // The force at the first node feeds back only over the time up to it, some 1 / S^2 of the step.
+    let reaction = 1.0 + trial.tangent.gain / (S * S) as f64;
+    let Tangent { stiffness, damping, .. } = trial.tangent;
+    trial.error <= (stiffness * displacement + damping * velocity) / reaction
+}
+
+/// Rounding of displacement (m) and velocity (m/s) of the tip as sums over the modes.
+pub(crate) fn sum_rounding(model: &Model, state: &State) -> (f64, f64) {
     let (mut displacement, mut velocity) = (0.0, 0.0);
     for (mode, at) in model.modes.iter().zip(&state.modes) {
         displacement += (mode.tip * at.q).abs();
         velocity += (mode.tip * at.v).abs();
     }
-    // The force at the first node feeds back only over the time up to it, some 1 / S^2 of the step.
-    let reaction = 1.0 + trial.tangent.gain / (S * S) as f64;
-    let Tangent { stiffness, damping, .. } = trial.tangent;
-    trial.error <= SUM_ROUNDINGS * f64::EPSILON * (stiffness * displacement + damping * velocity) / reaction
+    let rounding = SUM_ROUNDINGS * f64::EPSILON;
+    (rounding * displacement, rounding * velocity)
 }
 
 /// Ratio of the quadrature error to the interpolation error with `S` nodes for a square root of time whose branch point

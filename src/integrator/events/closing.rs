@@ -6,7 +6,7 @@
 //! oscillate faster than the interval resolves are added with their amplitudes.
 
 use crate::beam::mode::Mode;
-use crate::integrator::collocation::step::Trial;
+use crate::integrator::collocation::step::{Trial, sum_rounding};
 use crate::integrator::constants::{DEPTH, SHORTEST_FLIGHT, UNSEEN};
 use crate::integrator::events::Cut;
 use crate::integrator::integration::Integration;
@@ -94,7 +94,24 @@ impl Integration<'_> {
         let negligible = self.model.law.overlap(1e-3 * self.tolerance);
         let (ripple, ripple_rate) = self.ripple(b.at - a.at);
         let (d, rate) = (highest(a, b) + ripple, a.rate.max(b.rate) + ripple_rate);
-        self.model.engagement(d, rate) + error < negligible
+        self.model.engagement(d, rate) + error < negligible.max(self.unsure())
+    }
+
+    /// Engagement that does not count as contact, m. Just after an opening: what the resolution of time has left of it
+    /// there, and what rounding makes of the motion. Without it the contact would close as it opens, again and again.
+    fn unsure(&self) -> f64 {
+        let Self { model, state, .. } = self;
+        if !self.released() {
+            return 0.0;
+        }
+        let (displacement, velocity) = sum_rounding(model, state);
+        let left = model.engagement(state.indentation, state.indentation_rate).max(0.0);
+        left + displacement + model.law.damping() * velocity
+    }
+
+    /// Whether the flight begins here.
+    fn released(&self) -> bool {
+        self.state.last_opening == self.state.time
     }
 
     /// Whether oscillations faster than the interval between two samples are negligible.
@@ -136,8 +153,7 @@ impl Integration<'_> {
         } else if a.rate >= 0.0 && highest(a, b) <= b.d && self.is_resolved(a, b) || depth > DEPTH {
             let touch = self.crossing::<S>(a, b);
             // A contact that closes at the instant of opening still gets a short flight, so that time advances.
-            let released = self.state.last_opening == self.state.time;
-            return Some(if released {
+            return Some(if self.released() {
                 touch.max(SHORTEST_FLIGHT * b.at)
             } else {
                 touch
@@ -164,7 +180,7 @@ impl Integration<'_> {
     }
 
     fn is_open(&self, sample: &Sample) -> bool {
-        self.model.engagement(sample.d, sample.rate) <= 0.0
+        self.model.engagement(sample.d, sample.rate) <= self.unsure()
     }
 
     fn sample<const S: usize>(&mut self, at: f64) -> Sample
