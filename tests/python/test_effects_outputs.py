@@ -152,7 +152,9 @@ def test_without_an_effect_its_outputs_are_zero_and_the_motion_is_the_same(effec
         on, off = (
             run({**scene, f"effects.{effect}": on}, 3e-3, 1e-5, ["contact.force", *outputs]) for on in (True, False)
         )
-        assert (on["contact.force"] == off["contact.force"]).all()
+        # Extremes want steps that are right inside too: two runs, each within the tolerance. Energy only looks on.
+        allowed = 2e-6 * FORCE_SCALE if effect == "extremes" else 0.0
+        assert np.abs(on["contact.force"] - off["contact.force"]).max() <= allowed
         for name in outputs:
             assert (on[name] > 0).any()
             assert (off[name] == 0).all()
