@@ -14,7 +14,7 @@ const PYTHON: [&str; 5] = [
     "examples/python",
     "tests/python",
     "conformance/python",
-    "docs",
+    "docs/model.py",
     "report/browser",
 ];
 
