@@ -1,13 +1,13 @@
 //! Scene files: what they hold arrives in the scene, and what is wrong in them is said with its name, value and place.
 
 use std::error::Error;
-use std::fs;
 
 use relay_contact::error::SceneError;
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::scene::file::SceneFile;
 use relay_contact::variables::{ExcitationKind, RealInput, RealParameter};
+use testing::scenes;
 
 const HEAD: &str = "stop = 1\ncommunicationStep = 1e-3\noutputs = []\n";
 
@@ -21,18 +21,13 @@ fn message(rest: &str) -> String {
 
 #[test]
 fn every_scene_of_the_project_is_valid() -> Result<(), Box<dyn Error>> {
-    let mut count = 0;
-    for entry in fs::read_dir("scenes")? {
-        let path = entry?.path();
-        if path.extension().is_none_or(|extension| extension != "toml") {
-            continue;
-        }
-        let file = SceneFile::read(&path)?;
+    let paths = scenes::files();
+    for path in &paths {
+        let file = SceneFile::read(path)?;
         assert!(!file.title.is_empty() && !file.outputs.is_empty(), "{}", path.display());
         assert!(file.communication_step <= file.stop, "{}", path.display());
-        count += 1;
     }
-    assert!(count >= 10);
+    assert!(paths.len() >= 10);
     Ok(())
 }
 

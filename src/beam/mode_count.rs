@@ -14,10 +14,14 @@
 //! `tests/promise.rs`.
 
 use crate::beam::section::Section;
+use crate::math::roots;
+use crate::math::simd::LANES;
 
-/// Modes at no tolerance in digits, and modes per root of `x` and digit, 1: the least squares of those relays, and a fifth
-/// more. Pinned: the number that fits only the specimen's damping, `tests/promise.rs`.
+/// Digits that a tolerance of 1 takes already, 1: the least squares of those relays.
 const FIRST_DIGITS: f64 = 3.1;
+
+/// Modes per digit and root of `x`, 1: the least squares of those relays, and a fifth more. Pinned: the number that fits
+/// only the specimen's damping fails `tests/promise.rs`.
 const PER_DIGIT: f64 = 0.47;
 
 /// Contact and damping as the number of modes depends on them.
@@ -32,7 +36,7 @@ pub struct Blow {
 }
 
 impl Blow {
-    /// Number of modes for a tolerance; the vectors of a step hold four, so a multiple of it.
+    /// Number of modes for a tolerance: a multiple of what the vectors of a step hold, at least three times that.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -41,7 +45,7 @@ impl Blow {
     pub fn modes(&self, section: &Section, tolerance: f64) -> usize {
         let digits = FIRST_DIGITS - tolerance.log10();
         let count = PER_DIGIT * digits * self.wave_number(section).sqrt();
-        4 * (count / 4.0).ceil().max(3.0) as usize
+        LANES * (count / LANES as f64).ceil().max(3.0) as usize
     }
 
     /// The largest wave number `x` that the blow excites, 1 / L.
@@ -58,17 +62,8 @@ impl Blow {
         let mass = tip_mass / (mass_per_length * length);
         let (beam, contact) = (self.stiffness_damping * rate, self.contact_damping * rate);
         let wave = |s: f64| (s * s / (1.0 + beam * s)).sqrt().sqrt();
-        let stiffer = |s: f64| stiffness * (1.0 + contact * s) > (1.0 + beam * s) * wave(s).powi(3) + mass * s * s;
-        // Both sides are smooth in the logarithm of s, of which a thousandth is plenty.
-        let (mut low, mut high) = (-10.0_f64, 60.0_f64);
-        while high - low > 1e-3 {
-            let middle = 0.5 * (low + high);
-            if stiffer(middle.exp()) {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        wave(low.exp())
+        let stiffer = |s: f64| stiffness * (1.0 + contact * s) - (1.0 + beam * s) * wave(s).powi(3) - mass * s * s;
+        // In the logarithm of s, which may be anything. A rigid contact excites all modes.
+        roots::bracketed(|logarithm| stiffer(logarithm.exp()), -100.0, 100.0).map_or(f64::INFINITY, |s| wave(s.exp()))
     }
 }

@@ -1,9 +1,20 @@
 //! Scenes for tests, with reference values computed without the library.
 
+use std::fs;
+use std::path::PathBuf;
+
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ExcitationKind, RealOutput};
+
+/// The files of `scenes/`, for tests run in the top folder.
+pub fn files() -> Vec<PathBuf> {
+    let entries = fs::read_dir("scenes").expect("the folder scenes");
+    let mut paths: Vec<_> = entries.map(|entry| entry.expect("an entry").path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
+    paths
+}
 
 /// The specimen under a sine of this amplitude (m/s2) and frequency (Hz).
 pub fn shaken(amplitude: f64, frequency: f64) -> Scene {

@@ -2,12 +2,12 @@
 //! must neither die nor give other bits, and must leave the environment as it was.
 
 use std::arch::asm;
-use std::fs;
 
 use relay_contact::fmi2::fmi2OK;
 use relay_contact::scene::file::SceneFile;
 use relay_contact::variables::{Group, VARIABLES};
 use testing::instance::Instance;
+use testing::scenes;
 
 /// Control words: of SSE, all exceptions trapped, rounding down, up and to zero, subnormals flushed to zero.
 #[cfg(target_arch = "x86_64")]
@@ -76,15 +76,12 @@ fn outputs(file: &SceneFile, environment: u64) -> Vec<u64> {
 
 #[test]
 fn every_scene_has_the_same_bits_in_every_environment() {
-    for entry in fs::read_dir("scenes").unwrap() {
-        let path = entry.unwrap().path();
-        if path.extension().is_some_and(|extension| extension == "toml") {
-            let file = SceneFile::read(&path).unwrap();
-            let [usual, others @ ..] = ENVIRONMENTS;
-            let expected = outputs(&file, usual);
-            for environment in others {
-                assert!(outputs(&file, environment) == expected, "{path:?} in {environment:#x}");
-            }
+    for path in scenes::files() {
+        let file = SceneFile::read(&path).unwrap();
+        let [usual, others @ ..] = ENVIRONMENTS;
+        let expected = outputs(&file, usual);
+        for environment in others {
+            assert!(outputs(&file, environment) == expected, "{path:?} in {environment:#x}");
         }
     }
 }

@@ -34,8 +34,9 @@ impl Integration<'_> {
     {
         let (samples, error) = self.samples(trial, length);
         let samples = samples.get(..S + 1).unwrap_or_default();
+        let unsure = self.unsure();
         samples.windows(2).find_map(|pair| match pair {
-            [a, b] => (!self.is_open(b) || !self.is_clear(a, b, error)).then_some(a.at / length),
+            [a, b] => (!self.is_open(b, unsure) || !self.is_clear(a, b, error, unsure)).then_some(a.at / length),
             _ => None,
         })
     }
@@ -47,8 +48,9 @@ impl Integration<'_> {
     {
         let (samples, error) = self.samples(trial, length);
         let samples = samples.get(..S + 1).unwrap_or_default();
+        let unsure = self.unsure();
         let length = samples.windows(2).find_map(|pair| match pair {
-            [a, b] => self.touch_between::<S>(a, b, error, 0),
+            [a, b] => self.touch_between::<S>(a, b, error, unsure, 0),
             _ => None,
         })?;
         Some(Cut { length, switches: true })
@@ -89,12 +91,12 @@ impl Integration<'_> {
     }
 
     /// Whether the contact certainly stays open between two open samples.
-    fn is_clear(&self, a: &Sample, b: &Sample, error: f64) -> bool {
+    fn is_clear(&self, a: &Sample, b: &Sample, error: f64, unsure: f64) -> bool {
         // A contact whose force is far below the tolerance need not be found.
         let negligible = self.model.law.overlap(1e-3 * self.tolerance);
         let (ripple, ripple_rate) = self.ripple(b.at - a.at);
         let (d, rate) = (highest(a, b) + ripple, a.rate.max(b.rate) + ripple_rate);
-        self.model.engagement(d, rate) + error < negligible.max(self.unsure())
+        self.model.engagement(d, rate) + error < negligible.max(unsure)
     }
 
     /// Engagement that does not count as contact, m. Just after an opening: what the resolution of time has left of it
@@ -142,12 +144,19 @@ impl Integration<'_> {
 
     /// The first instant of closing between two samples, s from the start of the step; `error` (m) is the error of
     /// their cubic.
-    fn touch_between<const S: usize>(&mut self, a: &Sample, b: &Sample, error: f64, depth: u32) -> Option<f64>
+    fn touch_between<const S: usize>(
+        &mut self,
+        a: &Sample,
+        b: &Sample,
+        error: f64,
+        unsure: f64,
+        depth: u32,
+    ) -> Option<f64>
     where
         Workspace: Room<S>,
     {
-        if self.is_open(b) {
-            if self.is_clear(a, b, error) || depth > DEPTH {
+        if self.is_open(b, unsure) {
+            if self.is_clear(a, b, error, unsure) || depth > DEPTH {
                 return None;
             }
         } else if a.rate >= 0.0 && highest(a, b) <= b.d && self.is_resolved(a, b) || depth > DEPTH {
@@ -161,8 +170,8 @@ impl Integration<'_> {
         }
         let middle = self.sample::<S>(f64::midpoint(a.at, b.at));
         let error = (middle.d - cubic(a, b, middle.at)).abs();
-        self.touch_between::<S>(a, &middle, error, depth + 1)
-            .or_else(|| self.touch_between::<S>(&middle, b, error, depth + 1))
+        self.touch_between::<S>(a, &middle, error, unsure, depth + 1)
+            .or_else(|| self.touch_between::<S>(&middle, b, error, unsure, depth + 1))
     }
 
     /// The instant of closing between an open and a closed sample, s from the start of the step.
@@ -179,8 +188,8 @@ impl Integration<'_> {
         roots::between(overlap, (a.at, start), (b.at, engagement(b)), resolution).unwrap_or(b.at)
     }
 
-    fn is_open(&self, sample: &Sample) -> bool {
-        self.model.engagement(sample.d, sample.rate) <= self.unsure()
+    fn is_open(&self, sample: &Sample, unsure: f64) -> bool {
+        self.model.engagement(sample.d, sample.rate) <= unsure
     }
 
     fn sample<const S: usize>(&mut self, at: f64) -> Sample
