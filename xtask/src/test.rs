@@ -97,11 +97,12 @@ fn component() -> Result<()> {
     stage("Python lint", || tool(&["ruff", "check"]))?;
     stage("Python format", || tool(&["ruff", "format", "--check"]))?;
     stage("Python types", || tool(&["mypy"]))?;
-    stage("conformance lint", || {
-        run_command(importers::conformance("clippy")?.args(LINT))
-    })?;
     stage("Python tests and examples", || {
         python::test(&["examples/python", "tests/python"], &component)
+    })?;
+    // Late, as it shares a target folder with the Rust tests, and waits while they are compiled.
+    stage("conformance lint", || {
+        run_command(importers::conformance("clippy")?.args(LINT))
     })?;
     importers::stages(&component)
 }
