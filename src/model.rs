@@ -45,6 +45,10 @@ pub struct Model {
     pub(crate) initial_support: f64,
     /// Force scale of the tolerance, N: max(F_0, 3 E I max(|s|, 0.1 mm) / L^3).
     pub(crate) force_scale: f64,
+    /// Force at the held tip per base acceleration that varies slowly, kg.
+    pub(crate) inertia: f64,
+    /// Time in which a velocity of the open spring becomes a displacement, s: 1 / omega_1.
+    pub(crate) memory: f64,
     /// Lowest natural frequency with the contact as a spring, from the exact characteristic equation, Hz.
     pub(crate) frequency: f64,
     /// Electrical model of the contact.
@@ -143,7 +147,17 @@ impl Model {
             }
             _ => None,
         };
+        let compliance = |load: fn(&Mode) -> f64| -> f64 {
+            modes
+                .iter()
+                .map(|mode| mode.tip * load(mode) / mode.omega_squared)
+                .sum()
+        };
+        let inertia = (compliance(|mode| mode.participation) / compliance(|mode| mode.tip)).abs();
+        let memory = modes.first().map_or(0.0, |mode| 1.0 / mode.omega_squared.sqrt());
         Ok(Self {
+            inertia,
+            memory,
             scene: *scene,
             section,
             law,

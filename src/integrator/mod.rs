@@ -97,14 +97,15 @@
 //! - stiffness and damping of the law times these errors of indentation and velocity: the part of modes that are fast
 //!   against the step;
 //! - the part of slow modes, which hardly feel the shape, as it is orthogonal to polynomials of low degree: three times
-//!   `m^2` over the largest force (fitted to the impact of a free mass on a Hertz contact);
+//!   `m^2` over the largest force (fitted to the impact of a free mass on a Hertz contact), and for the base acceleration
+//!   the error of the quadrature, [`constants::QUADRATURE_SHORT`] `m_a^2` over the largest acceleration;
 //! - after a closing or a jump, where the force moves like the root of time: a share [`constants::KINKED`] of `m`,
 //!   which falls with the distance from the kink as the convergence of a polynomial near a branch point does (Trefethen, Approximation Theory and Approximation Practice, 2013, chapters 8 and 19).
 //!
 //! The last two are reduced by `g / (1 + g)`, `g` the force of the law at the end of the step per force on the tip throughout it.
 //!
 //! In flight the estimate is what `m_a` does to the indentation, times the stiffness the contact would have at the
-//! force scale. An estimate below what rounding makes of the sums over the modes counts as zero: no shorter step makes
+//! force scale, and what the error of the quadrature of the acceleration makes of it in `1 / omega_1`. An estimate below what rounding makes of the sums over the modes counts as zero: no shorter step makes
 //! it smaller.
 //!
 //! # Step size control
@@ -113,7 +114,7 @@
 //! length is multiplied by `(allowed / estimate)^(1 / (S + 1))` and [`constants::SAFETY`], with bounds on growth and
 //! shrinkage beside it. Step ends lie on a grid: binary fractions of the communication step, or lengths of
 //! 1 and 1.5 times powers of two where the integrator runs ahead ([`grid`]), so that coefficients recur; the
-//! generator's corners (start, end, crossover) end a step. A step is never longer than a quarter of the generator's
+//! generator's corners (start, end, crossover) end a step, and the step size starts anew there. A step is never longer than a quarter of the generator's
 //! shortest period, nor than `solver.maximumStep`. Without damping, a step that makes more energy than a force wrong by
 //! the tolerance would is rejected too.
 //!

@@ -182,6 +182,16 @@ impl Integration<'_> {
             }
         }
         self.take(&trial, &target)?;
+        if corner.is_some_and(|corner| corner <= target.time) {
+            // What the corner sets vibrating, the step sizes before it do not resolve.
+            let next = self.step_after_jump();
+            self.state.long_step = self.state.long_step.min(next);
+            return Ok(StepOutcome {
+                taken: true,
+                growth: 1.0,
+                length: requested.min(next),
+            });
+        }
         Ok(StepOutcome::after(target.length, requested, growth))
     }
 }

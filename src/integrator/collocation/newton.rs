@@ -28,6 +28,8 @@ pub(crate) struct FreeResponse<'a, const S: usize> {
     pub(crate) free_rate: Nodal<S>,
     /// Defect of the load polynomial at the start, m/s2 for the base acceleration.
     pub(crate) start_defect: f64,
+    /// Mean over the step of what the polynomial misses of the base acceleration, m/s2.
+    pub(crate) missed_mean: f64,
     /// Indentation and its velocity at the nodes per unit of that defect.
     pub(crate) error: &'a ErrorColumn<S>,
 }

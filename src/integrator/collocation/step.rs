@@ -10,8 +10,8 @@ use crate::integrator::collocation::newton::{
     FreeResponse, Solution, Source, Tangent, at_nodes, closed_forces, first_forces,
 };
 use crate::integrator::collocation::polynomial::Collocation;
-use crate::integrator::constants::{FAR, FORCE_ROUNDING, KINKED, SUM_ROUNDINGS};
-use crate::math::nodal::{Nodal, add, add_columns, add_products, dot, end};
+use crate::integrator::constants::{FAR, FORCE_ROUNDING, KINKED, QUADRATURE_LONG, QUADRATURE_SHORT, SUM_ROUNDINGS};
+use crate::math::nodal::{Nodal, SHORT, add, add_columns, add_products, dot, end};
 use crate::math::simd::{Arithmetic, LANES, compiled_for};
 use crate::model::Model;
 use crate::state::State;
@@ -158,8 +158,14 @@ fn free_response<'a, const S: usize, A: Arithmetic>(
     subtract(&mut free_rate, &rate_from_q, &rate_from_v);
     add_columns::<S, A>(&mut free, &step.acceleration.displacement, &accelerations);
     add_columns::<S, A>(&mut free_rate, &step.acceleration.velocity, &accelerations);
+    let start_defect = driven + generated.start - dot::<S, A>(&accelerations, &collocation.at_start);
+    let largest = accelerations
+        .iter()
+        .fold(f64::MIN_POSITIVE, |largest, a| largest.max(a.abs()));
+    let quadrature = if S == SHORT { QUADRATURE_SHORT } else { QUADRATURE_LONG };
     FreeResponse {
-        start_defect: driven + generated.start - dot::<S, A>(&accelerations, &collocation.at_start),
+        start_defect,
+        missed_mean: quadrature * start_defect * start_defect / largest,
         error: &step.acceleration_error,
         accelerations,
         free,
@@ -253,12 +259,15 @@ fn error<const S: usize>(
         } else {
             0.0
         };
-        let slow = 3.0 * start_defect * start_defect / largest + kinked;
+        let slow = 3.0 * start_defect * start_defect / largest + kinked + model.inertia * free.missed_mean;
         fast + slow * solution.tangent.gain / (1.0 + solution.tangent.gain)
     } else {
         let last = |values: &Nodal<S>| (end(values) * free.start_defect).abs();
         let rows = free.error;
-        let wrong = last(&rows.displacement) + model.law.damping() * last(&rows.velocity);
+        let missed_velocity = free.missed_mean * step.length;
+        let wrong = last(&rows.displacement)
+            + model.law.damping() * last(&rows.velocity)
+            + missed_velocity * (model.memory + model.law.damping());
         model.law.tangent_stiffness(model.force_scale) * wrong
     }
 }

@@ -99,7 +99,7 @@ impl Integration<'_> {
             self.first_closed_step()
         } else {
             self.state.last_opening = self.state.time;
-            0.1 * self.model.first_step(self.state.time)
+            self.step_after_jump()
         }
     }
 
@@ -126,6 +126,11 @@ impl Integration<'_> {
         let next = self.first_closed_step();
         self.state.short_step = self.state.short_step.min(next);
         self.state.long_step = self.state.long_step.min(next);
+    }
+
+    /// First step after an acceleration has jumped or bent, s.
+    pub(crate) fn step_after_jump(&self) -> f64 {
+        0.1 * self.model.first_step(self.state.time)
     }
 
     /// First step after closing, s. The dissipative force starts as the square root of time, which no polynomial
