@@ -52,6 +52,7 @@ mod electrical;
 pub mod error;
 mod excitation;
 pub mod fmi2;
+mod force_error;
 mod harmonic;
 pub mod inputs;
 mod integrator;

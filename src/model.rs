@@ -14,6 +14,7 @@ use crate::contact::linear::Linear;
 use crate::electrical::ElectricalContact;
 use crate::error::SceneError;
 use crate::excitation::generator::Generator;
+use crate::force_error::ForceError;
 use crate::math::prediction::Predictions;
 use crate::math::simd::Simd;
 use crate::preload::Preload;
@@ -45,6 +46,9 @@ pub struct Model {
     pub(crate) initial_support: f64,
     /// Force scale of the tolerance, N: max(F_0, 3 E I max(|s|, 0.1 mm) / L^3).
     pub(crate) force_scale: f64,
+    /// Error of the force once the contact has closed, relative to the force scale, where there are fewer modes than the
+    /// tolerance takes; else 0.
+    pub(crate) missed_by_modes: f64,
     /// Force at the held tip per base acceleration that varies slowly, kg.
     pub(crate) inertia: f64,
     /// Time in which a velocity of the open spring becomes a displacement, s: 1 / omega_1.
@@ -99,9 +103,11 @@ impl Model {
                 bonded: kind == ContactLawKind::Bonded,
             }),
         };
+        let blow = blow(scene, &section, &hertz);
+        let wanted = blow.modes(&section, scene.solver.effective_tolerance());
         let count = match usize::try_from(scene.solver.modes) {
             Ok(count) if count > 0 => count.min(MAX_MODES),
-            _ => modes_for(scene, &section, &hertz).min(MAX_MODES),
+            _ => wanted.min(MAX_MODES),
         };
         let buckled = || SceneError::Buckled {
             name: RealParameter::BeamAxialForce.variable().name,
@@ -147,16 +153,15 @@ impl Model {
             }
             _ => None,
         };
-        let compliance = |load: fn(&Mode) -> f64| -> f64 {
-            modes
-                .iter()
-                .map(|mode| mode.tip * load(mode) / mode.omega_squared)
-                .sum()
-        };
-        let inertia = (compliance(|mode| mode.participation) / compliance(|mode| mode.tip)).abs();
         let memory = modes.first().map_or(0.0, |mode| 1.0 / mode.omega_squared.sqrt());
+        let missed_by_modes = if count < wanted {
+            blow.error(&section, count)
+        } else {
+            0.0
+        };
         Ok(Self {
-            inertia,
+            missed_by_modes,
+            inertia: inertia(&modes),
             memory,
             scene: *scene,
             section,
@@ -263,6 +268,7 @@ impl Model {
             energy_surplus: 0.0,
             energy_balance: 0.0,
             interruptions,
+            force_error: ForceError::default(),
             steps: 0,
             rejected_steps: 0,
             iterations: 0,
@@ -300,19 +306,27 @@ impl Model {
     }
 }
 
-/// Number of modes for the tolerance of the scene.
-fn modes_for(scene: &Scene, section: &Section, hertz: &Hertz) -> usize {
+/// Force at the held tip per base acceleration that varies slowly, kg.
+fn inertia(modes: &[Mode]) -> f64 {
+    let tip = |load: fn(&Mode) -> f64| -> f64 {
+        let parts = modes.iter().map(|mode| mode.tip * load(mode) / mode.omega_squared);
+        parts.sum()
+    };
+    (tip(|mode| mode.participation) / tip(|mode| mode.tip)).abs()
+}
+
+/// A blow as the scene may have it.
+fn blow(scene: &Scene, section: &Section, hertz: &Hertz) -> Blow {
     // A blow fifty times the force of the bent spring; the number of modes follows it by the 18th root.
     let force = match scene.effects.contact_law {
         ContactLawKind::Hertz => 50.0 * bending_force(scene, section),
         ContactLawKind::Linearised | ContactLawKind::Bonded => bending_force(scene, section),
     };
-    let blow = Blow {
+    Blow {
         stiffness_damping: scene.beam.stiffness_damping,
         contact_stiffness: hertz.tangent_stiffness(hertz.indentation(force)),
         contact_damping: hertz.damping,
-    };
-    blow.modes(section, scene.solver.effective_tolerance())
+    }
 }
 
 /// Force of the spring bent by the overtravel, at least by 0.1 mm, N: 3 E I max(|s|, 0.1 mm) / L^3.

@@ -154,6 +154,7 @@ impl Simulation {
             RealOutput::ChatterLongestInterruption => self.interruptions().longest,
             RealOutput::ChatterTotalInterruption => self.interruptions().total,
             RealOutput::EnergyBalance => state.energy_balance,
+            RealOutput::SolverForceError => self.force_error(),
             RealOutput::ContactIndentation => model.preload.indentation + tip().indentation,
             RealOutput::TipDisplacement => model.preload.deflection + state.support - tip().indentation,
             RealOutput::TipVelocity => state.support_rate - tip().rate,
@@ -165,6 +166,18 @@ impl Simulation {
             RealOutput::PreloadAxialForce => model.preload.axial_force,
             RealOutput::PreloadFrequency => model.frequency,
         }
+    }
+
+    /// Estimate of the error of the contact force so far, relative as the tolerance is; 1 at most.
+    pub fn force_error(&self) -> f64 {
+        let Self { model, motion, .. } = self;
+        let state = motion.state();
+        let by_modes = if state.last_closing >= 0.0 {
+            model.missed_by_modes
+        } else {
+            0.0
+        };
+        state.force_error.relative(model.force_scale).max(by_modes)
     }
 
     /// Rate of a continuous output at the communication point (limit from the left), in its SI unit per second; `None`
@@ -214,6 +227,7 @@ impl Simulation {
             | RealOutput::ChatterLongestInterruption
             | RealOutput::ChatterTotalInterruption
             | RealOutput::EnergyBalance
+            | RealOutput::SolverForceError
             | RealOutput::PreloadForce
             | RealOutput::PreloadIndentation
             | RealOutput::PreloadContactStiffness

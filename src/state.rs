@@ -5,6 +5,7 @@ use serde_big_array::BigArray;
 
 use crate::beam::mode::ModeStates;
 use crate::chatter::Interruptions;
+use crate::force_error::ForceError;
 use crate::math::prediction::Predictions;
 
 /// The state at a time.
@@ -47,6 +48,8 @@ pub struct State {
     pub energy_balance: f64,
     /// Interruptions so far.
     pub interruptions: Interruptions,
+    /// What is known of the error of the contact force so far.
+    pub force_error: ForceError,
     /// Accepted steps.
     pub steps: u64,
     /// Rejected steps, repeated with a shorter step size.
@@ -77,6 +80,7 @@ impl State {
             energy_surplus,
             energy_balance,
             interruptions,
+            force_error,
             steps: _,
             rejected_steps: _,
             iterations: _,
@@ -101,6 +105,7 @@ impl State {
             && modes.iter().all(|mode| mode.q.is_finite() && mode.v.is_finite())
             && predictions.is_finite()
             && interruptions.is_sound(*time)
+            && force_error.is_sound()
             && *short_step > 0.0
             && *long_step >= 0.0
             && [last_opening, last_closing, last_kink]

@@ -48,6 +48,12 @@ impl Blow {
         LANES * (count / LANES as f64).ceil().max(3.0) as usize
     }
 
+    /// Error of the force of a blow with this number of modes, relative to it; 1 at most.
+    pub fn error(&self, section: &Section, modes: usize) -> f64 {
+        let digits = modes as f64 / (PER_DIGIT * self.wave_number(section).sqrt());
+        10_f64.powf(FIRST_DIGITS - digits).min(1.0)
+    }
+
     /// The largest wave number `x` that the blow excites, 1 / L.
     fn wave_number(&self, section: &Section) -> f64 {
         let Section {

@@ -99,7 +99,9 @@ impl Integration<'_> {
         self.enter(trial, target.length);
         let Self { model, state, .. } = self;
         let (cache, end, _) = Room::<S>::parts(self.workspace);
-        let collocation = cache.collocation();
+        let (step, collocation) = cache.get(target.length, target.recurring, model);
+        let added = (state.closed, trial.error);
+        state.force_error.advance(&model.modes, &step.end, trial.tangent, added);
         let ratio = if state.last_step > 0.0 {
             target.length / state.last_step
         } else {

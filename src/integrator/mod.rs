@@ -205,8 +205,12 @@
 //! times the larger of the force scale, `max(F_0, 3 E I max(|s|, 0.1 mm) / L^3)`, and the largest force so far: a blow of
 //! newtons is not known to a part of a preload of centinewtons. Shown for closed and opening contacts of random relays
 //! with 0.1 to 34 % damping by `tests/promise.rs`, for the specimen by `tests/calibration.rs` and the package `benches`
-//! (`docs/accuracy.md`). Limits: springs without damping once the contact opens, and motions in which a change of the
-//! excitation by the tolerance moves the force by more, as errors do too.
+//! (`docs/accuracy.md`). Limits: springs for which [`MAX_MODES`](crate::beam::mode::MAX_MODES) are too few once the contact
+//! opens, and motions in which a change of the excitation by the tolerance moves the force by more, as errors do too.
+//!
+//! `solver.forceError` says what the error may be by now ([`force_error`](crate::force_error)): the largest error that a
+//! step has added, times the growth of a small deviation of the motion that is carried along once the contact has opened
+//! or closed ([`deviation`]), times a factor that makes it an upper bound for 95 % of random relays.
 //!
 //! # Files
 //!
@@ -220,6 +224,7 @@ pub mod attempt;
 pub mod collocation;
 pub mod communication_step;
 pub mod constants;
+pub mod deviation;
 pub mod discrete_gradient;
 pub mod energy;
 pub mod events;

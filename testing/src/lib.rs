@@ -15,6 +15,7 @@
 pub mod allocator;
 pub mod instance;
 pub mod log;
+pub mod promise;
 pub mod relays;
 pub mod rig;
 pub mod scenes;

@@ -23,6 +23,8 @@ pub struct Relay {
     pub travel: (f64, f64),
     /// Length of the communication steps, s, and their number.
     pub steps: (f64, u32),
+    /// Damping of the first mode of the spring without contact, relative to critical.
+    pub damping: f64,
 }
 
 /// What was read after each communication step, and the events.
@@ -36,6 +38,8 @@ pub struct Course {
     pub greatest: Vec<f64>,
     /// Instants of openings and closings, s.
     pub events: Vec<f64>,
+    /// `solver.forceError` at the end, 1.
+    pub estimate: f64,
     /// Force scale of the tolerance, N.
     pub scale: f64,
 }
@@ -55,7 +59,7 @@ impl Relay {
     pub fn draw(number: u64) -> Self {
         let rng = &mut Rng::with_seed(number);
         let mut scene = Scene::default();
-        spring(rng, &mut scene);
+        let damping = spring(rng, &mut scene);
         contact(rng, &mut scene);
         let static_force = scene.contact.overtravel.max(2e-5) * tip_stiffness(&scene);
         // The base acceleration that would open the contact, if it were slow.
@@ -84,6 +88,7 @@ impl Relay {
             shake,
             travel,
             steps: (step, (duration / step).ceil() as u32),
+            damping,
         }
     }
 
@@ -122,12 +127,14 @@ impl Relay {
             course.least.push(simulation.real(RealOutput::StepMinimumForce));
             course.greatest.push(simulation.real(RealOutput::StepMaximumForce));
             course.events.extend(simulation.events().0.map(|event| event.time));
+            course.estimate = simulation.real(RealOutput::SolverForceError);
         }
         Ok((course, None))
     }
 }
 
-fn spring(rng: &mut Rng, scene: &mut Scene) {
+/// Returns the damping of the first mode, relative to critical.
+fn spring(rng: &mut Rng, scene: &mut Scene) -> f64 {
     // The others have the section of the start values.
     if rng.u8(..6) > 0 {
         let beam = &mut scene.beam;
@@ -160,6 +167,7 @@ fn spring(rng: &mut Rng, scene: &mut Scene) {
     let buckling = stiffness * scene.beam.length * std::f64::consts::PI.powi(2) / 12.0;
     scene.beam.axial_force = buckling * uniform(rng, -0.3, 0.5);
     scene.environment.gravity = [0.0, 9.81, -9.81][rng.usize(..3)];
+    ratio
 }
 
 fn contact(rng: &mut Rng, scene: &mut Scene) {
@@ -225,5 +233,12 @@ impl Course {
             extremes = extremes.max(difference(&self.greatest, &reference.greatest));
         }
         (force, extremes)
+    }
+
+    /// The largest error of an instant of opening or closing, s; `None` if there are more or fewer of them.
+    pub fn error_of_instants(&self, reference: &Self) -> Option<f64> {
+        let pairs = self.events.iter().zip(&reference.events);
+        (self.events.len() == reference.events.len())
+            .then(|| pairs.fold(0.0, |most, (a, b)| f64::max(most, (a - b).abs())))
     }
 }

@@ -144,6 +144,45 @@ fn debug_messages_are_off_unless_asked_for() {
     }
 }
 
+/// Warnings of a shaken specimen with this damping of the spring (s) and number of modes over 20 ms.
+fn warnings(damping: f64, modes: i32) -> Vec<String> {
+    let fmu = Instance::new();
+    assert_eq!(fmu.set_integer("effects.excitation", 2), fmi2OK);
+    assert_eq!(fmu.set_real("excitation.amplitude", 600.0), fmi2OK);
+    assert_eq!(fmu.set_boolean("effects.contactDamping", false), fmi2OK);
+    assert_eq!(fmu.set_real("beam.stiffnessDamping", damping), fmi2OK);
+    assert_eq!(fmu.set_integer("solver.modes", modes), fmi2OK);
+    fmu.initialize();
+    for k in 0..20 {
+        assert_eq!(fmu.step(f64::from(k) * 1e-3, 1e-3), fmi2OK);
+    }
+    // Thirty times the tolerance.
+    let announced = fmu.real("solver.forceError") > 3e-5;
+    let messages = fmu.messages();
+    assert!(
+        messages.iter().all(|message| message.status == fmi2Warning),
+        "{messages:?}"
+    );
+    let told: Vec<_> = messages.into_iter().map(|message| message.text).collect();
+    assert_eq!(announced, !told.is_empty(), "{told:?}");
+    told
+}
+
+#[test]
+fn a_tolerance_that_may_not_be_kept_is_announced_once() {
+    let none = warnings(80.63e-6, 0);
+    assert!(none.is_empty(), "{none:?}");
+    let step = |text: &String| text.starts_with("fmi2DoStep: at 0.0") && text.contains("solver.forceError");
+    let light = warnings(3e-7, 0);
+    assert!(light.len() == 1 && light.iter().all(step), "{light:?}");
+    let few = warnings(80.63e-6, 8);
+    assert!(few.len() == 2 && step(&few[1]), "{few:?}");
+    assert!(
+        few[0].starts_with("fmi2ExitInitializationMode: 8 modes are too few"),
+        "{few:?}"
+    );
+}
+
 static STATUS_INSIDE: AtomicU32 = AtomicU32::new(fmi2OK);
 
 /// Calls back into the instance it hears from, whose address the environment holds; the standard forbids that.

@@ -31,6 +31,8 @@ pub(super) struct Instance {
     logger: Logger,
     /// Whether the importer has been told that its time differs.
     told_of_offset: bool,
+    /// Whether the importer has been told that the tolerance may not be kept.
+    told_of_error: bool,
     saved_states: SavedStates,
 }
 
@@ -45,6 +47,7 @@ impl Instance {
             time: 0.0,
             logger,
             told_of_offset: false,
+            told_of_error: false,
             saved_states: SavedStates::default(),
         }
     }
@@ -123,8 +126,12 @@ impl Instance {
     pub(super) fn exit_initialization_mode(&mut self) -> Result<(), Failure> {
         self.prepare().map_err(Failure::Initialisation)?;
         self.state = State::StepComplete;
-        if let Some(simulation) = self.simulation.as_ref().filter(|_| self.logger.debugs()) {
-            report::model(&self.logger, simulation.model());
+        self.told_of_error = false;
+        if let Some(simulation) = &self.simulation {
+            report::modes(&self.logger, simulation.model());
+            if self.logger.debugs() {
+                report::model(&self.logger, simulation.model());
+            }
         }
         Ok(())
     }
@@ -240,6 +247,12 @@ impl Instance {
         if !held {
             self.inputs.hold();
         }
+        if !self.told_of_error
+            && simulation.force_error() > ANNOUNCED * simulation.model().scene.solver.effective_tolerance()
+        {
+            self.told_of_error = true;
+            report::error(&self.logger, simulation);
+        }
         if let Some(before) = before {
             report::step(&self.logger, simulation, before);
         }
@@ -249,6 +262,10 @@ impl Instance {
         Ok(())
     }
 }
+
+/// The estimate of the error over the tolerance from which on the importer is told: for half of the relays it is that far
+/// above the error.
+const ANNOUNCED: f64 = 30.0;
 
 /// Largest difference between the importer's time and that of the instance, as a fraction of the step. Importers that add
 /// up steps in single precision are off by half a spacing of these numbers: by this much after 1600 equal steps.

@@ -87,6 +87,7 @@ impl Integration<'_> {
     /// Opens or closes the contact at the instant of the state; returns the length of the next step, s.
     pub(crate) fn switch(&mut self, closed: bool) -> f64 {
         self.state.closed = closed;
+        self.state.force_error.begin(&self.model.modes);
         self.workspace.events.record(Event {
             time: self.state.time,
             closes: closed,

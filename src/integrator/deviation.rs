@@ -1,0 +1,94 @@
+//! A small deviation of the motion, which shows how errors grow.
+//!
+//! In a closed contact errors die out with the vibrations. In one that opens, each closing turns an error of the motion
+//! into another blow, and errors may grow from one to the next. So the lowest modes of a deviation are carried along, with
+//! the contact linearised about the motion and its force linear in time over each step (trapezoidal rule). Only the
+//! growth of its size is used, the root of its energy.
+
+use crate::beam::mode::{Mode, ModeState};
+use crate::force_error::{ForceError, MODES};
+use crate::integrator::collocation::coefficients::EndRows;
+use crate::integrator::collocation::newton::Tangent;
+
+impl ForceError {
+    /// Begins with a blow on the tip, unless there is a deviation already.
+    pub(crate) fn begin(&mut self, modes: &[Mode]) {
+        if self.size(modes) == 0.0 {
+            for (at, mode) in self.deviation.iter_mut().zip(modes) {
+                at.v = mode.tip;
+            }
+            self.normalise(modes);
+        }
+    }
+
+    /// Over a step with the given end rows and tangent of the contact, which adds the error `added` (N).
+    pub(crate) fn advance<const S: usize>(
+        &mut self,
+        modes: &[Mode],
+        rows: &EndRows<S>,
+        tangent: Tangent,
+        (closed, added): (bool, f64),
+    ) {
+        self.largest = self.largest.max(added);
+        if self.deviation == [ModeState::default(); MODES] {
+            return;
+        }
+        let (mut tip, mut tip_rate) = (0.0, 0.0);
+        let from = rows
+            .q_from_q
+            .iter()
+            .zip(&rows.q_from_v)
+            .zip(&rows.v_from_q)
+            .zip(&rows.v_from_v);
+        for ((at, (((qq, qv), vq), vv)), mode) in self.deviation.iter_mut().zip(from).zip(modes) {
+            let ModeState { q, v } = *at;
+            (at.q, at.v) = (qq * q + qv * v, vq * q + vv * v);
+            tip += mode.tip * at.q;
+            tip_rate += mode.tip * at.v;
+        }
+        let before = self.force;
+        self.force = 0.0;
+        if closed {
+            // The force at the end is that of the law at the motion that the mean force causes.
+            let Tangent {
+                stiffness,
+                damping,
+                gain,
+            } = tangent;
+            self.force = -(stiffness * tip + damping * tip_rate + 0.5 * gain * before) / (1.0 + 0.5 * gain);
+            let mean = 0.5 * (before + self.force);
+            for (q_from_load, v_from_load) in rows.q_from_load.iter().zip(&rows.v_from_load) {
+                let loads = q_from_load.iter().zip(v_from_load).zip(modes);
+                for (at, ((q, v), mode)) in self.deviation.iter_mut().zip(loads) {
+                    at.q += q * mode.tip * mean;
+                    at.v += v * mode.tip * mean;
+                }
+            }
+        }
+        let size = self.normalise(modes);
+        self.growth += size.ln();
+        if !closed {
+            self.largest_growth = self.largest_growth.max(self.growth);
+        }
+    }
+
+    /// The root of the energy.
+    fn size(&self, modes: &[Mode]) -> f64 {
+        let pairs = modes.iter().zip(&self.deviation);
+        pairs
+            .map(|(mode, at)| mode.omega_squared * at.q * at.q + at.v * at.v)
+            .sum::<f64>()
+            .sqrt()
+    }
+
+    /// Brings it back to size 1; returns what it was.
+    fn normalise(&mut self, modes: &[Mode]) -> f64 {
+        let size = self.size(modes).max(f64::MIN_POSITIVE);
+        for at in &mut self.deviation {
+            at.q /= size;
+            at.v /= size;
+        }
+        self.force /= size;
+        size
+    }
+}

@@ -1,0 +1,115 @@
+//! Whether a random relay keeps the promise of `solver.tolerance`, and what `solver.forceError` says of it.
+
+use std::thread;
+
+use relay_contact::reference::MAX_MODES;
+use relay_contact::scene::Solver;
+
+use crate::relays::{Course, Relay};
+
+/// What became of a relay.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Outcome {
+    /// Within its tolerance.
+    Kept,
+    /// Above it, but so is what a change of the input by the tolerance of a step does.
+    IllConditioned,
+    /// Above it.
+    Above,
+    /// Refused for a physical reason, or more work than a communication step may take.
+    NotRun,
+}
+
+/// The relay at the tightest tolerance with all modes, shaken and curved more strongly by a share.
+fn reference(relay: &Relay, stronger: f64) -> Option<Course> {
+    let course = relay.run(|scene| {
+        scene.solver.tolerance = Solver::TOLERANCE_FLOOR;
+        scene.solver.modes = i32::try_from(MAX_MODES).unwrap_or(i32::MAX);
+        scene.excitation.amplitude *= 1.0 + stronger;
+        scene.excitation.spectral_density *= (1.0 + stronger).powi(2);
+        scene.contact.curvature_radius *= 1.0 + stronger;
+    });
+    match course {
+        Ok((course, None)) => Some(course),
+        _ => None,
+    }
+}
+
+/// A relay judged.
+#[derive(Clone, Copy, Debug)]
+pub struct Judged {
+    /// Its number.
+    pub number: u64,
+    /// Damping of the first mode of the spring without contact, relative to critical.
+    pub damping: f64,
+    /// Whether it opens.
+    pub opens: bool,
+    /// Tolerance asked.
+    pub tolerance: f64,
+    /// Largest error of force and extremes, relative as the tolerance.
+    pub error: f64,
+    /// Largest error of an instant of opening or closing, s; `None` if there are more or fewer of them.
+    pub instants: Option<f64>,
+    /// `solver.forceError` at the end.
+    pub estimate: f64,
+    /// The verdict.
+    pub outcome: Outcome,
+}
+
+/// Judges the relay of a number.
+///
+/// # Panics
+/// If it can be simulated at the tightest tolerance, but not at its own.
+pub fn judge(number: u64) -> Judged {
+    let relay = Relay::draw(number);
+    let tolerance = relay.scene.solver.tolerance;
+    let mut judged = Judged {
+        number,
+        damping: relay.damping,
+        opens: true,
+        tolerance,
+        error: 0.0,
+        instants: None,
+        estimate: 0.0,
+        outcome: Outcome::NotRun,
+    };
+    let Some(expected) = reference(&relay, 0.0) else {
+        return judged;
+    };
+    let Ok((course, None)) = relay.run(|_| {}) else {
+        panic!("relay {number} does not run");
+    };
+    let larger = |(force, extremes): (f64, f64)| force.max(extremes);
+    judged.opens = expected.opens();
+    judged.estimate = course.estimate;
+    judged.error = larger(course.error(&expected));
+    judged.instants = course.error_of_instants(&expected);
+    // A step may be wrong by one part in 250 of the tolerance.
+    judged.outcome = if judged.error <= tolerance {
+        Outcome::Kept
+    } else {
+        match reference(&relay, tolerance / 250.0) {
+            Some(changed) if larger(changed.error(&expected)) > tolerance => Outcome::IllConditioned,
+            _ => Outcome::Above,
+        }
+    };
+    judged
+}
+
+/// Judges relays on all cores; in order.
+pub fn judge_all(first: u64, count: u64) -> Vec<Judged> {
+    let threads = thread::available_parallelism().map_or(1, usize::from) as u64;
+    let mut judged: Vec<_> = thread::scope(|scope| {
+        let part = |thread| {
+            let own = (first..first + count).filter(move |number| number % threads == thread);
+            own.map(judge).collect::<Vec<_>>()
+        };
+        let parts: Vec<_> = (0..threads).map(|thread| scope.spawn(move || part(thread))).collect();
+        parts
+            .into_iter()
+            .flat_map(|part| part.join().unwrap_or_default())
+            .collect()
+    });
+    judged.sort_by_key(|judged| judged.number);
+    judged
+}
