@@ -26,15 +26,26 @@ pub struct Arguments {
     /// For daily work: only format, lint, unit and integration tests
     #[arg(long)]
     quick: bool,
-    /// Only the stages that run in parallel with the Rust tests
+    /// Only stages that run in parallel with others
     #[arg(long, hide = true)]
-    component: bool,
+    part: Option<Part>,
+}
+
+/// Stages that run in parallel with others, as a program of their own, so that their output stays together.
+#[derive(clap::ValueEnum, Clone, Copy)]
+enum Part {
+    /// The packed component, and Python.
+    Component,
+    /// The component in other importers.
+    Importers,
 }
 
 /// Runs all stages up to the first failure, but completes those running in parallel.
 pub fn run(arguments: Arguments) -> Result<()> {
-    if arguments.component {
-        return component();
+    match arguments.part {
+        Some(Part::Component) => return component(),
+        Some(Part::Importers) => return other_importers(),
+        None => {}
     }
     stage("cargo xtask test", || {
         stage("format", || run_command(cargo().args(["fmt", "--all", "--check"])))?;
@@ -42,15 +53,19 @@ pub fn run(arguments: Arguments) -> Result<()> {
         if arguments.quick {
             return rust("100000");
         }
-        both(library, || {
-            output(Command::new(env::current_exe()?).args(["test", "--component"]))
-        })?;
-        if report::chromium().is_none() {
-            println!("== report: NOT RUN, {}", report::CHROMIUM_MISSING);
-            return Ok(());
-        }
-        stage("report", report::test)
+        let part = |name| move || output(Command::new(env::current_exe()?).args(["test", "--part", name]));
+        both(library, part("component"))?;
+        both(browser, part("importers"))
     })
+}
+
+/// The report in a browser.
+fn browser() -> Result<()> {
+    if report::chromium().is_none() {
+        println!("== report: NOT RUN, {}", report::CHROMIUM_MISSING);
+        return Ok(());
+    }
+    stage("report", report::test)
 }
 
 /// Runs both in parallel, as most of the work uses one core. The output of the second is printed at the end.
@@ -59,7 +74,7 @@ fn both(first: impl FnOnce() -> Result<()>, second: impl FnOnce() -> Result<Stri
         let second = scope.spawn(second);
         let first = first();
         if first.is_err() {
-            println!("== FAILED, waiting for the stages with the component");
+            println!("== FAILED, waiting for the stages beside it");
         }
         (first, second.join().unwrap_or_else(|_| Err(anyhow!("panicked"))))
     });
@@ -99,10 +114,13 @@ fn component() -> Result<()> {
     stage("Python types", || tool(&["mypy"]))?;
     stage("Python tests and examples", || {
         python::test(&["examples/python", "tests/python"], &component)
-    })?;
-    // Late, as it shares a target folder with the Rust tests, and waits while they are compiled.
+    })
+}
+
+/// The stages with other importers. They share a target folder with the Rust tests, and would wait while these are compiled.
+fn other_importers() -> Result<()> {
     stage("conformance lint", || {
         run_command(importers::conformance("clippy")?.args(LINT))
     })?;
-    importers::stages(&component)
+    importers::stages(&fmu::build()?)
 }
