@@ -11,7 +11,7 @@
 //! model       Scene -> Model (never changes);   state  all that moves
 //! integrator  Model, State, inputs -> State after a communication step: "The method" at its head
 //! closed_loop the same where spring and contact are linear: exact steps
-//! chatter     interruptions of the current
+//! chatter     interruptions of the current;   force_error  the error of the contact force so far
 //! electrical  contact force -> resistance;   harmonic  the same contact in the frequency domain
 //! simulation  Model and State together, read by output;   reference  the model's parts, for reference solutions
 //! fmi2        all of it behind the C interface of FMI 2.0

@@ -3,7 +3,14 @@
 //! relay at the tightest tolerance with the most modes. `cargo run --release --package benches --bin promise` judges 2,000
 //! others.
 
+#![allow(clippy::unwrap_used)]
+
+use relay_contact::inputs::Inputs;
+use relay_contact::scene::{Scene, Solver};
+use relay_contact::simulation::Simulation;
+use relay_contact::variables::RealOutput;
 use testing::promise::{Judged, Outcome, judge, judge_all};
+use testing::scenes::{at_rest, largest_difference, shaken, tip_stiffness};
 
 /// Relays judged.
 const COUNT: u64 = 60;
@@ -38,5 +45,82 @@ fn relays_keep_their_tolerance_or_say_that_they_may_not() {
 fn former_excesses_are_within_the_tolerance() {
     for number in [10_144, 10_769, 10_244] {
         assert_eq!(judge(number).outcome, Outcome::Kept);
+    }
+}
+
+/// Forces after each communication step, the greatest within it, and the instants of openings and closings; the fixed
+/// contact moves at `speed` (m/s).
+fn course(scene: &Scene, tolerance: f64, speed: f64, size: f64) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
+    let mut scene = *scene;
+    scene.solver.tolerance = tolerance;
+    let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
+    let (mut forces, mut greatest, mut instants) = (vec![], vec![], vec![]);
+    for k in 0..100 {
+        let time = f64::from(k) * size;
+        let inputs = Inputs {
+            support_displacement: speed * time,
+            support_displacement_rate: speed,
+            ..Inputs::default()
+        };
+        simulation.step(&inputs, time, size).unwrap();
+        forces.push(simulation.real(RealOutput::ContactForce));
+        greatest.push(simulation.real(RealOutput::StepMaximumForce));
+        instants.extend(simulation.events().0.map(|event| event.time));
+    }
+    (forces, greatest, instants)
+}
+
+/// Which tolerance for which question (`docs/accuracy.md`), at other damping of the first mode than the specimen's.
+#[test]
+fn the_advice_on_the_tolerance_holds_for_light_damping() {
+    for ratio in [0.002, 0.01, 0.34] {
+        let damped = |mut scene: Scene| {
+            let beam = &scene.beam;
+            let mass = 33.0 / 140.0 * beam.density * beam.width * beam.thickness * beam.length + scene.tip.mass;
+            scene.beam.stiffness_damping = 2.0 * ratio / (tip_stiffness(&scene) / mass).sqrt();
+            scene
+        };
+        let tight = Solver::TOLERANCE_FLOOR;
+
+        let paper = damped(shaken(98.0, 1000.0));
+        let preload = at_rest(&paper, RealOutput::PreloadForce);
+        let ((forces, ..), (expected, ..)) = (course(&paper, 1e-3, 0.0, 1e-4), course(&paper, tight, 0.0, 1e-4));
+        for (force, expected) in forces
+            .iter()
+            .zip(&expected)
+            .filter(|(_, force)| **force > 0.66 * preload)
+        {
+            // Resistance varies as the force to the power -0.95.
+            assert!(
+                0.95 * (force / expected - 1.0).abs() < 0.01,
+                "{ratio}: {force} {expected} N"
+            );
+        }
+
+        let chatter = damped(shaken(800.0, 1000.0));
+        let ((_, _, instants), (_, _, expected)) =
+            (course(&chatter, 1e-2, 0.0, 5e-5), course(&chatter, tight, 0.0, 5e-5));
+        assert!(!expected.is_empty());
+        assert_eq!(instants.len(), expected.len(), "{ratio}");
+        println!(
+            "{ratio}: instants off by {:e} s",
+            largest_difference(&instants, &expected)
+        );
+        assert!(largest_difference(&instants, &expected) < 5e-7, "{ratio}");
+
+        let mut closing = damped(Scene::default());
+        closing.contact.overtravel = -2e-5;
+        closing.contact.damping = 1e-6;
+        let ((_, greatest, _), (_, expected, _)) =
+            (course(&closing, 1e-3, 0.06, 5e-5), course(&closing, tight, 0.06, 5e-5));
+        let largest = expected.iter().fold(0.0_f64, |largest, force| largest.max(*force));
+        println!(
+            "{ratio}: peaks off by {:e} N of {largest} N, preload {preload} N",
+            largest_difference(&greatest, &expected)
+        );
+        assert!(
+            largest > 0.0 && largest_difference(&greatest, &expected) < 1e-3 * largest,
+            "{ratio}"
+        );
     }
 }
