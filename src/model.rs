@@ -39,7 +39,7 @@ pub struct Model {
     pub(crate) axial: Option<Feedback>,
     /// Modes and contact as one linear system, if the scene is linear, the generator harmonic, and nothing within a
     /// step is requested.
-    pub(crate) closed_loop: Option<ClosedLoop>,
+    pub(crate) closed_loop: Option<Box<ClosedLoop>>,
     /// Generated base acceleration.
     pub(crate) generator: Generator,
     /// `support.displacement` at the start, m: part of the preload.
@@ -149,7 +149,7 @@ impl Model {
             .and_then(|electrical| Criterion::new(scene, electrical));
         let closed_loop = match law {
             Law::Linear(contact) if generator.is_harmonic() && axial.is_none() && !scene.effects.extremes => {
-                ClosedLoop::new(scene, &modes, contact, &generator)
+                ClosedLoop::new(scene, &modes, contact, &generator).map(Box::new)
             }
             _ => None,
         };
@@ -252,6 +252,7 @@ impl Model {
         State {
             time,
             modes: [ModeState::default(); MAX_MODES],
+            with_contact: false,
             support: 0.0,
             support_rate: 0.0,
             indentation: 0.0,

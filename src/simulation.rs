@@ -4,6 +4,7 @@ use crate::chatter::Summary;
 use crate::error::{SceneError, StepError};
 use crate::inputs::Inputs;
 use crate::integrator::communication_step;
+use crate::integrator::exact_step;
 use crate::integrator::workspace::Workspace;
 use crate::model::Model;
 use crate::scene::Scene;
@@ -53,7 +54,9 @@ impl Simulation {
     /// # Errors
     /// A [`StepError`] if it cannot be computed.
     pub fn state_now(&mut self) -> Result<State, StepError> {
-        communication_step::state(&self.model, &self.motion, &mut self.workspace)
+        let mut state = communication_step::state(&self.model, &self.motion, &mut self.workspace)?;
+        exact_step::leave(&self.model, &mut state);
+        Ok(state)
     }
 
     /// Advances over the communication step from `time` to `time + step_size`, s, with inputs that are held or change
@@ -122,7 +125,8 @@ impl Simulation {
         &self.model
     }
 
-    /// The last state that the integrator has reached, at or before [`Simulation::time`].
+    /// The last state that the integrator has reached, at or before [`Simulation::time`]; its modes may be those with
+    /// the contact ([`State::with_contact`]).
     pub fn state(&self) -> &State {
         self.motion.state()
     }

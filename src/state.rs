@@ -13,9 +13,12 @@ use crate::math::prediction::Predictions;
 pub struct State {
     /// Time, s.
     pub time: f64,
-    /// The modes.
+    /// The modes of the cantilever.
     #[serde(with = "BigArray")]
     pub modes: ModeStates,
+    /// Whether, after exact steps, [`State::modes`] are instead those of beam and linear contact together
+    /// ([`crate::closed_loop`]).
+    pub with_contact: bool,
     /// Displacement of the fixed contact since the preload, m.
     pub support: f64,
     /// Its velocity over the last communication step, m/s.
@@ -64,6 +67,7 @@ impl State {
         let Self {
             time,
             modes,
+            with_contact: _,
             support,
             support_rate,
             indentation,

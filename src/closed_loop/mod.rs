@@ -1,5 +1,6 @@
 //! Beam with a linear contact: decoupled into oscillators, each propagated exactly over a step of any length.
 
+pub mod dense;
 pub mod eigenvalues;
 pub mod eigenvectors;
 pub mod oscillator;

@@ -1,5 +1,5 @@
 //! Exact motion of the oscillators of beam and linear contact over a step: the coefficients, which depend on the step
-//! length only, and a cache of them.
+//! length only, and a cache of such.
 //!
 //! Step lengths are used exactly, to the last bit. Collocation steps treat lengths that differ by rounding as equal;
 //! here the resulting phase error would never be corrected, and in undamped vibration it would accumulate over millions
@@ -16,9 +16,6 @@ use crate::excitation::generator::Generator;
 use crate::excitation::waveform::turned;
 use crate::math::free_motion::FreeMotion;
 
-/// Number of cached lengths.
-const KEPT: usize = 8;
-
 /// The motion over a step.
 #[derive(Clone, Debug)]
 pub struct Propagator {
@@ -33,7 +30,8 @@ pub struct Propagator {
 }
 
 impl Propagator {
-    const ZERO: Self = Self {
+    /// Not computed yet.
+    pub(crate) const ZERO: Self = Self {
         x_from_x: [0.0; MAX_MODES],
         x_from_v: [0.0; MAX_MODES],
         v_from_x: [0.0; MAX_MODES],
@@ -43,7 +41,7 @@ impl Propagator {
     };
 
     /// Computes the coefficients for a length (s) in place.
-    fn fill(&mut self, length: f64, oscillators: &[Oscillator], generator: &Generator) {
+    pub(crate) fn fill(&mut self, length: f64, oscillators: &[Oscillator], generator: &Generator) {
         let count = oscillators.len();
         let generated = generator.frequency().map(|frequency| {
             let turn = Complex::from_polar(1.0, TAU * turned(frequency, length));
@@ -64,42 +62,36 @@ impl Propagator {
     }
 }
 
-/// Cache of the last lengths. Its content never affects results, only the time they take.
+/// Cache of what depends on the step length only, for the last lengths. Its content never affects results, only the time
+/// they take.
 #[derive(Clone, Debug)]
-pub struct Propagators {
-    /// Cached lengths, s; 0: none yet.
-    lengths: [f64; KEPT],
-    motions: Vec<Propagator>,
+pub struct ByLength<T> {
+    /// Each with its length, s; 0: none yet.
+    kept: Vec<(f64, T)>,
     /// The entry to be replaced next.
     oldest: usize,
 }
 
-impl Propagators {
-    /// The motion over a length (s).
-    pub(crate) fn over(
-        &mut self,
-        length: f64,
-        oscillators: &[Oscillator],
-        generator: &Generator,
-    ) -> Option<&Propagator> {
-        let known = self.lengths.iter().position(|known| *known == length);
-        let place = known.unwrap_or(self.oldest);
-        let motion = self.motions.get_mut(place)?;
-        if known.is_none() {
-            motion.fill(length, oscillators, generator);
-            *self.lengths.get_mut(place)? = length;
-            self.oldest = (place + 1) % KEPT;
-        }
-        Some(motion)
-    }
-}
-
-impl Default for Propagators {
-    fn default() -> Self {
+impl<T: Clone> ByLength<T> {
+    /// Room for so many lengths.
+    pub(crate) fn new(room: usize, empty: T) -> Self {
         Self {
-            lengths: [0.0; KEPT],
-            motions: vec![Propagator::ZERO; KEPT],
+            kept: vec![(0.0, empty); room],
             oldest: 0,
         }
+    }
+
+    /// The entry for a length (s), filled in if it is not kept; `None` without any room.
+    pub(crate) fn get(&mut self, length: f64, fill: impl FnOnce(&mut T)) -> Option<&T> {
+        let known = self.kept.iter().position(|(known, _)| *known == length);
+        let place = known.unwrap_or(self.oldest);
+        let count = self.kept.len();
+        let (kept, entry) = self.kept.get_mut(place)?;
+        if known.is_none() {
+            fill(entry);
+            *kept = length;
+            self.oldest = (place + 1) % count;
+        }
+        Some(entry)
     }
 }

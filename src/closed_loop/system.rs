@@ -2,8 +2,8 @@
 //!
 //! With the contact as a spring and damper at the tip, the eigenvalues come in pairs
 //! ([`crate::closed_loop::eigenvectors`]). Each pair is an independent damped oscillator
-//! ([`crate::closed_loop::oscillator`]), propagated exactly ([`crate::closed_loop::propagator`]). A step transforms the
-//! modes of the cantilever to these oscillators, propagates them, and transforms back.
+//! ([`crate::closed_loop::oscillator`]), propagated exactly ([`crate::closed_loop::propagator`]). The modes of the
+//! cantilever are transformed to these oscillators before the first exact step of many, and back after the last.
 //!
 //! Constant and linear loads (base acceleration held or linear, fixed contact moving linearly) are covered by a
 //! particular solution, which is bounded as every oscillator has a stiffness. The generator's sine is covered by the
@@ -32,14 +32,19 @@ pub struct ClosedLoop {
     to_modes: Columns,
     /// Transformation from modes (displacement and velocity of each) to oscillators.
     to_oscillators: Columns,
+    /// Displacement and velocity of the tip per displacement, then per velocity, of each oscillator.
+    pub(crate) tip: [Coordinates; 2],
     /// Particular solution at its start, under unit base acceleration and under one that grows linearly with time.
     acceleration: Coordinates,
     jerk: Coordinates,
     /// The same under a tip force.
     force: Coordinates,
     growth: Coordinates,
-    /// Steady state under the generator with unit amplitude, per sine and per cosine of its phase.
+    /// Steady state under the generator with unit amplitude, per sine and per cosine of its phase; zero at a resonance
+    /// without damping.
     steady: [Coordinates; 2],
+    /// Contact force of these five motions; of the last its amplitude, infinite at a resonance without damping.
+    forces: [f64; 5],
 }
 
 /// A square matrix by columns, padded with zero columns to a multiple of four.
@@ -134,12 +139,15 @@ impl ClosedLoop {
             to_modes: Columns::new(2 * count, right),
             to_oscillators: Columns::new(2 * count, left),
             oscillators,
+            tip: [[0.0; 2 * MAX_MODES]; 2],
             acceleration: [0.0; 2 * MAX_MODES],
             jerk: [0.0; 2 * MAX_MODES],
             force: [0.0; 2 * MAX_MODES],
             growth: [0.0; 2 * MAX_MODES],
             steady: [[0.0; 2 * MAX_MODES]; 2],
+            forces: [0.0; 5],
         };
+        let mut resonant = false;
         for (n, oscillator) in closed_loop.oscillators.iter().enumerate() {
             let Oscillator { load, push, .. } = *oscillator;
             set(&mut closed_loop.acceleration, n, count, oscillator.at_rest(load));
@@ -148,12 +156,48 @@ impl ClosedLoop {
             set(&mut closed_loop.growth, n, count, oscillator.at_ramp(push));
             if let Some(frequency) = generator.frequency() {
                 let steady = oscillator.loaded(oscillator.steady(frequency));
+                resonant |= !steady.iter().all(|motion| motion.is_finite());
                 let [per_sine, per_cosine] = &mut closed_loop.steady;
                 set(per_sine, n, count, steady.map(|motion| motion.re));
                 set(per_cosine, n, count, steady.map(|motion| motion.im));
             }
         }
+        let columns = closed_loop.to_modes.entries.chunks_exact(2 * count);
+        let [displacement, velocity] = &mut closed_loop.tip;
+        for ((displacement, velocity), column) in displacement.iter_mut().zip(velocity).zip(columns).take(2 * count) {
+            for (mode, motion) in modes.iter().zip(column.chunks_exact(2)) {
+                if let [q, v] = motion {
+                    *displacement += mode.tip * q;
+                    *velocity += mode.tip * v;
+                }
+            }
+        }
+        if resonant {
+            closed_loop.steady = [[0.0; 2 * MAX_MODES]; 2];
+        }
+        let force = |motion: &Coordinates| closed_loop.force_of(motion);
+        let [per_sine, per_cosine] = closed_loop.steady.each_ref().map(force);
+        closed_loop.forces = [
+            force(&closed_loop.acceleration),
+            force(&closed_loop.jerk),
+            force(&closed_loop.force),
+            force(&closed_loop.growth),
+            if resonant {
+                f64::INFINITY
+            } else {
+                per_sine.hypot(per_cosine)
+            },
+        ];
         closed_loop.is_exact(modes).then_some(closed_loop)
+    }
+
+    /// Contact force of a motion of the oscillators without loads.
+    fn force_of(&self, motion: &Coordinates) -> f64 {
+        let (x, v) = motion.split_at(self.oscillators.len());
+        let motions = self.oscillators.iter().zip(x.iter().zip(v));
+        motions
+            .map(|(oscillator, (x, v))| oscillator.force[0] * x + oscillator.force[1] * v)
+            .sum()
     }
 
     /// Whether the transformations are inverse to each other, and the oscillators have the right contact force, to the
@@ -199,19 +243,21 @@ impl ClosedLoop {
             })
     }
 
-    /// Motion of the oscillators relative to the particular solution, from displacement and velocity of each mode.
-    pub(crate) fn free_motion(&self, simd: Simd, modes: &Coordinates, steady: &Steady) -> Coordinates {
-        let mut free = self.to_oscillators.times(simd, modes);
-        self.add_particular(&mut free, steady, -1.0);
-        free
+    /// Motion of the oscillators, from displacement and velocity of each mode of the cantilever.
+    pub(crate) fn of_modes(&self, simd: Simd, modes: &Coordinates) -> Coordinates {
+        self.to_oscillators.times(simd, modes)
     }
 
-    /// Motion of the modes at the end of a step, from the free motion at its start and the particular solution at the
-    /// end.
+    /// Displacement and velocity of each mode of the cantilever, from the motion of the oscillators.
+    pub(crate) fn modes_of(&self, simd: Simd, oscillators: &Coordinates) -> Coordinates {
+        self.to_modes.times(simd, oscillators)
+    }
+
+    /// Motion of the oscillators at the end of a step, from the free motion at its start and the particular solution at
+    /// the end.
     /// `phasor`: sine and cosine of the generator's phase at the start, times its amplitude.
     pub(crate) fn moved(
         &self,
-        simd: Simd,
         propagator: &Propagator,
         free: &Coordinates,
         steady: &Steady,
@@ -230,14 +276,31 @@ impl ClosedLoop {
             *end = from_x * x + from_v * v;
         }
         self.add_particular(&mut moved, steady, 1.0);
-        for ((end, from_sine), from_cosine) in moved.iter_mut().zip(&propagator.from_sine).zip(&propagator.from_cosine)
-        {
+        let generated = propagator.from_sine.iter().zip(&propagator.from_cosine);
+        for (end, (from_sine, from_cosine)) in moved.iter_mut().zip(generated).take(2 * count) {
             *end += sine * from_sine + cosine * from_cosine;
         }
-        self.to_modes.times(simd, &moved)
+        moved
     }
 
-    fn add_particular(&self, motion: &mut Coordinates, steady: &Steady, sign: f64) {
+    /// Displacement and velocity of the tip of a motion of the oscillators.
+    pub(crate) fn tip_of(&self, motion: &Coordinates) -> (f64, f64) {
+        let [displacement, velocity] = &self.tip;
+        let rows = displacement.iter().zip(velocity).take(2 * self.oscillators.len());
+        let motions = motion.iter().zip(rows);
+        motions.fold(
+            (0.0, 0.0),
+            |(displacement, velocity), (motion, (to_displacement, to_velocity))| {
+                (displacement + to_displacement * motion, velocity + to_velocity * motion)
+            },
+        )
+    }
+
+    /// Adds the particular solution under the loads, times `sign`.
+    pub(crate) fn add_particular(&self, motion: &mut Coordinates, steady: &Steady, sign: f64) {
+        if steady.is_zero() {
+            return;
+        }
         let (a, j) = (sign * steady.acceleration, sign * steady.jerk);
         let (f, g) = (sign * steady.force, sign * steady.growth);
         let count = 2 * self.oscillators.len();
@@ -249,43 +312,51 @@ impl ClosedLoop {
         }
     }
 
-    /// Lower bound of the contact force over a step that begins with the free motion `free`, N.
-    pub(crate) fn least_force(
+    /// Lower bound of the contact force over a step of a length (s) without transients, N.
+    pub(crate) fn least_steady_force(
         &self,
-        preload_force: f64,
-        free: &Coordinates,
+        preload: f64,
         steady: &Steady,
         (sine, cosine): (f64, f64),
         length: f64,
     ) -> f64 {
-        let count = self.oscillators.len();
-        let [per_sine, per_cosine] = &self.steady;
-        let mut transient = *free;
-        for ((x, per_sine), per_cosine) in transient.iter_mut().zip(per_sine).zip(per_cosine) {
-            *x -= sine * per_sine + cosine * per_cosine;
-        }
-        let (x, v) = transient.split_at(count);
-        let motions = self.oscillators.iter().zip(x.iter().zip(v));
-        let swing: f64 = motions
-            .map(|(oscillator, (x, v))| oscillator.largest_force(*x, *v))
-            .sum();
-        let force = |motion: &Coordinates| {
-            let (x, v) = motion.split_at(count);
-            let motions = self.oscillators.iter().zip(x.iter().zip(v));
-            motions
-                .map(|(oscillator, (x, v))| oscillator.force[0] * x + oscillator.force[1] * v)
-                .sum::<f64>()
+        let [acceleration, jerk, force, growth, generated] = self.forces;
+        let start = steady.force * (1.0 + force)
+            + steady.acceleration * acceleration
+            + steady.jerk * jerk
+            + steady.growth * growth;
+        let grown = steady.growth * (1.0 + force) + steady.jerk * acceleration;
+        let swing = match sine.hypot(cosine) {
+            0.0 => 0.0,
+            amplitude => amplitude * generated,
         };
-        let [per_sine, per_cosine] = self.steady.each_ref().map(force);
-        let swing = swing + sine.hypot(cosine) * per_sine.hypot(per_cosine);
-        let start = steady.force
-            + steady.acceleration * force(&self.acceleration)
-            + steady.jerk * force(&self.jerk)
-            + steady.force * force(&self.force)
-            + steady.growth * force(&self.growth);
-        let grown = steady.growth * (1.0 + force(&self.force)) + steady.jerk * force(&self.acceleration);
-        let end = start + grown * length;
-        preload_force + start.min(end) - swing
+        preload + start.min(start + grown * length) - swing
+    }
+
+    /// Upper bound of the contact force of the transients in the free motion, N, or a number above `enough` (N) if the
+    /// bound is.
+    pub(crate) fn swing(&self, free: &Coordinates, (sine, cosine): (f64, f64), enough: f64) -> f64 {
+        let count = self.oscillators.len();
+        let (x, v) = free.split_at(count);
+        let [per_sine, per_cosine] = self.steady.each_ref().map(|steady| steady.split_at(count));
+        let steady = per_sine
+            .0
+            .iter()
+            .zip(per_cosine.0)
+            .zip(per_sine.1.iter().zip(per_cosine.1));
+        let mut swing = 0.0;
+        for ((oscillator, (x, v)), ((x_sine, x_cosine), (v_sine, v_cosine))) in
+            self.oscillators.iter().zip(x.iter().zip(v)).zip(steady)
+        {
+            let x = x - (sine * x_sine + cosine * x_cosine);
+            let v = v - (sine * v_sine + cosine * v_cosine);
+            swing += oscillator.largest_force(x, v);
+            // The first ones reveal most motions.
+            if swing > enough {
+                break;
+            }
+        }
+        swing
     }
 }
 
@@ -303,6 +374,10 @@ pub(crate) struct Steady {
 }
 
 impl Steady {
+    fn is_zero(&self) -> bool {
+        [self.acceleration, self.jerk, self.force, self.growth] == [0.0; 4]
+    }
+
     /// The loads `length` seconds later.
     pub(crate) fn after(self, length: f64) -> Self {
         Self {

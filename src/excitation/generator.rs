@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::error::SceneError;
-use crate::excitation::random::{self, Random};
+use crate::excitation::random::{Piece, Random};
 use crate::excitation::sine::Sine;
 use crate::excitation::sweep::LogSweep;
 use crate::excitation::waveform::{Accelerations, Rotation};
@@ -21,9 +21,7 @@ pub enum Turns<const S: usize> {
     /// Rotation of a sine.
     Sine(Rotation<S>),
     /// Nodes, s from the start of the step.
-    LogSweep(Nodal<S>),
-    /// Rotation of each of many sines.
-    Random(Box<[Rotation<S>]>),
+    Times(Nodal<S>),
 }
 
 impl<const S: usize> Turns<S> {
@@ -32,22 +30,18 @@ impl<const S: usize> Turns<S> {
         match generator {
             Generator::None => Self::None,
             Generator::Sine(_) => Self::Sine(Rotation::ZERO),
-            Generator::LogSweep(_) => Self::LogSweep([0.0; S]),
-            Generator::Random(_) => Self::Random(vec![Rotation::ZERO; random::SINES].into()),
+            Generator::LogSweep(_) | Generator::Random(_) => Self::Times([0.0; S]),
         }
     }
 
     /// Computes the coefficients for a step of `length` seconds with these nodes in place.
-    pub fn fill(&mut self, generator: &Generator, simd: Simd, length: f64, nodes: &Nodal<S>) {
+    pub fn fill(&mut self, generator: &Generator, length: f64, nodes: &Nodal<S>) {
         match (generator, self) {
             (Generator::Sine(sine), Self::Sine(rotation)) => {
                 let angles = scaled(nodes, TAU * sine.frequency * length);
                 (rotation.sin, rotation.cos) = (angles.map(f64::sin), angles.map(f64::cos));
             }
-            (Generator::LogSweep(_), Self::LogSweep(times)) => *times = scaled(nodes, length),
-            (Generator::Random(random), Self::Random(rotations)) => {
-                random.turn(simd, &scaled(nodes, length), rotations);
-            }
+            (Generator::LogSweep(_) | Generator::Random(_), Self::Times(times)) => *times = scaled(nodes, length),
             (Generator::None | Generator::Sine(_) | Generator::LogSweep(_) | Generator::Random(_), _) => {}
         }
     }
@@ -146,9 +140,15 @@ impl Generator {
     }
 
     /// Accelerations over a step that begins at `time` (s), with the coefficients of its length. There must be no
-    /// [`Generator::next_break`] within the step.
+    /// [`Generator::next_break`] within the step. `piece` is kept from step to step.
     #[inline(always)]
-    pub fn over_step<const S: usize>(&self, simd: Simd, time: f64, turns: &Turns<S>) -> Accelerations<S> {
+    pub fn over_step<const S: usize>(
+        &self,
+        simd: Simd,
+        time: f64,
+        turns: &Turns<S>,
+        piece: &mut Piece,
+    ) -> Accelerations<S> {
         let mut nodes = [0.0; S];
         let start = match (self, turns) {
             (Self::None, _) => 0.0,
@@ -160,7 +160,7 @@ impl Generator {
                 sin
             }
             (Self::Sine(_) | Self::LogSweep(_) | Self::Random(_), _) => {
-                self.over_step_out_of_line(simd, time, turns, &mut nodes)
+                self.over_step_out_of_line(simd, time, turns, piece, &mut nodes)
             }
         };
         Accelerations { start, nodes }
@@ -174,12 +174,13 @@ impl Generator {
         simd: Simd,
         time: f64,
         turns: &Turns<S>,
+        piece: &mut Piece,
         nodes: &mut Nodal<S>,
     ) -> f64 {
         let found = match (self, turns) {
-            (Self::LogSweep(sweep), Turns::LogSweep(times)) if self.is_active(time) => sweep.over_step(time, times),
-            (Self::Random(random), Turns::Random(rotations)) if self.is_active(time) => {
-                random.over_step(simd, time, rotations)
+            (Self::LogSweep(sweep), Turns::Times(times)) if self.is_active(time) => sweep.over_step(time, times),
+            (Self::Random(random), Turns::Times(times)) if self.is_active(time) => {
+                random.over_step(simd, time, times, piece)
             }
             (Self::None | Self::Sine(_) | Self::LogSweep(_) | Self::Random(_), _) => return 0.0,
         };
@@ -240,8 +241,8 @@ mod tests {
             // Rounding of time, in radians, and of the sums.
             let allowed = largest * (2.0 * TAU * highest * f64::EPSILON * (time + length) + 1e-13);
             for machine in [Simd::Portable, Simd::detect()] {
-                turns.fill(&generator, machine, length, &nodes);
-                let found = generator.over_step(machine, time, &turns);
+                turns.fill(&generator, length, &nodes);
+                let found = generator.over_step(machine, time, &turns, &mut Piece::default());
                 let start = generator.acceleration(time);
                 assert!(
                     (found.start - start).abs() <= allowed,

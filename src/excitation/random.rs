@@ -3,12 +3,15 @@
 //! The band is divided into equal intervals, one for each sine. Each sine has a random frequency in its interval, so
 //! that the sum does not repeat, and a random phase. The mean square over a long time is exactly the density times the
 //! width of the band; over a short time it scatters as that of noise.
+//!
+//! For steps, time is divided into pieces of the order of the shortest period, and the sum is expanded into a Chebyshev
+//! series over the piece in which a step begins, to rounding: many steps share its cost.
 
 use std::f64::consts::TAU;
 
-use crate::excitation::waveform::{Accelerations, Rotation};
+use crate::excitation::waveform::Accelerations;
 use crate::excitation::window::Window;
-use crate::math::nodal::{Nodal, add};
+use crate::math::nodal::{Nodal, add, add_products};
 use crate::math::simd::{Arithmetic, Separate, Simd, compiled_for};
 use crate::scene::Excitation;
 
@@ -18,6 +21,16 @@ pub const SINES: usize = 256;
 /// Partial sums computed in parallel.
 const LANES: usize = 8;
 
+/// Length of a piece of time in shortest periods, and from the start of one to that of the next: the longest step, a
+/// quarter of the shortest period, fits into the piece in which it starts.
+const PIECE: f64 = 4.0;
+/// See [`PIECE`].
+const STRIDE: f64 = 3.75;
+
+/// Terms of the Chebyshev series over a piece. The angle of a sine changes by at most `z = 4 pi` from the middle to the
+/// ends; what is left out is at most `2 J_40(z) + 2 J_41(z) + ... < 2e-16` of each amplitude.
+const TERMS: usize = 40;
+
 /// A value for each sine.
 type Each = [f64; SINES];
 
@@ -26,14 +39,57 @@ type Each = [f64; SINES];
 pub struct Random {
     /// a, m/s2.
     amplitude: f64,
-    /// f_j, Hz.
-    frequencies: Each,
+    /// f_j, Hz, each as sum of two numbers of half the digits.
+    frequencies: [Each; 2],
     /// p_j, turns.
     phases: Each,
+    /// For each term of the Chebyshev series, its factors of `sin phi_j` (even terms) or `cos phi_j` (odd ones), with
+    /// the phases `phi_j` in the middle of a piece, m/s2.
+    factors: Vec<Each>,
     /// End of the band, Hz.
     pub highest: f64,
     /// Interval of time in which it acts.
     pub window: Window,
+}
+
+/// The acceleration over a piece of time, as a Chebyshev series. Kept from step to step; a function of the number of
+/// the piece alone, so results do not depend on it.
+#[derive(Clone, Copy, Debug)]
+pub struct Piece {
+    /// Its number; negative: none yet.
+    number: f64,
+    /// Its middle, s after the start.
+    middle: f64,
+    /// The series, m/s2.
+    series: [f64; TERMS],
+}
+
+impl Default for Piece {
+    /// Not computed yet.
+    fn default() -> Self {
+        Self {
+            number: -1.0,
+            middle: 0.0,
+            series: [0.0; TERMS],
+        }
+    }
+}
+
+impl Piece {
+    /// Values at the times `x` in half lengths after the middle (Clenshaw's algorithm).
+    #[inline(always)]
+    fn values<const S: usize, A: Arithmetic>(&self, x: &Nodal<S>) -> Nodal<S> {
+        let (mut above, mut value) = ([0.0; S], [0.0; S]);
+        for coefficient in self.series.iter().rev() {
+            for ((above, value), x) in above.iter_mut().zip(&mut value).zip(x) {
+                (*above, *value) = (*value, A::mul_add(2.0 * x, *value, coefficient - *above));
+            }
+        }
+        for ((value, above), x) in value.iter_mut().zip(&above).zip(x) {
+            *value -= x * above;
+        }
+        value
+    }
 }
 
 impl Random {
@@ -47,11 +103,30 @@ impl Random {
             *frequency = excitation.frequency + place * width;
             *phase = generator.next_part();
         }
+        let amplitude = (2.0 * excitation.spectral_density * width / SINES as f64).sqrt();
+        let highest = excitation.end_frequency;
+        // sin(phi + z x) by the expansion of Jacobi and Anger: J_0(z) sin(phi), then 2 J_k(z) T_k(x) times cos(phi),
+        // -sin(phi), -cos(phi), sin(phi), ...
+        let mut factors = vec![[0.0; SINES]; TERMS];
+        for (j, frequency) in frequencies.iter().enumerate() {
+            let values = bessel(0.5 * TAU * PIECE * frequency / highest);
+            for (k, (factors, value)) in factors.iter_mut().zip(values).enumerate() {
+                let sign = if k % 4 < 2 { amplitude } else { -amplitude };
+                let factor = if k == 0 { sign } else { 2.0 * sign };
+                factors
+                    .iter_mut()
+                    .skip(j)
+                    .take(1)
+                    .for_each(|entry| *entry = factor * value);
+            }
+        }
+        let halves = frequencies.map(split);
         Self {
-            amplitude: (2.0 * excitation.spectral_density * width / SINES as f64).sqrt(),
-            frequencies,
+            amplitude,
+            factors,
+            frequencies: [halves.map(|[high, _]| high), halves.map(|[_, low]| low)],
             phases,
-            highest: excitation.end_frequency,
+            highest,
             window: Window::from(excitation.start_time),
         }
     }
@@ -60,85 +135,129 @@ impl Random {
     pub fn value(&self, time: f64) -> f64 {
         let tau = time - self.window.start;
         let (sin, _) = phasors::<Separate>(&self.frequencies, tau, &self.phases);
-        self.amplitude * sum(&sin)
+        self.amplitude * dot::<Separate>(&sin, &[1.0; SINES])
     }
 
-    /// Computes in place the rotation of each sine at the times (s) after the start of a step.
+    /// Accelerations over a step that begins at `time` (s), at the nodes the given times (s) after it. `piece` is kept
+    /// from step to step.
     #[inline(never)]
-    pub fn turn<const S: usize>(&self, simd: Simd, times: &Nodal<S>, rotations: &mut [Rotation<S>]) {
-        compiled_for!(simd, A => {
-            for (node, time) in times.iter().enumerate() {
-                let (sin, cos) = phasors::<A>(&self.frequencies, *time, &[0.0; SINES]);
-                for (rotation, (sin, cos)) in rotations.iter_mut().zip(sin.iter().zip(&cos)) {
-                    if let (Some(to_sin), Some(to_cos)) = (rotation.sin.get_mut(node), rotation.cos.get_mut(node)) {
-                        (*to_sin, *to_cos) = (*sin, *cos);
-                    }
-                }
-            }
-        });
-    }
-
-    /// Accelerations over a step that begins at `time` (s), with the rotations of the sines at the nodes.
-    pub fn over_step<const S: usize>(&self, simd: Simd, time: f64, rotations: &[Rotation<S>]) -> Accelerations<S> {
-        compiled_for!(simd, A => self.compute::<S, A>(time, rotations))
+    pub fn over_step<const S: usize>(
+        &self,
+        simd: Simd,
+        time: f64,
+        times: &Nodal<S>,
+        piece: &mut Piece,
+    ) -> Accelerations<S> {
+        compiled_for!(simd, A => self.compute::<S, A>(time, times, piece))
     }
 
     #[inline(always)]
-    fn compute<const S: usize, A: Arithmetic>(&self, time: f64, rotations: &[Rotation<S>]) -> Accelerations<S> {
-        let (sin, cos) = phasors::<A>(&self.frequencies, time - self.window.start, &self.phases);
-        let (mut from_sin, mut from_cos) = ([0.0; S], [0.0; S]);
-        for (rotation, (sin, cos)) in rotations.iter().zip(sin.iter().zip(&cos)) {
-            add::<S, A>(&mut from_sin, *sin, &rotation.cos);
-            add::<S, A>(&mut from_cos, *cos, &rotation.sin);
+    fn compute<const S: usize, A: Arithmetic>(
+        &self,
+        time: f64,
+        times: &Nodal<S>,
+        piece: &mut Piece,
+    ) -> Accelerations<S> {
+        let tau = time - self.window.start;
+        let stride = STRIDE / self.highest;
+        let number = (tau / stride).floor();
+        if piece.number != number {
+            *piece = self.piece::<A>(number, number * stride + 0.5 * PIECE / self.highest);
         }
-        let mut nodes = from_sin;
-        for (node, from_cos) in nodes.iter_mut().zip(&from_cos) {
-            *node = self.amplitude * (*node + from_cos);
-        }
+        let per_half = 2.0 * self.highest / PIECE;
+        let start = (tau - piece.middle) * per_half;
+        let mut nodes = [start; S];
+        add::<S, A>(&mut nodes, per_half, times);
+        let [start] = piece.values::<1, A>(&[start]);
         Accelerations {
-            start: self.amplitude * sum(&sin),
-            nodes,
+            start,
+            nodes: piece.values::<S, A>(&nodes),
         }
+    }
+
+    /// The piece with this number and its middle (s after the start).
+    #[inline(always)]
+    fn piece<A: Arithmetic>(&self, number: f64, middle: f64) -> Piece {
+        let (sin, cos) = phasors::<A>(&self.frequencies, middle, &self.phases);
+        let mut series = [0.0; TERMS];
+        for (k, (coefficient, factors)) in series.iter_mut().zip(&self.factors).enumerate() {
+            *coefficient = dot::<A>(factors, if k.is_multiple_of(2) { &sin } else { &cos });
+        }
+        Piece { number, middle, series }
     }
 }
 
-/// The sum of the values.
+/// Scalar product.
 #[inline(always)]
-fn sum(values: &Each) -> f64 {
+fn dot<A: Arithmetic>(a: &Each, b: &Each) -> f64 {
     let mut sums = [0.0; LANES];
-    for values in values.as_chunks::<LANES>().0 {
-        for (sum, value) in sums.iter_mut().zip(values) {
-            *sum += value;
-        }
+    for (a, b) in a.as_chunks::<LANES>().0.iter().zip(b.as_chunks::<LANES>().0) {
+        add_products::<LANES, A>(&mut sums, a, b);
     }
     sums.iter().sum()
+}
+
+/// Bessel functions J_0, J_1, ... of an argument up to [`PIECE`] pi, by downward recurrence (J. C. P. Miller).
+fn bessel(z: f64) -> [f64; TERMS] {
+    let mut values = [0.0; TERMS];
+    let (mut above, mut value, mut sum) = (0.0, 1.0, 0.0);
+    for k in (0..2 * TERMS).rev() {
+        values.iter_mut().skip(k).take(1).for_each(|entry| *entry = value);
+        sum += match k {
+            0 => value,
+            _ if k.is_multiple_of(2) => 2.0 * value,
+            _ => 0.0,
+        };
+        (above, value) = (value, 2.0 * k as f64 / z * value - above);
+        if value.abs() > 1e200 {
+            let scaled = values.iter_mut().chain([&mut above, &mut value, &mut sum]);
+            scaled.for_each(|entry| *entry *= 1e-200);
+        }
+    }
+    // J_0 + 2 J_2 + 2 J_4 + ... = 1.
+    values.map(|value| value / sum)
+}
+
+/// A number as the sum of two with half the digits (T. J. Dekker, Numerische Mathematik 18 (1971) 224).
+fn split(value: f64) -> [f64; 2] {
+    let scaled = 134_217_729.0 * value;
+    let high = scaled - (scaled - value);
+    [high, value - high]
+}
+
+/// The nearest integer of a number below 2^51, or one near it; unlike the library's without a call on any processor.
+#[inline(always)]
+fn rounded(value: f64) -> f64 {
+    const SHIFT: f64 = 6_755_399_441_055_744.0;
+    (value + SHIFT) - SHIFT
 }
 
 /// Sines and cosines of the phases (turns) after `tau` seconds at the frequencies (Hz). Branch-free, so that the loop
 /// is vectorised.
 #[inline(always)]
-fn phasors<A: Arithmetic>(frequencies: &Each, tau: f64, phases: &Each) -> (Each, Each) {
+fn phasors<A: Arithmetic>([high, low]: &[Each; 2], tau: f64, phases: &Each) -> (Each, Each) {
+    let [tau_high, tau_low] = split(tau);
     let (mut sines, mut cosines) = ([0.0; SINES], [0.0; SINES]);
     let phasors = sines.iter_mut().zip(&mut cosines);
-    for ((sine, cosine), (frequency, phase)) in phasors.zip(frequencies.iter().zip(phases)) {
+    for ((sine, cosine), ((high, low), phase)) in phasors.zip(high.iter().zip(low).zip(phases)) {
         // Whole turns are removed before rounding, as in `waveform::turned`.
-        let product = frequency * tau;
-        let lost = frequency.mul_add(tau, -product);
-        let turns = (product - product.round_ties_even()) + (lost + phase);
+        let product = (high + low) * tau;
+        let lost = ((high * tau_high - product) + high * tau_low + low * tau_high) + low * tau_low;
+        let turns = (product - rounded(product)) + (lost + phase);
         (*sine, *cosine) = unit::<A>(turns);
     }
     (sines, cosines)
 }
 
-/// Terms of the power series of sine and cosine in an eighth of a turn: the next one is below 1e-19.
-const TERMS: usize = 10;
+/// Terms of the power series of sine and cosine in an eighth of a turn: the next one is below 3e-18.
+const POWERS: usize = 9;
 
 /// `1 / n!`.
 #[expect(clippy::indexing_slicing, reason = "the indices are those of the table")]
-const INVERSE_FACTORIALS: [f64; 2 * TERMS] = {
-    let mut values = [1.0; 2 * TERMS];
+const INVERSE_FACTORIALS: [f64; 2 * POWERS] = {
+    let mut values = [1.0; 2 * POWERS];
     let mut n = 1;
-    while n < 2 * TERMS {
+    while n < 2 * POWERS {
         values[n] = values[n - 1] / n as f64;
         n += 1;
     }
@@ -149,12 +268,12 @@ const INVERSE_FACTORIALS: [f64; 2 * TERMS] = {
 #[expect(clippy::indexing_slicing, reason = "the indices are those of the table")]
 #[inline(always)]
 fn unit<A: Arithmetic>(turns: f64) -> (f64, f64) {
-    let turns = turns - turns.round_ties_even();
-    let quarters = (4.0 * turns).round_ties_even();
+    let turns = turns - rounded(turns);
+    let quarters = rounded(4.0 * turns);
     let angle = TAU * A::mul_add(-0.25, quarters, turns);
     let z = -angle * angle;
     let (mut sin, mut cos) = (0.0, 0.0);
-    for n in (0..TERMS).rev() {
+    for n in (0..POWERS).rev() {
         sin = A::mul_add(sin, z, INVERSE_FACTORIALS[2 * n + 1]);
         cos = A::mul_add(cos, z, INVERSE_FACTORIALS[2 * n]);
     }

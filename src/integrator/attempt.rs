@@ -63,10 +63,10 @@ impl Integration<'_> {
     {
         self.workspace.work += work(recurring);
         let (cache, end, probe) = self.workspace.parts();
-        let (step, collocation) = cache.get(length, recurring, self.model);
+        let prepared = cache.prepare(self.state.time, length, recurring, self.model);
         let source = Source::Law(NEWTON * self.allowed);
         let modes = if kept { end } else { probe };
-        trial(self.model, self.state, &self.drive, (step, collocation), source, modes)
+        trial(self.model, self.state, &self.drive, prepared, source, modes)
     }
 
     /// Rejects a step; the next one shall have `length` (s).

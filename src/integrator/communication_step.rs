@@ -60,7 +60,7 @@ fn step_by<const EXTREMES: bool>(
     // The fixed contact moves at constant velocity to its position at the end of the step.
     let support = inputs.support_displacement_after(size) - model.initial_support;
     let drive = Drive::new(inputs, time, size, support - motion.state().support);
-    let steady = drive.continues(&motion.drive) && model.closed_loop.is_none();
+    let steady = drive.continues(&motion.drive);
     let ahead = motion.time < motion.end.time;
     // The end lies inside the current integration step: nothing to integrate, outputs come from its dense output.
     let inside = steady && until < motion.end.time;
@@ -83,21 +83,20 @@ fn step_by<const EXTREMES: bool>(
             }
         }
     } else {
-        let before = ahead.then_some((motion.start, motion.end));
+        let mut end = motion.end;
         if ahead {
-            motion.end = state(model, motion, workspace)?;
-            motion.start = motion.end;
+            end = state(model, motion, workspace)?;
             workspace.events.forget_after(since);
         }
         let steps = Steps::Exactly { time, size };
-        if let Err(error) = advance(model, &mut motion.end, workspace, drive, steps, extremes.as_mut()) {
-            (motion.start, motion.end) = before.unwrap_or((motion.start, motion.start));
+        if let Err(error) = advance(model, &mut end, workspace, drive, steps, extremes.as_mut()) {
             workspace.events.forget_after(since);
             return Err(error);
         }
-        motion.end.support = support;
-        motion.end.time = until;
-        motion.start = motion.end;
+        end.support = support;
+        end.time = until;
+        motion.start = end;
+        motion.end = end;
         motion.drive = drive;
     }
     motion.size = size;

@@ -118,6 +118,9 @@ pub const NEW_LENGTH: u64 = 10;
 /// Step lengths whose coefficients are kept, a power of two. Chosen. Cost.
 pub const SLOTS: usize = 32;
 
+/// Step lengths for which the coefficients of exact linear steps are kept. Chosen. Cost.
+pub const LENGTHS: usize = 8;
+
 // Events.
 
 /// Points at which a nodal polynomial is examined where it comes near zero. Chosen. Pinned: ÷ 16, `tests/chatter.rs`.

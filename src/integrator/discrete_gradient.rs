@@ -57,13 +57,13 @@ impl Integration<'_> {
         } = self;
         let mut trials = 0;
         let (cache, end, _) = Room::<SHORT>::parts(*workspace);
-        let (step, collocation) = cache.get(target.length, target.recurring, model);
+        let prepared = cache.prepare(state.time, target.length, target.recurring, model);
         let preload = model.preload;
         let from = preload.indentation + state.indentation;
         let mut under = |force: f64| {
             trials += 1;
             let source = Source::Given([force - preload.force; SHORT]);
-            trial(model, state, drive, (step, collocation), source, end)
+            trial(model, state, drive, prepared, source, end)
         };
         let law_force = |trial: &Trial<SHORT>| {
             let speed = (trial.indentation - state.indentation) / target.length;

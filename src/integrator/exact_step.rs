@@ -1,12 +1,24 @@
 //! The exact step of any length for a linear contact that stays closed ([`crate::closed_loop`]).
+//!
+//! From step to step the state holds the oscillators of beam and contact together ([`State::with_contact`]); the modes
+//! of the cantilever are formed where they are needed.
 
-use crate::beam::mode::MAX_MODES;
+use crate::beam::mode::{MAX_MODES, ModeStates};
 use crate::closed_loop::oscillator::Coordinates;
-use crate::closed_loop::propagator::Propagators;
+use crate::closed_loop::propagator::Propagator;
 use crate::closed_loop::system::{ClosedLoop, Steady};
 use crate::contact::law::Law;
 use crate::contact::linear::Linear;
 use crate::excitation::drive::Drive;
+use crate::integrator::attempt::step_factor;
+use crate::integrator::constants::{
+    AFTER_REJECTION, FORCE_ROUNDING, INSIDE, LEAST_SHRINK, LONG_FLOOR, MOST_SHRINK, SAFETY, SHARE, STEP_GROWTH, UNREST,
+};
+use crate::integrator::grid::round_down;
+use crate::integrator::integration::{DenseOutput, StepOutcome};
+use crate::integrator::workspace::Workspace;
+use crate::math::nodal::{LONG, Nodal, dot};
+use crate::math::simd::Separate;
 use crate::model::Model;
 use crate::state::State;
 
@@ -16,20 +28,17 @@ use crate::state::State;
 pub(crate) fn step_exactly(
     model: &Model,
     state: &mut State,
-    propagators: &mut Propagators,
+    workspace: &mut Workspace,
     drive: &Drive,
     size: f64,
 ) -> bool {
-    let (Some(closed_loop), Law::Linear(law)) = (&model.closed_loop, &model.law) else {
-        return false;
-    };
     let longest = model.scene.solver.maximum_step;
-    if !(state.closed || law.bonded) || (longest > 0.0 && size > longest) {
+    if model.closed_loop.is_none() || longest > 0.0 && size > longest {
         return false;
     }
     let end = state.time + size;
     let Some(corner) = model.generator.next_break(state.time).filter(|corner| *corner < end) else {
-        if !advance(closed_loop, model, state, propagators, drive, size) {
+        if !step(model, state, workspace, drive, size) {
             return false;
         }
         state.time = end;
@@ -37,9 +46,9 @@ pub(crate) fn step_exactly(
     };
     let saved = *state;
     let first = corner - state.time;
-    if advance(closed_loop, model, state, propagators, drive, first) {
+    if step(model, state, workspace, drive, first) {
         state.time = corner;
-        if step_exactly(model, state, propagators, drive, size - first) {
+        if step_exactly(model, state, workspace, drive, size - first) {
             state.time = end;
             return true;
         }
@@ -50,67 +59,258 @@ pub(crate) fn step_exactly(
 
 /// One step of `length` seconds without a start or end of the generator inside; `false`, with the state unchanged, if
 /// the contact may open or be interrupted.
-fn advance(
-    closed_loop: &ClosedLoop,
+fn step(model: &Model, state: &mut State, workspace: &mut Workspace, drive: &Drive, length: f64) -> bool {
+    let mut free = [0.0; 2 * MAX_MODES];
+    let Some(start) = Start::new(model, state, drive, length, &mut free) else {
+        return false;
+    };
+    let propagator = workspace.propagators.get(length, |propagator| {
+        propagator.fill(length, &start.closed_loop.oscillators, &model.generator);
+    });
+    propagator.is_some_and(|propagator| start.end(model, state, &free, drive, length, propagator))
+}
+
+/// Takes an exact step with dense output, as long as its polynomials are accurate and from the state's time beyond
+/// `until` (s); else an exact step to there. Inputs are constant.
+/// `false`, with the modes unchanged, if the motion is not linear or the contact may open.
+pub(crate) fn step_ahead(
     model: &Model,
     state: &mut State,
-    propagators: &mut Propagators,
+    workspace: &mut Workspace,
     drive: &Drive,
-    length: f64,
+    (until, dense): (f64, &mut DenseOutput),
 ) -> bool {
-    let Linear { stiffness, damping, .. } = closed_loop.contact;
-    let count = closed_loop.oscillators.len();
-    let mut motion = [0.0; 2 * MAX_MODES];
-    for (pair, mode) in motion.chunks_exact_mut(2).zip(state.modes.iter().take(count)) {
-        if let [q, v] = pair {
-            (*q, *v) = (mode.q, mode.v);
+    if model.closed_loop.is_none() {
+        return false;
+    }
+    let tolerance = model.scene.solver.effective_tolerance() * model.force_scale;
+    let allowed = (SHARE * tolerance).max(FORCE_ROUNDING * model.force_scale);
+    let longest = match model.scene.solver.maximum_step {
+        0.0 => f64::INFINITY,
+        longest => longest,
+    };
+    let remaining = until - state.time;
+    let mut requested = if tolerance > LONG_FLOOR * model.force_scale {
+        state.long_step
+    } else {
+        0.0
+    };
+    let mut free = [0.0; 2 * MAX_MODES];
+    let Some(start) = Start::new(model, state, drive, requested, &mut free) else {
+        return false;
+    };
+    loop {
+        let mut length = round_down(requested.min(longest));
+        let mut time = state.time + length;
+        if let Some(corner) = model.generator.next_break(state.time).filter(|corner| *corner < time) {
+            (length, time) = (corner - state.time, corner);
         }
+        if length < remaining {
+            // The next step tries again, as what is not smooth may decay.
+            state.long_step = requested.max(2.0 * remaining);
+            if !step_exactly(model, state, workspace, drive, remaining) {
+                return false;
+            }
+            state.time = until;
+            return true;
+        }
+        let (propagators, collocation) = workspace.for_exact_steps();
+        let propagator = propagators.get(length, |propagator| {
+            propagator.fill(length, start.closed_loop, &model.generator, &collocation.nodes);
+        });
+        let Some(propagator) = propagator else {
+            return false;
+        };
+        let [indentations, rates] = start.at_nodes(state, propagator.tip_at_nodes(model.simd, &free, start.phasor));
+        let defect = |start: f64, values: &Nodal<LONG>| start - dot::<LONG, Separate>(values, &collocation.at_start);
+        let stiffness = start.law.stiffness;
+        let elastic = stiffness * defect(state.indentation, &indentations);
+        let force = elastic + stiffness * start.law.damping * defect(state.indentation_rate, &rates);
+        let ratio = INSIDE * elastic.abs().max(force.abs()) / allowed;
+        if ratio <= 1.0 {
+            let indentation = collocation.through(state.indentation, &indentations);
+            let rate = collocation.through(state.indentation_rate, &rates);
+            if !start.end(model, state, &free, drive, length, &propagator.whole) {
+                return false;
+            }
+            let damping = stiffness * start.law.damping;
+            let mut force = indentation;
+            for (force, rate) in force.iter_mut().zip(&rate) {
+                *force = stiffness * *force + damping * rate;
+            }
+            *dense = DenseOutput {
+                accurate: true,
+                force,
+                indentation,
+                rate,
+            };
+            state.time = time;
+            state.force_error.largest = state.force_error.largest.max(ratio * allowed);
+            let growth = (SAFETY * step_factor::<LONG>(ratio)).clamp(MOST_SHRINK, STEP_GROWTH);
+            state.long_step = StepOutcome::after(length, requested, growth).length;
+            return true;
+        }
+        let shrink = if ratio.is_finite() {
+            (AFTER_REJECTION * step_factor::<LONG>(ratio)).clamp(LEAST_SHRINK, MOST_SHRINK)
+        } else {
+            LEAST_SHRINK
+        };
+        requested = length * shrink;
     }
-    let growth = stiffness * drive.support_rate;
-    let steady = Steady {
-        acceleration: drive.acceleration(state.time),
-        jerk: drive.jerk,
-        force: stiffness * state.support + damping * growth,
-        growth,
-    };
-    let free = closed_loop.free_motion(model.simd, &motion, &steady);
-    let phasor = model.generator.phasor(state.time);
-    if state.interruptions.in_progress() {
-        return false;
-    }
-    // The force must stay above zero, or above the threshold of an interruption.
-    let least = model.criterion.map_or(0.0, |criterion| criterion.force);
-    let watched = !model.law.never_opens() || least > 0.0;
-    if watched && least >= closed_loop.least_force(model.preload.force, &free, &steady, phasor, length) {
-        return false;
-    }
-    let Some(propagator) = propagators.over(length, &closed_loop.oscillators, &model.generator) else {
-        return false;
-    };
-    let motion: Coordinates = closed_loop.moved(model.simd, propagator, &free, &steady.after(length), phasor);
+}
 
-    let support = state.support + drive.support_rate * length;
-    let (mut indentation, mut rate) = (support, drive.support_rate);
-    for (pair, mode) in motion.chunks_exact(2).zip(&model.modes) {
-        if let [q, v] = pair {
-            indentation -= mode.tip * q;
-            rate -= mode.tip * v;
+/// What an exact step begins with.
+struct Start<'a> {
+    closed_loop: &'a ClosedLoop,
+    law: Linear,
+    /// Loads at the start.
+    steady: Steady,
+    /// Sine and cosine of the generator's phase at the start, times its amplitude.
+    phasor: (f64, f64),
+}
+
+impl<'a> Start<'a> {
+    /// Of a step of `length` seconds, with the motion of the oscillators relative to the particular solution in `free`;
+    /// `None` if the motion in it is not linear, as the contact may open or be interrupted.
+    fn new(model: &'a Model, state: &State, drive: &Drive, length: f64, free: &mut Coordinates) -> Option<Self> {
+        let closed_loop = model.closed_loop.as_deref()?;
+        let Law::Linear(law) = model.law else {
+            return None;
+        };
+        if !(state.closed || law.bonded) || state.interruptions.in_progress() {
+            return None;
         }
+        let growth = law.stiffness * drive.support_rate;
+        let steady = Steady {
+            acceleration: drive.acceleration(state.time),
+            jerk: drive.jerk,
+            force: law.stiffness * state.support + law.damping * growth,
+            growth,
+        };
+        let phasor = model.generator.phasor(state.time);
+        // The force must stay above zero, or above the threshold of an interruption.
+        let least = model.criterion.map_or(0.0, |criterion| criterion.force);
+        let watched = !model.law.never_opens() || least > 0.0;
+        let margin = if watched {
+            let steady = closed_loop.least_steady_force(model.preload.force, &steady, phasor, length);
+            steady - least
+        } else {
+            f64::INFINITY
+        };
+        // Before the transformation of the modes, the dearest part.
+        if margin.is_nan() || margin <= 0.0 {
+            return None;
+        }
+        oscillators(closed_loop, model, state, free);
+        closed_loop.add_particular(free, &steady, -1.0);
+        // Not `>=`, so that NaN does not pass.
+        let stays_closed = !watched || closed_loop.swing(free, phasor, margin) < margin;
+        stays_closed.then_some(Self {
+            closed_loop,
+            law,
+            steady,
+            phasor,
+        })
     }
-    if !(indentation.is_finite() && rate.is_finite()) {
-        return false;
+
+    /// Indentation and its velocity at the nodes, under constant loads, from the motion of the tip relative to the
+    /// particular solution.
+    fn at_nodes(&self, state: &State, tip: [Nodal<LONG>; 2]) -> [Nodal<LONG>; 2] {
+        let mut particular = [0.0; 2 * MAX_MODES];
+        self.closed_loop.add_particular(&mut particular, &self.steady, 1.0);
+        let (displacement, velocity) = self.closed_loop.tip_of(&particular);
+        let [displacements, velocities] = tip;
+        [
+            displacements.map(|tip| state.support - (tip + displacement)),
+            velocities.map(|tip| -(tip + velocity)),
+        ]
     }
-    for (mode, pair) in state.modes.iter_mut().zip(motion.chunks_exact(2)).take(count) {
-        if let [q, v] = pair {
+
+    /// Moves the state to the end of the step, but for its time; `false`, with the state unchanged, where that is not
+    /// finite. `free` is that of [`Start::new`].
+    fn end(
+        &self,
+        model: &Model,
+        state: &mut State,
+        free: &Coordinates,
+        drive: &Drive,
+        length: f64,
+        propagator: &Propagator,
+    ) -> bool {
+        let Self { closed_loop, .. } = self;
+        let motion = closed_loop.moved(propagator, free, &self.steady.after(length), self.phasor);
+        let (tip, tip_rate) = closed_loop.tip_of(&motion);
+        let support = state.support + drive.support_rate * length;
+        let (indentation, rate) = (support - tip, drive.support_rate - tip_rate);
+        if !(indentation.is_finite() && rate.is_finite()) {
+            return false;
+        }
+        let (x, v) = motion.split_at(closed_loop.oscillators.len());
+        for (mode, (x, v)) in state.modes.iter_mut().zip(x.iter().zip(v)) {
+            (mode.q, mode.v) = (*x, *v);
+        }
+        state.with_contact = true;
+        state.support = support;
+        state.support_rate = drive.support_rate;
+        state.indentation = indentation;
+        state.indentation_rate = rate;
+        state.force = model.law.force(model.preload.indentation + indentation, rate);
+        state.last_step = 0.0;
+        state.steps += 1;
+        true
+    }
+}
+
+/// Sets the displacements of the oscillators, then their velocities.
+fn oscillators(closed_loop: &ClosedLoop, model: &Model, state: &State, motion: &mut Coordinates) {
+    let count = closed_loop.oscillators.len();
+    let modes = state.modes.iter().take(count);
+    if state.with_contact {
+        let (x, v) = motion.split_at_mut(count);
+        for ((x, v), mode) in x.iter_mut().zip(v).zip(modes) {
+            (*x, *v) = (mode.q, mode.v);
+        }
+    } else {
+        let mut pairs = [0.0; 2 * MAX_MODES];
+        for (pair, mode) in pairs.as_chunks_mut().0.iter_mut().zip(modes) {
+            *pair = [mode.q, mode.v];
+        }
+        *motion = closed_loop.of_modes(model.simd, &pairs);
+    }
+}
+
+/// The modes of the cantilever in a state.
+pub(crate) fn modes(model: &Model, state: &State) -> ModeStates {
+    let mut modes = state.modes;
+    if let Some(closed_loop) = model.closed_loop.as_deref().filter(|_| state.with_contact) {
+        let mut motion = [0.0; 2 * MAX_MODES];
+        oscillators(closed_loop, model, state, &mut motion);
+        let pairs = closed_loop.modes_of(model.simd, &motion);
+        for (mode, [q, v]) in modes.iter_mut().zip(pairs.as_chunks().0) {
             (mode.q, mode.v) = (*q, *v);
         }
     }
-    state.support = support;
-    state.support_rate = drive.support_rate;
-    state.indentation = indentation;
-    state.indentation_rate = rate;
-    state.force = model.law.force(model.preload.indentation + indentation, rate);
-    state.last_step = 0.0;
-    state.steps += 1;
-    true
+    modes
+}
+
+/// Makes a state one of the modes of the cantilever.
+pub(crate) fn leave(model: &Model, state: &mut State) {
+    if state.with_contact {
+        state.modes = modes(model, state);
+        state.with_contact = false;
+    }
+}
+
+/// [`leave`] where constant inputs leave so little motion that the contact may be at rest.
+pub(crate) fn leave_before_rest(model: &Model, state: &mut State, drive: &Drive, tolerance: f64) {
+    if !state.with_contact || !drive.is_constant() || model.generator.is_active(state.time) {
+        return;
+    }
+    let mut free = [0.0; 2 * MAX_MODES];
+    let least = UNREST * tolerance;
+    if let Some(start) = Start::new(model, state, drive, 0.0, &mut free)
+        && start.closed_loop.swing(&free, start.phasor, least) <= least
+    {
+        leave(model, state);
+    }
 }

@@ -143,6 +143,6 @@ impl Grid {
 }
 
 /// Rounds down to `2^n` or `1.5 2^n`, so that the lengths of free steps recur.
-fn round_down(length: f64) -> f64 {
+pub(crate) fn round_down(length: f64) -> f64 {
     f64::from_bits(length.to_bits() & (u64::MAX << (f64::MANTISSA_DIGITS - 2)))
 }

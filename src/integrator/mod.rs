@@ -194,10 +194,17 @@
 //! # Exact steps
 //!
 //! Where beam and contact are linear, the generator is a sine or none, and neither extremes nor near interruptions are
-//! asked for, a communication step is one exact step of any length ([`exact_step`]), in the eigenvectors of beam and
-//! contact together ([`closed_loop`](crate::closed_loop)): the eigenvalues are the zeros of a secular equation, in
-//! pairs, each a damped oscillator with a closed form. A bound on its swing shows whether the contact may open within
-//! the step; then the collocation takes over.
+//! asked for, steps are exact at any length ([`exact_step`]), in the eigenvectors of beam and contact together
+//! ([`closed_loop`](crate::closed_loop)): the eigenvalues are the zeros of a secular equation, in pairs, each a damped
+//! oscillator with a closed form. The state holds these oscillators from step to step; the modes of the cantilever are
+//! formed where they are needed. A bound on the swing shows whether the contact may open within the step; then the
+//! collocation takes over.
+//!
+//! A long communication step is one exact step. In short ones with constant inputs the integrator runs ahead in exact
+//! steps, and outputs are read from polynomials through the tip at the nodes of eight. They add no error to the motion;
+//! the step is as long as [`constants::INSIDE`] times what the force polynomial misses at the start is below
+//! [`constants::SHARE`] of the tolerance. Where no step beyond the communication point is so accurate (just after an
+//! input has changed), and below [`constants::LONG_FLOOR`], an exact step ends there.
 //!
 //! # The promise of `solver.tolerance`
 //!

@@ -9,6 +9,7 @@
 use crate::beam::mode::MAX_MODES;
 use crate::excitation::drive::Drive;
 use crate::integrator::events::log::Event;
+use crate::integrator::exact_step;
 use crate::integrator::extremes::Extremes;
 use crate::integrator::integration::DenseOutput;
 use crate::math::prediction::value_and_slope;
@@ -190,11 +191,12 @@ impl Motion {
         }
         let base = self.drive.acceleration(self.time) + model.generator.acceleration_before(self.time);
         let force = state.force - model.preload.force;
+        let modes = exact_step::modes(model, state);
         let axial = match model.axial() {
-            Some(axial) => axial.loads(&model.modes, &state.modes),
+            Some(axial) => axial.loads(&model.modes, &modes),
             None => [0.0; MAX_MODES],
         };
-        let modes = model.modes.iter().zip(&state.modes).zip(&axial);
+        let modes = model.modes.iter().zip(&modes).zip(&axial);
         let acceleration = modes.fold(0.0, |sum, ((mode, at), axial)| {
             let load = mode.tip * force - mode.participation * base + axial;
             sum - mode.tip * (load - mode.omega_squared * at.q - mode.damping * at.v)

@@ -8,7 +8,7 @@ use crate::integrator::constants::{
     SHARE, WORTH,
 };
 use crate::integrator::energy::conservation::conserves;
-use crate::integrator::exact_step::step_exactly;
+use crate::integrator::exact_step;
 use crate::integrator::extremes::Extremes;
 use crate::integrator::grid::Grid;
 use crate::integrator::integration::{Integration, StepOutcome, Steps};
@@ -36,18 +36,23 @@ pub(crate) fn advance(
     let tolerance = model.scene.solver.effective_tolerance() * model.force_scale;
     let (grid, dense) = match steps {
         Steps::Exactly { time, size } => {
+            exact_step::leave_before_rest(model, state, &drive, tolerance);
             state.time = rests_until(model, state, &drive, tolerance, time + size).unwrap_or(time);
             let remaining = size - (state.time - time);
-            if remaining <= 0.0 || step_exactly(model, state, &mut workspace.propagators, &drive, remaining) {
+            if remaining <= 0.0 || exact_step::step_exactly(model, state, workspace, &drive, remaining) {
                 return Ok(());
             }
             (Grid::over(state.time, remaining), None)
         }
         Steps::Own { until, dense } => {
+            if exact_step::step_ahead(model, state, workspace, &drive, (until, &mut *dense)) {
+                return Ok(());
+            }
             let size = state.short_step.max(state.long_step);
             (Grid::free(state.time, size), Some((until, dense)))
         }
     };
+    exact_step::leave(model, state);
     Integration {
         model,
         state,

@@ -1,10 +1,12 @@
 //! Preallocated memory of the integrator, so that no step allocates, and the limit of steps.
 
 use crate::beam::mode::{MAX_MODES, ModeState, ModeStates};
-use crate::closed_loop::propagator::Propagators;
+use crate::closed_loop::dense::DensePropagator;
+use crate::closed_loop::propagator::{ByLength, Propagator};
 use crate::error::{StepError, StepErrorCause};
 use crate::integrator::collocation::coefficients::Cache;
-use crate::integrator::constants::{NEW_LENGTH, STEPS};
+use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::constants::{LENGTHS, NEW_LENGTH, STEPS};
 use crate::integrator::events::log::Events;
 use crate::math::nodal::{LONG, SHORT};
 use crate::model::Model;
@@ -18,8 +20,10 @@ pub struct Workspace {
     end: ModeStates,
     /// Modes at the end of probe steps (event location).
     probe: ModeStates,
-    /// Cache of exact linear steps.
-    pub(crate) propagators: Propagators,
+    /// Caches of exact linear steps, without and with dense output.
+    pub(crate) propagators: ByLength<Propagator>,
+    /// See [`Workspace::propagators`].
+    dense_propagators: ByLength<DensePropagator>,
     /// Steps computed so far, including rejected and probe steps, in units of a step with cached coefficients.
     pub(crate) work: u64,
     /// Openings and closings of the last communication step.
@@ -29,15 +33,28 @@ pub struct Workspace {
 impl Workspace {
     /// Allocates for the model.
     pub fn new(model: &Model) -> Self {
+        let oscillators = model
+            .closed_loop
+            .as_ref()
+            .map(|closed_loop| closed_loop.oscillators.len());
+        let lengths = if oscillators.is_some() { LENGTHS } else { 0 };
         Self {
             short: Cache::new(model),
             long: Cache::new(model),
             end: [ModeState::default(); MAX_MODES],
             probe: [ModeState::default(); MAX_MODES],
-            propagators: Propagators::default(),
+            propagators: ByLength::new(lengths, Propagator::ZERO),
+            dense_propagators: ByLength::new(lengths, DensePropagator::room(oscillators.unwrap_or_default())),
             work: 0,
             events: Events::new(),
         }
+    }
+}
+
+impl Workspace {
+    /// For exact steps with dense output.
+    pub(crate) fn for_exact_steps(&mut self) -> (&mut ByLength<DensePropagator>, &Collocation<LONG>) {
+        (&mut self.dense_propagators, self.long.collocation())
     }
 }
 

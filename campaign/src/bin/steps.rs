@@ -1,6 +1,6 @@
 //! Makes communication steps, for counting instructions: `steps SCENE INTERFACE COUNT`, the scene `1us` (steps far
-//! shorter than those of the integrator), `10us` (about as long) or `shaken` (10 us, and an input that changes every
-//! step), the interface `fmi2DoStep` (of the library file beside this program) or `library` (the same steps without C).
+//! shorter than those of the integrator), `10us` (about as long), or with an input that changes every step `shaken`
+//! (10 us), `changing` (1 us) or `random` (random lengths, 0.5 to 2 us), the interface `fmi2DoStep` (of the library file beside this program) or `library` (the same steps without C).
 
 use campaign::api::LIBRARY;
 use campaign::call::Call;
@@ -14,14 +14,24 @@ use relay_contact::variables::{ExcitationKind, RealOutput};
 
 const AMPLITUDE: f64 = 98.0;
 
-/// Step size, s, and the acceleration in a step, m/s2.
-fn plan(scene: &str) -> (f64, fn(u32) -> f64) {
-    match scene {
-        "1us" => (1e-6, |_| 0.0),
-        "10us" => (1e-5, |_| 0.0),
-        "shaken" => (1e-5, |k| f64::from(k % 5)),
+/// Length of each of so many steps, s, and the acceleration in it, m/s2.
+fn plan(scene: &str, count: u32) -> Vec<(f64, f64)> {
+    let (sizes, held) = match scene {
+        "1us" => ([1e-6; 2], true),
+        "10us" => ([1e-5; 2], true),
+        "shaken" => ([1e-5; 2], false),
+        "changing" => ([1e-6; 2], false),
+        "random" => ([0.5e-6, 2e-6], false),
         other => panic!("unknown scene {other}"),
-    }
+    };
+    let [shortest, longest] = sizes;
+    // The golden ratio's fractional parts fill an interval evenly.
+    let part = |k: u32| (f64::from(k) * 0.618_033_988_749_894_9).fract();
+    let step = |k: u32| {
+        let acceleration = if held { 0.0 } else { f64::from(k % 5) };
+        (shortest + part(k) * (longest - shortest), acceleration)
+    };
+    (0..count).map(step).collect()
 }
 
 fn main() {
@@ -29,16 +39,16 @@ fn main() {
     let [_, scene, way, count] = &arguments[..] else {
         panic!("usage: steps SCENE INTERFACE COUNT");
     };
-    let count = count.parse().expect("a count of steps");
+    let plan = plan(scene, count.parse().expect("a count of steps"));
     let force = match way.as_str() {
-        "fmi2DoStep" => through_c(plan(scene), count),
-        "library" => alone(plan(scene), count),
+        "fmi2DoStep" => through_c(&plan),
+        "library" => alone(&plan),
         other => panic!("unknown interface {other}"),
     };
     println!("{force}");
 }
 
-fn through_c((size, acceleration): (f64, fn(u32) -> f64), count: u32) -> f64 {
+fn through_c(plan: &[(f64, f64)]) -> f64 {
     let api = &*LIBRARY;
     let mut importer = Importer::new(api);
     for call in Call::shaken(AMPLITUDE) {
@@ -49,30 +59,31 @@ fn through_c((size, acceleration): (f64, fn(u32) -> f64), count: u32) -> f64 {
         DESCRIPTION.reference("base.acceleration"),
         DESCRIPTION.reference("contact.force"),
     );
-    let (mut force, mut value) = (0.0, 0.0);
+    let (mut force, mut time, mut value) = (0.0, 0.0, 0.0);
     // SAFETY: pointers to what is declared here.
     unsafe {
-        for k in 0..count {
-            let before = std::mem::replace(&mut value, acceleration(k));
+        for (size, acceleration) in plan {
+            let before = std::mem::replace(&mut value, *acceleration);
             if value != before {
                 assert_eq!((api.fmi2SetReal)(c, &raw const input, 1, &raw const value), fmi2OK);
             }
-            assert_eq!((api.fmi2DoStep)(c, f64::from(k) * size, size, fmi2True), fmi2OK);
+            assert_eq!((api.fmi2DoStep)(c, time, *size, fmi2True), fmi2OK);
+            time += size;
         }
         assert_eq!((api.fmi2GetReal)(c, &raw const output, 1, &raw mut force), fmi2OK);
     }
     force
 }
 
-fn alone((size, acceleration): (f64, fn(u32) -> f64), count: u32) -> f64 {
+fn alone(plan: &[(f64, f64)]) -> f64 {
     let mut scene = Scene::default();
     scene.effects.excitation = ExcitationKind::Sine;
     scene.excitation.amplitude = AMPLITUDE;
     let mut inputs = Inputs::default();
     let mut simulation = Simulation::new(&scene, &inputs, 0.0).expect("a scene that fits");
-    for k in 0..count {
-        inputs.base_acceleration = acceleration(k);
-        simulation.step(&inputs, f64::from(k) * size, size).expect("a step");
+    for (size, acceleration) in plan {
+        inputs.base_acceleration = *acceleration;
+        simulation.step(&inputs, simulation.time(), *size).expect("a step");
     }
     simulation.real(RealOutput::ContactForce)
 }

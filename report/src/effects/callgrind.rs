@@ -14,9 +14,9 @@ const MISSING: &str = "valgrind is missing (on Debian: apt-get install valgrind)
 const STEPS: u32 = 5000;
 
 /// Prints the instructions of a communication step through C and in the library alone.
-pub fn instructions() -> Result<()> {
+pub fn print_steps() -> Result<()> {
     let program = build(["--package=campaign", "--bin=steps"], "steps")?;
-    for scene in ["1us", "10us", "shaken"] {
+    for scene in ["1us", "10us", "shaken", "changing", "random"] {
         let through_c = per_step(&program, scene, "fmi2DoStep")?;
         let alone = per_step(&program, scene, "library")?;
         println!(

@@ -84,7 +84,7 @@ pub const EFFECTS: &[Effect] = &[
         name: "bonded contact",
         setting: &[("effects.contactLaw", "Bonded")],
         off: &[("effects.contactLaw", "Hertz")],
-        matters: "where the contact cannot open: every communication step is one exact step, so long communication steps cost least.",
+        matters: "where the contact cannot open: steps are exact and as long as the communication step, so long communication steps cost least.",
         ..NOTHING
     },
     Effect {

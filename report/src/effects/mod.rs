@@ -1,13 +1,14 @@
 //! What each effect costs and changes: `docs/effects.md`, which the report shows too.
 //!
 //! [`list`]: the effects;   [`cost`]: instructions of the minimal scene with each;   [`influence`]: what each changes
-//! in the scenes;   [`page`]: all that as a page.
+//! in the scenes;   [`page`]: all that as a page.   [`ratios`]: instructions of scenes compared.
 
 mod callgrind;
 mod cost;
 mod influence;
 mod list;
 mod page;
+mod ratios;
 
 use std::fs;
 use std::path::PathBuf;
@@ -17,7 +18,6 @@ use commands::root;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
-pub use self::callgrind::instructions;
 use self::cost::RunScene;
 use self::influence::{Influence, Runs};
 use self::list::{EFFECTS, Effect};
@@ -30,6 +30,12 @@ pub struct Arguments {
     /// The page to write
     #[arg(long, default_value = "docs/effects.md")]
     page: PathBuf,
+}
+
+/// Prints the instructions of communication steps.
+pub fn instructions() -> Result<()> {
+    callgrind::print_steps()?;
+    ratios::print()
 }
 
 /// All that was measured.

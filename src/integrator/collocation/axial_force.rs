@@ -245,16 +245,10 @@ mod tests {
             for _ in 0..100 {
                 let mut end = [ModeState::default(); MAX_MODES];
                 let mut moved = |length| {
-                    let (step, collocation) = cache.get(length, true, &model);
+                    let prepared = cache.prepare(state.time, length, true, &model);
                     let drive = Drive::default();
-                    let trial = crate::integrator::collocation::step::trial(
-                        &model,
-                        &state,
-                        &drive,
-                        (step, collocation),
-                        source,
-                        &mut end,
-                    );
+                    let trial =
+                        crate::integrator::collocation::step::trial(&model, &state, &drive, prepared, source, &mut end);
                     (trial.unwrap(), end)
                 };
                 // Radau quadrature of the power, from steps to the nodes.

@@ -2,6 +2,8 @@
 
 use crate::beam::mode::{MAX_MODES, Modal, Mode};
 use crate::excitation::generator::Turns;
+use crate::excitation::random::Piece;
+use crate::excitation::waveform::Accelerations;
 use crate::integrator::collocation::modal_response::ModeOverStep;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::Table;
@@ -182,8 +184,7 @@ impl<const S: usize> StepCoefficients<S> {
     fn compute<A: Arithmetic>(&mut self, length: f64, model: &Model, collocation: &Collocation<S>) {
         let (h, shapes) = (length, &collocation.shapes);
         self.length = length;
-        self.turns
-            .fill(&model.generator, model.simd, length, &collocation.nodes);
+        self.turns.fill(&model.generator, length, &collocation.nodes);
         let (mut force, mut acceleration) = (Sum::<S>::ZERO, Sum::<S>::ZERO);
         for (i, (mode, step)) in model.modes.iter().zip(&mut self.modes).enumerate() {
             let tip = mode.tip;
@@ -242,6 +243,19 @@ pub struct Cache<const S: usize> {
     slots: Vec<StepCoefficients<S>>,
     /// For the last other length.
     other: StepCoefficients<S>,
+    /// Piece of a random acceleration.
+    piece: Piece,
+}
+
+/// What a step of a length from an instant on is computed with.
+#[derive(Clone, Copy, Debug)]
+pub struct Prepared<'a, const S: usize> {
+    /// The coefficients of its length.
+    pub step: &'a StepCoefficients<S>,
+    /// The polynomials.
+    pub collocation: &'a Collocation<S>,
+    /// Accelerations of the generator.
+    pub generated: Accelerations<S>,
 }
 
 impl<const S: usize> Cache<S> {
@@ -251,6 +265,7 @@ impl<const S: usize> Cache<S> {
             collocation: Collocation::new(),
             slots: vec![StepCoefficients::empty(model); SLOTS],
             other: StepCoefficients::empty(model),
+            piece: Piece::default(),
         }
     }
 
@@ -261,10 +276,33 @@ impl<const S: usize> Cache<S> {
 
     /// The coefficients for a length; `recurring`: keep them in a slot.
     pub fn get(&mut self, length: f64, recurring: bool, model: &Model) -> (&StepCoefficients<S>, &Collocation<S>) {
+        let (step, collocation, _) = self.entry(length, recurring, model);
+        (step, collocation)
+    }
+
+    /// [`Cache::get`] for a step from `time` (s) on.
+    pub fn prepare(&mut self, time: f64, length: f64, recurring: bool, model: &Model) -> Prepared<'_, S> {
+        let (step, collocation, piece) = self.entry(length, recurring, model);
+        let generated = model.generator.over_step(model.simd, time, &step.turns, piece);
+        Prepared {
+            step,
+            collocation,
+            generated,
+        }
+    }
+
+    /// [`Cache::get`], and the piece of a random acceleration.
+    fn entry(
+        &mut self,
+        length: f64,
+        recurring: bool,
+        model: &Model,
+    ) -> (&StepCoefficients<S>, &Collocation<S>, &mut Piece) {
         let Self {
             collocation,
             slots,
             other,
+            piece,
         } = self;
         // Dyadic fractions of a length occupy neighbouring slots; another length starts elsewhere (Fibonacci hashing).
         let bits = length.to_bits();
@@ -275,6 +313,6 @@ impl<const S: usize> Cache<S> {
         if entry.length.to_bits() != length.to_bits() {
             entry.fill(length, model, collocation);
         }
-        (entry, collocation)
+        (entry, collocation, piece)
     }
 }

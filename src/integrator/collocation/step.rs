@@ -5,7 +5,7 @@ use crate::beam::axial::Feedback;
 use crate::beam::mode::{Modal, ModeStates};
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::axial_force::{self, Settled};
-use crate::integrator::collocation::coefficients::{EndRows, StepCoefficients};
+use crate::integrator::collocation::coefficients::{EndRows, Prepared, StepCoefficients};
 use crate::integrator::collocation::newton::{
     FreeResponse, Solution, Source, Tangent, at_nodes, closed_forces, first_forces,
 };
@@ -46,22 +46,22 @@ pub struct Trial<const S: usize> {
 /// The loads on [`LANES`] modes at the nodes.
 type LaneLoads<const S: usize> = [[f64; LANES]; S];
 
-/// Computes the step from `state` with the given coefficients, contact closed or open as in `state`; writes the modes
-/// at its end to `end_modes`. `None` if the iteration for contact or axial force does not converge.
+/// Computes the prepared step from `state`, contact closed or open as in `state`; writes the modes at its end to
+/// `end_modes`. `None` if the iteration for contact or axial force does not converge.
 pub fn trial<const S: usize>(
     model: &Model,
     state: &State,
     drive: &Drive,
-    coefficients: (&StepCoefficients<S>, &Collocation<S>),
+    prepared: Prepared<S>,
     source: Source<S>,
     end_modes: &mut ModeStates,
 ) -> Option<Trial<S>> {
     match model.axial() {
         None => {
-            compiled_for!(model.simd, A => compute::<S, A>(model, state, drive, coefficients, source, end_modes))
+            compiled_for!(model.simd, A => compute::<S, A>(model, state, drive, prepared, source, end_modes))
         }
         Some(axial) => compiled_for!(model.simd, A =>
-            compute_with_axial_force::<S, A>(model, axial, state, drive, coefficients, source, end_modes)),
+            compute_with_axial_force::<S, A>(model, axial, state, drive, prepared, source, end_modes)),
     }
 }
 
@@ -71,11 +71,12 @@ fn compute<const S: usize, A: Arithmetic>(
     model: &Model,
     state: &State,
     drive: &Drive,
-    (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
+    prepared: Prepared<S>,
     source: Source<S>,
     end_modes: &mut ModeStates,
 ) -> Option<Trial<S>> {
-    let free = free_response::<S, A>(model, state, drive, step, collocation);
+    let Prepared { step, collocation, .. } = prepared;
+    let free = free_response::<S, A>(state, drive, &prepared);
     let guess = first_forces::<S, A>(model, state, step, collocation, source);
     let solution = match source {
         Source::Law(newton) if state.closed => closed_forces::<S, A>(model, step, &free, guess, newton)?,
@@ -100,11 +101,12 @@ fn compute_with_axial_force<const S: usize, A: Arithmetic>(
     axial: &Feedback,
     state: &State,
     drive: &Drive,
-    (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
+    prepared: Prepared<S>,
     source: Source<S>,
     end_modes: &mut ModeStates,
 ) -> Option<Trial<S>> {
-    let free = free_response::<S, A>(model, state, drive, step, collocation);
+    let Prepared { step, collocation, .. } = prepared;
+    let free = free_response::<S, A>(state, drive, &prepared);
     let Settled { solution, loads, error } =
         axial_force::settle::<S, A>(model, axial, state, (step, collocation), source, &free)?;
     // One combined defect of all loads.
@@ -128,14 +130,16 @@ fn compute_with_axial_force<const S: usize, A: Arithmetic>(
 /// Response of the tip to everything but the contact force.
 #[inline(always)]
 fn free_response<'a, const S: usize, A: Arithmetic>(
-    model: &Model,
     state: &State,
     drive: &Drive,
-    step: &'a StepCoefficients<S>,
-    collocation: &Collocation<S>,
+    prepared: &Prepared<'a, S>,
 ) -> FreeResponse<'a, S> {
+    let Prepared {
+        step,
+        collocation,
+        generated,
+    } = prepared;
     let h = step.length;
-    let generated = model.generator.over_step(model.simd, state.time, &step.turns);
     let driven = drive.acceleration(state.time);
     let mut accelerations = generated.nodes;
     add::<S, A>(&mut accelerations, drive.jerk * h, &collocation.nodes);

@@ -65,17 +65,17 @@ impl Integration<'_> {
             model, state, drive, ..
         } = self;
         let (cache, _, end) = Room::<LONG>::parts(self.workspace);
-        let (step, collocation) = cache.get(half, target.recurring, model);
         let mut at: State = **state;
         let mut work = 0.0;
         for forces in halves {
-            let motion = step::trial(model, &at, drive, (step, collocation), Source::Given(forces), end)?;
+            let prepared = cache.prepare(at.time, half, target.recurring, model);
+            let motion = step::trial(model, &at, drive, prepared, Source::Given(forces), end)?;
             let mut powers = forces;
             for ((power, d), rate) in powers.iter_mut().zip(&motion.indentations).zip(&motion.rates) {
                 let d = model.preload.indentation + d;
                 *power = (*power - (model.law.force(d, *rate) - model.law.force(d, 0.0))) * rate;
             }
-            work += half * collocation.mean(&powers);
+            work += half * prepared.collocation.mean(&powers);
             at.time += half;
             at.modes = *end;
             at.support = motion.support;
