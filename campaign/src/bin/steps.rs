@@ -1,6 +1,6 @@
 //! Makes communication steps, for counting instructions: `steps SCENE INTERFACE COUNT`, the scene `1us` (steps far
 //! shorter than those of the integrator), `10us` (about as long), or with an input that changes every step `shaken`
-//! (10 us), `changing` (1 us) or `random` (random lengths, 0.5 to 2 us), the interface `fmi2DoStep` (of the library file beside this program) or `library` (the same steps without C).
+//! (10 us), `sampled` (1 us, a slow sine) or `random` (the same in random lengths, 0.5 to 2 us), the interface `fmi2DoStep` (of the library file beside this program) or `library` (the same steps without C).
 
 use campaign::api::LIBRARY;
 use campaign::call::Call;
@@ -16,21 +16,21 @@ const AMPLITUDE: f64 = 98.0;
 
 /// Length of each of so many steps, s, and the acceleration in it, m/s2.
 fn plan(scene: &str, count: u32) -> Vec<(f64, f64)> {
-    let (sizes, held) = match scene {
-        "1us" => ([1e-6; 2], true),
-        "10us" => ([1e-5; 2], true),
-        "shaken" => ([1e-5; 2], false),
-        "changing" => ([1e-6; 2], false),
-        "random" => ([0.5e-6, 2e-6], false),
+    let held = |_: u32| 0.0;
+    let jumping = |k: u32| f64::from(k % 5);
+    let sampled = |k: u32| 0.5 * AMPLITUDE * (1e-3 * f64::from(k)).sin();
+    let (sizes, acceleration): (_, fn(u32) -> f64) = match scene {
+        "1us" => ([1e-6; 2], held),
+        "10us" => ([1e-5; 2], held),
+        "shaken" => ([1e-5; 2], jumping),
+        "sampled" => ([1e-6; 2], sampled),
+        "random" => ([0.5e-6, 2e-6], sampled),
         other => panic!("unknown scene {other}"),
     };
     let [shortest, longest] = sizes;
     // The golden ratio's fractional parts fill an interval evenly.
     let part = |k: u32| (f64::from(k) * 0.618_033_988_749_894_9).fract();
-    let step = |k: u32| {
-        let acceleration = if held { 0.0 } else { f64::from(k % 5) };
-        (shortest + part(k) * (longest - shortest), acceleration)
-    };
+    let step = |k| (shortest + part(k) * (longest - shortest), acceleration(k));
     (0..count).map(step).collect()
 }
 

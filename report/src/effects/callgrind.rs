@@ -16,7 +16,7 @@ const STEPS: u32 = 5000;
 /// Prints the instructions of a communication step through C and in the library alone.
 pub fn print_steps() -> Result<()> {
     let program = build(["--package=campaign", "--bin=steps"], "steps")?;
-    for scene in ["1us", "10us", "shaken", "changing", "random"] {
+    for scene in ["1us", "10us", "shaken", "sampled", "random"] {
         let through_c = per_step(&program, scene, "fmi2DoStep")?;
         let alone = per_step(&program, scene, "library")?;
         println!(
