@@ -9,6 +9,7 @@
 //! plan        what is measured
 //! study       runs them against the reference, interleaved;   table    the results
 //! c_program   compiles and asks those in C;   machine   processor and versions;   page   writes into docs/
+//! independent random relays against finite elements that share nothing with the component
 //! ```
 
 pub mod c_program;
@@ -16,6 +17,7 @@ pub mod component;
 pub mod cvode;
 pub mod diffsol;
 pub mod generalised_alpha;
+pub mod independent;
 pub mod integrator;
 pub mod machine;
 pub mod page;
