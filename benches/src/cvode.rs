@@ -1,54 +1,34 @@
-//! SUNDIALS CVODE by a C program, `cvode/cvode.c`: BDF, dense analytic Jacobian, root finding, restart at events.
+//! SUNDIALS CVODE by a C program, `sundials/cvode.c`: BDF, dense analytic Jacobian, root finding, restart at events.
 //!
 //! The absolute tolerance is the tolerance in units of [`Problem::scales`], the relative one [`Problem::relative`]
-//! times it. The program is compiled on first use, against the system's libraries.
+//! times it.
 
 use std::fmt::Write as _;
-use std::io::Write as _;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
 
 use relay_contact::reference::Law;
 
+use crate::c_program::Program;
 use crate::integrator::{BUDGET, Failure, Integrator, Run, Setting};
 use crate::problem::Problem;
 
 /// CVODE, if it could be compiled.
 pub struct Cvode {
-    program: Result<PathBuf, Failure>,
+    program: Program,
 }
 
 impl Cvode {
     /// Compiles the program.
     pub fn new() -> Self {
-        Self { program: compile() }
+        Self {
+            program: Program::new("cvode", &["cvode", "sunmatrixdense", "sunlinsoldense"]),
+        }
     }
 
     /// Version of the SUNDIALS library, if installed.
     pub fn version(&self) -> Option<String> {
         let problem = crate::scenes::linear().ok()?;
-        let answer = self.answer(&problem, 1e-2).ok()?;
-        answer
-            .lines()
-            .find_map(|line| line.strip_prefix("version "))
-            .map(ToOwned::to_owned)
-    }
-
-    fn answer(&self, problem: &Problem, tolerance: f64) -> Result<String, Failure> {
-        let program = self.program.as_ref().map_err(Clone::clone)?;
-        let failed = |error: std::io::Error| Failure::Stopped(error.to_string());
-        let mut child = Command::new(program)
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .spawn()
-            .map_err(failed)?;
-        if let Some(mut input) = child.stdin.take() {
-            input
-                .write_all(question(problem, tolerance).as_bytes())
-                .map_err(failed)?;
-        }
-        let output = child.wait_with_output().map_err(failed)?;
-        Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+        let answer = self.program.ask(&question(&problem, 1e-2)).ok()?;
+        answer.line("version ").map(ToOwned::to_owned)
     }
 }
 
@@ -64,16 +44,8 @@ impl Integrator for Cvode {
     }
 
     fn run(&self, problem: &Problem, setting: Setting) -> Result<Run, Failure> {
-        let answer = self.answer(problem, setting.value())?;
-        let line = |key: &str| answer.lines().find_map(|line| line.strip_prefix(key));
-        if let Some(failure) = line("failure ") {
-            return Err(Failure::Stopped(failure.to_owned()));
-        }
-        let numbers = |key: &str| -> Result<Vec<f64>, Failure> {
-            let text = line(key).ok_or_else(|| Failure::Stopped("the C program stopped".to_owned()))?;
-            Ok(text.split_whitespace().filter_map(|word| word.parse().ok()).collect())
-        };
-        let work = numbers("work")?;
+        let answer = self.program.ask(&question(problem, setting.value()))?;
+        let work = answer.numbers("work")?;
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
@@ -81,9 +53,9 @@ impl Integrator for Cvode {
         )]
         let count = |which: usize| work.get(which).map_or(0, |count| *count as u64);
         Ok(Run {
-            forces: numbers("forces")?,
-            events: numbers("events")?,
-            time: numbers("time")?.first().copied().unwrap_or(f64::NAN),
+            forces: answer.numbers("forces")?,
+            events: answer.numbers("events")?,
+            time: answer.numbers("time")?.first().copied().unwrap_or(f64::NAN),
             steps: count(0),
             rejected: count(1),
             iterations: count(2),
@@ -121,32 +93,4 @@ fn question(problem: &Problem, tolerance: f64) -> String {
     line(&absolute);
     line(&[problem.end, f64::from(problem.cells), BUDGET]);
     text
-}
-
-/// Compiles the program into the build folder.
-fn compile() -> Result<PathBuf, Failure> {
-    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("cvode/cvode.c");
-    let folder = std::env::current_exe()
-        .ok()
-        .and_then(|path| path.parent().map(Path::to_owned))
-        .unwrap_or_else(std::env::temp_dir);
-    let program = folder.join("relay-contact-cvode");
-    let output = Command::new("cc")
-        .args(["-O3", "-o"])
-        .arg(&program)
-        .arg(source)
-        .args(["-lsundials_cvode", "-lsundials_nvecserial", "-lsundials_sunmatrixdense"])
-        .args(["-lsundials_sunlinsoldense", "-lm"])
-        .output();
-    match output {
-        Ok(output) if output.status.success() => Ok(program),
-        Ok(output) => {
-            let text = String::from_utf8_lossy(&output.stderr);
-            let cause = text.lines().find(|line| line.contains("error")).unwrap_or("cc failed");
-            Err(Failure::Unavailable(format!(
-                "the C program cannot be compiled with SUNDIALS 6 (on Debian: apt-get install libsundials-dev): {cause}"
-            )))
-        }
-        Err(error) => Err(Failure::Unavailable(format!("no C compiler cc: {error}"))),
-    }
 }

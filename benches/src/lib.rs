@@ -8,15 +8,19 @@
 //! radau       the reference, with its own error estimate
 //! plan        what is measured
 //! study       runs them against the reference, interleaved;   table    the results
-//! machine     processor and versions
+//! c_program   compiles and asks those in C;   machine   processor and versions;   page   writes into docs/
+//! independent random relays against finite elements that share nothing with the component
 //! ```
 
+pub mod c_program;
 pub mod component;
 pub mod cvode;
 pub mod diffsol;
 pub mod generalised_alpha;
+pub mod independent;
 pub mod integrator;
 pub mod machine;
+pub mod page;
 pub mod plan;
 pub mod problem;
 pub mod radau;

@@ -1,65 +1,20 @@
 /* The contact's modal equations integrated by SUNDIALS CVODE: BDF, dense analytic Jacobian, root finding, and a restart at
  * every opening and closing. The problem comes on standard input as numbers, in the order in which main() reads them; the
  * results go to standard output, a key and its numbers on each line. States are deviations from the preload. */
+#include "contact.h"
+
 #include <cvode/cvode.h>
-#include <math.h>
 #include <nvector/nvector_serial.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <sundials/sundials_version.h>
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
-#include <time.h>
-
-enum { HERTZ, LINEARISED, BONDED };
 
 typedef struct {
-    int modes, law, closed;
+    int modes, closed;
+    contact_law law;
     double *omega_squared, *damping, *tip, *participation;
-    double law_a, law_b, law_c; /* Hertz: k_H, beta_c, unused; linear: stiffness, beta_c, offset */
     double preload_force, preload_indentation, amplitude, angular_frequency, phase, support_rate;
 } problem;
-
-typedef struct {
-    double force, stiffness, damping;
-} branch;
-
-static double number(void) {
-    double value;
-    if (scanf("%lf", &value) != 1) {
-        fprintf(stderr, "cvode: a number is missing on standard input\n");
-        exit(2);
-    }
-    return value;
-}
-
-static double *array(int count) {
-    double *values = malloc(sizeof(double) * (size_t)count);
-    if (!values) exit(2);
-    return values;
-}
-
-/* The closed branch, continued past the release so that a step may run over it before the root is found. */
-static branch closed_branch(const problem *p, double d, double rate) {
-    branch b = {0.0, 0.0, 0.0};
-    if (p->law != HERTZ) {
-        b.force = p->law_a * (d - p->law_c + p->law_b * rate);
-        b.stiffness = p->law_a;
-        b.damping = p->law_a * p->law_b;
-    } else if (d > 0.0) {
-        double root = p->law_a * sqrt(d), g = d + 1.5 * p->law_b * rate;
-        b.force = root * g;
-        b.stiffness = root * (1.0 + 0.5 * g / d);
-        b.damping = 1.5 * p->law_b * root;
-    }
-    return b;
-}
-
-/* Positive while the contact is closed. */
-static double engagement(const problem *p, double d, double rate) {
-    if (p->law == HERTZ) return fmin(d, d + 1.5 * p->law_b * rate);
-    return d - p->law_c + p->law_b * rate;
-}
 
 static void indentation(const problem *p, double t, const double *y, double *d, double *rate) {
     double e = p->support_rate * t, e_rate = p->support_rate;
@@ -76,7 +31,7 @@ static int right_hand_side(realtype t, N_Vector yv, N_Vector dyv, void *data) {
     const double *y = N_VGetArrayPointer(yv);
     double *dy = N_VGetArrayPointer(dyv), d, rate;
     indentation(p, t, y, &d, &rate);
-    double force = (p->closed ? closed_branch(p, d, rate).force : 0.0) - p->preload_force;
+    double force = (p->closed ? closed_branch(&p->law, d, rate).force : 0.0) - p->preload_force;
     double acceleration = p->amplitude * sin(p->angular_frequency * t + p->phase);
     for (int i = 0; i < p->modes; i++) {
         double q = y[i], v = y[p->modes + i];
@@ -94,7 +49,7 @@ static int jacobian(realtype t, N_Vector yv, N_Vector dyv, SUNMatrix j, void *da
     double d, rate;
     indentation(p, t, N_VGetArrayPointer(yv), &d, &rate);
     branch b = {0.0, 0.0, 0.0};
-    if (p->closed) b = closed_branch(p, d, rate);
+    if (p->closed) b = closed_branch(&p->law, d, rate);
     SUNMatZero(j);
     for (int column = 0; column < n; column++) {
         double *by_q = SUNDenseMatrix_Column(j, column), *by_v = SUNDenseMatrix_Column(j, n + column);
@@ -110,17 +65,11 @@ static int jacobian(realtype t, N_Vector yv, N_Vector dyv, SUNMatrix j, void *da
 }
 
 static int roots(realtype t, N_Vector yv, realtype *g, void *data) {
+    const problem *p = data;
     double d, rate;
-    indentation(data, t, N_VGetArrayPointer(yv), &d, &rate);
-    g[0] = engagement(data, d, rate);
+    indentation(p, t, N_VGetArrayPointer(yv), &d, &rate);
+    g[0] = engagement(&p->law, d, rate);
     return 0;
-}
-
-/* Processor time of this thread. */
-static double seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
 static long totals[4]; /* steps, error test failures, Newton iterations, Jacobians */
@@ -135,10 +84,6 @@ static void count(void *cvode) {
     totals[0] += steps, totals[1] += failures, totals[2] += iterations, totals[3] += jacobians;
 }
 
-static void silent(int code, const char *module, const char *function, char *message, void *data) {
-    (void)code, (void)module, (void)function, (void)message, (void)data;
-}
-
 int main(void) {
     problem p;
     p.modes = (int)number();
@@ -147,7 +92,7 @@ int main(void) {
     for (int i = 0; i < n; i++) {
         p.omega_squared[i] = number(), p.damping[i] = number(), p.tip[i] = number(), p.participation[i] = number();
     }
-    p.law = (int)number(), p.law_a = number(), p.law_b = number(), p.law_c = number();
+    p.law = read_law();
     p.preload_force = number(), p.preload_indentation = number();
     p.amplitude = number(), p.angular_frequency = number(), p.phase = number(), p.support_rate = number();
     p.closed = p.preload_force > 0.0;
@@ -172,13 +117,13 @@ int main(void) {
     CVodeSetMaxNumSteps(cvode, 500000);
     CVodeSetLinearSolver(cvode, linear, matrix);
     CVodeSetJacFn(cvode, jacobian);
-    if (p.law != BONDED) CVodeRootInit(cvode, 1, roots);
+    if (p.law.kind != BONDED) CVodeRootInit(cvode, 1, roots);
     CVodeSetNoInactiveRootWarn(cvode);
 
     double *forces = array(cells + 1), *events = array(10000);
     int event_count = 0, direction = p.closed ? -1 : 1, flag = CV_SUCCESS;
     double d, rate, t = 0.0;
-    if (p.law != BONDED) CVodeSetRootDirection(cvode, &direction);
+    if (p.law.kind != BONDED) CVodeSetRootDirection(cvode, &direction);
     double start = seconds();
     forces[0] = p.preload_force;
     for (int cell = 1; cell <= cells; cell++) {
@@ -198,8 +143,8 @@ int main(void) {
             break;
         }
         indentation(&p, t, N_VGetArrayPointer(y), &d, &rate);
-        double force = p.closed ? closed_branch(&p, d, rate).force : 0.0;
-        forces[cell] = p.law == BONDED ? force : fmax(force, 0.0);
+        double force = p.closed ? closed_branch(&p.law, d, rate).force : 0.0;
+        forces[cell] = p.law.kind == BONDED ? force : fmax(force, 0.0);
     }
     double spent = seconds() - start;
     count(cvode);
