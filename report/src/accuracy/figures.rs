@@ -1,6 +1,6 @@
 //! The figures of `docs/accuracy.md`.
 
-use super::rows::{Row, of};
+use super::rows::{Relay, Row, of};
 use crate::content::{Axis, Curve, Figure, Style};
 
 /// The scenes, with the anchor of the figure of each.
@@ -25,7 +25,7 @@ const DURATION: Axis = Axis::logarithmic("error of the opening durations", "µs"
 const USELESS: (f64, f64) = (1.0, 10.0);
 
 /// All of them.
-pub fn figures(rows: &[Row]) -> Vec<Figure> {
+pub fn figures(rows: &[Row], relays: &[Relay]) -> Vec<Figure> {
     let force = |row: &Row| row.force_error.filter(|error| *error <= USELESS.0);
     let duration = |row: &Row| row.opening_duration_error_us.filter(|error| *error <= USELESS.1);
     let forces = SCENES.map(|(scene, id)| {
@@ -38,7 +38,7 @@ pub fn figures(rows: &[Row]) -> Vec<Figure> {
             row.reference_event_error_us
         })
     });
-    let mut figures = vec![tolerances(rows), modes(rows)];
+    let mut figures = vec![tolerances(rows), promise(relays), modes(rows)];
     figures.extend(forces.into_iter().chain(durations));
     figures
 }
@@ -70,6 +70,32 @@ fn tolerances(rows: &[Row]) -> Figure {
     curves.push(Curve::new("error = tolerance", tolerances, Style::Dashed, 6));
     let axes = [Axis::logarithmic("solver.tolerance", ""), FORCE];
     figure("accuracy-tolerance", "Error against tolerance".to_owned(), axes, curves)
+}
+
+/// Smaller errors, from rounding alone, are drawn at this.
+const LEAST: f64 = 1e-14;
+
+/// Delivered over asked.
+fn promise(relays: &[Relay]) -> Figure {
+    let kind = |name: &str, colour, is: fn(&Relay) -> bool| {
+        let points = relays.iter().filter(|relay| relay.outcome != "NotRun" && is(relay));
+        let points = points.map(|relay| (relay.tolerance, relay.error.max(LEAST)));
+        Curve::new(name, points, Style::Markers, colour)
+    };
+    let curves = vec![
+        kind("closed", 0, |relay| !relay.opens && relay.outcome != "IllConditioned"),
+        kind("opening", 1, |relay| relay.opens && relay.outcome != "IllConditioned"),
+        kind("ill-conditioned", 3, |relay| relay.outcome == "IllConditioned"),
+        Curve::new("error = tolerance", [(1e-8, 1e-8), (1e-2, 1e-2)], Style::Dashed, 6),
+    ];
+    let error = Axis::logarithmic("error of the contact force, relative as the tolerance", "");
+    let axes = [Axis::logarithmic("solver.tolerance", ""), error];
+    figure(
+        "accuracy-promise",
+        "Error against tolerance, random relays".to_owned(),
+        axes,
+        curves,
+    )
 }
 
 fn modes(rows: &[Row]) -> Figure {

@@ -24,9 +24,27 @@ pub struct Row {
     pub reference_event_error_us: f64,
 }
 
-/// The rows of a folder.
+/// A line of `promise.csv`: a random relay.
+#[derive(Deserialize)]
+pub struct Relay {
+    pub opens: bool,
+    pub tolerance: f64,
+    pub error: f64,
+    pub outcome: String,
+}
+
+/// The rows of `accuracy.csv` in a folder.
 pub fn read(folder: &str) -> Result<Vec<Row>> {
-    let path = root().join(folder).join("accuracy.csv");
+    table(&format!("{folder}/accuracy.csv"))
+}
+
+/// The random relays.
+pub fn relays() -> Result<Vec<Relay>> {
+    table("docs/promise.csv")
+}
+
+fn table<T: for<'a> Deserialize<'a>>(name: &str) -> Result<Vec<T>> {
+    let path = root().join(name);
     let mut reader = csv::Reader::from_path(&path).with_context(|| path.display().to_string())?;
     let rows = reader.deserialize().collect::<Result<_, _>>();
     rows.with_context(|| path.display().to_string())
