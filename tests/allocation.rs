@@ -36,3 +36,24 @@ fn check(excitation: i32) {
     let opening = contact.real("contact.lastOpening");
     assert!(opening > 0.0, "the contact never opened: events are not covered");
 }
+
+/// Exact steps ahead, at communication points, and back to one where the input changes.
+#[test]
+fn an_exact_step_allocates_nothing() {
+    let contact = Instance::new();
+    assert_eq!(contact.set_integer("effects.excitation", 2), fmi2OK);
+    assert_eq!(contact.set_integer("effects.contactLaw", 3), fmi2OK);
+    for watched in ["effects.extremes", "effects.chatter"] {
+        assert_eq!(contact.set_boolean(watched, false), fmi2OK);
+    }
+    contact.initialize();
+    let before = Counting::calls();
+    for n in 0..1000 {
+        let acceleration = if n % 100 < 50 { 20.0 } else { -20.0 };
+        assert_eq!(contact.set_real("base.acceleration", acceleration), fmi2OK);
+        assert_eq!(contact.step(f64::from(n) * 1e-6, 1e-6), fmi2OK);
+        assert!(contact.real("contact.force").is_finite());
+    }
+    assert_eq!(Counting::calls(), before, "allocated in a step");
+    assert!(contact.integer("solver.steps") < 500, "no step went ahead");
+}
