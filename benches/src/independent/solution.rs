@@ -46,10 +46,10 @@ impl Solver {
         let answer = self.program.ask(&question)?;
         Ok(Course {
             force: answer.numbers("forces")?,
-            least: Vec::new(),
             greatest: answer.numbers("greatest")?,
             events: answer.numbers("events")?,
             scale,
+            ..Course::default()
         })
     }
 }
