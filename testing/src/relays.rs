@@ -110,7 +110,7 @@ impl Relay {
     /// # Errors
     /// Those of the scene; a step that fails ends the course.
     pub fn run(&self, change: impl FnOnce(&mut Scene)) -> Result<(Course, Option<StepError>), SceneError> {
-        let mut scene = self.scene;
+        let mut scene = self.scene.clone();
         change(&mut scene);
         let (size, count) = self.steps;
         let mut simulation = Simulation::new(&scene, &self.inputs(0.0, size), 0.0)?;

@@ -21,7 +21,7 @@ pub(super) struct Experiment {
 impl Experiment {
     /// The scene, with the tolerance of the experiment if it has none of its own.
     pub(super) fn scene(&self, scene: &Scene) -> Scene {
-        let mut scene = *scene;
+        let mut scene = scene.clone();
         if let Some(tolerance) = self.tolerance.filter(|_| scene.solver.tolerance == 0.0) {
             scene.solver.tolerance = tolerance;
         }
@@ -30,7 +30,7 @@ impl Experiment {
 }
 
 /// A snapshot of an instance, without the log settings, which belong to the importer.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(in crate::fmi2) struct Snapshot {
     pub(super) state: State,
     pub(super) scene: Scene,
