@@ -111,8 +111,7 @@ impl Model {
             Ok(count) if count > 0 => count.min(MAX_MODES),
             _ => wanted.min(MAX_MODES),
         };
-        let Some(Basis { modes, shapes, space }) = spring.modes(scene, count, preload.axial_force)
-        else {
+        let Some(Basis { modes, shapes, space }) = spring.modes(scene, count, preload.axial_force) else {
             return Err(SceneError::Buckled {
                 name: RealParameter::BeamAxialForce.variable().name,
                 value: preload.axial_force,
@@ -153,6 +152,9 @@ impl Model {
             0.0
         };
         Ok(Self {
+            missed_by_modes,
+            inertia: inertia(&modes),
+            memory,
             scene: scene.clone(),
             section,
             law,
@@ -325,7 +327,16 @@ impl Model {
     }
 }
 
-/// The blow that the modes have to follow.
+/// Force at the held tip per base acceleration that varies slowly, kg.
+fn inertia(modes: &[Mode]) -> f64 {
+    let tip = |load: fn(&Mode) -> f64| -> f64 {
+        let parts = modes.iter().map(|mode| mode.tip * load(mode) / mode.omega_squared);
+        parts.sum()
+    };
+    (tip(|mode| mode.participation) / tip(|mode| mode.tip)).abs()
+}
+
+/// A blow as the scene may have it.
 fn blow(scene: &Scene, section: &Section, hertz: &Hertz) -> Blow {
     // A blow fifty times the force of the bent spring; the number of modes follows it by the 18th root.
     let force = match scene.effects.contact_law {

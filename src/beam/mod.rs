@@ -5,6 +5,7 @@ pub mod axial;
 pub mod characteristic;
 pub mod galerkin;
 mod given;
+mod mesh;
 pub mod mode;
 pub mod mode_count;
 mod pieces;

@@ -14,7 +14,8 @@ use std::collections::VecDeque;
 use nalgebra::{DMatrix, DVector};
 
 use crate::beam::galerkin::Space;
-use crate::beam::pieces::{Bend, Mesh, Pieces};
+use crate::beam::mesh::{Bend, Mesh};
+use crate::beam::pieces::Pieces;
 use crate::beam::section::Section;
 
 /// Shapes that represent statics under any axial force below buckling to rounding.

@@ -98,7 +98,7 @@ pub unsafe extern "C" fn fmi2GetBoolean(
     unsafe { get(c, states::GET_BOOLEAN, vr, nvr, value, read) }
 }
 
-/// Reads string variables. The strings stay until the next call of this function for the instance.
+/// Reads string variables. The strings stay until this function is called for another value.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetString(
     c: fmi2Component,

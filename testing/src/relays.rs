@@ -45,11 +45,11 @@ pub struct Course {
 }
 
 /// Between both, each order of magnitude as likely as the others.
-fn logarithmic(rng: &mut Rng, least: f64, greatest: f64) -> f64 {
+pub(crate) fn logarithmic(rng: &mut Rng, least: f64, greatest: f64) -> f64 {
     least * (greatest / least).powf(rng.f64())
 }
 
-fn uniform(rng: &mut Rng, least: f64, greatest: f64) -> f64 {
+pub(crate) fn uniform(rng: &mut Rng, least: f64, greatest: f64) -> f64 {
     least + (greatest - least) * rng.f64()
 }
 

@@ -112,13 +112,16 @@ impl Instance {
         Ok(())
     }
 
-    /// The value of a string parameter, kept until the next call.
+    /// The value of a string parameter, kept until another is read: a call may ask for the same one twice.
     pub(in crate::fmi2) fn string(&mut self, reference: u32) -> Result<&CStr, Failure> {
         let variable = find("String", reference)?;
         match variable.group {
             Group::StringParameter(parameter) => {
-                // Set from C, or by a state, which may hold anything.
-                self.text = CString::new(self.scene.string(parameter)).unwrap_or_default();
+                let value = self.scene.string(parameter);
+                if self.text.to_bytes() != value.as_bytes() {
+                    // Set from C, or by a state, which may hold anything.
+                    self.text = CString::new(value).unwrap_or_default();
+                }
                 Ok(&self.text)
             }
             _ => Err(wrong_type("String", variable)),
