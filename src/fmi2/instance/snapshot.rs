@@ -50,7 +50,9 @@ impl Snapshot {
             stop_time,
         } = self.experiment;
         let simulation = self.simulation.as_ref();
-        self.inputs.are_sound()
+        let simulates = simulation.is_some() || !matches!(self.state, State::StepComplete | State::Terminated);
+        simulates
+            && self.inputs.are_sound()
             && tolerance.is_none_or(|tolerance| tolerance > 0.0 && tolerance <= LARGEST_TOLERANCE)
             && start_time.is_finite()
             && stop_time.is_none_or(|stop| stop >= start_time)
