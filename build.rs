@@ -37,12 +37,13 @@ fn guid(xml: &str) -> String {
 }
 
 /// The groups of variables; each becomes an enum, so that a `match` over it must handle every variable.
-const GROUPS: [(&str, &str); 8] = [
+const GROUPS: [(&str, &str); 9] = [
     ("RealInput", "Continuous inputs."),
     ("RealParameter", "Real parameters."),
     ("IntegerParameter", "Integer parameters."),
     ("BooleanParameter", "Boolean parameters."),
     ("EnumerationParameter", "Enumeration parameters."),
+    ("StringParameter", "String parameters."),
     ("RealOutput", "Real outputs and calculated parameters."),
     ("IntegerOutput", "Integer outputs and calculated parameters."),
     ("BooleanOutput", "Boolean outputs."),
@@ -114,6 +115,7 @@ fn variables(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> 
             value.attribute(name).map_or(default.to_owned(), |text| match text {
                 "true" => "1.0".to_owned(),
                 "false" => "0.0".to_owned(),
+                _ if kind == "String" => default.to_owned(),
                 number => format!("{number}_f64"),
             })
         };
@@ -163,6 +165,7 @@ fn start(document: &Document, value: Node) -> Result<(String, String), Box<dyn E
         "Real" => ("f64".to_owned(), format!("{start}_f64")),
         "Integer" => ("i32".to_owned(), start.to_owned()),
         "Boolean" => ("bool".to_owned(), start.to_owned()),
+        "String" => ("&str".to_owned(), format!("{start:?}")),
         _ => {
             let kind = attribute(value, "declaredType")?;
             let choice = declared(document, value)

@@ -173,7 +173,7 @@ mod tests {
         assert_eq!(electrical.temperature(&scene, 0.15, 0.0), 298.15);
         assert_eq!(electrical.temperature(&scene, 0.0, 1e3), 298.15);
         // A source of less than that, and its derivatives: 0.1 V gives sqrt(298.15^2 + 0.1^2 / (4 2.45e-8)).
-        let mut weak = scene;
+        let mut weak = scene.clone();
         weak.contact.open_voltage = 0.1;
         assert!((electrical.temperature(&weak, 0.15, 1e3) - 436.960).abs() < 1e-3);
         assert_eq!(electrical.temperature_slopes(&weak, 0.15, 1e3), (0.0, 0.0));

@@ -50,7 +50,7 @@ pub enum SceneError {
     },
     /// An axial force above the buckling load of the spring without contact.
     #[error(
-        "{name} = {} N: the spring buckles once the contact opens, allowed is less than {} N (pi^2 E I / (4 L^2))",
+        "{name} = {} N: the spring buckles once the contact opens, allowed is less than {} N",
         number(*value), number(*limit)
     )]
     Buckled {
@@ -103,6 +103,45 @@ pub enum SceneError {
         /// Where it may be given.
         allowed: &'static str,
     },
+    /// A key that a spring file does not have.
+    #[error("{name}: no such key, allowed are {allowed}")]
+    UnknownKey {
+        /// The unknown key.
+        name: String,
+        /// The keys allowed there.
+        allowed: String,
+    },
+    /// Modes of a spring that are more compliant than the whole spring.
+    #[error(
+        "compliance = {} m/N: not allowed, allowed is {} m/N or more, which the modes hold alone (sum of contact^2/omega^2); \
+         modes and compliance contradict each other",
+        number(*compliance), number(*held)
+    )]
+    Contradiction {
+        /// The static compliance given, m/N.
+        compliance: f64,
+        /// That of the modes, m/N.
+        held: f64,
+    },
+    /// An axial force on a spring that is given by its modes.
+    #[error(
+        "effects.axialForce = {choice}: not allowed with beam.file = {file}, which gives modes: an axial force needs the \
+         geometry of the spring; allowed are None and FromPreload, both without axial force"
+    )]
+    NeedsGeometry {
+        /// The choice.
+        choice: &'static str,
+        /// The spring file.
+        file: String,
+    },
+    /// Any of these, with the entry of a list that it is in.
+    #[error("{entry}: {error}")]
+    InEntry {
+        /// Name and number of the entry, counted from 1.
+        entry: String,
+        /// What is wrong there.
+        error: Box<SceneError>,
+    },
     /// Any of these, with its line of the scene file or table.
     #[error("line {line}: {error}")]
     AtLine {
@@ -114,6 +153,9 @@ pub enum SceneError {
     /// A scene file that is not TOML, or with a key or a type of value that scene files do not have.
     #[error("not a scene file: {}", .0.trim_end())]
     Syntax(String),
+    /// A spring file that is not TOML.
+    #[error("not TOML: {0}")]
+    Toml(String),
     /// A table of inputs that is not CSV, or has no rows.
     #[error("not a table of inputs: {0}")]
     InputTable(String),
@@ -132,6 +174,36 @@ pub enum SceneError {
         file: String,
         /// The message of the operating system.
         cause: String,
+    },
+}
+
+/// What a user should know of a scene that can be simulated.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Remark {
+    /// A dimension of the uniform section, set beside a spring file.
+    #[error("{name} = {}{}: not used, the spring is that of beam.file = {file}", number(*value), spaced(unit))]
+    NotUsed {
+        /// Name of the parameter.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// Its unit.
+        unit: &'static str,
+        /// The spring file.
+        file: String,
+    },
+    /// Modes that end below what a blow excites.
+    #[error(
+        "beam.file = {file}: its modes end at {highest:.0} Hz, a blow of the contact excites the spring up to {reached:.0} Hz; \
+         forces of blows, and what rings on after them, are right only as far as the modes reach"
+    )]
+    FewModes {
+        /// The spring file.
+        file: String,
+        /// Frequency of the highest mode, Hz.
+        highest: f64,
+        /// Frequency up to which the spring is excited, Hz.
+        reached: f64,
     },
 }
 

@@ -5,7 +5,7 @@
 //! ```text
 //! modelDescription.xml -> variables   what there is to set and to read
 //! scene       parameters and effects of one simulation
-//! beam        section -> modes of the cantilever, exact frequencies, static compliance
+//! beam        section, segments or given modes -> modes of the cantilever, frequencies, static compliance
 //! contact     indentation -> contact force (Hertz, with dissipation)
 //! preload     static equilibrium of beam and contact
 //! model       Scene -> Model (never changes);   state  all that moves

@@ -1,18 +1,17 @@
 //! The model: everything computed once from a scene.
 
 use crate::beam::axial::Feedback;
-use crate::beam::characteristic;
-use crate::beam::galerkin::Space;
 use crate::beam::mode::{MAX_MODES, Mode, ModeState, ModeStates};
 use crate::beam::mode_count::Blow;
 use crate::beam::section::Section;
+use crate::beam::spring::{Basis, Spring};
 use crate::chatter::{Criterion, Interruptions};
 use crate::closed_loop::system::ClosedLoop;
 use crate::contact::hertz::Hertz;
 use crate::contact::law::Law;
 use crate::contact::linear::Linear;
 use crate::electrical::ElectricalContact;
-use crate::error::SceneError;
+use crate::error::{Remark, SceneError};
 use crate::excitation::generator::Generator;
 use crate::force_error::ForceError;
 use crate::math::prediction::Predictions;
@@ -27,7 +26,7 @@ use crate::variables::{AxialForceKind, ContactLawKind, RealParameter};
 pub struct Model {
     /// The scene.
     pub(crate) scene: Scene,
-    /// The spring.
+    /// The uniform section of the spring, or that of a spring as stiff at its contact.
     pub(crate) section: Section,
     /// The contact.
     pub(crate) law: Law,
@@ -55,6 +54,8 @@ pub struct Model {
     pub(crate) memory: f64,
     /// Lowest natural frequency with the contact as a spring, from the exact characteristic equation, Hz.
     pub(crate) frequency: f64,
+    /// Frequency of the highest mode of a spring file, and that up to which a blow excites the spring, if higher, Hz.
+    missed: Option<(f64, f64)>,
     /// Electrical model of the contact.
     pub(crate) electrical: Option<ElectricalContact>,
     /// Criterion for interruptions, if they are counted.
@@ -85,12 +86,13 @@ impl Model {
     /// A [`SceneError`] if the scene cannot be simulated.
     pub fn new(scene: &Scene, support: f64) -> Result<Self, SceneError> {
         scene.validate()?;
-        let section = Section::new(scene);
+        let spring = Spring::new(scene)?;
+        let section = spring.section;
         let mut hertz = Hertz::new(&scene.contact);
         if !scene.effects.contact_damping {
             hertz.damping = 0.0;
         }
-        let preload = Preload::new(scene, &section, &hertz, support)?;
+        let preload = Preload::new(scene, &spring, &hertz, support)?;
         let law = match scene.effects.contact_law {
             ContactLawKind::Hertz => Law::Hertz(hertz),
             ContactLawKind::Linearised | ContactLawKind::Bonded if preload.force <= 0.0 => {
@@ -104,36 +106,21 @@ impl Model {
             }),
         };
         let blow = blow(scene, &section, &hertz);
-        let wanted = blow.modes(&section, scene.solver.effective_tolerance());
+        let wanted = spring.count(&blow, scene.solver.effective_tolerance());
         let count = match usize::try_from(scene.solver.modes) {
             Ok(count) if count > 0 => count.min(MAX_MODES),
             _ => wanted.min(MAX_MODES),
         };
-        let buckled = || SceneError::Buckled {
-            name: RealParameter::BeamAxialForce.variable().name,
-            value: preload.axial_force,
-            limit: section.buckling_load(),
+        let Some(Basis { modes, shapes, space }) = spring.modes(scene, count, preload.axial_force) else {
+            return Err(SceneError::Buckled {
+                name: RealParameter::BeamAxialForce.variable().name,
+                value: preload.axial_force,
+                limit: spring.buckling_load,
+            });
         };
-        let space = Space::new(count);
-        let (modes, shapes): (Vec<Mode>, Vec<_>) = space
-            .modes_with_shapes(&section, preload.axial_force, 0.0)
-            .ok_or_else(buckled)?
-            .into_iter()
-            .map(|(mode, shape)| {
-                let mode = Mode {
-                    omega_squared: mode.omega_squared,
-                    damping: scene.beam.mass_damping + scene.beam.stiffness_damping * mode.omega_squared,
-                    tip: mode.tip,
-                    participation: mode.participation,
-                };
-                (mode, shape)
-            })
-            .unzip();
         let axial = (scene.effects.axial_force == AxialForceKind::FromDeflection)
             .then(|| Feedback::new(&section, &preload, scene.environment.gravity, &space, &modes, &shapes));
-        let frequency = characteristic::frequencies(&section, preload.axial_force, preload.contact_stiffness, 1)
-            .first()
-            .copied();
+        let frequency = spring.frequency(preload.axial_force, preload.contact_stiffness);
         let frequency = axial
             .as_ref()
             .and_then(|axial| axial.frequency(&modes, preload.contact_stiffness))
@@ -148,14 +135,19 @@ impl Model {
             .as_ref()
             .and_then(|electrical| Criterion::new(scene, electrical));
         let closed_loop = match law {
-            Law::Linear(contact) if generator.is_harmonic() && axial.is_none() && !scene.effects.extremes => {
+            Law::Linear(contact)
+                if generator.is_harmonic()
+                    && axial.is_none()
+                    && !scene.effects.extremes
+                    && is_rayleigh(scene, &modes) =>
+            {
                 ClosedLoop::new(scene, &modes, contact, &generator).map(Box::new)
             }
             _ => None,
         };
         let memory = modes.first().map_or(0.0, |mode| 1.0 / mode.omega_squared.sqrt());
         let missed_by_modes = if count < wanted {
-            blow.error(&section, count)
+            spring.error(&blow, count)
         } else {
             0.0
         };
@@ -163,7 +155,7 @@ impl Model {
             missed_by_modes,
             inertia: inertia(&modes),
             memory,
-            scene: *scene,
+            scene: scene.clone(),
             section,
             law,
             preload,
@@ -174,6 +166,7 @@ impl Model {
             initial_support: support,
             force_scale: preload.force.max(bending_force(scene, &section)),
             frequency,
+            missed: spring.missed(&blow),
             electrical,
             criterion,
             simd: Simd::detect(),
@@ -197,12 +190,39 @@ impl Model {
         self
     }
 
+    /// What a user should know of the scene.
+    pub fn remarks(&self) -> Vec<Remark> {
+        let Some(spring) = &self.scene.spring else {
+            return Vec::new();
+        };
+        let sizes = [
+            RealParameter::BeamLength,
+            RealParameter::BeamWidth,
+            RealParameter::BeamThickness,
+        ];
+        let set = sizes
+            .into_iter()
+            .filter(|size| self.scene.real(*size) != size.variable().start);
+        let not_used = set.map(|size| Remark::NotUsed {
+            name: size.variable().name,
+            value: self.scene.real(size),
+            unit: size.variable().unit,
+            file: spring.name.clone(),
+        });
+        let few = self.missed.map(|(highest, reached)| Remark::FewModes {
+            file: spring.name.clone(),
+            highest,
+            reached,
+        });
+        not_used.chain(few).collect()
+    }
+
     /// The scene.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// The spring.
+    /// The uniform section of the spring, or that of a spring as stiff at its contact.
     pub fn section(&self) -> Section {
         self.section
     }
@@ -328,6 +348,14 @@ fn blow(scene: &Scene, section: &Section, hertz: &Hertz) -> Blow {
         contact_stiffness: hertz.tangent_stiffness(hertz.indentation(force)),
         contact_damping: hertz.damping,
     }
+}
+
+/// Whether all damping is Rayleigh's, as exact steps need it.
+fn is_rayleigh(scene: &Scene, modes: &[Mode]) -> bool {
+    let (alpha, beta) = (scene.beam.mass_damping, scene.beam.stiffness_damping);
+    modes
+        .iter()
+        .all(|mode| mode.damping == alpha + beta * mode.omega_squared)
 }
 
 /// Force of the spring bent by the overtravel, at least by 0.1 mm, N: 3 E I max(|s|, 0.1 mm) / L^3.

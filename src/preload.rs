@@ -4,8 +4,8 @@
 //! compliances of the cantilever under the axial force `N`, which may depend on `y`. The unknown is the indentation
 //! `d`, as `s - y` would lose four digits by cancellation.
 
-use crate::beam::section::Section;
-use crate::beam::statics::{Statics, axial_force_from_deflection};
+use crate::beam::spring::Spring;
+use crate::beam::statics::Statics;
 use crate::contact::hertz::Hertz;
 use crate::error::SceneError;
 use crate::math::roots;
@@ -32,16 +32,12 @@ impl Preload {
     ///
     /// # Errors
     /// [`SceneError::Buckled`] where the axial force reaches the buckling load of the cantilever.
-    pub fn new(scene: &Scene, section: &Section, hertz: &Hertz, support: f64) -> Result<Self, SceneError> {
-        let statics = Statics::new(section);
+    pub fn new(scene: &Scene, spring: &Spring, hertz: &Hertz, support: f64) -> Result<Self, SceneError> {
+        let statics = &spring.statics;
         let total_overtravel = scene.contact.overtravel + support;
         let gravity = scene.environment.gravity;
-        let axial = |y: f64| match scene.effects.axial_force {
-            AxialForceKind::None => 0.0,
-            AxialForceKind::FromPreload | AxialForceKind::FromDeflection => axial_force_from_deflection(section, y),
-            AxialForceKind::Prescribed => scene.beam.axial_force,
-        };
-        let limit = section.buckling_load();
+        let axial = |y: f64| spring.axial_force(scene, y);
+        let limit = spring.buckling_load;
         let check = |axial_force: f64| {
             if axial_force < limit {
                 return Ok(());
@@ -57,7 +53,7 @@ impl Preload {
             })
         };
 
-        let alone = free_deflection(&statics, gravity, &axial);
+        let alone = free_deflection(statics, gravity, &axial);
         if total_overtravel <= alone {
             let axial_force = axial(alone);
             check(axial_force)?;

@@ -14,7 +14,7 @@ pub struct Variable {
     pub group: Group,
     /// SI unit; may be empty.
     pub unit: &'static str,
-    /// Start value (for enumerations the value of the choice, for Booleans 1 or 0).
+    /// Start value (for enumerations the value of the choice, for Booleans 1 or 0, for strings 0).
     pub start: f64,
     /// Smallest value allowed.
     pub min: f64,

@@ -32,7 +32,7 @@ struct Run {
 
 impl Case {
     fn run(&self, tolerance: f64, modes: i32, maximum_step: f64) -> Run {
-        let mut scene = self.scene;
+        let mut scene = self.scene.clone();
         scene.solver.tolerance = tolerance;
         scene.solver.modes = modes;
         scene.solver.maximum_step = maximum_step;

@@ -37,7 +37,7 @@ fn motion(scene: &Scene, size: u32, inputs: impl Fn(f64) -> Inputs) -> Vec<[f64;
 
 fn check(scene: &Scene, size: u32, inputs: impl Fn(f64) -> Inputs + Copy) {
     let exact = {
-        let mut scene = *scene;
+        let mut scene = scene.clone();
         scene.solver.tolerance = 1e-10;
         motion(&scene, 10, inputs)
     };

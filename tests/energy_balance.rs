@@ -142,7 +142,7 @@ fn powers(rig: &Rig, inputs: &Inputs, since: f64) -> [f64; 2] {
 /// Runs a case with communication steps of `size` (s), and sums up by the trapezoidal rule. Returns the sum, the change of
 /// what is stored and the balance, J.
 fn run(case: &Case, tolerance: f64, size: f64) -> (Sum, f64, f64) {
-    let mut scene = case.scene;
+    let mut scene = case.scene.clone();
     scene.solver.tolerance = tolerance;
     scene.solver.modes = 6;
     scene.effects.energy = true;

@@ -18,7 +18,7 @@ impl Integrator for Component {
     }
 
     fn run(&self, problem: &Problem, setting: Setting) -> Result<Run, Failure> {
-        let mut scene = *problem.model.scene();
+        let mut scene = problem.model.scene().clone();
         scene.solver.tolerance = setting.value();
         let stopped = |error: &dyn std::fmt::Display| Failure::Stopped(error.to_string());
         let mut inputs = Inputs::default();

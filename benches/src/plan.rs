@@ -85,7 +85,7 @@ fn own(problem: &Problem, quick: bool) -> Result<Vec<Case>> {
     };
     let mut cases = Vec::new();
     for setting in settings(false, quick) {
-        let mut chosen = *problem.model.scene();
+        let mut chosen = problem.model.scene().clone();
         chosen.solver.modes = 0;
         chosen.solver.tolerance = setting.value();
         let chosen = scenes::modes_chosen(&chosen)?;

@@ -53,7 +53,7 @@ impl Problem {
     /// # Errors
     /// A [`SceneError`] if the scene cannot be simulated.
     pub fn with_modes(&self, modes: i32) -> Result<Self, SceneError> {
-        let mut scene = *self.model.scene();
+        let mut scene = self.model.scene().clone();
         scene.solver.modes = modes;
         let model = Model::new(&scene, 0.0)?;
         Ok(Self { model, ..self.clone() })

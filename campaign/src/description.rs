@@ -5,6 +5,8 @@ use std::sync::LazyLock;
 use relay_contact::MODEL_DESCRIPTION;
 use roxmltree::{Document, Node};
 
+use crate::texts;
+
 /// The type of a variable by the function that reads it: enumerations are integers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -47,13 +49,13 @@ pub struct Variable {
     pub role: Role,
     /// Whether it is continuous.
     pub continuous: bool,
-    /// Start value; 0 for outputs.
+    /// Start value; 0 for outputs and the empty text.
     pub start: f64,
     /// Smallest value allowed.
     pub min: f64,
     /// Largest value allowed.
     pub max: f64,
-    /// Values of an enumeration.
+    /// Values of an enumeration, numbers of texts.
     pub choices: Vec<f64>,
 }
 
@@ -170,10 +172,10 @@ fn variable<'a>(node: Node<'a, 'a>, choices: impl Fn(&str) -> Vec<f64>) -> Varia
         start: number("start", 0.0),
         min: number("min", f64::NEG_INFINITY),
         max: number("max", f64::INFINITY),
-        choices: if value.has_tag_name("Enumeration") {
-            choices(value.attribute("declaredType").unwrap_or_default())
-        } else {
-            Vec::new()
+        choices: match value.tag_name().name() {
+            "Enumeration" => choices(value.attribute("declaredType").unwrap_or_default()),
+            "String" => texts::ALLOWED.to_vec(),
+            _ => Vec::new(),
         },
     }
 }

@@ -19,14 +19,16 @@ pub fn call(choices: &mut Choices, now: &Moment) -> Call {
         Phase::Instantiated => match pick {
             0..15 => setup(choices),
             15..45 => set(choices, now, Kind::Real),
-            45..55 => set(choices, now, Kind::Integer),
+            45..53 => set(choices, now, Kind::Integer),
+            53..55 => set(choices, now, Kind::String),
             55..65 => get(choices, now),
             65..70 => state(choices),
             _ => Call::EnterInitializationMode,
         },
         Phase::InitializationMode => match pick {
             0..25 => set(choices, now, Kind::Real),
-            25..35 => set(choices, now, Kind::Integer),
+            25..34 => set(choices, now, Kind::Integer),
+            34 => set(choices, now, Kind::String),
             35..55 => get(choices, now),
             55..60 => state(choices),
             _ => Call::ExitInitializationMode,

@@ -18,12 +18,13 @@ pub fn head() -> usize {
 /// Bytes after the contents: the checksum.
 const TAIL: usize = 4;
 
-/// The serialized state of a contact under sine excitation that has opened.
-pub fn specimen(api: &Api) -> Vec<u8> {
+/// The serialized state of a contact under sine excitation that has opened, its spring that of a text by number.
+pub fn specimen(api: &Api, spring: f64) -> Vec<u8> {
+    let spring = Call::set(Kind::String, vec![(DESCRIPTION.reference("beam.file"), spring)]);
     let mut judge = Judge::new(api);
     let steps = [1e-3, 1.3e-6, 1.3e-6].map(Call::step);
     let bytes = [Call::save(0), Call::serialize(0)];
-    let calls = [&Call::shaken(400.0)[..], &steps, &bytes].concat();
+    let calls = [&[spring], &Call::shaken(400.0)[..], &steps, &bytes].concat();
     judge.run(&calls).expect("the specimen runs");
     judge.importer.bytes(0).clone()
 }

@@ -1,6 +1,6 @@
 //! Makes calls on an instance through the C functions, and records the log.
 
-use std::ffi::CString;
+use std::ffi::{CStr, CString};
 use std::ptr;
 
 use relay_contact::fmi2::*;
@@ -11,6 +11,7 @@ use crate::api::Api;
 use crate::call::{Call, Damage, Fault, SLOTS, StatusFunction};
 use crate::description::{DESCRIPTION, Kind};
 use crate::pointers::{arguments, middle, place, places};
+use crate::texts;
 
 /// An instance, the states saved of it, which are freed with it, and their bytes.
 #[derive(Debug)]
@@ -158,7 +159,17 @@ impl<'a> Importer<'a> {
             Kind::Real => self.read(api.fmi2GetReal, read, f64::NAN),
             Kind::Integer => numbers(self.read(api.fmi2GetInteger, read, i32::MIN)),
             Kind::Boolean => numbers(self.read(api.fmi2GetBoolean, read, i32::MIN)),
-            Kind::String => (self.read(api.fmi2GetString, read, ptr::null()).0, Vec::new()),
+            Kind::String => {
+                let (status, texts) = self.read(api.fmi2GetString, read, ptr::null());
+                let known = texts.iter().filter(|text| !text.is_null());
+                // The strings stay valid until the next call.
+                (
+                    status,
+                    known
+                        .map(|text| texts::number(unsafe { CStr::from_ptr(*text) }))
+                        .collect(),
+                )
+            }
         }
     }
 
@@ -180,7 +191,7 @@ impl<'a> Importer<'a> {
             Kind::Real => self.write(api.fmi2SetReal, write, |value| value),
             Kind::Integer => self.write(api.fmi2SetInteger, write, |value| value as i32),
             Kind::Boolean => self.write(api.fmi2SetBoolean, write, |value| value as i32),
-            Kind::String => self.write(api.fmi2SetString, write, |_| c"text".as_ptr()),
+            Kind::String => self.write(api.fmi2SetString, write, |value| texts::text(value).as_ptr()),
         }
     }
 

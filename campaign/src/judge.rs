@@ -191,7 +191,7 @@ impl<'a> Judge<'a> {
             _ => false,
         };
         if sets {
-            for kind in [Kind::Real, Kind::Integer, Kind::Boolean] {
+            for kind in Kind::ALL {
                 let settable =
                     DESCRIPTION.references(|variable| variable.role != Role::Output && variable.kind == kind);
                 self.call(&Call::get(kind, settable))?;

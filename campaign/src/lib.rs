@@ -2,6 +2,7 @@
 //! `modelDescription.xml` and through the C functions only.
 //!
 //! ```text
+//! texts        values of the string parameter
 //! description  the variables and log categories, read from the XML
 //! api          the 34 functions, of a loaded library or of the one linked here
 //! call         one call as plain data; choices makes random ones
@@ -31,3 +32,4 @@ pub mod moment;
 pub mod pointers;
 pub mod random;
 pub mod states;
+pub mod texts;

@@ -37,7 +37,7 @@ pub enum Verdict {
     AcceptOrFail,
     /// `Accept` or `Refuse`, depending on the physics.
     AcceptOrRefuse,
-    /// `Accept`, `Remark` or `Fail`, depending on the physics and on what the component takes for rounding.
+    /// `Accept`, `Remark` or `Fail`, depending on the physics and on what the component takes for rounding or remarks on.
     Open,
 }
 
@@ -104,10 +104,12 @@ impl LifeCycle {
                     Accept
                 }
             }
-            Call::ExitInitializationMode => match self.now.fits {
-                Some(true) => Accept,
-                Some(false) => Fail,
-                None => AcceptOrFail,
+            Call::ExitInitializationMode => match (self.now.fits, self.has_spring()) {
+                (Some(true), false) => Accept,
+                (Some(false), _) => Fail,
+                (None, false) => AcceptOrFail,
+                // A dimension beside a spring file is a remark.
+                (_, true) => Open,
             },
             Call::EnterInitializationMode | Call::Terminate | Call::Reset | Call::Renew => Accept,
             Call::Get {
@@ -167,6 +169,11 @@ impl LifeCycle {
             }
             Call::Replay { .. } => unreachable!("a replay consists of other calls"),
         }
+    }
+
+    /// Whether a spring file is named.
+    fn has_spring(&self) -> bool {
+        self.now.value(DESCRIPTION.reference("beam.file")) != 0.0
     }
 
     fn held(&self, slot: usize, fault: Fault, also: &[Fault]) -> Verdict {
@@ -354,9 +361,9 @@ fn continuous(reference: u32, role: Role) -> bool {
 fn as_held(kind: Kind, value: f64) -> f64 {
     #[allow(clippy::cast_possible_truncation)] // saturates
     match kind {
-        Kind::Real => value,
+        Kind::Real | Kind::String => value,
         Kind::Integer => f64::from(value as i32),
-        Kind::Boolean | Kind::String => f64::from(u8::from(value != 0.0)),
+        Kind::Boolean => f64::from(u8::from(value != 0.0)),
     }
 }
 

@@ -26,7 +26,7 @@ def parameter_set(name: str) -> dict[str, Value]:
         match parameter.type:
             case "Boolean":
                 values[parameter.name] = parameter.value == "true"
-            case "Enumeration":
+            case "Enumeration" | "String":
                 values[parameter.name] = parameter.value
             case _:
                 values[parameter.name] = float(parameter.value)

@@ -11,7 +11,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use relay_contact::reference::{self, Hertz, Model, Preload, Section};
+use relay_contact::reference::{self, Hertz, Model, Preload, Section, Spring};
 use relay_contact::scene::Scene;
 use relay_contact::variables::AxialForceKind;
 
@@ -141,7 +141,8 @@ pub fn scene(published: &Published) -> Result<Scene, Error> {
     let excess = |bending: f64| {
         let scene = with_section(&scene, bending, 0.05);
         let hertz = Hertz::new(&scene.contact);
-        Preload::new(&scene, &Section::new(&scene), &hertz, 0.0).map_or(f64::NAN, |preload| preload.force - force)
+        Preload::new(&scene, &Spring::uniform(&Section::new(&scene)), &hertz, 0.0)
+            .map_or(f64::NAN, |preload| preload.force - force)
     };
     let bending = reference::bracketed(excess, 1e-5, 1e-1).ok_or("no bending stiffness from 1e-5 to 1e-1 N m2")?;
 
@@ -161,7 +162,7 @@ pub fn scene(published: &Published) -> Result<Scene, Error> {
 
 /// With the section that has a bending stiffness (N m2) and a mass per length (kg/m).
 fn with_section(scene: &Scene, bending: f64, mass: f64) -> Scene {
-    let mut scene = *scene;
+    let mut scene = scene.clone();
     let beam = &mut scene.beam;
     beam.thickness = (12.0 * bending * beam.density / (beam.youngs_modulus * mass)).sqrt();
     beam.width = mass / (beam.density * beam.thickness);
@@ -170,7 +171,7 @@ fn with_section(scene: &Scene, bending: f64, mass: f64) -> Scene {
 
 /// With a rivet mass (kg), and the mass per length that gives the first frequency (Hz) with it.
 fn with_rivet(scene: &Scene, bending: f64, mass: f64, frequency: f64) -> Option<Scene> {
-    let mut scene = *scene;
+    let mut scene = scene.clone();
     scene.tip.mass = mass;
     let excess = |per_length: f64| {
         let scene = with_section(&scene, bending, per_length);
@@ -183,7 +184,7 @@ fn with_rivet(scene: &Scene, bending: f64, mass: f64, frequency: f64) -> Option<
 /// Of beam and contact spring, Hz.
 fn first_frequency(scene: &Scene) -> Option<f64> {
     let section = Section::new(scene);
-    let preload = Preload::new(scene, &section, &Hertz::new(&scene.contact), 0.0).ok()?;
+    let preload = Preload::new(scene, &Spring::uniform(&section), &Hertz::new(&scene.contact), 0.0).ok()?;
     let found = reference::frequencies(&section, 0.0, preload.contact_stiffness, 1);
     found.first().map(|omega| omega / TAU)
 }

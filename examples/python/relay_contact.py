@@ -30,7 +30,7 @@ SIGNS = {"Ohm": "Ω", "mOhm": "mΩ", "um": "µm", "us": "µs", "degC": "°C", "m
 
 Array = NDArray[np.float64]
 Value = float | str
-"""Value of a variable; a choice, such as that of effects.excitation, by its name."""
+"""Value of a variable; a choice, such as that of effects.excitation, by its name; a file by its path."""
 Values = Mapping[str, Value]
 
 
@@ -71,6 +71,8 @@ class Scene:
         inputs = content.get("inputs", {})
         file = inputs.pop("file", None)
         values = flat(content.get("parameters", {})) | flat(inputs)
+        if "beam.file" in values:
+            values["beam.file"] = str(path.resolve().parent / str(values["beam.file"]))
         table = read_table(path.with_name(file)) if file else {}
         return cls(
             content.get("title", ""), content["stop"], content["communicationStep"], content["outputs"], values, table
@@ -154,6 +156,8 @@ class Component:
         match variable.type:
             case "Boolean":
                 return bool(variable.start == "true")
+            case "String":
+                return str(variable.start or "")
             case "Enumeration":
                 return next(each for each, number in self.choices(name).items() if number == int(variable.start))
             case _:
@@ -205,6 +209,9 @@ class Contact:
     def set(self, name: str, value: Value) -> None:
         """Set a parameter or an input."""
         kind = self.component.variables[name].type
+        if kind == "String":
+            self.fmu.setString(self.references(name), [str(value)])
+            return
         put = getattr(self.fmu, f"set{'Integer' if kind == 'Enumeration' else kind}")
         put(self.references(name), [self.component.number(name, value)])
 

@@ -65,7 +65,7 @@ pub(crate) fn with_overtravel(overtravel: f64) -> Scene {
 }
 
 fn shaken(scene: Scene) -> Result<Vec<Check>> {
-    let mut checks = Ride::shaken(scene).checks()?;
+    let mut checks = Ride::shaken(scene.clone()).checks()?;
     checks.extend(balances(scene, 1.5e-3, square)?);
     Ok(checks)
 }

@@ -134,7 +134,7 @@ fn grazing_spring() -> Result<Vec<Check>> {
         Ok(rig.state)
     };
     // Amplitude for 1 m/s; the free motion is proportional to the speed.
-    let mut far = scene;
+    let mut far = scene.clone();
     far.contact.overtravel = -5e-3;
     let mut rig = thrown(&far, 1.0)?;
     let (mut nearest, mut highest) = (0.0, 0.0);

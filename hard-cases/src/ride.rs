@@ -98,7 +98,7 @@ impl Ride {
         let mut model = Model::new(&self.scene, 0.0)?;
         // Room for the mode that meters the work of the support.
         if model.modes().len() == MAX_MODES {
-            let mut scene = self.scene;
+            let mut scene = self.scene.clone();
             scene.solver.modes = i32::try_from(MAX_MODES)? - 1;
             model = Model::new(&scene, 0.0)?;
         }

@@ -57,6 +57,45 @@ impl Space {
         space
     }
 
+    /// The space of other functions, orthonormal in strain energy, in units of the section, which carries no rivet: products
+    /// of the functions over the mass (kg), of their slopes over the length (m), the mass each moves (kg), and the deflection
+    /// of each at the tip (m).
+    pub(super) fn with(
+        section: &Section,
+        mass: DMatrix<f64>,
+        slopes: DMatrix<f64>,
+        load: DVector<f64>,
+        tip: DVector<f64>,
+    ) -> Self {
+        let half_mass = section.mass_per_length * section.length / 2.0;
+        let half_stiffness = 8.0 * section.bending_stiffness / section.length.powi(3);
+        Self {
+            mass: mass * (half_stiffness / half_mass),
+            geometric: slopes * (half_stiffness * section.length / 2.0),
+            load: load * (half_stiffness.sqrt() / half_mass),
+            tip_slope: DVector::zeros(tip.len()),
+            tip: tip * half_stiffness.sqrt(),
+        }
+    }
+
+    /// The factors of [`Space::with`]'s functions in the shape under unit force at the tip and an axial compression (N);
+    /// `None` at or above the buckling load.
+    pub(super) fn deflections(&self, section: &Section, axial_force: f64) -> Option<DVector<f64>> {
+        let half_stiffness = 8.0 * section.bending_stiffness / section.length.powi(3);
+        let rigidity = self.rigidity(section, axial_force, 0.0);
+        Some(rigidity.cholesky()?.solve(&self.tip) / half_stiffness.sqrt())
+    }
+
+    /// Stiffness under the axial compression (N) with an elastic support of `stiffness` (N/m) at the tip.
+    fn rigidity(&self, section: &Section, axial_force: f64, stiffness: f64) -> DMatrix<f64> {
+        let half_stiffness = 8.0 * section.bending_stiffness / section.length.powi(3);
+        let count = self.tip.len();
+        let compression = axial_force * section.length * section.length / (4.0 * section.bending_stiffness);
+        let mut rigidity = DMatrix::identity(count, count) - &self.geometric * compression;
+        rigidity.ger(stiffness / half_stiffness, &self.tip, &self.tip, 1.0);
+        rigidity
+    }
+
     /// The modes of the section under the axial compression (N) with an elastic support of `stiffness` (N/m) at the
     /// tip, frequency ascending; `None` at or above the buckling load.
     pub fn modes(&self, section: &Section, axial_force: f64, stiffness: f64) -> Option<Vec<Mode>> {
@@ -80,15 +119,11 @@ impl Space {
         } = *section;
         let half_mass = mass_per_length * length / 2.0;
         let half_stiffness = 8.0 * bending_stiffness / length.powi(3);
-        let count = self.tip.len();
         let mut mass = self.mass.clone();
         mass.ger(tip_mass / half_mass, &self.tip, &self.tip, 1.0);
         let inertia = 4.0 * tip_inertia / (length * length * half_mass);
         mass.ger(inertia, &self.tip_slope, &self.tip_slope, 1.0);
-        let compression = axial_force * length * length / (4.0 * bending_stiffness);
-        let mut rigidity = DMatrix::identity(count, count) - &self.geometric * compression;
-        rigidity.ger(stiffness / half_stiffness, &self.tip, &self.tip, 1.0);
-        let factor = rigidity.cholesky()?;
+        let factor = self.rigidity(section, axial_force, stiffness).cholesky()?;
         // Eigenvalues mu of R^-1 M R^-T are 1/omega^2: the low modes, which matter most, have full relative accuracy.
         let half = factor.l_dirty().solve_lower_triangular(&mass)?;
         let reduced = factor.l_dirty().solve_lower_triangular(&half.transpose())?;

@@ -1,9 +1,15 @@
-//! The spring: section, axial force, exact characteristic equation, Galerkin modes and static compliance.
+//! The spring: section, segments or modes; axial force, exact characteristic equation, Galerkin modes and static
+//! compliance.
 
 pub mod axial;
 pub mod characteristic;
 pub mod galerkin;
+mod given;
+mod mesh;
 pub mod mode;
 pub mod mode_count;
+mod pieces;
+mod ritz;
 pub mod section;
+pub mod spring;
 pub mod statics;

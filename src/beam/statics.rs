@@ -21,7 +21,11 @@ pub struct Statics {
 impl Statics {
     /// For the section.
     pub fn new(section: &Section) -> Self {
-        let space = Space::new(TERMS);
+        Self::of(section, Space::new(TERMS))
+    }
+
+    /// For a space in units of the section.
+    pub(super) fn of(section: &Section, space: Space) -> Self {
         let eigen = space.geometric.symmetric_eigen();
         let terms = eigen
             .eigenvalues
@@ -33,6 +37,12 @@ impl Statics {
             section: *section,
             terms,
         }
+    }
+
+    /// Axial compression at which the cantilever without contact buckles, N.
+    pub(super) fn buckling_load(&self) -> f64 {
+        let largest = self.terms.iter().map(|(sigma, ..)| *sigma).fold(0.0, f64::max);
+        4.0 * self.section.bending_stiffness / (self.section.length.powi(2) * largest)
     }
 
     /// Tip deflection per tip force, m/N; without axial force L^3 / (3 E I).

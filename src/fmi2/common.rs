@@ -13,11 +13,11 @@ use super::environment::with_default;
 use super::failure::Failure;
 use super::instance::Instance;
 use super::logger::Logger;
-use super::states;
 use super::types::{
     fmi2Boolean, fmi2CallbackFunctions, fmi2CoSimulation, fmi2Component, fmi2Error, fmi2False, fmi2Real, fmi2Status,
     fmi2String, fmi2Type,
 };
+use super::{resources, states};
 use crate::variables::GUID;
 
 /// The platform types the functions use: "default".
@@ -59,7 +59,7 @@ pub unsafe extern "C" fn fmi2SetDebugLogging(
 
 /// Creates an instance. Returns null if the name is missing, the type is not co-simulation, or the GUID belongs to
 /// another description. The callbacks are copied; only the logger is used, which may be null and must not call back
-/// into the instance. The resource location is not needed and may be null.
+/// into the instance. The resource location is the folder of relative spring files, and may be null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2Instantiate(
     instanceName: fmi2String,
@@ -76,12 +76,22 @@ pub unsafe extern "C" fn fmi2Instantiate(
     };
     // SAFETY: the contract of the module.
     let (name, guid) = unsafe { (text(instanceName, "instanceName"), text(fmuGUID, "fmuGUID")) };
+    // SAFETY: the contract of the module.
+    let resources = unsafe { text(fmuResourceLocation, "fmuResourceLocation") };
+    let resources = resources.ok().and_then(|text| resources::folder(text.to_str().ok()?));
     let name = name.ok().filter(|name| !name.is_empty());
     let made = with_default(|| {
         catch_unwind(AssertUnwindSafe(|| {
             let logger = Logger::new(functions, name.unwrap_or(c"RelayContact"), loggingOn != fmi2False);
             match refusal(name, fmuType, guid) {
-                None => hand_out(Instance::new(logger)),
+                None => match Instance::new(logger, resources) {
+                    Ok(instance) => hand_out(instance),
+                    Err(error) => {
+                        let logger = Logger::new(functions, name.unwrap_or(c"RelayContact"), false);
+                        logger.log_status(fmi2Error, &format!("fmi2Instantiate: {error}"));
+                        ptr::null_mut()
+                    }
+                },
                 Some(reason) => {
                     logger.log_status(fmi2Error, &format!("fmi2Instantiate: {reason}"));
                     ptr::null_mut()

@@ -187,7 +187,7 @@ mod tests {
             stepFinished: None,
             componentEnvironment: ptr::null_mut(),
         };
-        let component = hand_out(Instance::new(Logger::new(&silent, c"relay", false)));
+        let component = hand_out(Instance::new(Logger::new(&silent, c"relay", false), None).unwrap());
         let state = |instance: &mut Instance, expected| {
             assert_eq!(instance.state(), expected);
             Ok(())

@@ -2,7 +2,7 @@
 
 use super::states::{Function, State};
 use super::types::{fmi2Discard, fmi2Error, fmi2Status, fmi2Warning};
-use crate::error::{SceneError, StepError, number};
+use crate::error::{Remark, SceneError, StepError, number};
 
 /// Why a call failed.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -62,6 +62,9 @@ pub(super) enum Failure {
         number(*point), number(*time)
     )]
     Offset { point: f64, time: f64 },
+    /// What the user should know of a simulation that can be done.
+    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
+    Remarks(Vec<Remark>),
     /// A log category that is not declared.
     #[error(
         "category {0}: no such log category, allowed are logStatusError, logStatusWarning, logEvents and logSolver; \
@@ -98,7 +101,7 @@ impl Failure {
     /// The status the call returns.
     pub(super) fn status(&self) -> fmi2Status {
         match self {
-            Self::Tolerance(_) | Self::Offset { .. } | Self::Category(_) => fmi2Warning,
+            Self::Tolerance(_) | Self::Offset { .. } | Self::Remarks(_) | Self::Category(_) => fmi2Warning,
             Self::Value(_) | Self::StatusKind(_) => fmi2Discard,
             Self::CallOrder { .. }
             | Self::Pointer(_)

@@ -20,7 +20,7 @@ use super::{serial, states};
 ///
 /// # Safety
 /// Unless null, `FMUstate` leads to null or to a saved state.
-unsafe fn keep(instance: &mut Instance, FMUstate: *mut fmi2FMUstate, snapshot: &Snapshot) -> Result<(), Failure> {
+unsafe fn keep(instance: &mut Instance, FMUstate: *mut fmi2FMUstate, snapshot: Snapshot) -> Result<(), Failure> {
     // SAFETY: passed on to the caller.
     let place = unsafe { array_mut(FMUstate, 1, "FMUstate") }?;
     let [place] = place else {
@@ -32,7 +32,7 @@ unsafe fn keep(instance: &mut Instance, FMUstate: *mut fmi2FMUstate, snapshot: &
         *state = instance.saved_states().hand_out(snapshot);
     } else {
         // SAFETY: passed on to the caller.
-        unsafe { saved(*state) }?.snapshot = *snapshot;
+        unsafe { saved(*state) }?.snapshot = snapshot;
     }
     Ok(())
 }
@@ -43,7 +43,7 @@ pub unsafe extern "C" fn fmi2GetFMUstate(c: fmi2Component, FMUstate: *mut fmi2FM
     let body = |instance: &mut Instance| {
         let snapshot = instance.snapshot();
         // SAFETY: the contract of the module.
-        unsafe { keep(instance, FMUstate, &snapshot) }
+        unsafe { keep(instance, FMUstate, snapshot) }
     };
     // SAFETY: the contract of the module.
     unsafe { call(c, states::GET_FMU_STATE, body) }
@@ -133,7 +133,7 @@ pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
         let bytes: Vec<u8> = bytes.iter().flat_map(|byte| byte.to_ne_bytes()).collect();
         let snapshot = serial::from_bytes(&bytes)?;
         // SAFETY: the contract of the module.
-        unsafe { keep(instance, FMUstate, &snapshot) }
+        unsafe { keep(instance, FMUstate, snapshot) }
     };
     // SAFETY: the contract of the module.
     unsafe { call(c, states::DE_SERIALIZE_FMU_STATE, body) }

@@ -22,6 +22,7 @@ mod fmu_state;
 mod instance;
 mod logger;
 mod report;
+mod resources;
 mod saved;
 mod serial;
 pub mod states;

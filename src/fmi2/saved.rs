@@ -31,8 +31,8 @@ pub(super) struct SavedStates(BTreeSet<usize>);
 
 impl SavedStates {
     /// Moves a snapshot to the heap and returns a pointer for C.
-    pub(super) fn hand_out(&mut self, snapshot: &Snapshot) -> fmi2FMUstate {
-        let (guard, snapshot) = (SAVED, *snapshot);
+    pub(super) fn hand_out(&mut self, snapshot: Snapshot) -> fmi2FMUstate {
+        let guard = SAVED;
         let state = Box::into_raw(Box::new(Saved { guard, snapshot }));
         self.0.insert(state.expose_provenance());
         state.cast()

@@ -1,10 +1,11 @@
 //! Reading and setting variables.
 
+use std::ffi::CStr;
 use std::mem::MaybeUninit;
 
 use libc::size_t;
 
-use super::entry::{array, array_mut, call};
+use super::entry::{array, array_mut, call, text};
 use super::failure::Failure;
 use super::instance::Instance;
 use super::states::{self, Function};
@@ -97,7 +98,7 @@ pub unsafe extern "C" fn fmi2GetBoolean(
     unsafe { get(c, states::GET_BOOLEAN, vr, nvr, value, read) }
 }
 
-/// Reads string variables, of which there are none.
+/// Reads string variables. The strings stay until this function is called for another value.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetString(
     c: fmi2Component,
@@ -105,7 +106,7 @@ pub unsafe extern "C" fn fmi2GetString(
     nvr: size_t,
     value: *mut fmi2String,
 ) -> fmi2Status {
-    let read = |_: &mut Instance, reference| Err(no_string(reference));
+    let read = |instance: &mut Instance, reference| instance.string(reference).map(CStr::as_ptr);
     // SAFETY: the contract of the module.
     unsafe { get(c, states::GET_STRING, vr, nvr, value, read) }
 }
@@ -146,7 +147,7 @@ pub unsafe extern "C" fn fmi2SetBoolean(
     unsafe { set(c, states::SET_BOOLEAN, vr, nvr, value, Instance::set_booleans) }
 }
 
-/// Sets string inputs and parameters, of which there are none.
+/// Sets string parameters. A file that cannot be read or is wrong gives `fmi2Discard`, and none is set.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetString(
     c: fmi2Component,
@@ -154,18 +155,11 @@ pub unsafe extern "C" fn fmi2SetString(
     nvr: size_t,
     value: *const fmi2String,
 ) -> fmi2Status {
-    let write = |_: &mut Instance, references: &[u32], _: &[fmi2String]| match references.first() {
-        None => Ok(()),
-        Some(&reference) => Err(no_string(reference)),
+    let write = |instance: &mut Instance, references: &[u32], values: &[fmi2String]| {
+        // SAFETY: the contract of the module.
+        let values = values.iter().map(|value| unsafe { text(*value, "value") });
+        instance.set_strings(references, &values.collect::<Result<Vec<_>, _>>()?)
     };
     // SAFETY: the contract of the module.
     unsafe { set(c, states::SET_STRING, vr, nvr, value, write) }
-}
-
-fn no_string(reference: u32) -> Failure {
-    Failure::UnknownReference {
-        kind: "String",
-        reference,
-        owner: None,
-    }
 }

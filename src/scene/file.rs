@@ -8,6 +8,7 @@
 //!
 //! [parameters]                # by variable name, in SI units; all others keep their start values
 //! contact.overtravel = 3e-4
+//! beam.file = "my-spring.toml"    # beside this file
 //! effects.excitation = "None"
 //!
 //! [inputs]                    # held during the whole run; all others are 0
@@ -17,7 +18,7 @@
 
 use crate::scene::names::{Role, list, variable};
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::{fmt, fs};
 
@@ -48,6 +49,8 @@ pub struct SceneFile {
     pub inputs: Inputs,
     /// Inputs over time.
     pub table: InputTable,
+    /// The folder of relative paths.
+    folder: PathBuf,
 }
 
 /// The file as parsed; names and values of variables are checked afterwards.
@@ -165,6 +168,7 @@ impl SceneFile {
             scene: Scene::default(),
             inputs: Inputs::default(),
             table: table.transpose()?.unwrap_or_default(),
+            folder: folder.to_owned(),
         };
         document.inputs.retain(|key, _| key.get_ref() != "file");
         file.apply(Role::Parameter, text, "", &document.parameters)?;
@@ -197,7 +201,7 @@ impl SceneFile {
     }
 
     /// Sets `stop`, `communicationStep`, `outputs` (names separated by commas), a parameter or an input by name, from
-    /// text such as `0.0155` or `Sine`. An input is then held, even if the table has a column for it.
+    /// text such as `0.0155` or `Sine`; a relative file is one beside the scene. An input is then held, even if the table has a column for it.
     ///
     /// # Errors
     /// A [`SceneError`] for an unknown name or a value that is not allowed; nothing is changed then.
@@ -257,6 +261,12 @@ impl SceneFile {
                 };
                 self.scene.set_boolean(parameter, *value);
                 Ok(())
+            }
+            Group::StringParameter(parameter) => {
+                let Value::Text(text) = value else {
+                    return Err(wrong_type(name, value, "a string"));
+                };
+                self.scene.set_string(parameter, text, &self.folder)
             }
             Group::EnumerationParameter(parameter) => {
                 let Value::Text(choice) = value else {

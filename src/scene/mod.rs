@@ -7,6 +7,8 @@ pub mod file;
 pub mod input_table;
 pub(crate) mod names;
 mod parameters;
+pub mod spring;
+mod spring_file;
 mod values;
 
 pub use parameters::*;

@@ -18,6 +18,7 @@ impl Role {
             Group::RealParameter(_)
             | Group::IntegerParameter(_)
             | Group::BooleanParameter(_)
+            | Group::StringParameter(_)
             | Group::EnumerationParameter(_) => matches!(self, Self::Parameter | Self::Settable),
             Group::RealInput(_) => matches!(self, Self::Input | Self::Settable),
             Group::RealOutput(_) | Group::IntegerOutput(_) | Group::BooleanOutput(_) => matches!(self, Self::Output),

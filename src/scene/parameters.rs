@@ -2,12 +2,17 @@
 
 use crate::variables::{AxialForceKind, ContactLawKind, ExcitationKind, ResistanceKind, start};
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+use crate::scene::spring::SpringFile;
 
 /// Parameters and effects of a simulation. SI units.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scene {
     /// The spring.
     pub beam: Beam,
+    /// The spring of `beam.file`, in place of the length, width and thickness of the beam.
+    pub spring: Option<Arc<SpringFile>>,
     /// The rivet at the tip of the spring.
     pub tip: Tip,
     /// The two contact surfaces.
@@ -206,6 +211,7 @@ impl Default for Scene {
                 stiffness_damping: start::BEAM_STIFFNESS_DAMPING,
                 axial_force: start::BEAM_AXIAL_FORCE,
             },
+            spring: None,
             tip: Tip {
                 mass: start::TIP_MASS,
                 rotary_inertia: start::TIP_ROTARY_INERTIA,

@@ -1,16 +1,20 @@
 //! The parameters by variable: reading, setting and range checks.
 
+use std::path::Path;
+use std::sync::Arc;
+
 use crate::error::{SceneError, number};
 use crate::scene::Scene;
+use crate::scene::spring::SpringFile;
 use crate::variables::{
     AxialForceKind, BooleanParameter, ContactLawKind, EnumerationParameter, ExcitationKind, Group, IntegerParameter,
-    RealParameter, ResistanceKind, VARIABLES, Variable,
+    RealParameter, ResistanceKind, StringParameter, VARIABLES, Variable,
 };
 
 impl Scene {
     /// Value of a real parameter, in its SI unit.
     pub fn real(&self, parameter: RealParameter) -> f64 {
-        let mut scene = *self;
+        let mut scene = self.clone();
         *scene.real_mut(parameter)
     }
 
@@ -24,7 +28,7 @@ impl Scene {
 
     /// Value of a Boolean parameter.
     pub fn boolean(&self, parameter: BooleanParameter) -> bool {
-        let mut scene = *self;
+        let mut scene = self.clone();
         *scene.boolean_mut(parameter)
     }
 
@@ -52,6 +56,27 @@ impl Scene {
             EnumerationParameter::EffectsAxialForce => self.effects.axial_force as i32,
             EnumerationParameter::EffectsResistance => self.effects.resistance as i32,
         }
+    }
+
+    /// Value of a string parameter: the file as it was named.
+    pub fn string(&self, parameter: StringParameter) -> &str {
+        match parameter {
+            StringParameter::BeamFile => self.spring.as_ref().map_or("", |spring| &spring.name),
+        }
+    }
+
+    /// Sets a string parameter, and reads the file that it names; a relative name is one in `folder`.
+    ///
+    /// # Errors
+    /// A [`SceneError`] if the file cannot be read or is wrong; the scene is then unchanged.
+    pub fn set_string(&mut self, parameter: StringParameter, value: &str, folder: &Path) -> Result<(), SceneError> {
+        match parameter {
+            StringParameter::BeamFile => {
+                let read = |name| SpringFile::read(folder, name).map(Arc::new);
+                self.spring = Some(value).filter(|name| !name.is_empty()).map(read).transpose()?;
+            }
+        }
+        Ok(())
     }
 
     /// Sets a real parameter, in its SI unit.
@@ -119,7 +144,10 @@ impl Scene {
             let allowed = format!("allowed is 0 (no limit), or {} or more", number(SHORTEST_LIMIT));
             return Err(SceneError::out_of_range(variable, longest, allowed));
         }
-        let mut copy = *self;
+        if let Some(spring) = &self.spring {
+            spring.check()?;
+        }
+        let mut copy = self.clone();
         VARIABLES.iter().try_for_each(|variable| match variable.group {
             Group::RealParameter(parameter) => copy.set_real(parameter, self.real(parameter)),
             Group::IntegerParameter(parameter) => copy.set_integer(parameter, self.integer(parameter)),

@@ -157,6 +157,20 @@ impl Instance {
         unsafe { fmi2SetBoolean(self.component, [vr(name)].as_ptr(), 1, &raw const value) }
     }
 
+    /// `fmi2SetString`.
+    pub fn set_string(&self, name: &str, value: &str) -> fmi2Status {
+        let value = CString::new(value).unwrap_or_default();
+        unsafe { fmi2SetString(self.component, [vr(name)].as_ptr(), 1, [value.as_ptr()].as_ptr()) }
+    }
+
+    /// The value of a string variable.
+    pub fn string(&self, name: &str) -> String {
+        let (reference, mut value) = (vr(name), ptr::null());
+        let status = unsafe { fmi2GetString(self.component, &raw const reference, 1, &raw mut value) };
+        assert_eq!(status, fmi2OK, "{name}: {:?}", self.log);
+        unsafe { CStr::from_ptr(value) }.to_string_lossy().into_owned()
+    }
+
     /// Sets all parameters to those of a scene.
     pub fn set_scene(&self, scene: &Scene) {
         for Variable { name, group, .. } in &VARIABLES {
@@ -165,6 +179,12 @@ impl Instance {
                 Group::IntegerParameter(parameter) => self.set_integer(name, scene.integer(parameter)),
                 Group::BooleanParameter(parameter) => self.set_boolean(name, scene.boolean(parameter)),
                 Group::EnumerationParameter(parameter) => self.set_integer(name, scene.enumeration(parameter)),
+                Group::StringParameter(parameter) => {
+                    // Of a scene of the project, for tests run in its top folder.
+                    let (file, here) = (scene.string(parameter), std::env::current_dir().expect("a folder"));
+                    let path = here.join("scenes").join(file).display().to_string();
+                    self.set_string(name, if file.is_empty() { "" } else { &path })
+                }
                 _ => fmi2OK,
             };
             assert_eq!(status, fmi2OK, "{name}: {:?}", self.log);

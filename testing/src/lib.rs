@@ -3,6 +3,7 @@
 //! ```text
 //! rig       a model with its state and energy, also one built from modes without a beam
 //! relays    random plausible relays, run and compared
+//! springs   random springs of segments for them
 //! scenes    scenes for tests, with reference values computed without the library
 //! log       the messages of an instance
 //! allocator counts allocations
@@ -19,3 +20,4 @@ pub mod promise;
 pub mod relays;
 pub mod rig;
 pub mod scenes;
+pub mod springs;

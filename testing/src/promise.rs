@@ -56,12 +56,12 @@ pub struct Judged {
     pub outcome: Outcome,
 }
 
-/// Judges the relay of a number.
+/// Judges the relay of a number, drawn by a function such as [`Relay::draw`].
 ///
 /// # Panics
 /// If it can be simulated at the tightest tolerance, but not at its own.
-pub fn judge(number: u64) -> Judged {
-    let relay = Relay::draw(number);
+pub fn judge(number: u64, draw: fn(u64) -> Relay) -> Judged {
+    let relay = draw(number);
     let tolerance = relay.scene.solver.tolerance;
     let mut judged = Judged {
         number,
@@ -97,12 +97,12 @@ pub fn judge(number: u64) -> Judged {
 }
 
 /// Judges relays on all cores; in order.
-pub fn judge_all(first: u64, count: u64) -> Vec<Judged> {
+pub fn judge_all(first: u64, count: u64, draw: fn(u64) -> Relay) -> Vec<Judged> {
     let threads = thread::available_parallelism().map_or(1, usize::from) as u64;
     let mut judged: Vec<_> = thread::scope(|scope| {
         let part = |thread| {
             let own = (first..first + count).filter(move |number| number % threads == thread);
-            own.map(judge).collect::<Vec<_>>()
+            own.map(move |number| judge(number, draw)).collect::<Vec<_>>()
         };
         let parts: Vec<_> = (0..threads).map(|thread| scope.spawn(move || part(thread))).collect();
         parts

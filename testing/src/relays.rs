@@ -45,11 +45,11 @@ pub struct Course {
 }
 
 /// Between both, each order of magnitude as likely as the others.
-fn logarithmic(rng: &mut Rng, least: f64, greatest: f64) -> f64 {
+pub(crate) fn logarithmic(rng: &mut Rng, least: f64, greatest: f64) -> f64 {
     least * (greatest / least).powf(rng.f64())
 }
 
-fn uniform(rng: &mut Rng, least: f64, greatest: f64) -> f64 {
+pub(crate) fn uniform(rng: &mut Rng, least: f64, greatest: f64) -> f64 {
     least + (greatest - least) * rng.f64()
 }
 
@@ -110,7 +110,7 @@ impl Relay {
     /// # Errors
     /// Those of the scene; a step that fails ends the course.
     pub fn run(&self, change: impl FnOnce(&mut Scene)) -> Result<(Course, Option<StepError>), SceneError> {
-        let mut scene = self.scene;
+        let mut scene = self.scene.clone();
         change(&mut scene);
         let (size, count) = self.steps;
         let mut simulation = Simulation::new(&scene, &self.inputs(0.0, size), 0.0)?;

@@ -71,7 +71,7 @@ fn agrees(mut scene: Scene, opens: bool, count: u32, steps: u32) {
     let lowest = exact.iter().fold(f64::INFINITY, |low, (_, force)| low.min(*force));
     assert_eq!(lowest == 0.0, opens, "lowest force {lowest} N");
     // Without it the force is another one altogether.
-    let mut constant = scene;
+    let mut constant = scene.clone();
     constant.effects.axial_force = AxialForceKind::FromPreload;
     let effect = error(&constant, &exact);
     println!("opens: {opens}; of the reference {of_reference:.1e}; effect {effect:.1e}");
@@ -283,7 +283,7 @@ fn rest_is_found_and_kept() {
         let mut simulation = Simulation::new(&scene, &inputs, 0.0).unwrap();
         simulation.step(&inputs, 0.0, 10.0).unwrap();
         let force = simulation.real(RealOutput::ContactForce);
-        let mut heavy = scene;
+        let mut heavy = scene.clone();
         heavy.environment.gravity = acceleration;
         let equilibrium = at_rest(&heavy, RealOutput::PreloadForce);
         println!("{overtravel} m: {force} N, {equilibrium} N");

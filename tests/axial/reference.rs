@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
-use relay_contact::reference::{Hertz, Preload, Section};
+use relay_contact::reference::{Hertz, Preload, Section, Spring};
 use relay_contact::scene::Scene;
 
 use crate::FUNCTIONS;
@@ -35,9 +35,10 @@ impl Reference {
 
     /// With fewer functions.
     pub fn with<const COUNT: usize>(scene: &Scene) -> Self {
-        let section = Section::new(scene);
+        let spring = Spring::new(scene).unwrap();
+        let section = spring.section;
         let hertz = Hertz::new(&scene.contact);
-        let preload = Preload::new(scene, &section, &hertz, 0.0).unwrap();
+        let preload = Preload::new(scene, &spring, &hertz, 0.0).unwrap();
         let Section {
             length,
             bending_stiffness,
@@ -81,7 +82,7 @@ impl Reference {
             bending,
             geometric,
             load,
-            scene: *scene,
+            scene: scene.clone(),
         }
     }
 

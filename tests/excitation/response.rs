@@ -26,7 +26,7 @@ fn a_slow_acceleration_acts_through_its_mass() {
         ContactLawKind::Linearised,
         ContactLawKind::Hertz,
     ] {
-        for mut scene in slow {
+        for mut scene in slow.clone() {
             scene.effects.contact_law = law;
             if scene.effects.excitation == ExcitationKind::Sine {
                 scene.excitation.frequency = 10.0;
@@ -61,7 +61,7 @@ fn a_slow_acceleration_acts_through_its_mass() {
 fn waveforms_from_outside_converge_to_the_generators() {
     for (name, mut scene) in every_waveform() {
         scene.solver.tolerance = 1e-9;
-        let mut quiet = scene;
+        let mut quiet = scene.clone();
         quiet.effects.excitation = ExcitationKind::None;
         let every = equal_steps(1e-4, 30);
         let (exact, _) = forces(&scene, &every, undriven);
@@ -92,14 +92,14 @@ fn the_communication_step_does_not_matter() {
                 ContactLawKind::Linearised,
                 ContactLawKind::Bonded,
             ] {
-                let mut scene = base;
+                let mut scene = base.clone();
                 scene.effects.contact_law = law;
                 scene.excitation.amplitude *= strength;
                 scene.excitation.displacement_limit *= strength;
                 scene.excitation.spectral_density *= strength * strength;
                 scene.solver.tolerance = 1e-6;
                 let reference = {
-                    let mut scene = scene;
+                    let mut scene = scene.clone();
                     scene.solver.tolerance = 1e-10;
                     forces(&scene, &equal_steps(1e-3, 4), undriven).0
                 };
@@ -152,7 +152,7 @@ fn a_linear_scene_goes_through_a_shock_in_exact_steps() {
         parts[141],
         last[0]
     );
-    let mut stepped = scene;
+    let mut stepped = scene.clone();
     stepped.solver.maximum_step = 1e-5;
     let (integrated, many) = forces(&stepped, &[1e-3], undriven);
     assert!(many > 50, "{many}");

@@ -2,6 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use std::path::Path;
+
 use relay_contact::MODEL_DESCRIPTION;
 use relay_contact::error::SceneError;
 use relay_contact::inputs::Inputs;
@@ -61,7 +63,7 @@ const PULLED: (&str, f64) = ("environment.gravity", -9.81);
 const ALL_COUNT: (&str, f64) = ("chatter.minimumDuration", 0.0);
 
 /// What is known at initialisation.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 struct Known {
     scene: Scene,
     inputs: Inputs,
@@ -79,6 +81,10 @@ impl Known {
             Group::BooleanParameter(parameter) => {
                 self.scene.set_boolean(parameter, value != 0.0);
                 Ok(())
+            }
+            Group::StringParameter(parameter) => {
+                let file = if value == 0.0 { "" } else { "tapered-cube.toml" };
+                self.scene.set_string(parameter, file, Path::new("scenes/springs"))
             }
             Group::RealOutput(_) | Group::IntegerOutput(_) | Group::BooleanOutput(_) => panic!("{}", variable.name),
         }
@@ -133,6 +139,7 @@ impl Known {
                 .map(|(_, number)| f64::from(*number))
                 .collect(),
             Group::BooleanParameter(parameter) => vec![f64::from(u8::from(!self.scene.boolean(parameter)))],
+            Group::StringParameter(_) => vec![1.0],
             Group::RealOutput(_) | Group::IntegerOutput(_) | Group::BooleanOutput(_) => vec![],
         }
     }
@@ -173,7 +180,7 @@ fn initial_unknowns_depend_on_what_the_description_says() {
         let before = base.unknowns().unwrap_or_else(|| panic!("{values:?} do not fit"));
         for known in &VARIABLES {
             for other in base.others(known) {
-                let mut changed = base;
+                let mut changed = base.clone();
                 let Some(after) = changed.set(known, other).ok().and_then(|()| changed.unknowns()) else {
                     continue;
                 };

@@ -6,14 +6,14 @@ use relay_contact::fmi2::*;
 use testing::instance::Instance;
 
 /// A saved state of an instance.
-fn save(fmu: &Instance) -> fmi2FMUstate {
+pub fn save(fmu: &Instance) -> fmi2FMUstate {
     let mut state = ptr::null_mut();
     assert_eq!(unsafe { fmi2GetFMUstate(fmu.component, &raw mut state) }, fmi2OK);
     assert!(!state.is_null());
     state
 }
 
-fn restore(fmu: &Instance, state: fmi2FMUstate) -> fmi2Status {
+pub fn restore(fmu: &Instance, state: fmi2FMUstate) -> fmi2Status {
     unsafe { fmi2SetFMUstate(fmu.component, state) }
 }
 
@@ -41,7 +41,7 @@ const OUTPUTS: [&str; 6] = [
 ];
 
 /// The bits of the outputs over `count` steps of `size` seconds from `start` on, with inputs that change now and then.
-fn trace(fmu: &Instance, start: u32, count: u32, size: f64) -> Vec<[u64; 6]> {
+pub fn trace(fmu: &Instance, start: u32, count: u32, size: f64) -> Vec<[u64; 6]> {
     (start..start + count)
         .map(|k| {
             assert_eq!(fmu.set_real("base.acceleration", f64::from(k / 37)), fmi2OK);
@@ -106,7 +106,7 @@ fn an_instance_is_no_state() {
 }
 
 /// The state as bytes.
-fn to_bytes(fmu: &Instance, state: fmi2FMUstate) -> Vec<fmi2Byte> {
+pub fn to_bytes(fmu: &Instance, state: fmi2FMUstate) -> Vec<fmi2Byte> {
     let mut size = 0;
     unsafe {
         assert_eq!(fmi2SerializedFMUstateSize(fmu.component, state, &raw mut size), fmi2OK);
@@ -119,7 +119,7 @@ fn to_bytes(fmu: &Instance, state: fmi2FMUstate) -> Vec<fmi2Byte> {
     }
 }
 
-fn from_bytes(fmu: &Instance, bytes: &[fmi2Byte], state: &mut fmi2FMUstate) -> fmi2Status {
+pub fn from_bytes(fmu: &Instance, bytes: &[fmi2Byte], state: &mut fmi2FMUstate) -> fmi2Status {
     unsafe { fmi2DeSerializeFMUstate(fmu.component, bytes.as_ptr(), bytes.len(), &raw mut *state) }
 }
 

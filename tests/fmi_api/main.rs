@@ -2,7 +2,7 @@
 //! of every call, does not look at.
 //!
 //! [`messages`], [`logging`]: what is said, and where;   [`values`], [`derivatives`], [`steps`]: what a call does to the
-//! simulation;   [`dependencies`]: of initial unknowns;   [`fmu_state`]: a saved state goes on bit by bit;
+//! simulation;   [`dependencies`]: of initial unknowns;   [`fmu_state`]: a saved state goes on bit by bit;   [`springs`]: of a file;
 //! [`importers`]: habits of importers;   `environment`: hosts with another floating-point environment.
 #![allow(clippy::undocumented_unsafe_blocks)] // every block calls a C function with what it needs, or, as the test says, without
 
@@ -14,5 +14,6 @@ mod fmu_state;
 mod importers;
 mod logging;
 mod messages;
+mod springs;
 mod steps;
 mod values;

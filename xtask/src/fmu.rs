@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, bail};
 use cargo_metadata::Metadata;
 use commands::{cargo, command, output, read, run, write};
+use relay_contact::scene::spring::SpringFile;
 use relay_contact::{C_HEADER, MODEL_DESCRIPTION};
 
 use crate::package::{Files, pack};
@@ -15,25 +16,74 @@ use crate::{bill, documentation, licences, linked, plain};
 /// Writes `dist/RelayContact.fmu` and returns its path. Also writes, for C programs, the library to `lib` and its
 /// header to `include`.
 pub fn build() -> Result<PathBuf> {
-    write("dist/RelayContact.fmu", &pack(&contents()?)?)
+    write("dist/RelayContact.fmu", &pack(&package(None)?)?)
 }
 
-/// Writes `dist/RelayContact-plain.fmu`, whose choices are integers, and returns its path.
-pub fn build_plain() -> Result<PathBuf> {
-    let mut files = contents()?;
-    files.insert("modelDescription.xml".to_owned(), plain::description()?.into_bytes());
-    write("dist/RelayContact-plain.fmu", &pack(&files)?)
+/// Writes the component as `dist/RelayContact.fmu`, or with what is added to that name: `-plain` has integers as choices,
+/// `-NAME` carries the spring file NAME.toml. Returns its path.
+pub fn build_variant(plain: bool, spring: Option<&Path>) -> Result<PathBuf> {
+    if !plain && spring.is_none() {
+        return build();
+    }
+    let spring = spring.map(Spring::read).transpose()?;
+    let mut files = package(spring.as_ref())?;
+    let mut name = String::from("RelayContact");
+    let mut description = if plain {
+        plain::description()?
+    } else {
+        MODEL_DESCRIPTION.to_owned()
+    };
+    if plain {
+        name.push_str("-plain");
+    }
+    if let Some(spring) = spring {
+        name = format!("{name}-{}", spring.name.trim_end_matches(".toml"));
+        description = spring.described(&description);
+        files.insert(format!("resources/{}", spring.name), spring.contents);
+    }
+    files.insert("modelDescription.xml".to_owned(), description.into_bytes());
+    write(format!("dist/{name}.fmu"), &pack(&files)?)
+}
+
+/// A spring file to be carried.
+struct Spring {
+    name: String,
+    contents: Vec<u8>,
+}
+
+impl Spring {
+    fn read(path: &Path) -> Result<Self> {
+        let name = path
+            .file_name()
+            .and_then(|name| name.to_str())
+            .unwrap_or_default()
+            .to_owned();
+        let ordinary = |c: char| c.is_alphanumeric() || "-_.".contains(c);
+        if name.is_empty() || !name.chars().all(ordinary) {
+            bail!("{}: allowed in the name are letters, digits and -_.", path.display());
+        }
+        SpringFile::read(Path::new(""), &path.to_string_lossy())?;
+        let contents = std::fs::read(path)?;
+        Ok(Self { name, contents })
+    }
+
+    /// The description with the file as start value of `beam.file`, the only string.
+    fn described(&self, description: &str) -> String {
+        description.replacen("<String start=\"\"/>", &format!("<String start=\"{}\"/>", self.name), 1)
+    }
 }
 
 /// The contents of the archive for this machine.
-fn contents() -> Result<Files> {
+fn package(spring: Option<&Spring>) -> Result<Files> {
     let metadata = linked::metadata()?;
-    build_library(&metadata)?;
+    build_library(&metadata, spring)?;
     let (folder, prefix, extension) = platform()?;
     let name = format!("{prefix}relay_contact.{extension}");
     let library = read(metadata.target_directory.as_std_path().join("release").join(&name))?;
-    write("dist/include/relay_contact.h", C_HEADER.as_bytes())?;
-    write(format!("dist/lib/{name}"), &library)?;
+    if spring.is_none() {
+        write("dist/include/relay_contact.h", C_HEADER.as_bytes())?;
+        write(format!("dist/lib/{name}"), &library)?;
+    }
     files(&metadata, [(folder, extension, library)], Path::new("rustc"), &[])
 }
 
@@ -46,9 +96,14 @@ pub const CARGO_RUSTC: [&str; 5] = [
     "--crate-type=cdylib",
 ];
 
-fn build_library(metadata: &Metadata) -> Result<()> {
+fn build_library(metadata: &Metadata, spring: Option<&Spring>) -> Result<()> {
     let mut build = cargo();
     build.args(CARGO_RUSTC);
+    // What it has as the start value of `beam.file`.
+    match spring {
+        Some(spring) => build.env("RELAY_CONTACT_SPRING", &spring.name),
+        None => build.env_remove("RELAY_CONTACT_SPRING"),
+    };
     // Cargo takes rustc's flags from one place only, so these are added to the user's.
     let given = |name, separator: char| {
         let flags = env::var(name).ok()?;
@@ -123,6 +178,18 @@ fn platform() -> Result<(&'static str, &'static str, &'static str)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_spring_becomes_the_start_value_of_the_only_string() {
+        let spring = Spring {
+            name: "my.toml".to_owned(),
+            contents: Vec::new(),
+        };
+        let described = spring.described(MODEL_DESCRIPTION);
+        assert_eq!(described.matches("<String start=\"my.toml\"/>").count(), 1);
+        assert_eq!(described.matches("<String").count(), 1);
+        assert!(Spring::read(Path::new("a&b.toml")).is_err() && Spring::read(Path::new("none.toml")).is_err());
+    }
 
     #[test]
     fn everything_but_the_library_is_the_same_bytes_every_time() -> Result<()> {

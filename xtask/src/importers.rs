@@ -63,7 +63,7 @@ fn prepare(component: &Path) -> Result<()> {
     if folder.exists() {
         fs::remove_dir_all(&folder).context("cannot clear the table of results")?;
     }
-    fmu::build_plain()?;
+    fmu::build_variant(true, None)?;
     report::start("reference-runs", &[""; 0])?;
     let description = "SystemStructure.ssd";
     let system = Files::from([

@@ -16,6 +16,7 @@ mod stage;
 mod test;
 mod valgrind;
 
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -38,6 +39,9 @@ enum Task {
         /// As dist/RelayContact-plain.fmu, with integers in place of enumerations, for tools that cannot set those
         #[arg(long)]
         plain: bool,
+        /// Carrying this spring file (TOML), which is then the start value of beam.file, as dist/RelayContact-NAME.fmu
+        #[arg(long, value_name = "FILE")]
+        spring: Option<PathBuf>,
     },
     /// Run a scene, write its outputs to out/scenes/NAME.csv and .png, and print a summary
     #[command(disable_help_flag = true)]
@@ -72,8 +76,8 @@ const NONE: [&str; 0] = [];
 
 fn main() -> ExitCode {
     let outcome = match Arguments::parse().task {
-        Task::Fmu { plain } => {
-            if plain { fmu::build_plain() } else { fmu::build() }.map(|path| println!("{}", path.display()))
+        Task::Fmu { plain, spring } => {
+            fmu::build_variant(plain, spring.as_deref()).map(|path| println!("{}", path.display()))
         }
         Task::Scene(arguments) => report::run("scene", &arguments),
         Task::Ssv => report::start("ssv", &NONE),

@@ -8,7 +8,7 @@ use campaign::hostile::{Outcome, changed, meet, repaired, specimen};
 
 #[test]
 fn a_repaired_specimen_is_the_specimen() {
-    let specimen = specimen(&LIBRARY);
+    let specimen = specimen(&LIBRARY, 0.0);
     assert_eq!(
         repaired(specimen.clone()),
         specimen,
@@ -19,13 +19,15 @@ fn a_repaired_specimen_is_the_specimen() {
 
 #[test]
 fn hostile_contents_are_refused_or_gone_on_from() {
-    let specimen = specimen(&LIBRARY);
+    // One without and one with a spring file.
+    let specimens = [0.0, 1.0].map(|spring| specimen(&LIBRARY, spring));
     // Shorter under valgrind, which is thirty times slower.
     let short = std::env::var_os("CAMPAIGN_CALLS").is_some();
     let mut outcomes = BTreeMap::new();
     for seed in 0..1000 {
         let drawn = bytes(seed, 32);
-        let hostile = changed(&specimen, &mut Choices::new(&drawn));
+        let specimen = &specimens[usize::from(seed % 4 == 0)];
+        let hostile = changed(specimen, &mut Choices::new(&drawn));
         // In about one of several hundred, a step reaches the work limit, which takes seconds: these are left
         // to the fuzz target.
         let steps = if seed < 400 && !short { 2 } else { 0 };

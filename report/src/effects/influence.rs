@@ -48,7 +48,7 @@ impl Runs {
                 }
             }
         }
-        let run = |(name, file): (&'static str, scene::SceneFile)| Ok((name, file.scene, History::of(&file)?));
+        let run = |(name, file): (&'static str, scene::SceneFile)| Ok((name, file.scene.clone(), History::of(&file)?));
         Ok(Self(files.into_par_iter().map(run).collect::<Result<_>>()?))
     }
 

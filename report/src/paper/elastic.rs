@@ -31,7 +31,7 @@ pub fn fit() -> Result<Model> {
 
 /// Its damping for another ratio.
 fn scaled(fit: &Model, ratio: f64) -> Result<Model> {
-    let mut scene = *fit.scene();
+    let mut scene = fit.scene().clone();
     scene.beam.stiffness_damping *= ratio / paper::BEST;
     scene.contact.damping *= ratio / paper::BEST;
     runs::model(&scene)

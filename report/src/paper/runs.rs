@@ -111,7 +111,7 @@ impl Periodic {
 /// The run lasts until the transients have fallen below the digits shown: the slowest one of the damped linear model,
 /// or the relaxation time if the motion is overdamped.
 pub fn periodic(scene: &Scene, frequency: f64) -> Result<Periodic> {
-    let mut scene = *scene;
+    let mut scene = scene.clone();
     scene.effects.excitation = ExcitationKind::Sine;
     scene.excitation.amplitude = ACCELERATION;
     scene.excitation.frequency = frequency;

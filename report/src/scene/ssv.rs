@@ -1,6 +1,7 @@
 //! Scenes as parameter sets for tools that read SSP 1.0 (`SystemStructureParameterValues`).
 
 use std::fs;
+use std::path::PathBuf;
 
 use anyhow::{Context, Result};
 use commands::root;
@@ -47,6 +48,16 @@ fn parameter_set(name: &str, file: &SceneFile) -> Result<Vec<u8>> {
                         Group::RealParameter(parameter) => ("ssv:Real", scene.real(parameter).to_string()),
                         Group::IntegerParameter(parameter) => ("ssv:Integer", scene.integer(parameter).to_string()),
                         Group::BooleanParameter(parameter) => ("ssv:Boolean", scene.boolean(parameter).to_string()),
+                        Group::StringParameter(parameter) => {
+                            let text = scene.string(parameter);
+                            // A parameter set lies elsewhere than the scene.
+                            let path = if text.is_empty() {
+                                PathBuf::new()
+                            } else {
+                                root().join("scenes").join(text)
+                            };
+                            ("ssv:String", path.display().to_string())
+                        }
                         Group::EnumerationParameter(parameter) => {
                             let number = scene.enumeration(parameter);
                             let choice = choices(parameter).iter().find(|(_, known)| *known == number);

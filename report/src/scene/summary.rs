@@ -27,7 +27,7 @@ impl Summary {
     pub fn new(scene: &Scene, simulation: &Simulation) -> Self {
         let force = simulation.real(RealOutput::ContactForce);
         Self {
-            scene: *scene,
+            scene: scene.clone(),
             openings: 0,
             left_out: 0,
             force: (force, force),

@@ -3,7 +3,8 @@
 pub(super) mod snapshot;
 mod variables;
 
-use std::ffi::CStr;
+use std::ffi::{CStr, CString};
+use std::path::{Path, PathBuf};
 
 use snapshot::{Experiment, LARGEST_TOLERANCE, Snapshot};
 
@@ -17,6 +18,13 @@ use crate::error::{SceneError, number};
 use crate::inputs::Inputs;
 use crate::scene::Scene;
 use crate::simulation::Simulation;
+use crate::variables::{StringParameter, start};
+
+/// The start value of `beam.file` in a component packed with a spring: a file of its resources.
+const CARRIED_SPRING: &str = match option_env!("RELAY_CONTACT_SPRING") {
+    Some(file) => file,
+    None => start::BEAM_FILE,
+};
 
 #[derive(Debug)]
 pub(super) struct Instance {
@@ -29,6 +37,12 @@ pub(super) struct Instance {
     /// The last successful time, s.
     time: f64,
     logger: Logger,
+    /// The folder of the component's resources.
+    resources: Option<PathBuf>,
+    /// The start values, with the spring that the component may carry.
+    start: Scene,
+    /// The string read last.
+    text: CString,
     /// Whether the importer has been told that its time differs.
     told_of_offset: bool,
     /// Whether the importer has been told that the tolerance may not be kept.
@@ -37,8 +51,12 @@ pub(super) struct Instance {
 }
 
 impl Instance {
-    pub(super) fn new(logger: Logger) -> Self {
-        Self {
+    /// An instance with start values.
+    ///
+    /// # Errors
+    /// A [`SceneError`] if the component is to carry a spring that it does not have.
+    pub(super) fn new(logger: Logger, resources: Option<PathBuf>) -> Result<Self, SceneError> {
+        let mut instance = Self {
             state: State::Instantiated,
             scene: Scene::default(),
             inputs: Inputs::default(),
@@ -46,10 +64,33 @@ impl Instance {
             simulation: None,
             time: 0.0,
             logger,
+            resources,
+            start: Scene::default(),
+            text: CString::default(),
             told_of_offset: false,
             told_of_error: false,
             saved_states: SavedStates::default(),
+        };
+        if !CARRIED_SPRING.is_empty() {
+            let mut start = Scene::default();
+            instance.set_string(&mut start, StringParameter::BeamFile, CARRIED_SPRING)?;
+            (instance.scene, instance.start) = (start.clone(), start);
         }
+        Ok(instance)
+    }
+
+    /// Sets a string parameter of a scene, and reads the file that it names.
+    fn set_string(&self, scene: &mut Scene, parameter: StringParameter, value: &str) -> Result<(), SceneError> {
+        let nowhere = self.resources.is_none() && !value.is_empty() && Path::new(value).is_relative();
+        if nowhere {
+            return Err(SceneError::Unreadable {
+                file: value.to_owned(),
+                cause: "a relative path is one in the resources of the component, and fmuResourceLocation of \
+                        fmi2Instantiate names no folder"
+                    .to_owned(),
+            });
+        }
+        scene.set_string(parameter, value, self.resources.as_deref().unwrap_or(Path::new("")))
     }
 
     pub(super) fn state(&self) -> State {
@@ -127,13 +168,19 @@ impl Instance {
         self.prepare().map_err(Failure::Initialisation)?;
         self.state = State::StepComplete;
         self.told_of_error = false;
-        if let Some(simulation) = &self.simulation {
-            report::modes(&self.logger, simulation.model());
-            if self.logger.debugs() {
-                report::model(&self.logger, simulation.model());
-            }
+        let Some(simulation) = &self.simulation else {
+            return Ok(());
+        };
+        report::modes(&self.logger, simulation.model());
+        if self.logger.debugs() {
+            report::model(&self.logger, simulation.model());
         }
-        Ok(())
+        let remarks = simulation.model().remarks();
+        if remarks.is_empty() {
+            Ok(())
+        } else {
+            Err(Failure::Remarks(remarks))
+        }
     }
 
     pub(super) fn terminate(&mut self) {
@@ -143,7 +190,7 @@ impl Instance {
     /// Restores the start values. The log settings, which belong to the importer, remain.
     pub(super) fn reset(&mut self) {
         self.state = State::Instantiated;
-        self.scene = Scene::default();
+        self.scene = self.start.clone();
         self.inputs = Inputs::default();
         self.experiment = Experiment::default();
         self.simulation = None;
@@ -155,7 +202,7 @@ impl Instance {
         let simulation = self.simulation.as_ref();
         Snapshot {
             state: self.state,
-            scene: self.scene,
+            scene: self.scene.clone(),
             inputs: self.inputs,
             experiment: self.experiment,
             simulation: simulation.map(|simulation| (*simulation.motion(), simulation.model().initial_support)),
@@ -167,26 +214,26 @@ impl Instance {
     pub(super) fn restore(&mut self, snapshot: &Snapshot) -> Result<(), Failure> {
         let Snapshot {
             state,
-            scene,
+            ref scene,
             inputs,
             experiment,
-            simulation,
+            ref simulation,
             time,
         } = *snapshot;
-        let wanted = experiment.scene(&scene);
+        let wanted = experiment.scene(scene);
         match (&mut self.simulation, simulation) {
             (Some(present), Some((motion, initial_support)))
-                if present.model().scene == wanted && present.model().initial_support == initial_support =>
+                if present.model().scene == wanted && present.model().initial_support == *initial_support =>
             {
-                present.go_on_from(&motion);
+                present.go_on_from(motion);
             }
             (present, Some((motion, initial_support))) => {
-                let resumed = Simulation::resume(&wanted, initial_support, &motion);
+                let resumed = Simulation::resume(&wanted, *initial_support, motion);
                 *present = Some(resumed.map_err(Failure::Initialisation)?);
             }
             (present, None) => *present = None,
         }
-        (self.state, self.scene, self.inputs) = (state, scene, inputs);
+        (self.state, self.scene, self.inputs) = (state, scene.clone(), inputs);
         (self.experiment, self.time) = (experiment, time);
         Ok(())
     }

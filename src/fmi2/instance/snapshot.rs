@@ -21,7 +21,7 @@ pub(super) struct Experiment {
 impl Experiment {
     /// The scene, with the tolerance of the experiment if it has none of its own.
     pub(super) fn scene(&self, scene: &Scene) -> Scene {
-        let mut scene = *scene;
+        let mut scene = scene.clone();
         if let Some(tolerance) = self.tolerance.filter(|_| scene.solver.tolerance == 0.0) {
             scene.solver.tolerance = tolerance;
         }
@@ -30,7 +30,7 @@ impl Experiment {
 }
 
 /// A snapshot of an instance, without the log settings, which belong to the importer.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(in crate::fmi2) struct Snapshot {
     pub(super) state: State,
     pub(super) scene: Scene,
@@ -50,7 +50,9 @@ impl Snapshot {
             stop_time,
         } = self.experiment;
         let simulation = self.simulation.as_ref();
-        self.inputs.are_sound()
+        let simulates = simulation.is_some() || !matches!(self.state, State::StepComplete | State::Terminated);
+        simulates
+            && self.inputs.are_sound()
             && tolerance.is_none_or(|tolerance| tolerance > 0.0 && tolerance <= LARGEST_TOLERANCE)
             && start_time.is_finite()
             && stop_time.is_none_or(|stop| stop >= start_time)

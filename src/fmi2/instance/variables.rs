@@ -1,6 +1,9 @@
 //! The variables of an instance by value reference: which may be read and set in which state.
 
+use std::ffi::{CStr, CString};
+
 use super::Instance;
+use crate::error::SceneError;
 use crate::fmi2::failure::Failure;
 use crate::fmi2::states::State;
 use crate::fmi2::types::{fmi2Boolean, fmi2False};
@@ -52,7 +55,7 @@ impl Instance {
 
     /// Sets real inputs and parameters; all of them or, on an error, none.
     pub(in crate::fmi2) fn set_reals(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
-        let (mut scene, mut inputs) = (self.scene, self.inputs);
+        let (mut scene, mut inputs) = (self.scene.clone(), self.inputs);
         for (&reference, &value) in references.iter().zip(values) {
             let variable = find("Real", reference)?;
             match variable.group {
@@ -65,13 +68,13 @@ impl Instance {
                 _ => return Err(wrong_type("Real", variable)),
             }
         }
-        self.take_over(&scene, &inputs);
+        self.take_over(scene, inputs);
         Ok(())
     }
 
     /// Sets integer and enumeration parameters; all of them or, on an error, none.
     pub(in crate::fmi2) fn set_integers(&mut self, references: &[u32], values: &[i32]) -> Result<(), Failure> {
-        let mut scene = self.scene;
+        let mut scene = self.scene.clone();
         for (&reference, &value) in references.iter().zip(values) {
             let variable = find("Integer", reference)?;
             match variable.group {
@@ -87,14 +90,13 @@ impl Instance {
                 _ => return Err(wrong_type("Integer", variable)),
             }
         }
-        let inputs = self.inputs;
-        self.take_over(&scene, &inputs);
+        self.take_over(scene, self.inputs);
         Ok(())
     }
 
     /// Sets Boolean parameters; all of them or, on an error, none.
     pub(in crate::fmi2) fn set_booleans(&mut self, references: &[u32], values: &[fmi2Boolean]) -> Result<(), Failure> {
-        let mut scene = self.scene;
+        let mut scene = self.scene.clone();
         for (&reference, &value) in references.iter().zip(values) {
             let variable = find("Boolean", reference)?;
             match variable.group {
@@ -106,8 +108,41 @@ impl Instance {
                 _ => return Err(wrong_type("Boolean", variable)),
             }
         }
-        let inputs = self.inputs;
-        self.take_over(&scene, &inputs);
+        self.take_over(scene, self.inputs);
+        Ok(())
+    }
+
+    /// The value of a string parameter, kept until another is read: a call may ask for the same one twice.
+    pub(in crate::fmi2) fn string(&mut self, reference: u32) -> Result<&CStr, Failure> {
+        let variable = find("String", reference)?;
+        match variable.group {
+            Group::StringParameter(parameter) => {
+                let value = self.scene.string(parameter);
+                if self.text.to_bytes() != value.as_bytes() {
+                    // Set from C, or by a state, which may hold anything.
+                    self.text = CString::new(value).unwrap_or_default();
+                }
+                Ok(&self.text)
+            }
+            _ => Err(wrong_type("String", variable)),
+        }
+    }
+
+    /// Sets string parameters; all of them or, on an error, none.
+    pub(in crate::fmi2) fn set_strings(&mut self, references: &[u32], values: &[&CStr]) -> Result<(), Failure> {
+        let mut scene = self.scene.clone();
+        for (&reference, value) in references.iter().zip(values) {
+            let variable = find("String", reference)?;
+            match variable.group {
+                Group::StringParameter(parameter) => {
+                    self.check_fixed(variable)?;
+                    let text = path_text(variable, value).map_err(Failure::Value)?;
+                    self.set_string(&mut scene, parameter, text).map_err(Failure::Value)?;
+                }
+                _ => return Err(wrong_type("String", variable)),
+            }
+        }
+        self.take_over(scene, self.inputs);
         Ok(())
     }
 
@@ -143,8 +178,8 @@ impl Instance {
         Ok(rate)
     }
 
-    fn take_over(&mut self, scene: &Scene, inputs: &Inputs) {
-        (self.scene, self.inputs) = (*scene, *inputs);
+    fn take_over(&mut self, scene: Scene, inputs: Inputs) {
+        (self.scene, self.inputs) = (scene, inputs);
         if self.state == State::InitializationMode {
             self.simulation = None;
         }
@@ -170,6 +205,22 @@ impl Instance {
         }
     }
 }
+
+/// A path in UTF-8 of a length that systems allow.
+fn path_text<'a>(variable: &Variable, value: &'a CStr) -> Result<&'a str, SceneError> {
+    let text = value.to_str().ok().filter(|text| text.len() <= LONGEST_PATH);
+    text.ok_or_else(|| {
+        let shown: String = value.to_string_lossy().chars().take(60).collect();
+        SceneError::WrongType {
+            name: variable.name.to_owned(),
+            value: format!("{shown:?}"),
+            allowed: "a path in UTF-8 of at most 4096 bytes",
+        }
+    })
+}
+
+/// Longest path, bytes.
+const LONGEST_PATH: usize = 4096;
 
 fn find(kind: &'static str, reference: u32) -> Result<&'static Variable, Failure> {
     Variable::by_value_reference(reference).ok_or(Failure::UnknownReference {

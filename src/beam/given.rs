@@ -1,0 +1,122 @@
+//! A spring that is given by its modes.
+//!
+//! What the modes lack of the static compliance `c` is a spring in series with the contact, `c - sum T_i^2 / omega_i^2`
+//! (residual flexibility: R. H. MacNeal, Computers & Structures 1 (1971) 581). It is one mode more, so fast that it follows
+//! at once: `T^2 / omega^2` is that flexibility, and what the beam's damping does not do about its ringing, critical damping
+//! does.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::beam::galerkin::Space;
+use crate::beam::mode::{MAX_MODES, Mode};
+use crate::beam::mode_count::Blow;
+use crate::beam::section::Section;
+use crate::math::roots;
+use crate::scene::spring::{GivenMode, Modes};
+
+/// Frequency of the residual flexibility over the highest of the modes, 1: it lags by 2e-4 of a period at that frequency,
+/// where the modes that are missing make all the difference.
+const RESIDUAL: f64 = 1e4;
+
+/// Share of the compliance below which a residual flexibility is what was not printed, 1.
+const ROUNDING: f64 = 1e-7;
+
+/// Rayleigh damping of the modes without damping of their own: alpha (1/s) and beta (s).
+pub type Rayleigh = (f64, f64);
+
+/// The modes of a file, frequency ascending.
+#[derive(Clone, Debug)]
+pub struct Given {
+    modes: Vec<GivenMode>,
+    /// Static deflection of the contact per force there, m/N.
+    compliance: f64,
+}
+
+impl Given {
+    /// The modes of a file.
+    pub fn new(spring: &Modes) -> Self {
+        let mut modes = spring.modes.clone();
+        modes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
+        Self {
+            modes,
+            // What the modes exceed it by are digits that were not printed.
+            compliance: spring.compliance.max(spring.held()),
+        }
+    }
+
+    /// The uniform spring of the same stiffness; its length has no meaning.
+    pub fn equivalent(&self) -> Section {
+        Section {
+            length: 1.0,
+            bending_stiffness: 1.0 / (3.0 * self.compliance),
+            mass_per_length: 1.0,
+            tip_mass: 0.0,
+            tip_inertia: 0.0,
+        }
+    }
+
+    /// Up to `count` modes and the residual flexibility, if there is room.
+    pub fn modes(&self, count: usize, (alpha, beta): Rayleigh) -> Vec<Mode> {
+        let mut modes: Vec<_> = self
+            .modes
+            .iter()
+            .take(count.min(MAX_MODES - 1))
+            .map(|mode| {
+                let omega_squared = mode.omega_squared();
+                let own = mode.damping.map(|ratio| 2.0 * ratio * omega_squared.sqrt());
+                Mode {
+                    omega_squared,
+                    damping: own.unwrap_or(alpha + beta * omega_squared),
+                    tip: mode.contact,
+                    participation: mode.participation,
+                }
+            })
+            .collect();
+        let held: f64 = modes.iter().map(|mode| mode.tip * mode.tip / mode.omega_squared).sum();
+        let rest = self.compliance - held;
+        if let Some(highest) = modes.last().filter(|_| rest > ROUNDING * self.compliance) {
+            let omega_squared = RESIDUAL.powi(2) * highest.omega_squared;
+            // Where each mode has its own damping, that of the scene is not meant for this spring.
+            let beta = if self.modes.iter().all(|mode| mode.damping.is_some()) {
+                0.0
+            } else {
+                beta
+            };
+            modes.push(Mode {
+                omega_squared,
+                damping: beta * omega_squared + 2.0 * omega_squared.sqrt(),
+                tip: (rest * omega_squared).sqrt(),
+                participation: 0.0,
+            });
+        }
+        modes
+    }
+
+    /// Modes as functions orthonormal in strain energy, in units of the equivalent section.
+    pub fn space(&self, modes: &[Mode]) -> Space {
+        let vector = |value: &dyn Fn(&Mode) -> f64| DVector::from_iterator(modes.len(), modes.iter().map(value));
+        Space::with(
+            &self.equivalent(),
+            DMatrix::from_diagonal(&vector(&|mode| 1.0 / mode.omega_squared)),
+            DMatrix::zeros(modes.len(), modes.len()),
+            vector(&|mode| mode.participation / mode.omega_squared.sqrt()),
+            vector(&|mode| mode.tip / mode.omega_squared.sqrt()),
+        )
+    }
+
+    /// Frequencies (Hz) of the highest mode, and up to which a blow excites the spring, if that is above: where the contact
+    /// is still stiffer than the spring.
+    pub fn missed(&self, blow: &Blow) -> Option<(f64, f64)> {
+        let stiffer = |s: f64| {
+            let compliance: f64 = self
+                .modes
+                .iter()
+                .map(|mode| mode.contact.powi(2) / (s * s + mode.omega_squared()))
+                .sum();
+            blow.contact_stiffness * (1.0 + blow.contact_damping * s) * compliance - 1.0
+        };
+        let highest = self.modes.last()?.omega_squared().sqrt();
+        let reached = roots::bracketed(|logarithm| stiffer(logarithm.exp()), highest.ln(), 100.0)?;
+        Some((highest, reached.exp())).map(|(a, b)| (a / std::f64::consts::TAU, b / std::f64::consts::TAU))
+    }
+}

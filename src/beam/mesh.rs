@@ -1,0 +1,320 @@
+//! Bending of a spring of segments by integration along it.
+//!
+//! On each piece moment, slope and deflection are known at Gauss nodes. A load makes a moment by two integrations from the
+//! free end, the moment over `E I` the deflection by two from the clamp: no system of equations, and exact but for the
+//! polynomials on a piece.
+
+use crate::beam::pieces::Pieces;
+use crate::math::legendre;
+
+/// The pieces with their nodes.
+pub struct Mesh {
+    stretches: Vec<Stretch>,
+    before_contact: usize,
+    clamp_flexibility: f64,
+    rule: Rule,
+}
+
+/// A piece with its nodes.
+struct Stretch {
+    /// Half its length, m.
+    half: f64,
+    /// 1 / (E I) at the nodes, 1/(N m2).
+    flexibility: Vec<f64>,
+    /// rho A at the nodes, kg/m.
+    mass_per_length: Vec<f64>,
+    /// Mass (kg) and rotary inertia (kg m2) at its end.
+    mass: f64,
+    inertia: f64,
+}
+
+/// A bent spring.
+#[derive(Clone, Debug)]
+pub struct Bend {
+    /// Moment at the clamp, N m.
+    clamp: f64,
+    /// Moment (N m), slope (1) and deflection (m) at the nodes of all stretches.
+    moment: Vec<f64>,
+    pub slope: Vec<f64>,
+    pub deflection: Vec<f64>,
+    /// Deflection (m) and slope (1) at the ends of the stretches.
+    pub ends: Vec<(f64, f64)>,
+}
+
+/// Transverse forces and moments on a spring.
+struct Load {
+    /// Force per length at the nodes, N/m.
+    density: Vec<f64>,
+    /// Force (N) and moment (N m) at the end of each stretch.
+    ends: Vec<(f64, f64)>,
+}
+
+impl Mesh {
+    /// With enough nodes for `count` functions.
+    pub fn new(spring: &Pieces, count: usize) -> Self {
+        let rule = Rule::new(spring.nodes(count));
+        let stretches = spring.parts.iter().map(|piece| {
+            let sections = rule.nodes.iter().map(|x| piece.section(f64::midpoint(*x, 1.0)));
+            let (flexibility, mass_per_length) = sections.map(|(stiffness, mass)| (1.0 / stiffness, mass)).unzip();
+            Stretch {
+                half: 0.5 * piece.length,
+                flexibility,
+                mass_per_length,
+                mass: piece.mass,
+                inertia: piece.inertia,
+            }
+        });
+        Self {
+            stretches: stretches.collect(),
+            before_contact: spring.before_contact,
+            clamp_flexibility: spring.clamp_flexibility,
+            rule,
+        }
+    }
+
+    /// The spring under a moment at the clamp (N m) and at the nodes, from the clamp on.
+    fn bent(&self, clamp: f64, moment: Vec<f64>) -> Bend {
+        let mut bend = Bend {
+            clamp,
+            slope: Vec::with_capacity(moment.len()),
+            deflection: Vec::with_capacity(moment.len()),
+            moment,
+            ends: Vec::with_capacity(self.stretches.len()),
+        };
+        let (mut deflection, mut slope) = (0.0, self.clamp_flexibility * clamp);
+        for (stretch, moment) in self.stretches.iter().zip(bend.moment.chunks_exact(self.rule.len())) {
+            let half = stretch.half;
+            let curvature: Vec<f64> = moment.iter().zip(&stretch.flexibility).map(|(m, f)| m * f).collect();
+            let slopes: Vec<f64> = self.rule.integrals(&curvature).map(|sum| slope + half * sum).collect();
+            bend.deflection
+                .extend(self.rule.integrals(&slopes).map(|sum| deflection + half * sum));
+            slope += half * self.rule.integral(&curvature);
+            deflection += half * self.rule.integral(&slopes);
+            bend.slope.extend(slopes);
+            bend.ends.push((deflection, slope));
+        }
+        bend
+    }
+
+    /// The spring under a load: the moments from the free end on.
+    fn under(&self, load: &Load) -> Bend {
+        let (mut shear, mut moment) = (0.0, 0.0);
+        let mut parts = Vec::with_capacity(self.stretches.len());
+        let loads = load.density.chunks_exact(self.rule.len()).zip(&load.ends);
+        for (stretch, (density, (force, couple))) in self.stretches.iter().zip(loads).rev() {
+            shear += force;
+            moment += couple;
+            let half = stretch.half;
+            let whole = self.rule.integral(density);
+            let shears: Vec<f64> = self
+                .rule
+                .integrals(density)
+                .map(|sum| shear + half * (whole - sum))
+                .collect();
+            let turned = self.rule.integral(&shears);
+            let moments: Vec<f64> = self
+                .rule
+                .integrals(&shears)
+                .map(|sum| moment + half * (turned - sum))
+                .collect();
+            shear += half * whole;
+            moment += half * turned;
+            parts.push(moments);
+        }
+        parts.reverse();
+        self.bent(moment, parts.concat())
+    }
+
+    /// Under a force (N) and a moment (N m) at the end of one stretch.
+    fn loaded(&self, stretch: usize, force: f64, moment: f64) -> Bend {
+        let ends = (0..self.stretches.len()).map(|at| if at == stretch { (force, moment) } else { (0.0, 0.0) });
+        self.under(&Load {
+            density: vec![0.0; self.stretches.len() * self.rule.len()],
+            ends: ends.collect(),
+        })
+    }
+
+    /// Under unit force at the contact.
+    pub fn pushed(&self) -> Bend {
+        self.loaded(self.before_contact.saturating_sub(1), 1.0, 0.0)
+    }
+
+    /// Under unit force and under unit moment at the end.
+    pub fn pushed_at_end(&self) -> [Bend; 2] {
+        let last = self.stretches.len().saturating_sub(1);
+        [self.loaded(last, 1.0, 0.0), self.loaded(last, 0.0, 1.0)]
+    }
+
+    /// Under the inertia of unit acceleration, and of unit angular acceleration about the clamp.
+    pub fn shaken(&self) -> [Bend; 2] {
+        let mut start = 0.0;
+        let mut rigid = [self.bent(0.0, Vec::new()), self.bent(0.0, Vec::new())];
+        let [moved, turned] = &mut rigid;
+        moved.ends.clear();
+        turned.ends.clear();
+        for stretch in &self.stretches {
+            moved.deflection.extend(self.rule.nodes.iter().map(|_| 1.0));
+            turned
+                .deflection
+                .extend(self.rule.nodes.iter().map(|x| start + stretch.half * (x + 1.0)));
+            start += 2.0 * stretch.half;
+            moved.ends.push((1.0, 0.0));
+            turned.ends.push((start, 1.0));
+        }
+        rigid.map(|bend| self.swung(&bend))
+    }
+
+    /// Under the inertia of an acceleration of this shape.
+    pub fn swung(&self, acceleration: &Bend) -> Bend {
+        let masses = self.stretches.iter().flat_map(|stretch| &stretch.mass_per_length);
+        let ends = self.stretches.iter().zip(&acceleration.ends);
+        self.under(&Load {
+            density: masses.zip(&acceleration.deflection).map(|(m, a)| m * a).collect(),
+            ends: ends.map(|(at, (a, turn))| (at.mass * a, at.inertia * turn)).collect(),
+        })
+    }
+
+    /// Under what unit axial compression between clamp and contact does in this shape.
+    pub fn compressed(&self, shape: &Bend) -> Bend {
+        let at_contact = self.at_contact(shape).0;
+        let nodes = self.before_contact * self.rule.len();
+        let moment = shape.deflection.iter().enumerate();
+        let moment = moment.map(|(n, deflection)| if n < nodes { at_contact - deflection } else { 0.0 });
+        self.bent(at_contact, moment.collect())
+    }
+
+    /// Deflection (m) and slope (1) at the contact.
+    pub fn at_contact(&self, shape: &Bend) -> (f64, f64) {
+        let last = self.before_contact.checked_sub(1).and_then(|last| shape.ends.get(last));
+        last.copied().unwrap_or_default()
+    }
+
+    /// Factors of the products of deflections in the kinetic energy, and of slopes in the work of an axial compression:
+    /// at the nodes, then masses and rotary inertias at the ends.
+    pub fn inertia(&self) -> (Vec<f64>, Vec<f64>, Vec<(f64, f64)>) {
+        let count = self.stretches.len() * self.rule.len();
+        let (mut masses, mut lengths) = (Vec::with_capacity(count), Vec::with_capacity(count));
+        for (n, stretch) in self.stretches.iter().enumerate() {
+            let axial = if n < self.before_contact { stretch.half } else { 0.0 };
+            lengths.extend(self.rule.weights.iter().map(|weight| weight * axial));
+            let nodes = self.rule.weights.iter().zip(&stretch.mass_per_length);
+            masses.extend(nodes.map(|(weight, mass)| weight * stretch.half * mass));
+        }
+        let ends = self.stretches.iter().map(|stretch| (stretch.mass, stretch.inertia));
+        (masses, lengths, ends.collect())
+    }
+
+    /// Work of the moments of one shape on the curvatures of another, J.
+    fn work(&self, a: &Bend, b: &Bend) -> f64 {
+        let n = self.rule.len();
+        let stretches = self
+            .stretches
+            .iter()
+            .zip(a.moment.chunks_exact(n).zip(b.moment.chunks_exact(n)));
+        let inside: f64 = stretches
+            .map(|(stretch, (a, b))| {
+                let nodes = self.rule.weights.iter().zip(&stretch.flexibility).zip(a.iter().zip(b));
+                stretch.half
+                    * nodes
+                        .map(|((weight, flexibility), (a, b))| weight * flexibility * a * b)
+                        .sum::<f64>()
+            })
+            .sum();
+        inside + self.clamp_flexibility * a.clamp * b.clamp
+    }
+
+    /// The shape without its parts along others, which are orthonormal in strain energy, itself of unit energy; `None` if
+    /// nothing is left.
+    pub fn orthonormal(&self, shape: &Bend, others: &[Bend]) -> Option<Bend> {
+        let size = self.work(shape, shape).sqrt();
+        let mut left = shape.clone();
+        // Twice is enough.
+        for _ in 0..2 {
+            for other in others {
+                let part = self.work(&left, other);
+                left.clamp -= part * other.clamp;
+                for (own, along) in left.moment.iter_mut().zip(&other.moment) {
+                    *own -= part * along;
+                }
+            }
+        }
+        let rest = self.work(&left, &left).sqrt();
+        (rest > DEPENDENT * size).then(|| {
+            left.moment.iter_mut().for_each(|moment| *moment /= rest);
+            self.bent(left.clamp / rest, left.moment)
+        })
+    }
+
+    /// A sum of shapes with factors.
+    pub fn sum<'a>(&self, parts: impl Iterator<Item = (f64, &'a Bend)>) -> Bend {
+        let mut moment = vec![0.0; self.stretches.len() * self.rule.len()];
+        let mut clamp = 0.0;
+        for (factor, shape) in parts {
+            clamp += factor * shape.clamp;
+            for (sum, part) in moment.iter_mut().zip(&shape.moment) {
+                *sum += factor * part;
+            }
+        }
+        self.bent(clamp, moment)
+    }
+}
+
+/// Share of a shape that must be left of it beside others for it to be another one.
+const DEPENDENT: f64 = 1e-9;
+
+/// Gauss quadrature on [-1, 1], also from -1 to each node.
+struct Rule {
+    nodes: Vec<f64>,
+    weights: Vec<f64>,
+    /// Row by row: the integral to a node of what is 1 at one node and 0 at the others.
+    partial: Vec<f64>,
+}
+
+impl Rule {
+    fn new(count: usize) -> Self {
+        let (nodes, weights): (Vec<f64>, Vec<f64>) = legendre::gauss(count).unzip();
+        let values: Vec<_> = nodes.iter().map(|x| legendre::polynomials(*x, count + 1)).collect();
+        // Integral of P_k from -1 on, (P_(k+1) - P_(k-1)) / (2 k + 1), with P_-1 = -1.
+        let integrals = |at: &[f64]| -> Vec<f64> {
+            let below = [-1.0].iter().chain(at);
+            let pairs = below.zip(at.iter().skip(1)).enumerate();
+            pairs
+                .map(|(k, (below, above))| (above - below) / (2 * k + 1) as f64)
+                .collect()
+        };
+        let partial = values.iter().flat_map(|at| {
+            let integrals = integrals(at);
+            let entry = |(weight, other): (&f64, &Vec<f64>)| {
+                let terms = integrals.iter().zip(other).enumerate();
+                weight
+                    * terms
+                        .map(|(k, (integral, p))| (k as f64 + 0.5) * integral * p)
+                        .sum::<f64>()
+            };
+            weights.iter().zip(&values).map(entry).collect::<Vec<_>>()
+        });
+        Self {
+            partial: partial.collect(),
+            nodes,
+            weights,
+        }
+    }
+
+    fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    fn integral(&self, values: &[f64]) -> f64 {
+        self.weights
+            .iter()
+            .zip(values)
+            .map(|(weight, value)| weight * value)
+            .sum()
+    }
+
+    /// From -1 to each node.
+    fn integrals(&self, values: &[f64]) -> impl Iterator<Item = f64> {
+        let rows = self.partial.chunks_exact(self.len());
+        rows.map(move |row| row.iter().zip(values).map(|(entry, value)| entry * value).sum())
+    }
+}

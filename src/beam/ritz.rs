@@ -1,0 +1,130 @@
+//! Ritz space of a spring of segments: the shapes under a few loads, and under the inertia of the shapes before.
+//!
+//! The loads are the contact force, base acceleration, angular acceleration about the clamp, and force and moment at the
+//! end. A spring has four independent motions of a given frequency; each is a power series in the square of the frequency
+//! whose terms arise from these shapes by `K^-1 M`. So the space holds what moves the spring at any place for frequencies
+//! up to a bound that grows with its size. On a uniform spring it is the space of polynomials of [`galerkin`], and holds the
+//! static shape under a contact force in any case. (E. L. Wilson, M.-W. Yuan, J. M. Dickens, Earthquake Engineering and
+//! Structural Dynamics 10 (1982) 813; in blocks: B. Nour-Omid, R. W. Clough, ibid. 13 (1985) 271.)
+//!
+//! [`galerkin`]: crate::beam::galerkin
+
+use std::collections::VecDeque;
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::beam::galerkin::Space;
+use crate::beam::mesh::{Bend, Mesh};
+use crate::beam::pieces::Pieces;
+use crate::beam::section::Section;
+
+/// Shapes that represent statics under any axial force below buckling to rounding.
+const STATIC_SHAPES: usize = 20;
+
+/// The uniform spring of the same mass that deflects and turns as much at its end under a force there.
+pub fn equivalent(spring: &Pieces) -> Section {
+    let mesh = Mesh::new(spring, 1);
+    let (deflection, slope) = mesh.at_contact(&mesh.pushed());
+    let length = 1.5 * deflection / slope;
+    Section {
+        length,
+        bending_stiffness: length.powi(3) / (3.0 * deflection),
+        mass_per_length: spring.mass() / length,
+        tip_mass: 0.0,
+        tip_inertia: 0.0,
+    }
+}
+
+/// A space for statics, in units of the equivalent section.
+pub fn static_space(spring: &Pieces, section: &Section) -> Space {
+    let mesh = Mesh::new(spring, STATIC_SHAPES);
+    space(&mesh, &static_shapes(&mesh), section)
+}
+
+/// A space of `count` functions for motion under an axial compression (N), in units of the equivalent section. `None` if it
+/// buckles.
+pub fn dynamic_space(spring: &Pieces, section: &Section, count: usize, axial_force: f64) -> Option<Space> {
+    let mesh = Mesh::new(spring, count.max(STATIC_SHAPES));
+    let [moved, turned] = mesh.shaken();
+    let mut starts = vec![pushed_under(&mesh, section, axial_force)?, moved];
+    let [force, moment] = mesh.pushed_at_end();
+    starts.extend([moment, turned]);
+    if spring.goes_on() {
+        starts.push(force);
+    }
+    let shapes = krylov(&mesh, starts, |shape| mesh.swung(shape), count);
+    Some(space(&mesh, &shapes, section))
+}
+
+fn static_shapes(mesh: &Mesh) -> Vec<Bend> {
+    let [moved, _] = mesh.shaken();
+    krylov(
+        mesh,
+        vec![mesh.pushed(), moved],
+        |shape| mesh.compressed(shape),
+        STATIC_SHAPES,
+    )
+}
+
+/// The shape under unit contact force and an axial compression (N).
+fn pushed_under(mesh: &Mesh, section: &Section, axial_force: f64) -> Option<Bend> {
+    if axial_force == 0.0 {
+        return Some(mesh.pushed());
+    }
+    let shapes = static_shapes(mesh);
+    let space = space(mesh, &shapes, section);
+    let deflections = space.deflections(section, axial_force)?;
+    Some(mesh.sum(deflections.iter().copied().zip(&shapes)))
+}
+
+/// Up to `count` orthonormal shapes: the starts, then in turn what follows from each.
+fn krylov(mesh: &Mesh, starts: Vec<Bend>, next: impl Fn(&Bend) -> Bend, count: usize) -> Vec<Bend> {
+    let mut waiting = VecDeque::from(starts);
+    let mut found = Vec::with_capacity(count);
+    while found.len() < count
+        && let Some(shape) = waiting.pop_front()
+    {
+        if let Some(shape) = mesh.orthonormal(&shape, &found) {
+            waiting.push_back(next(&shape));
+            found.push(shape);
+        }
+    }
+    found
+}
+
+/// The space of orthonormal shapes.
+fn space(mesh: &Mesh, shapes: &[Bend], section: &Section) -> Space {
+    let (masses, lengths, ends) = mesh.inertia();
+    let products = |columns: Vec<Vec<f64>>| {
+        let columns: Vec<_> = columns.into_iter().map(DVector::from_vec).collect();
+        let matrix = DMatrix::from_columns(&columns);
+        matrix.tr_mul(&matrix)
+    };
+    let moved = |shape: &Bend| {
+        let inside = masses.iter().zip(&shape.deflection).map(|(mass, y)| mass.sqrt() * y);
+        let carried = ends.iter().zip(&shape.ends);
+        let carried = carried.flat_map(|((mass, inertia), (y, turn))| [mass.sqrt() * y, inertia.sqrt() * turn]);
+        inside.chain(carried).collect()
+    };
+    let turned = |shape: &Bend| {
+        let nodes = lengths.iter().zip(&shape.slope);
+        nodes.map(|(length, slope)| length.sqrt() * slope).collect()
+    };
+    let loaded = |shape: &Bend| -> f64 {
+        let inside: f64 = masses.iter().zip(&shape.deflection).map(|(mass, y)| mass * y).sum();
+        inside
+            + ends
+                .iter()
+                .zip(&shape.ends)
+                .map(|((mass, _), (y, _))| mass * y)
+                .sum::<f64>()
+    };
+    let vector = |value: &dyn Fn(&Bend) -> f64| DVector::from_iterator(shapes.len(), shapes.iter().map(value));
+    Space::with(
+        section,
+        products(shapes.iter().map(moved).collect()),
+        products(shapes.iter().map(turned).collect()),
+        vector(&loaded),
+        vector(&|shape| mesh.at_contact(shape).0),
+    )
+}

@@ -1,0 +1,206 @@
+//! The spring as the rest of the model sees it: statics, modes, and how many of them. Uniform, by segments, or by modes.
+
+use nalgebra::DVector;
+
+use crate::beam::characteristic;
+use crate::beam::galerkin::Space;
+use crate::beam::given::Given;
+use crate::beam::mode::{MAX_MODES, Mode};
+use crate::beam::mode_count::Blow;
+use crate::beam::pieces::Pieces;
+use crate::beam::ritz;
+use crate::beam::section::Section;
+use crate::beam::statics::{Statics, axial_force_from_deflection};
+use crate::error::SceneError;
+use crate::math::simd::LANES;
+use crate::scene::spring::{Shape, SpringFile};
+use crate::scene::{Scene, choices};
+use crate::variables::{AxialForceKind, EnumerationParameter};
+
+/// A spring with its rivet.
+#[derive(Clone, Debug)]
+pub struct Spring {
+    /// The uniform section; for another spring that which deflects and turns as much at its contact under a force there.
+    pub section: Section,
+    /// Static compliance at the contact.
+    pub statics: Statics,
+    /// Axial compression at which the spring buckles without contact, N.
+    pub buckling_load: f64,
+    form: Form,
+}
+
+#[derive(Clone, Debug)]
+enum Form {
+    Uniform,
+    Segments(Pieces),
+    Modes(Given),
+}
+
+/// The modes of a spring.
+#[derive(Clone, Debug)]
+pub struct Basis {
+    /// Frequency ascending.
+    pub modes: Vec<Mode>,
+    /// Their shapes in `space`.
+    pub shapes: Vec<DVector<f64>>,
+    /// The space they are found in, in units of the section.
+    pub space: Space,
+}
+
+/// Quarters of the number of modes that steps, masses, tapers or an end beyond the contact take in addition, 1. Found on 200
+/// random springs of segments. Pinned: 0, `tests/promise.rs`.
+const IRREGULAR: usize = 5;
+
+/// Functions in which the lowest frequency of a spring of segments is found to rounding.
+const FREQUENCY_TERMS: usize = 32;
+
+impl Spring {
+    /// The spring of a scene.
+    ///
+    /// # Errors
+    /// A [`SceneError`] if a spring given by modes is to have an axial force.
+    pub fn new(scene: &Scene) -> Result<Self, SceneError> {
+        let Some(file) = &scene.spring else {
+            return Ok(Self::uniform(&Section::new(scene)));
+        };
+        match &file.shape {
+            Shape::Segments(segments) => {
+                let pieces = Pieces::new(segments, scene);
+                let section = ritz::equivalent(&pieces);
+                let statics = Statics::of(&section, ritz::static_space(&pieces, &section));
+                Ok(Self {
+                    section,
+                    buckling_load: statics.buckling_load(),
+                    statics,
+                    form: Form::Segments(pieces),
+                })
+            }
+            Shape::Modes(modes) => {
+                no_axial_force(scene, file)?;
+                let given = Given::new(modes);
+                let section = given.equivalent();
+                let space = given.space(&given.modes(MAX_MODES, (0.0, 0.0)));
+                Ok(Self {
+                    section,
+                    buckling_load: f64::INFINITY,
+                    statics: Statics::of(&section, space),
+                    form: Form::Modes(given),
+                })
+            }
+        }
+    }
+
+    /// The spring of a uniform section.
+    pub fn uniform(section: &Section) -> Self {
+        Self {
+            section: *section,
+            buckling_load: section.buckling_load(),
+            statics: Statics::new(section),
+            form: Form::Uniform,
+        }
+    }
+
+    /// Axial force at a deflection of the tip (m), N.
+    pub fn axial_force(&self, scene: &Scene, y: f64) -> f64 {
+        match (scene.effects.axial_force, &self.form) {
+            (AxialForceKind::None, _) | (_, Form::Modes(_)) => 0.0,
+            (AxialForceKind::FromPreload | AxialForceKind::FromDeflection, _) => {
+                axial_force_from_deflection(&self.section, y)
+            }
+            (AxialForceKind::Prescribed, _) => scene.beam.axial_force,
+        }
+    }
+
+    /// Number of modes for a tolerance; all there is room for where they are given.
+    pub fn count(&self, blow: &Blow, tolerance: f64) -> usize {
+        match &self.form {
+            Form::Uniform => blow.modes(&self.section, tolerance),
+            Form::Segments(pieces) => {
+                let count = blow.modes(&pieces.at_contact(), tolerance);
+                let more = if pieces.are_uniform() { 0 } else { count * IRREGULAR / 4 };
+                (count + more).next_multiple_of(LANES)
+            }
+            Form::Modes(_) => MAX_MODES,
+        }
+    }
+
+    /// Error of the force of a blow with this number of modes, relative to it; 1 at most, 0 where the modes are given.
+    pub fn error(&self, blow: &Blow, count: usize) -> f64 {
+        match &self.form {
+            Form::Uniform => blow.error(&self.section, count),
+            Form::Segments(pieces) if pieces.are_uniform() => blow.error(&pieces.at_contact(), count),
+            Form::Segments(pieces) => blow.error(&pieces.at_contact(), count * 4 / (4 + IRREGULAR)),
+            Form::Modes(_) => 0.0,
+        }
+    }
+
+    /// The highest frequency of the modes given, and that up to which a blow excites the spring, if it is higher, Hz.
+    pub fn missed(&self, blow: &Blow) -> Option<(f64, f64)> {
+        match &self.form {
+            Form::Uniform | Form::Segments(_) => None,
+            Form::Modes(given) => given.missed(blow),
+        }
+    }
+
+    /// The damped modes under an axial compression (N); `None` at or above the buckling load.
+    pub fn modes(&self, scene: &Scene, count: usize, axial_force: f64) -> Option<Basis> {
+        let (alpha, beta) = (scene.beam.mass_damping, scene.beam.stiffness_damping);
+        let space = match &self.form {
+            Form::Uniform => Space::new(count),
+            Form::Segments(pieces) => ritz::dynamic_space(pieces, &self.section, count, axial_force)?,
+            Form::Modes(given) => {
+                let modes = given.modes(count, (alpha, beta));
+                return Some(Basis {
+                    space: given.space(&modes),
+                    shapes: Vec::new(),
+                    modes,
+                });
+            }
+        };
+        let (modes, shapes) = space
+            .modes_with_shapes(&self.section, axial_force, 0.0)?
+            .into_iter()
+            .map(|(mode, shape)| {
+                let mode = Mode {
+                    omega_squared: mode.omega_squared,
+                    damping: alpha + beta * mode.omega_squared,
+                    tip: mode.tip,
+                    participation: mode.participation,
+                };
+                (mode, shape)
+            })
+            .unzip();
+        Some(Basis { modes, shapes, space })
+    }
+
+    /// Lowest angular frequency under an axial compression (N) with an elastic support of `stiffness` (N/m) at the tip,
+    /// rad/s.
+    pub fn frequency(&self, axial_force: f64, stiffness: f64) -> Option<f64> {
+        let space = match &self.form {
+            Form::Uniform => {
+                return characteristic::frequencies(&self.section, axial_force, stiffness, 1)
+                    .first()
+                    .copied();
+            }
+            Form::Segments(pieces) => ritz::dynamic_space(pieces, &self.section, FREQUENCY_TERMS, axial_force)?,
+            Form::Modes(given) => given.space(&given.modes(MAX_MODES, (0.0, 0.0))),
+        };
+        let modes = space.modes(&self.section, axial_force, stiffness)?;
+        modes.first().map(|mode| mode.omega_squared.sqrt())
+    }
+}
+
+/// A spring given by modes has no geometry on which an axial force could act.
+fn no_axial_force(scene: &Scene, file: &SpringFile) -> Result<(), SceneError> {
+    let kind = scene.effects.axial_force;
+    if matches!(kind, AxialForceKind::None | AxialForceKind::FromPreload) {
+        return Ok(());
+    }
+    let choice = choices(EnumerationParameter::EffectsAxialForce)
+        .iter()
+        .find(|(_, number)| *number == kind as i32);
+    Err(SceneError::NeedsGeometry {
+        choice: choice.map_or("", |(label, _)| *label),
+        file: file.name.clone(),
+    })
+}

@@ -1,0 +1,73 @@
+//! The folder of the component's resources, from the URI of `fmi2Instantiate`.
+
+use std::path::PathBuf;
+
+/// The folder of a `file:` URI, or of a path, which some importers pass instead; none for another URI.
+pub(super) fn folder(location: &str) -> Option<PathBuf> {
+    let path = match location.split_once(':') {
+        // A single letter is a drive.
+        Some((scheme, rest)) if scheme.len() > 1 => {
+            if !scheme.eq_ignore_ascii_case("file") {
+                return None;
+            }
+            let path = match rest.strip_prefix("//") {
+                None => rest,
+                Some(rest) => {
+                    let (host, path) = rest.split_at(rest.find('/').unwrap_or(rest.len()));
+                    if !host.is_empty() && !host.eq_ignore_ascii_case("localhost") {
+                        return None;
+                    }
+                    path
+                }
+            };
+            let path = decoded(path)?;
+            // `/C:/folder`
+            match path.strip_prefix('/') {
+                Some(rest) if cfg!(windows) && rest.chars().nth(1) == Some(':') => rest.to_owned(),
+                _ => path,
+            }
+        }
+        _ => location.to_owned(),
+    };
+    (!path.is_empty()).then(|| PathBuf::from(path))
+}
+
+/// The text with `%20` and the like decoded; none if that is not UTF-8.
+fn decoded(text: &str) -> Option<String> {
+    let mut bytes = Vec::with_capacity(text.len());
+    let mut rest = text.as_bytes();
+    while let Some((first, after)) = rest.split_first() {
+        let code = after.get(..2).and_then(|code| std::str::from_utf8(code).ok());
+        let code = code.and_then(|code| u8::from_str_radix(code, 16).ok());
+        if let Some(byte) = code.filter(|_| *first == b'%') {
+            bytes.push(byte);
+            rest = after.get(2..).unwrap_or_default();
+        } else {
+            bytes.push(*first);
+            rest = after;
+        }
+    }
+    String::from_utf8(bytes).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn uris_and_paths_lead_to_the_folder() {
+        for (location, expected) in [
+            ("file:///tmp/a%20b/resources", Some("/tmp/a b/resources")),
+            ("file:/tmp/resources", Some("/tmp/resources")),
+            ("FILE://localhost/tmp/%C3%A4", Some("/tmp/ä")),
+            ("/tmp/100%/resources", Some("/tmp/100%/resources")),
+            ("file:///tmp/100%/x%zz", Some("/tmp/100%/x%zz")),
+            ("file://server/share", None),
+            ("http://example.org/resources", None),
+            ("file:///%ff", None),
+            ("", None),
+        ] {
+            assert_eq!(folder(location), expected.map(PathBuf::from), "{location}");
+        }
+    }
+}

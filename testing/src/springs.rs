@@ -1,0 +1,77 @@
+//! Random springs of segments: tapered, stepped, with masses, beyond their contact, on clamps from rigid to nearly hinged.
+
+use std::sync::Arc;
+
+use fastrand::Rng;
+use relay_contact::reference::Spring;
+use relay_contact::scene::Scene;
+use relay_contact::scene::spring::{PointMass, Segment, Segments, Shape, SpringFile};
+
+use crate::relays::{Relay, logarithmic, uniform};
+use crate::scenes::tip_stiffness;
+
+impl Relay {
+    /// The relay of a number, its spring made of segments that are about as stiff and heavy as its own spring. The contact is
+    /// pressed with the same force.
+    pub fn with_segments(number: u64) -> Self {
+        let mut relay = Self::draw(number);
+        let scene = &mut relay.scene;
+        let stiffness = tip_stiffness(scene);
+        scene.spring = Some(Arc::new(SpringFile {
+            name: format!("random spring {number}"),
+            shape: Shape::Segments(segments(&mut Rng::with_seed(number), scene)),
+        }));
+        if let Ok(spring) = Spring::new(scene) {
+            let softer = stiffness / spring.section.tip_stiffness();
+            scene.contact.overtravel = (scene.contact.overtravel * softer).clamp(-0.01, 0.01);
+            scene.beam.axial_force *= 0.5 * spring.buckling_load / (stiffness * scene.beam.length * 0.822);
+        }
+        relay
+    }
+}
+
+fn segments(rng: &mut Rng, scene: &Scene) -> Segments {
+    let beam = &scene.beam;
+    let shares: Vec<f64> = (0..=rng.usize(..4)).map(|_| uniform(rng, 0.2, 1.0)).collect();
+    let whole: f64 = shares.iter().sum();
+    let segments = shares.iter().map(|share| {
+        let mut ends = |value: f64, least: f64| {
+            let start = value * logarithmic(rng, least, 1.0 / least);
+            [
+                start,
+                if rng.bool() {
+                    start
+                } else {
+                    start * logarithmic(rng, 0.3, 1.0)
+                },
+            ]
+        };
+        Segment {
+            length: beam.length * share / whole,
+            width: ends(beam.width, 0.4),
+            thickness: ends(beam.thickness, 0.7),
+            youngs_modulus: None,
+            density: None,
+        }
+    });
+    let segments = segments.collect();
+    let mass = beam.density * beam.width * beam.thickness * beam.length;
+    let masses = (0..rng.usize(..3)).map(|_| PointMass {
+        position: beam.length * uniform(rng, 0.1, 1.0),
+        mass: mass * logarithmic(rng, 0.01, 1.0),
+        rotary_inertia: if rng.bool() {
+            0.0
+        } else {
+            mass * beam.length.powi(2) * logarithmic(rng, 1e-5, 1e-2)
+        },
+    });
+    let masses = masses.collect();
+    // E I / L, from nearly rigid to nearly hinged.
+    let bending = tip_stiffness(scene) * beam.length.powi(2) / 3.0;
+    Segments {
+        segments,
+        masses,
+        contact_position: rng.bool().then(|| beam.length * uniform(rng, 0.7, 1.0)),
+        clamp_stiffness: rng.bool().then(|| bending * logarithmic(rng, 0.02, 100.0)),
+    }
+}

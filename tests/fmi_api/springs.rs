@@ -1,0 +1,132 @@
+//! The spring of a file: set, refused, kept by states.
+
+use std::ffi::CString;
+use std::ptr;
+
+use relay_contact::fmi2::*;
+use testing::instance::{Arguments, Instance, vr};
+
+use crate::fmu_state::{from_bytes, restore, save, to_bytes, trace};
+
+const FILE: &str = "springs/tapered-cube.toml";
+
+/// An instance whose resources are the project's scenes.
+fn in_scenes() -> Instance {
+    let folder = std::env::current_dir().unwrap().join("scenes");
+    let location = CString::new(format!("file://{}", folder.display())).unwrap();
+    Instance::with(&Arguments {
+        resources: Some(&location),
+        ..Arguments::default()
+    })
+}
+
+fn sprung() -> Instance {
+    let fmu = in_scenes();
+    assert_eq!(fmu.set_string("beam.file", FILE), fmi2OK);
+    assert_eq!(fmu.set_integer("effects.excitation", 2), fmi2OK);
+    assert_eq!(fmu.set_real("excitation.amplitude", 400.0), fmi2OK);
+    fmu.initialize();
+    fmu
+}
+
+#[test]
+fn a_spring_of_the_resources_is_read_and_can_be_left_again() {
+    let (plain, fmu) = (Instance::initialized(), sprung());
+    assert_eq!(plain.string("beam.file"), "");
+    assert_eq!(fmu.string("beam.file"), FILE);
+    let (uniform, tapered) = (plain.real("preload.force"), fmu.real("preload.force"));
+    assert!(
+        tapered > 0.0 && (tapered - uniform).abs() > 0.1 * uniform,
+        "{uniform} {tapered}"
+    );
+    assert_eq!(fmu.reset(), fmi2OK);
+    assert_eq!(fmu.string("beam.file"), "");
+    fmu.initialize();
+    assert_eq!(fmu.real("preload.force").to_bits(), uniform.to_bits());
+    // Outputs in Initialization Mode follow it too.
+    let fmu = in_scenes();
+    assert_eq!(fmu.enter_initialization_mode(), fmi2OK);
+    assert_eq!(fmu.real("preload.force").to_bits(), uniform.to_bits());
+    assert_eq!(fmu.set_string("beam.file", FILE), fmi2OK);
+    assert_eq!(fmu.real("preload.force").to_bits(), tapered.to_bits());
+    assert_eq!(fmu.set_string("beam.file", ""), fmi2OK);
+    assert_eq!(fmu.real("preload.force").to_bits(), uniform.to_bits());
+}
+
+#[test]
+fn a_state_keeps_the_spring() {
+    let fmu = sprung();
+    trace(&fmu, 0, 30, 2e-5);
+    let state = save(&fmu);
+    let bytes = to_bytes(&fmu, state);
+    let first = trace(&fmu, 30, 60, 2e-5);
+    // In an instance that has no resources, and could not read the file.
+    let other = Instance::new();
+    let mut made = ptr::null_mut();
+    assert_eq!(from_bytes(&other, &bytes, &mut made), fmi2OK);
+    assert_eq!(restore(&other, made), fmi2OK);
+    assert_eq!(trace(&other, 30, 60, 2e-5), first);
+    assert_eq!(to_bytes(&other, made), bytes);
+    assert_eq!(other.string("beam.file"), FILE);
+    // And where another spring was set.
+    let other = Instance::initialized();
+    assert_eq!(restore(&other, state), fmi2OK);
+    assert_eq!(trace(&other, 30, 60, 2e-5), first);
+}
+
+#[test]
+fn what_is_no_spring_is_discarded_and_changes_nothing() {
+    let fmu = in_scenes();
+    assert_eq!(fmu.set_string("beam.file", FILE), fmi2OK);
+    let long = "a".repeat(5000);
+    for (file, parts) in [
+        ("none.toml", &["fmi2SetString", "scenes/none.toml: cannot be read"][..]),
+        ("springs", &["scenes/springs: cannot be read: not a file"]),
+        ("/dev/zero", &["/dev/zero: cannot be read: not a file"]),
+        (
+            "at-rest.toml",
+            &["scenes/at-rest.toml: line 2: stop: no such key, allowed are"],
+        ),
+        (
+            &long,
+            &["beam.file = \"aaaa", "allowed is a path in UTF-8 of at most 4096 bytes"],
+        ),
+    ] {
+        fmu.answers(fmu.set_string("beam.file", file), fmi2Discard, parts);
+        assert_eq!(fmu.string("beam.file"), FILE);
+    }
+    let set =
+        |text: fmi2String| unsafe { fmi2SetString(fmu.component, [vr("beam.file")].as_ptr(), 1, &raw const text) };
+    fmu.answers(set(c"\xff".as_ptr()), fmi2Discard, &["beam.file", "UTF-8"]);
+    fmu.answers(set(ptr::null()), fmi2Error, &["argument value is null"]);
+    // Without resources there is nothing a relative path could be relative to.
+    let fmu = Instance::new();
+    fmu.answers(
+        fmu.set_string("beam.file", FILE),
+        fmi2Discard,
+        &[
+            "springs/tapered-cube.toml: cannot be read: a relative path",
+            "fmuResourceLocation",
+        ],
+    );
+    let fmu = Instance::initialized();
+    fmu.answers(
+        fmu.set_string("beam.file", ""),
+        fmi2Error,
+        &["beam.file: cannot be set in the state step complete"],
+    );
+}
+
+#[test]
+fn a_dimension_beside_a_spring_is_a_warning_and_the_simulation_goes_on() {
+    let fmu = in_scenes();
+    assert_eq!(fmu.set_string("beam.file", FILE), fmi2OK);
+    assert_eq!(fmu.set_real("beam.length", 0.02), fmi2OK);
+    assert_eq!(fmu.enter_initialization_mode(), fmi2OK);
+    fmu.answers(
+        fmu.exit_initialization_mode(),
+        fmi2Warning,
+        &["fmi2ExitInitializationMode: beam.length = 0.02 m: not used, the spring is that of beam.file = springs/"],
+    );
+    assert_eq!(fmu.step(0.0, 1e-4), fmi2OK);
+}

@@ -1,0 +1,113 @@
+//! Spring files: what they hold arrives, and what is wrong in them is said with file, line, entry, value and range.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use relay_contact::reference::Model;
+use relay_contact::scene::Scene;
+use relay_contact::scene::file::SceneFile;
+use relay_contact::scene::spring::{Segments, Shape, SpringFile};
+
+/// A file of this text, deleted with the value.
+struct Written(PathBuf);
+
+impl Written {
+    fn new(name: &str, text: &[u8]) -> Self {
+        let path = std::env::temp_dir().join(format!("relay-contact-{}-{name}", std::process::id()));
+        fs::write(&path, text).unwrap();
+        Self(path)
+    }
+
+    fn read(&self) -> Result<SpringFile, String> {
+        SpringFile::read(Path::new(""), self.0.to_str().unwrap()).map_err(|error| error.to_string())
+    }
+}
+
+impl Drop for Written {
+    fn drop(&mut self) {
+        let _ = fs::remove_file(&self.0);
+    }
+}
+
+/// The message for a text, after the file.
+fn message(name: &str, text: &str) -> String {
+    let file = Written::new(name, text.as_bytes());
+    let message = file.read().map_or_else(|message| message, |_| "accepted".to_owned());
+    let prefix = format!("{}: ", file.0.display());
+    message.strip_prefix(&prefix).unwrap_or(&message).to_owned()
+}
+
+const SEGMENT: &str = "[[segment]]\nlength = 0.01\nwidth = 4e-3\nthickness = 2e-4\n";
+
+#[test]
+fn what_is_wrong_is_told_with_its_line_entry_and_range() {
+    let with = |more: &str| format!("{SEGMENT}{more}");
+    for (n, (text, expected)) in [
+        (String::new(), "segment = 0 entries: not allowed, allowed are 1 to 500"),
+        (with("width_start = 1e-3\n"), "line 3: segment 1: width: given twice, allowed is either one value, or one at the start and one at the end"),
+        (with(&SEGMENT.replace("2e-4", "0")), "line 8: segment 2: thickness = 0 m: not allowed, allowed is 1e-6 to 0.005"),
+        (with("thicknes = 1e-4\n"), "line 5: segment 1: thicknes: no such key, allowed are length, width, width_start, width_end, thickness, thickness_start, thickness_end, youngs_modulus, density"),
+        (with("[[segment]]\nlength = 1e-3\nwidth_start = 1e-3\nthickness = 1e-4\n"), "line 5: segment 2: width_end: missing; expected a number"),
+        (with("density = \"light\"\n"), "line 5: segment 1: density = \"light\": wrong type, allowed is a number"),
+        (with("density = nan\n"), "line 5: segment 1: density = NaN kg/m3: not allowed, allowed is 1 to 100000"),
+        (format!("contact_position = 0.011\n{SEGMENT}"), "line 1: contact_position = 0.011 m: not allowed, allowed is 0.001 to 0.01"),
+        (with("[[mass]]\nposition = 0.02\nmass = 1e-6\n"), "line 6: mass 1: position = 0.02 m: not allowed, allowed is 1e-6 to 0.01"),
+        (with("[mass]\nposition = 0.02\nmass = 1e-6\n"), "line 5: mass = table: wrong type, allowed is tables, each under its name in double brackets"),
+        (SEGMENT.replace("0.01", "1e-5"), "length of all segments = 1e-5 m: not allowed, allowed is 0.001 to 0.2"),
+        (format!("{SEGMENT}length = 3\n"), "line 5: not TOML: duplicate key"),
+        ("compliance = 1e-3\n[[mode]]\nfrequency = 100\ncontact = 50\nparticipation = 0.01\n".to_owned(), "line 1: compliance = 0.001 m/N: not allowed, allowed is 0.006332573977646111 m/N or more, which the modes hold alone (sum of contact^2/omega^2); modes and compliance contradict each other"),
+        ("compliance = 1\n[[mode]]\nfrequency = 100\nparticipation = 0.01\n".to_owned(), "line 2: mode 1: contact: missing; expected a number"),
+        ("compliance = 1\n[[segment]]\nlength = 3\n".to_owned(), "line 2: segment: no such key, allowed are title, compliance, mode"),
+    ]
+    .iter()
+    .enumerate()
+    {
+        assert_eq!(message(&format!("wrong-{n}"), text), *expected, "{text}");
+    }
+}
+
+#[test]
+fn what_is_no_file_is_told() {
+    let read = |name: &str| SpringFile::read(Path::new(""), name).unwrap_err().to_string();
+    assert!(read("/no/such/spring.toml").starts_with("/no/such/spring.toml: cannot be read: "));
+    for name in ["/dev/zero", "/", "scenes"] {
+        assert_eq!(read(name), format!("{name}: cannot be read: not a file"));
+    }
+    let long = Written::new("long", &vec![b' '; (1 << 20) + 1]);
+    assert!(
+        long.read()
+            .unwrap_err()
+            .ends_with("cannot be read: longer than 1048576 bytes")
+    );
+    let latin = Written::new("latin", b"title = \"\xe4\"\n");
+    assert!(latin.read().unwrap_err().contains("UTF-8"));
+}
+
+#[test]
+fn a_scene_names_its_spring_relative_to_itself() {
+    let file = SceneFile::read(Path::new("scenes/tapered-spring.toml")).unwrap();
+    let spring = file.scene.spring.as_ref().unwrap();
+    assert_eq!(spring.name, "springs/tapered-cube.toml");
+    let Shape::Segments(Segments {
+        segments,
+        masses,
+        contact_position,
+        clamp_stiffness,
+    }) = &spring.shape
+    else {
+        panic!("{spring:?}");
+    };
+    assert_eq!((segments.len(), masses.len()), (2, 1));
+    assert_eq!(segments[1].width, [4e-3, 2.4e-3]);
+    assert_eq!(segments[1].thickness, [2e-4; 2]);
+    assert_eq!((*contact_position, *clamp_stiffness), (Some(0.018), Some(1.2)));
+    assert_eq!(Model::new(&file.scene, 0.0).unwrap().remarks(), []);
+    // A dimension that the spring does not use.
+    let mut scene: Scene = file.scene.clone();
+    scene.beam.width = 4e-3;
+    let remarks = Model::new(&scene, 0.0).unwrap().remarks();
+    assert_eq!(
+        remarks.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        ["beam.width = 0.004 m: not used, the spring is that of beam.file = springs/tapered-cube.toml"]
+    );
+}

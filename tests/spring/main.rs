@@ -1,0 +1,309 @@
+//! Springs of segments and of modes: against closed forms, against the uniform spring that they contain, and what is wrong
+//! in their files.
+
+#![allow(clippy::unwrap_used)]
+
+mod files;
+mod modes;
+mod reference;
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use reference::{Stretch, frequencies};
+use relay_contact::inputs::Inputs;
+use relay_contact::reference::{Model, Section, Spring, frequencies as uniform_frequencies};
+use relay_contact::scene::Scene;
+use relay_contact::scene::spring::{PointMass, Segment, Segments, Shape, SpringFile};
+use relay_contact::simulation::Simulation;
+use relay_contact::variables::{AxialForceKind, RealOutput};
+use testing::scenes::{largest_difference, shaken};
+
+fn with(mut scene: Scene, shape: Shape) -> Scene {
+    let name = "spring.toml".to_owned();
+    scene.spring = Some(Arc::new(SpringFile { name, shape }));
+    scene
+}
+
+fn made_of(scene: Scene, segments: Segments) -> Scene {
+    with(scene, Shape::Segments(segments))
+}
+
+fn segment(length: f64, width: [f64; 2], thickness: [f64; 2]) -> Segment {
+    Segment {
+        length,
+        width,
+        thickness,
+        youngs_modulus: None,
+        density: None,
+    }
+}
+
+fn uniform(length: f64, width: f64, thickness: f64) -> Segment {
+    segment(length, [width; 2], [thickness; 2])
+}
+
+/// The scene with its spring as segments of its section, of these shares of the length.
+fn cut(scene: &Scene, shares: &[f64]) -> Scene {
+    let beam = &scene.beam;
+    let part = |share: &f64| uniform(share * beam.length, beam.width, beam.thickness);
+    let segments = Segments {
+        segments: shares.iter().map(part).collect(),
+        ..Segments::default()
+    };
+    made_of(scene.clone(), segments)
+}
+
+/// Bending stiffness and mass per length of a rectangle of the scene's materials.
+fn section(scene: &Scene, width: f64, thickness: f64) -> (f64, f64) {
+    (
+        scene.beam.youngs_modulus * width * thickness.powi(3) / 12.0,
+        scene.beam.density * width * thickness,
+    )
+}
+
+/// Force over a run, N.
+fn course(scene: &Scene, steps: u32, size: f64) -> Vec<f64> {
+    let mut simulation = Simulation::new(scene, &Inputs::default(), 0.0).unwrap();
+    (0..steps)
+        .map(|n| {
+            simulation.step(&Inputs::default(), f64::from(n) * size, size).unwrap();
+            simulation.real(RealOutput::ContactForce)
+        })
+        .collect()
+}
+
+/// The angular frequencies of the free spring, rad/s.
+fn found(scene: &Scene) -> Vec<f64> {
+    let basis = Spring::new(scene).unwrap().modes(scene, 40, 0.0).unwrap();
+    basis.modes.iter().map(|mode| mode.omega_squared.sqrt()).collect()
+}
+
+fn no_rivet() -> Scene {
+    let mut scene = Scene::default();
+    scene.tip.mass = 0.0;
+    scene
+}
+
+/// The lowest frequencies agree: the rounding of the reference, of a determinant that loses digits at the higher ones.
+fn agree(scene: &Scene, expected: &[f64]) {
+    let found = found(scene);
+    for (n, (found, expected)) in found.iter().zip(expected).enumerate() {
+        let error = (found / expected - 1.0).abs();
+        assert!(error < 1e-9, "frequency {n}: {found} {expected} {error:e}");
+    }
+}
+
+#[test]
+fn segments_of_the_uniform_section_are_the_uniform_spring() {
+    for axial in [
+        AxialForceKind::FromPreload,
+        AxialForceKind::None,
+        AxialForceKind::FromDeflection,
+        AxialForceKind::Prescribed,
+    ] {
+        let mut scene = shaken(400.0, 1000.0);
+        scene.effects.axial_force = axial;
+        scene.beam.axial_force = 4.0;
+        scene.environment.gravity = 9.81;
+        scene.tip.rotary_inertia = 1e-12;
+        let plain = Model::new(&scene, 0.0).unwrap();
+        let expected = course(&scene, 200, 2e-5);
+        let largest = expected.iter().copied().fold(0.0, f64::max);
+        for shares in [&[1.0][..], &[0.3, 0.7], &[0.2; 5]] {
+            let scene = cut(&scene, shares);
+            let model = Model::new(&scene, 0.0).unwrap();
+            assert_eq!(model.modes().len(), plain.modes().len());
+            for (found, expected) in [
+                (model.preload().force, plain.preload().force),
+                (model.preload().indentation, plain.preload().indentation),
+                (model.frequency(), plain.frequency()),
+                (model.force_scale(), plain.force_scale()),
+            ] {
+                assert!(
+                    (found / expected - 1.0).abs() < 1e-10,
+                    "{axial:?} {shares:?}: {found} {expected}"
+                );
+            }
+            let difference = largest_difference(&course(&scene, 200, 2e-5), &expected);
+            println!("{axial:?} {shares:?}: {:e}", difference / largest);
+            assert!(difference < 1e-10 * largest, "{axial:?} {shares:?}: {difference:e}");
+        }
+    }
+}
+
+#[test]
+fn a_wedge_has_the_frequencies_of_its_bessel_functions() {
+    // omega L^2 sqrt(rho A / E I) at the clamp of a beam of constant width whose thickness falls linearly to this share:
+    // zeros of the determinant of J, Y, I and K of order 2 and 3 at 2 sqrt(lambda z), computed with 30 digits; the first
+    // three at 0.5 are those of H. H. Mabie, C. B. Rogers, J. Acoust. Soc. Am. 36 (1964) 463.
+    for (share, expected) in [
+        (
+            0.5,
+            [
+                3.823_784_847_290_28,
+                18.317_260_904_174_7,
+                47.264_827_010_480_6,
+                90.450_477_658_643_7,
+            ],
+        ),
+        (
+            0.1,
+            [
+                4.630_723_862_396_02,
+                14.930_792_667_860_2,
+                32.833_121_135_886_3,
+                58.917_067_490_655_4,
+            ],
+        ),
+        (
+            0.02,
+            [
+                5.123_986_890_986_4,
+                14.824_498_584_841_9,
+                29.802_548_057_934_8,
+                50.471_115_658_264,
+            ],
+        ),
+    ] {
+        let scene = no_rivet();
+        let (length, width, thickness) = (0.02, 4e-3, 4e-4);
+        let (stiffness, mass) = section(&scene, width, thickness);
+        let unit = (stiffness / mass).sqrt() / (length * length);
+        let whole = segment(length, [width; 2], [thickness, share * thickness]);
+        let half = f64::midpoint(1.0, share) * thickness;
+        let halves = [
+            segment(0.5 * length, [width; 2], [thickness, half]),
+            segment(0.5 * length, [width; 2], [half, share * thickness]),
+        ];
+        for segments in [vec![whole], halves.to_vec()] {
+            let segments = Segments {
+                segments,
+                ..Segments::default()
+            };
+            agree(&made_of(scene.clone(), segments), &expected.map(|value| value * unit));
+        }
+    }
+}
+
+#[test]
+fn steps_masses_and_a_soft_clamp_have_their_exact_frequencies() {
+    let (a, b, c) = ((0.007, 4e-3, 3e-4), (0.005, 6e-3, 1.5e-4), (0.008, 2e-3, 2e-4));
+    for clamp in [f64::INFINITY, 10.0, 0.1, 1e-3] {
+        let mut scene = Scene::default();
+        scene.tip.mass = 2e-5;
+        scene.tip.rotary_inertia = 3e-12;
+        let stretch = |(length, width, thickness): (f64, f64, f64)| {
+            let (stiffness, mass) = section(&scene, width, thickness);
+            Stretch::uniform(length, stiffness, mass)
+        };
+        // A mass on the first step, one inside the second segment, the rivet 3 mm short of the end.
+        let expected = [
+            Stretch {
+                mass: 1e-5,
+                inertia: 2e-11,
+                ..stretch(a)
+            },
+            Stretch {
+                mass: 4e-6,
+                ..stretch((0.002, b.1, b.2))
+            },
+            stretch((0.003, b.1, b.2)),
+            Stretch {
+                mass: 2e-5,
+                inertia: 3e-12,
+                ..stretch((0.005, c.1, c.2))
+            },
+            stretch((0.003, c.1, c.2)),
+        ];
+        let point = |position, mass, rotary_inertia| PointMass {
+            position,
+            mass,
+            rotary_inertia,
+        };
+        let segments = Segments {
+            segments: [a, b, c]
+                .map(|(length, width, thickness)| uniform(length, width, thickness))
+                .to_vec(),
+            masses: vec![point(0.009, 4e-6, 0.0), point(0.007, 1e-5, 2e-11)],
+            contact_position: Some(0.017),
+            clamp_stiffness: Some(clamp).filter(|clamp| clamp.is_finite()),
+        };
+        let scene = made_of(scene, segments);
+        agree(&scene, &frequencies(&expected, clamp, 20.0, 6));
+        // With the contact closed, as `preload.frequency` reports it.
+        let mut free = scene.clone();
+        free.effects.axial_force = AxialForceKind::None;
+        let model = Model::new(&free, 0.0).unwrap();
+        let mut closed = expected;
+        closed[3].support = model.preload().contact_stiffness;
+        let omega = frequencies(&closed, clamp, 20.0, 1)[0];
+        let frequency = TAU * model.frequency();
+        assert!((frequency / omega - 1.0).abs() < 1e-9, "{frequency} {omega}");
+        // Statics: M^2 / (E I), and the rotation of the clamp.
+        let mut compliance = if clamp.is_finite() {
+            0.017_f64.powi(2) / clamp
+        } else {
+            0.0
+        };
+        let mut left = 0.017;
+        for part in &expected[..4] {
+            let right: f64 = left - part.length;
+            compliance += (left.powi(3) - right.powi(3)) / (3.0 * part.bending_stiffness);
+            left = right;
+        }
+        let spring = Spring::new(&scene).unwrap();
+        let found = spring.statics.tip_compliance(0.0);
+        assert!((found / compliance - 1.0).abs() < 1e-12, "{found} {compliance}");
+        let sum: f64 = model
+            .modes()
+            .iter()
+            .map(|mode| mode.tip.powi(2) / mode.omega_squared)
+            .sum();
+        assert!(
+            (sum / spring.statics.tip_compliance(model.preload().axial_force) - 1.0).abs() < 1e-9,
+            "{sum} {found}"
+        );
+    }
+}
+
+#[test]
+fn a_column_on_a_soft_clamp_buckles_at_its_root() {
+    // l tan(l L) = k / (E I), N = E I l^2.
+    let scene = no_rivet();
+    let (length, width, thickness) = (0.015, 4e-3, 2e-4);
+    let (stiffness, _) = section(&scene, width, thickness);
+    for clamp in [1e-3, 0.1, 10.0] {
+        let segments = Segments {
+            segments: vec![uniform(length, width, thickness)],
+            clamp_stiffness: Some(clamp),
+            ..Segments::default()
+        };
+        let spring = Spring::new(&made_of(scene.clone(), segments)).unwrap();
+        let rest = |l: f64| l * (l * length).tan() - clamp / stiffness;
+        let l = relay_contact::reference::bracketed(rest, 0.0, 0.999_999_999 * TAU / 4.0 / length).unwrap();
+        let expected = stiffness * l * l;
+        assert!(
+            (spring.buckling_load / expected - 1.0).abs() < 1e-10,
+            "{} {expected}",
+            spring.buckling_load
+        );
+    }
+}
+
+#[test]
+fn the_uniform_column_of_segments_follows_the_closed_form_under_axial_force() {
+    let scene = Scene::default();
+    let plain = Section::new(&scene);
+    let spring = Spring::new(&cut(&scene, &[0.4, 0.6])).unwrap();
+    for share in [-3.0, 0.3, 0.9, 0.99] {
+        let force = share * plain.buckling_load();
+        let exact = uniform_frequencies(&plain, force, 1e6, 1)[0];
+        let found = spring.frequency(force, 1e6).unwrap();
+        assert!((found / exact - 1.0).abs() < 1e-9, "{share}: {found} {exact}");
+        let exact = Spring::uniform(&plain).statics.tip_compliance(force);
+        let found = spring.statics.tip_compliance(force);
+        assert!((found / exact - 1.0).abs() < 1e-9, "{share}: {found} {exact}");
+    }
+    assert!(spring.frequency(1.001 * plain.buckling_load(), 0.0).is_none());
+}

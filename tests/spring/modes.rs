@@ -1,0 +1,167 @@
+//! Springs of modes.
+
+use relay_contact::error::{Remark, SceneError};
+use relay_contact::reference::Model;
+use relay_contact::scene::Scene;
+use relay_contact::scene::spring::{GivenMode, Modes, Shape};
+use relay_contact::variables::{AxialForceKind, ContactLawKind};
+use testing::scenes::{largest_difference, shaken};
+
+use super::{TAU, course, with};
+
+fn free(mut scene: Scene) -> Scene {
+    scene.effects.axial_force = AxialForceKind::None;
+    scene
+}
+
+/// The modes of a model, and the static compliance of its spring.
+fn written(model: &Model) -> Modes {
+    let mode = |omega_squared: f64, contact, participation| GivenMode {
+        frequency: omega_squared.sqrt() / TAU,
+        contact,
+        participation,
+        damping: None,
+        rotation: None,
+    };
+    let modes = model
+        .modes()
+        .iter()
+        .map(|own| mode(own.omega_squared, own.tip, own.participation));
+    Modes {
+        compliance: 1.0 / model.section().tip_stiffness(),
+        modes: modes.collect(),
+    }
+}
+
+#[test]
+fn modes_written_by_our_own_beam_and_read_again_are_the_beam() {
+    for amplitude in [98.0, 400.0] {
+        let scene = free(shaken(amplitude, 1000.0));
+        let plain = Model::new(&scene, 0.0).unwrap();
+        let given = with(scene.clone(), Shape::Modes(written(&plain)));
+        let model = Model::new(&given, 0.0).unwrap();
+        assert_eq!(
+            model.modes().len(),
+            plain.modes().len(),
+            "nothing is missing in the Ritz modes"
+        );
+        assert_eq!(model.remarks(), []);
+        for (found, expected) in [
+            (model.preload().force, plain.preload().force),
+            (model.frequency(), plain.frequency()),
+            (model.force_scale(), plain.force_scale()),
+        ] {
+            assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
+        }
+        let (found, expected) = (course(&given, 200, 2e-5), course(&scene, 200, 2e-5));
+        let largest = expected.iter().copied().fold(0.0, f64::max);
+        let difference = largest_difference(&found, &expected);
+        assert!(difference < 1e-9 * largest, "{amplitude}: {difference:e}");
+    }
+}
+
+#[test]
+fn what_the_modes_lack_is_a_spring_in_series() {
+    // The eigenvectors of a beam, cut off. Below them the series is exact but for the square of the ratio of frequencies.
+    let mut scene = free(shaken(98.0, 500.0));
+    scene.beam.stiffness_damping = 2e-6;
+    let mut fine = scene.clone();
+    fine.solver.modes = 64;
+    let all = written(&Model::new(&fine, 0.0).unwrap());
+    let expected = course(&scene, 100, 1e-4);
+    let swing = expected.iter().map(|force| (force - 0.152).abs()).fold(0.0, f64::max);
+    let error = |count: usize| {
+        let modes = Modes {
+            modes: all.modes[..count].to_vec(),
+            ..all.clone()
+        };
+        let scene = with(scene.clone(), Shape::Modes(modes));
+        let model = Model::new(&scene, 0.0).unwrap();
+        assert_eq!(model.modes().len(), count + 1);
+        assert!(matches!(model.remarks()[..], [Remark::FewModes { .. }]));
+        largest_difference(&course(&scene, 100, 1e-4), &expected) / swing
+    };
+    let errors = [2, 4, 8, 16].map(error);
+    println!("{errors:?}");
+    assert!(errors[3] < 1e-4 && errors.is_sorted_by(|a, b| a > b), "{errors:?}");
+}
+
+#[test]
+fn a_single_mode_with_its_residual_is_a_mass_between_two_springs() {
+    // Bonded contact: mass m on k, the contact k_c and the residual c in series beside it.
+    let (mass, frequency, contact) = (1e-4_f64, 1000.0, 0.9);
+    let omega_squared = (TAU * frequency).powi(2);
+    let held = contact * contact / mass / omega_squared;
+    let modes = Modes {
+        compliance: 1.1 * held,
+        modes: vec![GivenMode {
+            frequency,
+            contact: contact / mass.sqrt(),
+            participation: mass.sqrt(),
+            damping: Some(0.01),
+            rotation: None,
+        }],
+    };
+    let mut scene = free(shaken(20.0, 300.0));
+    scene.effects.contact_law = ContactLawKind::Bonded;
+    scene.contact.damping = 0.0;
+    let scene = with(scene, Shape::Modes(modes));
+    let model = Model::new(&scene, 0.0).unwrap();
+    let series = 1.0 / (1.0 / model.preload().contact_stiffness + 0.1 * held);
+    let expected = (omega_squared + series * contact * contact / mass).sqrt() / TAU;
+    // The residual mode is 1e4 times faster than the other: the square of that.
+    assert!(
+        (model.frequency() / expected - 1.0).abs() < 1e-7,
+        "{} {expected}",
+        model.frequency()
+    );
+    // Steady state by the same series: q = -g a / (omega_0^2 - omega^2 + k_s T^2 + i omega c), F = -k_s T q.
+    let omega = TAU * 300.0;
+    let (real, imaginary) = (
+        omega_squared - omega * omega + series * contact * contact / mass,
+        omega * 0.02 * omega_squared.sqrt(),
+    );
+    let amplitude = 20.0 * mass.sqrt() * series * contact / mass.sqrt() / real.hypot(imaginary);
+    let forces = course(&scene, 2000, 1e-4);
+    let late = &forces[1000..];
+    let middle = model.preload().force;
+    let found = late.iter().map(|force| (force - middle).abs()).fold(0.0, f64::max);
+    // A hundred points a third of a period apart miss the crest by less than 1e-3.
+    assert!((found / amplitude - 1.0).abs() < 2e-3, "{found} {amplitude}");
+}
+
+#[test]
+fn each_mode_may_have_its_own_damping() {
+    let scene = free(Scene::default());
+    let mut modes = written(&Model::new(&scene, 0.0).unwrap());
+    for (n, mode) in modes.modes.iter_mut().enumerate() {
+        mode.damping = (n > 0).then_some(0.03);
+    }
+    let model = Model::new(&with(scene.clone(), Shape::Modes(modes)), 0.0).unwrap();
+    let [first, second, ..] = model.modes() else { panic!() };
+    let beta = scene.beam.stiffness_damping;
+    assert_eq!(first.damping, beta * first.omega_squared);
+    assert!((second.damping / (0.06 * second.omega_squared.sqrt()) - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn modes_have_no_axial_force() {
+    let scene = free(Scene::default());
+    let modes = written(&Model::new(&scene, 0.0).unwrap());
+    for (kind, refused) in [
+        (AxialForceKind::None, false),
+        (AxialForceKind::FromPreload, false),
+        (AxialForceKind::FromDeflection, true),
+        (AxialForceKind::Prescribed, true),
+    ] {
+        let mut scene = with(scene.clone(), Shape::Modes(modes.clone()));
+        scene.effects.axial_force = kind;
+        match Model::new(&scene, 0.0) {
+            Ok(model) => assert!(!refused && model.preload().axial_force == 0.0),
+            Err(SceneError::NeedsGeometry { choice, file }) => {
+                assert!(refused && choice == format!("{kind:?}") && file == "spring.toml");
+            }
+            Err(error) => panic!("{error}"),
+        }
+    }
+}
