@@ -40,8 +40,6 @@ pub struct Interruptions {
     longest: f64,
     /// Total duration of the completed ones that count, s.
     total: f64,
-    /// Instant at which one last began or ended, s.
-    turned: Option<f64>,
 }
 
 /// Interruptions up to an instant, including one in progress: the outputs.
@@ -69,13 +67,7 @@ impl Interruptions {
             count,
             longest,
             total,
-            turned: Some(time),
         };
-    }
-
-    /// Whether one began or ended at an instant (s).
-    pub fn turned_at(&self, time: f64) -> bool {
-        self.turned == Some(time)
     }
 
     /// Whether the values are consistent at an instant (s) (check of a deserialised state).
@@ -85,10 +77,9 @@ impl Interruptions {
             count: _,
             longest,
             total,
-            turned,
         } = self;
-        let past = |instant: &Option<f64>| instant.is_none_or(|instant| instant <= time && instant.is_finite());
-        past(since) && past(turned) && longest.is_finite() && total.is_finite()
+        let past = since.is_none_or(|instant| instant <= time && instant.is_finite());
+        past && longest.is_finite() && total.is_finite()
     }
 
     /// Summary at an instant (s).

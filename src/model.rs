@@ -247,6 +247,11 @@ impl Model {
         self.force_scale
     }
 
+    /// Error allowed in the contact force, N.
+    pub(crate) fn tolerance(&self) -> f64 {
+        self.scene.solver.effective_tolerance() * self.force_scale
+    }
+
     /// Lowest natural frequency with the contact as a spring, Hz.
     pub fn frequency(&self) -> f64 {
         self.frequency
@@ -286,6 +291,7 @@ impl Model {
             long_step: self.first_step(time),
             predictions: Predictions::default(),
             last_step: 0.0,
+            flight_step: self.first_step(time),
             energy_surplus: 0.0,
             energy_balance: 0.0,
             interruptions,

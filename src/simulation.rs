@@ -242,10 +242,7 @@ impl Simulation {
 
     /// Interruptions up to the communication point; none if they are not counted.
     pub fn interruptions(&self) -> Summary {
-        let criterion = self.model.criterion.as_ref();
-        criterion.map_or_else(Summary::default, |criterion| {
-            self.state().interruptions.summary(criterion, self.time())
-        })
+        self.motion.interruptions(&self.model)
     }
 
     /// An integer output or calculated parameter; counts saturate at the integer range.

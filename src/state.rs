@@ -39,12 +39,14 @@ pub struct State {
     pub last_kink: f64,
     /// Longest step with few nodes that the error estimate allows, s.
     pub short_step: f64,
-    /// Longest step with many nodes that the error estimate allows, s; 0: none, as an event may follow at once.
+    /// Longest step with many nodes that the error estimate allows while the contact is closed, s.
     pub long_step: f64,
     /// Force over the last step as deviation from the preload force, N; used to predict that of the next.
     pub predictions: Predictions,
     /// Length of that step, s; 0: none.
     pub last_step: f64,
+    /// Longest step in flight that the error estimate allowed in the last one, s.
+    pub flight_step: f64,
     /// Energy error of the steps so far that is not yet corrected, J, in scenes without damping.
     pub energy_surplus: f64,
     /// Energy supplied less stored less dissipated since initialisation, J, if requested.
@@ -81,6 +83,7 @@ impl State {
             long_step,
             predictions,
             last_step,
+            flight_step,
             energy_surplus,
             energy_balance,
             interruptions,
@@ -102,6 +105,7 @@ impl State {
             short_step,
             long_step,
             last_step,
+            flight_step,
             energy_surplus,
             energy_balance,
         ];
@@ -112,6 +116,7 @@ impl State {
             && force_error.is_sound()
             && *short_step > 0.0
             && *long_step >= 0.0
+            && *flight_step > 0.0
             && [last_opening, last_closing, last_kink]
                 .iter()
                 .all(|event| **event <= time.max(-1.0))

@@ -2,32 +2,37 @@
 
 use crate::error::{StepError, StepErrorCause};
 use crate::integrator::collocation::newton::Source;
+use crate::integrator::collocation::part::{self, Instant};
 use crate::integrator::collocation::step::{Trial, is_rounding, trial};
-use crate::integrator::constants::{INSIDE, NEWTON};
+use crate::integrator::constants::{AT_EVENT, INSIDE, NEWTON};
+use crate::integrator::course::{Places, turning_points};
 use crate::integrator::grid::Target;
 use crate::integrator::integration::{Integration, StepOutcome};
 use crate::integrator::workspace::{Room, Workspace, work};
-use crate::math::nodal::{self, SHORT};
+use crate::math::free_motion::FreeMotion;
+use crate::math::nodal::SHORT;
+use crate::math::prediction::value_and_slope;
 
 impl Integration<'_> {
     /// Estimated error of a trial to the target, relative to the error allowed; 0 where it is mere rounding, which no
     /// shorter step reduces.
-    pub(crate) fn relative_error<const S: usize>(&self, trial: &Trial<S>, target: &Target) -> f64 {
+    pub(crate) fn relative_error<const S: usize>(&mut self, trial: &Trial<S>, target: &Target) -> f64
+    where
+        Workspace: Room<S>,
+    {
         let read = self.dense.as_ref().is_some_and(|(until, _)| *until < target.time);
-        let looked_into = read || self.model.scene.effects.extremes;
-        // 4-node steps may be inaccurate inside: `DenseOutput::accurate` then prevents dense output.
-        let inside = if looked_into && S != SHORT {
-            INSIDE / self.tolerance
+        let watched = self.model.scene.effects.extremes || self.model.criterion.is_some();
+        // 4-node steps may be inaccurate inside: they end where they are read.
+        let inside = if (read || watched || !self.state.closed) && S != SHORT {
+            self.inaccuracy(trial, target.length)
         } else {
             0.0
         };
-        let (ratio, inside) = (
-            trial.error / self.allowed.max(trial.rounding),
-            trial.start_defect * inside,
-        );
+        let ratio = trial.error / self.allowed.max(trial.rounding);
         // Not `max`, which would hide NaN.
         let ratio = if ratio < inside { inside } else { ratio };
-        if ratio > 1.0 && is_rounding(self.model, self.state, trial) {
+        let rounding = self.state.closed || inside < 1.0;
+        if ratio > 1.0 && rounding && is_rounding(self.model, self.state, trial, trial.error) {
             0.0
         } else {
             ratio
@@ -40,33 +45,83 @@ impl Integration<'_> {
         ratio <= 1.0 || self.is_shortest(target) && ratio.is_finite()
     }
 
+    /// Error of what is read inside a trial of `length` seconds, in tolerances: of the force, in flight of the
+    /// indentation.
+    pub(crate) fn inaccuracy<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> f64
+    where
+        Workspace: Room<S>,
+    {
+        if self.state.closed {
+            INSIDE * trial.start_defect / self.tolerance
+        } else {
+            self.misread(trial, length)
+        }
+    }
+
+    /// Error of the indentation between the nodes of a trial of `length` seconds as it would be read there, in that which
+    /// a force wrong by the tolerance makes of the spring. The polynomial through the indentations has slopes at the nodes
+    /// that differ from the velocities there; between two nodes its error is the cubic with these slopes.
+    fn misread<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> f64
+    where
+        Workspace: Room<S>,
+    {
+        let start = self.state.indentation;
+        let collocation = self.collocation::<S>();
+        let polynomial = collocation.through(start, &trial.indentations);
+        let wrong = |x: f64, rate: f64| (rate * length - value_and_slope(&polynomial, x - 1.0).1).abs();
+        let mut before = (0.0, wrong(0.0, self.state.indentation_rate));
+        let mut most = 0.0_f64;
+        for (x, rate) in self.collocation::<S>().nodes.iter().zip(&trial.rates) {
+            let now = (*x, wrong(*x, *rate));
+            most = most.max(0.125 * (now.0 - before.0) * (now.1 + before.1));
+            before = now;
+        }
+        let modes = self.model.modes.iter();
+        let compliance: f64 = modes.map(|mode| mode.tip * mode.tip / mode.omega_squared).sum();
+        most / (self.tolerance * compliance)
+    }
+
+    /// Whether the trial may end inside, by an event.
+    pub(crate) fn may_end_inside<const S: usize>(&self, trial: &Trial<S>, target: &Target) -> bool {
+        trial.inner_error <= (AT_EVENT * self.allowed).max(trial.rounding)
+            || self.is_shortest(target)
+            || is_rounding(self.model, self.state, trial, trial.inner_error)
+    }
+
     /// A trial step to the target; the modes at its end are kept for [`Integration::take`].
     pub(crate) fn attempt<const S: usize>(&mut self, target: &Target) -> Option<Trial<S>>
     where
         Workspace: Room<S>,
     {
-        self.trial(target.length, target.recurring, true)
-    }
-
-    /// A trial step of `length` seconds for event location only; it cannot be taken.
-    pub(crate) fn probe<const S: usize>(&mut self, length: f64) -> Option<Trial<S>>
-    where
-        Workspace: Room<S>,
-    {
-        self.trial(length, false, false)
-    }
-
-    /// A trial step of `length` seconds. `recurring`: cache its coefficients; `kept`: it may be taken.
-    fn trial<const S: usize>(&mut self, length: f64, recurring: bool, kept: bool) -> Option<Trial<S>>
-    where
-        Workspace: Room<S>,
-    {
-        self.workspace.work += work(recurring);
-        let (cache, end, probe) = self.workspace.parts();
-        let prepared = cache.prepare(self.state.time, length, recurring, self.model);
+        self.workspace.work += work(target.recurring);
+        let (cache, end, _) = self.workspace.parts();
+        let prepared = cache.prepare(self.state.time, target.length, target.recurring, self.model);
         let source = Source::Law(NEWTON * self.allowed);
-        let modes = if kept { end } else { probe };
-        trial(self.model, self.state, &self.drive, prepared, source, modes)
+        trial(self.model, self.state, &self.drive, prepared, source, end)
+    }
+
+    /// The exact motion under the polynomials of a trial of `length` seconds, `at` seconds after its start; the modes are
+    /// kept for [`Integration::shorten`].
+    pub(crate) fn inside<const S: usize>(&mut self, trial: &Trial<S>, length: f64, at: f64) -> Instant
+    where
+        Workspace: Room<S>,
+    {
+        self.workspace.work += 1;
+        let (cache, end, inside) = Room::<S>::parts(self.workspace);
+        let whole = (trial, length, &end.loads);
+        let collocation = cache.collocation();
+        part::motion(self.model, self.state, &self.drive, collocation, whole, at, inside)
+    }
+
+    /// The trial of `length` seconds up to the instant that was looked at last.
+    pub(crate) fn shorten<const S: usize>(&mut self, trial: &Trial<S>, length: f64, last: &Instant) -> Trial<S>
+    where
+        Workspace: Room<S>,
+    {
+        let (cache, end, inside) = Room::<S>::parts(self.workspace);
+        end.modes = *inside;
+        let whole = (trial, length, &mut end.loads);
+        part::first_part(self.model, self.state, &self.drive, cache.collocation(), whole, last)
     }
 
     /// Rejects a step; the next one shall have `length` (s).
@@ -75,16 +130,22 @@ impl Integration<'_> {
         self.refusals += 1;
         StepOutcome {
             taken: false,
+            switched: false,
             growth: 1.0,
             length,
         }
     }
 
-    /// Accepts the trial as the new state.
+    /// Accepts the trial as the new state; its force passes that of an interruption at `passages`.
     ///
     /// # Errors
     /// [`StepErrorCause::NotFinite`] where it is not finite.
-    pub(crate) fn take<const S: usize>(&mut self, trial: &Trial<S>, target: &Target) -> Result<(), StepError>
+    pub(crate) fn take<const S: usize>(
+        &mut self,
+        trial: &Trial<S>,
+        target: &Target,
+        passages: Places,
+    ) -> Result<(), StepError>
     where
         Workspace: Room<S>,
     {
@@ -99,9 +160,16 @@ impl Integration<'_> {
         self.enter(trial, target.length);
         let Self { model, state, .. } = self;
         let (cache, end, _) = Room::<S>::parts(self.workspace);
-        let (step, collocation) = cache.get(target.length, target.recurring, model);
+        let collocation = cache.collocation();
         let added = (state.closed, trial.error);
-        state.force_error.advance(&model.modes, &step.end, trial.tangent, added);
+        if let Some(step) = cache.known(target.length, target.recurring) {
+            let free = step.end.free();
+            state.force_error.advance(&model.modes, free, trial.tangent, added);
+        } else {
+            let modes = model.modes.iter();
+            let free = modes.map(|mode| FreeMotion::new(mode.omega_squared, mode.damping, target.length));
+            state.force_error.advance(&model.modes, free, trial.tangent, added);
+        }
         let ratio = if state.last_step > 0.0 {
             target.length / state.last_step
         } else {
@@ -109,13 +177,28 @@ impl Integration<'_> {
         };
         let start = state.force - model.preload.force;
         state.predictions = collocation.predictions(model.simd, start, &trial.forces, &state.predictions, ratio);
+        let force = state.predictions.through_all();
+        let turns = if model.scene.effects.extremes && state.closed {
+            turning_points(force)
+        } else {
+            Places::default()
+        };
         if let Some((_, dense)) = &mut self.dense {
-            dense.accurate = INSIDE * trial.start_defect <= self.tolerance;
             dense.indentation = collocation.through(state.indentation, &trial.indentations);
             dense.rate = collocation.through(state.indentation_rate, &trial.rates);
-            dense.force = *state.predictions.through_all();
+            (dense.force, dense.turns, dense.passages) = (*force, turns, passages);
         }
-        for ((mode, end), _) in state.modes.iter_mut().zip(end).zip(&model.modes) {
+        if let Some(extremes) = &mut self.extremes
+            && state.closed
+        {
+            extremes.add_course(model, (force, &turns), -1.0, 0.0);
+        }
+        if let Some(criterion) = &model.criterion {
+            for place in passages.iter() {
+                state.interruptions.turn(criterion, target.time + place * target.length);
+            }
+        }
+        for ((mode, end), _) in state.modes.iter_mut().zip(&end.modes).zip(&model.modes) {
             *mode = *end;
         }
         state.time = target.time;
@@ -123,16 +206,14 @@ impl Integration<'_> {
         state.indentation = trial.indentation;
         state.indentation_rate = trial.rate;
         if state.closed {
-            state.force = model.law.without_pull(model.preload.force + nodal::end(&trial.forces));
-        }
-        if let Some(extremes) = &mut self.extremes {
-            extremes.add_course(model, state.closed, state.predictions.through_all(), -1.0, 0.0);
+            state.force = model.law.without_pull(model.preload.force + trial.force);
         }
         state.last_step = target.length;
         state.steps += 1;
         state.iterations += trial.iterations;
         self.grid.done = target.done;
         self.refusals = 0;
+        self.before_event = false;
         self.settle(target.length);
         self.balance(expected_energy);
         Ok(())

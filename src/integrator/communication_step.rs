@@ -8,6 +8,7 @@ use crate::integrator::constants::MANY_STEPS;
 use crate::integrator::extremes::Extremes;
 use crate::integrator::integration::Steps;
 use crate::integrator::motion::Motion;
+use crate::integrator::rest::rests_until;
 use crate::integrator::step_control::advance;
 use crate::integrator::workspace::{Budget, Workspace};
 use crate::model::Model;
@@ -64,23 +65,32 @@ fn step_by<const EXTREMES: bool>(
     let ahead = motion.time < motion.end.time;
     // The end lies inside the current integration step: nothing to integrate, outputs come from its dense output.
     let inside = steady && until < motion.end.time;
-    let mut extremes = (EXTREMES && !inside).then(|| Extremes::at(motion.tip(model).force));
+    let mut extremes = EXTREMES.then(|| Extremes::at(motion.tip(model).force));
     let own_step = motion.end.short_step.max(motion.end.long_step);
-    if steady && (ahead || size < own_step || size < MANY_STEPS * own_step && size != motion.size) {
-        if !inside {
-            let remaining = until - motion.end.time;
-            if remaining < MANY_STEPS * own_step {
-                go_ahead(model, motion, workspace, until, extremes.as_mut())?;
-            } else {
-                let (mut end, time) = (motion.end, motion.end.time);
-                let steps = Steps::Exactly { time, size: remaining };
-                if let Some(extremes) = &mut extremes {
-                    motion.add_dense(extremes, model, since, time);
-                }
-                advance(model, &mut end, workspace, motion.drive, steps, extremes.as_mut())?;
-                end.time = until;
-                (motion.start, motion.end) = (end, end);
+    // Where the contact opens and closes, step ends would not lie on the grid of an exact step.
+    let switches = motion.end.last_opening.max(motion.end.last_closing) >= 0.0;
+    if inside {
+        if let Some(extremes) = &mut extremes {
+            motion.add_dense(extremes, model, since, until);
+        }
+    } else if steady && (ahead || switches || size < own_step || size < MANY_STEPS * own_step && size != motion.size) {
+        let remaining = until - motion.end.time;
+        if switches || remaining < MANY_STEPS * own_step {
+            let (start, end, dense) = (motion.start, motion.end, motion.dense);
+            if let Err(error) = go_ahead(model, motion, workspace, until, extremes.as_mut()) {
+                (motion.start, motion.end, motion.dense) = (start, end, dense);
+                workspace.events.forget_after(motion.end.time);
+                return Err(error);
             }
+        } else {
+            let (mut end, time) = (motion.end, motion.end.time);
+            let steps = Steps::Exactly { time, size: remaining };
+            if let Some(extremes) = &mut extremes {
+                motion.add_dense(extremes, model, since, time);
+            }
+            advance(model, &mut end, workspace, motion.drive, steps, extremes.as_mut())?;
+            end.time = until;
+            (motion.start, motion.end) = (end, end);
         }
     } else {
         let mut end = motion.end;
@@ -124,7 +134,10 @@ pub fn state(model: &Model, motion: &Motion, workspace: &mut Workspace) -> Resul
 }
 
 /// Takes integration steps of the integrator's own choice until one reaches `time` (s) or beyond. `extremes` covers the
-/// steps that end at or before `time`.
+/// communication step.
+///
+/// # Errors
+/// A [`StepError`]; the motion is then undefined.
 fn go_ahead(
     model: &Model,
     motion: &mut Motion,
@@ -133,37 +146,33 @@ fn go_ahead(
     mut extremes: Option<&mut Extremes>,
 ) -> Result<(), StepError> {
     let since = motion.time;
-    let mut ahead = *motion;
-    if let Some(extremes) = &mut extremes
-        && since < ahead.end.time
-    {
-        ahead.add_dense(extremes, model, since, ahead.end.time);
-        extremes.add(ahead.end.force);
+    let mut note = |motion: &Motion| {
+        if let Some(extremes) = &mut extremes {
+            motion.add_dense(extremes, model, since, time.min(motion.end.time));
+            if motion.end.time <= time {
+                extremes.add(motion.end.force);
+            }
+        }
+    };
+    if since < motion.end.time {
+        note(motion);
     }
     let budget = Budget::new(workspace);
-    while ahead.end.time < time {
-        budget.check(workspace, ahead.end.time)?;
-        ahead.start = ahead.end;
-        let steps = Steps::Own {
-            until: time,
-            dense: &mut ahead.dense,
-        };
-        advance(model, &mut ahead.end, workspace, ahead.drive, steps, None)?;
-        if let Some(extremes) = &mut extremes
-            && ahead.end.time <= time
+    while motion.end.time < time {
+        budget.check(workspace, motion.end.time)?;
+        let own_step = motion.end.short_step.max(motion.end.long_step);
+        if time - motion.end.time >= MANY_STEPS * own_step
+            && let Some(until) = rests_until(model, &motion.end, &motion.drive, model.tolerance(), time)
         {
-            ahead.add_dense(extremes, model, since, ahead.end.time);
-            extremes.add(ahead.end.force);
+            motion.end.time = until;
+            motion.start = motion.end;
+            continue;
         }
+        motion.start = motion.end;
+        let Motion { end, dense, drive, .. } = motion;
+        advance(model, end, workspace, *drive, Steps::Own { until: time, dense }, None)?;
+        note(motion);
     }
-    if ahead.end.time > time && !ahead.dense.accurate {
-        ahead.end = ahead.start;
-        workspace.events.forget_after(ahead.end.time);
-        let (start, size) = (ahead.end.time, time - ahead.end.time);
-        let steps = Steps::Exactly { time: start, size };
-        advance(model, &mut ahead.end, workspace, ahead.drive, steps, extremes)?;
-    }
-    *motion = ahead;
     Ok(())
 }
 

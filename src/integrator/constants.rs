@@ -23,6 +23,9 @@ pub const LEAST_SHRINK: f64 = 0.1;
 /// Largest factor on the length after a rejection, and the least after a step taken, 1. Chosen. Not pinned by a test.
 pub const MOST_SHRINK: f64 = 0.5;
 
+/// Largest factor on the length of a step that cannot end at an event inside, 1: to the next length of free steps. Cost.
+pub const NEXT_LENGTH: f64 = 0.75;
+
 /// Largest growth that a step taken reports, 1. Chosen. Not pinned by a test.
 pub const MOST_GROWTH: f64 = 64.0;
 
@@ -36,6 +39,10 @@ pub const GROWING: f64 = 1.5;
 /// Length of a long step over that of a short one from which it costs less, 1. Chosen by the work in the scenes.
 /// Pinned: × 500, `a_digit_costs_less_than_half_as_much_again`.
 pub const WORTH: f64 = 2.0;
+
+/// Length of a long step after a closing over the time since then, 1: nearer to it the force is not smooth enough for
+/// polynomials of high degree. Cost.
+pub const SMOOTH: f64 = 4.0;
 
 /// Length that a long step reaches at most, in short ones, 1. Observed. Cost.
 pub const LONGER: f64 = 16.0;
@@ -115,8 +122,9 @@ pub const STEPS: u64 = 3_000_000;
 /// Work of a step of a new length, in steps of known lengths. Instructions of both. Cost.
 pub const NEW_LENGTH: u64 = 10;
 
-/// Step lengths whose coefficients are kept, a power of two. Chosen. Cost.
-pub const SLOTS: usize = 32;
+/// Step lengths whose coefficients are kept, a power of two: those of 32 octaves with and without half of their own, as
+/// free steps have them, from nanoseconds after a blow to seconds. Cost.
+pub const SLOTS: usize = 64;
 
 /// Step lengths for which the coefficients of exact linear steps are kept. Chosen. Cost.
 pub const LENGTHS: usize = 8;
@@ -134,6 +142,9 @@ pub const NEAR: f64 = 0.25;
 /// `tests/benchmarks`.
 pub const DEPTH: u32 = 40;
 
+/// Halvings of the cubic between two samples before the motion in their middle is computed. Cost.
+pub const HALVINGS: u32 = 3;
+
 /// Part of the change of the engagement between two samples that fast modes may make unseen, 1. Not pinned: without it
 /// no test fails.
 pub const UNSEEN: f64 = 1e-2;
@@ -142,8 +153,16 @@ pub const UNSEEN: f64 = 1e-2;
 /// closes as it opens. Not pinned: 0 fails no test of `tests/chatter.rs`.
 pub const SHORTEST_FLIGHT: f64 = 1e-3;
 
-/// Places in a step at which the force is looked for clearly on its old side of a threshold. Not pinned by a test.
-pub const PLACES: u32 = 8;
+/// Error allowed in the motion at an opening, in errors allowed in a step, 1: the blow that follows makes it a hundred
+/// times larger. Pinned: × 100, `tests/calibration.rs`.
+pub const AT_EVENT: f64 = 0.01;
+
+/// Contact force that counts as zero where the contact opens or closes, in errors allowed in a step, 1. Chosen. Cost.
+pub const LOCATED: f64 = 0.05;
+
+/// Instants at which the exact motion inside a step is looked at to find an event, before it is bracketed. Newton's and the
+/// secant method need three. Cost.
+pub const GUESSES: u32 = 8;
 
 /// Pieces of a step in each of which one extreme of its force polynomial is looked for. The degree of long steps. Not
 /// pinned: ÷ 8 fails no test of `tests/chatter.rs`.

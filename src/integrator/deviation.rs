@@ -7,8 +7,8 @@
 
 use crate::beam::mode::{Mode, ModeState};
 use crate::force_error::{ForceError, MODES};
-use crate::integrator::collocation::coefficients::EndRows;
 use crate::integrator::collocation::newton::Tangent;
+use crate::math::free_motion::FreeMotion;
 
 impl ForceError {
     /// Begins with a blow on the tip, unless there is a deviation already.
@@ -21,11 +21,11 @@ impl ForceError {
         }
     }
 
-    /// Over a step with the given end rows and tangent of the contact, which adds the error `added` (N).
-    pub(crate) fn advance<const S: usize>(
+    /// Over a step with the given free motion of the modes and tangent of the contact, which adds the error `added` (N).
+    pub(crate) fn advance(
         &mut self,
         modes: &[Mode],
-        rows: &EndRows<S>,
+        free: impl Iterator<Item = FreeMotion>,
         tangent: Tangent,
         (closed, added): (bool, f64),
     ) {
@@ -34,15 +34,18 @@ impl ForceError {
             return;
         }
         let (mut tip, mut tip_rate) = (0.0, 0.0);
-        let from = rows
-            .q_from_q
-            .iter()
-            .zip(&rows.q_from_v)
-            .zip(&rows.v_from_q)
-            .zip(&rows.v_from_v);
-        for ((at, (((qq, qv), vq), vv)), mode) in self.deviation.iter_mut().zip(from).zip(modes) {
+        let mut by_force = [ModeState::default(); MODES];
+        for (((at, free), mode), by_force) in self.deviation.iter_mut().zip(free).zip(modes).zip(&mut by_force) {
             let ModeState { q, v } = *at;
-            (at.q, at.v) = (qq * q + qv * v, vq * q + vv * v);
+            at.q = free.q_from_q * q + free.q_from_v * v;
+            at.v = free.v_from_q * q + free.v_from_v * v;
+            // Of a constant force.
+            by_force.q = if mode.omega_squared > 0.0 {
+                mode.tip * (1.0 - free.q_from_q) / mode.omega_squared
+            } else {
+                mode.tip * 0.5 * free.q_from_v * free.q_from_v
+            };
+            by_force.v = mode.tip * free.q_from_v;
             tip += mode.tip * at.q;
             tip_rate += mode.tip * at.v;
         }
@@ -57,12 +60,9 @@ impl ForceError {
             } = tangent;
             self.force = -(stiffness * tip + damping * tip_rate + 0.5 * gain * before) / (1.0 + 0.5 * gain);
             let mean = 0.5 * (before + self.force);
-            for (q_from_load, v_from_load) in rows.q_from_load.iter().zip(&rows.v_from_load) {
-                let loads = q_from_load.iter().zip(v_from_load).zip(modes);
-                for (at, ((q, v), mode)) in self.deviation.iter_mut().zip(loads) {
-                    at.q += q * mode.tip * mean;
-                    at.v += v * mode.tip * mean;
-                }
+            for (at, by_force) in self.deviation.iter_mut().zip(&by_force) {
+                at.q += by_force.q * mean;
+                at.v += by_force.v * mean;
             }
         }
         let size = self.normalise(modes);

@@ -23,12 +23,13 @@ impl Integration<'_> {
             .constant_step(target)
             .ok_or_else(|| self.error(StepErrorCause::NotFinite))?;
         let mean = self.model.preload.force + end(&trial.forces);
-        self.take(&trial, target)?;
+        let passages = self.passages(&trial, target.length, true).unwrap_or_default();
+        self.take(&trial, target, passages)?;
         let d = self.model.preload.indentation + trial.indentation;
-        let mut length = target.length;
         let closed = self.model.engagement(trial.indentation, trial.rate) > 0.0;
-        if closed != self.state.closed {
-            length = self.switch(closed);
+        let switched = closed != self.state.closed;
+        if switched {
+            self.switch(closed);
         }
         if closed {
             // The velocity at the end belongs to a constant force: if the contact is nearly a rigid dashpot, the law
@@ -41,8 +42,9 @@ impl Integration<'_> {
         self.state.last_step = 0.0;
         Ok(StepOutcome {
             taken: true,
+            switched,
             growth: 2.0,
-            length,
+            length: target.length,
         })
     }
 
@@ -123,6 +125,7 @@ mod tests {
                 tolerance: 1e-6,
                 allowed: 1e-8,
                 refusals: 0,
+                before_event: false,
                 conserves: false,
             };
             let target = integration.grid.target(step, integration.state.time, None);

@@ -14,6 +14,7 @@ use crate::integrator::attempt::step_factor;
 use crate::integrator::constants::{
     AFTER_REJECTION, FORCE_ROUNDING, INSIDE, LEAST_SHRINK, LONG_FLOOR, MOST_SHRINK, SAFETY, SHARE, STEP_GROWTH, UNREST,
 };
+use crate::integrator::course::Places;
 use crate::integrator::grid::round_down;
 use crate::integrator::integration::{DenseOutput, StepOutcome};
 use crate::integrator::workspace::Workspace;
@@ -139,10 +140,11 @@ pub(crate) fn step_ahead(
                 *force = stiffness * *force + damping * rate;
             }
             *dense = DenseOutput {
-                accurate: true,
                 force,
                 indentation,
                 rate,
+                turns: Places::default(),
+                passages: Places::default(),
             };
             state.time = time;
             state.force_error.largest = state.force_error.largest.max(ratio * allowed);

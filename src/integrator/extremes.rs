@@ -1,12 +1,9 @@
 //! Extremes of the contact force inside steps, from the polynomials of the steps.
 
-use crate::integrator::constants::PIECES;
-use crate::math::prediction::value_and_slope;
-use serde::{Deserialize, Serialize};
-
-use crate::math::prediction::Prediction;
-use crate::math::roots;
+use crate::integrator::course::Places;
+use crate::math::prediction::{Prediction, value_and_slope};
 use crate::model::Model;
+use serde::{Deserialize, Serialize};
 
 /// Least and greatest contact force over an interval of time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -32,30 +29,18 @@ impl Extremes {
         self.greatest = self.greatest.max(force);
     }
 
-    /// Includes the force within a step from `from` to `to` (relative to its end, in step lengths): that of the
-    /// polynomial, or zero while the contact is open.
-    pub(crate) fn add_course(&mut self, model: &Model, closed: bool, polynomial: &Prediction, from: f64, to: f64) {
-        if !closed {
-            self.add(0.0);
-            return;
-        }
-        let value = |y: f64| {
+    /// Includes the force of a step of the closed contact from `from`, where it is included already, to `to` (relative to
+    /// its end, in step lengths): of its polynomial, which turns at these places.
+    pub(crate) fn add_course(
+        &mut self,
+        model: &Model,
+        (polynomial, turns): (&Prediction, &Places),
+        from: f64,
+        to: f64,
+    ) {
+        for y in turns.between(from, to).chain([to]) {
             let force = model.preload.force + value_and_slope(polynomial, y).0;
-            model.law.without_pull(force)
-        };
-        let slope = |y: f64| value_and_slope(polynomial, y).1;
-        let at = |k: u32| from + (to - from) * f64::from(k) / f64::from(PIECES);
-        self.add(value(from));
-        let mut before = (from, slope(from));
-        for k in 1..=PIECES {
-            let now = (at(k), slope(at(k)));
-            if (before.1 > 0.0) != (now.1 > 0.0)
-                && let Some(y) = roots::between(slope, before, now, 1e-9)
-            {
-                self.add(value(y));
-            }
-            before = now;
+            self.add(model.law.without_pull(force));
         }
-        self.add(value(to));
     }
 }

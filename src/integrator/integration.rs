@@ -4,6 +4,7 @@ use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::constants::STEP_GROWTH;
+use crate::integrator::course::Places;
 use crate::integrator::extremes::Extremes;
 use crate::integrator::grid::{Grid, Target};
 use crate::integrator::workspace::{Room, Workspace};
@@ -29,6 +30,8 @@ pub(crate) struct Integration<'a> {
     pub(crate) allowed: f64,
     /// Successive rejected steps.
     pub(crate) refusals: u32,
+    /// Whether one of them was too long to end at an event inside.
+    pub(crate) before_event: bool,
     /// Whether the energy changes only by the work of the drive ([`crate::integrator::energy::conservation`]).
     pub(crate) conserves: bool,
 }
@@ -37,14 +40,16 @@ pub(crate) struct Integration<'a> {
 /// the preload.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct DenseOutput {
-    /// Whether they are within the tolerance inside the step; just after an impact they may not be.
-    pub accurate: bool,
     /// Contact force, N.
     pub force: Prediction,
     /// Indentation, m.
     pub indentation: Prediction,
     /// Its velocity, m/s.
     pub rate: Prediction,
+    /// Where the contact force turns, for its extremes.
+    pub turns: Places,
+    /// Where it passes that of an interruption.
+    pub passages: Places,
 }
 
 /// How far to advance.
@@ -59,7 +64,7 @@ pub(crate) enum Steps<'a> {
     },
     /// By one step as long as the error allows, with dense output.
     Own {
-        /// Dense output is read from here on where the step goes beyond it, s.
+        /// Dense output is read from here on where the step goes beyond it, within the tolerance, s.
         until: f64,
         /// The tip during the step.
         dense: &'a mut DenseOutput,
@@ -70,6 +75,8 @@ pub(crate) enum Steps<'a> {
 pub(crate) struct StepOutcome {
     /// Whether it was accepted.
     pub(crate) taken: bool,
+    /// Whether the contact opened or closed with it: short steps begin anew.
+    pub(crate) switched: bool,
     /// Factor to its length that its error would have allowed.
     pub(crate) growth: f64,
     /// Proposed length of the next step, s.
@@ -82,6 +89,7 @@ impl StepOutcome {
         let next = growth.min(STEP_GROWTH) * length;
         Self {
             taken: true,
+            switched: false,
             growth,
             // A step shortened by the grid keeps the size proposed before.
             length: if length < 0.9 * requested {

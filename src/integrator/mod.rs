@@ -63,9 +63,10 @@
 //! slow modes see at the end of the step; at the inner nodes the error is of order `h^(S + 1)`.
 //!
 //! *Four or eight of them* ([`SHORT`](crate::math::nodal::SHORT), [`LONG`](crate::math::nodal::LONG)). Both have a step
-//! length of their own in the state. Eight are used where they reach at least [`constants::WORTH`] times as far as four
-//! within what is left to integrate, four in short communication steps, at events, and as long after a closing as a
-//! long step would be: until then the force is not smooth. Below a tolerance of [`constants::LONG_FLOOR`] the rounding
+//! length of their own in the state. Eight are used in flight, where the force is known, and where they reach at least
+//! [`constants::WORTH`] times as far as four within what is left to integrate; four in short communication steps and just
+//! after a closing, where the force is not smooth: a long step is at most [`constants::SMOOTH`] times as long as the time
+//! since. Below a tolerance of [`constants::LONG_FLOOR`] the rounding
 //! of the polynomials of degree eight shows, and four are used throughout.
 //!
 //! # Newton's method
@@ -104,8 +105,14 @@
 //!
 //! The last two are reduced by `g / (1 + g)`, `g` the force of the law at the end of the step per force on the tip throughout it.
 //!
-//! In flight the estimate is what `m_a` does to the indentation, times the stiffness the contact would have at the
-//! force scale, and what the error of the quadrature of the acceleration makes of it in `1 / omega_1`. An estimate below what rounding makes of the sums over the modes counts as zero: no shorter step makes
+//! In flight the estimate is what `m_a` does to the indentation at any node, times the stiffness the contact would have
+//! at the force scale, and what the error of the quadrature of the acceleration makes of it in `1 / omega_1`.
+//!
+//! A step that ends inside, at an event, has a larger error, as the shape is not orthogonal to anything there: what `m`
+//! and `m_a` do to the nodal forces, and the greatest impulse of the shape times `m`. A blow makes it a hundred times
+//! larger, so it has to be below [`constants::AT_EVENT`] of the error allowed in a step.
+//!
+//! An estimate below what rounding makes of the sums over the modes counts as zero: no shorter step makes
 //! it smaller.
 //!
 //! # Step size control
@@ -114,7 +121,9 @@
 //! length is multiplied by `(allowed / estimate)^(1 / (S + 1))` and [`constants::SAFETY`], with bounds on growth and
 //! shrinkage beside it. Step ends lie on a grid: binary fractions of the communication step, or lengths of
 //! 1 and 1.5 times powers of two where the integrator runs ahead ([`grid`]), so that coefficients recur; the
-//! generator's corners (start, end, crossover) end a step, and the step size starts anew there. A step is never longer than a quarter of the generator's
+//! generator's corners (start, end, crossover) end a step, and the step size starts anew there. After a closing the force is
+//! smooth in the logarithm of the time since: the next step may be longer in the ratio in which that time grows, beside what
+//! the estimate says. A step is never longer than a quarter of the generator's
 //! shortest period, nor than `solver.maximumStep`. Without damping, a step that makes more energy than a force wrong by
 //! the tolerance would is rejected too.
 //!
@@ -131,19 +140,25 @@
 //!
 //! # Events
 //!
-//! A step ends where the contact opens or closes, or where the force passes that of an interruption ([`events`]). Long
-//! steps are shortened to end before an event; a short step is cut at it and repeated to the located instant. Instants
-//! are located to the spacing of floating-point numbers by Chandrupatla's bracketing method
-//! ([`roots`](crate::math::roots)) on steps of trial length, not on an interpolant.
+//! A step ends where the contact opens or closes ([`events`]): the step accepted is cut there. Inside it the motion of the
+//! modes is exact under the polynomials of force and base acceleration ([`collocation::part`]): up to an instant these are
+//! nodal polynomials again, so no coefficients of a step of that length are needed but those of its end, and no Newton
+//! iteration. The instant is found by Chandrupatla's bracketing method ([`roots`](crate::math::roots)) on the polynomials
+//! through indentations and velocities at the nodes, then by the secant method on the exact motion, until the force there
+//! is below [`constants::LOCATED`] of the error allowed in a step. Where the error inside is too large the step is
+//! repeated, shorter but of a length whose coefficients are known.
 //!
 //! - *Opening* ([`events::opening`]): the law's force reaches zero, at a node or in a dip of the nodal polynomial
 //!   between nodes. With contact damping that is before the surfaces part.
 //! - *Closing* ([`events::closing`]): in flight, indentation and velocity at the nodes define cubics, whose error is
 //!   estimated from neighbouring nodes. Intervals in which the highest point of the cubic, plus that error, plus the
-//!   amplitudes of modes that vibrate faster than the interval, stays open are clear; others are halved. A grazing
+//!   amplitudes of modes that vibrate faster than the interval, stays open are clear; others are halved, first on the
+//!   cubic, then by the exact motion in the middle. A grazing
 //!   touch is therefore not missed, as it is by a search for changes of sign. In the step that begins with an opening,
 //!   an engagement that rounding alone leaves there is no contact.
-//! - *Interruption* ([`events::interruption`]): as the opening, at the force of the threshold resistance.
+//! - *Interruption* ([`events::interruption`]): the step goes on where the force passes that of the threshold resistance;
+//!   the instant is kept with its polynomials. Between the places where it turns the force polynomial is monotone, so that
+//!   no dip is missed. Just after a closing, where it is not accurate, the law at the exact motion under it takes its place.
 //!
 //! After a closing the dissipative part of the force starts like the root of time (`k_j ~ d^(1/2)`, `d ~ t`), which no
 //! polynomial follows. The first step is so short that missing this part moves the force by less than the error
@@ -154,12 +169,16 @@
 //! While inputs do not change, the integrator takes steps of its own, also beyond the communication point, and outputs
 //! are read from the polynomials of its last step ([`communication_step`], [`motion`]): dense output of the force
 //! (through the start and all nodes), the indentation and its velocity. A long step that will be read inside must keep
-//! the tolerance there too: [`constants::INSIDE`] times `m` is the error inside. A short step that cannot is integrated
-//! once more, up to the communication point. A changed input takes the motion back to the communication point: it is integrated again from the start of the step, under the former inputs. A communication step much longer than the
+//! the tolerance there too: [`constants::INSIDE`] times `m` is the error inside, and in flight the error of the
+//! indentation follows from the velocities at the nodes, which the slopes of its polynomial miss. A short step that cannot
+//! ends at the communication point, cut as at an event. A changed input takes the motion back to the communication point: it is integrated again from the start of the step, under the former inputs. A communication step much longer than the
 //! integrator's steps ends one of them exactly. Inputs act linearly in time within a communication step; a jump of
 //! their rate changes the dissipative force at once and restarts the step length.
 //!
-//! Extremes of the force in a communication step come from the same polynomials ([`extremes`]).
+//! Where the contact has opened or closed once, the integrator always runs ahead while inputs do not change.
+//!
+//! Extremes of the force in a communication step come from the same polynomials ([`extremes`]): the places where the force
+//! turns are found once for each step ([`course`]) and kept with them.
 //!
 //! # Rest
 //!
@@ -231,6 +250,7 @@ pub mod attempt;
 pub mod collocation;
 pub mod communication_step;
 pub mod constants;
+pub mod course;
 pub mod deviation;
 pub mod discrete_gradient;
 pub mod energy;

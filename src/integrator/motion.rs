@@ -7,6 +7,7 @@
 //! restarts there.
 
 use crate::beam::mode::MAX_MODES;
+use crate::chatter::Summary;
 use crate::excitation::drive::Drive;
 use crate::integrator::events::log::Event;
 use crate::integrator::exact_step;
@@ -28,8 +29,7 @@ pub struct Motion {
     pub current_rate: f64,
     /// Length of the last communication step, s.
     pub(crate) size: f64,
-    /// Extremes of the contact force in it up to the start of the step of [`Motion::dense`], N; `None` if the whole
-    /// communication step lies inside that step, or if no extremes are requested.
+    /// Extremes of the contact force in it, N; `None` before it, or if none are requested.
     pub(crate) extremes: Option<Extremes>,
     /// Base acceleration and velocity of the fixed contact during it.
     pub(crate) drive: Drive,
@@ -99,7 +99,14 @@ impl Motion {
             end,
             dense,
         } = self;
-        let polynomials = [&dense.force, &dense.indentation, &dense.rate].into_iter().flatten();
+        let DenseOutput {
+            force,
+            indentation,
+            rate,
+            turns,
+            passages,
+        } = dense;
+        let polynomials = [force, indentation, rate].into_iter().flatten();
         let numbers = [*time, *current, *current_rate, *size, drive.jerk, drive.support_rate];
         let extremes = extremes
             .iter()
@@ -112,6 +119,8 @@ impl Motion {
             .all(|number| number.is_finite())
             && driven.is_finite()
             && *size >= 0.0
+            && turns.is_sound()
+            && passages.is_sound()
             && start.is_sound()
             && end.is_sound()
             && start.time <= *time
@@ -163,17 +172,32 @@ impl Motion {
 
     /// Extremes of the contact force within the last communication step, N; for scenes with `effects.extremes`.
     pub fn extremes(&self, model: &Model) -> Extremes {
-        let mut extremes = self.extremes.unwrap_or_else(|| Extremes::at(self.tip(model).force));
-        if self.time < self.end.time {
-            self.add_dense(&mut extremes, model, self.time - self.size, self.time);
-        }
-        extremes
+        self.extremes.unwrap_or_else(|| Extremes::at(self.tip(model).force))
     }
 
-    /// Adds the extremes of the dense output between two instants (s); the first may lie before the step.
+    /// Adds those of the dense output between two instants (s); the first may lie before the step, and is included
+    /// already.
     pub(crate) fn add_dense(&self, extremes: &mut Extremes, model: &Model, from: f64, to: f64) {
         let at = |time: f64| ((time - self.end.time) / self.length()).clamp(-1.0, 0.0);
-        extremes.add_course(model, self.start.closed, &self.dense.force, at(from), at(to));
+        if self.start.closed {
+            extremes.add_course(model, (&self.dense.force, &self.dense.turns), at(from), at(to));
+        } else {
+            extremes.add(0.0);
+        }
+    }
+
+    /// Interruptions up to the communication point; none if they are not counted.
+    pub fn interruptions(&self, model: &Model) -> Summary {
+        let Some(criterion) = &model.criterion else {
+            return Summary::default();
+        };
+        let mut interruptions = self.state().interruptions;
+        if let Some(now) = self.inside() {
+            for place in self.dense.passages.until(now) {
+                interruptions.turn(criterion, self.end.time + place * self.length());
+            }
+        }
+        interruptions.summary(criterion, self.time)
     }
 
     /// Time derivatives of the tip at the communication point; at a discontinuity, the limit from the left.

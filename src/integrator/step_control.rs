@@ -3,14 +3,16 @@
 use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
 use crate::integrator::attempt::step_factor;
+use crate::integrator::collocation::step::Trial;
 use crate::integrator::constants::{
-    AFTER_REJECTION, COARSEST, GROWING, LEAST_SHRINK, LONG_FLOOR, LONGER, MOST_GROWTH, MOST_SHRINK, REFUSALS, SAFETY,
-    SHARE, WORTH,
+    AFTER_REJECTION, AT_EVENT, COARSEST, GROWING, LEAST_SHRINK, LONG_FLOOR, LONGER, MOST_GROWTH, MOST_SHRINK,
+    NEXT_LENGTH, REFUSALS, SAFETY, SHARE, SMOOTH, WORTH,
 };
 use crate::integrator::energy::conservation::conserves;
+use crate::integrator::events::Cut;
 use crate::integrator::exact_step;
 use crate::integrator::extremes::Extremes;
-use crate::integrator::grid::Grid;
+use crate::integrator::grid::{Grid, Target};
 use crate::integrator::integration::{Integration, StepOutcome, Steps};
 use crate::integrator::rest::rests_until;
 use crate::integrator::workspace::{Budget, Room, Workspace};
@@ -33,7 +35,7 @@ pub(crate) fn advance(
     steps: Steps,
     extremes: Option<&mut Extremes>,
 ) -> Result<(), StepError> {
-    let tolerance = model.scene.solver.effective_tolerance() * model.force_scale;
+    let tolerance = model.tolerance();
     let (grid, dense) = match steps {
         Steps::Exactly { time, size } => {
             exact_step::leave_before_rest(model, state, &drive, tolerance);
@@ -64,6 +66,7 @@ pub(crate) fn advance(
         tolerance,
         allowed: SHARE * tolerance,
         refusals: 0,
+        before_event: false,
         conserves: conserves(model, &drive),
     }
     .run()
@@ -103,27 +106,41 @@ impl Integration<'_> {
     fn advance(&mut self) -> Result<(), StepError> {
         let remaining = self.grid.remaining();
         let short_step = self.state.short_step;
-        // Just after an impact the force is not smooth enough for polynomials of high degree.
-        let smooth = if self.state.last_closing < 0.0 {
-            f64::INFINITY
+        let closed = self.state.closed;
+        // Just after an impact the force is not smooth enough for polynomials of high degree; in flight it is known.
+        let long_step = if !closed {
+            self.state.flight_step
+        } else if self.state.last_closing < 0.0 {
+            self.state.long_step
         } else {
-            self.state.time - self.state.last_closing
+            self.state
+                .long_step
+                .min(SMOOTH * (self.state.time - self.state.last_closing))
         };
-        let long_step = self.state.long_step.min(smooth);
         if self.tolerance <= LONG_FLOOR * self.model.force_scale
             || remaining <= short_step
-            || long_step < WORTH * short_step
+            || closed && long_step < WORTH * short_step
         {
             let outcome = self.advance_with::<SHORT>(short_step)?;
-            self.state.short_step = outcome.length;
-            if outcome.taken && outcome.growth < GROWING {
-                self.state.long_step = self.state.long_step.max(2.0 * WORTH * outcome.length);
+            if !outcome.switched {
+                self.state.short_step = outcome.length;
+                if outcome.taken && outcome.growth < GROWING {
+                    self.state.long_step = self.state.long_step.max(2.0 * WORTH * outcome.length);
+                }
             }
         } else {
             let outcome = self.advance_with::<LONG>(long_step)?;
-            self.state.long_step = outcome.length;
+            if closed {
+                self.state.long_step = outcome.length;
+                if !outcome.taken && self.state.last_closing >= 0.0 {
+                    // Nor would a short one reach as far.
+                    self.state.short_step = short_step.min(outcome.length / WORTH);
+                }
+            } else {
+                self.state.flight_step = outcome.length;
+            }
             // A long step cut far below its possible size: a short one will do next time.
-            if outcome.taken {
+            if outcome.taken && !outcome.switched {
                 self.state.short_step = short_step.max(outcome.growth * remaining.min(long_step) / LONGER);
             }
         }
@@ -170,33 +187,85 @@ impl Integration<'_> {
         } else {
             (SAFETY * step_factor::<S>(ratio)).clamp(MOST_SHRINK, MOST_GROWTH)
         };
-        let candidate = self.first_event_candidate(&trial, target.length);
-        if let Some(passed) = self.first_passage(&trial)
-            && candidate.is_none_or(|part| passed <= part)
-            && let Some(outcome) = self.stop_at_threshold::<S>(passed, &target, growth, requested)?
-        {
-            return Ok(outcome);
+        let growth = if self.before_event {
+            growth.min(1.0)
+        } else {
+            growth * self.leaving_kink(target.length)
+        };
+        let opens = if self.state.closed {
+            self.first_open(&trial)
+        } else {
+            None
+        };
+        let read = self.read_at(&trial, &target);
+        if (opens.is_some() || read.is_some()) && !self.may_end_inside(&trial, &target) {
+            self.before_event = true;
+            // More nodes do better inside than a shorter step.
+            self.state.long_step = self.state.long_step.max(target.length);
+            let shrink = AFTER_REJECTION * (AT_EVENT * self.allowed / trial.inner_error).powf(1.0 / S as f64);
+            return Ok(self.reject(target.length * shrink.clamp(LEAST_SHRINK, NEXT_LENGTH)));
         }
-        if let Some(part) = candidate {
-            if S != SHORT {
-                // Events are located in 4-node steps; 8-node steps end before them.
-                return Ok(self.reject(0.9 * part * target.length));
-            }
-            if let Some(cut) = self.cut(part, &trial, target.length) {
-                return self.end_at::<S>(&cut, growth, requested);
-            }
+        let event = if self.state.closed {
+            opens.and_then(|part| self.opening(&trial, target.length, part * target.length))
+        } else {
+            self.closing(&trial, target.length)
+        };
+        let cut = match (event, read) {
+            (Some(event), Some(read)) if event.time <= read => Some(event),
+            (_, Some(time)) => Some(Cut {
+                end: self.inside(&trial, target.length, time - self.state.time),
+                time,
+                switches: false,
+            }),
+            (event, None) => event,
+        };
+        if let Some(cut) = cut {
+            return self.end_at(&cut, &trial, &target, growth, requested);
         }
-        self.take(&trial, &target)?;
+        let Some(passages) = self.passages(&trial, target.length, self.is_shortest(&target)) else {
+            return Ok(self.reject(MOST_SHRINK * target.length));
+        };
+        self.take(&trial, &target, passages)?;
         if corner.is_some_and(|corner| corner <= target.time) {
             // What the corner sets vibrating, the step sizes before it do not resolve.
             let next = self.step_after_jump();
             self.state.long_step = self.state.long_step.min(next);
+            self.state.flight_step = self.state.flight_step.min(next);
             return Ok(StepOutcome {
                 taken: true,
+                switched: false,
                 growth: 1.0,
                 length: requested.min(next),
             });
         }
         Ok(StepOutcome::after(target.length, requested, growth))
+    }
+
+    /// Factor by which the next step may be longer for its distance from the last closing alone: the force there is smooth
+    /// in the logarithm of the time since.
+    fn leaving_kink(&self, length: f64) -> f64 {
+        let State {
+            time,
+            last_kink,
+            last_closing,
+            ..
+        } = *self.state;
+        let elapsed = time - last_kink;
+        if last_kink == last_closing && elapsed > 0.0 {
+            1.0 + length / elapsed
+        } else {
+            1.0
+        }
+    }
+
+    /// The instant (s) in a trial at which it will be read, if its polynomials are not accurate there.
+    fn read_at<const S: usize>(&mut self, trial: &Trial<S>, target: &Target) -> Option<f64>
+    where
+        Workspace: Room<S>,
+    {
+        let (read, _) = self.dense.as_ref()?;
+        let read = *read;
+        let inside = read > self.state.time && read < target.time;
+        (inside && S == SHORT && self.inaccuracy(trial, target.length) > 1.0).then_some(read)
     }
 }

@@ -6,6 +6,7 @@ use crate::closed_loop::propagator::{ByLength, Propagator};
 use crate::error::{StepError, StepErrorCause};
 use crate::integrator::collocation::coefficients::Cache;
 use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::collocation::step::End;
 use crate::integrator::constants::{LENGTHS, NEW_LENGTH, STEPS};
 use crate::integrator::events::log::Events;
 use crate::math::nodal::{LONG, SHORT};
@@ -16,10 +17,12 @@ use crate::model::Model;
 pub struct Workspace {
     short: Cache<SHORT>,
     long: Cache<LONG>,
-    /// Modes at the end of the current trial step.
-    end: ModeStates,
-    /// Modes at the end of probe steps (event location).
-    probe: ModeStates,
+    /// Of the current trial step.
+    short_end: End<SHORT>,
+    /// See `short_end`.
+    long_end: End<LONG>,
+    /// Modes at an instant inside it (event location).
+    inside: ModeStates,
     /// Caches of exact linear steps, without and with dense output.
     pub(crate) propagators: ByLength<Propagator>,
     /// See [`Workspace::propagators`].
@@ -41,8 +44,9 @@ impl Workspace {
         Self {
             short: Cache::new(model),
             long: Cache::new(model),
-            end: [ModeState::default(); MAX_MODES],
-            probe: [ModeState::default(); MAX_MODES],
+            short_end: End::default(),
+            long_end: End::default(),
+            inside: [ModeState::default(); MAX_MODES],
             propagators: ByLength::new(lengths, Propagator::ZERO),
             dense_propagators: ByLength::new(lengths, DensePropagator::room(oscillators.unwrap_or_default())),
             work: 0,
@@ -60,23 +64,23 @@ impl Workspace {
 
 /// The parts of the workspace for steps with `S` nodes.
 pub(crate) trait Room<const S: usize> {
-    /// Coefficient cache, modes at the end of the trial step, modes at the end of probe steps.
-    fn parts(&mut self) -> (&mut Cache<S>, &mut ModeStates, &mut ModeStates);
+    /// Coefficient cache, end of the trial step, modes at an instant inside it.
+    fn parts(&mut self) -> (&mut Cache<S>, &mut End<S>, &mut ModeStates);
 }
 
 impl Room<SHORT> for Workspace {
-    fn parts(&mut self) -> (&mut Cache<SHORT>, &mut ModeStates, &mut ModeStates) {
-        (&mut self.short, &mut self.end, &mut self.probe)
+    fn parts(&mut self) -> (&mut Cache<SHORT>, &mut End<SHORT>, &mut ModeStates) {
+        (&mut self.short, &mut self.short_end, &mut self.inside)
     }
 }
 
 impl Room<LONG> for Workspace {
-    fn parts(&mut self) -> (&mut Cache<LONG>, &mut ModeStates, &mut ModeStates) {
-        (&mut self.long, &mut self.end, &mut self.probe)
+    fn parts(&mut self) -> (&mut Cache<LONG>, &mut End<LONG>, &mut ModeStates) {
+        (&mut self.long, &mut self.long_end, &mut self.inside)
     }
 }
 
-/// Work of a step with cached coefficients, or with new ones.
+/// Work of a step with coefficients that are kept, or with new ones.
 pub(crate) fn work(recurring: bool) -> u64 {
     if recurring { 1 } else { NEW_LENGTH }
 }

@@ -205,9 +205,9 @@ fn load_error<const S: usize, A: Arithmetic>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::beam::mode::ModeState;
     use crate::excitation::drive::Drive;
     use crate::integrator::collocation::coefficients::Cache;
+    use crate::integrator::collocation::step::End;
     use crate::math::nodal::LONG;
     use crate::scene::Scene;
     use crate::variables::AxialForceKind;
@@ -243,13 +243,13 @@ mod tests {
             let collocation = Collocation::<LONG>::new();
             let axial = model.axial.as_ref().unwrap();
             for _ in 0..100 {
-                let mut end = [ModeState::default(); MAX_MODES];
+                let mut end = End::default();
                 let mut moved = |length| {
                     let prepared = cache.prepare(state.time, length, true, &model);
                     let drive = Drive::default();
                     let trial =
                         crate::integrator::collocation::step::trial(&model, &state, &drive, prepared, source, &mut end);
-                    (trial.unwrap(), end)
+                    (trial.unwrap(), end.modes)
                 };
                 // Radau quadrature of the power, from steps to the nodes.
                 let powers = collocation.nodes.map(|node| {

@@ -49,6 +49,18 @@ pub struct EndRows<const S: usize> {
 }
 
 impl<const S: usize> EndRows<S> {
+    /// The free motion of each mode.
+    pub fn free(&self) -> impl Iterator<Item = FreeMotion> {
+        let rows = self.q_from_q.iter().zip(&self.q_from_v).zip(&self.v_from_q);
+        rows.zip(&self.v_from_v)
+            .map(|(((q_from_q, q_from_v), v_from_q), v_from_v)| FreeMotion {
+                q_from_q: *q_from_q,
+                q_from_v: *q_from_v,
+                v_from_q: *v_from_q,
+                v_from_v: *v_from_v,
+            })
+    }
+
     const ZERO: Self = Self {
         q_from_q: [0.0; MAX_MODES],
         q_from_v: [0.0; MAX_MODES],
@@ -235,6 +247,15 @@ fn in_seconds<const S: usize>(tables: Pair<Table<S>>, h: f64) -> (TipColumns<S>,
     (columns, error)
 }
 
+/// The slot of a length: dyadic fractions of one, and one and a half times them, occupy neighbouring slots; those of another
+/// start elsewhere (Fibonacci hashing).
+fn slot(length: f64) -> usize {
+    let bits = length.to_bits();
+    let (octave, mantissa) = (bits >> 51, bits << 13);
+    let elsewhere = mantissa.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> (64 - SLOTS.ilog2());
+    usize::try_from(octave + elsewhere).unwrap_or_default() % SLOTS
+}
+
 /// Cache of coefficients by step length. Its content never affects results, only the time they take.
 #[derive(Clone, Debug)]
 pub struct Cache<const S: usize> {
@@ -274,13 +295,7 @@ impl<const S: usize> Cache<S> {
         &self.collocation
     }
 
-    /// The coefficients for a length; `recurring`: keep them in a slot.
-    pub fn get(&mut self, length: f64, recurring: bool, model: &Model) -> (&StepCoefficients<S>, &Collocation<S>) {
-        let (step, collocation, _) = self.entry(length, recurring, model);
-        (step, collocation)
-    }
-
-    /// [`Cache::get`] for a step from `time` (s) on.
+    /// The coefficients for a length, with the base acceleration of a step from `time` (s) on.
     pub fn prepare(&mut self, time: f64, length: f64, recurring: bool, model: &Model) -> Prepared<'_, S> {
         let (step, collocation, piece) = self.entry(length, recurring, model);
         let generated = model.generator.over_step(model.simd, time, &step.turns, piece);
@@ -291,7 +306,17 @@ impl<const S: usize> Cache<S> {
         }
     }
 
-    /// [`Cache::get`], and the piece of a random acceleration.
+    /// The coefficients for a length, if they are known.
+    pub fn known(&self, length: f64, recurring: bool) -> Option<&StepCoefficients<S>> {
+        let entry = self
+            .slots
+            .get(slot(length))
+            .filter(|_| recurring)
+            .unwrap_or(&self.other);
+        (entry.length.to_bits() == length.to_bits()).then_some(entry)
+    }
+
+    /// The coefficients for a length, `recurring`: kept in a slot; and the piece of a random acceleration.
     fn entry(
         &mut self,
         length: f64,
@@ -304,12 +329,7 @@ impl<const S: usize> Cache<S> {
             other,
             piece,
         } = self;
-        // Dyadic fractions of a length occupy neighbouring slots; another length starts elsewhere (Fibonacci hashing).
-        let bits = length.to_bits();
-        let (exponent, mantissa) = (bits >> 52, bits << 12);
-        let elsewhere = mantissa.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> (64 - SLOTS.ilog2());
-        let slot = usize::try_from(exponent + elsewhere).unwrap_or_default() % SLOTS;
-        let entry = slots.get_mut(slot).filter(|_| recurring).unwrap_or(other);
+        let entry = slots.get_mut(slot(length)).filter(|_| recurring).unwrap_or(other);
         if entry.length.to_bits() != length.to_bits() {
             entry.fill(length, model, collocation);
         }

@@ -4,6 +4,7 @@ pub mod axial_force;
 pub mod coefficients;
 pub mod modal_response;
 pub mod newton;
+pub mod part;
 pub mod polynomial;
 pub mod shapes;
 pub mod step;

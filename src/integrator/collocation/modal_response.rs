@@ -6,7 +6,7 @@
 //! integrated by parts). For a fast mode: derivatives of the shape (the quasi-static particular solution) and a free
 //! motion that cancels its initial value. A strongly overdamped mode with one fast and one slow root uses one of each.
 
-use crate::integrator::collocation::shapes::{MAX_SHAPES, Row, Shapes};
+use crate::integrator::collocation::shapes::{Load, MAX_SHAPES, Row, Shapes};
 use crate::integrator::collocation::superposition::{Combination, Fading, Pair, Response};
 use crate::integrator::constants::{FAST, FREE, NEGLIGIBLE, SLOW, TERMS};
 use crate::math::free_motion::FreeMotion;
@@ -114,68 +114,143 @@ impl ModeOverStep {
         }
     }
 
+    /// The responses at the end to two loads, from rest; displacement in step lengths squared, velocity in step lengths.
+    /// `free`: the free motion to there.
+    #[inline(always)]
+    pub(crate) fn under<const S: usize, A: Arithmetic>(
+        &self,
+        shapes: &Shapes<S>,
+        free: &FreeMotion,
+        (one, other): (&Load, &Load),
+    ) -> [Pair<f64>; 2] {
+        let (mut a, mut b) = (Pair { q: 0.0, v: 0.0 }, Pair { q: 0.0, v: 0.0 });
+        let integrals = one.integrals.iter().zip(&other.integrals);
+        self.for_integrals::<S, A, _>(shapes, integrals, |by_q, by_v, (of_a, of_b)| {
+            (a.q, a.v) = (A::mul_add(by_q, *of_a, a.q), A::mul_add(by_v, *of_a, a.v));
+            (b.q, b.v) = (A::mul_add(by_q, *of_b, b.q), A::mul_add(by_v, *of_b, b.v));
+        });
+        if let Regime::Slow = self.regime {
+            return [a, b];
+        }
+        // What the free motion cancels at the start.
+        let (mut from_a, mut from_b) = (Pair { q: 0.0, v: 0.0 }, Pair { q: 0.0, v: 0.0 });
+        let derivatives = one.derivatives.iter().zip(&other.derivatives);
+        self.for_derivatives::<S, _>(derivatives, |by_q, by_v, ([start_a, end_a], [start_b, end_b])| {
+            (a.q, a.v) = (A::mul_add(by_q, *end_a, a.q), A::mul_add(by_v, *end_a, a.v));
+            (b.q, b.v) = (A::mul_add(by_q, *end_b, b.q), A::mul_add(by_v, *end_b, b.v));
+            (from_a.q, from_a.v) = (
+                A::mul_add(by_q, *start_a, from_a.q),
+                A::mul_add(by_v, *start_a, from_a.v),
+            );
+            (from_b.q, from_b.v) = (
+                A::mul_add(by_q, *start_b, from_b.q),
+                A::mul_add(by_v, *start_b, from_b.v),
+            );
+        });
+        let (q_from_q, q_from_v, v_from_q, v_from_v) = if let Regime::Split(_, fast) = self.regime {
+            let decay = decayed(fast);
+            (decay, 0.0, fast * decay, 0.0)
+        } else {
+            let h = self.h;
+            (free.q_from_q, free.q_from_v / h, free.v_from_q * h, free.v_from_v)
+        };
+        for (response, from) in [(&mut a, from_a), (&mut b, from_b)] {
+            response.q -= q_from_q * from.q + q_from_v * from.v;
+            response.v -= v_from_q * from.q + v_from_v * from.v;
+        }
+        [a, b]
+    }
+
     #[inline(always)]
     fn combination<const S: usize, A: Arithmetic>(&self, shapes: &Shapes<S>) -> Combination {
         let mut factors = Combination::ZERO;
-        let (c, w) = (self.damping * self.h, self.omega_squared * self.h * self.h);
+        let Combination {
+            integrals,
+            terms,
+            derivatives,
+        } = &mut factors;
+        let entries = integrals.q.iter_mut().zip(&mut integrals.v);
+        self.for_integrals::<S, A, _>(shapes, entries, |by_q, by_v, (q, v)| {
+            (*q, *v) = (by_q, by_v);
+            *terms += 1;
+        });
+        let entries = derivatives.q.iter_mut().zip(&mut derivatives.v);
+        self.for_derivatives::<S, _>(entries, |by_q, by_v, (q, v)| (*q, *v) = (by_q, by_v));
+        factors
+    }
+
+    /// Calls `each` with the factors of the n-fold integrals of a load in displacement and velocity, n = 1, 2, ..., and
+    /// those. For slow roots the factors are the derivatives of the impulse response at the start: its power series.
+    #[inline(always)]
+    fn for_integrals<const S: usize, A: Arithmetic, T>(
+        &self,
+        shapes: &Shapes<S>,
+        mut integrals: impl Iterator<Item = T>,
+        mut each: impl FnMut(f64, f64, T),
+    ) {
+        // At the last node the powers are 1 / n!.
+        let sizes = shapes.powers.iter().filter_map(|power| power.last());
         match self.regime {
             Regime::Slow => {
-                let (q, v) = (&mut factors.integrals.q, &mut factors.integrals.v);
-                factors.terms = self.series::<S, A>(shapes, v) + 1;
-                let shifted = q.iter_mut().skip(1);
-                shifted.zip(v.iter()).for_each(|(q, v)| *q = *v);
-            }
-            Regime::Fast => {
-                let (q, v) = (&mut factors.derivatives.q, &mut factors.derivatives.v);
-                let (mut below, mut value) = (0.0, 1.0 / w);
-                for (q, v) in q.iter_mut().zip(v).take(S + 1) {
-                    (*q, *v) = (value, below);
-                    (below, value) = (value, -(c * value + below) / w);
+                let (c, w) = (-self.damping * self.h, -self.omega_squared * self.h * self.h);
+                // The factor of the velocity is the next one of the displacement.
+                let (mut below, mut value) = (0.0_f64, 1.0_f64);
+                for (size, integral) in sizes.take(TERMS - 1).zip(integrals.by_ref()) {
+                    if below.abs().max(value.abs()) * size < NEGLIGIBLE {
+                        each(below, 0.0, integral);
+                        return;
+                    }
+                    each(below, value, integral);
+                    (below, value) = (value, A::mul_add(c, value, w * below));
+                }
+                if let Some(integral) = integrals.next() {
+                    each(below, 0.0, integral);
                 }
             }
+            Regime::Fast => (),
             Regime::Split(slow, fast) => {
                 let share = 1.0 / (slow - fast);
                 let mut power = share;
-                let sizes = shapes.powers.iter().filter_map(|power| power.last());
-                let (q, v) = (&mut factors.integrals.q, &mut factors.integrals.v);
-                for ((q, v), size) in q.iter_mut().zip(v).zip(sizes) {
-                    *q = power;
+                for (size, integral) in sizes.zip(integrals) {
+                    let by_q = power;
                     power *= slow;
-                    *v = power;
-                    factors.terms += 1;
+                    each(by_q, power, integral);
                     if power.abs() * size < NEGLIGIBLE * share {
                         break;
                     }
                 }
+            }
+        }
+    }
+
+    /// The same with the m-th derivatives of a load, m = 0, ..., S, for fast roots.
+    #[inline(always)]
+    fn for_derivatives<const S: usize, T>(
+        &self,
+        derivatives: impl Iterator<Item = T>,
+        mut each: impl FnMut(f64, f64, T),
+    ) {
+        let derivatives = derivatives.take(S + 1);
+        match self.regime {
+            Regime::Slow => (),
+            Regime::Fast => {
+                let (c, w) = (self.damping * self.h, self.omega_squared * self.h * self.h);
+                let (mut below, mut value) = (0.0, 1.0 / w);
+                for derivative in derivatives {
+                    each(value, below, derivative);
+                    (below, value) = (value, -(c * value + below) / w);
+                }
+            }
+            Regime::Split(slow, fast) => {
                 let inverse = 1.0 / fast;
-                let mut power = share;
-                let (q, v) = (&mut factors.derivatives.q, &mut factors.derivatives.v);
-                for (q, v) in q.iter_mut().zip(v).take(S + 1) {
-                    *v = power;
+                let mut power = 1.0 / (slow - fast);
+                for derivative in derivatives {
+                    let by_v = power;
                     power *= inverse;
-                    *q = power;
+                    each(power, by_v, derivative);
                 }
             }
         }
-        factors
-    }
-
-    /// Derivatives of the impulse response at the start: its power series. Returns the number of terms used.
-    #[inline(always)]
-    fn series<const S: usize, A: Arithmetic>(&self, shapes: &Shapes<S>, series: &mut [f64; TERMS]) -> usize {
-        let (c, w) = (-self.damping * self.h, -self.omega_squared * self.h * self.h);
-        let (mut below, mut value, mut terms) = (0.0_f64, 1.0_f64, 0);
-        // At the last node the powers are 1 / n!.
-        let sizes = shapes.powers.iter().filter_map(|power| power.last());
-        for (term, size) in series.iter_mut().zip(sizes).take(TERMS - 1) {
-            if below.abs().max(value.abs()) * size < NEGLIGIBLE {
-                break;
-            }
-            *term = value;
-            terms += 1;
-            (below, value) = (value, A::mul_add(c, value, w * below));
-        }
-        terms
     }
 
     /// Free motion: displacement (per step length) and velocity at the nodes per initial velocity.
@@ -229,14 +304,17 @@ impl ModeOverStep {
         let mut decay = [0.0; S];
         if let Regime::Split(_, fast) = self.regime {
             for (decay, x) in decay.iter_mut().zip(nodes) {
-                // Below `e^-50` the decay is far below rounding.
-                if fast * x > -50.0 {
-                    *decay = (fast * x).exp();
-                }
+                *decay = decayed(fast * x);
             }
         }
         decay
     }
+}
+
+/// The exponential of a negative number; zero below `e^-50`, which is far below rounding.
+#[inline(always)]
+fn decayed(exponent: f64) -> f64 {
+    if exponent > -50.0 { exponent.exp() } else { 0.0 }
 }
 
 #[cfg(test)]

@@ -55,6 +55,10 @@ pub(crate) struct Solution<const S: usize> {
     pub(crate) by_force: (f64, f64),
     /// The same per defect of the other loads.
     pub(crate) by_load: (f64, f64),
+    /// Nodal forces per defect of the contact force at the start.
+    pub(crate) nodal_by_force: Nodal<S>,
+    /// The same per defect of the other loads.
+    pub(crate) nodal_by_load: Nodal<S>,
     /// Tangent of the contact law.
     pub(crate) tangent: Tangent,
 }
@@ -67,6 +71,8 @@ impl<const S: usize> Solution<S> {
             iterations: 0,
             by_force: (0.0, 0.0),
             by_load: (0.0, 0.0),
+            nodal_by_force: [0.0; S],
+            nodal_by_load: [0.0; S],
             tangent: Tangent::default(),
         }
     }
@@ -100,6 +106,8 @@ impl<const S: usize> Solution<S> {
             iterations,
             by_force: tip(&step.force_error, force_error),
             by_load: tip(load_error.0, load_error.1),
+            nodal_by_force: *force_error,
+            nodal_by_load: *load_error.1,
             tangent: Tangent {
                 stiffness,
                 damping,

@@ -8,7 +8,7 @@ use crate::integrator::collocation::shapes::{MAX_SHAPES, Shapes};
 use crate::integrator::constants::{FLAT, LOOKS, NEAR};
 use crate::math::legendre;
 use crate::math::nodal::{LONG, Nodal, add, dot, scaled};
-use crate::math::prediction::{Prediction, Predictions};
+use crate::math::prediction::{Prediction, Predictions, value_and_slope};
 use crate::math::simd::{Arithmetic, Separate, Simd, compiled_for};
 
 /// Golden ratio, of the golden-section search.
@@ -26,9 +26,15 @@ pub struct Collocation<const S: usize> {
     pub at_start: Nodal<S>,
     /// Mean of the Lagrange polynomials over the step: the weights of the Radau quadrature.
     weights: Nodal<S>,
+    /// Highest coefficients of the Lagrange polynomials.
+    leading: Nodal<S>,
+    /// Greatest impulse up to a node that the shape of the error estimate makes, per step length.
+    pub impulse: f64,
     /// Lagrange polynomials of the start and the nodes, by coefficients of y^0, y^1, ..., `y = x - 1`; the first row is
     /// that of the start.
     steep: Vec<Prediction>,
+    /// The same for the nodes without the start.
+    nodal: Vec<Prediction>,
     /// The same for the last few nodes only, which is better for long extrapolation.
     flat: Vec<Prediction>,
 }
@@ -60,27 +66,48 @@ impl<const S: usize> Collocation<S> {
         for (start, shape) in at_start.iter_mut().zip(derivatives_at(0.0)) {
             *start = shape.first().copied().unwrap_or_default();
         }
+        let leading = nodes.map(|own| {
+            let others = nodes.iter().filter(|node| **node != own);
+            others.map(|node| 1.0 / (own - node)).product()
+        });
+        let shapes = Shapes::new(&nodes, derivatives_at);
+        let impulses = shapes.integrals.first().map_or([0.0; S], |table| table.error);
         let about_end: Vec<_> = [-1.0].into_iter().chain(nodes.iter().map(|node| node - 1.0)).collect();
         let steep = lagrange(&about_end);
+        let nodal = lagrange(about_end.get(1..).unwrap_or_default());
         let flat = lagrange(about_end.get(S + 1 - FLAT..).unwrap_or_default());
         Self {
             nodes,
-            shapes: Shapes::new(&nodes, derivatives_at),
+            shapes,
             at_start,
             weights,
+            leading,
+            impulse: impulses.iter().fold(0.0, |most, impulse| most.max(impulse.abs())),
             steep,
+            nodal,
             flat,
         }
     }
 
+    /// The Lagrange polynomials at `x`, 0 to 1 over the step.
+    #[inline(always)]
+    pub fn lagrange(&self, x: f64) -> Nodal<S> {
+        let mut row = self.leading;
+        let (mut below, mut above) = (1.0, 1.0);
+        for (entry, node) in row.iter_mut().zip(&self.nodes) {
+            *entry *= below;
+            below *= x - node;
+        }
+        for (entry, node) in row.iter_mut().zip(&self.nodes).rev() {
+            *entry *= above;
+            above *= x - node;
+        }
+        row
+    }
+
     /// The nodal polynomial through `values` at `x`, 0 to 1 over the step.
     pub fn interpolate(&self, values: &Nodal<S>, x: f64) -> f64 {
-        let mut sum = 0.0;
-        for (value, &own) in values.iter().zip(&self.nodes) {
-            let others = self.nodes.iter().filter(|&&node| node != own);
-            sum += value * others.map(|node| (x - node) / (own - node)).product::<f64>();
-        }
-        sum
+        dot::<S, Separate>(&self.lagrange(x), values)
     }
 
     /// Whether the nodal polynomial through `values`, with the value `start` at the start of the step, may reach zero
@@ -95,7 +122,8 @@ impl<const S: usize> Collocation<S> {
     /// at a sample point, or at the minimum near the lowest of them. It is not searched before the first node, where
     /// the polynomial extrapolates.
     pub fn first_dip(&self, values: &Nodal<S>, until: f64) -> Option<f64> {
-        let value = |x: f64| self.interpolate(values, x);
+        let polynomial = combine::<Separate>(&self.nodal, values.iter());
+        let value = |x: f64| value_and_slope(&polynomial, x - 1.0).0;
         let look = 1.0 / f64::from(LOOKS);
         let first = self.nodes.first().copied().unwrap_or_default();
         let between = (1..LOOKS).map(|k| f64::from(k) * look).filter(|x| *x > first);

@@ -3,7 +3,7 @@
 
 use crate::integrator::constants::{POINTS, TERMS};
 use crate::math::legendre;
-use crate::math::nodal::{LONG, Nodal, add, end};
+use crate::math::nodal::{LONG, Nodal, add, dot, end};
 use crate::math::simd::Arithmetic;
 
 /// Largest number of load shapes: one for each node, one for the error estimate.
@@ -44,6 +44,15 @@ pub struct Shapes<const S: usize> {
     pub start_derivatives: Vec<Row<S>>,
 }
 
+/// Integrals and derivatives of one load, in units of the step length.
+#[derive(Clone, Copy, Debug)]
+pub struct Load {
+    /// n-fold integrals from the start up to the end of the step, n = 1, 2, ...
+    pub integrals: [f64; TERMS],
+    /// m-th derivatives at the start and at the end, m = 0, 1, ...
+    pub derivatives: [[f64; 2]; MAX_SHAPES],
+}
+
 impl<const S: usize> Table<S> {
     /// All zero.
     pub const ZERO: Self = Self {
@@ -71,6 +80,23 @@ impl<const S: usize> Table<S> {
 }
 
 impl<const S: usize> Shapes<S> {
+    /// The nodal polynomial through these values.
+    #[inline(always)]
+    pub fn load<A: Arithmetic>(&self, values: &Nodal<S>) -> Load {
+        let mut load = Load {
+            integrals: [0.0; TERMS],
+            derivatives: [[0.0; 2]; MAX_SHAPES],
+        };
+        for (integral, row) in load.integrals.iter_mut().zip(&self.end_integrals) {
+            *integral = dot::<S, A>(row, values);
+        }
+        let rows = self.start_derivatives.iter().zip(&self.end_derivatives);
+        for (derivative, (start, end)) in load.derivatives.iter_mut().zip(rows) {
+            *derivative = [dot::<S, A>(&start.nodal, values), dot::<S, A>(end, values)];
+        }
+        load
+    }
+
     /// From the nodes on [0, 1] and a function that gives the derivatives (m = 0, ..., S) of each shape at an instant.
     pub fn new(nodes: &Nodal<S>, derivatives_at: impl Fn(f64) -> Vec<[f64; MAX_SHAPES]>) -> Self {
         let mut power = [1.0; S];

@@ -2,9 +2,9 @@
 //! error estimate.
 
 use crate::beam::axial::Feedback;
-use crate::beam::mode::{Modal, ModeStates};
+use crate::beam::mode::{MAX_MODES, Modal, ModeState, ModeStates};
 use crate::excitation::drive::Drive;
-use crate::integrator::collocation::axial_force::{self, Settled};
+use crate::integrator::collocation::axial_force::{self, NodalModes, Settled};
 use crate::integrator::collocation::coefficients::{EndRows, Prepared, StepCoefficients};
 use crate::integrator::collocation::newton::{
     FreeResponse, Solution, Source, Tangent, at_nodes, closed_forces, first_forces,
@@ -25,14 +25,21 @@ pub struct Trial<const S: usize> {
     pub indentations: Nodal<S>,
     /// Its velocity at the nodes, m/s.
     pub rates: Nodal<S>,
+    /// Base acceleration at the nodes, m/s2.
+    pub accelerations: Nodal<S>,
     /// Displacement of the fixed contact at the end, m.
     pub support: f64,
     /// Indentation at the end as deviation from the preload, m.
     pub indentation: f64,
     /// Its velocity at the end, m/s.
     pub rate: f64,
+    /// Contact force at the end as deviation from the preload force, N: the last of the nodal forces, unless it ends
+    /// inside the step that was computed.
+    pub force: f64,
     /// Estimate of the error this step adds to the contact force, N.
     pub error: f64,
+    /// Estimate of the same at instants inside the step, N.
+    pub inner_error: f64,
     /// Rounding of the contact force, N: an error estimate below it is meaningless.
     pub rounding: f64,
     /// Defect of the force polynomial at the start: difference from the contact force there, N.
@@ -43,25 +50,43 @@ pub struct Trial<const S: usize> {
     pub tangent: Tangent,
 }
 
+/// What a trial leaves for the step that is taken.
+#[derive(Clone, Debug)]
+pub struct End<const S: usize> {
+    /// The modes at its end.
+    pub modes: ModeStates,
+    /// Loads of an axial force that follows the deflection, at its nodes.
+    pub loads: NodalModes<S>,
+}
+
+impl<const S: usize> Default for End<S> {
+    fn default() -> Self {
+        Self {
+            modes: [ModeState::default(); MAX_MODES],
+            loads: [[0.0; S]; MAX_MODES],
+        }
+    }
+}
+
 /// The loads on [`LANES`] modes at the nodes.
 type LaneLoads<const S: usize> = [[f64; LANES]; S];
 
-/// Computes the prepared step from `state`, contact closed or open as in `state`; writes the modes at its end to
-/// `end_modes`. `None` if the iteration for contact or axial force does not converge.
+/// Computes the prepared step from `state`, contact closed or open as in `state`. `None` if the iteration for contact or
+/// axial force does not converge.
 pub fn trial<const S: usize>(
     model: &Model,
     state: &State,
     drive: &Drive,
     prepared: Prepared<S>,
     source: Source<S>,
-    end_modes: &mut ModeStates,
+    end: &mut End<S>,
 ) -> Option<Trial<S>> {
     match model.axial() {
         None => {
-            compiled_for!(model.simd, A => compute::<S, A>(model, state, drive, prepared, source, end_modes))
+            compiled_for!(model.simd, A => compute::<S, A>(model, state, drive, prepared, source, end))
         }
         Some(axial) => compiled_for!(model.simd, A =>
-            compute_with_axial_force::<S, A>(model, axial, state, drive, prepared, source, end_modes)),
+            compute_with_axial_force::<S, A>(model, axial, state, drive, prepared, source, end)),
     }
 }
 
@@ -73,7 +98,7 @@ fn compute<const S: usize, A: Arithmetic>(
     drive: &Drive,
     prepared: Prepared<S>,
     source: Source<S>,
-    end_modes: &mut ModeStates,
+    end: &mut End<S>,
 ) -> Option<Trial<S>> {
     let Prepared { step, collocation, .. } = prepared;
     let free = free_response::<S, A>(state, drive, &prepared);
@@ -90,7 +115,7 @@ fn compute<const S: usize, A: Arithmetic>(
         coefficients,
         (&solution, &[]),
         &free,
-        end_modes,
+        &mut end.modes,
     ))
 }
 
@@ -103,7 +128,7 @@ fn compute_with_axial_force<const S: usize, A: Arithmetic>(
     drive: &Drive,
     prepared: Prepared<S>,
     source: Source<S>,
-    end_modes: &mut ModeStates,
+    end: &mut End<S>,
 ) -> Option<Trial<S>> {
     let Prepared { step, collocation, .. } = prepared;
     let free = free_response::<S, A>(state, drive, &prepared);
@@ -116,14 +141,15 @@ fn compute_with_axial_force<const S: usize, A: Arithmetic>(
         ..axial_force::with_loads::<S, A>(model, &free, step, &loads)
     };
     let coefficients = (step, collocation);
+    end.loads = loads;
     Some(judged::<S, A>(
         model,
         state,
         drive,
         coefficients,
-        (&solution, &loads),
+        (&solution, &end.loads),
         &free,
-        end_modes,
+        &mut end.modes,
     ))
 }
 
@@ -217,15 +243,18 @@ fn judged<const S: usize, A: Arithmetic>(
     } else {
         0.0
     };
-    let error = error(model, state, step, solution, start_defect, free, largest);
+    let (error, inner_error) = errors(model, state, (step, collocation), solution, start_defect, free, largest);
     Trial {
         forces,
         indentations,
         rates,
+        accelerations: free.accelerations,
         support,
         indentation,
         rate,
+        force: end(&forces),
         error,
+        inner_error,
         rounding: FORCE_ROUNDING * largest.max(model.preload.force),
         start_defect: start_defect.abs(),
         iterations,
@@ -233,25 +262,26 @@ fn judged<const S: usize, A: Arithmetic>(
     }
 }
 
-/// Estimate of the error that a step adds to the contact force, N.
+/// Estimates of the error that a step adds to the contact force, N: if it is taken to its end, and if it ends inside.
 ///
 /// The polynomials are exact at the nodes; their defect at the start gives the amplitude of the next term, the shape
 /// that vanishes at the nodes. Its effect on the nodal forces is known to first order ([`Solution`]). At the end of the
 /// step, modes slow compared with the step are hardly affected by it (the shape is orthogonal to polynomials of low
 /// degree); their error is of twice the order, about three times the square of the defect (calibrated with a free mass
 /// impacting a Hertz contact). Just after first touch or a jump the force is not smooth, and their error is larger.
+/// Inside the step the shape is not orthogonal to anything: slow modes get its impulse up to there.
 ///
 /// `start_defect` (N) is the defect of the force polynomial, `largest` (N) the largest nodal force.
 #[inline(always)]
-fn error<const S: usize>(
+fn errors<const S: usize>(
     model: &Model,
     state: &State,
-    step: &StepCoefficients<S>,
+    (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
     solution: &Solution<S>,
     start_defect: f64,
     free: &FreeResponse<S>,
     largest: f64,
-) -> f64 {
+) -> (f64, f64) {
     if state.closed {
         let (by_force, by_load) = (solution.by_force, solution.by_load);
         let wrong_d = by_load.0 * free.start_defect - by_force.0 * start_defect;
@@ -263,27 +293,34 @@ fn error<const S: usize>(
         } else {
             0.0
         };
-        let slow = 3.0 * start_defect * start_defect / largest + kinked + model.inertia * free.missed_mean;
-        fast + slow * solution.tangent.gain / (1.0 + solution.tangent.gain)
+        let reaction = solution.tangent.gain / (1.0 + solution.tangent.gain);
+        let missed = model.inertia * free.missed_mean;
+        let slow = 3.0 * start_defect * start_defect / largest + kinked + missed;
+        let inside = greatest(&solution.nodal_by_force) * start_defect.abs()
+            + greatest(&solution.nodal_by_load) * free.start_defect.abs();
+        let impulse = collocation.impulse * start_defect.abs() + missed;
+        (fast + slow * reaction, inside + impulse * reaction)
     } else {
-        let last = |values: &Nodal<S>| (end(values) * free.start_defect).abs();
+        // Of the indentation that is read, searched for a contact, or left at an instant inside.
+        let most = |values: &Nodal<S>| greatest(values) * free.start_defect.abs();
         let rows = free.error;
         let missed_velocity = free.missed_mean * step.length;
-        let wrong = last(&rows.displacement)
-            + model.law.damping() * last(&rows.velocity)
+        let wrong = most(&rows.displacement)
+            + model.law.damping() * most(&rows.velocity)
             + missed_velocity * (model.memory + model.law.damping());
-        model.law.tangent_stiffness(model.force_scale) * wrong
+        let error = model.law.tangent_stiffness(model.force_scale) * wrong;
+        (error, error)
     }
 }
 
-/// Whether the error of a step from `state` is explained by rounding of the sums over the modes: after an impact the
+/// Whether the error (N) of a step from `state` is explained by rounding of the sums over the modes: after an impact the
 /// modal velocities are large and their sum at the tip is small.
-pub(crate) fn is_rounding<const S: usize>(model: &Model, state: &State, trial: &Trial<S>) -> bool {
+pub(crate) fn is_rounding<const S: usize>(model: &Model, state: &State, trial: &Trial<S>, error: f64) -> bool {
     let (displacement, velocity) = sum_rounding(model, state);
     // The force at the first node feeds back only over the time up to it, some 1 / S^2 of the step.
     let reaction = 1.0 + trial.tangent.gain / (S * S) as f64;
     let Tangent { stiffness, damping, .. } = trial.tangent;
-    trial.error <= (stiffness * displacement + damping * velocity) / reaction
+    error <= (stiffness * displacement + damping * velocity) / reaction
 }
 
 /// Rounding of displacement (m) and velocity (m/s) of the tip as sums over the modes.
@@ -370,6 +407,12 @@ fn end_of_modes<const S: usize, A: Arithmetic>(
         }
     }
     (tip.iter().sum(), tip_rate.iter().sum())
+}
+
+/// The greatest magnitude.
+#[inline(always)]
+fn greatest<const S: usize>(values: &Nodal<S>) -> f64 {
+    values.iter().fold(0.0, |greatest, value| value.abs().max(greatest))
 }
 
 /// Subtracts `a` and `b`.

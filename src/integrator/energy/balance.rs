@@ -39,7 +39,7 @@
 //! times the force scale times the path.
 
 use crate::integrator::collocation::newton::Source;
-use crate::integrator::collocation::step::{self, Trial};
+use crate::integrator::collocation::step::{self, End, Trial};
 use crate::integrator::grid::Target;
 use crate::integrator::integration::Integration;
 use crate::integrator::workspace::{Room, Workspace};
@@ -64,12 +64,13 @@ impl Integration<'_> {
         let Self {
             model, state, drive, ..
         } = self;
-        let (cache, _, end) = Room::<LONG>::parts(self.workspace);
+        let (cache, ..) = Room::<LONG>::parts(self.workspace);
+        let mut end = End::default();
         let mut at: State = **state;
         let mut work = 0.0;
         for forces in halves {
             let prepared = cache.prepare(at.time, half, target.recurring, model);
-            let motion = step::trial(model, &at, drive, prepared, Source::Given(forces), end)?;
+            let motion = step::trial(model, &at, drive, prepared, Source::Given(forces), &mut end)?;
             let mut powers = forces;
             for ((power, d), rate) in powers.iter_mut().zip(&motion.indentations).zip(&motion.rates) {
                 let d = model.preload.indentation + d;
@@ -77,7 +78,7 @@ impl Integration<'_> {
             }
             work += half * prepared.collocation.mean(&powers);
             at.time += half;
-            at.modes = *end;
+            at.modes = end.modes;
             at.support = motion.support;
             at.indentation = motion.indentation;
         }
@@ -107,6 +108,7 @@ mod tests {
     use crate::excitation::drive::Drive;
     use crate::inputs::Inputs;
     use crate::integrator::collocation::polynomial::Collocation;
+    use crate::integrator::course::Places;
     use crate::integrator::grid::Grid;
     use crate::integrator::integration::Steps;
     use crate::math::nodal::{LONG, SHORT};
@@ -163,12 +165,13 @@ mod tests {
             tolerance: 1e-6,
             allowed: 1e-9,
             refusals: 0,
+            before_event: false,
             conserves: false,
         };
         let target = integration.grid.target(length, integration.state.time, None);
         let mut trial = integration.attempt::<S>(&target).unwrap();
-        change(&mut trial, Room::<S>::parts(integration.workspace).1);
-        integration.take(&trial, &target).unwrap();
+        change(&mut trial, &mut Room::<S>::parts(integration.workspace).1.modes);
+        integration.take(&trial, &target, Places::default()).unwrap();
         (state.energy_balance, trial)
     }
 

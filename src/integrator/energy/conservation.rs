@@ -36,8 +36,8 @@ impl Integration<'_> {
         } = self;
         let (cache, end, _) = Room::<S>::parts(self.workspace);
         let start = model.energy(&state.modes, state.indentation);
-        let finish = model.energy(end, trial.indentation);
-        let moved = model.modes.iter().zip(state.modes.iter().zip(end.iter()));
+        let finish = model.energy(&end.modes, trial.indentation);
+        let moved = model.modes.iter().zip(state.modes.iter().zip(end.modes.iter()));
         let loads = moved.map(|(mode, (start, end))| mode.participation * (end.q - start.q));
         let by_base = -drive.acceleration(state.time) * loads.sum::<f64>();
         let by_support = drive.support_rate * length * cache.collocation().mean(&trial.forces);

@@ -6,62 +6,46 @@
 //! oscillate faster than the interval resolves are added with their amplitudes.
 
 use crate::beam::mode::Mode;
-use crate::integrator::collocation::step::{Trial, sum_rounding};
-use crate::integrator::constants::{DEPTH, SHORTEST_FLIGHT, UNSEEN};
+use crate::integrator::collocation::part::Instant;
+use crate::integrator::collocation::step::Trial;
+use crate::integrator::constants::{DEPTH, HALVINGS, SHORTEST_FLIGHT, UNSEEN};
 use crate::integrator::events::Cut;
 use crate::integrator::integration::Integration;
 use crate::integrator::workspace::{Room, Workspace};
 use crate::math::nodal::LONG;
-use crate::math::roots;
-
-/// Indentation and its velocity at an instant of the step.
-#[derive(Clone, Copy, Debug)]
-struct Sample {
-    /// From the start of the step, s.
-    at: f64,
-    /// Indentation as deviation from the preload, m.
-    d: f64,
-    /// Its velocity, m/s.
-    rate: f64,
-}
 
 impl Integration<'_> {
-    /// Where in the step of free flight of `length` seconds the contact may first close, 0 to 1: the start of the first
-    /// interval between samples in which closing cannot be excluded.
-    pub(crate) fn first_near<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> Option<f64>
-    where
-        Workspace: Room<S>,
-    {
-        let (samples, error) = self.samples(trial, length);
-        let samples = samples.get(..S + 1).unwrap_or_default();
-        let unsure = self.unsure();
-        samples.windows(2).find_map(|pair| match pair {
-            [a, b] => (!self.is_open(b, unsure) || !self.is_clear(a, b, error, unsure)).then_some(a.at / length),
-            _ => None,
-        })
-    }
-
-    /// Locates the closing in the step of free flight of `length` seconds; `None` if the contact stays open.
+    /// Locates the closing in the trial of free flight of `length` seconds; `None` if the contact stays open.
     pub(crate) fn closing<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> Option<Cut>
     where
         Workspace: Room<S>,
     {
-        let (samples, error) = self.samples(trial, length);
+        let samples = self.samples(trial, length);
         let samples = samples.get(..S + 1).unwrap_or_default();
         let unsure = self.unsure();
-        let length = samples.windows(2).find_map(|pair| match pair {
-            [a, b] => self.touch_between::<S>(a, b, error, unsure, 0),
+        // The cubic over two intervals is wrong by more than that over each.
+        let mut errors = [0.0_f64; LONG + 1];
+        for (k, triple) in samples.windows(3).enumerate() {
+            if let [a, b, c] = triple {
+                let error = (b.d - cubic(a, c, b.at)).abs();
+                for entry in errors.iter_mut().skip(k).take(2) {
+                    *entry = entry.max(error);
+                }
+            }
+        }
+        let touch = samples.windows(2).zip(errors).find_map(|(pair, error)| match pair {
+            [a, b] => self.touch_between((trial, length), a, b, (error, unsure), 0),
             _ => None,
         })?;
-        Some(Cut { length, switches: true })
+        Some(self.cut(touch, true))
     }
 
-    /// Samples at the start and the nodes of a step, and the error of the cubics between them, m.
-    fn samples<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> ([Sample; LONG + 1], f64)
+    /// Samples at the start and the nodes of a step.
+    fn samples<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> [Instant; LONG + 1]
     where
         Workspace: Room<S>,
     {
-        let start = Sample {
+        let start = Instant {
             at: 0.0,
             d: self.state.indentation,
             rate: self.state.indentation_rate,
@@ -73,30 +57,38 @@ impl Integration<'_> {
             .skip(1)
             .zip(nodes.iter().zip(&trial.indentations).zip(&trial.rates))
         {
-            *entry = Sample {
+            *entry = Instant {
                 at: node * length,
                 d,
                 rate,
             };
         }
-        let error = samples
-            .windows(3)
-            .take(S - 1)
-            .filter_map(|triple| match triple {
-                [a, b, c] => Some((b.d - cubic(a, c, b.at)).abs()),
-                _ => None,
-            })
-            .fold(0.0, f64::max);
-        (samples, error)
+        samples
     }
 
-    /// Whether the contact certainly stays open between two open samples.
-    fn is_clear(&self, a: &Sample, b: &Sample, error: f64, unsure: f64) -> bool {
+    /// Whether the contact certainly stays open between two open samples, whose cubic is wrong by `error` (m).
+    fn is_clear(&self, a: &Instant, b: &Instant, error: f64, unsure: f64) -> bool {
         // A contact whose force is far below the tolerance need not be found.
         let negligible = self.model.law.overlap(1e-3 * self.tolerance);
         let (ripple, ripple_rate) = self.ripple(b.at - a.at);
-        let (d, rate) = (highest(a, b) + ripple, a.rate.max(b.rate) + ripple_rate);
-        self.model.engagement(d, rate) + error < negligible.max(unsure)
+        let (least, unseen) = (negligible.max(unsure), (error + ripple, ripple_rate));
+        // A cubic wrong by this much in the middle has a slope wrong by four times that over its length at most.
+        let steeper = 4.0 * error / (b.at - a.at);
+        self.is_clear_along(a, b, unseen, least, 0)
+            || self.is_clear_along(a, b, (unseen.0, unseen.1 + steeper), least, HALVINGS)
+    }
+
+    /// Whether the engagement stays below `least` (m) along the cubic of two samples, with `unseen` displacement (m) and
+    /// velocity (m/s) beside it.
+    fn is_clear_along(&self, a: &Instant, b: &Instant, unseen: (f64, f64), least: f64, halvings: u32) -> bool {
+        let (d, rate) = (highest(a, b) + unseen.0, a.rate.max(b.rate) + unseen.1);
+        if self.model.engagement(d, rate) < least {
+            return true;
+        }
+        let middle = halfway(a, b);
+        halvings > 0
+            && self.is_clear_along(a, &middle, unseen, least, halvings - 1)
+            && self.is_clear_along(&middle, b, unseen, least, halvings - 1)
     }
 
     /// Engagement that does not count as contact, m. Just after an opening: what the resolution of time has left of it
@@ -106,9 +98,8 @@ impl Integration<'_> {
         if !self.released() {
             return 0.0;
         }
-        let (displacement, velocity) = sum_rounding(model, state);
         let left = model.engagement(state.indentation, state.indentation_rate).max(0.0);
-        left + displacement + model.law.damping() * velocity
+        left + self.motion_rounding()
     }
 
     /// Whether the flight begins here.
@@ -117,7 +108,7 @@ impl Integration<'_> {
     }
 
     /// Whether oscillations faster than the interval between two samples are negligible.
-    fn is_resolved(&self, a: &Sample, b: &Sample) -> bool {
+    fn is_resolved(&self, a: &Instant, b: &Instant) -> bool {
         let (ripple, ripple_rate) = self.ripple(b.at - a.at);
         let [from, to] = [a, b].map(|sample| self.model.engagement(sample.d, sample.rate));
         ripple + self.model.law.damping() * ripple_rate <= UNSEEN * (to - from).abs()
@@ -142,16 +133,15 @@ impl Integration<'_> {
         (displacement, velocity)
     }
 
-    /// The first instant of closing between two samples, s from the start of the step; `error` (m) is the error of
-    /// their cubic.
+    /// The first instant of closing between two samples; `error` (m) is the error of their cubic.
     fn touch_between<const S: usize>(
         &mut self,
-        a: &Sample,
-        b: &Sample,
-        error: f64,
-        unsure: f64,
+        (trial, length): (&Trial<S>, f64),
+        a: &Instant,
+        b: &Instant,
+        (error, unsure): (f64, f64),
         depth: u32,
-    ) -> Option<f64>
+    ) -> Option<Instant>
     where
         Workspace: Room<S>,
     {
@@ -160,51 +150,41 @@ impl Integration<'_> {
                 return None;
             }
         } else if a.rate >= 0.0 && highest(a, b) <= b.d && self.is_resolved(a, b) || depth > DEPTH {
-            let touch = self.crossing::<S>(a, b);
+            let touch = self.crossing((trial, length), a, b);
             // A contact that closes at the instant of opening still gets a short flight, so that time advances.
-            return Some(if self.released() {
-                touch.max(SHORTEST_FLIGHT * b.at)
+            let shortest = SHORTEST_FLIGHT * b.at;
+            return Some(if self.released() && touch.at < shortest {
+                self.inside(trial, length, shortest)
             } else {
                 touch
             });
         }
-        let middle = self.sample::<S>(f64::midpoint(a.at, b.at));
+        let middle = self.inside(trial, length, f64::midpoint(a.at, b.at));
         let error = (middle.d - cubic(a, b, middle.at)).abs();
-        self.touch_between::<S>(a, &middle, error, unsure, depth + 1)
-            .or_else(|| self.touch_between::<S>(&middle, b, error, unsure, depth + 1))
+        self.touch_between((trial, length), a, &middle, (error, unsure), depth + 1)
+            .or_else(|| self.touch_between((trial, length), &middle, b, (error, unsure), depth + 1))
     }
 
-    /// The instant of closing between an open and a closed sample, s from the start of the step.
-    fn crossing<const S: usize>(&mut self, a: &Sample, b: &Sample) -> f64
+    /// The instant of closing between an open and a closed sample.
+    fn crossing<const S: usize>(&mut self, (trial, length): (&Trial<S>, f64), a: &Instant, b: &Instant) -> Instant
     where
         Workspace: Room<S>,
     {
         let model = self.model;
-        let engagement = |sample: &Sample| model.engagement(sample.d, sample.rate);
+        let engagement = |d, rate| model.engagement(d, rate);
         // A flight starts at the opening itself, where rounding may give a positive engagement.
-        let start = engagement(a).min(-f64::MIN_POSITIVE);
-        let resolution = self.resolution();
-        let overlap = |at| engagement(&self.sample::<S>(at));
-        roots::between(overlap, (a.at, start), (b.at, engagement(b)), resolution).unwrap_or(b.at)
+        let start = engagement(a.d, a.rate).min(-f64::MIN_POSITIVE);
+        let rounding = self.located();
+        self.instant(trial, length, engagement, (a.at, start), b.at, rounding)
     }
 
-    fn is_open(&self, sample: &Sample, unsure: f64) -> bool {
+    fn is_open(&self, sample: &Instant, unsure: f64) -> bool {
         self.model.engagement(sample.d, sample.rate) <= unsure
-    }
-
-    fn sample<const S: usize>(&mut self, at: f64) -> Sample
-    where
-        Workspace: Room<S>,
-    {
-        let (d, rate) = self
-            .probe(at)
-            .map_or((f64::NAN, f64::NAN), |trial| (trial.indentation, trial.rate));
-        Sample { at, d, rate }
     }
 }
 
 /// The Hermite cubic of two samples at an instant, m.
-fn cubic(a: &Sample, b: &Sample, at: f64) -> f64 {
+fn cubic(a: &Instant, b: &Instant, at: f64) -> f64 {
     let h = b.at - a.at;
     let x = (at - a.at) / h;
     let y = 1.0 - x;
@@ -213,8 +193,18 @@ fn cubic(a: &Sample, b: &Sample, at: f64) -> f64 {
         + h * (a.rate * (x * y * y) - b.rate * (x * x * y))
 }
 
+/// The Hermite cubic of two samples halfway.
+fn halfway(a: &Instant, b: &Instant) -> Instant {
+    let at = f64::midpoint(a.at, b.at);
+    Instant {
+        at,
+        d: cubic(a, b, at),
+        rate: 1.5 * (b.d - a.d) / (b.at - a.at) - 0.25 * (a.rate + b.rate),
+    }
+}
+
 /// Maximum of the Hermite cubic between the two samples, m.
-fn highest(a: &Sample, b: &Sample) -> f64 {
+fn highest(a: &Instant, b: &Instant) -> f64 {
     let h = b.at - a.at;
     let ends = a.d.max(b.d);
     // Slope of the cubic: h d' = p x^2 + q x + r.

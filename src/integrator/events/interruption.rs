@@ -1,126 +1,68 @@
-//! Event location of interruptions: where the contact force crosses that of the threshold resistance within a step.
+//! Event location of interruptions: where the contact force passes that of the threshold resistance within a step. The
+//! step goes on.
 
-use crate::chatter::Criterion;
-use crate::error::StepError;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::step::Trial;
-use crate::integrator::constants::PLACES;
-use crate::integrator::events::Cut;
-use crate::integrator::grid::Target;
-use crate::integrator::integration::{Integration, StepOutcome};
+use crate::integrator::course::{Places, turning_points};
+use crate::integrator::integration::Integration;
 use crate::integrator::workspace::{Room, Workspace};
-use crate::math::nodal::{self, SHORT};
+use crate::math::prediction::value_and_slope;
 use crate::math::roots;
 
 impl Integration<'_> {
-    /// Where in a step of the closed contact the force first crosses the threshold, 0 to 1; `None` if it does not.
-    pub(crate) fn first_passage<const S: usize>(&mut self, trial: &Trial<S>) -> Option<f64>
+    /// Where in a step of `length` seconds the force of the closed contact passes that of an interruption; `None` where
+    /// the step is too long to tell, unless it `must` be told.
+    ///
+    /// The force polynomial is monotone between the places where it turns, so that a dip of any length is found. Where it
+    /// is not accurate, the law gives the force at the exact motion under it.
+    pub(crate) fn passages<const S: usize>(&mut self, trial: &Trial<S>, length: f64, must: bool) -> Option<Places>
     where
         Workspace: Room<S>,
     {
-        let criterion = self.model.criterion?;
-        if !self.state.closed {
-            return None;
-        }
-        let excess = trial.forces.map(|force| self.excess(&criterion, force));
-        let start = self.excess(&criterion, self.state.force - self.model.preload.force);
-        if !Collocation::comes_near_zero(start, &excess) {
-            return None;
-        }
-        let collocation = self.collocation::<S>();
-        let mut nodes = collocation.nodes.iter().zip(&excess);
-        let beyond = nodes.find(|(_, excess)| **excess < 0.0).map(|(node, _)| *node);
-        collocation
-            .first_dip(&excess, beyond.unwrap_or(f64::INFINITY))
-            .or(beyond)
-    }
-
-    /// Distance of a force (deviation from the preload force) from the threshold, positive on the side of before, N.
-    fn excess(&self, criterion: &Criterion, force: f64) -> f64 {
-        let above = self.model.preload.force + force - criterion.force;
-        if self.state.interruptions.in_progress() {
-            -above
-        } else {
-            above
-        }
-    }
-
-    /// [`Integration::excess`] after a probe step of `length` seconds, N.
-    fn excess_after<const S: usize>(&mut self, criterion: &Criterion, length: f64) -> f64
-    where
-        Workspace: Room<S>,
-    {
-        let trial = self.probe::<S>(length);
-        trial.map_or(f64::NAN, |trial| self.excess(criterion, nodal::end(&trial.forces)))
-    }
-
-    /// Ends the step at the crossing found at or before the part `passed` of it; `None` if the step need not be
-    /// shortened.
-    pub(crate) fn stop_at_threshold<const S: usize>(
-        &mut self,
-        passed: f64,
-        target: &Target,
-        growth: f64,
-        requested: f64,
-    ) -> Result<Option<StepOutcome>, StepError>
-    where
-        Workspace: Room<S>,
-    {
+        let mut passages = Places::default();
         let model = self.model;
-        let Some(criterion) = &model.criterion else {
-            return Ok(None);
+        let preload = model.preload;
+        let Some(criterion) = model.criterion.filter(|_| self.state.closed) else {
+            return Some(passages);
         };
-        let latest = passed * target.length;
-        if S != SHORT {
-            // Events are located in 4-node steps; 8-node steps end before them.
-            return Ok(Some(self.reject(0.9 * latest)));
+        let mut interrupted = self.state.interruptions.in_progress();
+        let excess = |force: f64| preload.force + force - criterion.force;
+        let start = self.state.force - preload.force;
+        let ahead = |force: f64| if interrupted { -excess(force) } else { excess(force) };
+        if !Collocation::comes_near_zero(ahead(start), &trial.forces.map(ahead)) {
+            return Some(passages);
         }
-        let cut_at = |length| Cut {
-            length,
-            switches: false,
-        };
-        let end = self.excess_after::<S>(criterion, latest);
-        if end > 0.0 {
-            // The polynomial crosses, the force does not: the next step starts here.
-            return (latest < target.length)
-                .then(|| self.end_at::<S>(&cut_at(latest), growth, requested))
-                .transpose();
+        let polynomial = self.collocation::<S>().through(start, &trial.forces);
+        let value = |y: f64| excess(value_and_slope(&polynomial, y).0);
+        let turns = turning_points(&polynomial);
+        let inaccuracy = self.inaccuracy(trial, length);
+        let is_accurate = inaccuracy <= 1.0;
+        let unsure = inaccuracy * self.tolerance;
+        if !is_accurate && !must && turns.iter().any(|y| value(y).abs() < unsure) {
+            return None;
         }
-        let start = self.excess(criterion, self.state.force - model.preload.force);
-        let resolution = self.resolution();
-        // Where an interruption has just begun or ended, rounding may put the force on the wrong side: start from a
-        // sample clearly on the right side.
-        let clear = if start > 0.0 {
-            Some((0.0, start))
-        } else {
-            (1..PLACES).find_map(|k| {
-                let at = latest * f64::from(k) / f64::from(PLACES);
-                let excess = self.excess_after::<S>(criterion, at);
-                (excess > 0.0).then_some((at, excess))
-            })
-        };
-        let length = clear.and_then(|clear| {
-            let excess = |at| self.excess_after::<S>(criterion, at);
-            roots::between(excess, clear, (latest, end), resolution)
-        });
-        let length = match length {
-            Some(length) if length > resolution => length,
-            _ if self.state.interruptions.turned_at(self.state.time) && start <= 0.0 => {
-                // On the new side for less than the resolution of time: the force has crossed back by the end of this
-                // piece.
-                return self.end_at::<S>(&cut_at(latest), growth, requested).map(Some);
+        let end = model.law.without_pull(preload.force + trial.force) < criterion.force;
+        let mut before = (-1.0, value(-1.0));
+        for (y, is_end) in turns.iter().map(|y| (y, false)).chain([(0.0, true)]) {
+            let now = (y, value(y));
+            let below = if is_end { end } else { now.1 < 0.0 };
+            if below != interrupted {
+                let place = if is_accurate {
+                    // Only rounding leaves both on one side.
+                    let on_this_side = if (before.1 < 0.0) == below { before.0 } else { y };
+                    roots::between(value, before, now, 1e-12).unwrap_or(on_this_side)
+                } else {
+                    let force = |d, rate| excess(model.law.force(preload.indentation + d, rate) - preload.force);
+                    let from = ((1.0 + before.0) * length, before.1);
+                    let found = self.instant(trial, length, force, from, (1.0 + y) * length, 1e-2 * self.allowed);
+                    found.at / length - 1.0
+                };
+                passages.push(place.clamp(before.0, y));
+                interrupted = below;
             }
-            _ => {
-                // The crossing is at the start of the step.
-                self.state.interruptions.turn(criterion, self.state.time);
-                return Ok(Some(self.reject(target.length)));
-            }
-        };
-        let outcome = self.end_at::<S>(&cut_at(length), growth, requested)?;
-        if outcome.taken {
-            self.state.interruptions.turn(criterion, self.state.time);
+            before = now;
         }
-        Ok(Some(outcome))
+        Some(passages)
     }
 
     /// Records the present contact force in the extremes, and an interruption that begins or ends with it.
@@ -132,9 +74,7 @@ impl Integration<'_> {
             return;
         };
         let state = &mut *self.state;
-        if !state.interruptions.turned_at(state.time)
-            && (state.force < criterion.force) != state.interruptions.in_progress()
-        {
+        if (state.force < criterion.force) != state.interruptions.in_progress() {
             state.interruptions.turn(criterion, state.time);
         }
     }

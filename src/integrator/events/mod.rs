@@ -1,5 +1,5 @@
-//! Events: openings, closings, interruptions and jumps of the force. Steps end at an event, and integration restarts
-//! there.
+//! Events: openings, closings, interruptions and jumps of the force. A step ends where the contact opens or closes, and
+//! integration restarts there; where an interruption begins or ends it goes on.
 
 pub mod closing;
 pub mod interruption;
@@ -7,85 +7,154 @@ pub mod log;
 pub mod opening;
 
 use crate::error::StepError;
-use crate::integrator::collocation::step::Trial;
+use crate::integrator::collocation::part::Instant;
+use crate::integrator::collocation::step::{Trial, sum_rounding};
+use crate::integrator::constants::{GUESSES, LOCATED, MOST_SHRINK};
 use crate::integrator::events::log::Event;
+use crate::integrator::grid::Target;
 use crate::integrator::integration::{Integration, StepOutcome};
 use crate::integrator::workspace::{Room, Workspace};
+use crate::math::prediction::value_and_slope;
+use crate::math::roots;
 
-/// A step shortened to end at an event.
+/// The end of a step inside the trial that was made for it.
 pub(crate) struct Cut {
-    /// Its length, s.
-    pub(crate) length: f64,
-    /// Whether the contact opens or closes at its end.
+    /// The motion there, looked at last.
+    pub(crate) end: Instant,
+    /// The instant, s.
+    pub(crate) time: f64,
+    /// Whether the contact opens or closes there.
     pub(crate) switches: bool,
 }
 
 impl Integration<'_> {
-    /// Where in the step the contact may first open or close, 0 to 1.
-    pub(crate) fn first_event_candidate<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> Option<f64>
-    where
-        Workspace: Room<S>,
-    {
-        if self.state.closed {
-            self.first_open(trial)
-        } else {
-            self.first_near(trial, length)
+    /// The end of a step at an instant inside it.
+    pub(crate) fn cut(&self, end: Instant, switches: bool) -> Cut {
+        Cut {
+            time: self.state.time + end.at,
+            end,
+            switches,
         }
     }
 
-    /// Locates the event suspected at the part `candidate` of the step of `length` seconds; `None` if the step need not
-    /// be shortened.
-    pub(crate) fn cut<const S: usize>(&mut self, candidate: f64, trial: &Trial<S>, length: f64) -> Option<Cut>
+    /// The instant in a trial of `length` seconds at which `value` of indentation and velocity changes its sign, between
+    /// `from` (s, value) and `latest` (s); it need not. To the spacing of floating-point numbers or to a value that is mere
+    /// `rounding`: on the polynomials of the tip, then on the exact motion under the force polynomial.
+    pub(crate) fn instant<const S: usize>(
+        &mut self,
+        trial: &Trial<S>,
+        length: f64,
+        value: impl Fn(f64, f64) -> f64,
+        from: (f64, f64),
+        latest: f64,
+        rounding: f64,
+    ) -> Instant
     where
         Workspace: Room<S>,
     {
-        if self.state.closed {
-            self.opening::<S>(candidate * length, length)
-        } else {
-            self.closing(trial, length)
+        let (d, rate) = (self.state.indentation, self.state.indentation_rate);
+        let collocation = self.collocation::<S>();
+        let (d, rate) = (
+            collocation.through(d, &trial.indentations),
+            collocation.through(rate, &trial.rates),
+        );
+        let on_polynomials = |at: f64| {
+            let y = at / length - 1.0;
+            value(value_and_slope(&d, y).0, value_and_slope(&rate, y).0)
+        };
+        let end = (latest, on_polynomials(latest));
+        let guess = roots::between(on_polynomials, from, end, 1e-12 * length);
+        let mut at = guess.unwrap_or(latest);
+        let near = at - 1e-4 * (at - from.0);
+        let mut slope = (on_polynomials(at) - on_polynomials(near)) / (at - near);
+        let resolution = self.resolution();
+        let (mut low, mut high, mut last) = (from, None, None);
+        for _ in 0..GUESSES {
+            let now = self.inside(trial, length, at);
+            let found = value(now.d, now.rate);
+            let beyond = (found > 0.0) != (from.1 > 0.0);
+            if found.abs() <= rounding || at == latest && !beyond {
+                return now;
+            }
+            if beyond {
+                high = Some((at, found));
+            } else {
+                low = (at, found);
+            }
+            if let Some((at_last, last)) = last {
+                slope = (found - last) / (at - at_last);
+            }
+            let (next, highest) = (at - found / slope, high.map_or(latest, |(at, _)| at));
+            let next = match high {
+                _ if low.0 < next && next < highest => next,
+                None => latest,
+                Some(_) => f64::midpoint(low.0, highest),
+            };
+            if (next - at).abs() <= resolution {
+                return now;
+            }
+            last = Some((at, found));
+            at = next;
         }
+        let exact = |at: f64| {
+            let now = self.inside(trial, length, at);
+            value(now.d, now.rate)
+        };
+        let found = high.and_then(|high| roots::between(exact, low, high, resolution));
+        self.inside(trial, length, found.unwrap_or(latest))
     }
 
-    /// A step that ends at the cut, accepted or rejected, in place of one of `requested` seconds with the growth factor
-    /// `growth`.
+    /// Engagement that counts as zero where the contact opens or closes, m.
+    pub(crate) fn located(&self) -> f64 {
+        let stiffness = self.model.law.tangent_stiffness(self.model.force_scale);
+        (LOCATED * self.allowed / stiffness).max(self.motion_rounding())
+    }
+
+    /// Rounding of the engagement by the sums over the modes, m.
+    pub(crate) fn motion_rounding(&self) -> f64 {
+        let (displacement, velocity) = sum_rounding(self.model, self.state);
+        displacement + self.model.law.damping() * velocity
+    }
+
+    /// Takes the trial to `target` up to a cut, in place of a step of `requested` seconds with the growth factor `growth`.
     pub(crate) fn end_at<const S: usize>(
         &mut self,
         cut: &Cut,
+        trial: &Trial<S>,
+        target: &Target,
         growth: f64,
         requested: f64,
     ) -> Result<StepOutcome, StepError>
     where
         Workspace: Room<S>,
     {
-        if cut.length <= 0.0 {
+        if cut.end.at <= 0.0 {
             // The event is at the start of the step.
-            let length = self.switch(!self.state.closed);
-            return Ok(self.reject(length));
-        }
-        let target = self.grid.cut(cut.length, self.state.time + cut.length);
-        let attempt = self.attempt::<S>(&target);
-        let Some(trial) = attempt.filter(|trial| self.is_acceptable(self.relative_error(trial, &target), &target))
-        else {
-            // Close to the event the law may vary too fast for one step up to it.
-            if self.is_shortest(&target) {
-                return self.take_with_constant_force(&target);
-            }
-            return Ok(self.reject(0.5 * target.length));
-        };
-        self.take(&trial, &target)?;
-        if cut.switches {
+            self.switch(!self.state.closed);
             return Ok(StepOutcome {
-                taken: true,
-                // The step size starts anew after an event.
-                growth: f64::INFINITY,
-                length: self.switch(!self.state.closed),
+                switched: true,
+                ..self.reject(requested)
             });
         }
-        Ok(StepOutcome::after(target.length, requested, growth))
+        let part = self.shorten(trial, target.length, &cut.end);
+        let end = self.grid.cut(cut.end.at, cut.time);
+        let Some(passages) = self.passages(&part, end.length, self.is_shortest(target)) else {
+            return Ok(self.reject(MOST_SHRINK * target.length));
+        };
+        self.take(&part, &end, passages)?;
+        if cut.switches {
+            self.switch(!self.state.closed);
+        }
+        let outcome = StepOutcome::after(target.length, requested, growth);
+        Ok(StepOutcome {
+            switched: cut.switches,
+            length: outcome.length.min(requested),
+            ..outcome
+        })
     }
 
-    /// Opens or closes the contact at the instant of the state; returns the length of the next step, s.
-    pub(crate) fn switch(&mut self, closed: bool) -> f64 {
+    /// Opens or closes the contact at the instant of the state. Short steps begin anew.
+    pub(crate) fn switch(&mut self, closed: bool) {
         self.state.closed = closed;
         self.state.force_error.begin(&self.model.modes);
         self.workspace.events.record(Event {
@@ -94,14 +163,14 @@ impl Integration<'_> {
         });
         self.state.force = 0.0;
         self.state.last_step = 0.0;
-        if closed {
+        self.state.short_step = if closed {
             self.state.last_kink = self.state.time;
             self.state.last_closing = self.state.time;
             self.first_closed_step()
         } else {
             self.state.last_opening = self.state.time;
             self.step_after_jump()
-        }
+        };
     }
 
     /// Applies a jump of the velocity of the fixed contact, with which the dissipative force jumps.

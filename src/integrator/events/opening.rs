@@ -5,35 +5,23 @@ use crate::integrator::collocation::step::Trial;
 use crate::integrator::events::Cut;
 use crate::integrator::integration::Integration;
 use crate::integrator::workspace::{Room, Workspace};
-use crate::math::roots;
 
 impl Integration<'_> {
-    /// Locates the opening in the step of `length` seconds, suspected within its first `latest` seconds.
-    pub(crate) fn opening<const S: usize>(&mut self, latest: f64, length: f64) -> Option<Cut>
+    /// Locates the opening in the trial of `length` seconds, suspected within its first `latest` seconds; `None` if the
+    /// step need not be shortened.
+    pub(crate) fn opening<const S: usize>(&mut self, trial: &Trial<S>, length: f64, latest: f64) -> Option<Cut>
     where
         Workspace: Room<S>,
     {
         let model = self.model;
-        let engagement =
-            |trial: Option<Trial<S>>| trial.map_or(f64::NAN, |trial| model.engagement(trial.indentation, trial.rate));
-        let end = engagement(self.probe(latest));
-        if end > 0.0 {
-            // The polynomial dips below zero, the force does not: the next step starts here, where it is lowest.
-            return (latest < length).then_some(Cut {
-                length: latest,
-                switches: false,
-            });
-        }
+        let engagement = |d, rate| model.engagement(d, rate);
         // Closed at the start; just after first touch rounding may give a negative engagement.
-        let start = model
-            .engagement(self.state.indentation, self.state.indentation_rate)
-            .max(f64::MIN_POSITIVE);
-        let resolution = self.resolution();
-        let length = roots::between(|at| engagement(self.probe(at)), (0.0, start), (latest, end), resolution);
-        Some(Cut {
-            length: length.unwrap_or(latest),
-            switches: true,
-        })
+        let start = engagement(self.state.indentation, self.state.indentation_rate).max(f64::MIN_POSITIVE);
+        let rounding = self.located();
+        let end = self.instant(trial, length, engagement, (0.0, start), latest, rounding);
+        // Else the polynomial dips below zero, the force does not: the next step starts here, where it is lowest.
+        let switches = end.at < latest || engagement(end.d, end.rate) <= rounding;
+        (switches || latest < length).then(|| self.cut(end, switches))
     }
 
     /// Where in the step the contact may first open, 0 to 1: a node or the end where it is open, or a place between

@@ -1,0 +1,65 @@
+//! The course of the contact force inside a step, from its polynomial: where it turns, and where it crosses a level.
+
+use crate::integrator::constants::PIECES;
+use crate::math::nodal::LONG;
+use crate::math::prediction::{Prediction, value_and_slope};
+use crate::math::roots;
+use serde::{Deserialize, Serialize};
+
+/// Places in a step, relative to its end in step lengths, ascending; as many as a polynomial of its degree has roots.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Places {
+    list: [f64; LONG],
+    count: u8,
+}
+
+impl Places {
+    /// Adds a place after the others; no more than there is room for.
+    pub(crate) fn push(&mut self, place: f64) {
+        if let Some(entry) = self.list.get_mut(usize::from(self.count)) {
+            *entry = place;
+            self.count += 1;
+        }
+    }
+
+    /// One after the other.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = f64> {
+        self.list.iter().take(self.count.into()).copied()
+    }
+
+    /// Those up to a place.
+    pub(crate) fn until(&self, to: f64) -> impl Iterator<Item = f64> {
+        self.iter().take_while(move |place| *place <= to)
+    }
+
+    /// Those after a place up to another.
+    pub(crate) fn between(&self, from: f64, to: f64) -> impl Iterator<Item = f64> {
+        self.until(to).filter(move |place| from < *place)
+    }
+
+    /// Whether they are in the step and in order (check of a deserialised state).
+    pub(crate) fn is_sound(&self) -> bool {
+        let Self { list, count } = self;
+        list.iter().all(|place| (-1.0..=0.0).contains(place))
+            && usize::from(*count) <= LONG
+            && list.iter().take((*count).into()).is_sorted()
+    }
+}
+
+/// Where a polynomial over a step turns.
+pub(crate) fn turning_points(polynomial: &Prediction) -> Places {
+    let slope = |y: f64| value_and_slope(polynomial, y).1;
+    let mut places = Places::default();
+    let mut before = (-1.0, slope(-1.0));
+    for k in 1..=PIECES {
+        let y = f64::from(k) / f64::from(PIECES) - 1.0;
+        let now = (y, slope(y));
+        if (before.1 > 0.0) != (now.1 > 0.0)
+            && let Some(y) = roots::between(slope, before, now, 1e-9)
+        {
+            places.push(y);
+        }
+        before = now;
+    }
+    places
+}
