@@ -4,7 +4,7 @@ use crate::error::{StepError, StepErrorCause};
 use crate::integrator::collocation::newton::Source;
 use crate::integrator::collocation::part::{self, Instant};
 use crate::integrator::collocation::step::{Trial, is_rounding, trial};
-use crate::integrator::constants::{AT_EVENT, INSIDE, NEWTON};
+use crate::integrator::constants::{AFTER_BLOW, AT_EVENT, INSIDE, NEAR_BLOW, NEWTON};
 use crate::integrator::course::{Places, turning_points};
 use crate::integrator::grid::Target;
 use crate::integrator::integration::{Integration, StepOutcome};
@@ -12,6 +12,7 @@ use crate::integrator::workspace::{Room, Workspace, work};
 use crate::math::free_motion::FreeMotion;
 use crate::math::nodal::SHORT;
 use crate::math::prediction::value_and_slope;
+use crate::state::State;
 
 impl Integration<'_> {
     /// Estimated error of a trial to the target, relative to the error allowed; 0 where it is mere rounding, which no
@@ -28,7 +29,7 @@ impl Integration<'_> {
         } else {
             0.0
         };
-        let ratio = trial.error / self.allowed.max(trial.rounding);
+        let ratio = self.after_blow(target) * trial.error / self.allowed.max(trial.rounding);
         // Not `max`, which would hide NaN.
         let ratio = if ratio < inside { inside } else { ratio };
         let rounding = self.state.closed || inside < 1.0;
@@ -37,6 +38,19 @@ impl Integration<'_> {
         } else {
             ratio
         }
+    }
+
+    /// Factor on the error just after a closing, where the force is not smooth enough for the estimate.
+    fn after_blow(&self, target: &Target) -> f64 {
+        let State {
+            time,
+            closed,
+            last_kink,
+            last_closing,
+            ..
+        } = *self.state;
+        let near = closed && last_kink == last_closing && time - last_kink < NEAR_BLOW * target.length;
+        if near { AFTER_BLOW } else { 1.0 }
     }
 
     /// Whether a step to the target with this relative error is accepted; one of the shortest length with any finite
@@ -81,9 +95,18 @@ impl Integration<'_> {
         most / (self.tolerance * compliance)
     }
 
+    /// Error allowed in a step that ends inside, N.
+    pub(crate) fn allowed_inside(&self) -> f64 {
+        if self.state.closed {
+            AT_EVENT * self.allowed
+        } else {
+            self.allowed
+        }
+    }
+
     /// Whether the trial may end inside, by an event.
     pub(crate) fn may_end_inside<const S: usize>(&self, trial: &Trial<S>, target: &Target) -> bool {
-        trial.inner_error <= (AT_EVENT * self.allowed).max(trial.rounding)
+        trial.inner_error <= self.allowed_inside().max(trial.rounding)
             || self.is_shortest(target)
             || is_rounding(self.model, self.state, trial, trial.inner_error)
     }

@@ -82,6 +82,13 @@ pub const QUADRATURE_SHORT: f64 = 1.4e-2;
 /// [`QUADRATURE_SHORT`] with 8 nodes.
 pub const QUADRATURE_LONG: f64 = 8e-5;
 
+/// Factor on the estimated error just after a closing, 1, where steps grow with the time since. Pinned: ÷ 10,
+/// `former_excesses_are_within_the_tolerance`.
+pub const AFTER_BLOW: f64 = 10.0;
+
+/// Time since a closing up to which that holds, steps. Observed. Pinned: 0, `former_excesses_are_within_the_tolerance`.
+pub const NEAR_BLOW: f64 = 3.0;
+
 /// Distance from a kink beyond which it is not felt, steps. The factor of the kink is below 2e-6 there. Not pinned by a
 /// test.
 pub const FAR: f64 = 20.0;

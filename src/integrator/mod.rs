@@ -103,14 +103,17 @@
 //! - after a closing or a jump, where the force moves like the root of time: a share [`constants::KINKED`] of `m`,
 //!   which falls with the distance from the kink as the convergence of a polynomial near a branch point does (Trefethen, Approximation Theory and Approximation Practice, 2013, chapters 8 and 19).
 //!
+//! Just after a closing, within [`constants::NEAR_BLOW`] steps of it, the sum counts [`constants::AFTER_BLOW`] times.
+//!
 //! The last two are reduced by `g / (1 + g)`, `g` the force of the law at the end of the step per force on the tip throughout it.
 //!
 //! In flight the estimate is what `m_a` does to the indentation at any node, times the stiffness the contact would have
 //! at the force scale, and what the error of the quadrature of the acceleration makes of it in `1 / omega_1`.
 //!
 //! A step that ends inside, at an event, has a larger error, as the shape is not orthogonal to anything there: what `m`
-//! and `m_a` do to the nodal forces, and the greatest impulse of the shape times `m`. A blow makes it a hundred times
-//! larger, so it has to be below [`constants::AT_EVENT`] of the error allowed in a step.
+//! and `m_a` do to the nodal forces, and the greatest impulse of the shape times `m` and `m_a`; in flight what `m_a` does to
+//! the velocity, in `1 / omega_1`. A blow makes it a hundred times larger, so at an opening it has to be below
+//! [`constants::AT_EVENT`] of the error allowed in a step.
 //!
 //! An estimate below what rounding makes of the sums over the modes counts as zero: no shorter step makes
 //! it smaller.

@@ -5,8 +5,8 @@ use crate::excitation::drive::Drive;
 use crate::integrator::attempt::step_factor;
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::constants::{
-    AFTER_REJECTION, AT_EVENT, COARSEST, GROWING, LEAST_SHRINK, LONG_FLOOR, LONGER, MOST_GROWTH, MOST_SHRINK,
-    NEXT_LENGTH, REFUSALS, SAFETY, SHARE, SMOOTH, WORTH,
+    AFTER_REJECTION, COARSEST, GROWING, LEAST_SHRINK, LONG_FLOOR, LONGER, MOST_GROWTH, MOST_SHRINK, NEXT_LENGTH,
+    REFUSALS, SAFETY, SHARE, SMOOTH, WORTH,
 };
 use crate::integrator::energy::conservation::conserves;
 use crate::integrator::events::Cut;
@@ -198,18 +198,22 @@ impl Integration<'_> {
             None
         };
         let read = self.read_at(&trial, &target);
-        if (opens.is_some() || read.is_some()) && !self.may_end_inside(&trial, &target) {
-            self.before_event = true;
-            // More nodes do better inside than a shorter step.
-            self.state.long_step = self.state.long_step.max(target.length);
-            let shrink = AFTER_REJECTION * (AT_EVENT * self.allowed / trial.inner_error).powf(1.0 / S as f64);
-            return Ok(self.reject(target.length * shrink.clamp(LEAST_SHRINK, NEXT_LENGTH)));
-        }
-        let event = if self.state.closed {
-            opens.and_then(|part| self.opening(&trial, target.length, part * target.length))
+        let closes = if self.state.closed {
+            None
         } else {
             self.closing(&trial, target.length)
         };
+        if (opens.is_some() || closes.is_some() || read.is_some()) && !self.may_end_inside(&trial, &target) {
+            self.before_event = true;
+            if self.state.closed {
+                // More nodes do better inside than a shorter step.
+                self.state.long_step = self.state.long_step.max(target.length);
+            }
+            let shrink = AFTER_REJECTION * (self.allowed_inside() / trial.inner_error).powf(1.0 / S as f64);
+            return Ok(self.reject(target.length * shrink.clamp(LEAST_SHRINK, NEXT_LENGTH)));
+        }
+        let opening = opens.and_then(|part| self.opening(&trial, target.length, part * target.length));
+        let event = opening.or(closes);
         let cut = match (event, read) {
             (Some(event), Some(read)) if event.time <= read => Some(event),
             (_, Some(time)) => Some(Cut {
@@ -252,7 +256,7 @@ impl Integration<'_> {
         } = *self.state;
         let elapsed = time - last_kink;
         if last_kink == last_closing && elapsed > 0.0 {
-            1.0 + length / elapsed
+            (SAFETY * (1.0 + length / elapsed)).max(1.0)
         } else {
             1.0
         }

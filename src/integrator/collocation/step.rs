@@ -298,7 +298,13 @@ fn errors<const S: usize>(
         let slow = 3.0 * start_defect * start_defect / largest + kinked + missed;
         let inside = greatest(&solution.nodal_by_force) * start_defect.abs()
             + greatest(&solution.nodal_by_load) * free.start_defect.abs();
-        let impulse = collocation.impulse * start_defect.abs() + missed;
+        // With an axial force the other defects are in `inside` alone.
+        let base = if model.axial().is_some() {
+            0.0
+        } else {
+            model.inertia * free.start_defect.abs()
+        };
+        let impulse = collocation.impulse * (start_defect.abs() + base) + missed;
         (fast + slow * reaction, inside + impulse * reaction)
     } else {
         // Of the indentation that is read, searched for a contact, or left at an instant inside.
@@ -308,8 +314,12 @@ fn errors<const S: usize>(
         let wrong = most(&rows.displacement)
             + model.law.damping() * most(&rows.velocity)
             + missed_velocity * (model.memory + model.law.damping());
-        let error = model.law.tangent_stiffness(model.force_scale) * wrong;
-        (error, error)
+        let stiffness = model.law.tangent_stiffness(model.force_scale);
+        // At the end the velocity is that of the quadrature.
+        (
+            stiffness * wrong,
+            stiffness * (wrong + model.memory * most(&rows.velocity)),
+        )
     }
 }
 
