@@ -27,12 +27,7 @@ impl Integration<'_> {
         if !Collocation::comes_near_zero(start, &excess) {
             return None;
         }
-        let collocation = self.collocation::<S>();
-        let mut nodes = collocation.nodes.iter().zip(&excess);
-        let beyond = nodes.find(|(_, excess)| **excess < 0.0).map(|(node, _)| *node);
-        collocation
-            .first_dip(&excess, beyond.unwrap_or(f64::INFINITY))
-            .or(beyond)
+        self.collocation::<S>().first_dip(&excess, f64::INFINITY)
     }
 
     /// Distance of a force (deviation from the preload force) from the threshold, positive on the side of before, N.
