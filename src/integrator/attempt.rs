@@ -3,7 +3,7 @@
 use crate::error::{StepError, StepErrorCause};
 use crate::integrator::collocation::newton::Source;
 use crate::integrator::collocation::step::{Trial, is_rounding, trial};
-use crate::integrator::constants::{INSIDE, NEWTON};
+use crate::integrator::constants::{AFTER_REJECTION, INSIDE, LEAST_SHRINK, MOST_GROWTH, MOST_SHRINK, NEWTON, SAFETY};
 use crate::integrator::grid::Target;
 use crate::integrator::integration::{Integration, StepOutcome};
 use crate::integrator::workspace::{Room, Workspace, work};
@@ -139,7 +139,25 @@ impl Integration<'_> {
     }
 }
 
+/// Factor on the length after a step of the relative error `ratio`.
+pub(crate) fn growth<const S: usize>(ratio: f64) -> f64 {
+    if ratio < 1e-7 {
+        MOST_GROWTH
+    } else {
+        (SAFETY * step_factor::<S>(ratio)).clamp(MOST_SHRINK, MOST_GROWTH)
+    }
+}
+
+/// Factor on the length after a rejection for the relative error `ratio`; the smallest without an error estimate.
+pub(crate) fn shrinkage<const S: usize>(ratio: f64) -> f64 {
+    if ratio.is_finite() {
+        (AFTER_REJECTION * step_factor::<S>(ratio)).clamp(LEAST_SHRINK, MOST_SHRINK)
+    } else {
+        LEAST_SHRINK
+    }
+}
+
 /// Factor to the step size at which the relative error `ratio` becomes 1: the error estimate is of order `S + 1`.
-pub(crate) fn step_factor<const S: usize>(ratio: f64) -> f64 {
+fn step_factor<const S: usize>(ratio: f64) -> f64 {
     ratio.powf(-1.0 / (S as f64 + 1.0))
 }

@@ -2,11 +2,8 @@
 
 use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
-use crate::integrator::attempt::step_factor;
-use crate::integrator::constants::{
-    AFTER_REJECTION, COARSEST, GROWING, LEAST_SHRINK, LONG_FLOOR, LONGER, MOST_GROWTH, MOST_SHRINK, REFUSALS, SAFETY,
-    SHARE, WORTH,
-};
+use crate::integrator::attempt::{growth, shrinkage};
+use crate::integrator::constants::{COARSEST, GROWING, LONG_FLOOR, LONGER, REFUSALS, SHARE, WORTH};
 use crate::integrator::energy::conservation::conserves;
 use crate::integrator::exact_step;
 use crate::integrator::extremes::Extremes;
@@ -152,24 +149,14 @@ impl Integration<'_> {
             if self.is_shortest(&target) {
                 return Err(self.error(StepErrorCause::NotFinite));
             }
-            // Without an error estimate, shrink by the largest factor.
-            let shrink = if ratio.is_finite() {
-                AFTER_REJECTION * step_factor::<S>(ratio)
-            } else {
-                0.0
-            };
-            return Ok(self.reject(target.length * shrink.clamp(LEAST_SHRINK, MOST_SHRINK)));
+            return Ok(self.reject(target.length * shrinkage::<S>(ratio)));
         };
         // The energy may reveal an error that the estimate misses.
         if !self.is_shortest(&target) && self.breaks_account(&trial, target.length) {
             return Ok(self.reject(0.5 * target.length));
         }
         // From the error of the whole step, also if an event shortens it.
-        let growth = if ratio < 1e-7 {
-            MOST_GROWTH
-        } else {
-            (SAFETY * step_factor::<S>(ratio)).clamp(MOST_SHRINK, MOST_GROWTH)
-        };
+        let growth = growth::<S>(ratio);
         let candidate = self.first_event_candidate(&trial, target.length);
         if let Some(passed) = self.first_passage(&trial)
             && candidate.is_none_or(|part| passed <= part)
