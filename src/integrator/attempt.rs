@@ -99,9 +99,15 @@ impl Integration<'_> {
         self.enter(trial, target.length);
         let Self { model, state, .. } = self;
         let (cache, end, _) = Room::<S>::parts(self.workspace);
-        let (step, collocation) = cache.get(target.length, target.recurring, model);
-        let added = (state.closed, trial.error);
-        state.force_error.advance(&model.modes, &step.end, trial.tangent, added);
+        state.force_error.add(trial.error);
+        if state.force_error.deviates() {
+            let (step, _) = cache.get(target.length, target.recurring, model);
+            let closed = state.closed;
+            state
+                .force_error
+                .advance(&model.modes, &step.end, trial.tangent, closed);
+        }
+        let collocation = cache.collocation();
         let ratio = if state.last_step > 0.0 {
             target.length / state.last_step
         } else {

@@ -6,14 +6,14 @@
 //! growth of its size is used, the root of its energy.
 
 use crate::beam::mode::{Mode, ModeState};
-use crate::force_error::{ForceError, MODES};
+use crate::force_error::ForceError;
 use crate::integrator::collocation::coefficients::EndRows;
 use crate::integrator::collocation::newton::Tangent;
 
 impl ForceError {
     /// Begins with a blow on the tip, unless there is a deviation already.
     pub(crate) fn begin(&mut self, modes: &[Mode]) {
-        if self.size(modes) == 0.0 {
+        if !self.deviates() {
             for (at, mode) in self.deviation.iter_mut().zip(modes) {
                 at.v = mode.tip;
             }
@@ -21,18 +21,14 @@ impl ForceError {
         }
     }
 
-    /// Over a step with the given end rows and tangent of the contact, which adds the error `added` (N).
+    /// Over a step with the given end rows and tangent of the contact.
     pub(crate) fn advance<const S: usize>(
         &mut self,
         modes: &[Mode],
         rows: &EndRows<S>,
         tangent: Tangent,
-        (closed, added): (bool, f64),
+        closed: bool,
     ) {
-        self.largest = self.largest.max(added);
-        if self.deviation == [ModeState::default(); MODES] {
-            return;
-        }
         let (mut tip, mut tip_rate) = (0.0, 0.0);
         let from = rows
             .q_from_q

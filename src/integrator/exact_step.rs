@@ -143,7 +143,7 @@ pub(crate) fn step_ahead(
                 rate,
             };
             state.time = time;
-            state.force_error.largest = state.force_error.largest.max(ratio * allowed);
+            state.force_error.add(ratio * allowed);
             state.long_step = StepOutcome::after(length, requested, growth::<LONG>(ratio)).length;
             return true;
         }

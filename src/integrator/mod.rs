@@ -100,23 +100,24 @@
 //!   `m^2` over the largest force (fitted to the impact of a free mass on a Hertz contact), and for the base acceleration
 //!   the error of the quadrature, [`constants::QUADRATURE_SHORT`] `m_a^2` over the largest acceleration;
 //! - after a closing or a jump, where the force moves like the root of time: a share [`constants::KINKED`] of `m`,
-//!   which falls with the distance from the kink as the convergence of a polynomial near a branch point does (Trefethen, Approximation Theory and Approximation Practice, 2013, chapters 8 and 19).
+//!   which falls with the distance from the kink as the convergence of a polynomial near a branch point does
+//!   (Trefethen, Approximation Theory and Approximation Practice, 2013, chapters 8 and 19).
 //!
 //! The last two are reduced by `g / (1 + g)`, `g` the force of the law at the end of the step per force on the tip throughout it.
 //!
 //! In flight the estimate is what `m_a` does to the indentation, times the stiffness the contact would have at the
-//! force scale, and what the error of the quadrature of the acceleration makes of it in `1 / omega_1`. An estimate below what rounding makes of the sums over the modes counts as zero: no shorter step makes
-//! it smaller.
+//! force scale, and what the error of the quadrature of the acceleration makes of it in `1 / omega_1`. An estimate below
+//! what rounding makes of the sums over the modes counts as zero: no shorter step makes it smaller.
 //!
 //! # Step size control
 //!
 //! A step may add [`constants::SHARE`] of `solver.tolerance` times the force scale ([`attempt`], [`step_control`]). Its
 //! length is multiplied by `(allowed / estimate)^(1 / (S + 1))` and [`constants::SAFETY`], with bounds on growth and
-//! shrinkage beside it. Step ends lie on a grid: binary fractions of the communication step, or lengths of
-//! 1 and 1.5 times powers of two where the integrator runs ahead ([`grid`]), so that coefficients recur; the
-//! generator's corners (start, end, crossover) end a step, and the step size starts anew there. A step is never longer than a quarter of the generator's
-//! shortest period, nor than `solver.maximumStep`. Without damping, a step that makes more energy than a force wrong by
-//! the tolerance would is rejected too.
+//! shrinkage beside it. Step ends lie on a grid: binary fractions of the communication step, or lengths of 1 and 1.5
+//! times powers of two where the integrator runs ahead ([`grid`]), so that coefficients recur; the generator's corners
+//! (start, end, crossover) end a step, and the step size starts anew there. A step is never longer than a quarter of
+//! the generator's shortest period, nor than `solver.maximumStep`. Without damping, a step that makes more energy than
+//! a force wrong by the tolerance would is rejected too.
 //!
 //! Work is counted and bounded per communication step, however long that is ([`constants::STEPS`]; [`workspace`]):
 //! beyond it the step ends with an error that names the time.
@@ -155,7 +156,8 @@
 //! are read from the polynomials of its last step ([`communication_step`], [`motion`]): dense output of the force
 //! (through the start and all nodes), the indentation and its velocity. A long step that will be read inside must keep
 //! the tolerance there too: [`constants::INSIDE`] times `m` is the error inside. A short step that cannot is integrated
-//! once more, up to the communication point. A changed input takes the motion back to the communication point: it is integrated again from the start of the step, under the former inputs. A communication step much longer than the
+//! once more, up to the communication point. A changed input takes the motion back to the communication point: it is
+//! integrated again from the start of the step, under the former inputs. A communication step much longer than the
 //! integrator's steps ends one of them exactly. Inputs act linearly in time within a communication step; a jump of
 //! their rate changes the dissipative force at once and restarts the step length.
 //!

@@ -299,17 +299,18 @@ impl Instance {
         if is_off && !std::mem::replace(&mut self.told_of_offset, true) {
             return Err(Failure::Offset { point, time: now });
         }
-        let (tolerance, error) = (
-            simulation.model().scene.solver.effective_tolerance(),
-            simulation.force_error(),
-        );
-        if error > ANNOUNCED * tolerance && !std::mem::replace(&mut self.told_of_error, true) {
-            return Err(Failure::Inaccurate {
-                time: end,
-                tolerance,
-                error,
-                modes: simulation.model().modes.len(),
-            });
+        if !self.told_of_error {
+            let tolerance = simulation.model().scene.solver.effective_tolerance();
+            let error = simulation.force_error();
+            self.told_of_error = error > ANNOUNCED * tolerance;
+            if self.told_of_error {
+                return Err(Failure::Inaccurate {
+                    time: end,
+                    tolerance,
+                    error,
+                    modes: simulation.model().modes.len(),
+                });
+            }
         }
         Ok(())
     }
