@@ -36,6 +36,16 @@ impl ForceError {
         (PER_STEP * self.largest / force_scale * self.largest_growth.exp()).min(1.0)
     }
 
+    /// A step has added an error (N).
+    pub fn add(&mut self, error: f64) {
+        self.largest = self.largest.max(error);
+    }
+
+    /// Whether there is a deviation, as the contact has opened or closed.
+    pub fn deviates(&self) -> bool {
+        self.deviation != [ModeState::default(); MODES]
+    }
+
     /// Whether a simulation can reach these numbers.
     pub fn is_sound(&self) -> bool {
         let Self {

@@ -35,13 +35,15 @@ pub enum Verdict {
     Refuse,
     /// `Accept` or `Fail`, depending on the physics.
     AcceptOrFail,
+    /// `Accept` or `Remark`, depending on the physics: on how far errors have grown.
+    AcceptOrRemark,
     /// `Accept` or `Refuse`, depending on the physics.
     AcceptOrRefuse,
     /// `Accept`, `Remark` or `Fail`, depending on the physics and on what the component takes for rounding or remarks on.
     Open,
 }
 
-use Verdict::{Accept, AcceptOrFail, AcceptOrRefuse, Discard, Fail, Open, Refuse, Remark};
+use Verdict::{Accept, AcceptOrFail, AcceptOrRefuse, AcceptOrRemark, Discard, Fail, Open, Refuse, Remark};
 
 impl Verdict {
     /// The statuses.
@@ -52,6 +54,7 @@ impl Verdict {
             Discard => &[fmi2Discard],
             Fail | Refuse => &[fmi2Error],
             AcceptOrFail | AcceptOrRefuse => &[fmi2OK, fmi2Error],
+            AcceptOrRemark => &[fmi2OK, fmi2Warning],
             Open => &[fmi2OK, fmi2Warning, fmi2Error],
         }
     }
@@ -238,9 +241,8 @@ impl LifeCycle {
             off <= 4.0 * rounding,
             is_off(off, rounding, size) && off < 9e-5 * size,
         ) {
-            (true, true, _) => Accept,
-            (false, true, _) => AcceptOrFail,
-            (true, false, true) if self.warned => Accept,
+            (true, true, _) => AcceptOrRemark,
+            (true, false, true) if self.warned => AcceptOrRemark,
             (true, false, true) => Remark,
             _ => Open,
         }

@@ -65,6 +65,18 @@ pub(super) enum Failure {
     /// What the user should know of a simulation that can be done.
     #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
     Remarks(Vec<Remark>),
+    /// A force that may be wrong by more than the tolerance. The step is done.
+    #[error(
+        "at {} s contact.force may be wrong by more than the tolerance {tolerance:e} (estimate: solver.forceError = {error:.1e}): \
+         errors grow with each closing of this contact, or {modes} modes are too few for its blows. Not reported again",
+        number(*time)
+    )]
+    Inaccurate {
+        time: f64,
+        tolerance: f64,
+        error: f64,
+        modes: usize,
+    },
     /// A log category that is not declared.
     #[error(
         "category {0}: no such log category, allowed are logStatusError, logStatusWarning, logEvents and logSolver; \
@@ -101,7 +113,11 @@ impl Failure {
     /// The status the call returns.
     pub(super) fn status(&self) -> fmi2Status {
         match self {
-            Self::Tolerance(_) | Self::Offset { .. } | Self::Remarks(_) | Self::Category(_) => fmi2Warning,
+            Self::Tolerance(_)
+            | Self::Offset { .. }
+            | Self::Inaccurate { .. }
+            | Self::Remarks(_)
+            | Self::Category(_) => fmi2Warning,
             Self::Value(_) | Self::StatusKind(_) => fmi2Discard,
             Self::CallOrder { .. }
             | Self::Pointer(_)

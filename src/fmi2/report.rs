@@ -1,7 +1,7 @@
 //! Texts of the debug messages.
 
 use super::logger::{Category, Logger};
-use super::types::{fmi2OK, fmi2Warning};
+use super::types::fmi2OK;
 use crate::error::number;
 use crate::math::simd::Simd;
 use crate::model::Model;
@@ -25,34 +25,6 @@ pub(super) fn model(logger: &Logger, model: &Model) {
         "fmi2ExitInitializationMode: {modes} modes, {steps}, compiled {machine}, tolerance {tolerance:e}, absolute {error:e} N"
     );
     logger.log(Category::Solver, fmi2OK, &text);
-}
-
-/// Fewer modes than the tolerance takes.
-pub(super) fn modes(logger: &Logger, model: &Model) {
-    let missed = model.missed_by_modes;
-    if missed > 0.0 {
-        let text = format!(
-            "fmi2ExitInitializationMode: {} modes are too few for the tolerance {:e} once the contact opens and closes: \
-             contact.force may then be wrong by {missed:.1e} (relative as solver.tolerance); damping of spring or contact \
-             lessens the number",
-            model.modes.len(),
-            model.scene.solver.effective_tolerance()
-        );
-        logger.log(Category::StatusWarning, fmi2Warning, &text);
-    }
-}
-
-/// An error above the tolerance.
-#[cold]
-pub(super) fn error(logger: &Logger, simulation: &Simulation) {
-    let text = format!(
-        "fmi2DoStep: at {} s contact.force may be wrong by more than the tolerance {:e} (estimate: \
-         solver.forceError = {:.1e}): errors grow with each closing of this contact. Not reported again",
-        number(simulation.time()),
-        simulation.model().scene.solver.effective_tolerance(),
-        simulation.force_error()
-    );
-    logger.log(Category::StatusWarning, fmi2Warning, &text);
 }
 
 /// A communication step, with the counters `before` it.

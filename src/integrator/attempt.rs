@@ -4,7 +4,9 @@ use crate::error::{StepError, StepErrorCause};
 use crate::integrator::collocation::newton::Source;
 use crate::integrator::collocation::part::{self, Instant};
 use crate::integrator::collocation::step::{Trial, is_rounding, trial};
-use crate::integrator::constants::{AFTER_BLOW, AT_EVENT, INSIDE, NEAR_BLOW, NEWTON};
+use crate::integrator::constants::{
+    AFTER_BLOW, AFTER_REJECTION, AT_EVENT, INSIDE, LEAST_SHRINK, MOST_GROWTH, MOST_SHRINK, NEAR_BLOW, NEWTON, SAFETY,
+};
 use crate::integrator::course::{Places, turning_points};
 use crate::integrator::grid::Target;
 use crate::integrator::integration::{Integration, StepOutcome};
@@ -184,14 +186,17 @@ impl Integration<'_> {
         let Self { model, state, .. } = self;
         let (cache, end, _) = Room::<S>::parts(self.workspace);
         let collocation = cache.collocation();
-        let added = (state.closed, trial.error);
-        if let Some(step) = cache.known(target.length, target.recurring) {
-            let free = step.end.free();
-            state.force_error.advance(&model.modes, free, trial.tangent, added);
-        } else {
-            let modes = model.modes.iter();
-            let free = modes.map(|mode| FreeMotion::new(mode.omega_squared, mode.damping, target.length));
-            state.force_error.advance(&model.modes, free, trial.tangent, added);
+        state.force_error.add(trial.error);
+        if state.force_error.deviates() {
+            let closed = state.closed;
+            if let Some(step) = cache.known(target.length, target.recurring) {
+                let free = step.end.free();
+                state.force_error.advance(&model.modes, free, trial.tangent, closed);
+            } else {
+                let modes = model.modes.iter();
+                let free = modes.map(|mode| FreeMotion::new(mode.omega_squared, mode.damping, target.length));
+                state.force_error.advance(&model.modes, free, trial.tangent, closed);
+            }
         }
         let ratio = if state.last_step > 0.0 {
             target.length / state.last_step
@@ -243,7 +248,25 @@ impl Integration<'_> {
     }
 }
 
+/// Factor on the length after a step of the relative error `ratio`.
+pub(crate) fn growth<const S: usize>(ratio: f64) -> f64 {
+    if ratio < 1e-7 {
+        MOST_GROWTH
+    } else {
+        (SAFETY * step_factor::<S>(ratio)).clamp(MOST_SHRINK, MOST_GROWTH)
+    }
+}
+
+/// Factor on the length after a rejection for the relative error `ratio`; the smallest without an error estimate.
+pub(crate) fn shrinkage<const S: usize>(ratio: f64) -> f64 {
+    if ratio.is_finite() {
+        (AFTER_REJECTION * step_factor::<S>(ratio)).clamp(LEAST_SHRINK, MOST_SHRINK)
+    } else {
+        LEAST_SHRINK
+    }
+}
+
 /// Factor to the step size at which the relative error `ratio` becomes 1: the error estimate is of order `S + 1`.
-pub(crate) fn step_factor<const S: usize>(ratio: f64) -> f64 {
+fn step_factor<const S: usize>(ratio: f64) -> f64 {
     ratio.powf(-1.0 / (S as f64 + 1.0))
 }

@@ -13,7 +13,7 @@ use crate::math::free_motion::FreeMotion;
 impl ForceError {
     /// Begins with a blow on the tip, unless there is a deviation already.
     pub(crate) fn begin(&mut self, modes: &[Mode]) {
-        if self.size(modes) == 0.0 {
+        if !self.deviates() {
             for (at, mode) in self.deviation.iter_mut().zip(modes) {
                 at.v = mode.tip;
             }
@@ -21,18 +21,14 @@ impl ForceError {
         }
     }
 
-    /// Over a step with the given free motion of the modes and tangent of the contact, which adds the error `added` (N).
+    /// Over a step with the given free motion of the modes and tangent of the contact.
     pub(crate) fn advance(
         &mut self,
         modes: &[Mode],
         free: impl Iterator<Item = FreeMotion>,
         tangent: Tangent,
-        (closed, added): (bool, f64),
+        closed: bool,
     ) {
-        self.largest = self.largest.max(added);
-        if self.deviation == [ModeState::default(); MODES] {
-            return;
-        }
         let (mut tip, mut tip_rate) = (0.0, 0.0);
         let mut by_force = [ModeState::default(); MODES];
         for (((at, free), mode), by_force) in self.deviation.iter_mut().zip(free).zip(modes).zip(&mut by_force) {

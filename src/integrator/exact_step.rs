@@ -10,10 +10,8 @@ use crate::closed_loop::system::{ClosedLoop, Steady};
 use crate::contact::law::Law;
 use crate::contact::linear::Linear;
 use crate::excitation::drive::Drive;
-use crate::integrator::attempt::step_factor;
-use crate::integrator::constants::{
-    AFTER_REJECTION, FORCE_ROUNDING, INSIDE, LEAST_SHRINK, LONG_FLOOR, MOST_SHRINK, SAFETY, SHARE, STEP_GROWTH, UNREST,
-};
+use crate::integrator::attempt::{growth, shrinkage};
+use crate::integrator::constants::{FORCE_ROUNDING, INSIDE, LONG_FLOOR, SHARE, UNREST};
 use crate::integrator::course::Places;
 use crate::integrator::grid::round_down;
 use crate::integrator::integration::{DenseOutput, StepOutcome};
@@ -84,7 +82,7 @@ pub(crate) fn step_ahead(
     if model.closed_loop.is_none() {
         return false;
     }
-    let tolerance = model.scene.solver.effective_tolerance() * model.force_scale;
+    let tolerance = model.tolerance();
     let allowed = (SHARE * tolerance).max(FORCE_ROUNDING * model.force_scale);
     let longest = match model.scene.solver.maximum_step {
         0.0 => f64::INFINITY,
@@ -147,17 +145,11 @@ pub(crate) fn step_ahead(
                 passages: Places::default(),
             };
             state.time = time;
-            state.force_error.largest = state.force_error.largest.max(ratio * allowed);
-            let growth = (SAFETY * step_factor::<LONG>(ratio)).clamp(MOST_SHRINK, STEP_GROWTH);
-            state.long_step = StepOutcome::after(length, requested, growth).length;
+            state.force_error.add(ratio * allowed);
+            state.long_step = StepOutcome::after(length, requested, growth::<LONG>(ratio)).length;
             return true;
         }
-        let shrink = if ratio.is_finite() {
-            (AFTER_REJECTION * step_factor::<LONG>(ratio)).clamp(LEAST_SHRINK, MOST_SHRINK)
-        } else {
-            LEAST_SHRINK
-        };
-        requested = length * shrink;
+        requested = length * shrinkage::<LONG>(ratio);
     }
 }
 

@@ -101,7 +101,8 @@
 //!   `m^2` over the largest force (fitted to the impact of a free mass on a Hertz contact), and for the base acceleration
 //!   the error of the quadrature, [`constants::QUADRATURE_SHORT`] `m_a^2` over the largest acceleration;
 //! - after a closing or a jump, where the force moves like the root of time: a share [`constants::KINKED`] of `m`,
-//!   which falls with the distance from the kink as the convergence of a polynomial near a branch point does (Trefethen, Approximation Theory and Approximation Practice, 2013, chapters 8 and 19).
+//!   which falls with the distance from the kink as the convergence of a polynomial near a branch point does
+//!   (Trefethen, Approximation Theory and Approximation Practice, 2013, chapters 8 and 19).
 //!
 //! Just after a closing, within [`constants::NEAR_BLOW`] steps of it, the sum counts [`constants::AFTER_BLOW`] times.
 //!
@@ -111,24 +112,23 @@
 //! at the force scale, and what the error of the quadrature of the acceleration makes of it in `1 / omega_1`.
 //!
 //! A step that ends inside, at an event, has a larger error, as the shape is not orthogonal to anything there: what `m`
-//! and `m_a` do to the nodal forces, and the greatest impulse of the shape times `m` and `m_a`; in flight what `m_a` does to
-//! the velocity, in `1 / omega_1`. A blow makes it a hundred times larger, so at an opening it has to be below
+//! and `m_a` do to the nodal forces, and the greatest impulse of the shape times `m` and `m_a`; in flight what `m_a`
+//! does to the velocity, in `1 / omega_1`. A blow makes it a hundred times larger, so at an opening it has to be below
 //! [`constants::AT_EVENT`] of the error allowed in a step.
 //!
-//! An estimate below what rounding makes of the sums over the modes counts as zero: no shorter step makes
-//! it smaller.
+//! An estimate below what rounding makes of the sums over the modes counts as zero: no shorter step makes it smaller.
 //!
 //! # Step size control
 //!
 //! A step may add [`constants::SHARE`] of `solver.tolerance` times the force scale ([`attempt`], [`step_control`]). Its
 //! length is multiplied by `(allowed / estimate)^(1 / (S + 1))` and [`constants::SAFETY`], with bounds on growth and
-//! shrinkage beside it. Step ends lie on a grid: binary fractions of the communication step, or lengths of
-//! 1 and 1.5 times powers of two where the integrator runs ahead ([`grid`]), so that coefficients recur; the
-//! generator's corners (start, end, crossover) end a step, and the step size starts anew there. After a closing the force is
-//! smooth in the logarithm of the time since: the next step may be longer in the ratio in which that time grows, beside what
-//! the estimate says. A step is never longer than a quarter of the generator's
-//! shortest period, nor than `solver.maximumStep`. Without damping, a step that makes more energy than a force wrong by
-//! the tolerance would is rejected too.
+//! shrinkage beside it. Step ends lie on a grid: binary fractions of the communication step, or lengths of 1 and 1.5
+//! times powers of two where the integrator runs ahead ([`grid`]), so that coefficients recur; the generator's corners
+//! (start, end, crossover) end a step, and the step size starts anew there. After a closing the force is smooth in the
+//! logarithm of the time since: the next step may be longer in the ratio in which that time grows, beside what the
+//! estimate says. A step is never longer than a quarter of the generator's shortest period, nor than
+//! `solver.maximumStep`. Without damping, a step that makes more energy than a force wrong by the tolerance would is
+//! rejected too.
 //!
 //! Work is counted and bounded per communication step, however long that is ([`constants::STEPS`]; [`workspace`]):
 //! beyond it the step ends with an error that names the time.
@@ -173,8 +173,10 @@
 //! are read from the polynomials of its last step ([`communication_step`], [`motion`]): dense output of the force
 //! (through the start and all nodes), the indentation and its velocity. A long step that will be read inside must keep
 //! the tolerance there too: [`constants::INSIDE`] times `m` is the error inside, and in flight the error of the
-//! indentation follows from the velocities at the nodes, which the slopes of its polynomial miss. A short step that cannot
-//! ends at the communication point, cut as at an event. A changed input takes the motion back to the communication point: it is integrated again from the start of the step, under the former inputs. A communication step much longer than the
+//! indentation follows from the velocities at the nodes, which the slopes of its polynomial miss. A short step that
+//! cannot ends at the communication point, cut as at an event. A changed input takes the motion back to the
+//! communication point: it is integrated again from the start of the step, under the former inputs. A communication
+//! step much longer than the
 //! integrator's steps ends one of them exactly. Inputs act linearly in time within a communication step; a jump of
 //! their rate changes the dissipative force at once and restarts the step length.
 //!

@@ -2,11 +2,11 @@
 
 use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
-use crate::integrator::attempt::step_factor;
+use crate::integrator::attempt::{growth, shrinkage};
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::constants::{
-    AFTER_REJECTION, COARSEST, GROWING, LEAST_SHRINK, LONG_FLOOR, LONGER, MOST_GROWTH, MOST_SHRINK, NEXT_LENGTH,
-    REFUSALS, SAFETY, SHARE, SMOOTH, WORTH,
+    AFTER_REJECTION, COARSEST, GROWING, LEAST_SHRINK, LONG_FLOOR, LONGER, MOST_SHRINK, NEXT_LENGTH, REFUSALS, SAFETY,
+    SHARE, SMOOTH, WORTH,
 };
 use crate::integrator::energy::conservation::conserves;
 use crate::integrator::events::Cut;
@@ -169,28 +169,17 @@ impl Integration<'_> {
             if self.is_shortest(&target) {
                 return Err(self.error(StepErrorCause::NotFinite));
             }
-            // Without an error estimate, shrink by the largest factor.
-            let shrink = if ratio.is_finite() {
-                AFTER_REJECTION * step_factor::<S>(ratio)
-            } else {
-                0.0
-            };
-            return Ok(self.reject(target.length * shrink.clamp(LEAST_SHRINK, MOST_SHRINK)));
+            return Ok(self.reject(target.length * shrinkage::<S>(ratio)));
         };
         // The energy may reveal an error that the estimate misses.
         if !self.is_shortest(&target) && self.breaks_account(&trial, target.length) {
             return Ok(self.reject(0.5 * target.length));
         }
         // From the error of the whole step, also if an event shortens it.
-        let growth = if ratio < 1e-7 {
-            MOST_GROWTH
-        } else {
-            (SAFETY * step_factor::<S>(ratio)).clamp(MOST_SHRINK, MOST_GROWTH)
-        };
         let growth = if self.before_event {
-            growth.min(1.0)
+            growth::<S>(ratio).min(1.0)
         } else {
-            growth * self.leaving_kink(target.length)
+            growth::<S>(ratio) * self.leaving_kink(target.length)
         };
         let opens = if self.state.closed {
             self.first_open(&trial)

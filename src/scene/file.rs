@@ -201,7 +201,8 @@ impl SceneFile {
     }
 
     /// Sets `stop`, `communicationStep`, `outputs` (names separated by commas), a parameter or an input by name, from
-    /// text such as `0.0155` or `Sine`; a relative file is one beside the scene. An input is then held, even if the table has a column for it.
+    /// text such as `0.0155` or `Sine`; a relative file is one beside the scene. An input is then held, even if the table
+    /// has a column for it.
     ///
     /// # Errors
     /// A [`SceneError`] for an unknown name or a value that is not allowed; nothing is changed then.

@@ -3,7 +3,7 @@
 use std::thread;
 
 use relay_contact::reference::MAX_MODES;
-use relay_contact::scene::Solver;
+use relay_contact::scene::{Scene, Solver};
 
 use crate::relays::{Course, Relay};
 
@@ -20,16 +20,20 @@ pub enum Outcome {
     NotRun,
 }
 
-/// The relay at the tightest tolerance with all modes, shaken and curved more strongly by a share.
+/// Part of the tolerance by which a single step may be wrong, 1: a change of the input by as much is not seen.
+pub const OF_A_STEP: f64 = 1.0 / 250.0;
+
+/// Makes a scene its own reference: the tightest tolerance with all modes, shaken and curved more strongly by a share.
+pub fn tighten(scene: &mut Scene, stronger: f64) {
+    scene.solver.tolerance = Solver::TOLERANCE_FLOOR;
+    scene.solver.modes = i32::try_from(MAX_MODES).unwrap_or(i32::MAX);
+    scene.excitation.amplitude *= 1.0 + stronger;
+    scene.excitation.spectral_density *= (1.0 + stronger).powi(2);
+    scene.contact.curvature_radius *= 1.0 + stronger;
+}
+
 fn reference(relay: &Relay, stronger: f64) -> Option<Course> {
-    let course = relay.run(|scene| {
-        scene.solver.tolerance = Solver::TOLERANCE_FLOOR;
-        scene.solver.modes = i32::try_from(MAX_MODES).unwrap_or(i32::MAX);
-        scene.excitation.amplitude *= 1.0 + stronger;
-        scene.excitation.spectral_density *= (1.0 + stronger).powi(2);
-        scene.contact.curvature_radius *= 1.0 + stronger;
-    });
-    match course {
+    match relay.run(|scene| tighten(scene, stronger)) {
         Ok((course, None)) => Some(course),
         _ => None,
     }
@@ -84,11 +88,10 @@ pub fn judge(number: u64, draw: fn(u64) -> Relay) -> Judged {
     judged.estimate = course.estimate;
     judged.error = larger(course.error(&expected));
     judged.instants = course.error_of_instants(&expected);
-    // A step may be wrong by one part in 250 of the tolerance.
     judged.outcome = if judged.error <= tolerance {
         Outcome::Kept
     } else {
-        match reference(&relay, tolerance / 250.0) {
+        match reference(&relay, OF_A_STEP * tolerance) {
             Some(changed) if larger(changed.error(&expected)) > tolerance => Outcome::IllConditioned,
             _ => Outcome::Above,
         }

@@ -46,7 +46,8 @@ pub fn trace(fmu: &Instance, start: u32, count: u32, size: f64) -> Vec<[u64; 6]>
         .map(|k| {
             assert_eq!(fmu.set_real("base.acceleration", f64::from(k / 37)), fmi2OK);
             assert_eq!(fmu.set_real("contact.current", 1e-3 * f64::from(k)), fmi2OK);
-            assert_eq!(fmu.step(f64::from(k) * size, size), fmi2OK);
+            // Where errors may have grown beyond the tolerance, a warning says so.
+            assert!(fmu.step(f64::from(k) * size, size) <= fmi2Warning);
             OUTPUTS.map(|name| fmu.real(name).to_bits())
         })
         .collect()
@@ -234,7 +235,7 @@ fn bytes_that_are_no_state_are_an_error_that_says_which() {
         bytes
     };
     expect(&with(2, 1), "not made by this component");
-    expect(&with(8, 3), "its format is version 1, allowed is 2");
+    expect(&with(8, 2), "its format is version 1, allowed is 3");
     expect(&with(20, 1), "belongs to the component");
     for at in 58..bytes.len() {
         expect(&with(at, 1), "checksum");

@@ -154,7 +154,7 @@ fn warnings(damping: f64, modes: i32) -> Vec<String> {
     assert_eq!(fmu.set_integer("solver.modes", modes), fmi2OK);
     fmu.initialize();
     for k in 0..20 {
-        assert_eq!(fmu.step(f64::from(k) * 1e-3, 1e-3), fmi2OK);
+        assert!(fmu.step(f64::from(k) * 1e-3, 1e-3) <= fmi2Warning);
     }
     // Thirty times the tolerance.
     let announced = fmu.real("solver.forceError") > 3e-5;
@@ -176,11 +176,7 @@ fn a_tolerance_that_may_not_be_kept_is_announced_once() {
     let light = warnings(3e-7, 0);
     assert!(light.len() == 1 && light.iter().all(step), "{light:?}");
     let few = warnings(80.63e-6, 8);
-    assert!(few.len() == 2 && step(&few[1]), "{few:?}");
-    assert!(
-        few[0].starts_with("fmi2ExitInitializationMode: 8 modes are too few"),
-        "{few:?}"
-    );
+    assert!(few.len() == 1 && few[0].contains("8 modes are too few"), "{few:?}");
 }
 
 static STATUS_INSIDE: AtomicU32 = AtomicU32::new(fmi2OK);

@@ -8,6 +8,7 @@ use anyhow::Result;
 use benches::page;
 use clap::Parser;
 use testing::promise::{Judged, Outcome, judge_all};
+use testing::relays::Relay;
 
 const BEGIN: &str = "<!-- promise: written by cargo run --release --package benches --bin promise -->";
 const END: &str = "<!-- end of promise -->";
@@ -31,7 +32,7 @@ struct Arguments {
 
 fn main() -> Result<()> {
     let arguments = Arguments::parse();
-    let judged = judge_all(arguments.first, arguments.count);
+    let judged = judge_all(arguments.first, arguments.count, Relay::draw);
     page::write(&arguments.folder.join("promise.csv"), &csv(&judged))?;
     let text = report(&judged);
     println!("{text}");

@@ -3,9 +3,9 @@
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::thread;
 
-use relay_contact::reference::MAX_MODES;
-use relay_contact::scene;
+use relay_contact::scene::Scene;
 use relay_contact::variables::ExcitationKind;
+use testing::promise::{OF_A_STEP, tighten};
 use testing::relays::{Course, Relay};
 
 use super::solution::{Resolution, Solver, damping_ratio};
@@ -55,17 +55,7 @@ pub struct Row {
     pub elements: usize,
 }
 
-/// The relay by the component at its smallest tolerance with all modes, shaken and curved more strongly by a share.
-fn tightest(relay: &Relay, stronger: f64) -> Result<Course, Failure> {
-    course(relay, |scene| {
-        scene.solver.tolerance = scene::Solver::TOLERANCE_FLOOR;
-        scene.solver.modes = i32::try_from(MAX_MODES).unwrap_or_default();
-        scene.excitation.amplitude *= 1.0 + stronger;
-        scene.contact.curvature_radius *= 1.0 + stronger;
-    })
-}
-
-fn course(relay: &Relay, change: impl FnOnce(&mut scene::Scene)) -> Result<Course, Failure> {
+fn course(relay: &Relay, change: impl FnOnce(&mut Scene)) -> Result<Course, Failure> {
     match relay.run(change) {
         Ok((course, None)) => Ok(course),
         Ok((_, Some(error))) => Err(Failure::Stopped(error.to_string())),
@@ -143,9 +133,9 @@ fn attempt(solver: &Solver, number: u64) -> Result<Outcome, Failure> {
     if own.events.is_empty() || own.force.iter().all(|force| *force == 0.0) {
         return Ok(Outcome::NotMeant);
     }
-    let best = tightest(&relay, 0.0)?;
-    // A step may be wrong by one part in 250 of the tolerance.
-    if tightest(&relay, asked / 250.0)?.error(&best).0 > asked {
+    let tightest = |stronger| course(&relay, |scene| tighten(scene, stronger));
+    let best = tightest(0.0)?;
+    if tightest(OF_A_STEP * asked)?.error(&best).0 > asked {
         return Ok(Outcome::IllConditioned);
     }
     let mut resolution = Resolution {

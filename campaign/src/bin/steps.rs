@@ -1,6 +1,7 @@
 //! Makes communication steps, for counting instructions: `steps SCENE INTERFACE COUNT`, the scene `1us` (steps far
 //! shorter than those of the integrator), `10us` (about as long), or with an input that changes every step `shaken`
-//! (10 us), `sampled` (1 us, a slow sine) or `random` (the same in random lengths, 0.5 to 2 us), the interface `fmi2DoStep` (of the library file beside this program) or `library` (the same steps without C).
+//! (10 us), `sampled` (1 us, a slow sine) or `random` (the same in random lengths, 0.5 to 2 us), the interface `fmi2DoStep`
+//! (of the library file beside this program) or `library` (the same steps without C).
 
 use campaign::api::LIBRARY;
 use campaign::call::Call;

@@ -171,7 +171,6 @@ impl Instance {
         let Some(simulation) = &self.simulation else {
             return Ok(());
         };
-        report::modes(&self.logger, simulation.model());
         if self.logger.debugs() {
             report::model(&self.logger, simulation.model());
         }
@@ -294,17 +293,24 @@ impl Instance {
         if !held {
             self.inputs.hold();
         }
-        if !self.told_of_error
-            && simulation.force_error() > ANNOUNCED * simulation.model().scene.solver.effective_tolerance()
-        {
-            self.told_of_error = true;
-            report::error(&self.logger, simulation);
-        }
         if let Some(before) = before {
             report::step(&self.logger, simulation, before);
         }
         if is_off && !std::mem::replace(&mut self.told_of_offset, true) {
             return Err(Failure::Offset { point, time: now });
+        }
+        if !self.told_of_error {
+            let tolerance = simulation.model().scene.solver.effective_tolerance();
+            let error = simulation.force_error();
+            self.told_of_error = error > ANNOUNCED * tolerance;
+            if self.told_of_error {
+                return Err(Failure::Inaccurate {
+                    time: end,
+                    tolerance,
+                    error,
+                    modes: simulation.model().modes.len(),
+                });
+            }
         }
         Ok(())
     }

@@ -119,9 +119,13 @@ impl<const S: usize> Collocation<S> {
     }
 
     /// First place in the step (0 to 1) before `until` where the nodal polynomial through `values` is found below zero:
-    /// at a sample point, or at the minimum near the lowest of them. It is not searched before the first node, where
-    /// the polynomial extrapolates.
+    /// at a node, at a sample point before it, or at the minimum near the lowest of them. It is not searched before the first
+    /// node, where the polynomial extrapolates.
     pub fn first_dip(&self, values: &Nodal<S>, until: f64) -> Option<f64> {
+        let mut nodes = self.nodes.iter().zip(values);
+        let below = nodes.find(|(node, value)| **node < until && **value < 0.0);
+        let below = below.map(|(node, _)| *node);
+        let until = below.unwrap_or(until);
         let polynomial = combine::<Separate>(&self.nodal, values.iter());
         let value = |x: f64| value_and_slope(&polynomial, x - 1.0).0;
         let look = 1.0 / f64::from(LOOKS);
@@ -139,7 +143,8 @@ impl<const S: usize> Collocation<S> {
             (a, b) = if value(c) < value(d) { (a, d) } else { (c, b) };
         }
         let bottom = f64::midpoint(a, b);
-        (bottom < until && value(bottom) < 0.0).then_some(bottom)
+        let dip = (bottom < until && value(bottom) < 0.0).then_some(bottom);
+        dip.or(below)
     }
 
     /// Mean over the step of the nodal polynomial through `values`.

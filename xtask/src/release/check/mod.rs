@@ -24,7 +24,7 @@ use self::report::{Report, processor};
 use super::platform::Platform;
 
 /// Size limit of a library, in bytes; of each part of a universal library.
-const SIZE: usize = 1_000_000;
+const SIZE: usize = 1_250_000;
 
 /// Checks the library of a platform. `private` are folders of this machine whose paths must not be inside, see
 /// [`private_folders`]. An error if the file is not of the platform's format.
