@@ -57,14 +57,24 @@ fn step_by<const EXTREMES: bool>(
     };
     let since = motion.time;
     workspace.events.forget_until(since);
-    // The fixed contact moves at constant velocity to its position at the end of the step.
+    // The fixed contacts move at constant velocity to their positions at the end of the step.
     let support = inputs.support_displacement_after(size) - model.initial_support;
-    let drive = Drive::new(inputs, time, size, support - motion.state().support);
+    let second = match model.second {
+        Some(_) => inputs.second_displacement_after(size),
+        None => 0.0,
+    };
+    let room = model.room(second);
+    if room <= 0.0 {
+        let (displacement, limit) = (second, second + room);
+        let cause = StepErrorCause::NoRoom { displacement, limit };
+        return Err(StepError { time, cause });
+    }
+    let drive = Drive::new(inputs, time, size, motion.ways(support, second));
     let steady = drive.continues(&motion.drive);
     let ahead = motion.time < motion.end.time;
     // The end lies inside the current integration step: nothing to integrate, outputs come from its dense output.
     let inside = steady && until < motion.end.time;
-    let mut extremes = (EXTREMES && !inside).then(|| Extremes::at(motion.tip(model).force));
+    let mut extremes = (EXTREMES && !inside).then(|| motion.tip(model).extremes());
     let own_step = motion.end.short_step.max(motion.end.long_step);
     if steady && (ahead || size < own_step || size < MANY_STEPS * own_step && size != motion.size) {
         if !inside {
@@ -93,7 +103,8 @@ fn step_by<const EXTREMES: bool>(
             workspace.events.forget_after(since);
             return Err(error);
         }
-        end.support = support;
+        end.second_support = second;
+        end.support = if end.mirrored { second - support } else { support };
         end.time = until;
         motion.start = end;
         motion.end = end;
@@ -138,7 +149,7 @@ fn go_ahead(
         && since < ahead.end.time
     {
         ahead.add_dense(extremes, model, since, ahead.end.time);
-        extremes.add(ahead.end.force);
+        extremes.of(ahead.end.mirrored).add(ahead.end.force);
     }
     let budget = Budget::new(workspace);
     while ahead.end.time < time {
@@ -153,7 +164,7 @@ fn go_ahead(
             && ahead.end.time <= time
         {
             ahead.add_dense(extremes, model, since, ahead.end.time);
-            extremes.add(ahead.end.force);
+            extremes.of(ahead.end.mirrored).add(ahead.end.force);
         }
     }
     if ahead.end.time > time && !ahead.dense.accurate {
@@ -184,7 +195,7 @@ mod tests {
             .map(|k| {
                 let time = f64::from(k) * size;
                 step(&model, &mut motion, &mut workspace, &Inputs::default(), time, size).unwrap();
-                motion.tip(&model).force
+                motion.tip(&model).forces[0]
             })
             .collect()
     }

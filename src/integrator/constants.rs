@@ -142,6 +142,10 @@ pub const UNSEEN: f64 = 1e-2;
 /// closes as it opens. Not pinned: 0 fails no test of `tests/chatter.rs`.
 pub const SHORTEST_FLIGHT: f64 = 1e-3;
 
+/// Distance beyond which the other contact is not looked for in a step of flight, in ways of the tip at its nodes and at the
+/// fastest velocity there, 1. What swings unseen between so many nodes is no larger. Not pinned by a test.
+pub const DISTANT: f64 = 8.0;
+
 /// Places in a step at which the force is looked for clearly on its old side of a threshold. Not pinned by a test.
 pub const PLACES: u32 = 8;
 

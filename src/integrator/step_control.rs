@@ -30,6 +30,8 @@ pub(crate) fn advance(
     steps: Steps,
     extremes: Option<&mut Extremes>,
 ) -> Result<(), StepError> {
+    let (model, other) = model.views(state);
+    let drive = if state.mirrored { drive.mirrored() } else { drive };
     let tolerance = model.scene.solver.effective_tolerance() * model.force_scale;
     let (grid, dense) = match steps {
         Steps::Exactly { time, size } => {
@@ -52,6 +54,7 @@ pub(crate) fn advance(
     exact_step::leave(model, state);
     Integration {
         model,
+        other,
         state,
         workspace,
         drive,

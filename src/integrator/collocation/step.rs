@@ -43,6 +43,26 @@ pub struct Trial<const S: usize> {
     pub tangent: Tangent,
 }
 
+impl<const S: usize> Trial<S> {
+    /// In the view of the other contact ([`State::mirror`]), with the second fixed contact at these places (m) at the
+    /// nodes, moving at this velocity (m/s).
+    pub(crate) fn mirrored(&self, second: &Nodal<S>, second_rate: f64) -> Self {
+        let mut indentations = *second;
+        for (image, own) in indentations.iter_mut().zip(&self.indentations) {
+            *image -= own;
+        }
+        Self {
+            forces: self.forces.map(|force| -force),
+            indentations,
+            rates: self.rates.map(|rate| second_rate - rate),
+            support: end(second) - self.support,
+            indentation: end(second) - self.indentation,
+            rate: second_rate - self.rate,
+            ..*self
+        }
+    }
+}
+
 /// The loads on [`LANES`] modes at the nodes.
 type LaneLoads<const S: usize> = [[f64; LANES]; S];
 
@@ -269,10 +289,11 @@ fn error<const S: usize>(
         let last = |values: &Nodal<S>| (end(values) * free.start_defect).abs();
         let rows = free.error;
         let missed_velocity = free.missed_mean * step.length;
+        let law = &model.hardest;
         let wrong = last(&rows.displacement)
-            + model.law.damping() * last(&rows.velocity)
-            + missed_velocity * (model.memory + model.law.damping());
-        model.law.tangent_stiffness(model.force_scale) * wrong
+            + law.damping() * last(&rows.velocity)
+            + missed_velocity * (model.memory + law.damping());
+        law.tangent_stiffness(model.force_scale) * wrong
     }
 }
 

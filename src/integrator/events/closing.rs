@@ -53,7 +53,11 @@ impl Integration<'_> {
             [a, b] => self.touch_between::<S>(a, b, error, unsure, 0),
             _ => None,
         })?;
-        Some(Cut { length, switches: true })
+        Some(Cut {
+            length,
+            switches: true,
+            mirrors: false,
+        })
     }
 
     /// Samples at the start and the nodes of a step, and the error of the cubics between them, m.

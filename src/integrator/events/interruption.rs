@@ -73,6 +73,7 @@ impl Integration<'_> {
         let cut_at = |length| Cut {
             length,
             switches: false,
+            mirrors: false,
         };
         let end = self.excess_after::<S>(criterion, latest);
         if end > 0.0 {
@@ -121,7 +122,7 @@ impl Integration<'_> {
     /// Records the present contact force in the extremes, and an interruption that begins or ends with it.
     pub(crate) fn note_force(&mut self) {
         if let Some(extremes) = &mut self.extremes {
-            extremes.add(self.state.force);
+            extremes.of(self.state.mirrored).add(self.state.force);
         }
         let Some(criterion) = self.model.criterion.as_ref() else {
             return;

@@ -5,6 +5,7 @@ pub mod closing;
 pub mod interruption;
 pub mod log;
 pub mod opening;
+pub mod other;
 
 use crate::error::StepError;
 use crate::integrator::collocation::step::Trial;
@@ -18,6 +19,8 @@ pub(crate) struct Cut {
     pub(crate) length: f64,
     /// Whether the contact opens or closes at its end.
     pub(crate) switches: bool,
+    /// Whether it is the other contact that closes.
+    pub(crate) mirrors: bool,
 }
 
 impl Integration<'_> {
@@ -29,7 +32,9 @@ impl Integration<'_> {
         if self.state.closed {
             self.first_open(trial)
         } else {
-            self.first_near(trial, length)
+            let own = self.first_near(trial, length);
+            let other = self.toward_other(trial, length, |it, image| it.first_near(image, length));
+            own.into_iter().chain(other).reduce(f64::min)
         }
     }
 
@@ -42,7 +47,17 @@ impl Integration<'_> {
         if self.state.closed {
             self.opening::<S>(candidate * length, length)
         } else {
-            self.closing(trial, length)
+            let own = self.closing(trial, length);
+            let other = self.toward_other(trial, length, |it, image| it.closing(image, length));
+            let other = other.map(|cut| Cut {
+                // The other contact is a gap away: time advances.
+                length: cut.length.max(self.resolution()),
+                mirrors: true,
+                ..cut
+            });
+            own.into_iter()
+                .chain(other)
+                .reduce(|a, b| if b.length < a.length { b } else { a })
         }
     }
 
@@ -73,6 +88,9 @@ impl Integration<'_> {
             return Ok(self.reject(0.5 * target.length));
         };
         self.take(&trial, &target)?;
+        if cut.mirrors {
+            self.mirror();
+        }
         if cut.switches {
             return Ok(StepOutcome {
                 taken: true,
@@ -91,6 +109,7 @@ impl Integration<'_> {
         self.workspace.events.record(Event {
             time: self.state.time,
             closes: closed,
+            second: self.state.mirrored,
         });
         self.state.force = 0.0;
         self.state.last_step = 0.0;

@@ -22,6 +22,7 @@ impl Integration<'_> {
             return (latest < length).then_some(Cut {
                 length: latest,
                 switches: false,
+                mirrors: false,
             });
         }
         // Closed at the start; just after first touch rounding may give a negative engagement.
@@ -33,6 +34,7 @@ impl Integration<'_> {
         Some(Cut {
             length: length.unwrap_or(latest),
             switches: true,
+            mirrors: false,
         })
     }
 
