@@ -17,7 +17,8 @@ use crate::force_error::ForceError;
 use crate::math::prediction::Predictions;
 use crate::math::simd::Simd;
 use crate::preload::Preload;
-use crate::scene::{Contact, Scene};
+use crate::scene::Scene;
+use crate::second_contact;
 use crate::state::{Record, State};
 use crate::variables::{AxialForceKind, ContactLawKind, RealParameter};
 
@@ -99,23 +100,9 @@ impl Model {
         if !scene.effects.contact_damping {
             hertz.damping = 0.0;
         }
-        let second = scene.effects.second_contact.then(|| second_contact(scene));
+        let second = second_contact::of(scene);
         let preload = Preload::new(scene, &spring, &hertz, support)?;
-        let law = match scene.effects.contact_law {
-            ContactLawKind::Hertz => Law::Hertz(hertz),
-            ContactLawKind::Linearised | ContactLawKind::Bonded if second.is_some() => {
-                return Err(SceneError::NeedsHertz);
-            }
-            ContactLawKind::Linearised | ContactLawKind::Bonded if preload.force <= 0.0 => {
-                return Err(SceneError::NoPreload);
-            }
-            kind @ (ContactLawKind::Linearised | ContactLawKind::Bonded) => Law::Linear(Linear {
-                stiffness: preload.contact_stiffness,
-                damping: hertz.damping,
-                offset: preload.indentation - preload.force / preload.contact_stiffness,
-                bonded: kind == ContactLawKind::Bonded,
-            }),
-        };
+        let law = law(scene, hertz, &preload)?;
         let tolerance = scene.solver.effective_tolerance();
         let count = |blow: &Blow| spring.count(blow, tolerance);
         let own = blow(scene, &section, &hertz);
@@ -195,45 +182,6 @@ impl Model {
             Some(second) => model.with_second(Law::Hertz(second)),
             None => model,
         })
-    }
-
-    /// With a second contact of this law on the other side of the spring.
-    fn with_second(mut self, law: Law) -> Self {
-        self.hardest = self.law.hardest(&law);
-        self.second = None;
-        let preload = Preload {
-            force: -self.preload.force,
-            indentation: -self.scene.second.gap,
-            contact_stiffness: 0.0,
-            deflection: -self.preload.deflection,
-            ..self.preload
-        };
-        self.second = Some(Box::new(Self {
-            law,
-            preload,
-            axial: self.axial.as_ref().map(Feedback::mirrored),
-            mirrored: true,
-            ..self.clone()
-        }));
-        self
-    }
-
-    /// The view that a state is of, and that of the other contact, where there are two.
-    pub(crate) fn views(&self, state: &State) -> (&Self, Option<&Self>) {
-        match self.second.as_deref() {
-            Some(second) if state.mirrored => (second, Some(self)),
-            second => (self, second),
-        }
-    }
-
-    /// Distance between the two fixed contacts, as the moving contact has it, with the second one displaced by
-    /// `displacement` (m); infinite where there is one.
-    pub(crate) fn room(&self, displacement: f64) -> f64 {
-        if self.second.is_some() {
-            self.scene.second.gap - displacement - self.preload.indentation
-        } else {
-            f64::INFINITY
-        }
     }
 
     /// The same model with other parts, for test problems without a spring. It takes no exact steps.
@@ -419,14 +367,21 @@ fn inertia(modes: &[Mode]) -> f64 {
     (tip(|mode| mode.participation) / tip(|mode| mode.tip)).abs()
 }
 
-/// The second contact of a scene.
-fn second_contact(scene: &Scene) -> Hertz {
-    let (second, damped) = (scene.second, scene.effects.contact_damping);
-    Hertz::new(&Contact {
-        curvature_radius: second.curvature_radius,
-        damping: if damped { second.damping } else { 0.0 },
-        ..scene.contact
-    })
+/// The law of the first contact.
+fn law(scene: &Scene, hertz: Hertz, preload: &Preload) -> Result<Law, SceneError> {
+    match scene.effects.contact_law {
+        ContactLawKind::Hertz => Ok(Law::Hertz(hertz)),
+        ContactLawKind::Linearised | ContactLawKind::Bonded if scene.effects.second_contact => {
+            Err(SceneError::NeedsHertz)
+        }
+        ContactLawKind::Linearised | ContactLawKind::Bonded if preload.force <= 0.0 => Err(SceneError::NoPreload),
+        kind @ (ContactLawKind::Linearised | ContactLawKind::Bonded) => Ok(Law::Linear(Linear {
+            stiffness: preload.contact_stiffness,
+            damping: hertz.damping,
+            offset: preload.indentation - preload.force / preload.contact_stiffness,
+            bonded: kind == ContactLawKind::Bonded,
+        })),
+    }
 }
 
 /// A blow as the scene may have it.

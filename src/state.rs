@@ -81,13 +81,8 @@ pub struct Record {
 }
 
 impl State {
-    /// From the view of one contact to that of the other.
-    ///
-    /// The second contact is the mirror image of the first: with `q' = -q`, `a' = -a`, `F_0' = -F_0` and a fixed contact
-    /// at `u_2 - u` the equations of motion and the indentation `e = -gap + u_2 - (d - d_0)` of the second have the form
-    /// of those of the first ([`Model`](crate::model::Model)). So everything that is known of one contact serves both:
-    /// the state is mirrored in flight where the other contact closes, whose fixed contact moves at `second_rate` (m/s)
-    /// relative to the first.
+    /// From the view of one contact to that of the other ([`second_contact`](crate::second_contact)), whose fixed contact
+    /// moves at `second_rate` (m/s) relative to the first.
     pub(crate) fn mirror(&mut self, second_rate: f64) {
         self.mirrored = !self.mirrored;
         for mode in &mut self.modes {

@@ -60,6 +60,7 @@ impl Law {
     }
 
     /// As hard and as damped as the harder and the more damped of two.
+    #[must_use]
     pub fn hardest(&self, other: &Self) -> Self {
         match (self, other) {
             (Self::Hertz(a), Self::Hertz(b)) => Self::Hertz(Hertz {

@@ -118,7 +118,7 @@ impl Motion {
             drive.support_rate,
             drive.second_rate,
         ];
-        let extremes = extremes.iter().flat_map(|extremes| extremes.numbers());
+        let extremes = extremes.iter().flat_map(Extremes::numbers);
         let driven = drive.acceleration(start.time);
         numbers
             .iter()

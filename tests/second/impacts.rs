@@ -125,6 +125,9 @@ fn by_runge_kutta(scene: &Scene, inputs: impl Fn(f64) -> Inputs, end: u32, h: f6
     course
 }
 
+/// Points of time, 10 us apart.
+const ROWS: u32 = 200;
+
 /// The spring between two contacts of different radius and damping, both moving, against the classical Runge-Kutta method
 /// on the same modes, whose own error is seen from steps of twice the length.
 #[test]
@@ -149,7 +152,6 @@ fn a_spring_between_two_contacts() {
             second_displacement_rate: second_rate,
             ..Inputs::default()
         };
-        const ROWS: u32 = 200;
         let [fine, coarse] = [2e-8, 4e-8].map(|h| by_runge_kutta(&scene, inputs, ROWS, h));
         let mut simulation = Simulation::new(&scene, &inputs(0.0), 0.0).unwrap();
         let mut scale = simulation.model().force_scale();

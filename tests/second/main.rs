@@ -6,8 +6,11 @@ mod impacts;
 mod monitor;
 mod refused;
 
+use std::path::Path;
+
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
+use relay_contact::scene::file::SceneFile;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{AxialForceKind, BooleanOutput, ExcitationKind, IntegerOutput, RealOutput};
 
@@ -202,4 +205,103 @@ fn the_communication_steps_do_not_matter() {
             }
         }
     }
+}
+
+/// The rate of an output of the second contact lies between the slopes just before and just after it, as those of the
+/// first do (`tests/derivatives.rs`).
+#[test]
+fn rates_are_the_slopes_of_the_courses() {
+    const NEAR: f64 = 1e-7;
+    let mut scene = changeover(2e-5);
+    scene.effects.excitation = ExcitationKind::Sine;
+    scene.excitation.amplitude = -250.0;
+    scene.excitation.frequency = 300.0;
+    scene.second.damping = 2e-5;
+    scene.solver.tolerance = 1e-9;
+    let outputs = [
+        RealOutput::SecondForce,
+        RealOutput::SecondConductance,
+        RealOutput::ContactIndentation,
+        RealOutput::TipDisplacement,
+        RealOutput::TipVelocity,
+    ];
+    for size in [1e-6, 1e-5] {
+        let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
+        let mut rows = Vec::new();
+        while simulation.time() < 2e-3 {
+            let row = [size - 2.0 * NEAR, NEAR, NEAR].map(|step| {
+                simulation.step(&Inputs::default(), simulation.time(), step).unwrap();
+                outputs.map(|output| (simulation.real(output), simulation.rate(output).unwrap()))
+            });
+            // In the second contact all the while.
+            if row.iter().all(|at| at[0].0 > 0.0) {
+                rows.push(row);
+            }
+        }
+        assert!(
+            rows.len() as f64 > 2e-4 / size,
+            "{size} s: closed at {} points",
+            rows.len()
+        );
+        for (n, output) in outputs.into_iter().enumerate() {
+            let values = || rows.iter().map(|[_, now, _]| now[n].0);
+            let range = values().fold(f64::MIN, f64::max) - values().fold(f64::MAX, f64::min);
+            // Values are wrong by the tolerance.
+            let noise = 2.0 * scene.solver.tolerance * range / NEAR;
+            for [before, now, after] in &rows {
+                let slopes = [now[n].0 - before[n].0, after[n].0 - now[n].0].map(|change| change / NEAR);
+                let (low, high) = (slopes[0].min(slopes[1]), slopes[0].max(slopes[1]));
+                assert!(
+                    (low - noise..=high + noise).contains(&now[n].1),
+                    "{size} s, {output:?}: {} not in {slopes:?}",
+                    now[n].1
+                );
+            }
+        }
+    }
+}
+
+/// The scene `changeover-make`: the contact goes over from one side to the other and back, with bounces at either.
+#[test]
+fn a_changeover_relay_switches() {
+    let file = SceneFile::read(Path::new("scenes/changeover-make.toml")).unwrap();
+    let mut contact = Simulation::new(
+        &file.scene,
+        &file.inputs_over(0.0, file.communication_step).unwrap(),
+        0.0,
+    )
+    .unwrap();
+    let preload = contact.real(RealOutput::PreloadForce);
+    // Beyond the second contact as far as it lay beyond the first, and by the indentation there.
+    let depth = contact.real(RealOutput::PreloadIndentation);
+    let pressed = preload + testing::scenes::tip_stiffness(&file.scene) * depth;
+    let (mut courses, mut makes) = (Vec::new(), Vec::new());
+    for (time, size) in file.steps() {
+        contact
+            .step(&file.inputs_over(time, size).unwrap(), time, size)
+            .unwrap();
+        let forces = [RealOutput::ContactForce, RealOutput::SecondForce].map(|output| contact.real(output));
+        assert!(forces.contains(&0.0), "{forces:?} N at {time} s");
+        courses.push((time + size, forces));
+        makes.push(
+            [IntegerOutput::ChatterFalseMakes, IntegerOutput::SecondFalseMakes].map(|output| contact.integer(output)),
+        );
+    }
+    let mean = |from: f64, to: f64, n: usize| {
+        let within = || courses.iter().filter(|(time, _)| (from..to).contains(time));
+        within().map(|(_, forces)| forces[n]).sum::<f64>() / within().count() as f64
+    };
+    println!(
+        "{} N, {pressed} N; {} N, {preload} N; {:?}",
+        mean(0.012, 0.015, 1),
+        mean(0.027, 0.03, 0),
+        makes.last()
+    );
+    // What still swings averages out over some periods of 0.7 ms, to a few parts in a thousand.
+    assert!((mean(0.012, 0.015, 1) / pressed - 1.0).abs() < 5e-3);
+    assert!((mean(0.027, 0.03, 0) / preload - 1.0).abs() < 5e-3);
+    // Nothing happens between both switchings.
+    assert_eq!(makes[1000], makes[1500]);
+    let last = makes.last().unwrap();
+    assert!(last.iter().all(|makes| *makes > 2), "{last:?} makes: no bounces");
 }

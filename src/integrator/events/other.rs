@@ -87,7 +87,7 @@ impl Integration<'_> {
             ends.for_each(|indentation| extremes.approach(indentation - gap));
             if let Some(polynomial) = inside {
                 each_extreme(&polynomial, -1.0, 0.0, |indentation| {
-                    extremes.approach(indentation - gap)
+                    extremes.approach(indentation - gap);
                 });
             }
         }
