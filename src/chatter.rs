@@ -1,21 +1,17 @@
-//! Interruptions (contact chatter): intervals in which the contact resistance is above a threshold.
-//!
-//! The resistance decreases with the contact force, so an interruption is an interval with a force below that of the
-//! threshold. One present at the start begins there. It counts once it has lasted the minimum duration, even if it is
-//! still in progress (MIL-PRF-28776, MIL-STD-202 method 310: 10 us).
-
 use serde::{Deserialize, Serialize};
 
 use crate::electrical::ElectricalContact;
 use crate::scene::Scene;
 
-/// Criterion of an interruption.
+/// Criterion of interruptions and makes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Criterion {
     /// Contact force below which the contact is interrupted, N; above 0.
     pub force: f64,
     /// Shortest interruption that counts, s.
     minimum_duration: f64,
+    /// Shortest make that counts, s.
+    shortest_make: f64,
 }
 
 impl Criterion {
@@ -25,25 +21,26 @@ impl Criterion {
         (scene.effects.chatter && force > 0.0).then_some(Self {
             force,
             minimum_duration: scene.chatter.minimum_duration,
+            shortest_make: scene.second.minimum_duration,
         })
     }
 }
 
-/// Interruptions up to an instant: the state.
+/// Interruptions and makes up to an instant: the state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Interruptions {
-    /// Start of the interruption in progress, s.
-    since: Option<f64>,
-    /// Number of completed interruptions that count.
-    count: u64,
-    /// Longest completed one, s.
-    longest: f64,
-    /// Total duration of the completed ones that count, s.
-    total: f64,
+    /// Whether there is an interruption.
+    in_progress: bool,
+    /// Instant at which it began, or the make between two of them, s; `None`: closed since the start.
+    turned: Option<f64>,
+    /// Completed interruptions.
+    completed: Summary,
+    /// Completed makes.
+    made: Summary,
 }
 
-/// Interruptions up to an instant, including one in progress: the outputs.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// Interruptions, or makes, up to an instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// Number that count.
     pub count: u64,
@@ -53,43 +50,60 @@ pub struct Summary {
     pub total: f64,
 }
 
+impl Summary {
+    /// With a further one that has lasted so long (s); it counts if it has lasted the shortest duration (s).
+    fn with(self, lasted: f64, shortest: f64) -> Self {
+        let counts = lasted >= shortest;
+        Self {
+            count: self.count + u64::from(counts),
+            longest: self.longest.max(lasted),
+            total: self.total + if counts { lasted } else { 0.0 },
+        }
+    }
+
+    fn is_sound(&self) -> bool {
+        self.longest.is_finite() && self.total.is_finite()
+    }
+}
+
 impl Interruptions {
     /// Whether the contact is interrupted.
     pub fn in_progress(&self) -> bool {
-        self.since.is_some()
+        self.in_progress
     }
 
     /// Begins or ends an interruption at an instant (s).
     pub fn turn(&mut self, criterion: &Criterion, time: f64) {
-        let Summary { count, longest, total } = self.summary(criterion, time);
         *self = Self {
-            since: if self.in_progress() { None } else { Some(time) },
-            count,
-            longest,
-            total,
+            in_progress: !self.in_progress,
+            turned: Some(time),
+            completed: self.summary(criterion, time),
+            made: self.makes(criterion, time),
         };
     }
 
     /// Whether the values are consistent at an instant (s) (check of a deserialised state).
     pub fn is_sound(&self, time: f64) -> bool {
         let Self {
-            since,
-            count: _,
-            longest,
-            total,
+            in_progress: _,
+            turned,
+            completed,
+            made,
         } = self;
-        let past = since.is_none_or(|instant| instant <= time && instant.is_finite());
-        past && longest.is_finite() && total.is_finite()
+        turned.is_none_or(|instant| instant <= time && instant.is_finite()) && completed.is_sound() && made.is_sound()
     }
 
-    /// Summary at an instant (s).
+    /// Interruptions at an instant (s), including one in progress.
     pub fn summary(&self, criterion: &Criterion, time: f64) -> Summary {
-        let lasted = self.since.map_or(0.0, |since| time - since);
-        let counts = self.in_progress() && lasted >= criterion.minimum_duration;
-        Summary {
-            count: self.count + u64::from(counts),
-            longest: self.longest.max(lasted),
-            total: self.total + if counts { lasted } else { 0.0 },
-        }
+        let now = self.turned.filter(|_| self.in_progress);
+        now.map_or(self.completed, |since| {
+            self.completed.with(time - since, criterion.minimum_duration)
+        })
+    }
+
+    /// Makes at an instant (s), including one in progress.
+    pub fn makes(&self, criterion: &Criterion, time: f64) -> Summary {
+        let now = self.turned.filter(|_| !self.in_progress);
+        now.map_or(self.made, |since| self.made.with(time - since, criterion.shortest_make))
     }
 }

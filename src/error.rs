@@ -76,6 +76,26 @@ pub enum SceneError {
     /// Counting of interruptions, which are defined by the resistance, without a resistance.
     #[error("effects.chatter = true: not allowed with effects.resistance = None, allowed is false")]
     NoResistance,
+    /// A linear contact law beside a second contact.
+    #[error(
+        "effects.contactLaw: Linearised and Bonded are laws about the preload, at which the second contact is open; allowed with \
+         effects.secondContact = true is Hertz"
+    )]
+    NeedsHertz,
+    /// A second contact that the moving contact touches at the preload, or that touches the first.
+    #[error(
+        "second.gap = {} m with second.displacement = {} m: not allowed, what is left of the gap at the preload must be more \
+         than {} m for the spring to lie between both contacts",
+        number(*gap), number(*displacement), number(*least)
+    )]
+    NoGap {
+        /// The gap, m.
+        gap: f64,
+        /// Displacement of the second fixed contact at the start, m.
+        displacement: f64,
+        /// What has to be left, m: the indentation of the first contact at the preload.
+        least: f64,
+    },
     /// A linear contact law without a contact force to linearise about.
     #[error("effects.contactLaw: Linearised and Bonded need a contact that is closed at rest, preload.force is 0 N")]
     NoPreload,
@@ -264,6 +284,14 @@ pub enum StepErrorCause {
     /// A fixed contact faster than light.
     #[error("support.displacement would move at {0:e} m/s, allowed is the speed of light")]
     Speed(f64),
+    /// Two fixed contacts that touch.
+    #[error("second.displacement = {} m brings the second fixed contact to the first, allowed is less than {} m", number(*displacement), number(*limit))]
+    NoRoom {
+        /// The displacement, m.
+        displacement: f64,
+        /// That at which they touch, m.
+        limit: f64,
+    },
     /// A number in the state is no longer finite.
     #[error("the state is no longer finite")]
     NotFinite,

@@ -13,12 +13,16 @@ pub struct Inputs {
     /// Displacement of the fixed contact, positive closes, m. Over the step the contact moves linearly from its
     /// present position to this value plus rate times step size: without a rate it lags one step behind.
     pub support_displacement: f64,
+    /// Displacement of the second fixed contact relative to the first, positive closes, m. It moves as that does.
+    pub second_displacement: f64,
     /// Current through the contact, A.
     pub contact_current: f64,
     /// Rate of the acceleration, m/s3.
     pub base_acceleration_rate: f64,
     /// Rate of the displacement, m/s.
     pub support_displacement_rate: f64,
+    /// Rate of the displacement of the second fixed contact, m/s.
+    pub second_displacement_rate: f64,
     /// Rate of the current, A/s.
     pub contact_current_rate: f64,
 }
@@ -44,6 +48,7 @@ impl Inputs {
         match input {
             RealInput::BaseAcceleration => &mut self.base_acceleration,
             RealInput::SupportDisplacement => &mut self.support_displacement,
+            RealInput::SecondDisplacement => &mut self.second_displacement,
             RealInput::ContactCurrent => &mut self.contact_current,
         }
     }
@@ -70,6 +75,7 @@ impl Inputs {
         match input {
             RealInput::BaseAcceleration => &mut self.base_acceleration_rate,
             RealInput::SupportDisplacement => &mut self.support_displacement_rate,
+            RealInput::SecondDisplacement => &mut self.second_displacement_rate,
             RealInput::ContactCurrent => &mut self.contact_current_rate,
         }
     }
@@ -95,19 +101,24 @@ impl Inputs {
 
     /// Whether the inputs are constant over the step.
     pub fn are_held(&self) -> bool {
-        self.base_acceleration_rate == 0.0 && self.support_displacement_rate == 0.0 && self.contact_current_rate == 0.0
+        RealInput::ALL.iter().all(|input| self.rate(*input) == 0.0)
     }
 
     /// Holds the inputs at their values.
     pub fn hold(&mut self) {
-        self.base_acceleration_rate = 0.0;
-        self.support_displacement_rate = 0.0;
-        self.contact_current_rate = 0.0;
+        for input in RealInput::ALL {
+            *self.rate_mut(*input) = 0.0;
+        }
     }
 
     /// Displacement of the fixed contact after `size` seconds, m.
     pub fn support_displacement_after(&self, size: f64) -> f64 {
         self.support_displacement + self.support_displacement_rate * size
+    }
+
+    /// Displacement of the second fixed contact after `size` seconds, m.
+    pub fn second_displacement_after(&self, size: f64) -> f64 {
+        self.second_displacement + self.second_displacement_rate * size
     }
 
     /// Current after `size` seconds, A.

@@ -18,7 +18,8 @@ use crate::math::prediction::Predictions;
 use crate::math::simd::Simd;
 use crate::preload::Preload;
 use crate::scene::Scene;
-use crate::state::State;
+use crate::second_contact;
+use crate::state::{Record, State};
 use crate::variables::{AxialForceKind, ContactLawKind, RealParameter};
 
 /// Everything that is constant during a simulation.
@@ -30,6 +31,13 @@ pub struct Model {
     pub(crate) section: Section,
     /// The contact.
     pub(crate) law: Law,
+    /// As hard and as damped as the harder and the more damped of two contacts; else the same.
+    pub(crate) hardest: Law,
+    /// The same scene in the view of the second contact, where there is one: its mirror image
+    /// ([`State::mirror`]).
+    pub(crate) second: Option<Box<Self>>,
+    /// Whether this is that view.
+    pub(crate) mirrored: bool,
     /// The static equilibrium, the reference of the motion.
     pub(crate) preload: Preload,
     /// The modes, frequency ascending.
@@ -92,21 +100,17 @@ impl Model {
         if !scene.effects.contact_damping {
             hertz.damping = 0.0;
         }
+        let second = second_contact::of(scene);
         let preload = Preload::new(scene, &spring, &hertz, support)?;
-        let law = match scene.effects.contact_law {
-            ContactLawKind::Hertz => Law::Hertz(hertz),
-            ContactLawKind::Linearised | ContactLawKind::Bonded if preload.force <= 0.0 => {
-                return Err(SceneError::NoPreload);
-            }
-            kind @ (ContactLawKind::Linearised | ContactLawKind::Bonded) => Law::Linear(Linear {
-                stiffness: preload.contact_stiffness,
-                damping: hertz.damping,
-                offset: preload.indentation - preload.force / preload.contact_stiffness,
-                bonded: kind == ContactLawKind::Bonded,
-            }),
-        };
-        let blow = blow(scene, &section, &hertz);
-        let wanted = spring.count(&blow, scene.solver.effective_tolerance());
+        let law = law(scene, hertz, &preload)?;
+        let tolerance = scene.solver.effective_tolerance();
+        let count = |blow: &Blow| spring.count(blow, tolerance);
+        let own = blow(scene, &section, &hertz);
+        let blow = second
+            .map(|second| blow(scene, &section, &second))
+            .filter(|second| count(second) > count(&own))
+            .unwrap_or(own);
+        let wanted = count(&blow);
         let count = match usize::try_from(scene.solver.modes) {
             Ok(count) if count > 0 => count.min(MAX_MODES),
             _ => wanted.min(MAX_MODES),
@@ -151,7 +155,10 @@ impl Model {
         } else {
             0.0
         };
-        Ok(Self {
+        let model = Self {
+            hardest: law,
+            second: None,
+            mirrored: false,
             missed_by_modes,
             inertia: inertia(&modes),
             memory,
@@ -170,6 +177,10 @@ impl Model {
             electrical,
             criterion,
             simd: Simd::detect(),
+        };
+        Ok(match second {
+            Some(second) => model.with_second(Law::Hertz(second)),
+            None => model,
         })
     }
 
@@ -187,7 +198,11 @@ impl Model {
         parts.modes.truncate(MAX_MODES);
         (self.modes, self.law, self.preload) = (parts.modes, parts.law, parts.preload);
         (self.generator, self.force_scale, self.closed_loop) = (parts.generator, parts.force_scale, None);
-        self
+        self.hardest = self.law;
+        match self.second.take() {
+            Some(second) => self.with_second(second.law),
+            None => self,
+        }
     }
 
     /// What a user should know of the scene.
@@ -270,16 +285,21 @@ impl Model {
 
     /// At rest in the preload.
     pub fn initial_state(&self, time: f64) -> State {
-        let mut interruptions = Interruptions::default();
+        let [mut interruptions, mut of_second] = [Interruptions::default(); 2];
         if let Some(criterion) = self.criterion.filter(|criterion| self.preload.force < criterion.force) {
             interruptions.turn(&criterion, time);
+        }
+        if let Some(criterion) = self.criterion.filter(|_| self.second.is_some()) {
+            of_second.turn(&criterion, time);
         }
         State {
             time,
             modes: [ModeState::default(); MAX_MODES],
+            mirrored: false,
             with_contact: false,
             support: 0.0,
             support_rate: 0.0,
+            second_support: 0.0,
             indentation: 0.0,
             indentation_rate: 0.0,
             force: self.preload.force,
@@ -295,6 +315,11 @@ impl Model {
             energy_surplus: 0.0,
             energy_balance: 0.0,
             interruptions,
+            other: Record {
+                last_opening: -1.0,
+                last_closing: -1.0,
+                interruptions: of_second,
+            },
             force_error: ForceError::default(),
             steps: 0,
             rejected_steps: 0,
@@ -309,7 +334,13 @@ impl Model {
         let beam: f64 = pairs
             .map(|(mode, at)| at.v * at.v + mode.omega_squared * at.q * at.q)
             .sum();
-        0.5 * beam + self.law.energy_above_tangent(self.preload.indentation, indentation)
+        let own = 0.5 * beam + self.law.energy_above_tangent(self.preload.indentation, indentation);
+        // The preload force is that of the first contact.
+        if self.mirrored {
+            own - self.preload.force * indentation
+        } else {
+            own
+        }
     }
 
     /// Velocity of the tip per impulse on it, 1/kg.
@@ -340,6 +371,23 @@ fn inertia(modes: &[Mode]) -> f64 {
         parts.sum()
     };
     (tip(|mode| mode.participation) / tip(|mode| mode.tip)).abs()
+}
+
+/// The law of the first contact.
+fn law(scene: &Scene, hertz: Hertz, preload: &Preload) -> Result<Law, SceneError> {
+    match scene.effects.contact_law {
+        ContactLawKind::Hertz => Ok(Law::Hertz(hertz)),
+        ContactLawKind::Linearised | ContactLawKind::Bonded if scene.effects.second_contact => {
+            Err(SceneError::NeedsHertz)
+        }
+        ContactLawKind::Linearised | ContactLawKind::Bonded if preload.force <= 0.0 => Err(SceneError::NoPreload),
+        kind @ (ContactLawKind::Linearised | ContactLawKind::Bonded) => Ok(Law::Linear(Linear {
+            stiffness: preload.contact_stiffness,
+            damping: hertz.damping,
+            offset: preload.indentation - preload.force / preload.contact_stiffness,
+            bonded: kind == ContactLawKind::Bonded,
+        })),
+    }
 }
 
 /// A blow as the scene may have it.

@@ -29,7 +29,23 @@ impl Simulation {
     /// A [`SceneError`] if the scene cannot be simulated.
     pub fn new(scene: &Scene, inputs: &Inputs, start_time: f64) -> Result<Self, SceneError> {
         let model = Model::new(scene, inputs.support_displacement)?;
-        let mut motion = Motion::new(model.initial_state(start_time));
+        let displacement = inputs.second_displacement;
+        if model
+            .room(displacement)
+            .min(model.room(displacement) + model.preload.indentation)
+            <= 0.0
+        {
+            return Err(SceneError::NoGap {
+                gap: scene.second.gap,
+                displacement,
+                least: model.preload.indentation.max(0.0),
+            });
+        }
+        let mut state = model.initial_state(start_time);
+        if model.second.is_some() {
+            state.second_support = displacement;
+        }
+        let mut motion = Motion::new(state);
         motion.current = inputs.contact_current;
         let workspace = Workspace::new(&model);
         Ok(Self {
@@ -135,10 +151,15 @@ impl Simulation {
     pub fn real(&self, output: RealOutput) -> f64 {
         let Self { model, motion, .. } = self;
         let (state, tip) = (motion.state(), || motion.tip(model));
-        let conductance = || model.electrical.map(|electrical| electrical.conductance(tip().force));
+        let conductance_of = |force| model.electrical.map(|electrical| electrical.conductance(force));
+        let force = || tip().forces[0];
+        let conductance = || conductance_of(force());
+        let second = model.second.is_some();
+        let second_conductance = || conductance_of(tip().forces[1]).filter(|_| second);
         let extremes = || model.scene.effects.extremes.then(|| motion.extremes(model));
+        let of_second = || extremes().filter(|_| second);
         match output {
-            RealOutput::ContactForce => tip().force,
+            RealOutput::ContactForce => force(),
             RealOutput::ContactConductance => conductance().unwrap_or_default(),
             RealOutput::ContactResistance => conductance().map_or(0.0, |conductance| 1.0 / conductance),
             RealOutput::ContactVoltage => conductance().map_or(0.0, |conductance| {
@@ -146,24 +167,36 @@ impl Simulation {
                 (motion.current / conductance).clamp(-highest, highest)
             }),
             RealOutput::ContactTemperature => match model.electrical.filter(|_| model.scene.effects.heating) {
-                Some(electrical) => electrical.temperature(&model.scene, tip().force, motion.current),
+                Some(electrical) => electrical.temperature(&model.scene, force(), motion.current),
                 None => model.scene.environment.temperature,
             },
-            RealOutput::StepMinimumForce => extremes().map_or(0.0, |extremes| extremes.least),
-            RealOutput::StepMaximumForce => extremes().map_or(0.0, |extremes| extremes.greatest),
+            RealOutput::StepMinimumForce => extremes().map_or(0.0, |extremes| extremes.first.least),
+            RealOutput::StepMaximumForce => extremes().map_or(0.0, |extremes| extremes.first.greatest),
             RealOutput::StepMaximumResistance => match (extremes(), &model.electrical) {
-                (Some(extremes), Some(electrical)) => 1.0 / electrical.conductance(extremes.least),
+                (Some(extremes), Some(electrical)) => 1.0 / electrical.conductance(extremes.first.least),
                 _ => 0.0,
             },
+            RealOutput::StepMinimumGap => of_second().map_or(0.0, |extremes| -extremes.nearest),
+            RealOutput::SecondForce => tip().forces[1],
+            RealOutput::SecondConductance => second_conductance().unwrap_or_default(),
+            RealOutput::SecondResistance => second_conductance().map_or(0.0, |conductance| 1.0 / conductance),
+            RealOutput::SecondLastOpening => state.record(true).last_opening,
+            RealOutput::SecondLastClosing => state.record(true).last_closing,
+            RealOutput::SecondMinimumForce => of_second().map_or(0.0, |extremes| extremes.second.least),
+            RealOutput::SecondMaximumForce => of_second().map_or(0.0, |extremes| extremes.second.greatest),
+            RealOutput::ChatterLongestFalseMake => self.makes(false).longest,
+            RealOutput::ChatterTotalFalseMake => self.makes(false).total,
+            RealOutput::SecondLongestFalseMake => self.makes(true).longest,
+            RealOutput::SecondTotalFalseMake => self.makes(true).total,
             RealOutput::ChatterLongestInterruption => self.interruptions().longest,
             RealOutput::ChatterTotalInterruption => self.interruptions().total,
             RealOutput::EnergyBalance => state.energy_balance,
             RealOutput::SolverForceError => self.force_error(),
             RealOutput::ContactIndentation => model.preload.indentation + tip().indentation,
-            RealOutput::TipDisplacement => model.preload.deflection + state.support - tip().indentation,
-            RealOutput::TipVelocity => state.support_rate - tip().rate,
-            RealOutput::ContactLastOpening => state.last_opening,
-            RealOutput::ContactLastClosing => state.last_closing,
+            RealOutput::TipDisplacement => model.preload.deflection + motion.support().0 - tip().indentation,
+            RealOutput::TipVelocity => motion.support().1 - tip().rate,
+            RealOutput::ContactLastOpening => state.record(false).last_opening,
+            RealOutput::ContactLastClosing => state.record(false).last_closing,
             RealOutput::PreloadForce => model.preload.force,
             RealOutput::PreloadIndentation => model.preload.indentation,
             RealOutput::PreloadContactStiffness => model.preload.contact_stiffness,
@@ -190,17 +223,27 @@ impl Simulation {
         let Self { model, motion, .. } = self;
         let rates = || motion.tip_rates(model);
         // Conductance and its rate.
-        let conducting = || {
-            let force = motion.tip(model).force;
+        let conducting_at = |force, rate| {
             model.electrical.map(|electrical| {
                 (
                     electrical.conductance(force),
-                    electrical.conductance_slope(force) * rates().force,
+                    electrical.conductance_slope(force) * rate,
                 )
             })
         };
+        let force = || motion.tip(model).forces[0];
+        let conducting = || conducting_at(force(), rates().forces[0]);
+        let second_conducting = || {
+            let second = model.second.as_ref();
+            second.and_then(|_| conducting_at(motion.tip(model).forces[1], rates().forces[1]))
+        };
         Some(match output {
-            RealOutput::ContactForce => rates().force,
+            RealOutput::SecondForce => rates().forces[1],
+            RealOutput::SecondConductance => second_conducting().map_or(0.0, |(_, rate)| rate),
+            RealOutput::SecondResistance => {
+                second_conducting().map_or(0.0, |(conductance, rate)| -rate / conductance.powi(2))
+            }
+            RealOutput::ContactForce => rates().forces[0],
             RealOutput::ContactConductance => conducting().map_or(0.0, |(_, rate)| rate),
             RealOutput::ContactResistance => {
                 conducting().map_or(0.0, |(conductance, rate)| -rate / conductance.powi(2))
@@ -214,9 +257,9 @@ impl Simulation {
             }),
             RealOutput::ContactTemperature => match model.electrical.filter(|_| model.scene.effects.heating) {
                 Some(electrical) => {
-                    let force = motion.tip(model).force;
+                    let force = force();
                     let (by_force, by_current) = electrical.temperature_slopes(&model.scene, force, motion.current);
-                    by_force * rates().force + by_current * motion.current.signum() * motion.current_rate
+                    by_force * rates().forces[0] + by_current * motion.current.signum() * motion.current_rate
                 }
                 None => 0.0,
             },
@@ -228,6 +271,15 @@ impl Simulation {
             | RealOutput::StepMinimumForce
             | RealOutput::StepMaximumForce
             | RealOutput::StepMaximumResistance
+            | RealOutput::StepMinimumGap
+            | RealOutput::SecondLastOpening
+            | RealOutput::SecondLastClosing
+            | RealOutput::SecondMinimumForce
+            | RealOutput::SecondMaximumForce
+            | RealOutput::ChatterLongestFalseMake
+            | RealOutput::ChatterTotalFalseMake
+            | RealOutput::SecondLongestFalseMake
+            | RealOutput::SecondTotalFalseMake
             | RealOutput::ChatterLongestInterruption
             | RealOutput::ChatterTotalInterruption
             | RealOutput::EnergyBalance
@@ -242,7 +294,20 @@ impl Simulation {
 
     /// Interruptions up to the communication point; none if they are not counted.
     pub fn interruptions(&self) -> Summary {
-        self.motion.interruptions(&self.model)
+        let criterion = self.model.criterion.as_ref();
+        criterion.map_or_else(Summary::default, |criterion| {
+            let interruptions = self.motion.interruptions(&self.model, false);
+            interruptions.summary(criterion, self.time())
+        })
+    }
+
+    /// False makes of the second contact, or of the first, up to the communication point; none if they are not counted.
+    pub fn makes(&self, second: bool) -> Summary {
+        let counted = self.model.criterion.filter(|_| !second || self.model.second.is_some());
+        counted.map_or_else(Summary::default, |criterion| {
+            let interruptions = self.motion.interruptions(&self.model, second);
+            interruptions.makes(&criterion, self.time())
+        })
     }
 
     /// An integer output or calculated parameter; counts saturate at the integer range.
@@ -253,6 +318,8 @@ impl Simulation {
             IntegerOutput::SolverRejectedSteps => count(self.state().rejected_steps),
             IntegerOutput::SolverIterations => count(self.state().iterations),
             IntegerOutput::ChatterCount => count(self.interruptions().count),
+            IntegerOutput::ChatterFalseMakes => count(self.makes(false).count),
+            IntegerOutput::SecondFalseMakes => count(self.makes(true).count),
             IntegerOutput::SolverModesUsed => count(self.model.modes.len() as u64),
         }
     }
@@ -270,7 +337,8 @@ impl Simulation {
     /// A Boolean output.
     pub fn boolean(&self, output: BooleanOutput) -> bool {
         match output {
-            BooleanOutput::ContactClosed => self.motion.tip(&self.model).force > 0.0,
+            BooleanOutput::ContactClosed => self.motion.tip(&self.model).forces[0] > 0.0,
+            BooleanOutput::SecondClosed => self.motion.tip(&self.model).forces[1] > 0.0,
         }
     }
 }

@@ -1,5 +1,7 @@
 //! The state: all numbers that change during a simulation, of fixed size, so that saving it is a copy.
 
+use std::mem::swap;
+
 use serde::{Deserialize, Serialize};
 use serde_big_array::BigArray;
 
@@ -16,6 +18,8 @@ pub struct State {
     /// The modes of the cantilever.
     #[serde(with = "BigArray")]
     pub modes: ModeStates,
+    /// Whether all that follows is as the second contact sees it: [`State::mirror`].
+    pub mirrored: bool,
     /// Whether, after exact steps, [`State::modes`] are instead those of beam and linear contact together
     /// ([`crate::closed_loop`]).
     pub with_contact: bool,
@@ -23,6 +27,8 @@ pub struct State {
     pub support: f64,
     /// Its velocity over the last communication step, m/s.
     pub support_rate: f64,
+    /// Displacement of the second fixed contact relative to the first, m; mirrored or not the same.
+    pub second_support: f64,
     /// Indentation minus preload indentation, m.
     pub indentation: f64,
     /// Velocity of the indentation, m/s.
@@ -53,6 +59,8 @@ pub struct State {
     pub energy_balance: f64,
     /// Interruptions so far.
     pub interruptions: Interruptions,
+    /// What is kept of the other contact, which is open: the second one, or the first one while mirrored.
+    pub other: Record,
     /// What is known of the error of the contact force so far.
     pub force_error: ForceError,
     /// Accepted steps.
@@ -63,15 +71,57 @@ pub struct State {
     pub iterations: u64,
 }
 
+/// What is kept of an open contact while the other one is looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    /// As [`State::last_opening`].
+    pub last_opening: f64,
+    /// As [`State::last_closing`].
+    pub last_closing: f64,
+    /// As [`State::interruptions`].
+    pub interruptions: Interruptions,
+}
+
 impl State {
+    /// From the view of one contact to that of the other ([`second_contact`](crate::second_contact)), whose fixed contact
+    /// moves at `second_rate` (m/s) relative to the first.
+    pub(crate) fn mirror(&mut self, second_rate: f64) {
+        self.mirrored = !self.mirrored;
+        for mode in &mut self.modes {
+            (mode.q, mode.v) = (-mode.q, -mode.v);
+        }
+        self.support = self.second_support - self.support;
+        self.support_rate = second_rate - self.support_rate;
+        self.indentation = self.second_support - self.indentation;
+        self.indentation_rate = second_rate - self.indentation_rate;
+        swap(&mut self.last_opening, &mut self.other.last_opening);
+        swap(&mut self.last_closing, &mut self.other.last_closing);
+        swap(&mut self.interruptions, &mut self.other.interruptions);
+    }
+
+    /// What is known of the second contact, or of the first.
+    pub(crate) fn record(&self, second: bool) -> Record {
+        if second == self.mirrored {
+            Record {
+                last_opening: self.last_opening,
+                last_closing: self.last_closing,
+                interruptions: self.interruptions,
+            }
+        } else {
+            self.other
+        }
+    }
+
     /// Whether a simulation can reach these numbers.
     pub fn is_sound(&self) -> bool {
         let Self {
             time,
             modes,
+            mirrored: _,
             with_contact: _,
             support,
             support_rate,
+            second_support,
             indentation,
             indentation_rate,
             force,
@@ -87,6 +137,7 @@ impl State {
             energy_surplus,
             energy_balance,
             interruptions,
+            other,
             force_error,
             steps: _,
             rejected_steps: _,
@@ -96,11 +147,14 @@ impl State {
             time,
             support,
             support_rate,
+            second_support,
             indentation,
             indentation_rate,
             force,
             last_opening,
             last_closing,
+            &other.last_opening,
+            &other.last_closing,
             last_kink,
             short_step,
             long_step,
@@ -113,12 +167,19 @@ impl State {
             && modes.iter().all(|mode| mode.q.is_finite() && mode.v.is_finite())
             && predictions.is_finite()
             && interruptions.is_sound(*time)
+            && other.interruptions.is_sound(*time)
             && force_error.is_sound()
             && *short_step > 0.0
             && *long_step >= 0.0
             && *flight_step > 0.0
-            && [last_opening, last_closing, last_kink]
-                .iter()
-                .all(|event| **event <= time.max(-1.0))
+            && [
+                last_opening,
+                last_closing,
+                &other.last_opening,
+                &other.last_closing,
+                last_kink,
+            ]
+            .iter()
+            .all(|event| **event <= time.max(-1.0))
     }
 }

@@ -27,6 +27,11 @@ fn relays_with_springs_of_segments_keep_their_tolerance_or_say_that_they_may_not
     keep_their_tolerance(&judge_all(10_000, COUNT, Relay::with_segments));
 }
 
+#[test]
+fn changeover_relays_keep_their_tolerance_or_say_that_they_may_not() {
+    keep_their_tolerance(&judge_all(20_000, COUNT, Relay::changeover));
+}
+
 fn keep_their_tolerance(judged: &[Judged]) {
     assert_eq!(judged.len() as u64, COUNT, "a relay does not run");
     for judged in judged.iter().filter(|judged| judged.outcome != Outcome::Kept) {
@@ -34,6 +39,7 @@ fn keep_their_tolerance(judged: &[Judged]) {
     }
     let number = |is: fn(&Judged) -> bool| judged.iter().filter(|judged| is(judged)).count() as u64;
     let opening = number(|judged| judged.opens);
+    println!("{opening} open");
     assert!(opening > COUNT / 3 && COUNT - opening > COUNT / 5);
     let above = number(|judged| !judged.opens && judged.error > judged.tolerance);
     assert_eq!(above, 0, "closed contacts above the tolerance");

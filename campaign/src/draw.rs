@@ -206,7 +206,7 @@ fn value(choices: &mut Choices, reference: u32) -> f64 {
     }
     let nominal = match variable.name.as_str() {
         "base.acceleration" => 2000.0,
-        "support.displacement" => 1e-4,
+        "support.displacement" | "second.displacement" => 1e-4,
         "contact.current" => 1.0,
         _ if start == 0.0 => (max * 1e-3).min(1.0),
         _ => start,

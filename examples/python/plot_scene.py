@@ -31,6 +31,11 @@ WORDS = {
     "chatter.count": "interruptions",
     "chatter.longestInterruption": "longest\ninterruption",
     "chatter.totalInterruption": "time interrupted",
+    "chatter.falseMakes": "false makes",
+    "second.force": "force of the\nsecond contact",
+    "second.resistance": "resistance of the\nsecond contact",
+    "second.falseMakes": "makes of the\nsecond contact",
+    "step.minimumGap": "least gap\nin a step",
     "energy.balance": "energy balance",
     "solver.rejectedSteps": "rejected\nsolver steps",
 }

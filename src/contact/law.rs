@@ -59,6 +59,18 @@ impl Law {
         }
     }
 
+    /// As hard and as damped as the harder and the more damped of two.
+    #[must_use]
+    pub fn hardest(&self, other: &Self) -> Self {
+        match (self, other) {
+            (Self::Hertz(a), Self::Hertz(b)) => Self::Hertz(Hertz {
+                coefficient: a.coefficient.max(b.coefficient),
+                damping: a.damping.max(b.damping),
+            }),
+            _ => *self,
+        }
+    }
+
     /// Whether the contact can bear tension.
     pub fn never_opens(&self) -> bool {
         matches!(self, Self::Linear(linear) if linear.bonded)

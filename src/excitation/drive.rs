@@ -1,4 +1,4 @@
-//! Base acceleration and motion of the fixed contact over a communication step, from the inputs.
+//! Base acceleration and motion of the fixed contacts over a communication step, from the inputs.
 
 use crate::inputs::Inputs;
 use serde::{Deserialize, Serialize};
@@ -14,16 +14,20 @@ pub struct Drive {
     since: f64,
     /// Velocity of the fixed contact, m/s.
     pub support_rate: f64,
+    /// Velocity of the second fixed contact relative to the first, m/s.
+    pub second_rate: f64,
 }
 
 impl Drive {
-    /// Over `size` seconds from `time` (s), in which the fixed contact moves by `way` (m).
-    pub fn new(inputs: &Inputs, time: f64, size: f64, way: f64) -> Self {
+    /// Over `size` seconds from `time` (s), in which the fixed contacts move by these ways (m), the second relative to
+    /// the first.
+    pub fn new(inputs: &Inputs, time: f64, size: f64, [way, second_way]: [f64; 2]) -> Self {
         Self {
             acceleration: inputs.base_acceleration,
             jerk: inputs.base_acceleration_rate,
             since: time,
             support_rate: way / size,
+            second_rate: second_way / size,
         }
     }
 
@@ -33,9 +37,20 @@ impl Drive {
         self.acceleration + self.jerk * (time - self.since)
     }
 
-    /// Whether the base acceleration is constant and the fixed contact at rest.
+    /// As the second contact sees it ([`State::mirror`](crate::state::State::mirror)), and back.
+    #[must_use]
+    pub fn mirrored(&self) -> Self {
+        Self {
+            acceleration: -self.acceleration,
+            jerk: -self.jerk,
+            support_rate: self.second_rate - self.support_rate,
+            ..*self
+        }
+    }
+
+    /// Whether the base acceleration is constant and the fixed contacts at rest.
     pub fn is_constant(&self) -> bool {
-        self.jerk == 0.0 && self.support_rate == 0.0
+        self.jerk == 0.0 && self.support_rate == 0.0 && self.second_rate == 0.0
     }
 
     /// Whether both are constant and equal to those of the last communication step.

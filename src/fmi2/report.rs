@@ -39,7 +39,8 @@ fn events(logger: &Logger, simulation: &Simulation) {
     let (events, left_out) = simulation.events();
     for event in events {
         let verb = if event.closes { "closes" } else { "opens" };
-        let text = format!("fmi2DoStep: the contact {verb} at {} s", number(event.time));
+        let which = if event.second { "second contact" } else { "contact" };
+        let text = format!("fmi2DoStep: the {which} {verb} at {} s", number(event.time));
         logger.log(Category::Events, fmi2OK, &text);
     }
     if left_out > 0 {

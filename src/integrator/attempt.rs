@@ -183,6 +183,7 @@ impl Integration<'_> {
             self.workspace.work += work(target.recurring) + 1;
         }
         self.enter(trial, target.length);
+        self.note_approach(trial, target.length);
         let Self { model, state, .. } = self;
         let (cache, end, _) = Room::<S>::parts(self.workspace);
         let collocation = cache.collocation();
@@ -231,6 +232,7 @@ impl Integration<'_> {
         }
         state.time = target.time;
         state.support = trial.support;
+        state.second_support += self.drive.second_rate * target.length;
         state.indentation = trial.indentation;
         state.indentation_rate = trial.rate;
         if state.closed {

@@ -58,14 +58,24 @@ fn step_by<const EXTREMES: bool>(
     };
     let since = motion.time;
     workspace.events.forget_until(since);
-    // The fixed contact moves at constant velocity to its position at the end of the step.
+    // The fixed contacts move at constant velocity to their positions at the end of the step.
     let support = inputs.support_displacement_after(size) - model.initial_support;
-    let drive = Drive::new(inputs, time, size, support - motion.state().support);
+    let second = match model.second {
+        Some(_) => inputs.second_displacement_after(size),
+        None => 0.0,
+    };
+    let room = model.room(second);
+    if room <= 0.0 {
+        let (displacement, limit) = (second, second + room);
+        let cause = StepErrorCause::NoRoom { displacement, limit };
+        return Err(StepError { time, cause });
+    }
+    let drive = Drive::new(inputs, time, size, motion.ways(support, second));
     let steady = drive.continues(&motion.drive);
     let ahead = motion.time < motion.end.time;
     // The end lies inside the current integration step: nothing to integrate, outputs come from its dense output.
     let inside = steady && until < motion.end.time;
-    let mut extremes = EXTREMES.then(|| Extremes::at(motion.tip(model).force));
+    let mut extremes = EXTREMES.then(|| motion.tip(model).extremes());
     let own_step = motion.end.short_step.max(motion.end.long_step);
     // Where the contact opens and closes, step ends would not lie on the grid of an exact step.
     let switches = motion.end.last_opening.max(motion.end.last_closing) >= 0.0;
@@ -103,7 +113,8 @@ fn step_by<const EXTREMES: bool>(
             workspace.events.forget_after(since);
             return Err(error);
         }
-        end.support = support;
+        end.second_support = second;
+        end.support = if end.mirrored { second - support } else { support };
         end.time = until;
         motion.start = end;
         motion.end = end;
@@ -150,7 +161,7 @@ fn go_ahead(
         if let Some(extremes) = &mut extremes {
             motion.add_dense(extremes, model, since, time.min(motion.end.time));
             if motion.end.time <= time {
-                extremes.add(motion.end.force);
+                extremes.of(motion.end.mirrored).add(motion.end.force);
             }
         }
     };
@@ -193,7 +204,7 @@ mod tests {
             .map(|k| {
                 let time = f64::from(k) * size;
                 step(&model, &mut motion, &mut workspace, &Inputs::default(), time, size).unwrap();
-                motion.tip(&model).force
+                motion.tip(&model).forces[0]
             })
             .collect()
     }

@@ -171,6 +171,10 @@ pub const LOCATED: f64 = 0.05;
 /// secant method need three. Cost.
 pub const GUESSES: u32 = 8;
 
+/// Distance beyond which the other contact is not looked for in a step of flight, in ways of the tip at its nodes and at the
+/// fastest velocity there, 1. What swings unseen between so many nodes is no larger. Not pinned by a test.
+pub const DISTANT: f64 = 8.0;
+
 /// Pieces of a step in each of which one extreme of its force polynomial is looked for. The degree of long steps. Not
 /// pinned: ÷ 8 fails no test of `tests/chatter.rs`.
 pub const PIECES: u32 = 8;

@@ -116,6 +116,7 @@ mod tests {
         let energies = (0..count).map(|k| {
             let mut integration = Integration {
                 model,
+                other: None,
                 state,
                 workspace: &mut workspace,
                 drive: Drive::default(),

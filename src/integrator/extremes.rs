@@ -5,18 +5,17 @@ use crate::math::prediction::{Prediction, value_and_slope};
 use crate::model::Model;
 use serde::{Deserialize, Serialize};
 
-/// Least and greatest contact force over an interval of time.
+/// Least and greatest force of a contact, N.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Extremes {
-    /// Least force, N.
+pub struct Range {
+    /// The least, N.
     pub least: f64,
-    /// Greatest force, N.
+    /// The greatest, N.
     pub greatest: f64,
 }
 
-impl Extremes {
-    /// Of a single force, N.
-    pub fn at(force: f64) -> Self {
+impl Range {
+    fn at(force: f64) -> Self {
         Self {
             least: force,
             greatest: force,
@@ -28,6 +27,39 @@ impl Extremes {
         self.least = self.least.min(force);
         self.greatest = self.greatest.max(force);
     }
+}
+
+/// Extremes over an interval of time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Extremes {
+    /// Of the force of the first contact.
+    pub first: Range,
+    /// Of the force of the second contact.
+    pub second: Range,
+    /// Greatest indentation of the second contact, m.
+    pub nearest: f64,
+}
+
+impl Extremes {
+    /// Of the forces (N) of both contacts and the indentation of the second (m).
+    pub fn at([first, second]: [f64; 2], nearest: f64) -> Self {
+        Self {
+            first: Range::at(first),
+            second: Range::at(second),
+            nearest,
+        }
+    }
+
+    /// Those of the force of the second contact, or of the first.
+    pub fn of(&mut self, second: bool) -> &mut Range {
+        if second { &mut self.second } else { &mut self.first }
+    }
+
+    /// All of them.
+    pub(crate) fn numbers(&self) -> [f64; 5] {
+        let Self { first, second, nearest } = self;
+        [first.least, first.greatest, second.least, second.greatest, *nearest]
+    }
 
     /// Includes the force of a step of the closed contact from `from`, where it is included already, to `to` (relative to
     /// its end, in step lengths): of its polynomial, which turns at these places.
@@ -38,9 +70,15 @@ impl Extremes {
         from: f64,
         to: f64,
     ) {
+        let range = self.of(model.mirrored);
         for y in turns.between(from, to).chain([to]) {
             let force = model.preload.force + value_and_slope(polynomial, y).0;
-            self.add(model.law.without_pull(force));
+            range.add(model.law.without_pull(force));
         }
+    }
+
+    /// Includes an indentation of the second contact, m.
+    pub(crate) fn approach(&mut self, indentation: f64) {
+        self.nearest = self.nearest.max(indentation);
     }
 }

@@ -15,7 +15,10 @@ use serde::{Deserialize, Serialize};
 
 /// An integration in progress.
 pub(crate) struct Integration<'a> {
+    /// The contact that is looked at, as the only one that may be closed.
     pub(crate) model: &'a Model,
+    /// The other one, where there are two.
+    pub(crate) other: Option<&'a Model>,
     pub(crate) state: &'a mut State,
     pub(crate) workspace: &'a mut Workspace,
     pub(crate) drive: Drive,

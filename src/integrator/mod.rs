@@ -163,6 +163,11 @@
 //!   the instant is kept with its polynomials. Between the places where it turns the force polynomial is monotone, so that
 //!   no dip is missed. Just after a closing, where it is not accurate, the law at the exact motion under it takes its place.
 //!
+//! *Two contacts.* The second contact of a changeover relay is the mirror image of the first
+//! ([`second_contact`](crate::second_contact)), and at most one of them is closed. So the state is always in the view of
+//! one contact, and all of this page is said of that one. In flight the other is looked for by the same search in the mirror
+//! image of the step, if it is near ([`events::other`]); the state goes over to its view as it closes.
+//!
 //! After a closing the dissipative part of the force starts like the root of time (`k_j ~ d^(1/2)`, `d ~ t`), which no
 //! polynomial follows. The first step is so short that missing this part moves the force by less than the error
 //! allowed; the following steps grow by the error estimate, with the part for the kink described above.

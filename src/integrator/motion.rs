@@ -7,8 +7,9 @@
 //! restarts there.
 
 use crate::beam::mode::MAX_MODES;
-use crate::chatter::Summary;
+use crate::chatter::Interruptions;
 use crate::excitation::drive::Drive;
+use crate::integrator::course::turning_points;
 use crate::integrator::events::log::Event;
 use crate::integrator::exact_step;
 use crate::integrator::extremes::Extremes;
@@ -44,21 +45,30 @@ pub struct Motion {
 /// The tip at a communication point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tip {
-    /// Contact force, N.
-    pub force: f64,
+    /// Forces of both contacts, N.
+    pub forces: [f64; 2],
     /// Indentation minus preload indentation, m.
     pub indentation: f64,
     /// Its velocity, m/s.
     pub rate: f64,
+    /// Indentation of the second contact, where there is one, m.
+    pub second_indentation: f64,
 }
 
 /// Time derivatives of the tip at a communication point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TipRates {
-    /// Rate of the contact force, N/s.
-    pub force: f64,
+    /// Rates of the forces of both contacts, N/s.
+    pub forces: [f64; 2],
     /// Second derivative of the indentation, m/s2.
     pub acceleration: f64,
+}
+
+impl Tip {
+    /// Of this instant alone.
+    pub(crate) fn extremes(&self) -> Extremes {
+        Extremes::at(self.forces, self.second_indentation)
+    }
 }
 
 impl Motion {
@@ -107,16 +117,23 @@ impl Motion {
             passages,
         } = dense;
         let polynomials = [force, indentation, rate].into_iter().flatten();
-        let numbers = [*time, *current, *current_rate, *size, drive.jerk, drive.support_rate];
-        let extremes = extremes
-            .iter()
-            .flat_map(|extremes| [&extremes.least, &extremes.greatest]);
+        let numbers = [
+            *time,
+            *current,
+            *current_rate,
+            *size,
+            drive.jerk,
+            drive.support_rate,
+            drive.second_rate,
+        ];
+        let extremes = extremes.iter().flat_map(Extremes::numbers);
         let driven = drive.acceleration(start.time);
         numbers
             .iter()
+            .copied()
             .chain(extremes)
-            .chain(polynomials)
-            .all(|number| number.is_finite())
+            .chain(polynomials.copied())
+            .all(f64::is_finite)
             && driven.is_finite()
             && *size >= 0.0
             && turns.is_sound()
@@ -133,6 +150,7 @@ impl Motion {
         ahead.then_some(Event {
             time: self.end.time,
             closes: self.end.closed,
+            second: self.end.mirrored,
         })
     }
 
@@ -150,54 +168,109 @@ impl Motion {
     /// The tip at the communication point.
     pub fn tip(&self, model: &Model) -> Tip {
         let state = self.state();
-        let Some(y) = self.inside() else {
-            return Tip {
-                force: state.force,
-                indentation: state.indentation,
-                rate: state.indentation_rate,
-            };
+        let (model, _) = model.views(state);
+        let (force, indentation, rate) = match self.inside() {
+            None => (state.force, state.indentation, state.indentation_rate),
+            Some(y) => {
+                let at = |values| value_and_slope(values, y).0;
+                let force = model.preload.force + at(&self.dense.force);
+                let force = match state.closed {
+                    true if model.law.never_opens() => force,
+                    true => force.max(f64::MIN_POSITIVE),
+                    false => 0.0,
+                };
+                (force, at(&self.dense.indentation), at(&self.dense.rate))
+            }
         };
-        let at = |values| value_and_slope(values, y).0;
-        let force = model.preload.force + at(&self.dense.force);
-        Tip {
-            force: match state.closed {
-                true if model.law.never_opens() => force,
-                true => force.max(f64::MIN_POSITIVE),
-                false => 0.0,
-            },
-            indentation: at(&self.dense.indentation),
-            rate: at(&self.dense.rate),
+        let image = state.second_support - indentation;
+        let gap = model.scene.second.gap;
+        if state.mirrored {
+            Tip {
+                forces: [0.0, force],
+                indentation: image,
+                rate: self.drive.second_rate - rate,
+                second_indentation: indentation - gap,
+            }
+        } else {
+            Tip {
+                forces: [force, 0.0],
+                indentation,
+                rate,
+                second_indentation: image - gap,
+            }
+        }
+    }
+
+    /// Ways (m) of the fixed contacts to these displacements (m): of the first, and of the second relative to it.
+    pub(crate) fn ways(&self, support: f64, second: f64) -> [f64; 2] {
+        let state = self.state();
+        let second_way = second - state.second_support;
+        // None where nothing moves, also by rounding.
+        let way = if state.mirrored {
+            second_way - (second - support - state.support)
+        } else {
+            support - state.support
+        };
+        [way, second_way]
+    }
+
+    /// Displacement (m) and velocity (m/s) of the fixed contact.
+    pub fn support(&self) -> (f64, f64) {
+        let state = self.state();
+        if state.mirrored {
+            let (displacement, rate) = (state.second_support, self.drive.second_rate);
+            (displacement - state.support, rate - state.support_rate)
+        } else {
+            (state.support, state.support_rate)
         }
     }
 
     /// Extremes of the contact force within the last communication step, N; for scenes with `effects.extremes`.
     pub fn extremes(&self, model: &Model) -> Extremes {
-        self.extremes.unwrap_or_else(|| Extremes::at(self.tip(model).force))
+        self.extremes.unwrap_or_else(|| self.tip(model).extremes())
     }
 
     /// Adds those of the dense output between two instants (s); the first may lie before the step, and is included
     /// already.
     pub(crate) fn add_dense(&self, extremes: &mut Extremes, model: &Model, from: f64, to: f64) {
         let at = |time: f64| ((time - self.end.time) / self.length()).clamp(-1.0, 0.0);
+        let (view, other) = model.views(&self.start);
+        let (from, to) = (at(from), at(to));
         if self.start.closed {
-            extremes.add_course(model, (&self.dense.force, &self.dense.turns), at(from), at(to));
+            extremes.add_course(view, (&self.dense.force, &self.dense.turns), from, to);
         } else {
-            extremes.add(0.0);
+            extremes.of(view.mirrored).add(0.0);
+        }
+        if other.is_some() {
+            let (second, gap) = (self.start.second_support, model.scene.second.gap);
+            for y in turning_points(&self.dense.indentation)
+                .between(from, to)
+                .chain([from, to])
+            {
+                let indentation = value_and_slope(&self.dense.indentation, y).0;
+                let seen = if self.start.mirrored {
+                    indentation
+                } else {
+                    second - indentation
+                };
+                extremes.approach(seen - gap);
+            }
         }
     }
 
-    /// Interruptions up to the communication point; none if they are not counted.
-    pub fn interruptions(&self, model: &Model) -> Summary {
-        let Some(criterion) = &model.criterion else {
-            return Summary::default();
-        };
-        let mut interruptions = self.state().interruptions;
-        if let Some(now) = self.inside() {
+    /// Interruptions of the second contact, or of the first, up to the communication point; none if they are not counted.
+    pub fn interruptions(&self, model: &Model, second: bool) -> Interruptions {
+        let state = self.state();
+        let mut interruptions = state.record(second).interruptions;
+        if let Some(now) = self.inside()
+            && let Some(criterion) = &model.criterion
+            && second == state.mirrored
+        {
             for place in self.dense.passages.until(now) {
                 interruptions.turn(criterion, self.end.time + place * self.length());
             }
         }
-        interruptions.summary(criterion, self.time)
+        interruptions
     }
 
     /// Time derivatives of the tip at the communication point; at a discontinuity, the limit from the left.
@@ -206,14 +279,27 @@ impl Motion {
         if self.size == 0.0 {
             return TipRates::default();
         }
+        let (model, _) = model.views(state);
+        let of_both = |force: f64, acceleration: f64| {
+            if state.mirrored {
+                TipRates {
+                    forces: [0.0, force],
+                    acceleration: -acceleration,
+                }
+            } else {
+                TipRates {
+                    forces: [force, 0.0],
+                    acceleration,
+                }
+            }
+        };
         if let Some(y) = self.inside() {
             let slope = |values| value_and_slope(values, y).1 / self.length();
-            return TipRates {
-                force: if state.closed { slope(&self.dense.force) } else { 0.0 },
-                acceleration: slope(&self.dense.rate),
-            };
+            let force = if state.closed { slope(&self.dense.force) } else { 0.0 };
+            return of_both(force, slope(&self.dense.rate));
         }
         let base = self.drive.acceleration(self.time) + model.generator.acceleration_before(self.time);
+        let base = if state.mirrored { -base } else { base };
         let force = state.force - model.preload.force;
         let modes = exact_step::modes(model, state);
         let axial = match model.axial() {
@@ -229,13 +315,11 @@ impl Motion {
         let law = model
             .law
             .closed_branch(model.preload.indentation + state.indentation, rate);
-        TipRates {
-            force: if state.closed {
-                law.stiffness * rate + law.damping * acceleration
-            } else {
-                0.0
-            },
-            acceleration,
-        }
+        let force = if state.closed {
+            law.stiffness * rate + law.damping * acceleration
+        } else {
+            0.0
+        };
+        of_both(force, acceleration)
     }
 }

@@ -35,6 +35,8 @@ pub(crate) fn advance(
     steps: Steps,
     extremes: Option<&mut Extremes>,
 ) -> Result<(), StepError> {
+    let (model, other) = model.views(state);
+    let drive = if state.mirrored { drive.mirrored() } else { drive };
     let tolerance = model.tolerance();
     let (grid, dense) = match steps {
         Steps::Exactly { time, size } => {
@@ -57,6 +59,7 @@ pub(crate) fn advance(
     exact_step::leave(model, state);
     Integration {
         model,
+        other,
         state,
         workspace,
         drive,
@@ -190,7 +193,10 @@ impl Integration<'_> {
         let closes = if self.state.closed {
             None
         } else {
-            self.closing(&trial, target.length)
+            let own = self.closing(&trial, target.length);
+            let other = self.closing_of_other(&trial, target.length);
+            let both = own.into_iter().chain(other);
+            both.reduce(|a, b| if b.time < a.time { b } else { a })
         };
         if (opens.is_some() || closes.is_some() || read.is_some()) && !self.may_end_inside(&trial, &target) {
             self.before_event = true;
@@ -209,6 +215,7 @@ impl Integration<'_> {
                 end: self.inside(&trial, target.length, time - self.state.time),
                 time,
                 switches: false,
+                mirrors: false,
             }),
             (event, None) => event,
         };

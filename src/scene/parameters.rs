@@ -17,6 +17,8 @@ pub struct Scene {
     pub tip: Tip,
     /// The two contact surfaces.
     pub contact: Contact,
+    /// The second contact, on the other side of the spring.
+    pub second: Second,
     /// Contact resistance.
     pub resistance: Resistance,
     /// Generated base acceleration.
@@ -78,6 +80,19 @@ pub struct Contact {
     pub moving: Material,
     /// The fixed contact.
     pub fixed: Material,
+}
+
+/// Second contact: of the materials of the first.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Second {
+    /// Gap at the preload, m.
+    pub gap: f64,
+    /// Radius of the camber, m.
+    pub curvature_radius: f64,
+    /// Viscoelastic damping time, s.
+    pub damping: f64,
+    /// Shortest make of an open contact, first or second, that counts, s.
+    pub minimum_duration: f64,
 }
 
 /// Elastic material of a contact.
@@ -196,6 +211,8 @@ pub struct Effects {
     pub extremes: bool,
     /// Whether the energy balance is computed.
     pub energy: bool,
+    /// Whether there is a second contact.
+    pub second_contact: bool,
 }
 
 impl Default for Scene {
@@ -230,6 +247,12 @@ impl Default for Scene {
                     youngs_modulus: start::CONTACT_FIXED_YOUNGS_MODULUS,
                     poisson_ratio: start::CONTACT_FIXED_POISSON_RATIO,
                 },
+            },
+            second: Second {
+                gap: start::SECOND_GAP,
+                curvature_radius: start::SECOND_CURVATURE_RADIUS,
+                damping: start::SECOND_DAMPING,
+                minimum_duration: start::SECOND_MINIMUM_DURATION,
             },
             resistance: Resistance {
                 coefficient: start::RESISTANCE_COEFFICIENT,
@@ -273,6 +296,7 @@ impl Default for Scene {
                 chatter: start::EFFECTS_CHATTER,
                 extremes: start::EFFECTS_EXTREMES,
                 energy: start::EFFECTS_ENERGY,
+                second_contact: start::EFFECTS_SECOND_CONTACT,
             },
         }
     }

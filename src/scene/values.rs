@@ -45,6 +45,7 @@ impl Scene {
             P::EffectsChatter => &mut self.effects.chatter,
             P::EffectsExtremes => &mut self.effects.extremes,
             P::EffectsEnergy => &mut self.effects.energy,
+            P::EffectsSecondContact => &mut self.effects.second_contact,
         }
     }
 
@@ -177,6 +178,10 @@ impl Scene {
             P::ContactMovingPoissonRatio => &mut self.contact.moving.poisson_ratio,
             P::ContactFixedYoungsModulus => &mut self.contact.fixed.youngs_modulus,
             P::ContactFixedPoissonRatio => &mut self.contact.fixed.poisson_ratio,
+            P::SecondGap => &mut self.second.gap,
+            P::SecondCurvatureRadius => &mut self.second.curvature_radius,
+            P::SecondDamping => &mut self.second.damping,
+            P::SecondMinimumDuration => &mut self.second.minimum_duration,
             P::ResistanceCoefficient => &mut self.resistance.coefficient,
             P::ResistanceExponent => &mut self.resistance.exponent,
             P::ResistanceFilm => &mut self.resistance.film,

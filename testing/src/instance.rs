@@ -193,21 +193,28 @@ impl Instance {
 
     /// Sets the inputs with their derivatives.
     pub fn set_inputs(&self, inputs: &Inputs) {
-        let names = ["base.acceleration", "support.displacement", "contact.current"];
+        let names = [
+            "base.acceleration",
+            "support.displacement",
+            "second.displacement",
+            "contact.current",
+        ];
         let values = [
             inputs.base_acceleration,
             inputs.support_displacement,
+            inputs.second_displacement,
             inputs.contact_current,
         ];
         let rates = [
             inputs.base_acceleration_rate,
             inputs.support_displacement_rate,
+            inputs.second_displacement_rate,
             inputs.contact_current_rate,
         ];
         assert_eq!(self.set_reals(names, values), fmi2OK, "{:?}", self.log);
-        let (references, orders) = (names.map(vr), [1; 3]);
+        let (references, orders) = (names.map(vr), [1; 4]);
         let (references, orders, rates) = (references.as_ptr(), orders.as_ptr(), rates.as_ptr());
-        let status = unsafe { fmi2SetRealInputDerivatives(self.component, references, 3, orders, rates) };
+        let status = unsafe { fmi2SetRealInputDerivatives(self.component, references, 4, orders, rates) };
         assert_eq!(status, fmi2OK, "{:?}", self.log);
     }
 

@@ -30,7 +30,7 @@ pub struct Relay {
 /// What was read after each communication step, and the events.
 #[derive(Clone, Debug, Default)]
 pub struct Course {
-    /// Contact force, N.
+    /// Contact force, N; where there are two contacts, that of the first, then that of the second.
     pub force: Vec<f64>,
     /// Least force within the step, N.
     pub least: Vec<f64>,
@@ -92,6 +92,20 @@ impl Relay {
         }
     }
 
+    /// The relay of a number with a second contact as near as the spring moves.
+    pub fn changeover(number: u64) -> Self {
+        let mut relay = Self::draw(number);
+        let rng = &mut Rng::with_seed(!number);
+        let scene = &mut relay.scene;
+        scene.effects.contact_law = ContactLawKind::Hertz;
+        scene.effects.second_contact = true;
+        scene.excitation.amplitude *= 1.5;
+        scene.second.gap = scene.contact.overtravel.abs() * logarithmic(rng, 0.02, 0.5);
+        scene.second.curvature_radius = logarithmic(rng, 3e-4, 3e-2);
+        scene.second.damping = logarithmic(rng, 1e-7, 1e-4);
+        relay
+    }
+
     /// The inputs over a communication step: values at its start, and the rates that lead to those at its end.
     fn inputs(&self, time: f64, size: f64) -> Inputs {
         let at = |(amplitude, frequency): (f64, f64), time: f64| amplitude * (TAU * frequency * time).sin();
@@ -126,6 +140,11 @@ impl Relay {
             course.force.push(simulation.real(RealOutput::ContactForce));
             course.least.push(simulation.real(RealOutput::StepMinimumForce));
             course.greatest.push(simulation.real(RealOutput::StepMaximumForce));
+            if scene.effects.second_contact {
+                course.force.push(simulation.real(RealOutput::SecondForce));
+                course.least.push(simulation.real(RealOutput::SecondMinimumForce));
+                course.greatest.push(simulation.real(RealOutput::SecondMaximumForce));
+            }
             course.events.extend(simulation.events().0.map(|event| event.time));
             course.estimate = simulation.real(RealOutput::SolverForceError);
         }

@@ -20,7 +20,7 @@ const ALWAYS: Values = &[("effects.heating", 1.0), ("contact.current", 0.1)];
 
 /// Scenes in which every known that matters at all matters somewhere: the start values with these changes. A threshold of
 /// [`CRITICAL`] is the resistance at rest, an overtravel of it closes the contact without force.
-const SCENES: [Values; 21] = [
+const SCENES: [Values; 24] = [
     &[],
     &[("effects.axialForce", 2.0)],
     &[("effects.axialForce", 3.0)],
@@ -57,7 +57,16 @@ const SCENES: [Values; 21] = [
     &[("effects.heating", 0.0), ("effects.extremes", 0.0)],
     &[("effects.excitation", 2.0), ("effects.energy", 1.0)],
     &[("effects.excitation", 5.0), ("beam.massDamping", 100.0)],
+    &[SECOND, ("second.curvatureRadius", 5.0), ("effects.axialForce", 3.0)],
+    &[
+        SECOND,
+        ("second.curvatureRadius", 5.0),
+        ("second.damping", 1e-6),
+        ("beam.stiffnessDamping", 3e-6),
+    ],
+    &[SECOND, ("effects.extremes", 0.0), ("effects.chatter", 0.0)],
 ];
+const SECOND: (&str, f64) = ("effects.secondContact", 1.0);
 const CRITICAL: f64 = f64::NAN;
 const PULLED: (&str, f64) = ("environment.gravity", -9.81);
 const ALL_COUNT: (&str, f64) = ("chatter.minimumDuration", 0.0);

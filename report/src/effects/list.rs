@@ -159,6 +159,15 @@ pub const EFFECTS: &[Effect] = &[
         matters: "to check a run; the motion does not depend on it.",
         ..NOTHING
     },
+    Effect {
+        name: "second contact",
+        setting: &[("effects.secondContact", "true")],
+        reads: "contact.force,second.force",
+        off: &[("effects.secondContact", "false")],
+        matters: "where the spring may reach the other fixed contact of a changeover relay or a backstop: once the contact opens; out of \
+                  reach it changes nothing.",
+        ..NOTHING
+    },
 ];
 
 /// What is changed in the minimal scene to see the effect.

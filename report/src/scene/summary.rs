@@ -39,7 +39,7 @@ impl Summary {
     /// After a communication step, which took a time.
     pub fn add(&mut self, simulation: &Simulation, taken: Duration) {
         let (events, left_out) = simulation.events();
-        self.openings += events.filter(|event| !event.closes).count() as u64;
+        self.openings += events.filter(|event| !(event.closes || event.second)).count() as u64;
         self.left_out += left_out;
         let force = simulation.real(RealOutput::ContactForce);
         let (mut least, mut greatest) = (force, force);

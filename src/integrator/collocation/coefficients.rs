@@ -298,7 +298,10 @@ impl<const S: usize> Cache<S> {
     /// The coefficients for a length, with the base acceleration of a step from `time` (s) on.
     pub fn prepare(&mut self, time: f64, length: f64, recurring: bool, model: &Model) -> Prepared<'_, S> {
         let (step, collocation, piece) = self.entry(length, recurring, model);
-        let generated = model.generator.over_step(model.simd, time, &step.turns, piece);
+        let mut generated = model.generator.over_step(model.simd, time, &step.turns, piece);
+        if model.mirrored {
+            generated = generated.mirrored();
+        }
         Prepared {
             step,
             collocation,

@@ -68,6 +68,28 @@ impl<const S: usize> Default for End<S> {
     }
 }
 
+impl<const S: usize> Trial<S> {
+    /// In the view of the other contact ([`State::mirror`]), with the second fixed contact at these places (m) at the
+    /// nodes, moving at this velocity (m/s).
+    pub(crate) fn mirrored(&self, second: &Nodal<S>, second_rate: f64) -> Self {
+        let mut indentations = *second;
+        for (image, own) in indentations.iter_mut().zip(&self.indentations) {
+            *image -= own;
+        }
+        Self {
+            forces: self.forces.map(|force| -force),
+            force: -self.force,
+            accelerations: self.accelerations.map(|acceleration| -acceleration),
+            indentations,
+            rates: self.rates.map(|rate| second_rate - rate),
+            support: end(second) - self.support,
+            indentation: end(second) - self.indentation,
+            rate: second_rate - self.rate,
+            ..*self
+        }
+    }
+}
+
 /// The loads on [`LANES`] modes at the nodes.
 type LaneLoads<const S: usize> = [[f64; LANES]; S];
 
@@ -311,10 +333,11 @@ fn errors<const S: usize>(
         let most = |values: &Nodal<S>| greatest(values) * free.start_defect.abs();
         let rows = free.error;
         let missed_velocity = free.missed_mean * step.length;
+        let law = &model.hardest;
         let wrong = most(&rows.displacement)
-            + model.law.damping() * most(&rows.velocity)
-            + missed_velocity * (model.memory + model.law.damping());
-        let stiffness = model.law.tangent_stiffness(model.force_scale);
+            + law.damping() * most(&rows.velocity)
+            + missed_velocity * (model.memory + law.damping());
+        let stiffness = law.tangent_stiffness(model.force_scale);
         // At the end the velocity is that of the quadrature.
         (
             stiffness * wrong,

@@ -134,7 +134,7 @@ mod tests {
             base_acceleration_rate: 1e5,
             ..Inputs::default()
         };
-        let drive = Drive::new(&inputs, 0.0, 1e-3, -2e-8);
+        let drive = Drive::new(&inputs, 0.0, 1e-3, [-2e-8, 0.0]);
         let steps = Steps::Exactly { time: 0.0, size: 4e-4 };
         let mut workspace = Workspace::new(&model);
         crate::integrator::step_control::advance(&model, &mut state, &mut workspace, drive, steps, None).unwrap();
@@ -156,6 +156,7 @@ mod tests {
         let mut workspace = Workspace::new(model);
         let mut integration = Integration {
             model,
+            other: None,
             grid: Grid::over(state.time, length),
             state,
             workspace: &mut workspace,

@@ -43,7 +43,7 @@ impl Integration<'_> {
         let by_support = drive.support_rate * length * cache.collocation().mean(&trial.forces);
         // Rounding of displacement and velocity of each mode, sums of two products and a load, and of the forces.
         let way = (trial.indentation - state.indentation).abs() + (drive.support_rate * length).abs();
-        let size = start.max(finish) + (state.force + model.preload.force) * way;
+        let size = start.abs().max(finish.abs()) + (state.force + model.preload.force.abs()) * way;
         let rounding = 4.0 * f64::EPSILON * model.modes.len() as f64 * size;
         (finish - start - by_base - by_support, rounding)
     }

@@ -68,7 +68,7 @@ impl Integration<'_> {
     /// Records the present contact force in the extremes, and an interruption that begins or ends with it.
     pub(crate) fn note_force(&mut self) {
         if let Some(extremes) = &mut self.extremes {
-            extremes.add(self.state.force);
+            extremes.of(self.state.mirrored).add(self.state.force);
         }
         let Some(criterion) = self.model.criterion.as_ref() else {
             return;

@@ -5,6 +5,7 @@ pub mod closing;
 pub mod interruption;
 pub mod log;
 pub mod opening;
+pub mod other;
 
 use crate::error::StepError;
 use crate::integrator::collocation::part::Instant;
@@ -25,6 +26,8 @@ pub(crate) struct Cut {
     pub(crate) time: f64,
     /// Whether the contact opens or closes there.
     pub(crate) switches: bool,
+    /// Whether it is the other contact that closes.
+    pub(crate) mirrors: bool,
 }
 
 impl Integration<'_> {
@@ -34,6 +37,7 @@ impl Integration<'_> {
             time: self.state.time + end.at,
             end,
             switches,
+            mirrors: false,
         }
     }
 
@@ -142,6 +146,9 @@ impl Integration<'_> {
             return Ok(self.reject(MOST_SHRINK * target.length));
         };
         self.take(&part, &end, passages)?;
+        if cut.mirrors {
+            self.mirror();
+        }
         if cut.switches {
             self.switch(!self.state.closed);
         }
@@ -160,6 +167,7 @@ impl Integration<'_> {
         self.workspace.events.record(Event {
             time: self.state.time,
             closes: closed,
+            second: self.state.mirrored,
         });
         self.state.force = 0.0;
         self.state.last_step = 0.0;

@@ -1,0 +1,112 @@
+//! The other contact of two: in flight it may close as well as the one whose view the state is.
+//!
+//! It is looked for by the same search, in the mirror image of the step ([`State::mirror`](crate::state::State::mirror)).
+//! Where it closes, the state goes over to its view.
+
+use crate::integrator::collocation::step::Trial;
+use crate::integrator::constants::DISTANT;
+use crate::integrator::course::turning_points;
+use crate::integrator::events::Cut;
+use crate::integrator::integration::Integration;
+use crate::integrator::workspace::{Room, Workspace};
+use crate::math::nodal::Nodal;
+use crate::math::prediction::value_and_slope;
+
+impl Integration<'_> {
+    /// Goes over to the view of the other contact.
+    pub(crate) fn mirror(&mut self) {
+        if let Some(other) = self.other.replace(self.model) {
+            self.model = other;
+            self.state.mirror(self.drive.second_rate);
+            self.drive = self.drive.mirrored();
+        }
+    }
+
+    /// Locates the closing of the other contact in the trial of free flight of `length` seconds; `None` if it stays open.
+    pub(crate) fn closing_of_other<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> Option<Cut>
+    where
+        Workspace: Room<S>,
+    {
+        let gap = -self.other?.preload.indentation;
+        let image = trial.mirrored(&self.second_support(length), self.drive.second_rate);
+        let (state, drive) = (*self.state, self.drive);
+        let start = state.second_support - state.indentation;
+        let (mut lowest, mut highest) = (start, start);
+        let mut fastest = (drive.second_rate - state.indentation_rate).abs();
+        for (d, rate) in image.indentations.iter().zip(&image.rates) {
+            (lowest, highest) = (lowest.min(*d), highest.max(*d));
+            fastest = fastest.max(rate.abs());
+        }
+        if highest + DISTANT * (highest - lowest + fastest * length) < gap {
+            return None;
+        }
+        let (model, other) = (self.model, self.other);
+        self.mirror();
+        self.mirror_loads::<S>();
+        let found = self.closing(&image, length);
+        self.mirror_loads::<S>();
+        (self.model, self.other, self.drive) = (model, other, drive);
+        *self.state = state;
+        let cut = found?;
+        // The other contact is a gap away: time advances.
+        let at = cut.end.at.max(self.resolution());
+        let end = self.inside(trial, length, at);
+        Some(Cut {
+            mirrors: true,
+            ..self.cut(end, true)
+        })
+    }
+
+    /// Those of an axial force on the modes in the trial.
+    fn mirror_loads<const S: usize>(&mut self)
+    where
+        Workspace: Room<S>,
+    {
+        if self.model.axial().is_some() {
+            let (_, end, _) = Room::<S>::parts(self.workspace);
+            end.loads.iter_mut().flatten().for_each(|load| *load = -*load);
+        }
+    }
+
+    /// Places of the second fixed contact relative to the first at the nodes of a step of `length` seconds, m.
+    fn second_support<const S: usize>(&mut self, length: f64) -> Nodal<S>
+    where
+        Workspace: Room<S>,
+    {
+        let (start, way) = (self.state.second_support, self.drive.second_rate * length);
+        self.collocation::<S>().nodes.map(|node| start + way * node)
+    }
+
+    /// Records in the extremes how near the second contact comes in the step of `length` seconds about to be taken.
+    pub(crate) fn note_approach<const S: usize>(&mut self, trial: &Trial<S>, length: f64)
+    where
+        Workspace: Room<S>,
+    {
+        if self.extremes.is_none() || self.other.is_none() {
+            return;
+        }
+        let (mut start, mut rate) = (self.state.indentation, self.state.indentation_rate);
+        let (mut indentations, mut rates) = (trial.indentations, trial.rates);
+        if !self.state.mirrored {
+            let image = trial.mirrored(&self.second_support(length), self.drive.second_rate);
+            (start, rate) = (self.state.second_support - start, self.drive.second_rate - rate);
+            (indentations, rates) = (image.indentations, image.rates);
+        }
+        let mut turns = false;
+        for now in rates {
+            turns |= rate > 0.0 && now <= 0.0;
+            rate = now;
+        }
+        let inside = turns.then(|| self.collocation::<S>().through(start, &indentations));
+        let gap = self.model.scene.second.gap;
+        if let Some(extremes) = &mut self.extremes {
+            let ends = [start].into_iter().chain(indentations);
+            ends.for_each(|indentation| extremes.approach(indentation - gap));
+            if let Some(polynomial) = inside {
+                for y in turning_points(&polynomial).iter() {
+                    extremes.approach(value_and_slope(&polynomial, y).0 - gap);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,307 @@
+//! The second contact of a changeover relay: its mirror image, its absence, and solutions of its own.
+
+#![allow(clippy::unwrap_used)]
+
+mod impacts;
+mod monitor;
+mod refused;
+
+use std::path::Path;
+
+use relay_contact::inputs::Inputs;
+use relay_contact::scene::Scene;
+use relay_contact::scene::file::SceneFile;
+use relay_contact::simulation::Simulation;
+use relay_contact::variables::{AxialForceKind, BooleanOutput, ExcitationKind, IntegerOutput, RealOutput};
+
+/// A relay whose moving contact lies open in the middle between both fixed ones.
+pub fn changeover(gap: f64) -> Scene {
+    let mut scene = Scene::default();
+    scene.effects.second_contact = true;
+    scene.contact.overtravel = -gap;
+    scene.second.gap = gap;
+    scene.contact.damping = 1e-6;
+    scene.second.damping = 1e-6;
+    scene
+}
+
+/// Outputs of one contact, then those of the other.
+const PAIRS: [(RealOutput, RealOutput); 8] = [
+    (RealOutput::ContactForce, RealOutput::SecondForce),
+    (RealOutput::ContactResistance, RealOutput::SecondResistance),
+    (RealOutput::ContactLastOpening, RealOutput::SecondLastOpening),
+    (RealOutput::ContactLastClosing, RealOutput::SecondLastClosing),
+    (RealOutput::StepMinimumForce, RealOutput::SecondMinimumForce),
+    (RealOutput::StepMaximumForce, RealOutput::SecondMaximumForce),
+    (RealOutput::ChatterLongestFalseMake, RealOutput::SecondLongestFalseMake),
+    (RealOutput::ChatterTotalFalseMake, RealOutput::SecondTotalFalseMake),
+];
+
+/// Bits of the outputs of both contacts and of their rates.
+fn outputs(simulation: &Simulation) -> [Vec<u64>; 2] {
+    let bits = |output| {
+        let rate = simulation.rate(output).unwrap_or_default();
+        [simulation.real(output).to_bits(), (rate + 0.0).to_bits()]
+    };
+    let [mut first, mut second] = [vec![], vec![]];
+    for (a, b) in PAIRS {
+        first.extend(bits(a));
+        second.extend(bits(b));
+    }
+    let count = |output| u64::from(simulation.integer(output).unsigned_abs());
+    first.push(count(IntegerOutput::ChatterFalseMakes));
+    second.push(count(IntegerOutput::SecondFalseMakes));
+    first.push(simulation.boolean(BooleanOutput::ContactClosed).into());
+    second.push(simulation.boolean(BooleanOutput::SecondClosed).into());
+    [first, second]
+}
+
+/// With the excitation turned round the contacts change their parts, to the last bit.
+#[test]
+fn a_mirrored_relay_has_the_same_bits() {
+    let gap = 2e-5;
+    let mut made = [0; 2];
+    for (case, kind) in [
+        ExcitationKind::Sine,
+        ExcitationKind::LogSweep,
+        ExcitationKind::HalfSine,
+        ExcitationKind::None,
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let mut scene = changeover(gap);
+        scene.effects.excitation = kind;
+        scene.effects.energy = true;
+        scene.effects.axial_force = [AxialForceKind::FromDeflection, AxialForceKind::None][case % 2];
+        scene.excitation.amplitude = 300.0;
+        scene.excitation.frequency = 700.0;
+        scene.excitation.end_frequency = 2000.0;
+        scene.excitation.duration = 4e-3;
+        for size in [1e-3, 2e-5, 3e-6] {
+            let mut image = scene.clone();
+            image.excitation.amplitude = -scene.excitation.amplitude;
+            let at = |sign: f64, time: f64| Inputs {
+                base_acceleration: sign
+                    * if kind == ExcitationKind::None {
+                        250.0
+                    } else {
+                        30.0 * (2e3 * time).sin()
+                    },
+                ..Inputs::default()
+            };
+            let mut own = Simulation::new(&scene, &at(1.0, 0.0), 0.0).unwrap();
+            let mut other = Simulation::new(&image, &at(-1.0, 0.0), 0.0).unwrap();
+            let mut time = 0.0;
+            while time < 4e-3 {
+                own.step(&at(1.0, time), time, size).unwrap();
+                other.step(&at(-1.0, time), time, size).unwrap();
+                time = own.time();
+                let [first, second] = outputs(&own);
+                let [image_of_second, image_of_first] = outputs(&other);
+                assert_eq!(first, image_of_first, "{kind:?} {size} s at {time} s");
+                assert_eq!(second, image_of_second, "{kind:?} {size} s at {time} s");
+                let tip = |simulation: &Simulation| simulation.real(RealOutput::TipDisplacement);
+                assert_eq!(tip(&own), -tip(&other), "{kind:?} {size} s at {time} s");
+                let balance = |simulation: &Simulation| simulation.real(RealOutput::EnergyBalance);
+                assert_eq!(balance(&own), balance(&other), "{kind:?} {size} s at {time} s");
+            }
+            made[0] += own.integer(IntegerOutput::ChatterFalseMakes);
+            made[1] += own.integer(IntegerOutput::SecondFalseMakes);
+        }
+    }
+    assert!(made.iter().all(|made| *made > 10), "{made:?} closings");
+}
+
+/// A second contact so far away that it is not reached leaves every bit of the first as it is.
+#[test]
+fn a_far_second_contact_changes_nothing() {
+    for (kind, amplitude) in [
+        (ExcitationKind::Sine, 400.0),
+        (ExcitationKind::Random, 0.0),
+        (ExcitationKind::HalfSine, -490.0),
+    ] {
+        let mut scene = Scene::default();
+        scene.effects.excitation = kind;
+        scene.excitation.amplitude = amplitude;
+        scene.excitation.end_frequency = 2000.0;
+        scene.excitation.frequency = 1000.0;
+        scene.excitation.duration = 2e-3;
+        scene.excitation.spectral_density = 60.0;
+        for size in [1e-3, 1e-5] {
+            let inputs = Inputs::default();
+            let mut alone = Simulation::new(&scene, &inputs, 0.0).unwrap();
+            let mut with = scene.clone();
+            with.effects.second_contact = true;
+            with.second.gap = 5e-3;
+            let mut with = Simulation::new(&with, &inputs, 0.0).unwrap();
+            while alone.time() < 1e-2 {
+                for simulation in [&mut alone, &mut with] {
+                    simulation.step(&inputs, simulation.time(), size).unwrap();
+                }
+                let time = alone.time();
+                assert_eq!(outputs(&alone)[0], outputs(&with)[0], "{kind:?} {size} s at {time} s");
+                let steps = |simulation: &Simulation| simulation.integer(IntegerOutput::SolverSteps);
+                assert_eq!(steps(&alone), steps(&with), "{kind:?} {size} s at {time} s");
+            }
+            assert!(
+                alone.real(RealOutput::ContactLastOpening) > 0.0,
+                "{kind:?} does not open"
+            );
+        }
+    }
+}
+
+/// Every way of asking gives the same motion: inside steps of the integrator, at their ends, from a saved state.
+#[test]
+fn the_communication_steps_do_not_matter() {
+    let mut scene = changeover(2e-5);
+    scene.effects.excitation = ExcitationKind::Sine;
+    scene.excitation.amplitude = 150.0;
+    scene.excitation.frequency = 400.0;
+    scene.solver.tolerance = 1e-8;
+    // Both fixed contacts move, the second also by itself.
+    let at = |time: f64| Inputs {
+        support_displacement: 1e-3 * time,
+        support_displacement_rate: 1e-3,
+        second_displacement: -5e-4 * time,
+        second_displacement_rate: -5e-4,
+        ..Inputs::default()
+    };
+    let run = |per_row: u32, saved: bool| {
+        let size = 1e-4 / f64::from(per_row);
+        let mut simulation = Simulation::new(&scene, &at(0.0), 0.0).unwrap();
+        let mut courses = Vec::new();
+
+        for row in 0..60 {
+            for part in 0..per_row {
+                let time = f64::from(row) * 1e-4 + f64::from(part) * size;
+                simulation.step(&at(time), time, size).unwrap();
+            }
+            if saved {
+                let motion = *simulation.motion();
+                simulation = Simulation::resume(&scene, 0.0, &motion).unwrap();
+            }
+            courses.push([RealOutput::ContactForce, RealOutput::SecondForce].map(|output| simulation.real(output)));
+        }
+        courses
+    };
+    let whole = run(1, false);
+    assert_eq!(whole, run(1, true), "a saved state does not go on with the same bits");
+    let scale = Simulation::new(&scene, &at(0.0), 0.0).unwrap().model().force_scale();
+    let largest = |n: usize| whole.iter().map(|row| row[n]).fold(0.0, f64::max);
+    assert!(
+        largest(0) > 0.01 && largest(1) > 0.01,
+        "{} N, {} N",
+        largest(0),
+        largest(1)
+    );
+    for per_row in [5, 100] {
+        for (k, (a, b)) in whole.iter().zip(&run(per_row, false)).enumerate() {
+            for (a, b) in a.iter().zip(b) {
+                // Each is right to the tolerance of the largest force so far.
+                let allowed = 2.0 * scene.solver.tolerance * scale.max(largest(0)).max(largest(1));
+                assert!((a - b).abs() <= allowed, "{per_row} steps, row {k}: {a} N, {b} N");
+            }
+        }
+    }
+}
+
+/// The rate of an output of the second contact lies between the slopes just before and just after it, as those of the
+/// first do (`tests/derivatives.rs`).
+#[test]
+fn rates_are_the_slopes_of_the_courses() {
+    const NEAR: f64 = 1e-7;
+    let mut scene = changeover(2e-5);
+    scene.effects.excitation = ExcitationKind::Sine;
+    scene.excitation.amplitude = -250.0;
+    scene.excitation.frequency = 300.0;
+    scene.second.damping = 2e-5;
+    scene.solver.tolerance = 1e-9;
+    let outputs = [
+        RealOutput::SecondForce,
+        RealOutput::SecondConductance,
+        RealOutput::ContactIndentation,
+        RealOutput::TipDisplacement,
+        RealOutput::TipVelocity,
+    ];
+    for size in [1e-6, 1e-5] {
+        let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
+        let mut rows = Vec::new();
+        while simulation.time() < 2e-3 {
+            let row = [size - 2.0 * NEAR, NEAR, NEAR].map(|step| {
+                simulation.step(&Inputs::default(), simulation.time(), step).unwrap();
+                outputs.map(|output| (simulation.real(output), simulation.rate(output).unwrap()))
+            });
+            // In the second contact all the while.
+            if row.iter().all(|at| at[0].0 > 0.0) {
+                rows.push(row);
+            }
+        }
+        assert!(
+            rows.len() as f64 > 2e-4 / size,
+            "{size} s: closed at {} points",
+            rows.len()
+        );
+        for (n, output) in outputs.into_iter().enumerate() {
+            let values = || rows.iter().map(|[_, now, _]| now[n].0);
+            let range = values().fold(f64::MIN, f64::max) - values().fold(f64::MAX, f64::min);
+            // Values are wrong by the tolerance.
+            let noise = 2.0 * scene.solver.tolerance * range / NEAR;
+            for [before, now, after] in &rows {
+                let slopes = [now[n].0 - before[n].0, after[n].0 - now[n].0].map(|change| change / NEAR);
+                let (low, high) = (slopes[0].min(slopes[1]), slopes[0].max(slopes[1]));
+                assert!(
+                    (low - noise..=high + noise).contains(&now[n].1),
+                    "{size} s, {output:?}: {} not in {slopes:?}",
+                    now[n].1
+                );
+            }
+        }
+    }
+}
+
+/// The scene `changeover-make`: the contact goes over from one side to the other and back, with bounces at either.
+#[test]
+fn a_changeover_relay_switches() {
+    let file = SceneFile::read(Path::new("scenes/changeover-make.toml")).unwrap();
+    let mut contact = Simulation::new(
+        &file.scene,
+        &file.inputs_over(0.0, file.communication_step).unwrap(),
+        0.0,
+    )
+    .unwrap();
+    let preload = contact.real(RealOutput::PreloadForce);
+    // Beyond the second contact as far as it lay beyond the first, and by the indentation there.
+    let depth = contact.real(RealOutput::PreloadIndentation);
+    let pressed = preload + testing::scenes::tip_stiffness(&file.scene) * depth;
+    let (mut courses, mut makes) = (Vec::new(), Vec::new());
+    for (time, size) in file.steps() {
+        contact
+            .step(&file.inputs_over(time, size).unwrap(), time, size)
+            .unwrap();
+        let forces = [RealOutput::ContactForce, RealOutput::SecondForce].map(|output| contact.real(output));
+        assert!(forces.contains(&0.0), "{forces:?} N at {time} s");
+        courses.push((time + size, forces));
+        makes.push(
+            [IntegerOutput::ChatterFalseMakes, IntegerOutput::SecondFalseMakes].map(|output| contact.integer(output)),
+        );
+    }
+    let mean = |from: f64, to: f64, n: usize| {
+        let within = || courses.iter().filter(|(time, _)| (from..to).contains(time));
+        within().map(|(_, forces)| forces[n]).sum::<f64>() / within().count() as f64
+    };
+    println!(
+        "{} N, {pressed} N; {} N, {preload} N; {:?}",
+        mean(0.012, 0.015, 1),
+        mean(0.027, 0.03, 0),
+        makes.last()
+    );
+    // What still swings averages out over some periods of 0.7 ms, to a few parts in a thousand.
+    assert!((mean(0.012, 0.015, 1) / pressed - 1.0).abs() < 5e-3);
+    assert!((mean(0.027, 0.03, 0) / preload - 1.0).abs() < 5e-3);
+    // Nothing happens between both switchings.
+    assert_eq!(makes[1000], makes[1500]);
+    let last = makes.last().unwrap();
+    assert!(last.iter().all(|makes| *makes > 2), "{last:?} makes: no bounces");
+}
