@@ -97,6 +97,15 @@ impl Law {
         }
     }
 
+    /// Tangent stiffness at the indentation `d` (m), N/m.
+    #[inline(always)]
+    pub fn stiffness(&self, d: f64) -> f64 {
+        match self {
+            Self::Hertz(hertz) => hertz.tangent_stiffness(d),
+            Self::Linear(linear) => linear.stiffness,
+        }
+    }
+
     /// Damping time beta_c, s.
     pub fn damping(&self) -> f64 {
         match self {

@@ -50,6 +50,7 @@ pub(crate) fn settle<const S: usize, A: Arithmetic>(
     };
     let mut forces = first_forces::<S, A>(model, state, step, collocation, source);
     let mut loads: NodalModes<S> = start.map(|load| [load; S]);
+    let stiffness = model.law.stiffness(model.preload.indentation + state.indentation);
     let mut iterations = 0;
     let mut solved: Option<Solution<S>> = None;
     for _ in 0..ROUNDS {
@@ -72,7 +73,7 @@ pub(crate) fn settle<const S: usize, A: Arithmetic>(
                     start_defect: 1.0,
                     ..with_loads::<S, A>(model, free, step, &loads)
                 };
-                closed_forces::<S, A>(model, step, &free, forces, newton)?
+                closed_forces::<S, A>(model, step, &free, forces, (newton, stiffness))?
             }
             _ => Solution::given(forces),
         };

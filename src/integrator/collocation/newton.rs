@@ -77,7 +77,7 @@ impl<const S: usize> Solution<S> {
         }
     }
 
-    /// Of the last iterate, with the greatest stiffness and damping at its nodes. `force_error`: nodal forces per
+    /// Of the last iterate, with the greatest stiffness and damping at its start and nodes. `force_error`: nodal forces per
     /// defect of the contact force; `load_error`: free response per defect of the other loads, and the nodal forces it
     /// causes. From these the effects at the end are formed.
     #[inline(always)]
@@ -149,19 +149,19 @@ pub(crate) fn first_forces<const S: usize, A: Arithmetic>(
 }
 
 /// Solves for the nodal forces from an initial guess, to residuals of at most `newton` (N) or rounding; `None` if the
-/// iteration does not converge. Velocities are computed only for a contact with damping.
+/// iteration does not converge. `start`: the stiffness at the start, N/m. Velocities are computed only for a contact with damping.
 #[inline(always)]
 pub(crate) fn closed_forces<const S: usize, A: Arithmetic>(
     model: &Model,
     step: &StepCoefficients<S>,
     free: &FreeResponse<S>,
     guess: Nodal<S>,
-    newton: f64,
+    (newton, start): (f64, f64),
 ) -> Option<Solution<S>> {
     if model.law.damping() > 0.0 {
-        iterated::<S, A, true>(model, step, free, guess, newton)
+        iterated::<S, A, true>(model, step, free, guess, (newton, start))
     } else {
-        iterated::<S, A, false>(model, step, free, guess, newton)
+        iterated::<S, A, false>(model, step, free, guess, (newton, start))
     }
 }
 
@@ -172,7 +172,7 @@ fn iterated<const S: usize, A: Arithmetic, const DAMPED: bool>(
     step: &StepCoefficients<S>,
     free: &FreeResponse<S>,
     guess: Nodal<S>,
-    newton: f64,
+    (newton, start): (f64, f64),
 ) -> Option<Solution<S>> {
     let FreeResponse {
         free, free_rate, error, ..
@@ -209,7 +209,10 @@ fn iterated<const S: usize, A: Arithmetic, const DAMPED: bool>(
                 step,
                 forces,
                 iterations,
-                (greatest(&stiffness), greatest(&damping)),
+                (
+                    greatest(&stiffness).max(start),
+                    greatest(&damping).max(model.law.damping() * start),
+                ),
                 &by_force,
                 (error, &by_load),
             ));

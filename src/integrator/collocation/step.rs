@@ -126,7 +126,10 @@ fn compute<const S: usize, A: Arithmetic>(
     let free = free_response::<S, A>(state, drive, &prepared);
     let guess = first_forces::<S, A>(model, state, step, collocation, source);
     let solution = match source {
-        Source::Law(newton) if state.closed => closed_forces::<S, A>(model, step, &free, guess, newton)?,
+        Source::Law(newton) if state.closed => {
+            let stiffness = model.law.stiffness(model.preload.indentation + state.indentation);
+            closed_forces::<S, A>(model, step, &free, guess, (newton, stiffness))?
+        }
         _ => Solution::given(guess),
     };
     let coefficients = (step, collocation);
