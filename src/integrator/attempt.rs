@@ -16,15 +16,15 @@ impl Integration<'_> {
         let read = self.dense.as_ref().is_some_and(|(until, _)| *until < target.time);
         let looked_into = read || self.model.scene.effects.extremes;
         // 4-node steps may be inaccurate inside: `DenseOutput::accurate` then prevents dense output.
-        let inside = if looked_into && S != SHORT {
-            INSIDE / self.tolerance
-        } else {
+        let inside = if !looked_into || S == SHORT {
             0.0
+        } else if trial.next_terms > self.tolerance {
+            // Only rejects: a length chosen by it would be too short by a twentieth.
+            trial.next_terms
+        } else {
+            INSIDE * trial.start_defect
         };
-        let (ratio, inside) = (
-            trial.error / self.allowed.max(trial.rounding),
-            trial.start_defect * inside,
-        );
+        let (ratio, inside) = (trial.error / self.allowed.max(trial.rounding), inside / self.tolerance);
         // Not `max`, which would hide NaN.
         let ratio = if ratio < inside { inside } else { ratio };
         if ratio > 1.0 && is_rounding(self.model, self.state, trial) {
@@ -116,7 +116,7 @@ impl Integration<'_> {
         let start = state.force - model.preload.force;
         state.predictions = collocation.predictions(model.simd, start, &trial.forces, &state.predictions, ratio);
         if let Some((_, dense)) = &mut self.dense {
-            dense.accurate = INSIDE * trial.start_defect <= self.tolerance;
+            dense.accurate = trial.next_terms.max(INSIDE * trial.start_defect) <= self.tolerance;
             dense.indentation = collocation.through(state.indentation, &trial.indentations);
             dense.rate = collocation.through(state.indentation_rate, &trial.rates);
             dense.force = *state.predictions.through_all();
