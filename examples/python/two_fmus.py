@@ -25,6 +25,7 @@ the FMU is not linked to any), on Windows by python3.dll in the PATH. PythonFMU 
 Windows.
 """
 
+import os
 import platform
 import sys
 from contextlib import ExitStack
@@ -278,4 +279,7 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    code = main()
+    sys.stdout.flush()
+    # Without the exit functions: that of PythonFMU 0.7.0 frees its state a second time, which may end in an abort.
+    os._exit(code)

@@ -67,10 +67,13 @@ impl Integration<'_> {
     where
         Workspace: Room<S>,
     {
-        if self.state.closed {
-            INSIDE * trial.start_defect / self.tolerance
-        } else {
+        if !self.state.closed {
             self.misread(trial, length)
+        } else if trial.next_terms > self.tolerance {
+            // Only rejects: a length chosen by it would be too short by a twentieth.
+            trial.next_terms / self.tolerance
+        } else {
+            INSIDE * trial.start_defect / self.tolerance
         }
     }
 

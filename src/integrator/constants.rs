@@ -68,6 +68,11 @@ pub const REFUSALS: u32 = 40;
 /// is largest there. Pinned: 0.3, `tests/promise.rs`.
 pub const INSIDE: f64 = 1.0;
 
+/// Largest ratio of a term of the force polynomial to the one before it from which the next terms are extrapolated, 1: a
+/// term that passes through zero shows no slow decay. Chosen: terms of steps at the tolerance decay by five to ten.
+/// Pinned: 0, `tests/promise.rs`.
+pub const SLOWEST_DECAY: f64 = 1.0 / 3.0;
+
 /// Mean over a step of what the nodal polynomial misses of the square root of time from its start, over what it misses
 /// at the start, 1. From the quadrature of the root. Pinned: ÷ 1000, `tests/chatter.rs` (interruptions of
 /// microseconds).

@@ -25,7 +25,7 @@ NANOSECONDS = 2000
 
 # Runs a system with what is in the file alone, in a process and a folder of its own.
 ALONE = """
-import json, sys
+import json, os, sys
 from libcosimpy.CosimExecution import CosimExecution
 from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
 from libcosimpy.CosimObserver import CosimObserver
@@ -43,7 +43,8 @@ for _ in range(int(sys.argv[2])):
     assert execution.step()
     for index, reference, values in result.values():
         values += observer.last_real_values(index, reference)
-print(json.dumps({variable: values for variable, (_, _, values) in result.items()}))
+print(json.dumps({variable: values for variable, (_, _, values) in result.items()}), flush=True)
+os._exit(0)  # as two_fmus.py
 """
 
 Columns = dict[str, NDArray[np.float64]]

@@ -5,7 +5,7 @@
 //! steps, four for short ones (communication steps of a microsecond, the time just after an impact).
 
 use crate::integrator::collocation::shapes::{MAX_SHAPES, Shapes};
-use crate::integrator::constants::{FLAT, LOOKS, NEAR};
+use crate::integrator::constants::{FLAT, LOOKS, NEAR, SLOWEST_DECAY};
 use crate::math::legendre;
 use crate::math::nodal::{LONG, Nodal, add, dot, scaled};
 use crate::math::prediction::{Prediction, Predictions, value_and_slope};
@@ -24,6 +24,8 @@ pub struct Collocation<const S: usize> {
     pub shapes: Shapes<S>,
     /// Lagrange polynomials at the start of the step.
     pub at_start: Nodal<S>,
+    /// The same without the first node, and without the first two.
+    at_start_of_fewer: [Nodal<S>; 2],
     /// Mean of the Lagrange polynomials over the step: the weights of the Radau quadrature.
     weights: Nodal<S>,
     /// Highest coefficients of the Lagrange polynomials.
@@ -72,6 +74,14 @@ impl<const S: usize> Collocation<S> {
         });
         let shapes = Shapes::new(&nodes, derivatives_at);
         let impulses = shapes.integrals.first().map_or([0.0; S], |table| table.error);
+        let without = |first: usize| {
+            let mut values = [0.0; S];
+            let fewer = lagrange::<MAX_SHAPES>(nodes.get(first..).unwrap_or_default());
+            for (value, [at_zero, ..]) in values.iter_mut().skip(first).zip(fewer) {
+                *value = at_zero;
+            }
+            values
+        };
         let about_end: Vec<_> = [-1.0].into_iter().chain(nodes.iter().map(|node| node - 1.0)).collect();
         let steep = lagrange(&about_end);
         let nodal = lagrange(about_end.get(1..).unwrap_or_default());
@@ -80,6 +90,7 @@ impl<const S: usize> Collocation<S> {
             nodes,
             shapes,
             at_start,
+            at_start_of_fewer: [without(1), without(2)],
             weights,
             leading,
             impulse: impulses.iter().fold(0.0, |most, impulse| most.max(impulse.abs())),
@@ -145,6 +156,16 @@ impl<const S: usize> Collocation<S> {
         let bottom = f64::midpoint(a, b);
         let dip = (bottom < until && value(bottom) < 0.0).then_some(bottom);
         dip.or(below)
+    }
+
+    /// Estimate of the terms that the nodal polynomial through `values` lacks beyond the one that its defect at the start
+    /// shows, from the defects of the polynomials through fewer nodes, where the value at the start is `start`. A defect may pass
+    /// through zero while they are large.
+    pub fn next_terms<A: Arithmetic>(&self, start: f64, values: &Nodal<S>) -> f64 {
+        let [one, two] = &self.at_start_of_fewer;
+        let (one, two) = (start - dot::<S, A>(values, one), start - dot::<S, A>(values, two));
+        let decay = (one / two).abs().min(SLOWEST_DECAY);
+        one.abs() * decay * decay
     }
 
     /// Mean over the step of the nodal polynomial through `values`.

@@ -44,6 +44,8 @@ pub struct Trial<const S: usize> {
     pub rounding: f64,
     /// Defect of the force polynomial at the start: difference from the contact force there, N.
     pub start_defect: f64,
+    /// Estimate of the terms beyond it, N.
+    pub next_terms: f64,
     /// Newton iterations.
     pub iterations: u64,
     /// Tangent of the contact law.
@@ -263,10 +265,12 @@ fn judged<const S: usize, A: Arithmetic>(
     let largest = forces.iter().fold(f64::MIN_POSITIVE, |largest, force| {
         largest.max((model.preload.force + force).abs())
     });
-    let start_defect = if state.closed {
-        state.force - model.preload.force - dot::<S, A>(&forces, &collocation.at_start)
+    let (start_defect, next_terms) = if state.closed {
+        let start = state.force - model.preload.force;
+        let defect = start - dot::<S, A>(&forces, &collocation.at_start);
+        (defect, collocation.next_terms::<A>(start, &forces))
     } else {
-        0.0
+        (0.0, 0.0)
     };
     let (error, inner_error) = errors(model, state, (step, collocation), solution, start_defect, free, largest);
     Trial {
@@ -282,6 +286,7 @@ fn judged<const S: usize, A: Arithmetic>(
         inner_error,
         rounding: FORCE_ROUNDING * largest.max(model.preload.force),
         start_defect: start_defect.abs(),
+        next_terms,
         iterations,
         tangent: solution.tangent,
     }
