@@ -193,10 +193,7 @@ impl Integration<'_> {
         let closes = if self.state.closed {
             None
         } else {
-            let own = self.closing(&trial, target.length);
-            let other = self.closing_of_other(&trial, target.length);
-            let both = own.into_iter().chain(other);
-            both.reduce(|a, b| if b.time < a.time { b } else { a })
+            self.closing_of_either(&trial, target.length)
         };
         if (opens.is_some() || closes.is_some() || read.is_some()) && !self.may_end_inside(&trial, &target) {
             self.before_event = true;

@@ -22,8 +22,28 @@ impl Integration<'_> {
         }
     }
 
-    /// Locates the closing of the other contact in the trial of free flight of `length` seconds; `None` if it stays open.
-    pub(crate) fn closing_of_other<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> Option<Cut>
+    /// Locates the first closing of either contact in the trial of free flight of `length` seconds; `None` if both stay
+    /// open.
+    pub(crate) fn closing_of_either<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> Option<Cut>
+    where
+        Workspace: Room<S>,
+    {
+        let other = self.closing_of_other(trial, length);
+        let own = self.closing(trial, length);
+        match other {
+            Some(at) if own.as_ref().is_none_or(|own| at < own.end.at) => {
+                let end = self.inside(trial, length, at);
+                Some(Cut {
+                    mirrors: true,
+                    ..self.cut(end, true)
+                })
+            }
+            _ => own,
+        }
+    }
+
+    /// When the other contact closes in the trial, s after its start.
+    fn closing_of_other<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> Option<f64>
     where
         Workspace: Room<S>,
     {
@@ -47,14 +67,8 @@ impl Integration<'_> {
         self.mirror_loads::<S>();
         (self.model, self.other, self.drive) = (model, other, drive);
         *self.state = state;
-        let cut = found?;
-        // The other contact is a gap away: time advances.
-        let at = cut.end.at.max(self.resolution());
-        let end = self.inside(trial, length, at);
-        Some(Cut {
-            mirrors: true,
-            ..self.cut(end, true)
-        })
+        // It is a gap away: time advances.
+        found.map(|cut| cut.end.at.max(self.resolution()))
     }
 
     /// Those of an axial force on the modes in the trial.
