@@ -181,7 +181,7 @@ def draw_shape(axes: Axes, elements: Elements, basis: Basis, index: int) -> None
     space.add_collection3d(Poly3DCollection(faces, facecolors=colours, edgecolors="#444444", linewidths=0.25))
     length, width = 1e3 * elements.drawing.length, 1e3 * elements.drawing.width
     space.set(xlim=(0, length), ylim=(-width / 2, width / 2), zlim=(-1, 1))
-    space.set_box_aspect((length, 1.5 * width, 0.3 * length), zoom=1.3)
+    space.set_box_aspect((length, 1.5 * width, 0.3 * length), zoom=1.2)
     space.view_init(elev=24, azim=-62)
     space.set_axis_off()
     axes.set_title(f"{basis.frequencies[index]:.0f} Hz", fontsize="medium", y=0.85)

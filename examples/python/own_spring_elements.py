@@ -329,22 +329,22 @@ def resonances(table: str) -> Array:
 
 
 def segments(drawing: Drawing, title: str, slices: int = 6) -> str:
-    """Give the spring as a spring file by segments: between the edges, less the hole, which is cut into slices."""
-    x, diameter = drawing.hole
-    corners = {0.0, drawing.taper_start, drawing.length}
+    """Give the spring as a spring file by segments: its edges less the hole, in slices; as stiff as the rivet at it."""
+    (x, diameter), (contact, rivet), material = drawing.hole, drawing.rivet, drawing.spring_material
     ring = np.linspace(x - diameter / 2, x + diameter / 2, slices + 1) if diameter > 0 else np.array([])
-    places = sorted(corners | {float(each) for each in ring})
-    lines = [f'title = "{title}"', f"contact_position = {drawing.rivet[0]:.9g}"]
-    for start, end in pairwise(places):
-        width = np.array([drawing.width_at(start), drawing.width_at(end)])
-        if ring.size and ring[0] - 1e-12 <= start and end <= ring[-1] + 1e-12:
+    edges = [0.0, drawing.taper_start, contact - rivet / 2, contact + rivet / 2, drawing.length, *ring.tolist()]
+    lines = [f'title = "{title}"', f"contact_position = {contact:.9g}"]
+    for start, end in pairwise(sorted({min(each, drawing.length) for each in edges})):
+        width, middle = np.array([drawing.width_at(start), drawing.width_at(end)]), (start + end) / 2
+        if abs(middle - x) < diameter / 2:
             # The mean chord of the slice: area between two lines across a circle.
             a, b = (np.clip(2 * (each - x) / diameter, -1, 1) for each in (start, end))
             area = (b * np.sqrt(1 - b**2) + np.arcsin(b) - a * np.sqrt(1 - a**2) - np.arcsin(a)) * diameter**2 / 4
             width -= area / (end - start)
+        # The mass of the rivet is that of the contact, so here only that of the spring.
+        stacked = drawing.thickness + (drawing.head + drawing.tail if abs(middle - contact) < rivet / 2 else 0.0)
         lines += ["", "[[segment]]", f"length = {end - start:.9g}"]
         lines += [f"width_{at} = {each:.9g}" for at, each in zip(("start", "end"), width, strict=True)]
-        material = drawing.spring_material
-        lines += [f"thickness = {drawing.thickness:.9g}", f"youngs_modulus = {material.youngs_modulus:.9g}"]
-        lines.append(f"density = {material.density:.9g}")
+        lines += [f"thickness = {stacked:.9g}", f"youngs_modulus = {material.youngs_modulus:.9g}"]
+        lines.append(f"density = {material.density * drawing.thickness / stacked:.9g}")
     return "\n".join(lines) + "\n"

@@ -22,6 +22,7 @@ from typing import Any, Self
 
 import numpy as np
 from fmpy import extract, instantiate_fmu, read_model_description
+from fmpy.fmi1 import FMICallException
 from numpy.typing import NDArray
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -183,9 +184,10 @@ class Contact:
         """Instantiate the component; errors and warnings are appended to the messages, if a list is given."""
         self.component = component
 
+        self.messages = [] if messages is None else messages
+
         def keep(_environment: int, _instance: bytes, _status: int, _category: bytes, message: bytes) -> None:
-            if messages is not None:
-                messages.append(message.decode())
+            self.messages.append(message.decode())
 
         self.fmu = instantiate_fmu(component.folder, component.description, "CoSimulation", logger=keep)
         self.initialised = False
@@ -210,7 +212,10 @@ class Contact:
         """Set a parameter or an input."""
         kind = self.component.variables[name].type
         if kind == "String":
-            self.fmu.setString(self.references(name), [str(value)])
+            try:
+                self.fmu.setString(self.references(name), [str(value)])
+            except FMICallException as error:
+                raise ValueError(" ".join(self.messages) or str(error)) from error
             return
         put = getattr(self.fmu, f"set{'Integer' if kind == 'Enumeration' else kind}")
         put(self.references(name), [self.component.number(name, value)])

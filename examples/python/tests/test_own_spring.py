@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from conftest import Run, is_picture, run_inside, table
+from conftest import FMU, Run, is_picture, run_inside, table
 from own_spring_elements import CUBE, Drawing, Elements, missing, segments
+from relay_contact import Component
 
 LACKING = missing()
 needs_programs = pytest.mark.skipif(bool(LACKING), reason=LACKING or "nothing")
@@ -90,6 +91,13 @@ def test_modes_in_the_component_are_the_whole_mesh(run: Run, tmp_path: Path) -> 
         assert modes == pytest.approx(whole, rel=5e-3 if "opening" in name else 2e-4), name
         # A plate bends less by nu^2, 9 %; hole and rivet, half as much in frequency.
         assert parts == pytest.approx(whole, rel=0.05), name
+
+
+def test_a_wrong_spring_file_is_refused_with_its_line(tmp_path: Path) -> None:
+    path = tmp_path / "wrong.toml"
+    path.write_text(segments(STRIP, "wrong").replace("thickness = 0.0002", "thickness = 0.02", 1), encoding="utf-8")
+    with pytest.raises(ValueError, match=r"wrong.toml: line \d+: segment 1: thickness = 0.02 m: not allowed"):
+        Component(FMU).started({"beam.file": str(path)})
 
 
 def test_missing_programs_are_named(tmp_path: Path) -> None:
