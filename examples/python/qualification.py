@@ -24,6 +24,7 @@ shorter than a period: its minimum force is then that of part of a period.
 import argparse
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 from textwrap import wrap
 
 import numpy as np
@@ -32,18 +33,27 @@ from tqdm import tqdm
 from common import GRAVITY as G
 from common import parser, read_arguments, within
 from qualification_page import Outcome, Shock, Sweep, page, write
-from relay_contact import Component, Contact, Values, units
+from relay_contact import Component, Contact, Value, Values, units
 from standards import LIMIT, RELAYS, SHOCKS, THRESHOLD, VIBRATION, Level
 
-SPECIMEN: dict[str, float] = {}
+SPECIMEN: dict[str, Value] = {}
 """Parameters that differ from the component's start values, for example {"contact.overtravel": 0.25e-3}. The start
-values are those identified from Zhang et al., "Machines" 2025, 13(1), 52."""
+values are those identified from Zhang et al., "Machines" 2025, 13(1), 52. Your own spring: docs/own-spring.md."""
 UNCERTAINTY = 0.023
 """Relative uncertainty of the margins, from that of the parameters. Near the resonance, 1250 Hz, the force amplitude of
 the specimen deviates by 2.25 % from the published one (docs/validation.md, Fig. 7), and the published preload is known
 to 0.33 %, half a unit of its last digit. Scatter between contacts is not included: see opening_map.py."""
-SHOWN = ["beam.length", "beam.width", "beam.thickness", "beam.youngsModulus", "beam.density", "beam.stiffnessDamping"]
-SHOWN += ["tip.mass", "contact.overtravel", "contact.curvatureRadius", "contact.damping", "chatter.resistanceThreshold"]
+SECTION = ["beam.length", "beam.width", "beam.thickness", "beam.youngsModulus", "beam.density"]
+"""What a spring file replaces."""
+SHOWN = [
+    *SECTION,
+    "beam.stiffnessDamping",
+    "tip.mass",
+    "contact.overtravel",
+    "contact.curvatureRadius",
+    "contact.damping",
+    "chatter.resistanceThreshold",
+]
 """Parameters on the page."""
 SHOCK_STEP = 1e-5  # s
 RESOLUTION = 1e-4  # of margins
@@ -61,7 +71,12 @@ class Specimen:
                 "preload.force", "preload.frequency", "beam.massDamping", "beam.stiffnessDamping"
             )
             known = units(component.description)
-            self.shown = [f"{name} {known[name].text(contact.get(name))}" for name in SHOWN]
+            file = str(SPECIMEN.get("beam.file") or component.start("beam.file"))
+            shown = [name for name in SHOWN if not file or name not in SECTION]
+            values = ", ".join(f"{name} {known[name].text(contact.get(name))}" for name in shown)
+            self.shown = (
+                f"Spring of {Path(file).name}, {values}." if file else f"Equivalent beam, identified: {values}."
+            )
         self.decay = 2 / max(alpha + beta * (2 * np.pi * self.natural) ** 2, 1.0)
         """Decay time of the first resonance, s."""
 
@@ -246,7 +261,7 @@ def main() -> None:
     sweeps, outcomes = [run for run, _ in runs], [each for _, each in runs] + [outcome]
     from_memory = given.vibration != "A" or given.shock != "A"
     notes = [
-        *wrap(f"Equivalent beam, identified: {', '.join(specimen.shown)}.", 125),
+        *wrap(specimen.shown, 125),
         f"Preload {100 * specimen.preload:.2f} cN, first resonance {specimen.natural:.0f} Hz. Component {guid}.",
         *(pace(level, specimen) for level in levels),
         "Margin: level that interrupts, in steady vibration where the contact is most sensitive, relative to the test.",

@@ -6,9 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from conftest import Run, is_picture, table
+import qualification
+from conftest import FMU, Run, is_picture, table
 from reference import Reference, crossings
-from relay_contact import read_table
+from relay_contact import ROOT, Component, read_table
 
 G = 9.80665
 Row = dict[str, float]
@@ -120,3 +121,10 @@ def shocked(shock: np.ndarray[tuple[int, int], np.dtype[np.float64]], printed: l
 def test_wrong_frequencies_are_refused(run: Run) -> None:
     with pytest.raises(AssertionError, match="--frequencies 500 10: from 1e-3 to 1e6 Hz, the first below the second"):
         run("qualification", "--frequencies", "500", "10")
+
+
+def test_the_page_names_the_spring_file(monkeypatch: pytest.MonkeyPatch) -> None:
+    path = ROOT / "scenes" / "springs" / "tapered-cube.toml"
+    monkeypatch.setitem(qualification.SPECIMEN, "beam.file", str(path))
+    shown = qualification.Specimen(Component(FMU)).shown
+    assert shown.startswith("Spring of tapered-cube.toml, beam.stiffnessDamping 80.63 µs, tip.mass")
