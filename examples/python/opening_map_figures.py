@@ -10,8 +10,9 @@ import pyarrow as pa
 from matplotlib.colors import LogNorm
 from scipy.stats import binomtest
 
-from common import BLACK, BLUE, GRAVITY, GREEN, GREY, ORANGE, PURPLE, RED, SKY, acceleration_in_g, save
+from common import save
 from relay_contact import Array
+from relay_contact.figures import BLACK, BLUE, GRAVITY, GREEN, GREY, ORANGE, PURPLE, RED, SKY, acceleration_in_g
 from standards import LIMIT, RELAYS
 
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, RED, SKY, BLACK)

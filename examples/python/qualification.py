@@ -29,10 +29,10 @@ from textwrap import wrap
 import numpy as np
 from tqdm import tqdm
 
-from common import GRAVITY as G
 from common import parser, read_arguments, within
 from qualification_page import Outcome, Shock, Sweep, page, write
 from relay_contact import Component, Contact, Values, units
+from relay_contact.figures import GRAVITY as G
 from standards import LIMIT, RELAYS, SHOCKS, THRESHOLD, VIBRATION, Level
 
 SPECIMEN: dict[str, float] = {}

@@ -7,9 +7,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.transforms import Bbox
 
-from common import BLUE, GREEN, GREY, ORANGE, RED, save, write_table
-from common import GRAVITY as G
-from relay_contact import Array
+from common import save
+from relay_contact import Array, write_table
+from relay_contact.figures import BLUE, GREEN, GREY, ORANGE, RED
+from relay_contact.figures import GRAVITY as G
 from standards import LIMIT, Level
 
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from common import GRAVITY as G
 from relay_contact import Array
+from relay_contact.figures import GRAVITY as G
 
 LIMIT = 10e-6  # s, longest interruption allowed
 # Half of the 6 V of a monitor with 10 mA. The component's default of 60 Ohm is that of 100 mA.

@@ -1,0 +1,21 @@
+//! The Python package with the component in it, as a wheel.
+
+use std::path::Path;
+
+use anyhow::Result;
+use commands::{python, run};
+
+use crate::{fmu, python as environment};
+
+/// Builds the component for this machine, and the wheel that carries it, in `dist/`.
+pub fn run_here() -> Result<()> {
+    environment::prepare()?;
+    build(&fmu::build()?, "dist")
+}
+
+/// Builds the wheel that carries a component, in a folder.
+pub fn build(component: &Path, folder: &str) -> Result<()> {
+    run(python()
+        .args(["-m", "hatchling", "build", "-t", "wheel", "-d", folder])
+        .env("RELAY_CONTACT_FMU", component))
+}
