@@ -25,13 +25,12 @@ def test_a_run_has_names_and_units() -> None:
 
 
 def test_changes_by_either_spelling_and_choices_by_name() -> None:
-    dotted = {"excitation.amplitude": 50.0, "effects.contactLaw": "Bonded"}
+    dotted: Any = {"excitation.amplitude": 50.0, "effects.contactLaw": "Bonded"}
     first = run("paper-1khz", component=COMPONENT, stop=1e-3, **dotted)
     other = run("paper-1khz", component=COMPONENT, stop=1e-3, excitation_amplitude=50.0, effects_contactLaw="Bonded")
     assert np.array_equal(first["contact.force"], other["contact.force"])
-    assert not np.array_equal(
-        first["contact.force"], run("paper-1khz", component=COMPONENT, stop=1e-3)["contact.force"]
-    )
+    unchanged = run("paper-1khz", component=COMPONENT, stop=1e-3)
+    assert not np.array_equal(first["contact.force"], unchanged["contact.force"])
 
 
 def test_an_input_course_is_linear_between_its_points() -> None:
@@ -39,7 +38,7 @@ def test_an_input_course_is_linear_between_its_points() -> None:
     exact = run("paper-1khz", component=COMPONENT, stop=2e-3, solver_tolerance=1e-8)["contact.force"]
     time = np.arange(0.0, 2.1e-3, 1e-5)
     course = {"time": time, "base.acceleration": 98.0 * np.sin(2 * np.pi * 1000.0 * time)}
-    changes: dict[str, float | str] = {"effects.excitation": "None", "solver.tolerance": 1e-8}
+    changes: Any = {"effects.excitation": "None", "solver.tolerance": 1e-8}
     driven = run("paper-1khz", inputs=course, component=COMPONENT, stop=2e-3, **changes)["contact.force"]
     # Chords lie (omega step)^2 / 8 below the sine at most; values held over a step would be wrong by omega step / 2.
     assert np.abs(driven - exact).max() / (np.ptp(exact) / 2) < (2 * np.pi * 1e-2) ** 2 / 8
@@ -56,7 +55,7 @@ def test_an_input_course_is_linear_between_its_points() -> None:
         ({"effects.heating": "on"}, "allowed is true, false"),
     ],
 )
-def test_wrong_names_and_values_are_explained(changes: dict[str, float | str], message: str) -> None:
+def test_wrong_names_and_values_are_explained(changes: Any, message: str) -> None:  # noqa: ANN401
     with pytest.raises(RelayContactError, match=message):
         run("paper-1khz", component=COMPONENT, **changes)
 
