@@ -13,6 +13,7 @@ EXAMPLES = """examples:
   relay-contact list --variables excitation            variables by name, with unit and start value
   relay-contact run paper-1khz                         writes paper-1khz.csv and paper-1khz.png
   relay-contact run chatter-41g --set excitation.frequency=500 --output contact.voltage
+  relay-contact qualify paper --standard MIL-PRF-28776  verdicts and margins, qualification.html
 """
 
 
@@ -22,7 +23,9 @@ def list_all(given: argparse.Namespace) -> None:
         list_variables(Component(given.fmu), given.variables)
         return
     print(f"component: {given.fmu}")
-    for kind, files in (("scenes", scenes()),):
+    from relay_contact.qualification import relays, standards
+
+    for kind, files in (("scenes", scenes()), ("relays", relays()), ("standards", standards())):
         print(f"\n{kind}:")
         width = max(map(len, files), default=0)
         for name, path in files.items():
@@ -73,6 +76,23 @@ def run_scene(given: argparse.Namespace) -> None:
     print(table, draw(table, titled, sweep_of(scene.values)), sep="\n")
 
 
+def qualify_relay(given: argparse.Namespace) -> None:
+    """Test a relay as a standard asks, and print the verdicts."""
+    from relay_contact.qualification import qualify
+    from relay_contact.qualification.page import FILES, HEAD, cells
+
+    folder = given.out or Path(f"qualification-{Path(given.relay).stem}-{Path(given.standard).stem}")
+    parts = qualify(
+        given.relay, given.standard, out=folder, tests=given.test, quick=given.quick,
+        component=Component(given.fmu), progress=sys.stderr.isatty(),
+    )  # fmt: skip
+    rows = [["position", *HEAD], *([part["position"], *cells(part)] for part in parts)]
+    widths = [max(map(len, column)) + 2 for column in zip(*rows, strict=True)]
+    for row in rows:
+        print("".join(f"{cell:{width}}" for cell, width in zip(row, widths, strict=True)).rstrip())
+    print(*(folder / name for name in FILES), sep="\n")
+
+
 def plot_table(given: argparse.Namespace) -> None:
     """Draw a table of outputs."""
     from relay_contact.plot import draw
@@ -90,7 +110,7 @@ def line() -> argparse.ArgumentParser:
     common = argparse.ArgumentParser(add_help=False)
     common.add_argument("--fmu", type=Path, default=fmu_path(), help="another component (%(default)s)")
 
-    one = commands.add_parser("list", parents=[common], help="list scenes, or variables")
+    one = commands.add_parser("list", parents=[common], help="list scenes, relays and standards, or variables")
     one.set_defaults(act=list_all)
     add = one.add_argument
     add("--variables", nargs="?", const="", metavar="TEXT", help="variables with TEXT in their names, or all")
@@ -107,6 +127,18 @@ def line() -> argparse.ArgumentParser:
     add("--stop", type=float, metavar="SECONDS", help="end of the run (the scene's)")
     add("--step", type=float, metavar="SECONDS", help="communication step (the scene's)")
     add("--out", type=Path, default=Path(), metavar="FOLDER", help="folder for what is written (the current one)")
+
+    about = "Test a relay as a standard asks: verdicts, and margins with their uncertainty, as a page and tables."
+    one = commands.add_parser("qualify", parents=[common], description=about, help="test a relay as a standard asks")
+    one.set_defaults(act=qualify_relay)
+    add = one.add_argument
+    add("relay", help="name of a relay, as `relay-contact list` prints them, or path of a relay file of your own")
+    add("--standard", required=True, metavar="NAME", help="name of a standard, or path of a file of your own")
+    text = "only tests with TEXT in their names; may be repeated"
+    add("--test", action="append", default=[], metavar="TEXT", help=text)
+    add("--quick", action="store_true", help="fewer frequencies in the figures; the margins are the same")
+    text = "folder for what is written (qualification-RELAY-STANDARD); finished tests found there are not run again"
+    add("--out", type=Path, metavar="FOLDER", help=text)
 
     about = "Draw a table of outputs, such as `relay-contact run` writes, beside it as PNG."
     one = commands.add_parser("plot", parents=[common], description=about, help="draw a table of outputs")

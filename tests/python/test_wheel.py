@@ -19,6 +19,8 @@ USE = """
 import numpy, relay_contact
 assert set(relay_contact.scenes()) >= {"paper-1khz", "sweep"}
 result = relay_contact.run("closing-bounce", stop=1e-3, outputs=["contact.force"])
+assert {"paper", "cube-changeover"} <= set(relay_contact.relays())
+assert "MIL-PRF-28776" in relay_contact.standards()
 assert result.units["contact.force"] == "N" and result["contact.force"].max() > 0
 print(relay_contact.fmu_path())
 """
@@ -71,6 +73,13 @@ def test_the_command_lists_and_runs_scenes(installed: Path, tmp_path: Path) -> N
     assert len(rows) == 201
     assert list(rows[0]) == ["time", "contact.force", "contact.resistance"]
     assert table.with_suffix(".png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_command_tests_a_relay_with_a_spring_of_its_own(installed: Path, tmp_path: Path) -> None:
+    command = next(installed.glob("relay-contact*"))
+    asked = ("cube-changeover", "--standard", "MIL-STD-202", "--test", "213 C", "--out", "verdicts")
+    assert run(command, "qualify", *asked, folder=tmp_path).count(" pass ") == 2
+    assert (tmp_path / "verdicts/qualification.html").is_file()
 
 
 def test_every_package_that_is_imported_is_declared() -> None:

@@ -1,0 +1,248 @@
+"""A relay against a standard: each test in each position of the coil, its margin, and how well the margin is known.
+
+The margin is the level that interrupts the contact relative to that of the test. A finished test is a file in the
+folder `parts`, named by a hash of all that it depends on: an interrupted assessment continues, with the same bytes.
+"""
+
+import hashlib
+import json
+import os
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from relay_contact.component import Component, Values
+from relay_contact.files import HERE, RelayContactError
+from relay_contact.qualification.relay import Relay
+from relay_contact.qualification.response import Response, margin, respond
+from relay_contact.qualification.standards import Contacts, Random, Shock, Sine, Standard, Test
+from relay_contact.qualification.trials import (
+    SAMPLE,
+    SHOWN,
+    Specimen,
+    dips,
+    shock,
+    shock_threshold,
+    sine_threshold,
+    sweep,
+    threshold,
+    window,
+)  # fmt: skip
+
+Part = dict[str, Any]
+"""What a test showed in a position of the coil, as its file holds it."""
+MODEL = "model"
+CHANCE = "chance of the largest dip"
+MANY = 10_000
+"""Decay times that a sweep takes to cross a resonance, above which their number does not matter."""
+
+
+@dataclass
+class Position:
+    """A position of the coil: its contact, and the responses with each parameter at the ends of its interval."""
+
+    component: Component
+    relay: Relay
+    name: str
+    contacts: Contacts
+
+    @property
+    def values(self) -> Values:
+        """Parameters of the component."""
+        return self.relay.positions[self.name]
+
+    def value(self, name: str) -> float:
+        """Give the value of a parameter."""
+        return float(self.values.get(name, self.component.start(name)))
+
+    @cached_property
+    def specimen(self) -> Specimen:
+        """The contact as its file says."""
+        response = respond(self.component, self.values, self.contacts.threshold)
+        return Specimen(self.component, self.values, self.contacts, response)
+
+    @cached_property
+    def ends(self) -> dict[str, tuple[Response, Response]]:
+        """The responses at the ends of the interval of each uncertain parameter."""
+
+        def end(name: str, part: float) -> Response:
+            changed = {**self.values, name: self.value(name) * (1 + part)}
+            return respond(self.component, changed, self.contacts.threshold)
+
+        return {name: (end(name, -part), end(name, part)) for name, part in self.relay.uncertainty.items()}
+
+    def effects(self, test: Test) -> dict[str, float]:
+        """Give what each uncertainty adds to that of the margin, as parts of the margin, with 95 % confidence."""
+        opening = self.contacts.opening
+        nominal = margin(self.specimen.response, test, opening)
+        found = {
+            name: abs(margin(high, test, opening) - margin(low, test, opening)) / (2 * nominal)
+            for name, (low, high) in self.ends.items()
+        }
+        if self.relay.model:
+            found[MODEL] = self.relay.model
+        if isinstance(test, Random):
+            low, high = (self.specimen.response.random(test, opening, chance) for chance in (0.025, 0.975))
+            found[CHANCE] = abs(high - low) / (2 * nominal)
+        return found
+
+
+def verdict(factor: float, uncertainty: float) -> str:
+    """Compare a margin with 1; within its uncertainty nothing is decided."""
+    if abs(factor - 1) <= uncertainty:
+        return "undecided"
+    return "FAIL" if factor < 1 else "pass"
+
+
+def vibration(position: Position, test: Sine, points: int) -> Part:
+    """Vibrate steadily at frequencies of the sweep, and seek the level that interrupts where it is least."""
+    specimen = position.specimen
+    response = specimen.response
+    frequency, factors = response.sine(test, specimen.contacts.opening)
+    at = int(factors.argmin())
+    weakest = float(frequency[at])
+    low, high = test.frequencies
+    near = weakest * np.linspace(0.9, 1.1, points // 4)
+    chosen = np.unique(np.concatenate((np.geomspace(low, high, points), near[(near > low) & (near < high)])))
+    rows = sweep(specimen, test, chosen)
+    factor = sine_threshold(specimen, test, weakest, float(factors[at]))
+    worst = rows[rows[:, 2].argmax()]
+    if 0 < at < len(factors) - 1:
+        octaves = 2 * np.log2(high / low) * 60 / test.sweep_time
+        width = response.bandwidth(weakest)
+        decays = width / weakest * test.sweep_time / (2 * np.log(high / low)) * np.pi * width
+        limits = f"resonance, {width:.0f} Hz wide; the sweep of {octaves:.2g} octaves a minute crosses it in "
+        limits += f"{decays:.0f} decay times" if decays < MANY else f"over {MANY} decay times"
+    elif at == 0:
+        limits = "lowest frequency of the range, the whole force of inertia"
+    else:
+        limits = "highest frequency of the range, below the resonance"
+    return {
+        "margin": factor, "linear": float(factors[at]), "weakest": f"{weakest:.0f} Hz", "limits": limits,
+        "interrupted": bool(rows[:, 1].any()), "longest": float(worst[2]), "at": float(worst[0]),
+        "least": float(rows[:, 3].min()),
+        "curves": {"frequency": rows[:, 0].tolist(), "level": test.amplitude(rows[:, 0]).tolist(),
+                   "length": rows[:, 2].tolist(), "least": rows[:, 3].tolist()},
+    }  # fmt: skip
+
+
+def random(position: Position, test: Random) -> Part:
+    """Seek the level at which the largest dips of a record interrupt; for the time of the test by Rice's rate."""
+    specimen = position.specimen
+    response = specimen.response
+    ratios = []
+    found = dips(specimen, test)
+    for acceleration, guess in found:
+        level = threshold(lambda factor, course=acceleration: window(specimen, course, factor)[0] > 0, guess)  # type: ignore[misc]
+        ratios.append(level / guess)
+    linear = response.random(test, specimen.contacts.opening)
+    rms, _ = response.moments(test)
+    count, longest, rows = window(specimen, found[0][0], 1.0)
+    density = test.spectrum(response.frequency) * response.force**2
+    share = np.cumsum(density) / density.sum()
+    half = response.frequency[np.searchsorted(share, [0.25, 0.75])]
+    shown = rows[-round(10e-3 / SAMPLE) :]
+    return {
+        "margin": linear * float(np.mean(ratios)), "linear": linear, "weakest": f"{half[0]:.0f} to {half[1]:.0f} Hz",
+        "limits": f"half of the power of the force is there; {rms / response.preload:.2g} of the preload rms",
+        "interrupted": count > 0, "longest": longest, "at": 0.0, "least": float(rows[:, 1].min()),
+        "curves": {"time": (SAMPLE * np.arange(len(shown))).tolist(), "force": shown[:, 0].tolist()},
+    }  # fmt: skip
+
+
+def shocks(position: Position, test: Shock) -> Part:
+    """Run a shock in both directions, and seek the levels that interrupt."""
+    specimen = position.specimen
+    response = specimen.response
+    guesses = response.shock(test, specimen.contacts.opening)
+    signs = {"closing": 1.0, "opening": -1.0}
+    levels, runs = {}, {}
+    for way, guess in guesses.items():
+        levels[way] = shock_threshold(specimen, test, signs[way], guess)
+        runs[way] = shock(specimen, test, signs[way], SHOWN)
+    way = min(levels, key=lambda name: levels[name])
+    slow = response.preload / (response.force[0] * 9.80665 * test.acceleration) / guesses[way]
+    return {
+        "margin": levels[way], "linear": guesses[way], "weakest": f"{way} direction",
+        "limits": f"inertia of the spring, {slow:.2f} times that of a slow shock",
+        "interrupted": any(count > 0 for count, _, _ in runs.values()),
+        "longest": max(longest for _, longest, _ in runs.values()), "at": 0.0,
+        "least": float(min(rows[:, 2].min() for _, _, rows in runs.values())),
+        "curves": {"time": runs[way][2][:, 0].tolist(), "force": runs["opening"][2][:, 1].tolist()},
+    }  # fmt: skip
+
+
+def tested(position: Position, test: Test, points: int) -> Part:
+    """Run a test in a position of the coil."""
+    part: Part = {
+        "position": position.name, "test": test.name, "kind": type(test).__name__.lower(), "level": str(test),
+        "clause": test.clause, "verified": test.verified,
+    }  # fmt: skip
+    if position.value("contact.overtravel") <= 0:
+        return part | {"verdict": "not judged", "limits": "open contact: closings are not judged yet"}
+    match test:
+        case Sine():
+            part |= vibration(position, test, points)
+        case Random():
+            part |= random(position, test)
+        case Shock():
+            part |= shocks(position, test)
+    effects = position.effects(test)
+    relative = float(np.sqrt(sum(effect**2 for effect in effects.values())))
+    shares = {name: (effect / relative) ** 2 for name, effect in effects.items()} if relative else {}
+    part |= {"uncertainty": relative * part["margin"], "effects": effects, "shares": shares}
+    part |= {"preload": position.specimen.response.preload, "natural": position.specimen.response.natural}
+    return part | {"verdict": verdict(part["margin"], part["uncertainty"])}
+
+
+def key(component: Component, relay: Relay, standard: Standard, position: str, test: Test, points: int) -> str:
+    """Give a name for a test that changes with all that its result depends on."""
+    text = hashlib.sha256(component.path.read_bytes())
+    for name in ("assessment", "response", "standards", "trials"):
+        text.update((HERE / "qualification" / f"{name}.py").read_bytes())
+    spring = str(relay.positions[position].get("beam.file", ""))
+    if spring:
+        text.update(Path(spring).read_bytes())
+    values = {name: value for name, value in relay.positions[position].items() if name != "beam.file"}
+    settings = [position, values, relay.uncertainty, relay.model, repr(standard.contacts), repr(test)]
+    text.update(json.dumps([*settings, points], sort_keys=True).encode())
+    return text.hexdigest()[:16]
+
+
+def assess(
+    component: Component, relay: Relay, standard: Standard, folder: Path, points: int,
+    tell: Callable[[str], object] = lambda _: None,
+) -> list[Part]:  # fmt: skip
+    """Run every test in every position, or what is left of it, and give the parts.
+
+    `tell` is called with what begins, and with nothing once it is finished.
+    """
+    (folder / "parts").mkdir(parents=True, exist_ok=True)
+    parts = []
+    for name in relay.positions:
+        position = Position(component, relay, name, standard.contacts)
+        for test in standard.tests:
+            path = folder / "parts" / f"{key(component, relay, standard, name, test, points)}.json"
+            tell(f"{test.name}, {name}")
+            if not path.exists():
+                text = json.dumps(tested(position, test, points), indent=1)
+                part = path.with_name(f"{path.name}.{os.getpid()}.part")
+                part.write_text(text, encoding="utf-8")
+                part.replace(path)
+            tell("")
+            parts.append(json.loads(path.read_text(encoding="utf-8")))
+    return parts
+
+
+def chosen(standard: Standard, texts: list[str]) -> Standard:
+    """Give a standard with those of its tests whose names contain one of some texts."""
+    if not texts:
+        return standard
+    tests = tuple(test for test in standard.tests if any(text.lower() in test.name.lower() for text in texts))
+    if not tests:
+        raise RelayContactError(f"no test named so; there are {', '.join(test.name for test in standard.tests)}")
+    return replace(standard, tests=tests)
