@@ -83,7 +83,7 @@ def qualify_relay(given: argparse.Namespace) -> None:
 
     folder = given.out or Path(f"qualification-{Path(given.relay).stem}-{Path(given.standard).stem}")
     parts = qualify(
-        given.relay, given.standard, out=folder, tests=given.test, quick=given.quick,
+        given.relay, given.standard, out=folder, tests=given.test, quick=given.quick, cluster=given.cluster,
         component=Component(given.fmu), progress=sys.stderr.isatty(),
     )  # fmt: skip
     rows = [["position", *HEAD], *([part["position"], *cells(part)] for part in parts)]
@@ -137,6 +137,11 @@ def line() -> argparse.ArgumentParser:
     text = "only tests with TEXT in their names; may be repeated"
     add("--test", action="append", default=[], metavar="TEXT", help=text)
     add("--quick", action="store_true", help="fewer frequencies in the figures; the margins are the same")
+    add(
+        "--cluster",
+        metavar="ADDRESS",
+        help="of a Dask cluster whose workers have this package, such as tcp://host:8786",
+    )
     text = "folder for what is written (qualification-RELAY-STANDARD); finished tests found there are not run again"
     add("--out", type=Path, metavar="FOLDER", help=text)
 

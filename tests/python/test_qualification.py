@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from distributed import LocalCluster
 from scipy.linalg import block_diag
 
 from component import COMPONENT, ROOT
@@ -235,6 +236,21 @@ def test_an_interrupted_assessment_continues_with_the_same_bytes(
     assert len(names) == 7
     for name in names:
         assert (resumed / name).read_bytes() == (whole / name).read_bytes(), name
+
+
+def test_a_cluster_gives_the_same_bytes(paper: tuple[dict[str, Part], Path], tmp_path: Path) -> None:
+    with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster:
+        address: Any = cluster.scheduler_address
+        wanted = ["sine", "random", "213 A"]
+        qualify("paper", "MIL-PRF-28776", out=tmp_path, tests=wanted, quick=True, component=COMPONENT, cluster=address)
+    for name in ("qualification.html", "qualification.csv", "sweeps.csv"):
+        assert (tmp_path / name).read_bytes() == (paper[1] / name).read_bytes(), name
+
+
+def test_too_little_damping_is_said() -> None:
+    undamped: Any = {"beam.stiffnessDamping": 0.0, "contact.damping": 0.0}
+    with pytest.raises(RelayContactError, match="still vibrates 2 s after a blow: too little damping"):
+        respond(COMPONENT, undamped, 600.0)
 
 
 def test_a_verdict_needs_more_than_the_uncertainty() -> None:

@@ -26,11 +26,13 @@ def qualify(
     quick: bool = False,
     component: Component | None = None,
     progress: bool = False,
+    cluster: str | None = None,
 ) -> list[Part]:
     """Test a relay as a standard asks, each by its name or its file; write page, PDF and tables; give the results.
 
     `tests` are parts of the names of those wanted, without it all. What an interrupted assessment has finished is not
-    run again. `quick` vibrates at fewer frequencies; margins are the same.
+    run again. `quick` vibrates at fewer frequencies; margins are the same. `cluster` is the address of a Dask
+    cluster whose workers have this package.
     """
     component = component or Component()
     described = Relay.read(relay, component)
@@ -42,6 +44,6 @@ def qualify(
         def tell(label: str) -> None:
             bar.set_description_str(label) if label else bar.update()
 
-        parts = assess(component, described, asked, out, FEW if quick else POINTS, tell)
+        parts = assess(component, described, asked, out, FEW if quick else POINTS, tell, cluster)
     write(out, described, asked, parts, component.description.guid)
     return parts

@@ -7,10 +7,11 @@ folder `parts`, named by a hash of all that it depends on: an interrupted assess
 import hashlib
 import json
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -89,6 +90,16 @@ class Position:
             low, high = (self.specimen.response.random(test, opening, chance) for chance in (0.025, 0.975))
             found[CHANCE] = abs(high - low) / (2 * nominal)
         return found
+
+
+Job = tuple[Path, Position, Test, int]
+"""The file that a test is to write, the position, the test, and the number of frequencies."""
+
+
+def spring_of(values: Values) -> bytes:
+    """Give the contents of the spring file of a position, if it has one."""
+    file = str(values.get("beam.file", ""))
+    return Path(file).read_bytes() if file else b""
 
 
 def verdict(factor: float, uncertainty: float) -> str:
@@ -204,38 +215,78 @@ def key(component: Component, relay: Relay, standard: Standard, position: str, t
     text = hashlib.sha256(component.path.read_bytes())
     for name in ("assessment", "response", "standards", "trials"):
         text.update((HERE / "qualification" / f"{name}.py").read_bytes())
-    spring = str(relay.positions[position].get("beam.file", ""))
-    if spring:
-        text.update(Path(spring).read_bytes())
+    text.update(spring_of(relay.positions[position]))
     values = {name: value for name, value in relay.positions[position].items() if name != "beam.file"}
     settings = [position, values, relay.uncertainty, relay.model, repr(standard.contacts), repr(test)]
     text.update(json.dumps([*settings, points], sort_keys=True).encode())
     return text.hexdigest()[:16]
 
 
+def on_worker(fmu: bytes, spring: bytes, position: Position, test: Test, points: int) -> str:
+    """Run a test on another machine, which has this package; give the text of its part."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "component.fmu"
+        path.write_bytes(fmu)
+        values = dict(position.values)
+        if spring:
+            values["beam.file"] = str(Path(folder) / "spring.toml")
+            Path(str(values["beam.file"])).write_bytes(spring)
+        relay = replace(position.relay, positions={position.name: values})
+        return text_of(tested(Position(Component(path), relay, position.name, position.contacts), test, points))
+
+
+def text_of(part: Part) -> str:
+    """Give the contents of the file of a part."""
+    return json.dumps(part, indent=1)
+
+
+def on_cluster(address: str, component: Component, jobs: list[Job]) -> Iterator[tuple[Path, str]]:
+    """Run tests on a Dask cluster; give the path and text of each part as it is finished."""
+    from distributed import Client, as_completed
+
+    fmu = component.path.read_bytes()
+    with Client(address) as client:
+        paths = {}
+        for path, position, test, points in jobs:
+            spring = spring_of(position.values)
+            # A component cannot be sent; the worker unpacks its own.
+            bare = Position(None, position.relay, position.name, position.contacts)  # type: ignore[arg-type]
+            paths[client.submit(on_worker, fmu, spring, bare, test, points, pure=False)] = path
+        for future, text in as_completed(list(paths), with_results=True):
+            yield paths[future], text
+
+
 def assess(
     component: Component, relay: Relay, standard: Standard, folder: Path, points: int,
-    tell: Callable[[str], object] = lambda _: None,
+    tell: Callable[[str], object] = lambda _: None, cluster: str | None = None,
 ) -> list[Part]:  # fmt: skip
     """Run every test in every position, or what is left of it, and give the parts.
 
-    `tell` is called with what begins, and with nothing once it is finished.
+    `tell` is called with what begins, and with nothing once it is finished; `cluster` is the address of a Dask cluster.
     """
     (folder / "parts").mkdir(parents=True, exist_ok=True)
-    parts = []
+    jobs: list[Job] = []
     for name in relay.positions:
         position = Position(component, relay, name, standard.contacts)
         for test in standard.tests:
             path = folder / "parts" / f"{key(component, relay, standard, name, test, points)}.json"
-            tell(f"{test.name}, {name}")
-            if not path.exists():
-                text = json.dumps(tested(position, test, points), indent=1)
-                part = path.with_name(f"{path.name}.{os.getpid()}.part")
-                part.write_text(text, encoding="utf-8")
-                part.replace(path)
-            tell("")
-            parts.append(json.loads(path.read_text(encoding="utf-8")))
-    return parts
+            jobs.append((path, position, test, points))
+    todo = [job for job in jobs if not job[0].exists()]
+    for _ in range(len(jobs) - len(todo)):
+        tell("")
+    for path, text in on_cluster(cluster, component, todo) if cluster else here(todo, tell):
+        part = path.with_name(f"{path.name}.{os.getpid()}.part")
+        part.write_text(text, encoding="utf-8")
+        part.replace(path)
+        tell("")
+    return [json.loads(path.read_text(encoding="utf-8")) for path, *_ in jobs]
+
+
+def here(jobs: list[Job], tell: Callable[[str], object]) -> Iterator[tuple[Path, str]]:
+    """Run tests one after another; give the path and text of each part."""
+    for path, position, test, points in jobs:
+        tell(f"{test.name}, {position.name}")
+        yield path, text_of(tested(position, test, points))
 
 
 def chosen(standard: Standard, texts: list[str]) -> Standard:

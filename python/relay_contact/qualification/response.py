@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from relay_contact.component import Array, Component, Values
 from relay_contact.figures import GRAVITY
+from relay_contact.files import RelayContactError
 from relay_contact.qualification.standards import Random, Shock, Sine, Test
 
 STEP = 1e-5
@@ -121,6 +122,8 @@ def respond(component: Component, values: Values, threshold: float) -> Response:
             largest, calm = max(largest, abs(now)), max(0.998 * calm, abs(now))
             if number > SHORTEST and calm < CALM * largest:
                 break
+        else:
+            raise RelayContactError(f"the contact still vibrates {STEP * LONGEST:g} s after a blow: too little damping")
     # The triangle begins one step before its peak.
     course = np.array(answer[1:])
     spectrum = np.fft.rfft(course, max(POINTS, len(course)))
