@@ -6,6 +6,7 @@ folder `parts`, named by a hash of all that it depends on: an interrupted assess
 
 import hashlib
 import json
+import math
 import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
@@ -38,6 +39,8 @@ Part = dict[str, Any]
 """What a test showed in a position of the coil, as its file holds it."""
 MODEL = "model"
 CHANCE = "chance of the largest dip"
+WORN = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2)
+"""Parts of the overtravel over which margins are shown."""
 MANY = 10_000
 """Decay times that a sweep takes to cross a resonance, above which their number does not matter."""
 
@@ -76,6 +79,25 @@ class Position:
 
         return {name: (end(name, -part), end(name, part)) for name, part in self.relay.uncertainty.items()}
 
+    @cached_property
+    def worn(self) -> dict[float, Response]:
+        """The responses over the overtravel (m), which the wear of the contacts takes away."""
+        name = "contact.overtravel"
+        nominal = self.value(name)
+        return {
+            part * nominal: respond(self.component, {**self.values, name: part * nominal}, self.contacts.threshold)
+            for part in WORN
+        }
+
+    def wear(self, test: Test, factor: float) -> dict[str, list[float]]:
+        """Give the margin over the overtravel, for a margin that the component found as it is."""
+        opening = self.contacts.opening
+        ratio = factor / margin(self.specimen.response, test, opening)
+        return {
+            "overtravel": list(self.worn),
+            "margin": [ratio * margin(response, test, opening) for response in self.worn.values()],
+        }
+
     def effects(self, test: Test) -> dict[str, float]:
         """Give what each uncertainty adds to that of the margin, as parts of the margin, with 95 % confidence."""
         opening = self.contacts.opening
@@ -107,6 +129,21 @@ def verdict(factor: float, uncertainty: float) -> str:
     if abs(factor - 1) <= uncertainty:
         return "undecided"
     return "FAIL" if factor < 1 else "pass"
+
+
+def passes(wear: dict[str, list[float]], uncertainty: float) -> float | None:
+    """Give the overtravel (m) from which on a margin with an uncertainty, as a part of it, passes."""
+    least = [value * (1 - uncertainty) for value in wear["margin"]]
+    if least[-1] < 1:
+        return None
+    return float(np.interp(1.0, least, wear["overtravel"]))
+
+
+def chance_below(factor: float, uncertainty: float) -> float:
+    """Give the chance that a margin is below 1, normally distributed; `uncertainty` has 95 % confidence."""
+    if not uncertainty:
+        return float(factor < 1)
+    return (1 + math.erf(1.96 * (1 - factor) / uncertainty / math.sqrt(2))) / 2
 
 
 def vibration(position: Position, test: Sine, points: int) -> Part:
@@ -206,6 +243,8 @@ def tested(position: Position, test: Test, points: int) -> Part:
     relative = float(np.sqrt(sum(effect**2 for effect in effects.values())))
     shares = {name: (effect / relative) ** 2 for name, effect in effects.items()} if relative else {}
     part |= {"uncertainty": relative * part["margin"], "effects": effects, "shares": shares}
+    part |= {"wear": position.wear(test, part["margin"]), "overtravel": position.value("contact.overtravel")}
+    part |= {"passes": passes(part["wear"], relative), "chance": chance_below(part["margin"], part["uncertainty"])}
     part |= {"preload": position.specimen.response.preload, "natural": position.specimen.response.natural}
     return part | {"verdict": verdict(part["margin"], part["uncertainty"])}
 
@@ -242,8 +281,10 @@ def text_of(part: Part) -> str:
 
 def on_cluster(address: str, component: Component, jobs: list[Job]) -> Iterator[tuple[Path, str]]:
     """Run tests on a Dask cluster; give the path and text of each part as it is finished."""
-    from distributed import Client, as_completed
-
+    try:
+        from distributed import Client, as_completed
+    except ImportError as error:
+        raise RelayContactError("a cluster needs Dask: pip install 'relay-contact[cluster]'") from error
     fmu = component.path.read_bytes()
     with Client(address) as client:
         paths = {}

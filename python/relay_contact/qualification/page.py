@@ -13,12 +13,13 @@ from matplotlib.backends.backend_pdf import PdfPages
 from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
-from relay_contact.figures import BLUE, GREEN, GREY, ORANGE, PURPLE, RED
+from relay_contact.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY
 from relay_contact.figures import GRAVITY as G
 from relay_contact.qualification.assessment import CHANCE, MODEL, Part
 from relay_contact.qualification.relay import Relay
 from relay_contact.qualification.standards import Standard
 
+LINE_COLOURS = (BLUE, RED, PURPLE, ORANGE, GREEN, SKY, BLACK, GREY)
 COLOURS = (BLUE, RED, PURPLE, ORANGE, GREEN)
 FILLS = {"pass": "#BFE5D8", "FAIL": "#F5CDB8", "undecided": "#FBE8B0", "not judged": "#E4E4E4"}
 LINES = {"pass": GREEN, "FAIL": RED, "undecided": ORANGE}
@@ -28,8 +29,10 @@ STYLE = {
 }  # fmt: skip
 HEAD = ("test", "level", "verdict", "margin", "weakest at", "longest opening", "least force")
 FILES = ("qualification.html", "qualification.pdf", "qualification.csv", "sweeps.csv")
+REASONS = ("test", "what limits", "uncertainty of the margin", "chance of failing", "passes from this overtravel on")
 NOTES = """Margin: the level that interrupts the contact relative to that of the test, with its uncertainty at 95 %.
-If they allow both, the verdict is undecided.
+If they allow both, the verdict is undecided. Chance of failing: of a relay whose parameters scatter as they are
+uncertain. Passes: the overtravel from which on the margin exceeds 1 by its uncertainty.
 Sine: steady vibration, its level raised gently; the slow sweep of a test is close to it. A contact at rest that is
 vibrated suddenly may open at a lower level.
 Random: the level at which the largest dip of the force in the time of the test interrupts with a chance of one half, by
@@ -59,6 +62,14 @@ def names(effects: dict[str, float]) -> str:
     found = sorted(effects.items(), key=lambda item: -item[1])[:3]
     words = {MODEL: "the model", CHANCE: CHANCE}
     return ", ".join(f"{words.get(name, name)} {100 * effect:.2g} %" for name, effect in found if effect > 1e-4)
+
+
+def reasons(part: Part) -> list[str]:
+    """Give the row of a test in the table of reasons."""
+    if "margin" not in part:
+        return [part["test"], part["limits"], "", "", ""]
+    passes = "none up to 1.2 times this" if part["passes"] is None else f"{1e3 * part['passes']:.3g} mm"
+    return [part["test"], part["limits"], names(part["effects"]), f"{100 * part['chance']:.0f} %", passes]
 
 
 def margins(parts: list[Part]) -> Figure:
@@ -134,24 +145,37 @@ def courses(axes: Axes, parts: list[Part], title: str) -> None:
     axes.set(xlabel="time [ms]", ylabel="contact force [cN]", title=title, ylim=(-0.2 * rest, 3 * rest))
 
 
+def wear(axes: Axes, parts: list[Part]) -> None:
+    """Draw the margins over the overtravel."""
+    for part, colour in zip(parts, LINE_COLOURS, strict=False):
+        axes.plot(1e3 * np.array(part["wear"]["overtravel"]), part["wear"]["margin"], color=colour, label=part["test"])
+    axes.axhline(1.0, color=GREY, linewidth=1)
+    axes.axvline(1e3 * parts[0]["overtravel"], color=GREY, linestyle=":", label="as it is")
+    axes.legend(loc="upper left", ncols=2)
+    axes.set(xlabel="overtravel [mm]", ylabel="margin", title="Margins over the overtravel, which wear takes away")
+    axes.set_ylim(0, None)
+
+
 def position_figure(parts: list[Part], opening: float) -> Figure | None:
     """Draw what the tests showed in a position of the coil."""
     kinds = {
         kind: [part for part in parts if part["kind"] == kind and "margin" in part]
         for kind in ("sine", "random", "shock")
     }
-    rows = 3 * bool(kinds["sine"]) + bool(kinds["random"]) + bool(kinds["shock"])
-    if not rows:
+    judged = [part for part in parts if "margin" in part]
+    if not judged:
         return None
+    rows = 3 * bool(kinds["sine"]) + bool(kinds["random"]) + bool(kinds["shock"]) + 1
     figure = Figure(figsize=(8.27, 1.95 * rows + 0.4), layout="constrained")
     panels = list(figure.subplots(rows, 1, squeeze=False)[:, 0])
     if kinds["sine"]:
         sweeps(panels[:3], kinds["sine"], opening)
     if kinds["random"]:
         title = "Random: the last 10 ms around the largest dip in a minute"
-        courses(panels[-1 - bool(kinds["shock"])], kinds["random"], title)
+        courses(panels[-2 - bool(kinds["shock"])], kinds["random"], title)
     if kinds["shock"]:
-        courses(panels[-1], kinds["shock"], "Shock in the direction that opens the contact")
+        courses(panels[-2], kinds["shock"], "Shock in the direction that opens the contact")
+    wear(panels[-1], judged)
     figure.align_ylabels()
     return figure
 
@@ -198,14 +222,10 @@ def html(relay: Relay, standard: Standard, parts: list[Part], opening: float, co
             body.append(f"<tr>{''.join(columns)}</tr>")
         body.append("</table></div>")
         body.append(svg(position_figure(mine, opening)))
-        body.append(
-            '<div class="wide"><table><tr><th>test</th><th>what limits</th><th>uncertainty of the margin</th></tr>'
-        )
+        head = "".join(f"<th>{name}</th>" for name in REASONS)
+        body.append(f'<div class="wide"><table><tr>{head}</tr>')
         for part in mine:
-            reasons = names(part.get("effects", {}))
-            body.append(
-                f"<tr><td>{escape(part['test'])}</td><td>{escape(part['limits'])}</td><td>{escape(reasons)}</td></tr>"
-            )
+            body.append("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in reasons(part)) + "</tr>")
         body.append("</table></div>")
     body.append("<h2>How this was found</h2>")
     body.append(f"<p>{escape(limit(standard))}</p>")
