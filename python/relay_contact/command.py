@@ -161,6 +161,10 @@ def main(arguments: list[str] | None = None) -> int:
     given = line().parse_args(arguments)
     try:
         given.act(given)
+    except BrokenPipeError:
+        # Whoever read what was printed has enough.
+        sys.stdout = None
+        return 0
     except (RelayContactError, OSError) as error:
         print(f"relay-contact: {error}", file=sys.stderr)
         return 1

@@ -83,7 +83,7 @@ fn main() -> ExitCode {
             fmu::build_variant(plain, spring.as_deref()).map(|path| println!("{}", path.display()))
         }
         Task::Scene(arguments) => report::run("scene", &arguments),
-        Task::Wheel => wheel::run_here(),
+        Task::Wheel => wheel::run(),
         Task::Ssv => report::start("ssv", &NONE),
         Task::Demo => demo::run(),
         Task::Accuracy(arguments) => report::run("accuracy", &arguments),
