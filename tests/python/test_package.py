@@ -1,14 +1,16 @@
 """The package `relay_contact`: runs of scenes, and what it says about wrong names and values."""
 
+from pathlib import Path
 from typing import Any
+from zipfile import ZipFile
 
 import matplotlib as mpl
 import nbformat
 import numpy as np
 import pytest
 
-from component import COMPONENT, ROOT, STARTS
-from relay_contact import RelayContactError, Scene, run, scenes
+from component import COMPONENT, FMU, ROOT, STARTS
+from relay_contact import Component, RelayContactError, Scene, run, scenes
 from relay_contact.command import main
 
 
@@ -63,6 +65,17 @@ def test_wrong_names_and_values_are_explained(changes: Any, message: str) -> Non
 def test_an_unknown_scene_is_answered_with_those_there_are() -> None:
     with pytest.raises(RelayContactError, match="no scene of this name; there are at-rest, chatter-41g"):
         Scene.read("paper")
+
+
+def test_a_component_for_other_machines_is_refused(tmp_path: Path) -> None:
+    other = tmp_path / "other.fmu"
+    with ZipFile(FMU) as archive, ZipFile(other, "w") as copy:
+        copy.writestr("modelDescription.xml", archive.read("modelDescription.xml"))
+        copy.writestr("binaries/win32/RelayContact.dll", b"")
+    with pytest.raises(RelayContactError, match=r"has libraries for win32 only, not for this machine"):
+        Component(other)
+    with pytest.raises(RelayContactError, match=r"is missing: build it with"):
+        Component(tmp_path / "none.fmu")
 
 
 def test_every_scene_names_known_variables() -> None:
