@@ -26,9 +26,10 @@ from matplotlib.axes import Axes
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from tqdm import tqdm
 
-from common import BLACK, BLUE, GRAVITY, ORANGE, acceleration_in_g, parser, read_arguments, save
+from common import parser, read_arguments, save
 from own_spring_elements import Basis, Drawing, Elements, missing, segments
 from relay_contact import Array, Component, Contact, Value
+from relay_contact.figures import BLACK, BLUE, GRAVITY, ORANGE, acceleration_in_g
 
 DRAWING = Drawing(
     length=20e-3, width=4e-3, taper_start=10e-3, end_width=2.4e-3, thickness=0.2e-3,
