@@ -5,7 +5,7 @@
  *     cc -std=c99 -O2 -Idist/include examples/embed.c -Ldist/lib -lrelay_contact -lm -Wl,-rpath,'$ORIGIN/lib' -o dist/embed
  *     mkdir -p out
  *     dist/embed                                                     # 400 m/s2 over 20 ms, to out/embed-c.csv
- *     .venv/bin/python examples/python/plot_scene.py out/embed-c.csv
+ *     .venv/bin/python -m relay_contact plot out/embed-c.csv
  *
  * Vibration, circuit and numbers are those of embed.rs, where they are explained. The header names every variable
  * (RELAY_CONTACT_CONTACT_FORCE), and the functions are those of FMI 2.0 for co-simulation: what is set and read with

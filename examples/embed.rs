@@ -2,7 +2,7 @@
 //!
 //!     cargo run --release --example embed                       # 400 m/s2 over 20 ms, to out/embed.csv
 //!     cargo run --release --example embed -- 300 0.1 burst.csv
-//!     .venv/bin/python examples/python/plot_scene.py out/embed.csv
+//!     .venv/bin/python -m relay_contact plot out/embed.csv
 //!
 //! Vibration: two machines of 900 and 1000 Hz beat, `a(t) = A sin(2 pi 950 t) sin(2 pi 50 t)`. Circuit: 6 V, a load of
 //! 60 Ohm and 1 mH, the contact, and across it a quench of 47 Ohm and 220 nF, without which the coil would drive an arc.

@@ -10,8 +10,8 @@ from typing import Any, NoReturn
 import numpy as np
 import pytest
 
-from component import PLAIN
-from relay_contact import ROOT, Component, read_table
+from component import PLAIN, ROOT
+from relay_contact import Component, read_table
 
 FOLDER = ROOT / "out" / "conformance"
 # Two instances, wired together, with their parameters.

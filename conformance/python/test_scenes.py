@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from fmpy.ssp.ssd import read_ssv
 
-from component import COMPONENT
-from relay_contact import ROOT, Scene, Value, read_table, run, scenes
+from component import COMPONENT, ROOT
+from relay_contact import Scene, Value, read_table, run, scenes
 from results import FOLDER, record
 
 SETS = ROOT / "out" / "ssv"

@@ -5,7 +5,7 @@ import multiprocessing
 import fmpy
 
 from component import COMPONENT
-from relay_contact import Contact
+from relay_contact import Contact, Scene
 from results import record
 
 STEP = 1e-6
@@ -32,7 +32,7 @@ def go_on(serialised: bytes) -> list[float]:
 
 def test_a_restored_state_goes_on_bit_by_bit() -> None:
     """Going on gives the same bits as at the first time, wherever it happens."""
-    with COMPONENT.in_scene("chatter-41g") as instance:
+    with COMPONENT.started(Scene.read("chatter-41g").values) as instance:
         before = forces(instance, 0, HALF)
         state = instance.fmu.getFMUstate()
         serialised = instance.fmu.serializeFMUstate(state)

@@ -6,8 +6,7 @@ import fmpy
 from fmpy import read_model_description
 from fmpy.validation import validate_fmu
 
-from component import FMU, PLAIN
-from relay_contact import ROOT
+from component import FMU, PLAIN, ROOT
 from results import record
 
 

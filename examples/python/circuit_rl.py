@@ -23,9 +23,10 @@ import numpy as np
 from tqdm import tqdm
 
 from circuit import Circuit, State
-from common import BLUE, GREY, ORANGE, RED, SKY, legend_beside, parser, read_arguments, save, within, write_table
+from common import parser, read_arguments, save, within
 from ngspice import Course, NgSpice
-from relay_contact import Array, Component, Contact
+from relay_contact import Array, Component, Contact, Scene, write_table
+from relay_contact.figures import BLUE, GREY, ORANGE, RED, SKY, legend_beside
 from rollback import adapt, begin
 
 CIRCUIT = Circuit()
@@ -163,13 +164,13 @@ def main() -> None:
     component = Component(given.fmu)
 
     def run(solver: Solver, step: float, label: str) -> Result:
-        with component.in_scene("chatter-41g") as contact:
+        with component.started(Scene.read("chatter-41g").values) as contact:
             return simulate(contact, solver, step, round(stop / step), label)
 
     try:
         result = run(solver, 1e-6 * given.step, f"{name}, step {given.step:g} us")
         other = run(BuiltIn(), 1e-6 * given.step, "built-in, to compare") if name == "ngspice" else None
-        with component.in_scene("chatter-41g") as contact:
+        with component.started(Scene.read("chatter-41g").values) as contact:
             exact = reference(contact, stop, steps[-1] / 2)
         study = []
         for length in steps:

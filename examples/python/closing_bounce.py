@@ -25,8 +25,9 @@ from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, LogNorm
 from tqdm import tqdm
 
-from common import BLUE, GREY, ORANGE, RED, parser, read_arguments, save, within, write_table
-from relay_contact import Array, Component, Values
+from common import parser, read_arguments, save, within
+from relay_contact import Array, Component, Values, write_table
+from relay_contact.figures import BLUE, GREY, ORANGE, RED
 
 REST = 0.01  # s, the contact comes to rest within 1 ms
 PIECES = 1000  # of a parabola

@@ -10,7 +10,8 @@ import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from common import BLUE, GRAVITY, GREY, ORANGE, RED, acceleration_in_g, save
+from common import save
+from relay_contact.figures import BLUE, GRAVITY, GREY, ORANGE, RED, acceleration_in_g
 
 COLOURS = (BLUE, ORANGE, RED)
 

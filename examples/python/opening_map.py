@@ -46,10 +46,11 @@ from fmpy.fmi1 import FMICallException
 from tqdm import tqdm
 
 import relay_contact
-from common import GRAVITY, parser, read_arguments
+from common import parser, read_arguments
 from opening_map_figures import draw_map, draw_tolerances
 from opening_map_study import TOLERANCES, Point, Row, Study
 from relay_contact import Component, Contact, units
+from relay_contact.figures import GRAVITY
 
 CHANGE = 1e-4  # relative difference below which two periods count as equal
 PATIENCE = 200  # periods after which the motion counts as not periodic

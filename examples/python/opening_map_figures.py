@@ -10,10 +10,15 @@ import pyarrow as pa
 from matplotlib.colors import LogNorm
 from scipy.stats import binomtest
 
-from common import BLACK, BLUE, GRAVITY, GREEN, GREY, ORANGE, PURPLE, RED, SKY, acceleration_in_g, save
+from common import save
 from relay_contact import Array
-from standards import LIMIT, RELAYS
+from relay_contact.figures import BLACK, BLUE, GRAVITY, GREEN, GREY, ORANGE, PURPLE, RED, SKY, acceleration_in_g
+from relay_contact.qualification.standards import Sine, Standard
 
+NAME = "MIL-PRF-28776"
+ASKED = Standard.read(NAME)
+LIMIT = ASKED.contacts.opening
+RELAYS = next(test for test in ASKED.tests if isinstance(test, Sine))
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, RED, SKY, BLACK)
 STANDARD = {"color": RED, "linestyle": ":", "linewidth": 1.6}
 """Style of the level of the standard."""
@@ -67,7 +72,7 @@ def draw_map(table: pa.Table, labels: list[str], scales: list[Any], path: Path) 
     figure.colorbar(mesh, ax=panels, label="longest interruption [µs] (white: none)", shrink=0.6, extend="both")
     last.set_title("opens for 10 µs: all values", fontsize="medium")
     for axes in panels.flat[: len(values) + 1]:
-        axes.plot(fine, RELAYS.amplitude(fine), label=f"{RELAYS.name}, {RELAYS.acceleration:g} g", **STANDARD)
+        axes.plot(fine, RELAYS.amplitude(fine), label=f"{NAME}, {RELAYS.acceleration:g} g", **STANDARD)
         axes.set(xscale="log", xlim=frequencies[[0, -1]], ylim=accelerations[[0, -1]])
         axes.set(xlabel="frequency [Hz]", ylabel="base acceleration [m/s²]")
         axes.xaxis.set_major_formatter("{x:g}")
@@ -109,7 +114,7 @@ def draw_tolerances(table: pa.Table, settings: dict[str, Any], path: Path) -> No
     right.errorbar(accelerations, share, [share - low, high - share], color=COLOURS[0], marker="o", capsize=4)
     right.set(xlabel="base acceleration [m/s²]", ylabel="contacts that open for longer than 10 µs [%]", ylim=(-2, 102))
     level = float(RELAYS.amplitude(np.array(settings["frequency"])))
-    right.axvline(level, label=f"{RELAYS.name}, {level / GRAVITY:.3g} g", **STANDARD)
+    right.axvline(level, label=f"{NAME}, {level / GRAVITY:.3g} g", **STANDARD)
     acceleration_in_g(right, vertical=False)
     right.set_title(f"Share of {settings['samples']} contacts, 95 % confidence", fontsize="medium")
     for axes in (left, right):

@@ -5,15 +5,14 @@ The case is scenes/paper-1khz.toml. The published values are those of Zhang, Zha
 """
 
 import sys
-from dataclasses import replace
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
-from tqdm import tqdm
 
-from common import BLACK, BLUE, ORANGE, RED, SKY, legend_beside, parser, read_arguments, save, write_table
-from relay_contact import Array, Component, Scene, run, scenes
+from common import parser, read_arguments, save
+from relay_contact import Array, Component, Scene, run, write_table
+from relay_contact.figures import BLACK, BLUE, ORANGE, RED, SKY, legend_beside
 
 PRELOAD = ["preload.force", "preload.contactStiffness", "preload.frequency"]
 COLUMNS = ["time", "base.acceleration", "contact.force", "contact.resistance"]
@@ -29,10 +28,7 @@ Outputs = dict[str, Array]
 
 def simulate(component: Component, scene: Scene) -> Outputs:
     """Run the scene under FMPy, with a progress bar."""
-    form = "{l_bar}{bar}| {n:.1f} ms"
-    with tqdm(total=round(1e3 * scene.stop, 3), desc="simulated", bar_format=form) as bar:
-        watched = replace(scene, outputs=scene.outputs + PRELOAD)
-        outputs = run(watched, component=component, progress=lambda time: bar.update(1e3 * time - bar.n))
+    outputs = run(scene, outputs=scene.outputs + PRELOAD, component=component, progress=True).columns
     amplitude, frequency = (float(scene.values[f"excitation.{each}"]) for each in ("amplitude", "frequency"))
     return outputs | {"base.acceleration": amplitude * np.sin(2 * np.pi * frequency * outputs["time"])}
 
@@ -90,7 +86,7 @@ def draw(outputs: Outputs, period: int, title: str, path: Path) -> None:
 def main() -> int:
     """Run the case."""
     given = read_arguments(parser("Run the published 1 kHz case under FMPy and compare."))
-    scene = Scene.read(scenes()["paper-1khz"])
+    scene = Scene.read("paper-1khz")
     outputs = simulate(Component(given.fmu), scene)
     period = round(1 / (float(scene.values["excitation.frequency"]) * scene.step))
     force = outputs["contact.force"]

@@ -32,8 +32,9 @@ import numpy as np
 from tqdm import tqdm
 
 from circuit import Circuit, State
-from common import BLACK, BLUE, ORANGE, SKY, legend_beside, parser, read_arguments, save, write_table
-from relay_contact import Array, Component, Contact
+from common import parser, read_arguments, save
+from relay_contact import Array, Component, Contact, Scene, write_table
+from relay_contact.figures import BLACK, BLUE, ORANGE, SKY, legend_beside
 
 CIRCUIT = Circuit()
 PERIOD = 1e-3  # s, of the vibration
@@ -223,7 +224,7 @@ def main() -> int:
     runs: list[Run] = []
     for method, setting in (bar := tqdm(settings, unit="run")):
         bar.set_description(f"{method}, {setting:g}")
-        with component.in_scene("chatter-41g") as contact:
+        with component.started(Scene.read("chatter-41g").values) as contact:
             master, started = begin(contact), clock.perf_counter()
             if method == "fixed":
                 follow(master, [(index * setting, setting) for index in range(round(stop / setting))])
@@ -234,7 +235,7 @@ def main() -> int:
     exact = runs[0].master.currents(times)
     # The accepted steps again, without repeating any: nothing of the rejected steps may be left in the result.
     shown = next(run.master for run in runs if run.method == "adaptive with events" and run.setting == SHOWN)
-    with component.in_scene("chatter-41g") as contact:
+    with component.started(Scene.read("chatter-41g").values) as contact:
         again = begin(contact)
         follow(again, [(row[0], row[1]) for row in shown.rows])
     same = again.rows == shown.rows and again.state == shown.state

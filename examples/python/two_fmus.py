@@ -37,8 +37,9 @@ import numpy as np
 from pythonfmu import FmuBuilder
 from tqdm import tqdm
 
-from common import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, parser, read_arguments, save, within, write_table
-from relay_contact import Array, Component, Contact
+from common import parser, read_arguments, save, within
+from relay_contact import Array, Component, Contact, write_table
+from relay_contact.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED
 from two_fmus_bench import PARAMETERS
 from two_fmus_system import WIRES, Fmus, Starts, write_system
 

@@ -8,6 +8,7 @@ from fmpy import simulate_fmu
 
 from relay_contact import Array, Component, Contact, Values, fmu_path
 
+ROOT = Path(__file__).resolve().parents[2]
 FMU = fmu_path()
 # The same with integers in place of enumerations.
 PLAIN = FMU.with_name("RelayContact-plain.fmu")

@@ -15,6 +15,7 @@ mod report;
 mod stage;
 mod test;
 mod valgrind;
+mod wheel;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -46,6 +47,8 @@ enum Task {
     /// Run a scene, write its outputs to out/scenes/NAME.csv and .png, and print a summary
     #[command(disable_help_flag = true)]
     Scene(report::Arguments),
+    /// Build the component and the Python package that carries it, dist/relay_contact-VERSION-py3-none-any.whl
+    Wheel,
     /// Write each scene as a parameter set for SSP tools, out/ssv/NAME.ssv
     Ssv,
     /// Build the component, run the published 1 kHz case under FMPy, compare and plot
@@ -80,6 +83,7 @@ fn main() -> ExitCode {
             fmu::build_variant(plain, spring.as_deref()).map(|path| println!("{}", path.display()))
         }
         Task::Scene(arguments) => report::run("scene", &arguments),
+        Task::Wheel => wheel::run(),
         Task::Ssv => report::start("ssv", &NONE),
         Task::Demo => demo::run(),
         Task::Accuracy(arguments) => report::run("accuracy", &arguments),

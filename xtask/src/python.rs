@@ -32,6 +32,10 @@ pub fn prepare() -> Result<()> {
     println!("creating .venv (Python packages of requirements.txt): some minutes the first time");
     output(command(python3).args(["-m", "venv", "--clear", ".venv"]))?;
     output(pip().args(["-r", "requirements.txt"]))?;
+    // The project's own package is used from its folder.
+    let link = "import os, sysconfig; site = sysconfig.get_path('purelib'); \
+                open(os.path.join(site, 'relay_contact.pth'), 'w').write(os.path.relpath('python', site))";
+    output(python().args(["-c", link]))?;
     Ok(fs::write(stamp, required)?)
 }
 

@@ -10,7 +10,8 @@ use crate::stage::stage;
 use crate::{fmu, importers, python, report, valgrind};
 
 /// Folders and files with Python in them.
-const PYTHON: [&str; 5] = [
+const PYTHON: [&str; 6] = [
+    "python",
     "examples/python",
     "tests/python",
     "conformance/python",

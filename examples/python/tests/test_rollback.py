@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 from conftest import COIL, FMU, SOURCE, Run, advanced, is_picture, run_inside, table
-from relay_contact import Array, Component, read_table
+from relay_contact import Array, Component, Scene, read_table
 
 STOP = 2.5e-3
 
 
 def outputs(steps: Array, names: list[str]) -> Array:
     """Give outputs at the start and after each step: a plain master that never goes back."""
-    with Component(FMU).in_scene("chatter-41g") as contact:
+    with Component(FMU).started(Scene.read("chatter-41g").values) as contact:
         values = [contact.real(*names)]
         for time, length in steps:
             contact.step(time, length)

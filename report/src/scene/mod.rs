@@ -52,7 +52,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let summary = simulate(&file, &table)?;
     println!("{summary}\n{}", table.display());
     let mut plot = commands::python();
-    plot.args(["examples/python/plot_scene.py", "--title", &title])
+    plot.args(["-m", "relay_contact", "plot", "--title", &title])
         .arg(&table);
     if file.scene.effects.excitation == ExcitationKind::LogSweep {
         let excitation = &file.scene.excitation;

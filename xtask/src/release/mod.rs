@@ -18,7 +18,7 @@ use sha2::{Digest, Sha256};
 use self::platform::{PLATFORMS, Platform};
 use self::tools::Tools;
 use crate::package::pack;
-use crate::{fmu, linked, python};
+use crate::{fmu, linked, python, wheel};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -27,8 +27,8 @@ pub struct Arguments {
     platforms: Vec<String>,
 }
 
-/// Builds, checks and tries the libraries, and writes `dist/release/RelayContact.fmu` with `SHA256SUMS` beside it. A
-/// platform that cannot be built is omitted, and the command fails at the end.
+/// Builds, checks and tries the libraries, and writes `dist/release/RelayContact.fmu` with `SHA256SUMS` beside it and the Python
+/// package that carries it. A platform that cannot be built is omitted, and the command fails at the end.
 pub fn run(arguments: &Arguments) -> Result<()> {
     let metadata = linked::metadata()?;
     let tools = Tools::find()?;
@@ -72,6 +72,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let packed = pack(&files)?;
     let archive = write("dist/release/RelayContact.fmu", &packed)?;
     write("dist/release/SHA256SUMS", sum("RelayContact.fmu", &packed).as_bytes())?;
+    wheel::build(&archive, "dist/release")?;
     println!("== FMPy");
     if runs_here {
         for tests in [

@@ -1,30 +1,22 @@
-"""The relay contact from Python: its scenes run under FMPy, and the component stepped by hand.
+"""The component under FMPy: its variables by name, and instances of it stepped by hand."""
 
-Copy it along with an example that imports it. It needs FMPy and NumPy; scenes and component are found in this
-project's folders.
-
-    result = run(Scene.read(scenes()["chatter-41g"]), {"excitation.amplitude": 300.0})
-    print(result["contact.force"].min())
-"""
-
-import math
-import os
+import difflib
 import shutil
-import tomllib
 import weakref
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
-from itertools import pairwise
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import mkdtemp
 from types import TracebackType
 from typing import Any, Self
 
 import numpy as np
-from fmpy import extract, instantiate_fmu, read_model_description
+from fmpy import extract, instantiate_fmu, platform, read_model_description, supported_platforms
+from fmpy.fmi1 import FMICallException
 from numpy.typing import NDArray
 
-ROOT = Path(__file__).resolve().parents[2]
+from relay_contact.files import RelayContactError, fmu_path
 
 SIGNS = {"Ohm": "Ω", "mOhm": "mΩ", "um": "µm", "us": "µs", "degC": "°C", "m/s2": "m/s²", "kg/m3": "kg/m³", "1": ""}
 
@@ -34,60 +26,10 @@ Value = float | str
 Values = Mapping[str, Value]
 
 
-def fmu_path() -> Path:
-    """Give the component: the file that RELAY_CONTACT_FMU names, else the one built in this project."""
-    return Path(os.environ.get("RELAY_CONTACT_FMU", ROOT / "dist" / "RelayContact.fmu"))
-
-
-def scenes() -> dict[str, Path]:
-    """Give the scene files by name."""
-    return {path.stem: path for path in sorted((ROOT / "scenes").glob("*.toml"))}
-
-
-def read_table(path: Path) -> dict[str, Array]:
-    """Read a CSV file of numbers, its columns by name."""
-    with path.open(encoding="utf-8") as file:
-        names = file.readline().strip().split(",")
-        return dict(zip(names, np.loadtxt(file, delimiter=",", ndmin=2).T, strict=True))
-
-
-@dataclass(frozen=True)
-class Scene:
-    """What a scene file holds, SI units."""
-
-    title: str
-    stop: float
-    step: float
-    outputs: list[str]
-    values: dict[str, Value]
-    """Parameters and constant inputs."""
-    table: dict[str, Array]
-    """Inputs that change, over the column `time`; empty where all are constant."""
-
-    @classmethod
-    def read(cls, path: Path) -> Self:
-        """Read a scene file."""
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
-        inputs = content.get("inputs", {})
-        file = inputs.pop("file", None)
-        values = flat(content.get("parameters", {})) | flat(inputs)
-        if "beam.file" in values:
-            values["beam.file"] = str(path.resolve().parent / str(values["beam.file"]))
-        table = read_table(path.with_name(file)) if file else {}
-        return cls(
-            content.get("title", ""), content["stop"], content["communicationStep"], content["outputs"], values, table
-        )
-
-    def points(self) -> list[float]:
-        """Give the communication points; the last is the stop."""
-        count = math.ceil(self.stop / self.step - 1e-9)
-        return [min(n * self.step, self.stop) for n in range(count + 1)]
-
-    def inputs(self, points: list[float]) -> dict[str, Array]:
-        """Give the inputs that change, at the communication points."""
-        return {
-            name: np.interp(points, self.table["time"], column) for name, column in self.table.items() if name != "time"
-        }
+def nearest(name: str, known: Iterable[str]) -> str:
+    """Give the end of a message about an unknown name: what it may have been meant to be."""
+    near = difflib.get_close_matches(name, list(known), n=1, cutoff=0.5)
+    return f"; did you mean {near[0]}?" if near else ""
 
 
 @dataclass(frozen=True)
@@ -119,20 +61,17 @@ def units(description: Any) -> dict[str, Unit]:  # noqa: ANN401
     return found
 
 
-def flat(table: dict[str, Any], prefix: str = "") -> dict[str, Value]:
-    """Give the values of nested TOML tables by their dotted names."""
-    values: dict[str, Value] = {}
-    for key, value in table.items():
-        values |= flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {f"{prefix}{key}": value}
-    return values
-
-
 class Component:
     """The component as a file: its description, and the folder it is unpacked in."""
 
     def __init__(self, path: Path | None = None, folder: Path | None = None) -> None:
         """Unpack it, into a temporary folder if none is given, which is deleted together with this object."""
         self.path = path or fmu_path()
+        if not self.path.is_file():
+            raise RelayContactError(f"{self.path} is missing: build it with `cargo xtask fmu`")
+        if platform not in supported_platforms(str(self.path)):
+            there = ", ".join(supported_platforms(str(self.path)))
+            raise RelayContactError(f"{self.path} has libraries for {there} only, not for this machine ({platform})")
         self.description = read_model_description(str(self.path))
         self.variables = {variable.name: variable for variable in self.description.modelVariables}
         if folder is None:
@@ -140,15 +79,43 @@ class Component:
             weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
         self.folder: str = extract(str(self.path), str(folder))
 
+    def name(self, name: str) -> str:
+        """Give the name of a variable, in which underscores may stand for dots; an unknown one is refused."""
+        known = self.variables
+        dotted = name if name in known else name.replace("_", ".")
+        if dotted not in known:
+            raise RelayContactError(f"{name}: no such variable{nearest(dotted, known)}")
+        return dotted
+
+    def settable(self, name: str) -> str:
+        """Give the name of a parameter or an input; another variable is refused."""
+        name = self.name(name)
+        if self.variables[name].causality not in ("parameter", "input"):
+            raise RelayContactError(f"{name}: an output, which cannot be set")
+        return name
+
     def choices(self, name: str) -> dict[str, int]:
         """Give the numbers of the choices of a variable, by name."""
         return {item.name: int(item.value) for item in self.variables[name].declaredType.items}
 
     def number(self, name: str, value: Value) -> float:
         """Give the number that stands for a value of a variable."""
+        kind = self.variables[name].type
         if isinstance(value, str):
-            return self.choices(name)[value]
-        return value if self.variables[name].type == "Real" else int(value)
+            choices = self.choices(name) if kind == "Enumeration" else {}
+            if value not in choices:
+                allowed = ", ".join(choices) or ("true, false" if kind == "Boolean" else "a number")
+                raise RelayContactError(f"{name} = {value}: not allowed, allowed is {allowed}{nearest(value, choices)}")
+            return choices[value]
+        return value if kind == "Real" else int(value)
+
+    def read(self, name: str, text: str) -> Value:
+        """Read a value as people write it, such as 1e-3, true or Sine."""
+        try:
+            kind = self.variables[name].type
+            return {"true": 1.0, "false": 0.0}.get(text, text) if kind == "Boolean" else float(text)
+        except ValueError:
+            return text
 
     def start(self, name: str) -> Value:
         """Give the start value of a variable."""
@@ -166,26 +133,27 @@ class Component:
     def started(self, values: Values | None = None) -> "Contact":
         """Give an instance that is initialised with these parameters and inputs, at time 0."""
         contact = Contact(self)
-        for name, value in (values or {}).items():
-            contact.set(name, value)
-        contact.initialise()
+        try:
+            with contact.explained():
+                for name, value in (values or {}).items():
+                    contact.set(name, value)
+                contact.initialise()
+        except BaseException:
+            contact.fmu.freeInstance()
+            raise
         return contact
-
-    def in_scene(self, name: str) -> "Contact":
-        """Give an instance that is initialised with the parameters of a scene."""
-        return self.started(Scene.read(scenes()[name]).values)
 
 
 class Contact:
     """An instance of the component, its variables known by name, for a `with` block that frees it."""
 
     def __init__(self, component: Component, messages: list[str] | None = None) -> None:
-        """Instantiate the component; errors and warnings are appended to the messages, if a list is given."""
+        """Instantiate the component; errors and warnings are appended to the messages."""
         self.component = component
+        self.messages = [] if messages is None else messages
 
         def keep(_environment: int, _instance: bytes, _status: int, _category: bytes, message: bytes) -> None:
-            if messages is not None:
-                messages.append(message.decode())
+            self.messages.append(message.decode())
 
         self.fmu = instantiate_fmu(component.folder, component.description, "CoSimulation", logger=keep)
         self.initialised = False
@@ -201,6 +169,14 @@ class Contact:
         if self.initialised and kind is None:
             self.fmu.terminate()
         self.fmu.freeInstance()
+
+    @contextmanager
+    def explained(self) -> Iterator[None]:
+        """Have what the component refuses raise an error with its message."""
+        try:
+            yield
+        except FMICallException as error:
+            raise RelayContactError(" ".join(self.messages) or str(error)) from error
 
     def references(self, *names: str) -> list[int]:
         """Give the numbers by which the component knows its variables."""
@@ -241,28 +217,3 @@ class Contact:
     def step(self, time: float, length: float) -> None:
         """Do a communication step."""
         self.fmu.doStep(currentCommunicationPoint=time, communicationStepSize=length)
-
-
-def run(
-    scene: Scene,
-    changes: Values | None = None,
-    component: Component | None = None,
-    progress: Callable[[float], object] = lambda _: None,
-) -> dict[str, Array]:
-    """Run a scene with changes of its parameters and constant inputs; give time and outputs at every point.
-
-    `progress` is called after each communication step with the time that it reached.
-    """
-    scene = replace(scene, values=scene.values | dict(changes or {}))
-    points = scene.points()
-    inputs = scene.inputs(points)
-    first = {name: float(course[0]) for name, course in inputs.items()}
-    with (component or Component()).started(scene.values | first) as contact:
-        rows = [[contact.get(name) for name in scene.outputs]]
-        for n, (begin, end) in enumerate(pairwise(points)):
-            for name, course in inputs.items():
-                contact.change(name, course[n], course[n + 1], end - begin)
-            contact.step(begin, end - begin)
-            rows.append([contact.get(name) for name in scene.outputs])
-            progress(end)
-    return {"time": np.array(points)} | dict(zip(scene.outputs, np.array(rows).T, strict=True))

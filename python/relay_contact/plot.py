@@ -1,19 +1,18 @@
-"""Draw what `cargo xtask scene` wrote: a panel for each output, the times shaded at which the contact is open.
+"""The figure of a scene's outputs: a panel for each, the times shaded at which the contact is open."""
 
-The figure stands beside the table, as a PNG file of the same name. Units are those of modelDescription.xml.
-"""
-
-import argparse
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import numpy as np
 from fmpy import read_model_description
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from common import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, save
-from relay_contact import ROOT, Array, Unit, read_table, units
+from relay_contact.component import Array, Unit, Value, units
+from relay_contact.figures import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED
+from relay_contact.files import description_path
+from relay_contact.scene import read_table
 
 COLOURS = [BLUE, RED, GREEN, PURPLE, BLACK, ORANGE]
 # Beyond this ratio of greatest to least a logarithmic axis is used.
@@ -61,11 +60,24 @@ def panel(axes: Axes, time: Array, name: str, values: Array, unit: Unit | None, 
     axes.grid(alpha=0.3)
 
 
-def draw(table: Path, title: str, sweep: list[float] | None = None) -> Path:
-    """Draw the table, over time or over the frequency of a sweep (first and last Hz, start and duration s)."""
+def sweep_of(values: Mapping[str, Value]) -> list[float] | None:
+    """Give first and last frequency (Hz), start and duration (s) where a scene has a sweep that it describes whole."""
+    names = ["excitation.frequency", "excitation.endFrequency", "excitation.startTime", "excitation.duration"]
+    if values.get("effects.excitation") != "LogSweep":
+        return None
+    start_values = {"excitation.startTime": 0.0}
+    known = start_values | dict(values)
+    return [float(known[name]) for name in names] if all(name in known for name in names) else None
+
+
+def draw(table: Path, title: str, sweep: Sequence[float] | None = None) -> Path:
+    """Draw a table of outputs, over time or over the frequency of a sweep (first and last Hz, start and duration s).
+
+    The figure stands beside the table, as a PNG file of the same name.
+    """
     columns = read_table(table)
     time = columns.pop("time")
-    known = units(read_model_description(str(ROOT / "modelDescription.xml"), validate=False))
+    known = units(read_model_description(str(description_path()), validate=False))
     scale, second = (1.0, "s") if time[-1] > 0.2 else (1e3, "ms")
     label = f"time [{second}]"
     if sweep:
@@ -74,9 +86,8 @@ def draw(table: Path, title: str, sweep: list[float] | None = None) -> Path:
         inside = (time >= start) & (time <= start + duration)
         columns = {name: values[inside] for name, values in columns.items()}
         time = first * (last / first) ** ((time[inside] - start) / duration)
-    figure, grid = plt.subplots(
-        len(columns), 1, sharex=True, squeeze=False, figsize=(9, 1.2 + 1.7 * len(columns)), layout="constrained"
-    )
+    figure = Figure(figsize=(9, 1.2 + 1.7 * len(columns)), layout="constrained")
+    grid = figure.subplots(len(columns), 1, sharex=True, squeeze=False)
     is_open = columns["contact.force"] <= 0 if "contact.force" in columns else np.zeros(len(time), dtype=bool)
     for index, (axes, (name, values)) in enumerate(zip(grid[:, 0], columns.items(), strict=True)):
         panel(axes, scale * time, name, values, known.get(name), COLOURS[index % len(COLOURS)])
@@ -95,20 +106,5 @@ def draw(table: Path, title: str, sweep: list[float] | None = None) -> Path:
     grid[-1, 0].set_xlim(scale * time[0], scale * time[-1])
     figure.align_ylabels()
     path = table.with_name(table.name.removesuffix(".csv") + ".png")
-    save(figure, path, dpi=130)
+    figure.savefig(path, dpi=130)
     return path
-
-
-def main() -> None:
-    """Draw a table."""
-    parser = argparse.ArgumentParser(description="Draw what `cargo xtask scene` wrote.")
-    parser.add_argument("table", type=Path, help="the table, such as out/scenes/paper-1khz.csv")
-    parser.add_argument("--title", default="", help="title of the figure")
-    sweep = ("FIRST", "LAST", "START", "DURATION")
-    parser.add_argument("--sweep", type=float, nargs=4, metavar=sweep, help="over frequency instead of time [Hz, s]")
-    arguments = parser.parse_args()
-    print(draw(arguments.table, arguments.title, arguments.sweep))
-
-
-if __name__ == "__main__":
-    main()

@@ -1,0 +1,301 @@
+"""A spring with taper, hole and rivet in the component: by finite elements, by their modes, and by segments.
+
+gmsh meshes the spring of DRAWING as a solid, and CalculiX solves it (Debian: apt-get install --no-install-recommends
+calculix-ccx gmsh). It is reduced to shapes that hold the static shape under a force at the contact, and written as a
+spring file; beside it, the same drawing as a spring file by segments. The component runs both:
+
+- compliance at the contact: from the preload at the overtravel;
+- natural frequencies, the first with the contact open, three with the contact closed: peaks of the ringing;
+- opening level: the sine vibration at which the least contact force reaches zero, raised gently. 0.5 % below it the
+  contact stays closed, 0.5 % above it opens: both are tried.
+
+CalculiX gives the same of the whole mesh: static deflection, natural frequencies, and the harmonic response with the
+contact as a linear spring, whose force amplitude equals the preload at the opening level.
+
+To simulate your own spring, change DRAWING and VALUES. docs/own-spring.md explains when segments are enough.
+"""
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+from tqdm import tqdm
+
+from common import parser, read_arguments, save
+from own_spring_elements import Basis, Drawing, Elements, missing, segments
+from relay_contact import Array, Component, Contact, Value
+from relay_contact.figures import BLACK, BLUE, GRAVITY, ORANGE, acceleration_in_g
+
+DRAWING = Drawing(
+    length=20e-3, width=4e-3, taper_start=10e-3, end_width=2.4e-3, thickness=0.2e-3,
+    hole=(5e-3, 1.5e-3), rivet=(18e-3, 1.6e-3), head=0.6e-3, tail=0.3e-3,
+)  # fmt: skip
+BETA = 5e-6  # s, damping of spring and contact: 0.45 % of critical for the first mode of the open spring
+VALUES: dict[str, Value] = {
+    "contact.overtravel": 0.8e-3,
+    "contact.curvatureRadius": 3e-3,
+    "contact.damping": BETA,  # the program damps all that is elastic alike
+    "beam.stiffnessDamping": BETA,
+    "effects.axialForce": "None",
+    "chatter.minimumDuration": 0.0,
+}
+BAND = (200.0, 2400.0)  # Hz, of the opening level
+SHAPES = 24  # of the reduced basis
+RING, SAMPLE = 0.2, 1e-5  # s, length and sampling of the ringing
+RISE, SETTLE = 0.03, 0.03  # s; the closed contact's first mode decays by e in 3 ms
+PIECES = 40  # of a period of the rise
+WITNESS = 5e-3  # relative distance from the opening level at which it is tried
+SPAN, LEAST = 0.1, 0.02  # of frequencies around that of the program; participation, as a share of the greatest
+
+
+@dataclass
+class Spring:
+    """A spring file in the component."""
+
+    component: Component
+    values: dict[str, Value]
+
+    def started(self, **changes: Value) -> Contact:
+        """Give the contact at rest; names of changes have two underscores for the point."""
+        return self.component.started(self.values | {name.replace("__", "."): v for name, v in changes.items()})
+
+    def compliance(self) -> float:
+        """Give the deflection of the contact per force, m/N: what the preload leaves of the overtravel."""
+        with self.started() as contact:
+            force, indentation = contact.real("preload.force", "preload.indentation")
+        return (float(self.values["contact.overtravel"]) - indentation) / force
+
+    def open_frequency(self) -> float:
+        """Give the lowest natural frequency with the contact open, Hz."""
+        with self.started(contact__overtravel=-1e-3) as contact:
+            return contact.real("preload.frequency")[0]
+
+    def ringing(self, near: Array) -> Array:
+        """Give the natural frequencies near these, with the contact closed: peaks of the ringing after a blow, Hz."""
+        blow: dict[str, Value] = {"effects__excitation": "HalfSine", "excitation__duration": 2e-5}
+        undamped: dict[str, Value] = {"beam__stiffnessDamping": 0.0, "contact__damping": 0.0}
+        force = []
+        with self.started(excitation__amplitude=100.0, **blow, **undamped) as contact:
+            for n in range(round(RING / SAMPLE)):
+                contact.step(n * SAMPLE, SAMPLE)
+                force += contact.real("contact.force")
+        change = np.array(force) - np.mean(force)
+        spectrum = np.log(np.abs(np.fft.rfft(change * np.hanning(len(force)))))
+        frequency = np.fft.rfftfreq(len(force), SAMPLE)
+        found = []
+        for each in near:
+            inside = np.flatnonzero(np.abs(frequency / each - 1) < SPAN)
+            top = int(inside[np.argmax(spectrum[inside])])
+            left, middle, right = spectrum[top - 1 : top + 2]
+            found.append(frequency[top] + 0.5 * (left - right) / (left - 2 * middle + right) * frequency[1])
+        return np.array(found)
+
+    def vibrated(self, frequency: float, amplitude: float) -> tuple[float, float, int]:
+        """Raise a sine gently and let it settle; give preload, least force (N) and interruptions of a period."""
+        with self.started(
+            effects__excitation="Sine", excitation__frequency=frequency, excitation__amplitude=amplitude
+        ) as contact:
+            # The generator vibrates at full level from the start on; the input withholds what the rise has not reached.
+            periods, step = math.ceil(RISE * frequency), 1 / frequency / PIECES
+            phase = 2 * np.pi * np.arange(periods * PIECES + 1) / PIECES
+            withheld = -amplitude * np.sin(phase) * (1 + np.cos(phase / (2 * periods))) / 2
+            for n in range(periods * PIECES):
+                contact.change("base.acceleration", withheld[n], withheld[n + 1], step)
+                contact.step(n * step, step)
+            contact.set("base.acceleration", 0.0)
+            end = periods + math.ceil(SETTLE * frequency)
+            contact.step(periods / frequency, (end - periods) / frequency)
+            before = int(contact.get("chatter.count"))
+            contact.step(end / frequency, 1 / frequency)
+            preload, least = contact.real("preload.force", "step.minimumForce")
+            return preload, least, int(contact.get("chatter.count")) - before
+
+    def opening(self, frequency: float) -> float:
+        """Give the amplitude of a sine at which the contact opens, m/s2."""
+        level = 1.0
+        # In proportion, as far as the Hertz contact is linear; half of the way to it, and nearly all.
+        for share in (0.5, 0.95, 1.0):
+            preload, least, _ = self.vibrated(frequency, level)
+            level *= share * preload / (preload - least)
+        for side, opens in ((1 - WITNESS, False), (1 + WITNESS, True)):
+            if (self.vibrated(frequency, side * level)[2] > 0) != opens:
+                raise SystemExit(f"{frequency:g} Hz, {side * level:g} m/s2: the contact should have opened: {opens}")
+        return level
+
+
+@dataclass
+class Row:
+    """A quantity by the whole mesh, by modes and by segments, in a unit."""
+
+    name: str
+    unit: str
+    factor: float
+    values: tuple[float, ...]
+
+    def deviations(self) -> tuple[float, float]:
+        """Give those of modes and segments from the whole mesh, as parts."""
+        whole, modes, parts = self.values
+        return modes / whole - 1, parts / whole - 1
+
+    def cells(self) -> list[str]:
+        """Give what a table shows."""
+        whole, modes, parts = (f"{self.factor * value:.4g}" for value in self.values)
+        first, second = (percent(value) for value in self.deviations())
+        return [f"{self.name} [{self.unit}]", whole, modes, first, parts, second]
+
+
+def percent(part: float) -> str:
+    """Give a part with its sign, in per cent."""
+    return f"{round(100 * part, 2) + 0.0:+.2f} %"
+
+
+def level_row(name: str, *values: float) -> Row:
+    """Give the row of opening levels, m/s2."""
+    return Row(name, "g", 1 / GRAVITY, values)
+
+
+def excited(frequencies: Array, participation: Array) -> Array:
+    """Give the frequencies of those that the base excites."""
+    share = np.abs(participation) / np.abs(participation).max()
+    found: Array = frequencies[share > LEAST]
+    return found
+
+
+HEAD = ["", "finite elements", "modes", "deviation", "segments", "deviation"]
+
+
+def draw_shape(axes: Axes, elements: Elements, basis: Basis, index: int) -> None:
+    """Draw the spring in one of its modes; the height is that of the largest displacement."""
+    place = elements.mesh.nodes
+    largest = max(abs(shape[index]) for shape in basis.shapes.values())
+    faces, colours = [], []
+    for face in elements.mesh.top(elements.drawing):
+        moved = [float(basis.shapes[node][index]) / largest if node in basis.shapes else 0.0 for node in face]
+        faces.append([(1e3 * place[n][0], 1e3 * place[n][1], z) for n, z in zip(face, moved, strict=True)])
+        colours.append(plt.get_cmap("coolwarm")(0.5 + 0.5 * np.mean(moved)))
+    space: Any = axes
+    space.add_collection3d(Poly3DCollection(faces, facecolors=colours, edgecolors="#444444", linewidths=0.25))
+    length, width = 1e3 * elements.drawing.length, 1e3 * elements.drawing.width
+    space.set(xlim=(0, length), ylim=(-width / 2, width / 2), zlim=(-1, 1))
+    space.set_box_aspect((length, 1.5 * width, 0.3 * length), zoom=1.2)
+    space.view_init(elev=24, azim=-62)
+    space.set_axis_off()
+    axes.set_title(f"{basis.frequencies[index]:.0f} Hz", fontsize="medium", y=0.85)
+
+
+def draw(path: Path, elements: Elements, basis: Basis, rows: list[Row], response: Array) -> None:
+    """Draw modes, deviations and opening levels; the response gives frequency and opening level of the whole mesh."""
+    figure = plt.figure(figsize=(12, 7.6), layout="constrained")
+    subfigures: Any = figure.subfigures(2, 1, height_ratios=[1, 2])
+    top, bottom = subfigures
+    for place, frequency in enumerate(excited(basis.frequencies, basis.participation)[:4], 1):
+        index = int(np.flatnonzero(basis.frequencies == frequency)[0])
+        draw_shape(top.add_subplot(1, 4, place, projection="3d"), elements, basis, index)
+    top.suptitle("Modes of the spring with its contact open, rivet not drawn")
+    bars, levels = bottom.subplots(1, 2, width_ratios=[1, 1.25])
+    where = np.arange(len(rows))
+    for shift, which, colour, label in ((-0.2, 0, BLUE, "modes"), (0.2, 1, ORANGE, "segments")):
+        parts = [100 * row.deviations()[which] for row in rows]
+        bars.barh(where + shift, parts, 0.38, color=colour, label=label)
+        for y, part in zip(where + shift, parts, strict=True):
+            bars.text(
+                part,
+                y,
+                f" {percent(part / 100)} ",
+                va="center",
+                ha="left" if part >= 0 else "right",
+                fontsize="x-small",
+            )
+    bars.set_yticks(where, [row.name for row in rows], fontsize="small")
+    bars.invert_yaxis()
+    bars.margins(x=0.25)
+    bars.axvline(0, color=BLACK, linewidth=0.8)
+    bars.set(xlabel="deviation from the whole mesh [%]", title="In the component, against CalculiX")
+    bars.legend(fontsize="small")
+    levels.plot(*response.T, color=BLACK, label="finite elements, linear (CalculiX)")
+    resonance = next(row.values for row in rows if row.name == "closed: frequency 1")
+    opened = [(row.name.split()[2], row.values) for row in rows if row.name.startswith("opening")]
+    for which, marker, colour, label in ((1, "o", BLUE, "modes in the component"), (2, "x", ORANGE, "segments")):
+        points = [(float(resonance[which] if at == "resonance" else at), values[which]) for at, values in opened]
+        levels.plot(*zip(*points, strict=True), marker, color=colour, markersize=8, fillstyle="none", label=label)
+    levels.set(
+        yscale="log", xlim=(0, BAND[1]), xlabel="frequency [Hz]", ylabel="base acceleration [m/s²]",
+        title="Sine vibration that opens the contact",
+    )  # fmt: skip
+    acceleration_in_g(levels)
+    levels.legend(fontsize="small")
+    for axes in (bars, levels):
+        axes.grid(alpha=0.3)
+    save(figure, path, dpi=130)
+
+
+def main() -> None:
+    """Solve, reduce, run and compare."""
+    line = parser(str(__doc__).splitlines()[0], epilog="Takes a minute or two.")
+    line.add_argument("--quick", action="store_true", help="elements of 0.7 mm instead of 0.4 mm, fewer frequencies")
+    given = read_arguments(line)
+    if lacking := missing():
+        raise SystemExit(lacking)
+    bar = tqdm(total=5, unit="stage", bar_format="{desc}: {n_fmt} of {total_fmt} [{elapsed}]")
+
+    def stage(text: str) -> None:
+        bar.set_description_str(text)
+        bar.update()
+
+    stage("finite elements: mesh, compliance, frequencies")
+    elements = Elements(DRAWING, given.out / "own-spring", 0.7e-3 if given.quick else 0.4e-3)
+    compliance, free = elements.compliance, elements.frequencies(16)
+    stage("finite elements: reduced basis")
+    basis = elements.basis(SHAPES)
+    files = [given.out / f"own-spring-{name}.toml" for name in ("modes", "segments")]
+    title = "Tapered spring with hole and rivet"
+    files[0].write_text(basis.spring_file(f"{title}, reduced from {len(elements.mesh.nodes)} nodes"), encoding="utf-8")
+    files[1].write_text(segments(DRAWING, title), encoding="utf-8")
+    component = Component(given.fmu)
+    mass, inertia = DRAWING.rivet_load
+    rivet: dict[str, Value] = {"tip.mass": mass, "tip.rotaryInertia": inertia}
+    springs = [Spring(component, VALUES | rivet | {"beam.file": str(path.resolve())}) for path in files]
+    with springs[0].started() as contact:
+        indentation, stiffness = contact.real("preload.indentation", "preload.contactStiffness")
+    stage("finite elements: harmonic response")
+    closed, response = elements.response(stiffness, BETA, BAND, 8 if given.quick else 20)
+    preload = (float(VALUES["contact.overtravel"]) - indentation) / compliance
+    response[:, 1] = preload / response[:, 1]
+
+    stage("component: compliance, frequencies")
+    rows = [Row("compliance", "mm/N", 1e3, (compliance, *(each.compliance() for each in springs)))]
+    lowest = float(free[np.argmin(np.abs(free - basis.frequencies[0]))])
+    rows.append(Row("open: frequency 1", "Hz", 1.0, (lowest, *(each.open_frequency() for each in springs))))
+    theirs = np.array([closed[np.argmin(np.abs(closed - each))] for each in excited(*basis.closed(stiffness))[:3]])
+    own = [spring.ringing(theirs) for spring in springs]
+    rows += [Row(f"closed: frequency {n}", "Hz", 1.0, each) for n, each in enumerate(zip(theirs, *own, strict=True), 1)]
+    stage("component: opening levels")
+    for frequency in [BAND[0], 1000.0] if given.quick else [BAND[0], 500.0, 1000.0, 1400.0, 2000.0]:
+        near, level = response[np.argmin(np.abs(response[:, 0] - frequency))]
+        rows.append(level_row(f"opening at {near:.0f} Hz", level, *(spring.opening(near) for spring in springs)))
+    level = response[:, 1].min()
+    lowest_levels = (spring.opening(each[0]) for spring, each in zip(springs, own, strict=True))
+    rows.append(level_row("opening at resonance", level, *lowest_levels))
+    bar.close()
+    cells = [HEAD, *(row.cells() for row in rows)]
+    widths = [max(len(line[n]) for line in cells) for n in range(len(HEAD))]
+    for line_ in cells:
+        print("  ".join([line_[0].ljust(widths[0]), *(c.rjust(w) for c, w in zip(line_[1:], widths[1:], strict=True))]))
+    bending = excited(basis.frequencies, basis.participation)
+    others = [f"{each:.0f}" for each in free if np.min(np.abs(bending / each - 1)) > 1e-5]
+    print(f"open, across or in torsion, so not excited: {', '.join(others)} Hz")
+    table, picture = given.out / "own-spring.csv", given.out / "own-spring.png"
+    text = [",".join(["quantity", "unit", "finite_elements", "modes", "segments"])]
+    text += [f"{row.name},{row.unit}," + ",".join(f"{row.factor * v:.9g}" for v in row.values) for row in rows]
+    table.write_text("\n".join(text) + "\n", encoding="utf-8")
+    draw(picture, elements, basis, rows, response)
+    print(*files, table, picture, sep="\n")
+
+
+if __name__ == "__main__":
+    main()

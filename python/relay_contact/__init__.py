@@ -1,0 +1,32 @@
+"""A closed relay contact under vibration and shock: its force, its resistance, and whether and for how long it opens.
+
+    import relay_contact
+
+    result = relay_contact.run("chatter-41g", excitation_amplitude=300.0, progress=True)
+    print(result["contact.force"].min(), result.units["contact.force"])
+
+`scenes()` gives the scenes that come along, `run` runs one with changes, `qualify` tests a relay as a standard asks.
+`fmu_path()` is the component itself, a file for any tool that imports FMI 2.0 for co-simulation. `Component` and
+`Contact` step it by hand.
+"""
+
+from typing import Any
+
+from relay_contact.component import Array, Component, Contact, Unit, Value, Values, units
+from relay_contact.files import RelayContactError, fmu_path, scenes
+from relay_contact.scene import Result, Scene, read_table, run, write_table
+
+
+def __getattr__(name: str) -> Any:  # noqa: ANN401
+    """Load what needs matplotlib only when it is asked for."""
+    if name in ("qualify", "relays", "standards"):
+        from relay_contact import qualification
+
+        return getattr(qualification, name)
+    raise AttributeError(name)
+
+
+__all__ = [
+    "Array", "Component", "Contact", "RelayContactError", "Result", "Scene", "Unit", "Value", "Values",
+    "fmu_path", "read_table", "run", "scenes", "units", "write_table",
+]  # fmt: skip

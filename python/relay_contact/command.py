@@ -1,0 +1,171 @@
+"""The command `relay-contact`."""
+
+import argparse
+import sys
+from pathlib import Path
+
+from relay_contact.component import Component, Value, units
+from relay_contact.files import RelayContactError, fmu_path, read_toml, scenes
+from relay_contact.scene import Scene, run
+
+EXAMPLES = """examples:
+  relay-contact list                                   what comes along
+  relay-contact list --variables excitation            variables by name, with unit and start value
+  relay-contact run paper-1khz                         writes paper-1khz.csv and paper-1khz.png
+  relay-contact run chatter-41g --set excitation.frequency=500 --output contact.voltage
+  relay-contact qualify paper --standard MIL-PRF-28776  verdicts and margins, qualification.html
+"""
+
+
+def list_all(given: argparse.Namespace) -> None:
+    """Print what comes along, or variables."""
+    if given.variables is not None:
+        list_variables(Component(given.fmu), given.variables)
+        return
+    print(f"component: {given.fmu}")
+    from relay_contact.qualification import relays, standards
+
+    for kind, files in (("scenes", scenes()), ("relays", relays()), ("standards", standards())):
+        print(f"\n{kind}:")
+        width = max(map(len, files), default=0)
+        for name, path in files.items():
+            print(f"  {name:{width}}  {read_toml(path).get('title', '')}")
+
+
+def list_variables(component: Component, text: str) -> None:
+    """Print the variables whose names contain a text."""
+    shown = units(component.description)
+    for name, variable in component.variables.items():
+        if text.lower() in name.lower():
+            what = variable.causality
+            if what in ("parameter", "input"):
+                what += f" {component.start(name)}"
+            unit = shown[name].si if name in shown else ""
+            choices = f" [{', '.join(component.choices(name))}]" if variable.type == "Enumeration" else ""
+            print(f"{name} ({what}{f' {unit}' if unit else ''}){choices}: {variable.description or ''}")
+
+
+def run_scene(given: argparse.Namespace) -> None:
+    """Run a scene, write its table and figure, and print a summary."""
+    from relay_contact.plot import draw, sweep_of
+
+    component = Component(given.fmu)
+    changes: dict[str, Value] = {}
+    words = []
+    for text in given.set:
+        name, equals, value = text.partition("=")
+        if not equals:
+            raise RelayContactError(f"--set {text}: must be NAME=VALUE")
+        name = component.settable(name.strip())
+        changes[name] = component.read(name, value.strip())
+        words.append(f"{name}={value.strip()}")
+    scene = Scene.read(given.scene).changed(component, changes)
+    titled = ", ".join([scene.title, *words])
+    result = run(
+        scene,
+        outputs=scene.outputs + [name for name in given.output if name not in scene.outputs],
+        stop=given.stop, step=given.step, component=component, progress=sys.stderr.isatty(),
+    )  # fmt: skip
+    print(titled)
+    width = max(map(len, result.columns))
+    for name, values in list(result.columns.items())[1:]:
+        print(f"  {name:{width}}  {values.min():.6g} to {values.max():.6g} {result.units[name]}".rstrip())
+    given.out.mkdir(parents=True, exist_ok=True)
+    table = given.out / f"{','.join([Path(given.scene).stem, *words])}.csv"
+    result.write(table)
+    print(table, draw(table, titled, sweep_of(scene.values)), sep="\n")
+
+
+def qualify_relay(given: argparse.Namespace) -> None:
+    """Test a relay as a standard asks, and print the verdicts."""
+    from relay_contact.qualification import qualify
+    from relay_contact.qualification.page import FILES, HEAD, cells
+
+    folder = given.out or Path(f"qualification-{Path(given.relay).stem}-{Path(given.standard).stem}")
+    parts = qualify(
+        given.relay, given.standard, out=folder, tests=given.test, quick=given.quick, cluster=given.cluster,
+        component=Component(given.fmu), progress=sys.stderr.isatty(),
+    )  # fmt: skip
+    rows = [["position", *HEAD], *([part["position"], *cells(part)] for part in parts)]
+    widths = [max(map(len, column)) + 2 for column in zip(*rows, strict=True)]
+    for row in rows:
+        print("".join(f"{cell:{width}}" for cell, width in zip(row, widths, strict=True)).rstrip())
+    print(*(folder / name for name in FILES), sep="\n")
+
+
+def plot_table(given: argparse.Namespace) -> None:
+    """Draw a table of outputs."""
+    from relay_contact.plot import draw
+
+    print(draw(given.table, given.title, given.sweep))
+
+
+def line() -> argparse.ArgumentParser:
+    """Give the command line."""
+    whole = argparse.ArgumentParser(
+        prog="relay-contact", description="A relay contact under vibration and shock: does it open, and for how long?",
+        epilog=EXAMPLES, formatter_class=argparse.RawDescriptionHelpFormatter,
+    )  # fmt: skip
+    commands = whole.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    common = argparse.ArgumentParser(add_help=False)
+    common.add_argument("--fmu", type=Path, default=fmu_path(), help="another component (%(default)s)")
+
+    one = commands.add_parser("list", parents=[common], help="list scenes, relays and standards, or variables")
+    one.set_defaults(act=list_all)
+    add = one.add_argument
+    add("--variables", nargs="?", const="", metavar="TEXT", help="variables with TEXT in their names, or all")
+
+    about = "Run a scene; write its outputs as a table (CSV, SI units) and as a figure (PNG)."
+    one = commands.add_parser("run", parents=[common], description=about, help="run a scene: table and figure")
+    one.set_defaults(act=run_scene)
+    add = one.add_argument
+    add("scene", help="name of a scene, as `relay-contact list` prints them, or path of a scene file of your own")
+    text = "another value for a parameter or a constant input, SI units; may be repeated"
+    add("--set", action="append", default=[], metavar="NAME=VALUE", help=text)
+    text = "a further output, as `relay-contact list --variables` prints them; may be repeated"
+    add("--output", action="append", default=[], metavar="NAME", help=text)
+    add("--stop", type=float, metavar="SECONDS", help="end of the run (the scene's)")
+    add("--step", type=float, metavar="SECONDS", help="communication step (the scene's)")
+    add("--out", type=Path, default=Path(), metavar="FOLDER", help="folder for what is written (the current one)")
+
+    about = "Test a relay as a standard asks: verdicts, and margins with their uncertainty, as a page and tables."
+    one = commands.add_parser("qualify", parents=[common], description=about, help="test a relay as a standard asks")
+    one.set_defaults(act=qualify_relay)
+    add = one.add_argument
+    add("relay", help="name of a relay, as `relay-contact list` prints them, or path of a relay file of your own")
+    add("--standard", required=True, metavar="NAME", help="name of a standard, or path of a file of your own")
+    text = "only tests with TEXT in their names; may be repeated"
+    add("--test", action="append", default=[], metavar="TEXT", help=text)
+    add("--quick", action="store_true", help="fewer frequencies in the figures; the margins are the same")
+    add(
+        "--cluster",
+        metavar="ADDRESS",
+        help="of a Dask cluster whose workers have this package, such as tcp://host:8786",
+    )
+    text = "folder for what is written (qualification-RELAY-STANDARD); finished tests found there are not run again"
+    add("--out", type=Path, metavar="FOLDER", help=text)
+
+    about = "Draw a table of outputs, such as `relay-contact run` writes, beside it as PNG."
+    one = commands.add_parser("plot", parents=[common], description=about, help="draw a table of outputs")
+    one.set_defaults(act=plot_table)
+    add = one.add_argument
+    add("table", type=Path, help="CSV file with a column `time`")
+    add("--title", default="", help="title of the figure")
+    sweep = ("FIRST", "LAST", "START", "DURATION")
+    add("--sweep", type=float, nargs=4, metavar=sweep, help="over the frequency of a sweep instead of time [Hz, s]")
+    return whole
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command."""
+    given = line().parse_args(arguments)
+    try:
+        given.act(given)
+    except BrokenPipeError:
+        # Whoever read what was printed has enough.
+        sys.stdout = None
+        return 0
+    except (RelayContactError, OSError) as error:
+        print(f"relay-contact: {error}", file=sys.stderr)
+        return 1
+    return 0

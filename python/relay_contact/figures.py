@@ -1,0 +1,24 @@
+"""Colours and scales of all figures."""
+
+from typing import Any
+
+from matplotlib.axes import Axes
+
+GRAVITY = 9.80665  # m/s2
+# Colours of Okabe and Ito, told apart also by the colour-blind.
+BLUE, ORANGE, RED, GREEN = "#0072B2", "#E69F00", "#D55E00", "#009E73"
+PURPLE, SKY, BLACK, GREY = "#CC79A7", "#56B4E9", "#000000", "#666666"
+
+
+def legend_beside(axes: Axes) -> None:
+    """Put the legend to the right of a panel."""
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize="small", frameon=False)
+
+
+def acceleration_in_g(axes: Axes, vertical: bool = True) -> None:
+    """Give an axis of base acceleration in m/s2 a second scale in g."""
+    functions: Any = (lambda a: a / GRAVITY, lambda a: a * GRAVITY)
+    if vertical:
+        axes.secondary_yaxis("right", functions=functions).set_ylabel("base acceleration [g]")
+    else:
+        axes.secondary_xaxis("top", functions=functions).set_xlabel("base acceleration [g]")

@@ -1,0 +1,59 @@
+"""Where component, scenes, relays and standards are: carried by the wheel, or in the project's folders."""
+
+import os
+import tomllib
+from pathlib import Path
+from typing import Any
+
+HERE = Path(__file__).resolve().parent
+PROJECT = HERE.parents[1]
+"""The project's top folder, where this package is used from there."""
+
+
+class RelayContactError(ValueError):
+    """A wrong name or value, or what the component refuses; the message says what is allowed."""
+
+
+def found(name: str, in_project: str) -> Path:
+    """Give a file or folder that the wheel carries, else that of the project."""
+    carried = HERE / "data" / name
+    return carried if carried.exists() else PROJECT / in_project
+
+
+def fmu_path() -> Path:
+    """Give the component: the file that RELAY_CONTACT_FMU names, else the one carried, else the one built here."""
+    given = os.environ.get("RELAY_CONTACT_FMU")
+    return Path(given) if given else found("RelayContact.fmu", "dist/RelayContact.fmu")
+
+
+def description_path() -> Path:
+    """Give the list of variables: the project's, which is there before the component is built, else the component."""
+    own = PROJECT / "modelDescription.xml"
+    return own if own.exists() else fmu_path()
+
+
+def by_name(folder: Path) -> dict[str, Path]:
+    """Give the TOML files of a folder by name."""
+    return {path.stem: path for path in sorted(folder.glob("*.toml"))}
+
+
+def scenes() -> dict[str, Path]:
+    """Give the scene files by name."""
+    return by_name(found("scenes", "scenes"))
+
+
+def named(kind: str, name: str | Path, known: dict[str, Path]) -> Path:
+    """Give the file that a name or a path stands for."""
+    if str(name) in known:
+        return known[str(name)]
+    if Path(name).is_file():
+        return Path(name)
+    raise RelayContactError(f"{name}: no such file, and no {kind} of this name; there are {', '.join(known)}")
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """Read a TOML file; an error names the file."""
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise RelayContactError(f"{path}: {error}") from error

@@ -1,0 +1,49 @@
+"""A relay against a standard: verdicts, margins and their uncertainties, on a page and in tables."""
+
+from dataclasses import replace
+from pathlib import Path
+
+from tqdm import tqdm
+
+from relay_contact.component import Component
+from relay_contact.qualification.assessment import Part, assess, chosen
+from relay_contact.qualification.page import write
+from relay_contact.qualification.relay import Relay, relays
+from relay_contact.qualification.standards import Standard, standards
+
+__all__ = ["Part", "Relay", "Standard", "qualify", "relays", "standards"]
+
+POINTS, FEW = 120, 24
+"""Frequencies of a sweep, and in the short form."""
+
+
+def qualify(
+    relay: str | Path,
+    standard: str | Path,
+    *,
+    out: Path,
+    tests: list[str] | None = None,
+    quick: bool = False,
+    component: Component | None = None,
+    progress: bool = False,
+    cluster: str | None = None,
+) -> list[Part]:
+    """Test a relay as a standard asks, each by its name or its file; write page, PDF and tables; give the results.
+
+    `tests` are parts of the names of those wanted, without it all. What an interrupted assessment has finished is not
+    run again. `quick` vibrates at fewer frequencies; margins are the same. `cluster` is the address of a Dask
+    cluster whose workers have this package.
+    """
+    component = component or Component()
+    described = Relay.read(relay, component)
+    asked = chosen(Standard.read(standard), tests or [])
+    asked = replace(asked, contacts=asked.contacts.monitored(described.monitor))
+    count = len(asked.tests) * len(described.positions)
+    with tqdm(total=count, bar_format="{desc} |{bar}| {n_fmt} of {total_fmt} tests", disable=not progress) as bar:
+
+        def tell(label: str) -> None:
+            bar.set_description_str(label) if label else bar.update()
+
+        parts = assess(component, described, asked, out, FEW if quick else POINTS, tell, cluster)
+    write(out, described, asked, parts, component.description.guid)
+    return parts

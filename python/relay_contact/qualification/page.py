@@ -1,0 +1,342 @@
+"""The results of an assessment as figures, one HTML page, one PDF and tables."""
+
+import csv
+import io
+from html import escape
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_pdf import PdfPages
+from matplotlib.figure import Figure
+from matplotlib.transforms import Bbox
+
+from relay_contact.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY
+from relay_contact.figures import GRAVITY as G
+from relay_contact.qualification.assessment import CHANCE, MODEL, Part
+from relay_contact.qualification.relay import Relay
+from relay_contact.qualification.standards import Standard
+
+LINE_COLOURS = (BLUE, RED, PURPLE, ORANGE, GREEN, SKY, BLACK, GREY)
+COLOURS = (BLUE, RED, PURPLE, ORANGE, GREEN)
+FILLS = {"pass": "#BFE5D8", "FAIL": "#F5CDB8", "undecided": "#FBE8B0", "not judged": "#E4E4E4"}
+LINES = {"pass": GREEN, "FAIL": RED, "undecided": ORANGE}
+STYLE = {
+    "font.size": 8, "axes.titlesize": 9, "legend.fontsize": 7.5, "legend.frameon": False, "axes.grid": True,
+    "grid.alpha": 0.3, "svg.hashsalt": "relay-contact",
+}  # fmt: skip
+HEAD = ("test", "level", "verdict", "margin", "weakest at", "longest opening", "least force")
+FILES = ("qualification.html", "qualification.pdf", "qualification.csv", "sweeps.csv")
+REASONS = ("test", "what limits", "uncertainty of the margin", "chance of failing", "passes from this overtravel on")
+NOTES = """Margin: the level that interrupts the contact relative to that of the test, with its uncertainty at 95 %.
+If they allow both, the verdict is undecided. Chance of failing: of a relay whose parameters scatter as they are
+uncertain. Passes: the overtravel from which on the margin exceeds 1 by its uncertainty.
+Sine: steady vibration, its level raised gently; the slow sweep of a test is close to it. A contact at rest that is
+vibrated suddenly may open at a lower level.
+Random: the level at which the largest dip of the force in the time of the test interrupts with a chance of one half, by
+Rice's rate of crossings; the response is that of the component, and its largest dips in a record of one minute were
+simulated in full. Gaussian, without clipping at three times the rms.
+Shock: half sine in both directions along the motion of the contact; the worse one is shown.
+Model: along the motion of the contact only, without resonances of the case. Closings of open contacts: not judged."""
+
+
+def time_text(seconds: float) -> str:
+    """Give a short time in words."""
+    return f"{1e3 * seconds:.2f} ms" if seconds > 1e-3 else f"{1e6 * seconds:.0f} µs"
+
+
+def cells(part: Part) -> list[str]:
+    """Give the row of a test in the table."""
+    if "margin" not in part:
+        return [part["test"], part["level"], part["verdict"], "", part["limits"], "", ""]
+    longest = time_text(part["longest"]) if part["interrupted"] else "none"
+    least = f"{100 * max(part['least'], 0) / part['preload']:.0f} % of rest"
+    margin = f"{part['margin']:.3f} ± {part['uncertainty']:.3f}"
+    return [part["test"], part["level"], part["verdict"], margin, part["weakest"], longest, least]
+
+
+def names(effects: dict[str, float]) -> str:
+    """Give what contributes most to an uncertainty, in words."""
+    found = sorted(effects.items(), key=lambda item: -item[1])[:3]
+    words = {MODEL: "the model", CHANCE: CHANCE}
+    return ", ".join(f"{words.get(name, name)} {100 * effect:.2g} %" for name, effect in found if effect > 1e-4)
+
+
+def reasons(part: Part) -> list[str]:
+    """Give the row of a test in the table of reasons."""
+    if "margin" not in part:
+        return [part["test"], part["limits"], "", "", ""]
+    passes = "none up to 1.2 times this" if part["passes"] is None else f"{1e3 * part['passes']:.3g} mm"
+    return [part["test"], part["limits"], names(part["effects"]), f"{100 * part['chance']:.0f} %", passes]
+
+
+def margins(parts: list[Part]) -> Figure:
+    """Draw all margins on one scale."""
+    judged = [part for part in parts if "margin" in part]
+    figure = Figure(figsize=(8.27, 1.0 + 0.24 * len(judged)), layout="constrained")
+    axes = figure.subplots()
+    several = len({part["position"] for part in judged}) > 1
+    for row, part in enumerate(judged):
+        colour = LINES[part["verdict"]]
+        low, high = (part["margin"] + sign * part["uncertainty"] for sign in (-1, 1))
+        axes.plot([max(low, 1e-3), high], [row, row], color=colour, linewidth=4, solid_capstyle="butt", alpha=0.5)
+        axes.plot(part["margin"], row, "o", color=colour, markersize=4)
+    labels = [f"{part['test']}{', ' + part['position'] if several else ''}: {part['verdict']}" for part in judged]
+    axes.set(
+        yticks=range(len(judged)), yticklabels=labels, xscale="log", xlabel="level that interrupts / level of the test"
+    )
+    axes.set_ylim(len(judged) - 0.4, -0.6)
+    axes.axvline(1.0, color=GREY, linewidth=1)
+    low, high = axes.get_xlim()
+    axes.set_xlim(min(low, 0.5), max(high, 2.0))
+    ticks = [tick for tick in (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50) if axes.get_xlim()[0] < tick < axes.get_xlim()[1]]
+    axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    axes.set_xticks([], minor=True)
+    return figure
+
+
+def sweeps(panels: list[Axes], parts: list[Part], opening: float) -> None:
+    """Draw level, least force and interruptions over frequency."""
+    level, force, length = panels
+    for part, colour in zip(parts, COLOURS, strict=False):
+        curves = {name: np.array(values) for name, values in part["curves"].items()}
+        frequency = curves["frequency"]
+        level.plot(frequency, curves["level"] / G, color=colour, label=part["test"])
+        force.plot(frequency, 100 * curves["least"] / part["preload"], color=colour)
+        length.plot(frequency, 1e6 * curves["length"], color=colour)
+        if part["interrupted"]:
+            peak = part["at"], 1e6 * part["longest"]
+            interrupted = frequency[curves["length"] > 0]
+            note = f"{interrupted.min():.0f} to {interrupted.max():.0f} Hz, {peak[1]:.0f} µs at {peak[0]:.0f} Hz"
+            length.plot(*peak, "o", color=colour, markersize=3)
+            length.annotate(note, peak, (-8, -3), textcoords="offset points", ha="right", color=colour)
+    level.legend(loc="best")
+    level.set(ylabel="acceleration [g]", ylim=(0, None), title="Sine: amplitude of the base acceleration")
+    force.set(ylabel="force [% of rest]", ylim=(-5, 105), title="Least contact force in steady vibration")
+    length.axhline(1e6 * opening, color=GREY, linestyle="--", label=f"limit, {1e6 * opening:g} µs")
+    length.legend(loc="upper left")
+    most = max(part["longest"] for part in parts)
+    length.set(ylim=(0, max(1.5e6 * opening, 1.25e6 * most)), ylabel="duration [µs]", xlabel="frequency [Hz]")
+    length.set_title("Mean interruption in steady vibration; dot: longest")
+    for axes in panels:
+        axes.set_xscale("log")
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.tick_params(labelbottom=axes is length)
+
+
+def courses(axes: Axes, parts: list[Part], title: str) -> None:
+    """Draw the force over time: of shocks in their opening direction, or around the largest dip of random vibration."""
+    for part, colour in zip(parts, COLOURS, strict=False):
+        force = part["curves"]["force"]
+        note = f": {time_text(part['longest'])} interrupted" if part["interrupted"] else ""
+        axes.plot(
+            1e3 * np.array(part["curves"]["time"]),
+            100 * np.array(force),
+            color=colour,
+            label=part["test"] + note,
+            linewidth=1,
+        )
+    axes.axhline(100 * parts[0]["preload"], color=GREY, linestyle=":", label="at rest")
+    axes.legend(loc="upper right")
+    rest = 100 * parts[0]["preload"]
+    # The blows of closing are many times the force at rest.
+    axes.set(xlabel="time [ms]", ylabel="contact force [cN]", title=title, ylim=(-0.2 * rest, 3 * rest))
+
+
+def wear(axes: Axes, parts: list[Part]) -> None:
+    """Draw the margins over the overtravel."""
+    for part, colour in zip(parts, LINE_COLOURS, strict=False):
+        axes.plot(1e3 * np.array(part["wear"]["overtravel"]), part["wear"]["margin"], color=colour, label=part["test"])
+    axes.axhline(1.0, color=GREY, linewidth=1)
+    axes.axvline(1e3 * parts[0]["overtravel"], color=GREY, linestyle=":", label="as it is")
+    axes.legend(loc="upper left", ncols=2)
+    axes.set(xlabel="overtravel [mm]", ylabel="margin", title="Margins over the overtravel, which wear takes away")
+    axes.set_ylim(0, None)
+
+
+def position_figure(parts: list[Part], opening: float) -> Figure | None:
+    """Draw what the tests showed in a position of the coil."""
+    kinds = {
+        kind: [part for part in parts if part["kind"] == kind and "margin" in part]
+        for kind in ("sine", "random", "shock")
+    }
+    judged = [part for part in parts if "margin" in part]
+    if not judged:
+        return None
+    rows = 3 * bool(kinds["sine"]) + bool(kinds["random"]) + bool(kinds["shock"]) + 1
+    figure = Figure(figsize=(8.27, 1.95 * rows + 0.4), layout="constrained")
+    panels = list(figure.subplots(rows, 1, squeeze=False)[:, 0])
+    if kinds["sine"]:
+        sweeps(panels[:3], kinds["sine"], opening)
+    if kinds["random"]:
+        title = "Random: the last 10 ms around the largest dip in a minute"
+        courses(panels[-2 - bool(kinds["shock"])], kinds["random"], title)
+    if kinds["shock"]:
+        courses(panels[-2], kinds["shock"], "Shock in the direction that opens the contact")
+    wear(panels[-1], judged)
+    figure.align_ylabels()
+    return figure
+
+
+def svg(figure: Figure | None) -> str:
+    """Give a figure as a picture for a page."""
+    if figure is None:
+        return ""
+    text = io.StringIO()
+    figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
+    return '<div class="figure">' + text.getvalue()[text.getvalue().index("<svg") :] + "</div>"
+
+
+CSS = """body{font:15px/1.45 system-ui,sans-serif;margin:0 auto;max-width:1000px;padding:1em;color:#222}
+h1{font-size:1.5em;margin-bottom:.2em}h2{font-size:1.15em;margin-top:1.6em}
+table{border-collapse:collapse;width:100%}th,td{border-bottom:1px solid #ccc;padding:.35em .5em;text-align:left;
+vertical-align:top}th{font-weight:600}td.verdict{font-weight:600;white-space:nowrap}
+td.number{white-space:nowrap}.wide,.figure{overflow-x:auto}.figure svg{width:100%;min-width:640px;height:auto}
+small,.note{color:#555}"""
+
+
+def html(relay: Relay, standard: Standard, parts: list[Part], opening: float, component: str) -> str:
+    """Give the page."""
+    counts = {verdict: sum(part["verdict"] == verdict for part in parts) for verdict in FILLS}
+    told = ", ".join(f"{count} {verdict}" for verdict, count in counts.items() if count)
+    body = [f"<h1>{escape(relay.title)}</h1>", f"<p>{escape(standard.title)}: <b>{told}</b></p>", svg(margins(parts))]
+    for position in relay.positions:
+        mine = [part for part in parts if part["position"] == position]
+        body.append(f"<h2>{escape(position)}</h2>")
+        known = next((part for part in mine if "margin" in part), None)
+        if known:
+            body.append(
+                f"<p>Force at rest {100 * known['preload']:.2f} cN, first resonance {known['natural']:.0f} Hz.</p>"
+            )
+        head = "".join(f"<th>{name}</th>" for name in HEAD)
+        body.append(f'<div class="wide"><table><tr>{head}</tr>')
+        for part in mine:
+            row = cells(part)
+            source = f"<br><small>{escape(part['clause'])}{'' if part['verified'] else ', <b>not verified</b>'}</small>"
+            columns = [f"<td>{escape(row[0])}{source}</td>", f"<td>{escape(row[1])}</td>"]
+            columns.append(f'<td class="verdict" style="background:{FILLS[part["verdict"]]}">{row[2]}</td>')
+            columns.append(f'<td class="number">{row[3]}</td>')
+            columns += [f"<td>{escape(cell)}</td>" for cell in row[4:]]
+            body.append(f"<tr>{''.join(columns)}</tr>")
+        body.append("</table></div>")
+        body.append(svg(position_figure(mine, opening)))
+        head = "".join(f"<th>{name}</th>" for name in REASONS)
+        body.append(f'<div class="wide"><table><tr>{head}</tr>')
+        for part in mine:
+            body.append("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in reasons(part)) + "</tr>")
+        body.append("</table></div>")
+    body.append("<h2>How this was found</h2>")
+    body.append(f"<p>{escape(limit(standard))}</p>")
+    body += [f"<p>{escape(line)}</p>" for line in sentences()]
+    body.append(f'<p class="note">Component {escape(component)}.</p>')
+    title = escape(f"{relay.title}: {standard.title}")
+    head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{title}</title>'
+    return (
+        f'<!doctype html><html lang="en"><head>{head}<style>{CSS}</style></head><body>{"".join(body)}</body></html>\n'
+    )
+
+
+def limit(standard: Standard) -> str:
+    """Give what fails a contact, in words."""
+    known = standard.contacts
+    return (
+        f"A closed contact fails if it is interrupted for {time_text(known.opening)} or more, that is, if its "
+        f"resistance exceeds {known.threshold:g} Ω, at which it takes half of a monitor's {known.voltage:g} V "
+        f"({known.clause}{'' if known.verified else ', not verified'}). Not verified: not read in the standard's text."
+    )
+
+
+def sentences() -> list[str]:
+    """Give the notes, one for each test."""
+    starts = ("Margin:", "Sine:", "Random:", "Shock:", "Model:")
+    found: list[str] = []
+    for line in NOTES.splitlines():
+        if line.startswith(starts):
+            found.append(line)
+        else:
+            found[-1] += f" {line}"
+    return found
+
+
+def summary(relay: Relay, standard: Standard, parts: list[Part]) -> Figure:
+    """Draw the first page of the PDF: the table and the notes."""
+    figure = Figure(figsize=(8.27, 11.69))
+    figure.text(0.05, 0.965, relay.title, fontsize=12, weight="bold", wrap=True)
+    figure.text(0.05, 0.947, standard.title, fontsize=9)
+    height = min(0.8, 0.022 * (len(parts) + 1 + len(relay.positions)))
+    axes = figure.add_axes((0.04, 0.93 - height, 0.92, height))
+    axes.axis("off")
+    rows, fills = [], []
+    for position in relay.positions:
+        mine = [part for part in parts if part["position"] == position]
+        rows.append([position, "", "", "", "", "", ""])
+        fills.append("white")
+        for part in mine:
+            row = cells(part)
+            rows.append([row[0] + ("" if part["verified"] else " *"), *row[1:]])
+            fills.append(FILLS[part["verdict"]])
+    table = axes.table(
+        rows,
+        colLabels=HEAD,
+        colWidths=[0.19, 0.27, 0.08, 0.12, 0.13, 0.1, 0.11],
+        cellLoc="left",
+        bbox=Bbox.from_bounds(0, 0, 1, 1),
+    )
+    table.auto_set_font_size(False)
+    table.set_fontsize(6)
+    for number, fill in enumerate(fills, 1):
+        table[number, 2].set_facecolor(fill)
+    for cell in table.get_celld().values():
+        cell.set_linewidth(0.3)
+    notes = "\n".join(["* not verified: the numbers were not read in the standard's text", *NOTES.splitlines()])
+    figure.text(0.05, 0.9 - height, notes, fontsize=7, va="top", linespacing=1.5)
+    return figure
+
+
+def write(folder: Path, relay: Relay, standard: Standard, parts: list[Part], component: str) -> list[Path]:
+    """Write page, PDF and tables; give their paths."""
+    opening = standard.contacts.opening
+    paths = [folder / name for name in FILES]
+    settings: Any = STYLE
+    with mpl.rc_context(settings):
+        paths[0].write_text(html(relay, standard, parts, opening, component), encoding="utf-8")
+        with PdfPages(paths[1], metadata={"CreationDate": None, "Title": relay.title}) as pages:
+            pages.savefig(summary(relay, standard, parts))
+            pages.savefig(margins(parts))
+            for position in relay.positions:
+                figure = position_figure([part for part in parts if part["position"] == position], opening)
+                if figure:
+                    figure.suptitle(position, fontsize=10)
+                    pages.savefig(figure)
+    fields = [
+        "position",
+        "test",
+        "clause",
+        "verified",
+        "level",
+        "verdict",
+        "margin",
+        "uncertainty",
+        "weakest",
+        "limits",
+        "longest",
+        "least",
+    ]
+    with paths[2].open("w", newline="", encoding="utf-8") as file:
+        table = csv.DictWriter(file, fields, extrasaction="ignore", lineterminator="\n")
+        table.writeheader()
+        table.writerows(parts)
+    with paths[3].open("w", newline="", encoding="utf-8") as file:
+        lines = csv.writer(file, lineterminator="\n")
+        lines.writerow(
+            ["position", "test", "frequency [Hz]", "acceleration [m/s2]", "mean interruption [s]", "least force [N]"]
+        )
+        for part in parts:
+            if part["kind"] == "sine" and "curves" in part:
+                for values in zip(
+                    *(part["curves"][name] for name in ("frequency", "level", "length", "least")), strict=True
+                ):
+                    lines.writerow([part["position"], part["test"], *(f"{value:.9g}" for value in values)])
+    return paths

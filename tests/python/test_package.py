@@ -1,0 +1,106 @@
+"""The package `relay_contact`: runs of scenes, and what it says about wrong names and values."""
+
+from pathlib import Path
+from typing import Any
+from zipfile import ZipFile
+
+import matplotlib as mpl
+import nbformat
+import numpy as np
+import pytest
+
+from component import COMPONENT, FMU, ROOT, STARTS
+from relay_contact import Component, RelayContactError, Scene, run, scenes
+from relay_contact.command import main
+
+
+def test_a_run_has_names_and_units() -> None:
+    result = run("paper-1khz", component=COMPONENT, stop=1e-3, outputs=["contact.force", "chatter.count"])
+    assert result.dtype.names == ("time", "contact.force", "chatter.count")
+    assert result.units == {"time": "s", "contact.force": "N", "chatter.count": ""}
+    assert np.array_equal(result["time"], np.arange(101) * 1e-5)
+    # Rows keep their names and units.
+    assert result[10:20].units == result.units
+    assert result[10:20]["contact.force"][0] == result["contact.force"][10]
+    with pytest.raises(KeyError, match=r"contact.farce.*contact.force"):
+        result["contact.farce"]
+
+
+def test_changes_by_either_spelling_and_choices_by_name() -> None:
+    dotted: Any = {"excitation.amplitude": 50.0, "effects.contactLaw": "Bonded"}
+    first = run("paper-1khz", component=COMPONENT, stop=1e-3, **dotted)
+    other = run("paper-1khz", component=COMPONENT, stop=1e-3, excitation_amplitude=50.0, effects_contactLaw="Bonded")
+    assert np.array_equal(first["contact.force"], other["contact.force"])
+    unchanged = run("paper-1khz", component=COMPONENT, stop=1e-3)
+    assert not np.array_equal(first["contact.force"], unchanged["contact.force"])
+
+
+def test_an_input_course_is_linear_between_its_points() -> None:
+    """The published sine as an input."""
+    exact = run("paper-1khz", component=COMPONENT, stop=2e-3, solver_tolerance=1e-8)["contact.force"]
+    time = np.arange(0.0, 2.1e-3, 1e-5)
+    course = {"time": time, "base.acceleration": 98.0 * np.sin(2 * np.pi * 1000.0 * time)}
+    changes: Any = {"effects.excitation": "None", "solver.tolerance": 1e-8}
+    driven = run("paper-1khz", inputs=course, component=COMPONENT, stop=2e-3, **changes)["contact.force"]
+    # Chords lie (omega step)^2 / 8 below the sine at most; values held over a step would be wrong by omega step / 2.
+    assert np.abs(driven - exact).max() / (np.ptp(exact) / 2) < (2 * np.pi * 1e-2) ** 2 / 8
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"excitation.amplitud": 1.0}, "no such variable; did you mean excitation.amplitude"),
+        ({"contact.force": 1.0}, "an output, which cannot be set"),
+        ({"effects.contactLaw": "Bound"}, "allowed is Hertz, Linearised, Bonded; did you mean Bonded"),
+        ({"beam.length": "long"}, "allowed is a number"),
+        ({"beam.length": -1.0}, "beam.length = -1 m: not allowed, allowed is 0.001 to 0.2"),
+        ({"effects.heating": "on"}, "allowed is true, false"),
+    ],
+)
+def test_wrong_names_and_values_are_explained(changes: Any, message: str) -> None:  # noqa: ANN401
+    with pytest.raises(RelayContactError, match=message):
+        run("paper-1khz", component=COMPONENT, **changes)
+
+
+def test_an_unknown_scene_is_answered_with_those_there_are() -> None:
+    with pytest.raises(RelayContactError, match="no scene of this name; there are at-rest, chatter-41g"):
+        Scene.read("paper")
+
+
+def test_a_component_for_other_machines_is_refused(tmp_path: Path) -> None:
+    other = tmp_path / "other.fmu"
+    with ZipFile(FMU) as archive, ZipFile(other, "w") as copy:
+        copy.writestr("modelDescription.xml", archive.read("modelDescription.xml"))
+        copy.writestr("binaries/win32/RelayContact.dll", b"")
+    with pytest.raises(RelayContactError, match=r"has libraries for win32 only, not for this machine"):
+        Component(other)
+    with pytest.raises(RelayContactError, match=r"is missing: build it with"):
+        Component(tmp_path / "none.fmu")
+
+
+def test_every_scene_names_known_variables() -> None:
+    for name in scenes():
+        scene = Scene.read(name)
+        assert set(scene.values) <= STARTS.keys() | {"contact.current", "support.displacement", "base.acceleration"}
+        assert all(COMPONENT.name(output) == output for output in scene.outputs)
+
+
+def test_the_command_explains_what_is_wrong(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "paper-1khz", "--set", "beam.lenght=1"]) == 1
+    assert capsys.readouterr().err == "relay-contact: beam.lenght: no such variable; did you mean beam.length?\n"
+    assert main(["list", "--variables", "contactLaw"]) == 0
+    assert "effects.contactLaw (parameter Hertz) [Hertz, Linearised, Bonded]" in capsys.readouterr().out
+
+
+def test_the_notebook_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    mpl.use("Agg")
+    notebook = nbformat.read(ROOT / "examples/relay_contact.ipynb", as_version=4)
+    nbformat.validate(notebook)
+    names: dict[str, Any] = {}
+    for cell in notebook.cells:
+        if cell.cell_type == "code":
+            exec(cell.source, names)
+    # At 1 kHz, 400 m/s2 is above the 333 m/s2 from which the contact opens.
+    assert names["chatter"]["chatter.longestInterruption"][-1] > 1e-5
+    assert names["shock"]["contact.resistance"].max() > 1e6
+    assert "did you mean beam.length?" in capsys.readouterr().out
