@@ -42,7 +42,7 @@ pub const WORTH: f64 = 2.0;
 
 /// Length of a long step after a closing over the time since then, 1: nearer to it the force is not smooth enough for
 /// polynomials of high degree. Cost.
-pub const SMOOTH: f64 = 4.0;
+pub const SMOOTH: f64 = 2.0;
 
 /// Length that a long step reaches at most, in short ones, 1. Observed. Cost.
 pub const LONGER: f64 = 16.0;

@@ -95,8 +95,8 @@
 //! order, with the reaction of the contact (the two further right-hand sides of Newton's method). Three parts are added
 //! ([`collocation::step`]):
 //!
-//! - stiffness and damping of the law times these errors of indentation and velocity: the part of modes that are fast
-//!   against the step;
+//! - stiffness and damping of the law (the greatest at start and nodes, which may all lie beyond an opening) times these
+//!   errors of indentation and velocity: the part of modes that are fast against the step;
 //! - the part of slow modes, which hardly feel the shape, as it is orthogonal to polynomials of low degree: three times
 //!   `m^2` over the largest force (fitted to the impact of a free mass on a Hertz contact), and for the base acceleration
 //!   the error of the quadrature, [`constants::QUADRATURE_SHORT`] `m_a^2` over the largest acceleration;

@@ -149,7 +149,8 @@ pub(crate) fn first_forces<const S: usize, A: Arithmetic>(
 }
 
 /// Solves for the nodal forces from an initial guess, to residuals of at most `newton` (N) or rounding; `None` if the
-/// iteration does not converge. `start`: the stiffness at the start, N/m. Velocities are computed only for a contact with damping.
+/// iteration does not converge. `start`: the stiffness at the start, N/m. Velocities are computed only for a contact with
+/// damping.
 #[inline(always)]
 pub(crate) fn closed_forces<const S: usize, A: Arithmetic>(
     model: &Model,
