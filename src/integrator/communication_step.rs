@@ -61,21 +61,15 @@ fn step_by<const EXTREMES: bool>(
     // The fixed contacts move at constant velocity to their positions at the end of the step.
     let support = inputs.support_displacement_after(size) - model.initial_support;
     let second = match model.second {
-        Some(_) => inputs.second_displacement_after(size),
+        Some(_) => second_support(model, inputs, time, size)?,
         None => 0.0,
     };
-    let room = model.room(second);
-    if room <= 0.0 {
-        let (displacement, limit) = (second, second + room);
-        let cause = StepErrorCause::NoRoom { displacement, limit };
-        return Err(StepError { time, cause });
-    }
     let drive = Drive::new(inputs, time, size, motion.ways(support, second));
     let steady = drive.continues(&motion.drive);
     let ahead = motion.time < motion.end.time;
     // The end lies inside the current integration step: nothing to integrate, outputs come from its dense output.
     let inside = steady && until < motion.end.time;
-    let mut extremes = EXTREMES.then(|| motion.tip(model).extremes());
+    let mut extremes = EXTREMES.then(|| motion.extremes_now(model));
     let own_step = motion.end.short_step.max(motion.end.long_step);
     // Where the contact opens and closes, step ends would not lie on the grid of an exact step.
     let switches = motion.end.last_opening.max(motion.end.last_closing) >= 0.0;
@@ -128,6 +122,19 @@ fn step_by<const EXTREMES: bool>(
     motion.current = inputs.contact_current_after(size);
     motion.current_rate = inputs.contact_current_rate;
     Ok(())
+}
+
+/// Displacement of the second fixed contact after a communication step of `size` seconds from `time` (s), m.
+///
+/// # Errors
+/// [`StepErrorCause::NoRoom`] where it would reach the first.
+fn second_support(model: &Model, inputs: &Inputs, time: f64, size: f64) -> Result<f64, StepError> {
+    let displacement = inputs.second_displacement_after(size);
+    let room = model.room(displacement);
+    let limit = displacement + room;
+    let cause = StepErrorCause::NoRoom { displacement, limit };
+    let fits = room > 0.0;
+    fits.then_some(displacement).ok_or(StepError { time, cause })
 }
 
 /// The state at the communication point, by a step from the start of the integration step around it.

@@ -9,7 +9,8 @@
 use crate::beam::mode::MAX_MODES;
 use crate::chatter::Interruptions;
 use crate::excitation::drive::Drive;
-use crate::integrator::course::turning_points;
+use crate::integrator::constants::PIECES;
+use crate::integrator::course::{Places, turning_points};
 use crate::integrator::events::log::Event;
 use crate::integrator::exact_step;
 use crate::integrator::extremes::Extremes;
@@ -51,8 +52,6 @@ pub struct Tip {
     pub indentation: f64,
     /// Its velocity, m/s.
     pub rate: f64,
-    /// Indentation of the second contact, where there is one, m.
-    pub second_indentation: f64,
 }
 
 /// Time derivatives of the tip at a communication point.
@@ -62,13 +61,6 @@ pub struct TipRates {
     pub forces: [f64; 2],
     /// Second derivative of the indentation, m/s2.
     pub acceleration: f64,
-}
-
-impl Tip {
-    /// Of this instant alone.
-    pub(crate) fn extremes(&self) -> Extremes {
-        Extremes::at(self.forces, self.second_indentation)
-    }
 }
 
 impl Motion {
@@ -168,37 +160,49 @@ impl Motion {
     /// The tip at the communication point.
     pub fn tip(&self, model: &Model) -> Tip {
         let state = self.state();
-        let (model, _) = model.views(state);
-        let (force, indentation, rate) = match self.inside() {
-            None => (state.force, state.indentation, state.indentation_rate),
-            Some(y) => {
-                let at = |values| value_and_slope(values, y).0;
-                let force = model.preload.force + at(&self.dense.force);
-                let force = match state.closed {
-                    true if model.law.never_opens() => force,
-                    true => force.max(f64::MIN_POSITIVE),
-                    false => 0.0,
-                };
-                (force, at(&self.dense.indentation), at(&self.dense.rate))
-            }
-        };
-        let image = state.second_support - indentation;
-        let gap = model.scene.second.gap;
         if state.mirrored {
-            Tip {
-                forces: [0.0, force],
-                indentation: image,
-                rate: self.drive.second_rate - rate,
-                second_indentation: indentation - gap,
-            }
-        } else {
-            Tip {
-                forces: [force, 0.0],
-                indentation,
-                rate,
-                second_indentation: image - gap,
-            }
+            return self.mirrored_tip(model, state);
         }
+        let (force, indentation, rate) = self.seen(model, state);
+        Tip {
+            forces: [force, 0.0],
+            indentation,
+            rate,
+        }
+    }
+
+    /// [`Motion::tip`] from the view of the second contact.
+    #[cold]
+    fn mirrored_tip(&self, model: &Model, state: &State) -> Tip {
+        let (force, indentation, rate) = self.seen(model.views(state).0, state);
+        Tip {
+            forces: [0.0, force],
+            indentation: state.second_support - indentation,
+            rate: self.drive.second_rate - rate,
+        }
+    }
+
+    /// Force, indentation and its velocity in the view of this state.
+    #[inline(always)]
+    fn seen(&self, model: &Model, state: &State) -> (f64, f64, f64) {
+        let Some(y) = self.inside() else {
+            return (state.force, state.indentation, state.indentation_rate);
+        };
+        let at = |values| value_and_slope(values, y).0;
+        let force = model.preload.force + at(&self.dense.force);
+        let force = match state.closed {
+            true if model.law.never_opens() => force,
+            true => force.max(f64::MIN_POSITIVE),
+            false => 0.0,
+        };
+        (force, at(&self.dense.indentation), at(&self.dense.rate))
+    }
+
+    /// Extremes at the communication point alone.
+    pub(crate) fn extremes_now(&self, model: &Model) -> Extremes {
+        let tip = self.tip(model);
+        let second = self.state().second_support - tip.indentation - model.scene.second.gap;
+        Extremes::at(tip.forces, second)
     }
 
     /// Ways (m) of the fixed contacts to these displacements (m): of the first, and of the second relative to it.
@@ -225,9 +229,9 @@ impl Motion {
         }
     }
 
-    /// Extremes of the contact force within the last communication step, N; for scenes with `effects.extremes`.
+    /// Extremes of the forces within the last communication step; for scenes with `effects.extremes`.
     pub fn extremes(&self, model: &Model) -> Extremes {
-        self.extremes.unwrap_or_else(|| self.tip(model).extremes())
+        self.extremes.unwrap_or_else(|| self.extremes_now(model))
     }
 
     /// Adds those of the dense output between two instants (s); the first may lie before the step, and is included
@@ -243,11 +247,15 @@ impl Motion {
         }
         if other.is_some() {
             let (second, gap) = (self.start.second_support, model.scene.second.gap);
-            for y in turning_points(&self.dense.indentation)
-                .between(from, to)
-                .chain([from, to])
-            {
-                let indentation = value_and_slope(&self.dense.indentation, y).0;
+            let polynomial = &self.dense.indentation;
+            let [rises, still_rises] = [from, to].map(|y| value_and_slope(polynomial, y).1 > 0.0);
+            let turns = if rises != still_rises || (to - from) * f64::from(PIECES) > 1.0 {
+                turning_points(polynomial)
+            } else {
+                Places::default()
+            };
+            for y in turns.between(from, to).chain([from, to]) {
+                let indentation = value_and_slope(polynomial, y).0;
                 let seen = if self.start.mirrored {
                     indentation
                 } else {

@@ -45,6 +45,7 @@ impl Solver {
         let (question, scale) = question(relay, resolution)?;
         let answer = self.program.ask(&question)?;
         Ok(Course {
+            contacts: 1,
             force: answer.numbers("forces")?,
             greatest: answer.numbers("greatest")?,
             events: answer.numbers("events")?,

@@ -48,18 +48,19 @@ impl Integration<'_> {
         Workspace: Room<S>,
     {
         let gap = -self.other?.preload.indentation;
-        let image = trial.mirrored(&self.second_support(length), self.drive.second_rate);
-        let (state, drive) = (*self.state, self.drive);
-        let start = state.second_support - state.indentation;
+        let second = self.second_support(length);
+        let start = self.state.second_support - self.state.indentation;
         let (mut lowest, mut highest) = (start, start);
-        let mut fastest = (drive.second_rate - state.indentation_rate).abs();
-        for (d, rate) in image.indentations.iter().zip(&image.rates) {
-            (lowest, highest) = (lowest.min(*d), highest.max(*d));
-            fastest = fastest.max(rate.abs());
+        let mut fastest = (self.drive.second_rate - self.state.indentation_rate).abs();
+        for ((second, d), rate) in second.iter().zip(&trial.indentations).zip(&trial.rates) {
+            (lowest, highest) = (lowest.min(second - d), highest.max(second - d));
+            fastest = fastest.max((self.drive.second_rate - rate).abs());
         }
         if highest + DISTANT * (highest - lowest + fastest * length) < gap {
             return None;
         }
+        let image = trial.mirrored(&second, self.drive.second_rate);
+        let (state, drive) = (*self.state, self.drive);
         let (model, other) = (self.model, self.other);
         self.mirror();
         self.mirror_loads::<S>();
@@ -99,23 +100,29 @@ impl Integration<'_> {
         if self.extremes.is_none() || self.other.is_none() {
             return;
         }
-        let (mut start, mut rate) = (self.state.indentation, self.state.indentation_rate);
-        let (mut indentations, mut rates) = (trial.indentations, trial.rates);
-        if !self.state.mirrored {
-            let image = trial.mirrored(&self.second_support(length), self.drive.second_rate);
-            (start, rate) = (self.state.second_support - start, self.drive.second_rate - rate);
-            (indentations, rates) = (image.indentations, image.rates);
-        }
-        let mut turns = false;
-        for now in rates {
-            turns |= rate > 0.0 && now <= 0.0;
-            rate = now;
+        let gap = self.model.scene.second.gap;
+        let (mirrored, second_rate) = (self.state.mirrored, self.drive.second_rate);
+        let seen = |second: f64, d: f64, rate: f64| {
+            if mirrored {
+                (d, rate)
+            } else {
+                (second - d, second_rate - rate)
+            }
+        };
+        let second = self.second_support(length);
+        let state = &self.state;
+        let (start, mut before) = seen(state.second_support, state.indentation, state.indentation_rate);
+        let (mut nearest, mut turns, mut indentations) = (start, false, second);
+        for ((place, d), rate) in indentations.iter_mut().zip(&trial.indentations).zip(&trial.rates) {
+            let (indentation, now) = seen(*place, *d, *rate);
+            *place = indentation;
+            nearest = nearest.max(indentation);
+            turns |= before > 0.0 && now <= 0.0;
+            before = now;
         }
         let inside = turns.then(|| self.collocation::<S>().through(start, &indentations));
-        let gap = self.model.scene.second.gap;
         if let Some(extremes) = &mut self.extremes {
-            let ends = [start].into_iter().chain(indentations);
-            ends.for_each(|indentation| extremes.approach(indentation - gap));
+            extremes.approach(nearest - gap);
             if let Some(polynomial) = inside {
                 for y in turning_points(&polynomial).iter() {
                     extremes.approach(value_and_slope(&polynomial, y).0 - gap);
