@@ -1,6 +1,7 @@
 //! Base acceleration and motion of the fixed contacts over a communication step, from the inputs.
 
 use crate::inputs::Inputs;
+use crate::state::State;
 use serde::{Deserialize, Serialize};
 
 /// A base acceleration that is constant or grows with time, and a fixed contact that moves with constant velocity.
@@ -37,7 +38,13 @@ impl Drive {
         self.acceleration + self.jerk * (time - self.since)
     }
 
-    /// As the second contact sees it ([`State::mirror`](crate::state::State::mirror)), and back.
+    /// In the view of the contact that the state is of.
+    #[must_use]
+    pub(crate) fn seen(&self, state: &State) -> Self {
+        if state.mirrored { self.mirrored() } else { *self }
+    }
+
+    /// As the second contact sees it ([`State::mirror`]), and back.
     #[must_use]
     pub fn mirrored(&self) -> Self {
         Self {

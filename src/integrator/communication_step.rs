@@ -179,8 +179,10 @@ fn go_ahead(
     while motion.end.time < time {
         budget.check(workspace, motion.end.time)?;
         let own_step = motion.end.short_step.max(motion.end.long_step);
+        let (seen, _) = model.views(&motion.end);
+        let drive = motion.drive.seen(&motion.end);
         if time - motion.end.time >= MANY_STEPS * own_step
-            && let Some(until) = rests_until(model, &motion.end, &motion.drive, model.tolerance(), time)
+            && let Some(until) = rests_until(seen, &motion.end, &drive, model.tolerance(), time)
         {
             motion.end.time = until;
             motion.start = motion.end;

@@ -36,7 +36,7 @@ pub(crate) fn advance(
     extremes: Option<&mut Extremes>,
 ) -> Result<(), StepError> {
     let (model, other) = model.views(state);
-    let drive = if state.mirrored { drive.mirrored() } else { drive };
+    let drive = drive.seen(state);
     let tolerance = model.tolerance();
     let (grid, dense) = match steps {
         Steps::Exactly { time, size } => {
