@@ -365,7 +365,7 @@ fn as_held(kind: Kind, value: f64) -> f64 {
     match kind {
         Kind::Real | Kind::String => value,
         Kind::Integer => f64::from(value as i32),
-        Kind::Boolean => f64::from(u8::from(value != 0.0)),
+        Kind::Boolean => f64::from(u8::from(value as i32 != 0)),
     }
 }
 

@@ -5,7 +5,8 @@ use crate::integrator::collocation::newton::Source;
 use crate::integrator::collocation::part::{self, Instant};
 use crate::integrator::collocation::step::{Trial, is_rounding, trial};
 use crate::integrator::constants::{
-    AFTER_BLOW, AFTER_REJECTION, AT_EVENT, INSIDE, LEAST_SHRINK, MOST_GROWTH, MOST_SHRINK, NEAR_BLOW, NEWTON, SAFETY,
+    AFTER_BLOW, AFTER_REJECTION, AT_EVENT, FORCE_ROUNDING, INSIDE, LEAST_SHRINK, MOST_GROWTH, MOST_SHRINK, NEAR_BLOW,
+    NEWTON, SAFETY,
 };
 use crate::integrator::course::{Places, turning_points};
 use crate::integrator::grid::Target;
@@ -94,6 +95,11 @@ impl Integration<'_> {
             let now = (*x, wrong(*x, *rate));
             most = most.max(0.125 * (now.0 - before.0) * (now.1 + before.1));
             before = now;
+        }
+        let largest = trial.indentations.iter().fold(start.abs(), |most, d| most.max(d.abs()));
+        if most <= FORCE_ROUNDING * largest {
+            // Rounding of the polynomial, which no shorter step reduces.
+            return 0.0;
         }
         let modes = self.model.modes.iter();
         let compliance: f64 = modes.map(|mode| mode.tip * mode.tip / mode.omega_squared).sum();

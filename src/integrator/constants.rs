@@ -47,10 +47,6 @@ pub const SMOOTH: f64 = 2.0;
 /// Length that a long step reaches at most, in short ones, 1. Observed. Cost.
 pub const LONGER: f64 = 16.0;
 
-/// Tolerance below which rounding of the polynomials of long steps shows, 1. Observed. Pinned: 0, `tests/chatter.rs`
-/// (interruptions of microseconds).
-pub const LONG_FLOOR: f64 = 3e-11;
-
 /// Length of a communication step, in steps of the integrator, from which one of them ends with it, 1. Chosen by the
 /// work in the scenes. Cost.
 pub const MANY_STEPS: f64 = 4.0;
@@ -98,7 +94,7 @@ pub const NEAR_BLOW: f64 = 3.0;
 /// test.
 pub const FAR: f64 = 20.0;
 
-/// Rounding of a contact force or of loads, relative to them, 1. About a thousand roundings. Pinned: × 1e8,
+/// Rounding of a contact force, of loads or of the indentation between nodes, relative to them, 1. About a thousand roundings. Pinned: × 1e8,
 /// `tests/calibration.rs`.
 pub const FORCE_ROUNDING: f64 = 1e-13;
 

@@ -11,7 +11,7 @@ use crate::contact::law::Law;
 use crate::contact::linear::Linear;
 use crate::excitation::drive::Drive;
 use crate::integrator::attempt::{growth, shrinkage};
-use crate::integrator::constants::{FORCE_ROUNDING, INSIDE, LONG_FLOOR, SHARE, UNREST};
+use crate::integrator::constants::{FORCE_ROUNDING, INSIDE, SHARE, UNREST};
 use crate::integrator::course::Places;
 use crate::integrator::grid::round_down;
 use crate::integrator::integration::{DenseOutput, StepOutcome};
@@ -89,11 +89,7 @@ pub(crate) fn step_ahead(
         longest => longest,
     };
     let remaining = until - state.time;
-    let mut requested = if tolerance > LONG_FLOOR * model.force_scale {
-        state.long_step
-    } else {
-        0.0
-    };
+    let mut requested = state.long_step;
     let mut free = [0.0; 2 * MAX_MODES];
     let Some(start) = Start::new(model, state, drive, requested, &mut free) else {
         return false;

@@ -39,8 +39,7 @@ pub(crate) struct Integration<'a> {
     pub(crate) conserves: bool,
 }
 
-/// Dense output of a step: polynomials of the tip about the step's end, in time relative to its length. Deviations from
-/// the preload.
+/// Dense output of a step: polynomials of the tip. Deviations from the preload.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct DenseOutput {
     /// Contact force, N.

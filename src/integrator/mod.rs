@@ -66,8 +66,7 @@
 //! length of their own in the state. Eight are used in flight, where the force is known, and where they reach at least
 //! [`constants::WORTH`] times as far as four within what is left to integrate; four in short communication steps and just
 //! after a closing, where the force is not smooth: a long step is at most [`constants::SMOOTH`] times as long as the time
-//! since. Below a tolerance of [`constants::LONG_FLOOR`] the rounding
-//! of the polynomials of degree eight shows, and four are used throughout.
+//! since. Polynomials are expanded about the middle of their step: about an end, rounding would show at the tightest tolerance.
 //!
 //! # Newton's method
 //!
@@ -233,7 +232,7 @@
 //! steps, and outputs are read from polynomials through the tip at the nodes of eight. They add no error to the motion;
 //! the step is as long as [`constants::INSIDE`] times what the force polynomial misses at the start is below
 //! [`constants::SHARE`] of the tolerance. Where no step beyond the communication point is so accurate (just after an
-//! input has changed), and below [`constants::LONG_FLOOR`], an exact step ends there.
+//! input has changed), an exact step ends there.
 //!
 //! # The promise of `solver.tolerance`
 //!

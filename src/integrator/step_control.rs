@@ -5,8 +5,8 @@ use crate::excitation::drive::Drive;
 use crate::integrator::attempt::{growth, shrinkage};
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::constants::{
-    AFTER_REJECTION, COARSEST, GROWING, LEAST_SHRINK, LONG_FLOOR, LONGER, MOST_SHRINK, NEXT_LENGTH, REFUSALS, SAFETY,
-    SHARE, SMOOTH, WORTH,
+    AFTER_REJECTION, COARSEST, GROWING, LEAST_SHRINK, LONGER, MOST_SHRINK, NEXT_LENGTH, REFUSALS, SAFETY, SHARE,
+    SMOOTH, WORTH,
 };
 use crate::integrator::energy::conservation::conserves;
 use crate::integrator::events::Cut;
@@ -120,10 +120,7 @@ impl Integration<'_> {
                 .long_step
                 .min(SMOOTH * (self.state.time - self.state.last_closing))
         };
-        if self.tolerance <= LONG_FLOOR * self.model.force_scale
-            || remaining <= short_step
-            || closed && long_step < WORTH * short_step
-        {
+        if remaining <= short_step || closed && long_step < WORTH * short_step {
             let outcome = self.advance_with::<SHORT>(short_step)?;
             if !outcome.switched {
                 self.state.short_step = outcome.length;

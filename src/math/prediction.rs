@@ -1,11 +1,11 @@
-//! Polynomials of a quantity over a step, expanded about its end: for dense output, and to extrapolate to the next
-//! step.
+//! Polynomials of a quantity over a step, expanded about its middle: for dense output, and to extrapolate to the next
+//! step. About an end, rounding would be a thousand times as large.
 
 use serde::{Deserialize, Serialize};
 
 use crate::math::nodal::LONG;
 
-/// Coefficients of a polynomial through the nodes of a step, about the step's end, in time relative to its length.
+/// Coefficients of a polynomial through the nodes of a step: of powers of [`centred`] time.
 pub type Prediction = [f64; LONG + 1];
 
 /// Two extrapolations of the force to the next step, through all nodes and through the last few, and which of the two
@@ -29,10 +29,18 @@ impl Predictions {
     }
 }
 
-/// A polynomial and its derivative (Horner's rule).
+/// Time relative to the middle of a step, -1 to 1 within it, from time relative to its end in step lengths.
+#[inline(always)]
+pub fn centred(y: f64) -> f64 {
+    2.0 * y + 1.0
+}
+
+/// A polynomial at `y`, relative to the end of the step in step lengths, and its derivative by `y` (Horner's rule).
 pub fn value_and_slope(coefficients: &Prediction, y: f64) -> (f64, f64) {
+    let z = centred(y);
     let terms = coefficients.iter().rev();
-    terms.fold((0.0, 0.0), |(value, slope), coefficient| {
-        (value * y + coefficient, slope * y + value)
-    })
+    let (value, slope) = terms.fold((0.0, 0.0), |(value, slope), coefficient| {
+        (value * z + coefficient, slope * z + value)
+    });
+    (value, 2.0 * slope)
 }

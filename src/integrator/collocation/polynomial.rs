@@ -8,7 +8,7 @@ use crate::integrator::collocation::shapes::{MAX_SHAPES, Shapes};
 use crate::integrator::constants::{FLAT, LOOKS, NEAR, SLOWEST_DECAY};
 use crate::math::legendre;
 use crate::math::nodal::{LONG, Nodal, add, dot, scaled};
-use crate::math::prediction::{Prediction, Predictions, value_and_slope};
+use crate::math::prediction::{Prediction, Predictions, centred, value_and_slope};
 use crate::math::simd::{Arithmetic, Separate, Simd, compiled_for};
 
 /// Golden ratio, of the golden-section search.
@@ -32,8 +32,8 @@ pub struct Collocation<const S: usize> {
     leading: Nodal<S>,
     /// Greatest impulse up to a node that the shape of the error estimate makes, per step length.
     pub impulse: f64,
-    /// Lagrange polynomials of the start and the nodes, by coefficients of y^0, y^1, ..., `y = x - 1`; the first row is
-    /// that of the start.
+    /// Lagrange polynomials of the start and the nodes, by powers of [`centred`] time; the first row is that of the
+    /// start.
     steep: Vec<Prediction>,
     /// The same for the nodes without the start.
     nodal: Vec<Prediction>,
@@ -82,10 +82,13 @@ impl<const S: usize> Collocation<S> {
             }
             values
         };
-        let about_end: Vec<_> = [-1.0].into_iter().chain(nodes.iter().map(|node| node - 1.0)).collect();
-        let steep = lagrange(&about_end);
-        let nodal = lagrange(about_end.get(1..).unwrap_or_default());
-        let flat = lagrange(about_end.get(S + 1 - FLAT..).unwrap_or_default());
+        let places: Vec<_> = [-1.0]
+            .into_iter()
+            .chain(nodes.map(|node| centred(node - 1.0)))
+            .collect();
+        let steep = lagrange(&places);
+        let nodal = lagrange(places.get(1..).unwrap_or_default());
+        let flat = lagrange(places.get(S + 1 - FLAT..).unwrap_or_default());
         Self {
             nodes,
             shapes,
@@ -201,7 +204,7 @@ impl<const S: usize> Collocation<S> {
         }
     }
 
-    /// The polynomial through the values at the start and at the nodes, expanded about the end.
+    /// The polynomial through the values at the start and at the nodes.
     pub fn through(&self, start: f64, values: &Nodal<S>) -> Prediction {
         combine::<Separate>(&self.steep, [start].iter().chain(values))
     }
@@ -221,7 +224,7 @@ impl<const S: usize> Collocation<S> {
 
     #[inline(always)]
     fn evaluate<A: Arithmetic>(&self, prediction: &Prediction, ratio: f64) -> Nodal<S> {
-        let at = scaled(&self.nodes, ratio);
+        let at = scaled(&self.nodes, ratio).map(centred);
         let mut values = [0.0; S];
         for coefficient in prediction.iter().rev() {
             for (value, y) in values.iter_mut().zip(&at) {
