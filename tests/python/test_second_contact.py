@@ -111,8 +111,8 @@ def test_the_forces_of_both_contacts(name: str) -> None:
     for side, contact in enumerate(SIDES):
         force = found[f"{contact}.force"][1:]
         expected, coarse = (np.array([each.force(side, time) for time in times]) for each in (between, coarser))
-        # The reference's own error is some tenth of this difference, which is up to 0.2, by how the sums are rounded; 24
-        # modes in place of 16 change its forces by less than 0.1 of what is allowed.
+        # The reference's own error is some tenth of this difference, which is up to 0.2 of what is allowed, by how sums
+        # are rounded; 24 modes in place of 16 change its forces by less than 0.1 of that.
         assert np.max(np.abs(coarse - expected)) <= 0.5 * allowed
         assert np.max(np.abs(force - expected)) <= allowed
         assert (found[f"{contact}.closed"][1:].astype(bool) == (force > 0)).all()
