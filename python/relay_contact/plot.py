@@ -1,13 +1,18 @@
-"""The figure of a scene's outputs: a panel for each, the times shaded at which the contact is open."""
+"""The figure of a scene's outputs: a panel for each, the times shaded at which no contact is closed.
+
+Where there is a second contact, its force is drawn beside that of the first, and bars show when either is closed.
+"""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from textwrap import wrap
 
 import numpy as np
 from fmpy import read_model_description
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
 
 from relay_contact.component import Array, Unit, Value, units
 from relay_contact.figures import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED
@@ -15,6 +20,10 @@ from relay_contact.files import description_path
 from relay_contact.scene import read_table
 
 COLOURS = [BLUE, RED, GREEN, PURPLE, BLACK, ORANGE]
+# Of the two contacts.
+FIRST, SECOND = BLUE, RED
+# By which it is told whether a contact is closed.
+FORCES = {"first": "contact.force", "second": "second.force"}
 # Beyond this ratio of greatest to least a logarithmic axis is used.
 DECADES = 1e3
 # What the outputs are called in words, where it is not the words of their names.
@@ -34,7 +43,7 @@ WORDS = {
     "second.force": "force of the\nsecond contact",
     "second.resistance": "resistance of the\nsecond contact",
     "second.falseMakes": "makes of the\nsecond contact",
-    "step.minimumGap": "least gap\nin a step",
+    "step.minimumGap": "least gap at the\nsecond contact\nin a step",
     "energy.balance": "energy balance",
     "solver.rejectedSteps": "rejected\nsolver steps",
 }
@@ -60,6 +69,17 @@ def panel(axes: Axes, time: Array, name: str, values: Array, unit: Unit | None, 
     axes.grid(alpha=0.3)
 
 
+def bars(axes: Axes, time: Array, closed: Mapping[str, NDArray[np.bool_]]) -> None:
+    """Draw when each contact is closed."""
+    for row, when in enumerate(closed.values()):
+        axes.fill_between(
+            time, row + 0.15, row + 0.85, where=when.tolist(), step="post", color=[FIRST, SECOND][row], linewidth=0
+        )
+    axes.set_yticks([row + 0.5 for row in range(len(closed))], list(closed), fontsize="small")
+    axes.set_ylim(len(closed), 0)
+    axes.set_ylabel("closed", fontsize="small")
+
+
 def sweep_of(values: Mapping[str, Value]) -> list[float] | None:
     """Give first and last frequency (Hz), start and duration (s) where a scene has a sweep that it describes whole."""
     names = ["excitation.frequency", "excitation.endFrequency", "excitation.startTime", "excitation.duration"]
@@ -78,25 +98,38 @@ def draw(table: Path, title: str, sweep: Sequence[float] | None = None) -> Path:
     columns = read_table(table)
     time = columns.pop("time")
     known = units(read_model_description(str(description_path()), validate=False))
-    scale, second = (1.0, "s") if time[-1] > 0.2 else (1e3, "ms")
-    label = f"time [{second}]"
+    scale, shown = (1.0, "s") if time[-1] > 0.2 else (1e3, "ms")
+    label = f"time [{shown}]"
     if sweep:
         first, last, start, duration = sweep
         scale, label = 1.0, "frequency of the sweep [Hz]"
         inside = (time >= start) & (time <= start + duration)
         columns = {name: values[inside] for name, values in columns.items()}
         time = first * (last / first) ** ((time[inside] - start) / duration)
-    figure = Figure(figsize=(9, 1.2 + 1.7 * len(columns)), layout="constrained")
-    grid = figure.subplots(len(columns), 1, sharex=True, squeeze=False)
-    is_open = columns["contact.force"] <= 0 if "contact.force" in columns else np.zeros(len(time), dtype=bool)
-    for index, (axes, (name, values)) in enumerate(zip(grid[:, 0], columns.items(), strict=True)):
-        panel(axes, scale * time, name, values, known.get(name), COLOURS[index % len(COLOURS)])
-        if is_open.any():
+    closed = {words: columns[name] > 0 for words, name in FORCES.items() if name in columns}
+    both = len(closed) == 2
+    drawn = [name for name in columns if not (both and name == FORCES["second"])]
+    colours = [colour for colour in COLOURS if not (both and colour == SECOND)]
+    heights = [1.0] * len(drawn) + [0.4] * both
+    figure = Figure(figsize=(9, 1.2 + 1.7 * sum(heights)), layout="constrained")
+    grid = figure.subplots(len(heights), 1, sharex=True, squeeze=False, height_ratios=heights)
+    for index, (axes, name) in enumerate(zip(grid[:, 0], drawn, strict=False)):
+        panel(axes, scale * time, name, columns[name], known.get(name), colours[index % len(colours)])
+        if both and name == FORCES["first"]:
+            axes.lines[0].set(label="first contact", color=FIRST)
+            force = known[name].factor * columns[FORCES["second"]]
+            axes.plot(scale * time, force, color=SECOND, linewidth=1.2, label="second contact")
+            axes.legend(loc="upper right", fontsize="small")
+    if both:
+        bars(grid[-1, 0], scale * time, closed)
+    is_open = ~np.logical_or.reduce(list(closed.values())) if closed else np.zeros(len(time), dtype=bool)
+    if is_open.any():
+        for axes in grid[:, 0]:
             axes.fill_between(
-                scale * time, 0, 1, where=is_open, step="post", transform=axes.get_xaxis_transform(),
-                color="#999999", alpha=0.25, linewidth=0, label="open",
+                scale * time, 0, 1, where=is_open.tolist(), step="post", transform=axes.get_xaxis_transform(),
+                color="#999999", alpha=0.25, linewidth=0, label="both open" if both else "open",
             )  # fmt: skip
-    grid[0, 0].set_title(title, fontsize="medium")
+    grid[0, 0].set_title("\n".join(wrap(title, 100)), fontsize="medium")
     if is_open.any():
         grid[0, 0].legend(loc="upper right", fontsize="small")
     if sweep:

@@ -225,28 +225,46 @@ class Reference:
 
         The fixed contact may come at a constant speed, m/s; the steps are limited where a blow could be stepped over.
         """
+
+        def contact(time: float, deflection: float, rate: float) -> tuple[float, float, float]:
+            return self.law_force(self.indentation + support_speed * time - deflection, support_speed - rate)
+
+        tip = self.tip(acceleration, stop, tolerance, contact, max_step)
+        return lambda time: contact(time, *tip(time))[0]
+
+    def tip(
+        self,
+        acceleration: Acceleration,
+        stop: float,
+        tolerance: float,
+        contact: Callable[[float, float, float], tuple[float, float, float]],
+        max_step: float = np.inf,
+    ) -> Callable[[Any], Any]:
+        """Deflection (m) of the tip from the preload and its rate as functions of time, from rest at 0.
+
+        `contact` gives the force (N) on the tip by time, deflection and rate, and how fast it falls with the last two.
+        """
         modes = self.modes()
         n, omega = len(modes.tip), np.sqrt(modes.omega_squared)
         preload = (modes.tip * self.force - modes.participation * self.gravity) / modes.omega_squared
         follows = self.axial == "FromDeflection"
 
-        def contact(time: float, motion: Array) -> tuple[float, float, float]:
-            indentation = self.indentation + support_speed * time - modes.tip @ (motion[:n] / omega)
-            return self.law_force(float(indentation), support_speed - float(modes.tip @ motion[n:]))
+        def of(motion: Array) -> Any:  # noqa: ANN401
+            return modes.tip @ (motion[:n].T / omega).T, modes.tip @ motion[n:]
 
         def rates(time: float, motion: Array) -> Array:
             q = motion[:n] / omega
-            load = modes.tip * (contact(time, motion)[0] - self.force) - modes.participation * acceleration(time)
+            load = modes.tip * (contact(time, *of(motion))[0] - self.force) - modes.participation * acceleration(time)
             if follows:
                 change = self.axial_force_at(self.deflection + float(modes.tip @ q)) - self.axial_force
                 load = load + change * modes.slopes @ (preload + q)
             return np.concatenate([omega * motion[n:], load - omega * motion[:n] - modes.damping * motion[n:]])
 
         def jacobian(time: float, motion: Array) -> Array:
-            _, by_indentation, by_rate = contact(time, motion)
+            _, by_deflection, by_rate = contact(time, *of(motion))
             matrix = np.zeros((2 * n, 2 * n))
             matrix[:n, n:] = np.diag(omega)
-            matrix[n:, :n] = -np.diag(omega) - by_indentation * np.outer(modes.tip, modes.tip / omega)
+            matrix[n:, :n] = -np.diag(omega) - by_deflection * np.outer(modes.tip, modes.tip / omega)
             matrix[n:, n:] = -np.diag(modes.damping) - by_rate * np.outer(modes.tip, modes.tip)
             return matrix
 
@@ -264,7 +282,7 @@ class Reference:
             max_step=max_step,
         )
         assert solution.success, solution.message
-        return lambda time: contact(time, solution.sol(time))[0]
+        return lambda time: of(solution.sol(time))
 
     def frequency_following(self) -> float:
         """Lowest natural frequency with the contact as a spring and the axial force following the deflection, Hz."""
