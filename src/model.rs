@@ -60,6 +60,8 @@ pub struct Model {
     pub(crate) inertia: f64,
     /// Time in which a velocity of the open spring becomes a displacement, s: 1 / omega_1.
     pub(crate) memory: f64,
+    /// Static displacement of the tip per force on it, m/N: that of the modes.
+    pub(crate) compliance: f64,
     /// Lowest natural frequency with the contact as a spring, from the exact characteristic equation, Hz.
     pub(crate) frequency: f64,
     /// Frequency of the highest mode of a spring file, and that up to which a blow excites the spring, if higher, Hz.
@@ -162,6 +164,7 @@ impl Model {
             missed_by_modes,
             inertia: inertia(&modes),
             memory,
+            compliance: modes.iter().map(Mode::compliance).sum(),
             scene: scene.clone(),
             section,
             law,
@@ -198,6 +201,7 @@ impl Model {
         parts.modes.truncate(MAX_MODES);
         (self.modes, self.law, self.preload) = (parts.modes, parts.law, parts.preload);
         (self.generator, self.force_scale, self.closed_loop) = (parts.generator, parts.force_scale, None);
+        self.compliance = self.modes.iter().map(Mode::compliance).sum();
         self.hardest = self.law;
         match self.second.take() {
             Some(second) => self.with_second(second.law),

@@ -1,6 +1,6 @@
 //! A running simulation: model, state, and workspace of the steps.
 
-use crate::chatter::Summary;
+use crate::chatter::{Criterion, Interruptions, Summary};
 use crate::error::{SceneError, StepError};
 use crate::inputs::Inputs;
 use crate::integrator::communication_step;
@@ -30,11 +30,8 @@ impl Simulation {
     pub fn new(scene: &Scene, inputs: &Inputs, start_time: f64) -> Result<Self, SceneError> {
         let model = Model::new(scene, inputs.support_displacement)?;
         let displacement = inputs.second_displacement;
-        if model
-            .room(displacement)
-            .min(model.room(displacement) + model.preload.indentation)
-            <= 0.0
-        {
+        let room = model.room(displacement);
+        if room.min(room + model.preload.indentation) <= 0.0 {
             return Err(SceneError::NoGap {
                 gap: scene.second.gap,
                 displacement,
@@ -176,8 +173,7 @@ impl Simulation {
                 (Some(extremes), Some(electrical)) => 1.0 / electrical.conductance(extremes.first.least),
                 _ => 0.0,
             },
-            RealOutput::StepMinimumGap if second && model.scene.effects.extremes => -motion.extremes(model).nearest,
-            RealOutput::StepMinimumGap => 0.0,
+            RealOutput::StepMinimumGap => of_second().map_or(0.0, |extremes| -extremes.nearest),
             RealOutput::SecondForce => tip().forces[1],
             RealOutput::SecondConductance => second_conductance().unwrap_or_default(),
             RealOutput::SecondResistance => second_conductance().map_or(0.0, |conductance| 1.0 / conductance),
@@ -295,19 +291,18 @@ impl Simulation {
 
     /// Interruptions up to the communication point; none if they are not counted.
     pub fn interruptions(&self) -> Summary {
-        let criterion = self.model.criterion.as_ref();
-        criterion.map_or_else(Summary::default, |criterion| {
-            let interruptions = self.motion.interruptions(&self.model, false);
-            interruptions.summary(criterion, self.time())
-        })
+        self.monitored(false, Interruptions::summary)
     }
 
     /// False makes of the second contact, or of the first, up to the communication point; none if they are not counted.
     pub fn makes(&self, second: bool) -> Summary {
+        self.monitored(second, Interruptions::makes)
+    }
+
+    fn monitored(&self, second: bool, summary: fn(&Interruptions, &Criterion, f64) -> Summary) -> Summary {
         let counted = self.model.criterion.filter(|_| !second || self.model.second.is_some());
         counted.map_or_else(Summary::default, |criterion| {
-            let interruptions = self.motion.interruptions(&self.model, second);
-            interruptions.makes(&criterion, self.time())
+            summary(&self.motion.interruptions(&self.model, second), &criterion, self.time())
         })
     }
 

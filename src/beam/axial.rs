@@ -120,7 +120,7 @@ impl Feedback {
             .zip(modes)
             .map(|(g, mode)| g * g / mode.omega_squared)
             .sum();
-        let tips: f64 = modes.iter().map(|mode| mode.tip * mode.tip / mode.omega_squared).sum();
+        let tips: f64 = modes.iter().map(Mode::compliance).sum();
         let geometric = self.geometric.iter().enumerate().zip(modes);
         let trace: f64 = geometric
             .map(|((i, row), mode)| row.get(i).copied().unwrap_or_default() / mode.omega_squared)

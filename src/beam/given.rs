@@ -72,7 +72,7 @@ impl Given {
                 }
             })
             .collect();
-        let held: f64 = modes.iter().map(|mode| mode.tip * mode.tip / mode.omega_squared).sum();
+        let held: f64 = modes.iter().map(Mode::compliance).sum();
         let rest = self.compliance - held;
         if let Some(highest) = modes.last().filter(|_| rest > ROUNDING * self.compliance) {
             let omega_squared = RESIDUAL.powi(2) * highest.omega_squared;

@@ -21,6 +21,13 @@ pub struct Mode {
     pub participation: f64,
 }
 
+impl Mode {
+    /// Static displacement of the tip per force on it, m/N.
+    pub fn compliance(&self) -> f64 {
+        self.tip * self.tip / self.omega_squared
+    }
+}
+
 /// Displacement and velocity of a mode, as deviation from the preload.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ModeState {

@@ -1,9 +1,10 @@
 //! A trial step: its relative error, acceptance and rejection.
 
 use crate::error::{StepError, StepErrorCause};
+use crate::integrator::collocation::error::is_rounding;
 use crate::integrator::collocation::newton::Source;
 use crate::integrator::collocation::part::{self, Instant};
-use crate::integrator::collocation::step::{Trial, is_rounding, trial};
+use crate::integrator::collocation::step::{Trial, trial};
 use crate::integrator::constants::{
     AFTER_BLOW, AFTER_REJECTION, AT_EVENT, FORCE_ROUNDING, INSIDE, LEAST_SHRINK, MOST_GROWTH, MOST_SHRINK, NEAR_BLOW,
     NEWTON, SAFETY,
@@ -13,7 +14,7 @@ use crate::integrator::grid::Target;
 use crate::integrator::integration::{Integration, StepOutcome};
 use crate::integrator::workspace::{Room, Workspace, work};
 use crate::math::free_motion::FreeMotion;
-use crate::math::nodal::SHORT;
+use crate::math::nodal::{SHORT, greatest};
 use crate::math::prediction::value_and_slope;
 use crate::state::State;
 
@@ -36,7 +37,7 @@ impl Integration<'_> {
         // Not `max`, which would hide NaN.
         let ratio = if ratio < inside { inside } else { ratio };
         let rounding = self.state.closed || inside < 1.0;
-        if ratio > 1.0 && rounding && is_rounding(self.model, self.state, trial, trial.error) {
+        if ratio > 1.0 && rounding && is_rounding::<S>(self.model, self.state, &trial.tangent, trial.error) {
             0.0
         } else {
             ratio
@@ -96,14 +97,11 @@ impl Integration<'_> {
             most = most.max(0.125 * (now.0 - before.0) * (now.1 + before.1));
             before = now;
         }
-        let largest = trial.indentations.iter().fold(start.abs(), |most, d| most.max(d.abs()));
-        if most <= FORCE_ROUNDING * largest {
+        if most <= FORCE_ROUNDING * greatest(&trial.indentations).max(start.abs()) {
             // Rounding of the polynomial, which no shorter step reduces.
             return 0.0;
         }
-        let modes = self.model.modes.iter();
-        let compliance: f64 = modes.map(|mode| mode.tip * mode.tip / mode.omega_squared).sum();
-        most / (self.tolerance * compliance)
+        most / (self.tolerance * self.model.compliance)
     }
 
     /// Error allowed in a step that ends inside, N.
@@ -119,7 +117,7 @@ impl Integration<'_> {
     pub(crate) fn may_end_inside<const S: usize>(&self, trial: &Trial<S>, target: &Target) -> bool {
         trial.inner_error <= self.allowed_inside().max(trial.rounding)
             || self.is_shortest(target)
-            || is_rounding(self.model, self.state, trial, trial.inner_error)
+            || is_rounding::<S>(self.model, self.state, &trial.tangent, trial.inner_error)
     }
 
     /// A trial step to the target; the modes at its end are kept for [`Integration::take`].

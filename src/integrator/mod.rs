@@ -92,7 +92,7 @@
 //! nodal polynomial extrapolated to it; likewise `m_a` for the base acceleration. The response of the modes to that
 //! shape is part of the coefficients, so what `m` and `m_a` do to indentation and velocity at the end is known to first
 //! order, with the reaction of the contact (the two further right-hand sides of Newton's method). Three parts are added
-//! ([`collocation::step`]):
+//! ([`collocation::error`]):
 //!
 //! - stiffness and damping of the law (the greatest at start and nodes, which may all lie beyond an opening) times these
 //!   errors of indentation and velocity: the part of modes that are fast against the step;

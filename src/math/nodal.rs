@@ -28,6 +28,12 @@ pub fn end<const S: usize>(values: &Nodal<S>) -> f64 {
     values.last().copied().unwrap_or_default()
 }
 
+/// The greatest magnitude.
+#[inline(always)]
+pub fn greatest<const S: usize>(values: &Nodal<S>) -> f64 {
+    values.iter().fold(0.0, |greatest, value| value.abs().max(greatest))
+}
+
 /// Adds `factor` times the values.
 #[inline(always)]
 pub fn add<const S: usize, A: Arithmetic>(sum: &mut Nodal<S>, factor: f64, values: &Nodal<S>) {

@@ -2,6 +2,7 @@
 
 pub mod axial_force;
 pub mod coefficients;
+pub mod error;
 pub mod modal_response;
 pub mod newton;
 pub mod part;

@@ -3,7 +3,7 @@
 use crate::integrator::collocation::coefficients::{ErrorColumn, StepCoefficients};
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::constants::{ITERATIONS, MOTION_ROUNDING, SMALL_PIVOT};
-use crate::math::nodal::{Nodal, add_columns, end, scaled};
+use crate::math::nodal::{Nodal, add_columns, end, greatest, scaled};
 use crate::math::simd::Arithmetic;
 use crate::model::Model;
 use crate::state::State;
@@ -180,7 +180,6 @@ fn iterated<const S: usize, A: Arithmetic, const DAMPED: bool>(
     } = free;
     let mut forces = guess;
     let d0 = model.preload.indentation;
-    let greatest = |values: &Nodal<S>| values.iter().fold(0.0_f64, |greatest, value| greatest.max(value.abs()));
     let (farthest, fastest) = (greatest(free), greatest(free_rate));
     let mut by_errors = None;
     for iterations in 0..=ITERATIONS {

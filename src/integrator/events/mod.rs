@@ -8,8 +8,9 @@ pub mod opening;
 pub mod other;
 
 use crate::error::StepError;
+use crate::integrator::collocation::error::sum_rounding;
 use crate::integrator::collocation::part::Instant;
-use crate::integrator::collocation::step::{Trial, sum_rounding};
+use crate::integrator::collocation::step::Trial;
 use crate::integrator::constants::{GUESSES, LOCATED, MOST_SHRINK};
 use crate::integrator::events::log::Event;
 use crate::integrator::grid::Target;

@@ -1,0 +1,101 @@
+//! The error estimate of a trial step.
+
+use crate::integrator::collocation::coefficients::StepCoefficients;
+use crate::integrator::collocation::newton::{FreeResponse, Solution, Tangent};
+use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::constants::{FAR, KINKED, SUM_ROUNDINGS};
+use crate::math::nodal::{Nodal, greatest};
+use crate::model::Model;
+use crate::state::State;
+
+/// Estimates of the error that a step adds to the contact force, N: if it is taken to its end, and if it ends inside.
+///
+/// The polynomials are exact at the nodes; their defect at the start gives the amplitude of the next term, the shape
+/// that vanishes at the nodes. Its effect on the nodal forces is known to first order ([`Solution`]). At the end of the
+/// step, modes slow compared with the step are hardly affected by it (the shape is orthogonal to polynomials of low
+/// degree); their error is of twice the order, about three times the square of the defect (calibrated with a free mass
+/// impacting a Hertz contact). Just after first touch or a jump the force is not smooth, and their error is larger.
+/// Inside the step the shape is not orthogonal to anything: slow modes get its impulse up to there.
+///
+/// `start_defect` (N) is the defect of the force polynomial, `largest` (N) the largest nodal force.
+#[inline(always)]
+pub(crate) fn errors<const S: usize>(
+    model: &Model,
+    state: &State,
+    (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
+    solution: &Solution<S>,
+    start_defect: f64,
+    free: &FreeResponse<S>,
+    largest: f64,
+) -> (f64, f64) {
+    if state.closed {
+        let (by_force, by_load) = (solution.by_force, solution.by_load);
+        let wrong_d = by_load.0 * free.start_defect - by_force.0 * start_defect;
+        let wrong_r = by_load.1 * free.start_defect - by_force.1 * start_defect;
+        let fast = (solution.tangent.stiffness * wrong_d).abs() + (solution.tangent.damping * wrong_r).abs();
+        let elapsed = state.time - state.last_kink;
+        let kinked = if elapsed < FAR * step.length {
+            KINKED * start_defect.abs() * analytic::<S>(elapsed / step.length)
+        } else {
+            0.0
+        };
+        let reaction = solution.tangent.gain / (1.0 + solution.tangent.gain);
+        let missed = model.inertia * free.missed_mean;
+        let slow = 3.0 * start_defect * start_defect / largest + kinked + missed;
+        let inside = greatest(&solution.nodal_by_force) * start_defect.abs()
+            + greatest(&solution.nodal_by_load) * free.start_defect.abs();
+        // With an axial force the other defects are in `inside` alone.
+        let base = if model.axial().is_some() {
+            0.0
+        } else {
+            model.inertia * free.start_defect.abs()
+        };
+        let impulse = collocation.impulse * (start_defect.abs() + base) + missed;
+        (fast + slow * reaction, inside + impulse * reaction)
+    } else {
+        // Of the indentation that is read, searched for a contact, or left at an instant inside.
+        let most = |values: &Nodal<S>| greatest(values) * free.start_defect.abs();
+        let rows = free.error;
+        let missed_velocity = free.missed_mean * step.length;
+        let law = &model.hardest;
+        let wrong = most(&rows.displacement)
+            + law.damping() * most(&rows.velocity)
+            + missed_velocity * (model.memory + law.damping());
+        let stiffness = law.tangent_stiffness(model.force_scale);
+        // At the end the velocity is that of the quadrature.
+        (
+            stiffness * wrong,
+            stiffness * (wrong + model.memory * most(&rows.velocity)),
+        )
+    }
+}
+
+/// Whether the error (N) of a step from `state` is explained by rounding of the sums over the modes: after an impact the
+/// modal velocities are large and their sum at the tip is small.
+pub(crate) fn is_rounding<const S: usize>(model: &Model, state: &State, tangent: &Tangent, error: f64) -> bool {
+    let (displacement, velocity) = sum_rounding(model, state);
+    // The force at the first node feeds back only over the time up to it, some 1 / S^2 of the step.
+    let reaction = 1.0 + tangent.gain / (S * S) as f64;
+    let Tangent { stiffness, damping, .. } = *tangent;
+    error <= (stiffness * displacement + damping * velocity) / reaction
+}
+
+/// Rounding of displacement (m) and velocity (m/s) of the tip as sums over the modes.
+pub(crate) fn sum_rounding(model: &Model, state: &State) -> (f64, f64) {
+    let (mut displacement, mut velocity) = (0.0, 0.0);
+    for (mode, at) in model.modes.iter().zip(&state.modes) {
+        displacement += (mode.tip * at.q).abs();
+        velocity += (mode.tip * at.v).abs();
+    }
+    let rounding = SUM_ROUNDINGS * f64::EPSILON;
+    (rounding * displacement, rounding * velocity)
+}
+
+/// Ratio of the quadrature error to the interpolation error with `S` nodes for a square root of time whose branch point
+/// lies `distance` step lengths before the step. Interpolation converges with the power `S` of the size of the
+/// Bernstein ellipse, quadrature with the power `2 S - 1` (L. N. Trefethen, Approximation Theory and Approximation
+/// Practice, 2013, chapters 8 and 19).
+fn analytic<const S: usize>(distance: f64) -> f64 {
+    let ellipse = 1.0 + 2.0 * distance + 2.0 * (distance * (distance + 1.0)).sqrt();
+    (1..S).fold(1.0, |product, _| product / ellipse)
+}
