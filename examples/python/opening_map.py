@@ -69,7 +69,8 @@ class Shaker(WorkerPlugin):
         """Take the contents of the component; the name is a hash of them and of the method."""
         self.fmu = fmu
         constants = repr((CHANGE, PATIENCE, WATCHED, PIECES, RISE, RISE_PIECES))
-        self.name = hashlib.sha256(fmu + constants.encode() + inspect.getsource(Shaker).encode()).hexdigest()[:16]
+        method = inspect.getsource(Shaker) + inspect.getsource(Contact.rise)
+        self.name = hashlib.sha256(fmu + constants.encode() + method.encode()).hexdigest()[:16]
 
     def setup(self, worker: Any) -> None:  # noqa: ANN401
         """Unpack the component into the worker's own temporary folder, which Dask clears, and instantiate it."""
@@ -107,13 +108,7 @@ class Shaker(WorkerPlugin):
         self.start(point)
         frequency, amplitude = point["excitation.frequency"], point["excitation.amplitude"]
         periods = math.ceil(RISE * frequency)
-        phase: Any = 2 * np.pi * np.arange(periods * RISE_PIECES + 1) / RISE_PIECES
-        missing = -amplitude * np.sin(phase) * (1 + np.cos(phase / (2 * periods))) / 2
-        step = 1 / frequency / RISE_PIECES
-        for piece in range(periods * RISE_PIECES):
-            self.contact.change("base.acceleration", missing[piece], missing[piece + 1], step)
-            self.contact.step(piece * step, step)
-        self.contact.set("base.acceleration", 0.0)
+        self.contact.rise(frequency, amplitude, periods, RISE_PIECES)
         return periods
 
     def settle(self, point: Point, begin: int) -> tuple[int, bool, float, bool]:

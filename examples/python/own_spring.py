@@ -100,14 +100,8 @@ class Spring:
         with self.started(
             effects__excitation="Sine", excitation__frequency=frequency, excitation__amplitude=amplitude
         ) as contact:
-            # The generator vibrates at full level from the start on; the input withholds what the rise has not reached.
-            periods, step = math.ceil(RISE * frequency), 1 / frequency / PIECES
-            phase = 2 * np.pi * np.arange(periods * PIECES + 1) / PIECES
-            withheld = -amplitude * np.sin(phase) * (1 + np.cos(phase / (2 * periods))) / 2
-            for n in range(periods * PIECES):
-                contact.change("base.acceleration", withheld[n], withheld[n + 1], step)
-                contact.step(n * step, step)
-            contact.set("base.acceleration", 0.0)
+            periods = math.ceil(RISE * frequency)
+            contact.rise(frequency, amplitude, periods, PIECES)
             end = periods + math.ceil(SETTLE * frequency)
             contact.step(periods / frequency, (end - periods) / frequency)
             before = int(contact.get("chatter.count"))

@@ -196,6 +196,20 @@ class Contact:
         self.fmu.setReal(self.references(name), [begin])
         self.fmu.setRealInputDerivatives(self.references(name), [1], [(end - begin) / length])
 
+    def rise(self, frequency: float, amplitude: float, periods: int, pieces: int) -> None:
+        """Start the sine generator, which vibrates at full level from time 0 on, gently over these periods.
+
+        base.acceleration withholds what a rise over half a period of a cosine has not reached, linearly over each of so
+        many pieces of a period: a sudden start may open a contact that stays closed in steady vibration.
+        """
+        phase = 2 * np.pi * np.arange(periods * pieces + 1) / pieces
+        missing = -amplitude * np.sin(phase) * (1 + np.cos(phase / (2 * periods))) / 2
+        step = 1 / frequency / pieces
+        for piece in range(periods * pieces):
+            self.change("base.acceleration", missing[piece], missing[piece + 1], step)
+            self.step(piece * step, step)
+        self.set("base.acceleration", 0.0)
+
     def get(self, name: str) -> float:
         """Give the value of any variable, of an enumeration its number."""
         kind = self.component.variables[name].type

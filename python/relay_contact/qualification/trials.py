@@ -66,21 +66,14 @@ def threshold(interrupts: Callable[[float], bool], guess: float) -> float:
 def steady(specimen: Specimen, frequency: float, amplitude: float, gently: bool) -> tuple[int, float, float]:
     """Vibrate until the start is forgotten; give interruptions, their mean length (s) and the least force (N) then.
 
-    Gently: the generator vibrates at full level from the start, and base.acceleration cancels what a rise over half a
-    period of a cosine withholds, as a sudden start may open a contact that stays closed in steady vibration.
+    Gently: raised from rest.
     """
     sine: Values = {"effects.excitation": "Sine", "excitation.frequency": frequency, "excitation.amplitude": amplitude}
     periods = int(np.ceil(max(2.0, specimen.response.settling() * frequency)))
     with specimen.start(sine) as contact, contact.explained():
         time = 0.0
         if gently:
-            phase = 2 * np.pi * np.arange(periods * PIECES + 1) / PIECES
-            missing = -amplitude * np.sin(phase) * (1 + np.cos(phase / (2 * periods))) / 2
-            step = 1 / frequency / PIECES
-            for piece in range(periods * PIECES):
-                contact.change("base.acceleration", missing[piece], missing[piece + 1], step)
-                contact.step(piece * step, step)
-            contact.set("base.acceleration", 0.0)
+            contact.rise(frequency, amplitude, periods, PIECES)
             time = periods / frequency
         contact.step(time, periods / frequency)
         before = monitor(contact)
