@@ -8,7 +8,7 @@ use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ContactLawKind, RealOutput};
-use testing::scenes::{force_scale, largest_difference, propped_mass, shaken};
+use testing::scenes::{check_slope, force_scale, largest_difference, propped_mass, shaken};
 
 const FREQUENCY: f64 = 1000.0;
 
@@ -241,13 +241,9 @@ fn derivatives_of_outputs_are_the_slopes_of_their_courses() {
                     if output == RealOutput::ContactConductance && before[0].0.min(after[0].0) <= 0.0 {
                         continue;
                     }
-                    let slopes = [now[n].0 - before[n].0, after[n].0 - now[n].0].map(|change| change / NEAR);
-                    let (low, high) = (slopes[0].min(slopes[1]), slopes[0].max(slopes[1]));
-                    assert!(
-                        (low - noise..=high + noise).contains(&now[n].1),
-                        "{law:?}, {amplitude} m/s2, {size} s, {output:?}: {} not in {slopes:?}",
-                        now[n].1
-                    );
+                    let values = [before[n].0, now[n].0, after[n].0];
+                    let case = format!("{law:?}, {amplitude} m/s2, {size} s, {output:?}");
+                    check_slope(values, NEAR, noise, now[n].1, &case);
                 }
             }
         }

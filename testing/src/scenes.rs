@@ -63,3 +63,17 @@ pub fn propped_mass(scene: &Scene) -> f64 {
 pub fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
+
+/// Checks that a rate lies between the slopes of three values, each `spacing` (s) after the one before; the slopes are
+/// wrong by `noise` at most.
+///
+/// # Panics
+/// If it does not.
+pub fn check_slope([before, now, after]: [f64; 3], spacing: f64, noise: f64, rate: f64, case: &str) {
+    let slopes = [now - before, after - now].map(|change| change / spacing);
+    let (low, high) = (slopes[0].min(slopes[1]), slopes[0].max(slopes[1]));
+    assert!(
+        (low - noise..=high + noise).contains(&rate),
+        "{case}: {rate} not in {slopes:?}"
+    );
+}

@@ -13,6 +13,7 @@ use relay_contact::scene::Scene;
 use relay_contact::scene::file::SceneFile;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{AxialForceKind, BooleanOutput, ExcitationKind, IntegerOutput, RealOutput};
+use testing::scenes::check_slope;
 
 /// A relay whose moving contact lies open in the middle between both fixed ones.
 pub fn changeover(gap: f64) -> Scene {
@@ -249,13 +250,8 @@ fn rates_are_the_slopes_of_the_courses() {
             // Values are wrong by the tolerance.
             let noise = 2.0 * scene.solver.tolerance * range / NEAR;
             for [before, now, after] in &rows {
-                let slopes = [now[n].0 - before[n].0, after[n].0 - now[n].0].map(|change| change / NEAR);
-                let (low, high) = (slopes[0].min(slopes[1]), slopes[0].max(slopes[1]));
-                assert!(
-                    (low - noise..=high + noise).contains(&now[n].1),
-                    "{size} s, {output:?}: {} not in {slopes:?}",
-                    now[n].1
-                );
+                let values = [before[n].0, now[n].0, after[n].0];
+                check_slope(values, NEAR, noise, now[n].1, &format!("{size} s, {output:?}"));
             }
         }
     }
