@@ -15,10 +15,11 @@ from scipy.stats import norm
 
 from component import COMPONENT, ROOT
 from reference import Reference, crossings
-from relay_contact import Array, RelayContactError, qualification
+from relay_contact import Array, RelayContactError
 from relay_contact.command import main
 from relay_contact.qualification import FEW, Part, Relay, Standard, assessment, qualify, response, standards
 from relay_contact.qualification.assessment import verdict
+from relay_contact.qualification.page import write
 from relay_contact.qualification.response import respond
 from relay_contact.qualification.standards import Random, Shock, Sine
 
@@ -344,7 +345,7 @@ def test_a_changeover_relay_names_the_contact_that_fails(tmp_path: Path) -> None
         shock = Shock("slow", "", True, acceleration, 0.1)
         standard = replace(MILITARY, contacts=contacts, tests=(shock,))
         (part,) = assessment.assess(COMPONENT, specimen, standard, tmp_path, FEW)
-        qualification.write(tmp_path, specimen, standard, [part], "")
+        write(tmp_path, specimen, standard, [part], "")
         return part
 
     # 200 g bend the free spring by 0.9 mm: both fail, the interruption first, where the preload is taken away.

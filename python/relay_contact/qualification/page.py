@@ -183,13 +183,13 @@ def courses(axes: Axes, parts: list[Part], title: str) -> None:
         axes.plot(1e3 * time, scale * course, color=colour, label=label, linewidth=1)
     axes.axhline(scale * rest, color=GREY, linestyle=":", label="at rest")
     axes.axhline(0.0, color=GREY, linewidth=0.6)
-    axes.legend(loc="upper right")
+    axes.legend(loc="upper right", frameon=True)
     # The blows of closing are many times the force at rest.
     both = any(OPEN in part["failed"] for part in parts) and name == CLOSED
     low, high = (-3, 3) if both else (-0.2, 3)
     label = "gap [mm]" if name == OPEN else "force [cN]"
-    if len(parts[0]["rest"]) > 1:
-        label += "; below 0: open contact"
+    if both:
+        title += "; below 0: force of the open contact"
     axes.set(xlabel="time [ms]", ylabel=label, title=title, ylim=(low * scale * rest, high * scale * rest))
 
 
@@ -380,7 +380,7 @@ def write(folder: Path, relay: Relay, standard: Standard, parts: list[Part], com
             table.writerow([*(part.get(field, "") for field in fields), " and ".join(part.get("decides", [])), *own])
     with paths[3].open("w", newline="", encoding="utf-8") as file:
         lines = csv.writer(file, lineterminator="\n")
-        means = [f"mean {text}" for text in TIMES.values()]
+        means = [f"{text.removesuffix(' [s]')}, mean [s]" for text in TIMES.values()]
         lines.writerow(["position", "test", "frequency [Hz]", "acceleration [m/s2]", *means, *LEAST.values()])
         for part in parts:
             if part["kind"] == "sine" and "curves" in part:
