@@ -4,6 +4,7 @@ import csv
 import io
 from html import escape
 from pathlib import Path
+from textwrap import fill
 from typing import Any
 
 import matplotlib as mpl
@@ -35,6 +36,8 @@ DASHES = {CLOSED: "-", OPEN: "--"}
 TIMES = {CLOSED: "closed contact interrupted [s]", OPEN: "open contact makes [s]"}
 LEAST = {CLOSED: "closed contact least force [N]", OPEN: "open contact least gap [m]"}
 FILES = ("qualification.html", "qualification.pdf", "qualification.csv", "sweeps.csv")
+WIDTHS, LINE = (0.13, 0.18, 0.08, 0.1, 0.09, 0.1, 0.21, 0.11), 135
+"""Of the columns in the PDF, as parts of the table, and letters across it."""
 REASONS = ("test", "what limits", "uncertainty of the margin", "chance of failing", "passes from")
 NOTES = """Margin: the level that interrupts the closed contact, or closes the open one, for the time that the standard
 allows, relative to that of the test, with its uncertainty at 95 %. If they allow both, the verdict is undecided. Fails
@@ -316,7 +319,7 @@ def summary(relay: Relay, standard: Standard, parts: list[Part]) -> Figure:
     figure = Figure(figsize=(8.27, 11.69))
     figure.text(0.05, 0.965, relay.title, fontsize=12, weight="bold", wrap=True)
     figure.text(0.05, 0.947, standard.title, fontsize=9)
-    height = min(0.8, 0.022 * (len(parts) + 1 + len(relay.positions)))
+    height = min(0.8, 0.028 * (len(parts) + 1 + len(relay.positions)))
     axes = figure.add_axes((0.04, 0.93 - height, 0.92, height))
     axes.axis("off")
     rows, fills = [], []
@@ -326,19 +329,20 @@ def summary(relay: Relay, standard: Standard, parts: list[Part]) -> Figure:
         fills.append("white")
         for part in mine:
             row = cells(part)
-            rows.append([row[0] + ("" if part["verified"] else " *"), *row[1:]])
+            row[0] += "" if part["verified"] else " *"
+            rows.append([fill(cell, round(LINE * width)) for cell, width in zip(row, WIDTHS, strict=True)])
             fills.append(FILLS[part["verdict"]])
     table = axes.table(
         rows,
         colLabels=HEAD,
-        colWidths=[0.16, 0.2, 0.07, 0.09, 0.1, 0.1, 0.17, 0.11],
+        colWidths=WIDTHS,
         cellLoc="left",
         bbox=Bbox.from_bounds(0, 0, 1, 1),
     )
     table.auto_set_font_size(False)
-    table.set_fontsize(6)
-    for number, fill in enumerate(fills, 1):
-        table[number, 2].set_facecolor(fill)
+    table.set_fontsize(5.5)
+    for number, colour in enumerate(fills, 1):
+        table[number, 2].set_facecolor(colour)
     for cell in table.get_celld().values():
         cell.set_linewidth(0.3)
     notes = "\n".join(["* not verified: the numbers were not read in the standard's text", *NOTES.splitlines()])
