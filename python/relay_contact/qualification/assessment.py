@@ -1,7 +1,8 @@
 """A relay against a standard: each test in each position of the coil, its margin, and how well the margin is known.
 
-The margin is the level that interrupts the contact relative to that of the test. A finished test is a file in the
-folder `parts`, named by a hash of all that it depends on: an interrupted assessment continues, with the same bytes.
+The margin is the level that interrupts the closed contact, or closes the open one, relative to that of the test. A
+finished test is a file in the folder `parts`, named by a hash of all that it depends on: an interrupted assessment
+continues, with the same bytes.
 """
 
 import hashlib
@@ -20,9 +21,11 @@ import numpy as np
 from relay_contact.component import Component, Values
 from relay_contact.files import HERE, RelayContactError
 from relay_contact.qualification.relay import Relay
-from relay_contact.qualification.response import Response, margin, respond
+from relay_contact.qualification.response import Response, margin, open_at_rest, respond
 from relay_contact.qualification.standards import Contacts, Random, Shock, Sine, Standard, Test
 from relay_contact.qualification.trials import (
+    CLOSED,
+    OPEN,
     SAMPLE,
     SHOWN,
     Specimen,
@@ -47,7 +50,7 @@ MANY = 10_000
 
 @dataclass
 class Position:
-    """A position of the coil: its contact, and the responses with each parameter at the ends of its interval."""
+    """A position of the coil: its contacts, and the responses with each parameter at the ends of its interval."""
 
     component: Component
     relay: Relay
@@ -65,7 +68,7 @@ class Position:
 
     @cached_property
     def specimen(self) -> Specimen:
-        """The contact as its file says."""
+        """The contacts as the file says."""
         response = respond(self.component, self.values, self.contacts.threshold)
         return Specimen(self.component, self.values, self.contacts, response)
 
@@ -81,17 +84,17 @@ class Position:
 
     @cached_property
     def worn(self) -> dict[float, Response]:
-        """The responses over the overtravel (m), which the wear of the contacts takes away."""
+        """The responses over the overtravel (m), which the wear of the contacts takes away, or over the gap."""
         name = "contact.overtravel"
         nominal = self.value(name)
         return {
-            part * nominal: respond(self.component, {**self.values, name: part * nominal}, self.contacts.threshold)
+            abs(part * nominal): respond(self.component, {**self.values, name: part * nominal}, self.contacts.threshold)
             for part in WORN
         }
 
     def wear(self, test: Test, factor: float) -> dict[str, list[float]]:
-        """Give the margin over the overtravel, for a margin that the component found as it is."""
-        opening = self.contacts.opening
+        """Give the margin over overtravel or gap, for a margin that the component found as it is."""
+        opening = self.specimen.lasting
         ratio = factor / margin(self.specimen.response, test, opening)
         return {
             "overtravel": list(self.worn),
@@ -100,7 +103,7 @@ class Position:
 
     def effects(self, test: Test) -> dict[str, float]:
         """Give what each uncertainty adds to that of the margin, as parts of the margin, with 95 % confidence."""
-        opening = self.contacts.opening
+        opening = self.specimen.lasting
         nominal = margin(self.specimen.response, test, opening)
         found = {
             name: abs(margin(high, test, opening) - margin(low, test, opening)) / (2 * nominal)
@@ -132,7 +135,7 @@ def verdict(factor: float, uncertainty: float) -> str:
 
 
 def passes(wear: dict[str, list[float]], uncertainty: float) -> float | None:
-    """Give the overtravel (m) from which on a margin with an uncertainty, as a part of it, passes."""
+    """Give the overtravel or gap (m) from which on a margin with an uncertainty, as a part of it, passes."""
     least = [value * (1 - uncertainty) for value in wear["margin"]]
     if least[-1] < 1:
         return None
@@ -147,18 +150,20 @@ def chance_below(factor: float, uncertainty: float) -> float:
 
 
 def vibration(position: Position, test: Sine, points: int) -> Part:
-    """Vibrate steadily at frequencies of the sweep, and seek the level that interrupts where it is least."""
+    """Vibrate steadily at frequencies of the sweep, and seek the level that fails where it is least."""
     specimen = position.specimen
     response = specimen.response
-    frequency, factors = response.sine(test, specimen.contacts.opening)
+    frequency, factors = response.sine(test, specimen.lasting)
     at = int(factors.argmin())
     weakest = float(frequency[at])
     low, high = test.frequencies
     near = weakest * np.linspace(0.9, 1.1, points // 4)
-    chosen = np.unique(np.concatenate((np.geomspace(low, high, points), near[(near > low) & (near < high)])))
+    near = near[(near > low) & (near < high)]
+    chosen = np.unique(np.concatenate((np.geomspace(low, high, points), near, [weakest])))
     rows = sweep(specimen, test, chosen)
-    factor = sine_threshold(specimen, test, weakest, float(factors[at]))
-    worst = rows[rows[:, 2].argmax()]
+    factor, decides = sine_threshold(specimen, test, weakest, float(factors[at]))
+    lengths = {name: [length.get(name, 0.0) for length, _ in rows] for name in specimen.monitors}
+    least = {name: [left[number] for _, left in rows] for number, name in enumerate(specimen.monitors)}
     if 0 < at < len(factors) - 1:
         octaves = 2 * np.log2(high / low) * 60 / test.sweep_time
         width = response.bandwidth(weakest)
@@ -170,57 +175,64 @@ def vibration(position: Position, test: Sine, points: int) -> Part:
     else:
         limits = "highest frequency of the range, below the resonance"
     return {
-        "margin": factor, "linear": float(factors[at]), "weakest": f"{weakest:.0f} Hz", "limits": limits,
-        "interrupted": bool(rows[:, 1].any()), "longest": float(worst[2]), "at": float(worst[0]),
-        "least": float(rows[:, 3].min()),
-        "curves": {"frequency": rows[:, 0].tolist(), "level": test.amplitude(rows[:, 0]).tolist(),
-                   "length": rows[:, 2].tolist(), "least": rows[:, 3].tolist()},
+        "margin": factor, "decides": decides, "linear": float(factors[at]), "weakest": f"{weakest:.0f} Hz",
+        "limits": limits, "failed": {name: max(each) for name, each in lengths.items() if any(each)},
+        "least": {name: min(each) for name, each in least.items()},
+        "curves": {"frequency": chosen.tolist(), "level": test.amplitude(chosen).tolist(),
+                   "length": lengths, "least": least},
     }  # fmt: skip
 
 
 def random(position: Position, test: Random) -> Part:
-    """Seek the level at which the largest dips of a record interrupt; for the time of the test by Rice's rate."""
+    """Seek the level at which the largest dips of a record fail; for the time of the test by Rice's rate."""
     specimen = position.specimen
     response = specimen.response
-    ratios = []
+    ratios, decides = [], []
     found = dips(specimen, test)
     for acceleration, guess in found:
-        level = threshold(lambda factor, course=acceleration: window(specimen, course, factor)[0] > 0, guess)  # type: ignore[misc]
+        level, failed = threshold(lambda factor, course=acceleration: window(specimen, course, factor)[0], guess)  # type: ignore[misc]
+        decides += [name for name in failed if name not in decides]
         ratios.append(level / guess)
-    linear = response.random(test, specimen.contacts.opening)
+    linear = response.random(test, specimen.lasting)
     rms, _ = response.moments(test)
-    count, longest, rows = window(specimen, found[0][0], 1.0)
-    density = test.spectrum(response.frequency) * response.force**2
+    lengths, rows = window(specimen, found[0][0], 1.0)
+    density = test.spectrum(response.frequency) * response.gain**2
     share = np.cumsum(density) / density.sum()
     half = response.frequency[np.searchsorted(share, [0.25, 0.75])]
+    moving, rest = ("motion", "gap") if specimen.is_open else ("force", "preload")
     shown = rows[-round(10e-3 / SAMPLE) :]
     return {
-        "margin": linear * float(np.mean(ratios)), "linear": linear, "weakest": f"{half[0]:.0f} to {half[1]:.0f} Hz",
-        "limits": f"half of the power of the force is there; {rms / response.preload:.2g} of the preload rms",
-        "interrupted": count > 0, "longest": longest, "at": 0.0, "least": float(rows[:, 1].min()),
-        "curves": {"time": (SAMPLE * np.arange(len(shown))).tolist(), "force": shown[:, 0].tolist()},
+        "margin": linear * float(np.mean(ratios)), "decides": decides, "linear": linear,
+        "weakest": f"{half[0]:.0f} to {half[1]:.0f} Hz",
+        "limits": f"half of the power of the {moving} is there; {rms / response.reserve:.2g} of the {rest} rms",
+        "failed": lengths, "least": dict(zip(specimen.monitors, rows[:, 1:].min(axis=0).tolist(), strict=True)),
+        "curves": {"time": (SAMPLE * np.arange(len(shown))).tolist(), "course": shown[:, 0].tolist()},
     }  # fmt: skip
 
 
 def shocks(position: Position, test: Shock) -> Part:
-    """Run a shock in both directions, and seek the levels that interrupt."""
+    """Run a shock in both directions, and seek the levels that fail."""
     specimen = position.specimen
     response = specimen.response
-    guesses = response.shock(test, specimen.contacts.opening)
+    guesses = response.shock(test, specimen.lasting)
     signs = {"closing": 1.0, "opening": -1.0}
-    levels, runs = {}, {}
-    for way, guess in guesses.items():
-        levels[way] = shock_threshold(specimen, test, signs[way], guess)
-        runs[way] = shock(specimen, test, signs[way], SHOWN)
-    way = min(levels, key=lambda name: levels[name])
-    slow = response.preload / (response.force[0] * 9.80665 * test.acceleration) / guesses[way]
+    runs = {name: shock(specimen, test, sign, SHOWN) for name, sign in signs.items()}
+    way, other = sorted(guesses, key=lambda name: guesses[name])
+    factor, decides = shock_threshold(specimen, test, signs[way], guesses[way])
+    if shock(specimen, test, signs[other] * factor)[0]:
+        lower, failed = shock_threshold(specimen, test, signs[other], min(guesses[other], factor))
+        if lower < factor:
+            way, factor, decides = other, lower, failed
+    shown = runs["closing" if specimen.is_open else "opening"][1][:-1]
+    slow = response.reserve / (response.gain[0] * 9.80665 * test.acceleration) / guesses[way]
     return {
-        "margin": levels[way], "linear": guesses[way], "weakest": f"{way} direction",
+        "margin": factor, "decides": decides, "linear": guesses[way], "weakest": f"{way} direction",
         "limits": f"inertia of the spring, {slow:.2f} times that of a slow shock",
-        "interrupted": any(count > 0 for count, _, _ in runs.values()),
-        "longest": max(longest for _, longest, _ in runs.values()), "at": 0.0,
-        "least": float(min(rows[:, 2].min() for _, _, rows in runs.values())),
-        "curves": {"time": runs[way][2][:, 0].tolist(), "force": runs["opening"][2][:, 1].tolist()},
+        "failed": {name: max(each.get(name, 0.0) for each, _ in runs.values()) for name in specimen.monitors
+                   if any(name in each for each, _ in runs.values())},
+        "least": {name: float(min(rows[:, 2 + number].min() for _, rows in runs.values()))
+                  for number, name in enumerate(specimen.monitors)},
+        "curves": {"time": shown[:, 0].tolist(), "course": shown[:, 1].tolist()},
     }  # fmt: skip
 
 
@@ -230,8 +242,12 @@ def tested(position: Position, test: Test, points: int) -> Part:
         "position": position.name, "test": test.name, "kind": type(test).__name__.lower(), "level": str(test),
         "clause": test.clause, "verified": test.verified,
     }  # fmt: skip
-    if position.value("contact.overtravel") <= 0:
-        return part | {"verdict": "not judged", "limits": "open contact: closings are not judged yet"}
+    second = bool(position.value("effects.secondContact"))
+    if position.value("contact.overtravel") == 0:
+        return part | {"verdict": "not judged", "limits": "the contact just touches: neither closed nor open"}
+    if second and open_at_rest(position.component, position.values):
+        reason = "both contacts open: closings on both sides are not judged; give each side as a position of its own"
+        return part | {"verdict": "not judged", "limits": reason}
     match test:
         case Sine():
             part |= vibration(position, test, points)
@@ -243,9 +259,12 @@ def tested(position: Position, test: Test, points: int) -> Part:
     relative = float(np.sqrt(sum(effect**2 for effect in effects.values())))
     shares = {name: (effect / relative) ** 2 for name, effect in effects.items()} if relative else {}
     part |= {"uncertainty": relative * part["margin"], "effects": effects, "shares": shares}
-    part |= {"wear": position.wear(test, part["margin"]), "overtravel": position.value("contact.overtravel")}
+    part |= {"wear": position.wear(test, part["margin"]), "overtravel": abs(position.value("contact.overtravel"))}
     part |= {"passes": passes(part["wear"], relative), "chance": chance_below(part["margin"], part["uncertainty"])}
-    part |= {"preload": position.specimen.response.preload, "natural": position.specimen.response.natural}
+    specimen = position.specimen
+    rest = {OPEN if specimen.is_open else CLOSED: specimen.response.reserve}
+    part |= {"rest": rest | ({OPEN: position.value("second.gap")} if second else {})}
+    part |= {"natural": specimen.response.natural}
     return part | {"verdict": verdict(part["margin"], part["uncertainty"])}
 
 

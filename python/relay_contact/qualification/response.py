@@ -1,9 +1,10 @@
-"""The closed contact as a linear system: the force that a base acceleration causes, while the contact stays closed.
+"""The contact as a linear system: the force of a closed contact, or the gap of an open one, under base acceleration.
 
-The component answers a short pulse of the base acceleration with the contact bonded, that is, linear about its preload.
-The Fourier transform of the answer over that of the pulse is the response to any vibration below the level at which the
-contact opens; the margins of the tests follow from it. That level is where the contact is still closed, so that only
-the stiffness of the contact, which changes with the force, is missing: the spring feels little of it.
+The component answers a short pulse of the base acceleration with the closed contact bonded, that is, linear about its
+preload, or with the open one pushed so weakly that it stays open. The Fourier transform of the answer over that of the
+pulse is the response to any vibration below the level at which the contact opens, or closes; the margins of the tests
+follow from it. At that level a closed contact has just not opened, so that only the stiffness of the contact, which
+changes with the force, is missing: the spring feels little of it.
 """
 
 from dataclasses import dataclass
@@ -20,25 +21,25 @@ STEP = 1e-5
 """Length (s) of the steps: resonances above 50 kHz are folded back, a thousand times weaker."""
 WATCHED, LONGEST = 1000, 200_000  # steps: an answer ends after some of at most
 CALM = 1e-6  # part of its largest force
-POINTS = 2**18  # of the transform, every 0.38 Hz
+POINTS = 2**18  # of the transform at least, every 0.38 Hz
 
 
 @dataclass(frozen=True)
 class Response:
-    """Force per base acceleration over frequency, of a contact with a preload."""
+    """Force (N) of a contact that is closed at rest, or gap (m) of an open one, by base acceleration over frequency."""
 
-    preload: float
-    """Force (N) that vibration has to take off the contact for an interruption."""
+    reserve: float
+    """Force that vibration has to take off the contact for an interruption, or the gap at rest."""
     natural: float
-    """Lowest frequency (Hz) of the closed contact by its stiffness."""
+    """Lowest frequency (Hz) of the contact at rest by its stiffness."""
     frequency: Array
     transfer: NDArray[np.complex128]
-    """Force over base acceleration, N per m/s2."""
+    """Force or gap over base acceleration, N or m per m/s2."""
     answer: Array
-    """Force (N) after a pulse of one step that brings a velocity of 1 m/s, at every step."""
+    """Change of force or gap after a pulse of one step that brings a velocity of 1 m/s, at every step."""
 
     @property
-    def force(self) -> Array:
+    def gain(self) -> Array:
         """Magnitude of the transfer function, N per m/s2."""
         return np.abs(self.transfer)
 
@@ -50,47 +51,47 @@ class Response:
     def bandwidth(self, frequency: float) -> float:
         """Give the width (Hz) of a resonance at half of its power."""
         at = int(np.searchsorted(self.frequency, frequency))
-        low = self.force < self.force[at] / np.sqrt(2)
+        low = self.gain < self.gain[at] / np.sqrt(2)
         below, above = np.flatnonzero(low[:at]), np.flatnonzero(low[at:])
         first = below[-1] if len(below) else 0
         last = at + (above[0] if len(above) else len(low) - at - 1)
         return float(self.frequency[last] - self.frequency[first])
 
     def sine(self, test: Sine, opening: float) -> tuple[Array, Array]:
-        """Give the factors of the level that interrupt for a time (s), at the frequencies (Hz) of a sweep."""
+        """Give the factors of the level that fail for a time (s), at the frequencies (Hz) of a sweep."""
         low, high = test.frequencies
         inside = (self.frequency >= low) & (self.frequency <= high)
         frequency = self.frequency[inside]
-        # The force is below zero for the time where its amplitude is the preload over this cosine.
-        needed = self.preload / np.cos(np.minimum(np.pi * frequency * opening, 1.5))
-        return frequency, needed / (test.amplitude(frequency) * self.force[inside])
+        # Force or gap is below zero for the time where its amplitude is the reserve over this cosine.
+        needed = self.reserve / np.cos(np.minimum(np.pi * frequency * opening, 1.5))
+        return frequency, needed / (test.amplitude(frequency) * self.gain[inside])
 
     def moments(self, test: Random) -> tuple[float, float]:
-        """Give rms (N) and mean frequency (Hz) of the force in random vibration."""
-        density = test.spectrum(self.frequency) * self.force**2
+        """Give rms (N or m) and mean frequency (Hz) of force or gap in random vibration."""
+        density = test.spectrum(self.frequency) * self.gain**2
         step = self.frequency[1]
         power = float(density.sum() * step)
         return power**0.5, float((density * self.frequency**2).sum() * step / power) ** 0.5
 
     def random(self, test: Random, opening: float, chance: float = 0.5) -> float:
-        """Give the factor of the level that interrupts within the test with a chance, by Rice's rate of crossings."""
+        """Give the factor of the level that fails within the test with a chance, by Rice's rate of crossings."""
         rms, mean = self.moments(test)
-        needed = self.preload * (1 + (np.pi * mean * opening) ** 2 / 2)
+        needed = self.reserve * (1 + (np.pi * mean * opening) ** 2 / 2)
         return float(needed / (rms * np.sqrt(2 * np.log(mean * test.duration / -np.log1p(-chance)))))
 
     def shock(self, test: Shock, opening: float) -> dict[str, float]:
-        """Give the factors of the level that interrupt, by direction."""
+        """Give the factors of the level that fail, by the direction of the acceleration on the contact."""
         pulse = half_sine(test)
         count = 2 ** int(np.ceil(np.log2(len(pulse) + len(self.answer))))
-        force = np.fft.irfft(np.fft.rfft(pulse, count) * np.fft.rfft(self.answer, count), count) * STEP
+        change = np.fft.irfft(np.fft.rfft(pulse, count) * np.fft.rfft(self.answer, count), count) * STEP
         dwell = max(1, round(opening / STEP))
 
         def dip(course: Array) -> float:
-            """Give the level below which the force stays for the time."""
+            """Give the level below which it stays for the time."""
             lasting = np.lib.stride_tricks.sliding_window_view(course, dwell + 1).max(axis=1)
             return float(-lasting.min())
 
-        return {way: self.preload / max(dip(sign * force), 1e-12) for way, sign in (("closing", 1), ("opening", -1))}
+        return {way: self.reserve / max(dip(sign * change), 1e-12) for way, sign in (("closing", 1), ("opening", -1))}
 
 
 def half_sine(test: Shock) -> Array:
@@ -99,16 +100,31 @@ def half_sine(test: Shock) -> Array:
     return np.asarray(GRAVITY * test.acceleration * np.sin(np.pi * time / test.duration))
 
 
+def open_at_rest(component: Component, values: Values) -> bool:
+    """Tell whether the first contact of a position is open: a gap in place of overtravel."""
+    return float(values.get("contact.overtravel", component.start("contact.overtravel"))) < 0
+
+
 def respond(component: Component, values: Values, threshold: float) -> Response:
     """Have the component answer a pulse; `threshold` is the resistance (Ohm) above which the contact is interrupted."""
-    linear: Values = {"effects.contactLaw": "Bonded", "effects.chatter": False, "effects.extremes": False}
-    with component.started({**values, **linear}) as contact, contact.explained():
-        force, input_ = contact.references("contact.force"), contact.references("base.acceleration")
-        rest = contact.get("contact.force")
+    alone: Values = {"effects.secondContact": False, "effects.chatter": False, "effects.extremes": False}
+    is_open = open_at_rest(component, values)
+    law: Values = {"effects.contactLaw": "Hertz" if is_open else "Bonded"}
+    with component.started({**values, **alone, **law}) as contact, contact.explained():
+        read = contact.references("tip.displacement" if is_open else "contact.force")
+        input_ = contact.references("base.acceleration")
+        rest = contact.fmu.getReal(read)[0]
         natural = contact.get("preload.frequency")
-        lost = interrupting_force(contact.real("resistance.coefficient", "resistance.exponent"), threshold)
-        # Up within a step and down within the next, of any size, as the contact is bonded.
-        peak = 1.0 / STEP
+        if is_open:
+            reserve = -contact.get("preload.indentation")
+            # A velocity (m/s) that moves a contact of more than 10 Hz by less than a third of its gap.
+            size = 10 * reserve
+        else:
+            lost = interrupting_force(contact.real("resistance.coefficient", "resistance.exponent"), threshold)
+            # Of any size, as the contact is bonded.
+            reserve, size = rest - lost, 1.0
+        # Up within a step and down within the next.
+        peak = size / STEP
         answer: list[float] = []
         largest = calm = 1.0
         while calm >= CALM * largest:
@@ -122,14 +138,16 @@ def respond(component: Component, values: Values, threshold: float) -> Response:
                     contact.fmu.setReal(input_, [begin])
                     contact.fmu.setRealInputDerivatives(input_, [1], [(end - begin) / STEP])
                 contact.step(number * STEP, STEP)
-                answer.append(contact.fmu.getReal(force)[0] - rest)
+                answer.append((contact.fmu.getReal(read)[0] - rest) / size)
             calm, largest = max(map(abs, answer[-WATCHED:])), max(map(abs, answer))
     # The triangle begins one step before its peak, which the first of these is at.
     course = np.array(answer)
-    spectrum = np.fft.rfft(course, max(POINTS, len(course)))
-    frequency: Array = np.fft.rfftfreq(max(POINTS, len(course)), STEP).astype(np.float64)
+    # Lines close enough for the narrowest resonance, which the answer just shows.
+    count = max(POINTS, 4 * len(course))
+    spectrum = np.fft.rfft(course, count)
+    frequency: Array = np.fft.rfftfreq(count, STEP).astype(np.float64)
     return Response(
-        rest - lost, natural, frequency[frequency < 1e4],
+        reserve, natural, frequency[frequency < 1e4],
         (spectrum * STEP / np.sinc(frequency * STEP) ** 2)[frequency < 1e4], course,
     )  # fmt: skip
 
@@ -141,7 +159,7 @@ def interrupting_force(law: list[float], threshold: float) -> float:
 
 
 def margin(response: Response, test: Test, opening: float) -> float:
-    """Give the factor of the level of a test that interrupts."""
+    """Give the factor of the level of a test that fails, that is, interrupts or closes the contact for a time (s)."""
     match test:
         case Sine():
             return float(response.sine(test, opening)[1].min())

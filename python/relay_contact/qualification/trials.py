@@ -1,70 +1,120 @@
-"""The tests as the component runs them: steady vibration, shaped random vibration, shocks; levels that interrupt."""
+"""The tests as the component runs them: steady vibration, shaped random vibration, shocks; levels that fail."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from relay_contact.component import Array, Component, Contact, Values
 from relay_contact.figures import GRAVITY as G
-from relay_contact.qualification.response import Response
+from relay_contact.qualification.response import Response, open_at_rest
 from relay_contact.qualification.standards import Contacts, Random, Shock, Sine
 
 RESOLUTION = 1e-4  # of levels
 WATCHED = 10  # periods
+SAMPLES = 64  # of the gap of an open first contact in a period: 0.1 % of its least value may be missed
 PIECES = 16  # of a period of a rise, over each of which base.acceleration is linear
-SUDDEN = 3.0  # factor of its level from which on a vibration may start suddenly: the contact stays closed
-SHOWN = 400  # points of a course of force
+SUDDEN = 3.0  # factor of its level from which on a vibration may start suddenly: the contact does not fail
+SHOWN = 400  # points of a course of force or gap
 
-# Random vibration is simulated around the largest dips of the force in a record of it.
+# Random vibration is simulated around the largest dips of force or gap in a record of it.
 RECORD = 60.0  # s
 SAMPLE = 2e-5  # s
 DIPS = 3
 SEED = 1
 
 
+CLOSED, OPEN = "closed contact", "open contact"
+"""What may fail, by its state at rest: by an interruption and by a false make."""
+INTERRUPTIONS = ("chatter.count", "chatter.totalInterruption", "chatter.longestInterruption")
+MAKES = ("chatter.falseMakes", "chatter.totalFalseMake", "chatter.longestFalseMake")
+OTHER_MAKES = ("second.falseMakes", "second.totalFalseMake", "second.longestFalseMake")
+
+Lengths = dict[str, float]
+"""Length (s) of interruptions or makes that count, by contact, of those contacts that failed."""
+
+
 @dataclass(frozen=True)
 class Specimen:
-    """A contact in a position of its coil, monitored as a standard asks."""
+    """The contacts in a position of the coil, monitored as a standard asks."""
 
     component: Component
     values: Values
     contacts: Contacts
     response: Response
 
+    @cached_property
+    def is_open(self) -> bool:
+        """Whether the first contact is open at rest."""
+        return open_at_rest(self.component, self.values)
+
+    @property
+    def lasting(self) -> float:
+        """The shortest failure of the first contact (s)."""
+        return self.contacts.false_make if self.is_open else self.contacts.opening
+
+    @cached_property
+    def monitors(self) -> dict[str, tuple[str, str, str]]:
+        """The outputs that count failures, add up and compare their lengths, by contact."""
+        if self.is_open:
+            return {OPEN: MAKES}
+        second = self.values.get("effects.secondContact", False)
+        return {CLOSED: INTERRUPTIONS} | ({OPEN: OTHER_MAKES} if second else {})
+
     def start(self, values: Values) -> Contact:
-        """Give the contact at rest, with further parameters."""
+        """Give the contacts at rest, with further parameters."""
         monitored = {
             "chatter.minimumDuration": self.contacts.opening,
+            "second.minimumDuration": self.contacts.false_make,
             "chatter.resistanceThreshold": self.contacts.threshold,
         }
         return self.component.started({**monitored, **self.values, **values})
 
+    def left(self, contact: Contact) -> list[float]:
+        """Give the least force (N) of the closed contact in the last step, and gap (m) of the open one.
 
-def monitor(contact: Contact) -> tuple[int, float]:
-    """Give the number of interruptions so far that count, and the time (s) of all."""
-    return int(contact.get("chatter.count")), contact.get("chatter.totalInterruption")
+        The gap of an open first contact is that at the end of the step.
+        """
+        if self.is_open:
+            return [contact.get("tip.displacement") - contact.get("contact.overtravel")]
+        return contact.real("step.minimumForce", "step.minimumGap")[: len(self.monitors)]
+
+    def course(self, contact: Contact) -> float:
+        """Give the force (N) of the closed contact less that of the open one, or the gap (m) of a lone open contact."""
+        if self.is_open:
+            return self.left(contact)[0]
+        first, second = contact.real("contact.force", "second.force")
+        return first - second
+
+    def longest(self, contact: Contact) -> Lengths:
+        """Give the longest failure so far, by contact."""
+        return {name: contact.get(each[2]) for name, each in self.monitors.items() if contact.get(each[0])}
 
 
-def threshold(interrupts: Callable[[float], bool], guess: float) -> float:
-    """Give the least factor of a level that interrupts: from a guess outwards, then by bisection."""
+def threshold(fails: Callable[[float], Lengths], guess: float) -> tuple[float, list[str]]:
+    """Give the least factor of a level that fails, and which contacts: from a guess outwards, then by bisection."""
     low, high = guess / 1.01, guess * 1.01
-    while interrupts(low):
-        low, high = low / 1.1, low
+    failed: Lengths = {}
+    while found := fails(low):
+        low, high, failed = low / 1.1, low, found
         if low < 1e-3 * guess:
-            return low
-    while not interrupts(high):
+            return low, list(failed)
+    while not failed and not (failed := fails(high)):
         low, high = high, high * 1.1
         if high > 1e3 * guess:
-            return high
+            return high, []
     while high > (1 + RESOLUTION) * low:
         middle = (low * high) ** 0.5
-        low, high = (low, middle) if interrupts(middle) else (middle, high)
-    return high
+        if found := fails(middle):
+            high, failed = middle, found
+        else:
+            low = middle
+    return high, list(failed)
 
 
-def steady(specimen: Specimen, frequency: float, amplitude: float, gently: bool) -> tuple[int, float, float]:
-    """Vibrate until the start is forgotten; give interruptions, their mean length (s) and the least force (N) then.
+def steady(specimen: Specimen, frequency: float, amplitude: float, gently: bool) -> tuple[Lengths, list[float]]:
+    """Vibrate until the start is forgotten; give the mean length of failures, and what is left at least, then.
 
     Gently: raised from rest.
     """
@@ -76,56 +126,75 @@ def steady(specimen: Specimen, frequency: float, amplitude: float, gently: bool)
             contact.rise(frequency, amplitude, periods, PIECES)
             time = periods / frequency
         contact.step(time, periods / frequency)
-        before = monitor(contact)
-        contact.step(time + periods / frequency, WATCHED / frequency)
-        now = monitor(contact)
-        count = now[0] - before[0]
-        return count, (now[1] - before[1]) / count if count else 0.0, contact.get("step.minimumForce")
+
+        def failures() -> dict[str, tuple[int, float]]:
+            return {
+                name: (int(contact.get(count)), contact.get(total))
+                for name, (count, total, _) in specimen.monitors.items()
+            }
+
+        before = failures()
+        time += periods / frequency
+        pieces = WATCHED * (SAMPLES if specimen.is_open else 1)
+        step = 1 / frequency * WATCHED / pieces
+        left = []
+        for piece in range(pieces):
+            contact.step(time + piece * step, step)
+            left.append(specimen.left(contact))
+        lengths = {}
+        for name, (count, total) in failures().items():
+            known, length = before[name]
+            if count > known:
+                lengths[name] = (total - length) / (count - known)
+        return lengths, np.min(left, axis=0).tolist()
 
 
-def sweep(specimen: Specimen, test: Sine, frequencies: Array) -> Array:
-    """Vibrate at frequencies of a sweep; give rows of frequency (Hz) and what `steady` gives."""
-    known, factors = specimen.response.sine(test, specimen.contacts.opening)
+def sweep(specimen: Specimen, test: Sine, frequencies: Array) -> list[tuple[Lengths, list[float]]]:
+    """Vibrate at frequencies (Hz) of a sweep; give what `steady` gives at each."""
+    known, factors = specimen.response.sine(test, specimen.lasting)
     rows = []
     for frequency, factor in zip(frequencies, np.interp(frequencies, known, factors), strict=True):
         amplitude = float(test.amplitude(np.array(frequency)))
-        rows.append([frequency, *steady(specimen, float(frequency), amplitude, factor < SUDDEN)])
-    return np.array(rows)
+        rows.append(steady(specimen, float(frequency), amplitude, factor < SUDDEN))
+    return rows
 
 
-def sine_threshold(specimen: Specimen, test: Sine, frequency: float, guess: float) -> float:
-    """Give the factor of the level that interrupts in steady vibration at a frequency (Hz)."""
+def sine_threshold(specimen: Specimen, test: Sine, frequency: float, guess: float) -> tuple[float, list[str]]:
+    """Give the factor of the level that fails in steady vibration at a frequency (Hz), and which contacts."""
     amplitude = float(test.amplitude(np.array(frequency)))
-    return threshold(lambda factor: steady(specimen, frequency, factor * amplitude, True)[0] > 0, guess)
+    return threshold(lambda factor: steady(specimen, frequency, factor * amplitude, True)[0], guess)
 
 
-def shock(specimen: Specimen, test: Shock, factor: float, points: int = 1) -> tuple[int, float, Array]:
-    """Run a shock of a factor of its level, negative: opens the contact; observe for as long again, or until calm.
+def shock(specimen: Specimen, test: Shock, factor: float, points: int = 1) -> tuple[Lengths, Array]:
+    """Run a shock of a factor of its level, negative: opens the first contact.
 
-    Give the interruptions, the longest (s), and rows of time (s), force and least force since the last row (N).
+    It is observed until calm. Give the longest failures, and rows of time (s), force or gap, and what was left at least
+    since the last row: so many in three times the length of the shock, and one at the end.
     """
     pulse: Values = {
         "effects.excitation": "HalfSine",
         "excitation.amplitude": factor * G * test.acceleration,
         "excitation.duration": test.duration,
     }
-    length = test.duration + max(test.duration, specimen.response.settling())
+    end = max(3 * test.duration, test.duration + specimen.response.settling())
     with specimen.start(pulse) as contact, contact.explained():
-        force = contact.get("contact.force")
-        rows = [[0.0, force, force]]
-        for number in range(points):
-            contact.step(number * length / points, length / points)
-            rows.append([(number + 1) * length / points, *contact.real("contact.force", "step.minimumForce")])
-        return int(contact.get("chatter.count")), contact.get("chatter.longestInterruption"), np.array(rows)
+        rows = []
+        time = 0.0
+        for instant in [*np.linspace(0, 3 * test.duration, points + 1)[1:], end]:
+            if instant > time:
+                contact.step(time, instant - time)
+                time = float(instant)
+                rows.append([time, specimen.course(contact), *specimen.left(contact)])
+        return specimen.longest(contact), np.array(rows)
 
 
-def shock_threshold(specimen: Specimen, test: Shock, sign: float, guess: float) -> float:
-    """Give the factor of the level that interrupts in a direction."""
-    return threshold(lambda factor: shock(specimen, test, sign * factor)[0] > 0, guess)
+def shock_threshold(specimen: Specimen, test: Shock, sign: float, guess: float) -> tuple[float, list[str]]:
+    """Give the factor of the level that fails in a direction, and which contacts."""
+    return threshold(lambda factor: shock(specimen, test, sign * factor)[0], guess)
 
 
 def record(specimen: Specimen, test: Random) -> tuple[Array, Array]:
-    """Give random acceleration (m/s2) at every sample, and the change of force (N) by linear theory.
+    """Give random acceleration (m/s2) at every sample, and the change of force (N) or gap (m) by linear theory.
 
     The acceleration is the sum of sines a sixtieth of a Hz apart with normally distributed amplitudes; between samples
     it is linear, for which the amplitudes are raised.
@@ -137,12 +206,12 @@ def record(specimen: Specimen, test: Random) -> tuple[Array, Array]:
     spectrum = amplitude * (normal[0] + 1j * normal[1])
     known = specimen.response
     transfer = np.interp(frequency, known.frequency, known.transfer)
-    force = np.fft.irfft(spectrum * transfer, count)
-    return np.fft.irfft(spectrum / np.sinc(frequency * SAMPLE) ** 2, count), force
+    change = np.fft.irfft(spectrum * transfer, count)
+    return np.fft.irfft(spectrum / np.sinc(frequency * SAMPLE) ** 2, count), change
 
 
-def window(specimen: Specimen, acceleration: Array, factor: float) -> tuple[int, float, Array]:
-    """Run part of a record, its first half as a rise; give interruptions, the longest (s), force and least (N)."""
+def window(specimen: Specimen, acceleration: Array, factor: float) -> tuple[Lengths, Array]:
+    """Run part of a record, its first half as a rise; give the longest failures, and rows of force or gap and least."""
     rise = len(acceleration) // 2
     shape = np.ones(len(acceleration))
     shape[:rise] = (1 - np.cos(np.pi * np.arange(rise) / rise)) / 2
@@ -152,21 +221,21 @@ def window(specimen: Specimen, acceleration: Array, factor: float) -> tuple[int,
         for number in range(len(course) - 1):
             contact.change("base.acceleration", course[number], course[number + 1], SAMPLE)
             contact.step(number * SAMPLE, SAMPLE)
-            rows.append(contact.real("contact.force", "step.minimumForce"))
-        return int(contact.get("chatter.count")), contact.get("chatter.longestInterruption"), np.array(rows)
+            rows.append([specimen.course(contact), *specimen.left(contact)])
+        return specimen.longest(contact), np.array(rows)
 
 
 def dips(specimen: Specimen, test: Random) -> list[tuple[Array, float]]:
-    """Give the acceleration around the largest dips of a record, and the factors that interrupt by linear theory."""
-    acceleration, force = record(specimen, test)
+    """Give the acceleration around the largest dips of a record, and the factors that fail by linear theory."""
+    acceleration, change = record(specimen, test)
     after = round(2e-3 / SAMPLE)
     before = 2 * round(max(specimen.response.settling(), 5e-3) / SAMPLE)
     _, mean = specimen.response.moments(test)
-    needed = specimen.response.preload * (1 + (np.pi * mean * specimen.contacts.opening) ** 2 / 2)
+    needed = specimen.response.reserve * (1 + (np.pi * mean * specimen.lasting) ** 2 / 2)
     found = []
-    force[:before] = force[-after:] = 0.0
+    change[:before] = change[-after:] = 0.0
     for _ in range(DIPS):
-        at = int(force.argmin())
-        found.append((acceleration[at - before : at + after], float(needed / -force[at])))
-        force[max(0, at - before) : at + before] = 0.0
+        at = int(change.argmin())
+        found.append((acceleration[at - before : at + after], float(needed / -change[at])))
+        change[max(0, at - before) : at + before] = 0.0
     return found
