@@ -402,6 +402,7 @@ fn blow(scene: &Scene, section: &Section, hertz: &Hertz) -> Blow {
         ContactLawKind::Linearised | ContactLawKind::Bonded => bending_force(scene, section),
     };
     Blow {
+        mass_damping: scene.beam.mass_damping,
         stiffness_damping: scene.beam.stiffness_damping,
         contact_stiffness: hertz.tangent_stiffness(hertz.indentation(force)),
         contact_damping: hertz.damping,

@@ -1,10 +1,9 @@
-//! The component, through its Rust library: one call per cell of the grid.
+//! The component as its users run it: through its C interface, watched for interruptions and extremes, one communication
+//! step per cell of the grid, force and instants read after each.
 
 use cpu_time::ThreadTime;
-
-use relay_contact::inputs::Inputs;
-use relay_contact::simulation::Simulation;
-use relay_contact::variables::RealOutput;
+use relay_contact::fmi2::{fmi2OK, fmi2Status};
+use testing::instance::{Instance, vr};
 
 use crate::integrator::{Failure, Integrator, Run, Setting};
 use crate::problem::Problem;
@@ -20,34 +19,43 @@ impl Integrator for Component {
     fn run(&self, problem: &Problem, setting: Setting) -> Result<Run, Failure> {
         let mut scene = problem.model.scene().clone();
         scene.solver.tolerance = setting.value();
-        let stopped = |error: &dyn std::fmt::Display| Failure::Stopped(error.to_string());
-        let mut inputs = Inputs::default();
-        let mut simulation = Simulation::new(&scene, &inputs, 0.0).map_err(|error| stopped(&error))?;
+        let contact = Instance::new();
+        contact.set_scene(&scene);
+        let check = |status: fmi2Status| {
+            (status == fmi2OK)
+                .then_some(())
+                .ok_or_else(|| Failure::Stopped(format!("{:?}", contact.messages())))
+        };
+        check(contact.setup(None, 0.0, None))?;
+        contact.initialize();
+        let read = ["contact.force", "contact.lastOpening", "contact.lastClosing"].map(vr);
+        let support = [vr("support.displacement")];
         let mut forces = Vec::with_capacity(problem.cells as usize + 1);
         let mut events: Vec<f64> = Vec::with_capacity(1000);
         let size = problem.end / f64::from(problem.cells);
 
         let start = ThreadTime::now();
-        forces.push(simulation.real(RealOutput::ContactForce));
+        forces.push(contact.reals_of(read)[0]);
         for cell in 0..problem.cells {
-            let time = problem.instant(cell);
-            inputs.support_displacement = problem.support_rate * problem.instant(cell + 1);
-            simulation.step(&inputs, time, size).map_err(|error| stopped(&error))?;
-            forces.push(simulation.real(RealOutput::ContactForce));
-            let mut last = [RealOutput::ContactLastOpening, RealOutput::ContactLastClosing].map(|o| simulation.real(o));
-            last.sort_by(f64::total_cmp);
+            if problem.support_rate != 0.0 {
+                check(contact.set_reals_of(support, [problem.support_rate * problem.instant(cell + 1)]))?;
+            }
+            check(contact.step(problem.instant(cell), size))?;
+            let [force, opening, closing] = contact.reals_of(read);
+            forces.push(force);
             let seen = events.last().copied().unwrap_or(-1.0);
+            let last = [opening.min(closing), opening.max(closing)];
             events.extend(last.into_iter().filter(|event| *event > seen));
         }
-        let cpu = start.elapsed().as_secs_f64();
-        let state = simulation.state();
+        let time = start.elapsed().as_secs_f64();
+        let count = |name| u64::try_from(contact.integer(name)).unwrap_or_default();
         Ok(Run {
             forces,
             events,
-            time: cpu,
-            steps: state.steps,
-            rejected: state.rejected_steps,
-            iterations: state.iterations,
+            time,
+            steps: count("solver.steps"),
+            rejected: count("solver.rejectedSteps"),
+            iterations: count("solver.iterations"),
         })
     }
 }

@@ -39,6 +39,13 @@ pub struct Row {
     pub outcome: Result<Measured, Failure>,
 }
 
+impl Row {
+    /// Whether the contact opens or closes.
+    pub fn opens(&self) -> bool {
+        !self.case.reference.events.is_empty()
+    }
+}
+
 /// A completed run, measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {

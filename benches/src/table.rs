@@ -17,7 +17,8 @@ type Error = fn(&Measured) -> Option<f64>;
 /// All tables, with machine, date and failed runs.
 pub fn report(rows: &[Row]) -> String {
     let mut text = format!(
-        "Measured on: {}.\n\nThe component, with modes chosen automatically:\n\n{}\nCompared with other integrators, \
+        "Measured on: {}.\n\nThe component, with modes chosen automatically: error of the contact force relative to the preload and \
+         of the opening durations, number of modes, processor time per simulated second:\n\n{}\nCompared with other integrators, \
          on the same modes. Each cell: processor time per simulated second of the fastest run whose error is at most that of the \
          column, and in brackets its ratio to that of the component.\n",
         crate::machine::description(),
@@ -37,62 +38,53 @@ pub fn report(rows: &[Row]) -> String {
         " s",
         instants,
     );
-    for (scene, (quantity, levels, unit, error)) in [
-        ("paper", of_force),
-        ("linear", of_force),
-        ("chatter", of_force),
-        ("closing bounce", of_force),
-        ("chatter", of_instants),
-        ("closing bounce", of_instants),
-    ] {
-        let _ = write!(text, "\nScene *{scene}*, error of the {quantity}:\n\n");
-        text += &ratios(rows, scene, &levels, unit, error);
+    let scenes = scenes(rows);
+    for (quantity, levels, unit, error) in [of_force, of_instants] {
+        let seen = |scene: &&str| rows.iter().any(|row| row.case.problem.name == *scene && row.opens());
+        for scene in scenes.iter().filter(|scene| unit.is_empty() || seen(scene)) {
+            let _ = write!(text, "\nScene *{scene}*, error of the {quantity}:\n\n");
+            text += &ratios(rows, scene, &levels, unit, error);
+        }
     }
     text += "\nFailed runs:\n\n";
     let failures = failures(rows);
     text + if failures.is_empty() { "- none\n" } else { &failures }
 }
 
+/// The scenes, in the order of their rows.
+fn scenes(rows: &[Row]) -> Vec<&'static str> {
+    let mut names: Vec<&str> = rows.iter().map(|row| row.case.problem.name).collect();
+    names.dedup();
+    names
+}
+
 /// The component at each tolerance, with modes chosen automatically, compared with a reference of many modes.
 fn delivered(rows: &[Row]) -> String {
-    let rows: Vec<&Row> = rows.iter().filter(|row| row.case.part == DELIVERED).collect();
+    let (names, rows) = (scenes(rows), rows.iter().filter(|row| row.case.part == DELIVERED));
+    let rows: Vec<&Row> = rows.collect();
     let mut tolerances: Vec<f64> = rows.iter().map(|row| row.case.setting.value()).collect();
     tolerances.sort_by(|a, b| b.total_cmp(a));
     tolerances.dedup();
-    let found = |scene: &str, tolerance: f64| -> Option<(usize, Measured)> {
-        let row = rows
-            .iter()
-            .find(|row| row.case.problem.name == scene && row.case.setting.value() == tolerance)?;
-        Some((row.modes, *row.outcome.as_ref().ok()?))
-    };
-    let mut text = String::from(
-        "| tolerance | modes | force error, paper | force error, chatter | force error, closing bounce | opening durations, \
-         chatter | opening durations, closing bounce | time per simulated s, paper | chatter |\n|---|",
+    let mut text = format!(
+        "| tolerance | {} |\n|---|{}\n",
+        names.join(" | "),
+        "---:|".repeat(names.len())
     );
-    text.push_str(&"---:|".repeat(8));
-    text.push('\n');
     for tolerance in tolerances {
-        let [paper, chatter, bounce] = ["paper", "chatter", "closing bounce"].map(|scene| found(scene, tolerance));
-        let force = |run: Option<(usize, Measured)>| {
-            run.map_or("failed".to_owned(), |(_, run)| format!("{:.0e}", run.force_error))
-        };
-        let duration = |run: Option<(usize, Measured)>| {
-            run.and_then(|(_, run)| run.duration_error)
-                .map_or("failed".to_owned(), |error| format!("{:.0e} µs", 1e6 * error))
-        };
-        let cost = |run: Option<(usize, Measured)>| run.map_or("failed".to_owned(), |(_, run)| seconds(run.cost));
-        let _ = writeln!(
-            text,
-            "| {tolerance:.0e} | {} | {} | {} | {} | {} | {} | {} | {} |",
-            paper.map_or(0, |(modes, _)| modes),
-            force(paper),
-            force(chatter),
-            force(bounce),
-            duration(chatter),
-            duration(bounce),
-            cost(paper),
-            cost(chatter),
-        );
+        let _ = write!(text, "| {tolerance:.0e} |");
+        for name in &names {
+            let case = |row: &&&Row| row.case.problem.name == *name && row.case.setting.value() == tolerance;
+            let found = rows.iter().find(case);
+            let cell = found.and_then(|row| Some((row.modes, row.outcome.as_ref().ok()?)));
+            let cell = cell.map_or("failed".to_owned(), |(modes, run)| {
+                let error = run.duration_error.filter(|_| run.events > 0);
+                let durations = error.map_or(String::new(), |error| format!("{:.0e} µs, ", 1e6 * error));
+                let cost = seconds(run.cost);
+                format!("{:.0e}, {durations}{modes} modes, {cost}", run.force_error)
+            });
+            let _ = write!(text, " {cell} |");
+        }
+        text.push('\n');
     }
     text
 }

@@ -35,6 +35,11 @@ impl Section {
         (std::f64::consts::PI / (2.0 * self.length)).powi(2) * self.bending_stiffness
     }
 
+    /// Rate of its bending waves, the root of E I / (rho A L^4), 1/s: 3.516 of it is the first angular frequency without rivet.
+    pub fn rate(&self) -> f64 {
+        (self.bending_stiffness / self.mass_per_length).sqrt() / (self.length * self.length)
+    }
+
     /// Tip stiffness 3 E I / L^3 without axial force, N/m.
     pub fn tip_stiffness(&self) -> f64 {
         3.0 * self.bending_stiffness / self.length.powi(3)

@@ -138,7 +138,12 @@ impl Instance {
 
     /// `fmi2SetReal`.
     pub fn set_reals<const N: usize>(&self, names: [&str; N], values: [f64; N]) -> fmi2Status {
-        unsafe { fmi2SetReal(self.component, names.map(vr).as_ptr(), N, values.as_ptr()) }
+        self.set_reals_of(names.map(vr), values)
+    }
+
+    /// The same by value references, where time is measured.
+    pub fn set_reals_of<const N: usize>(&self, references: [fmi2ValueReference; N], values: [f64; N]) -> fmi2Status {
+        unsafe { fmi2SetReal(self.component, references.as_ptr(), N, values.as_ptr()) }
     }
 
     /// `fmi2SetReal` of one variable.
@@ -230,6 +235,14 @@ impl Instance {
         let (status, value) = self.try_real(name);
         assert_eq!(status, fmi2OK, "{name}: {:?}", self.log);
         value
+    }
+
+    /// The values of real variables by value references, where time is measured.
+    pub fn reals_of<const N: usize>(&self, references: [fmi2ValueReference; N]) -> [f64; N] {
+        let mut values = [f64::NAN; N];
+        let status = unsafe { fmi2GetReal(self.component, references.as_ptr(), N, values.as_mut_ptr()) };
+        assert_eq!(status, fmi2OK, "{:?}", self.log);
+        values
     }
 
     /// The value of an integer variable.

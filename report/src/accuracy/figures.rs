@@ -4,11 +4,13 @@ use super::rows::{Relay, Row, of};
 use crate::content::{Axis, Curve, Figure, Style};
 
 /// The scenes, with the anchor of the figure of each.
-pub const SCENES: [(&str, &str); 4] = [
+pub const SCENES: [(&str, &str); 6] = [
     ("paper", "accuracy-paper"),
-    ("chatter", "accuracy-chatter"),
-    ("closing bounce", "accuracy-closing-bounce"),
     ("linear", "accuracy-linear"),
+    ("chatter", "accuracy-chatter"),
+    ("chatter 3 %", "accuracy-chatter-3"),
+    ("chatter 0.3 %", "accuracy-chatter-03"),
+    ("closing bounce", "accuracy-closing-bounce"),
 ];
 
 /// Those in which the contact opens.

@@ -162,10 +162,11 @@ pub const EFFECTS: &[Effect] = &[
     Effect {
         name: "second contact",
         setting: &[("effects.secondContact", "true")],
-        reads: "contact.force,second.force",
+        // Reading its force as well would show what reading any output costs, not the effect.
+        reads: "contact.force",
         off: &[("effects.secondContact", "false")],
         matters: "where the spring may reach the other fixed contact of a changeover relay or a backstop: once the contact opens; out of \
-                  reach it changes nothing.",
+                  reach it changes nothing. Measured out of reach, without reading its outputs.",
         ..NOTHING
     },
 ];
