@@ -9,7 +9,7 @@ use relay_contact::variables::{ContactLawKind, ExcitationKind, IntegerOutput};
 use crate::problem::Problem;
 
 /// Number of modes of the references that represent the continuum.
-pub const MANY_MODES: i32 = 32;
+pub const MANY_MODES: i32 = 64;
 
 /// The published case: 98 m/s2 at 1000 Hz, 50 ms; the contact stays closed.
 ///

@@ -11,6 +11,10 @@
 /// errors add up. Pinned: × 100, `tests/calibration.rs`.
 pub const SHARE: f64 = 0.004;
 
+/// Tolerance of steps where a looser one is asked, 1: with that, first guesses are poor and more steps are rejected, so that
+/// the work grows. Cost.
+pub const LOOSEST: f64 = 1e-2;
+
 /// Factor on the length that the error estimate allows, 1. Chosen, as usual in step size control. Not pinned by a test.
 pub const SAFETY: f64 = 0.9;
 

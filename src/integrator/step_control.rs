@@ -5,8 +5,8 @@ use crate::excitation::drive::Drive;
 use crate::integrator::attempt::{growth, shrinkage};
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::constants::{
-    AFTER_REJECTION, COARSEST, GROWING, LEAST_SHRINK, LONGER, MOST_SHRINK, NEXT_LENGTH, REFUSALS, SAFETY, SHARE,
-    SMOOTH, WORTH,
+    AFTER_REJECTION, COARSEST, GROWING, LEAST_SHRINK, LONGER, LOOSEST, MOST_SHRINK, NEXT_LENGTH, REFUSALS, SAFETY,
+    SHARE, SMOOTH, WORTH,
 };
 use crate::integrator::energy::conservation::conserves;
 use crate::integrator::events::Cut;
@@ -37,7 +37,7 @@ pub(crate) fn advance(
 ) -> Result<(), StepError> {
     let (model, other) = model.views(state);
     let drive = drive.seen(state);
-    let tolerance = model.tolerance();
+    let tolerance = model.tolerance().min(LOOSEST * model.force_scale());
     let (grid, dense) = match steps {
         Steps::Exactly { time, size } => {
             exact_step::leave_before_rest(model, state, &drive, tolerance);
