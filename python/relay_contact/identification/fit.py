@@ -19,13 +19,20 @@ from relay_contact.identification.prediction import Laboratory, Ringing
 ROUGH = 0.05
 """Scatter, as a part of the value (of the largest, in static force and ring-down), until it is known."""
 STEP = 1e-4  # of a logarithm, for derivatives
-NEAR = 3e-3  # change of the logarithms below which derivatives are not computed again
+NEAR, FAR = 3e-3, 2e-2
+"""Change of the logarithms below which derivatives stay: with the periods of ring-downs, and before."""
+ENOUGH, ROUGHLY = 1e-6, 1e-3
+"""Relative changes of the sum of squares at which a search ends, and 100 times those of the logarithms."""
 ROUNDS, CHANGE = 5, 0.02  # of the estimate of the scatter, until it changes by less
 TINY = 1e-8  # sensitivity, as a part of the largest, below which there is none
 ALL = 1.96  # standard deviations within which 95 % of a normal distribution lie
 ENDS = {"low": -1.0, "high": 1.0}
 """Of the search; its signs are the ends of the logarithm of a calibration."""
 FREE = 3  # of a ring-down: size, phase and offset
+
+
+Derivatives = tuple[Array, Array]
+"""Of the residuals by the logarithms, after these."""
 
 
 @dataclass(frozen=True)
@@ -165,13 +172,14 @@ class Fit:
             found.append(np.log([frequency / shape.frequency, decay / modelled]) / [1e-3, 0.05])
         return np.concatenate([*found, self.beliefs(logarithms)])
 
-    def search(self, residuals: Callable[[Array], Array]) -> Array:
-        """Find the least squares from where the search is; give the derivatives there."""
-        last: tuple[Array, Array] | None = None
+    def search(
+        self, residuals: Callable[[Array], Array], near: float, enough: float, last: Derivatives | None = None
+    ) -> Derivatives:
+        """Find the least squares from where the search is; give the derivatives there, and where exactly."""
 
         def jacobian(at: Array) -> Array:
             nonlocal last
-            if last is None or np.abs(at - last[0]).max() > NEAR:
+            if last is None or np.abs(at - last[0]).max() > near:
                 here = residuals(at)
                 steps = STEP * np.eye(len(at))
                 last = at.copy(), np.column_stack([(residuals(at + step) - here) / STEP for step in steps])
@@ -180,17 +188,22 @@ class Fit:
         free = len(self.logarithms) - len(self.unknowns)
         bounds = [[getattr(each, end) for each in self.unknowns] + [sign] * free for end, sign in ENDS.items()]
         found = least_squares(
-            residuals, self.logarithms, jacobian, bounds=tuple(bounds), xtol=1e-7, ftol=1e-8, gtol=1e-10, max_nfev=40
+            residuals, self.logarithms, jacobian, bounds=tuple(bounds), ftol=enough, xtol=100 * enough, max_nfev=40
         )
         self.logarithms = found.x
-        return jacobian(found.x)
+        jacobian(found.x)
+        assert last is not None
+        return last
 
     def run(self) -> None:
         """Find unknowns and scatter together."""
         if self.ringing:
-            self.search(self.features)
+            self.search(self.features, FAR, ROUGHLY)
+        last = None
         for _ in range(ROUNDS):
-            self.jacobian = self.search(self.residuals)
+            last = self.search(self.residuals, NEAR, ENOUGH, last)
+            self.jacobian = last[1]
+            # It scales the derivatives too.
             if self.estimate() < CHANGE:
                 break
 

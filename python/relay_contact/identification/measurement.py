@@ -67,6 +67,11 @@ class Measurement:
     """Parameters of the component."""
 
     @property
+    def conditions(self) -> tuple[object, ...]:
+        """Give all that a prediction depends on, beside the parameters of the component."""
+        return self.kind, self.quantity, self.is_open, self.over.tobytes(), self.acceleration.tobytes()
+
+    @property
     def name(self) -> str:
         """Give how it is called."""
         return f"{self.kind}, {self.path.name}"

@@ -29,7 +29,7 @@ KNOCK = 1e-4  # m, by about which a knock moves the spring, 1 % of its distance 
 SETTLED, PERIODS, MOST = 1e-6, 64, 2**22
 """Change of an amplitude between two times, of which the second is twice the first, twice in a row; periods before the
 first of them, and at most."""
-KEPT = 64  # predictions
+KEPT = 256  # predictions
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ class Laboratory:
     def predict(self, measurement: Measurement, values: Values) -> Array | Ringing:
         """Give the values that the component has in place of those measured."""
         asked = self.conditions(measurement, values)
-        key = (measurement.path, *sorted(asked.items()))
+        key = (*measurement.conditions, *sorted(asked.items()))
         if key not in self.known:
             if len(self.known) >= KEPT:
                 self.known.pop(next(iter(self.known)))

@@ -218,7 +218,7 @@ def curve(fit: Fit, each: Set, model: Array) -> tuple[Array, Array]:
     over = np.linspace(own.over.min(), own.over.max(), DRAWN)
     acceleration = between(own.acceleration, over) if len(own.acceleration) else own.acceleration
     factor = between(each.factor, over) if isinstance(each.factor, np.ndarray) else each.factor
-    denser = replace(own, over=over, acceleration=acceleration, path=own.path / "drawn")
+    denser = replace(own, over=over, acceleration=acceleration)
     return over, fit.modelled(replace(each, measurement=denser, factor=factor), fit.logarithms)
 
 
