@@ -24,6 +24,7 @@ write the relay's file with them, and a page. The columns of a file tell what wa
   time [ms],displacement [um]                     ring-down of the spring off its contact (or velocity; or force)
   frequency [Hz],acceleration [g],force [cN]      frequency response (or displacement, velocity)
   frequency [Hz],level [g]                        level of a sine from which on the contact chatters
+  speed [mm/s],bounce [us]                        first bounce after the contact closed at a constant speed
 
 Lines before the columns may say: # position = coil energised   # contact = closed   # calibration = 0.01
 or set a parameter of the component for this measurement: # chatter.minimumDuration = 1e-6

@@ -13,10 +13,10 @@ TRUTH: dict[str, float] = {
 AWAY: Values = {"contact.overtravel": -1e-2}
 SCATTER = {"force": 0.005, "ring": 0.01, "response": 0.03, "chatter": 0.03}
 """Standard deviations: of the largest force, of the first deflection, and of each amplitude and level."""
-TRAVEL = np.linspace(-1e-4, 2e-4, 10)
-TIME = np.linspace(2e-3, 22e-3, 160)
-FREQUENCY = np.linspace(400.0, 2200.0, 12)
-LEVELS = np.linspace(600.0, 1600.0, 8)
+TRAVEL = np.linspace(-1e-4, 2e-4, 7)
+TIME = np.linspace(2e-3, 22e-3, 120)
+FREQUENCY = np.linspace(400.0, 2200.0, 9)
+LEVELS = np.linspace(600.0, 1600.0, 6)
 OPENING, RESISTANCE = 10e-6, 60.0
 
 

@@ -13,16 +13,17 @@ from scipy.optimize import least_squares
 from scipy.stats import t as student
 
 from relay_contact.component import Array, Values
-from relay_contact.identification.measurement import RELATIVE, RINGDOWN, Measurement
+from relay_contact.identification.measurement import BOUNCE, RELATIVE, RINGDOWN, Measurement
 from relay_contact.identification.prediction import Laboratory, Ringing
 
 ROUGH = 0.05
 """Scatter, as a part of the value (of the largest, in static force and ring-down), until it is known."""
-STEP = 1e-4  # of a logarithm, for derivatives
+STEP = 3e-4  # of a logarithm, for derivatives
 NEAR, FAR = 3e-3, 2e-2
 """Change of the logarithms below which derivatives stay: with the periods of ring-downs, and before."""
 ENOUGH, ROUGHLY = 1e-6, 1e-3
 """Relative changes of the sum of squares at which a search ends, and 100 times those of the logarithms."""
+STARTS = tuple(np.arange(1.0, -5.5, -0.5))  # logarithms of contact.damping at which bounces are tried
 ROUNDS, CHANGE = 5, 0.02  # of the estimate of the scatter, until it changes by less
 TINY = 1e-8  # sensitivity, as a part of the largest, below which there is none
 ALL = 1.96  # standard deviations within which 95 % of a normal distribution lie
@@ -188,7 +189,14 @@ class Fit:
         free = len(self.logarithms) - len(self.unknowns)
         bounds = [[getattr(each, end) for each in self.unknowns] + [sign] * free for end, sign in ENDS.items()]
         found = least_squares(
-            residuals, self.logarithms, jacobian, bounds=tuple(bounds), ftol=enough, xtol=100 * enough, max_nfev=40
+            residuals,
+            self.logarithms,
+            jacobian,
+            bounds=tuple(bounds),
+            ftol=enough,
+            xtol=100 * enough,
+            gtol=None,
+            max_nfev=40,
         )
         self.logarithms = found.x
         jacobian(found.x)
@@ -197,6 +205,7 @@ class Fit:
 
     def run(self) -> None:
         """Find unknowns and scatter together."""
+        self.look_around()
         if self.ringing:
             self.search(self.features, FAR, ROUGHLY)
         last = None
@@ -206,6 +215,20 @@ class Fit:
             # It scales the derivatives too.
             if self.estimate() < CHANGE:
                 break
+
+    def look_around(self) -> None:
+        """Begin where the contact bounces as measured: where it does not at all, a search finds no way to it."""
+        bounces = [each for each in self.sets if each.measurement.kind == BOUNCE]
+        damping = [number for number, each in enumerate(self.unknowns) if each.name == "contact.damping"]
+        if not (bounces and damping):
+            return
+
+        def far(start: float) -> float:
+            at = self.logarithms.copy()
+            at[damping] = start
+            return sum(float((each.residuals(self.modelled(each, at)) ** 2).sum()) for each in bounces)
+
+        self.logarithms[damping] = min(STARTS, key=far)
 
     def slices(self) -> list[slice]:
         """Give the rows of each measurement."""

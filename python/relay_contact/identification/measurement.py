@@ -21,13 +21,14 @@ from relay_contact.figures import GRAVITY
 from relay_contact.files import RelayContactError
 
 FORCE, RINGDOWN, RESPONSE, CHATTER = "static force", "ring-down", "frequency response", "chatter level"
+BOUNCE = "bounce"
 MOVED = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}
 TIMES = {"s": 1.0, "ms": 1e-3, "us": 1e-6}
 ACCELERATIONS = {"m/s2": 1.0, "g": GRAVITY}
 UNITS = {
     "travel": MOVED, "displacement": MOVED, "time": TIMES, "frequency": {"Hz": 1.0, "kHz": 1e3},
     "force": {"N": 1.0, "cN": 1e-2, "mN": 1e-3, "gf": 1e-3 * GRAVITY}, "velocity": {"m/s": 1.0, "mm/s": 1e-3},
-    "acceleration": ACCELERATIONS, "level": ACCELERATIONS,
+    "acceleration": ACCELERATIONS, "level": ACCELERATIONS, "speed": {"m/s": 1.0, "mm/s": 1e-3}, "bounce": TIMES,
 }  # fmt: skip
 """Columns, and their units in SI; the first is that of a column without one."""
 MOTIONS = ("displacement", "velocity", "force")
@@ -36,12 +37,13 @@ KINDS = {
     RINGDOWN: (("time",), MOTIONS),
     RESPONSE: (("frequency", "acceleration"), MOTIONS),
     CHATTER: (("frequency",), ("level",)),
+    BOUNCE: (("speed",), ("bounce",)),
 }
 """What is measured: over which columns, and one of which."""
-RELATIVE = (RESPONSE, CHATTER)
+RELATIVE = (RESPONSE, CHATTER, BOUNCE)
 """Kinds whose scatter is in proportion to the value."""
 SIGNED = ("travel", "time", "force", "displacement", "velocity")
-FEWEST = {FORCE: 5, RINGDOWN: 20, RESPONSE: 5, CHATTER: 5}
+FEWEST = {FORCE: 5, RINGDOWN: 20, RESPONSE: 5, CHATTER: 5, BOUNCE: 5}
 
 
 @dataclass(frozen=True)
@@ -51,7 +53,7 @@ class Measurement:
     path: Path
     kind: str
     over: Array
-    """Travel (m) from the working position, time (s) or frequency (Hz)."""
+    """Travel (m) from the working position, time (s), frequency (Hz) or speed of closing (m/s)."""
     quantity: str
     unit: str
     """Of the quantity as it was measured."""

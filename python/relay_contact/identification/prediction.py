@@ -11,7 +11,7 @@ import numpy as np
 
 from relay_contact.component import Array, Component, Contact, Values
 from relay_contact.files import RelayContactError
-from relay_contact.identification.measurement import CHATTER, FORCE, RESPONSE, RINGDOWN, Measurement
+from relay_contact.identification.measurement import BOUNCE, CHATTER, FORCE, RESPONSE, RINGDOWN, Measurement
 from relay_contact.qualification.response import interrupting_force, respond
 from relay_contact.qualification.standards import Contacts
 from relay_contact.qualification.trials import Specimen, steady, threshold
@@ -22,13 +22,19 @@ ALONE: Values = {
 }  # fmt: skip
 AWAY: Values = {"contact.overtravel": -1e-2, "effects.contactLaw": "Hertz"}
 BONDED: Values = {"effects.contactLaw": "Bonded"}
-UNDAMPED: Values = {"beam.massDamping": 0.0, "beam.stiffnessDamping": 0.0, "contact.damping": 0.0}
+STATIC: Values = {
+    "beam.massDamping": 0.0, "beam.stiffnessDamping": 0.0, "contact.damping": 0.0, "solver.modes": 1,
+}  # fmt: skip
 """What a static force does not depend on is the same, so that it is not computed again."""
 OUTPUTS = {"displacement": "tip.displacement", "velocity": "tip.velocity", "force": "contact.force"}
+FORGOTTEN = 3.5  # periods after the begin of a knock, half a period long
 KNOCK = 1e-4  # m, by about which a knock moves the spring, 1 % of its distance from the contact
 SETTLED, PERIODS, MOST = 1e-6, 64, 2**22
 """Change of an amplitude between two times, of which the second is twice the first, twice in a row; periods before the
 first of them, and at most."""
+TOUCHING: Values = {"contact.overtravel": -1e-6, "solver.tolerance": 1e-8}
+"""Just before the contact closes; instants of openings are then located well within the steps of derivatives."""
+WATCHED, NOTHING = 5e-6, 1e-9  # s: less than a blow of the contact lasts; a bounce where there is none
 KEPT = 256  # predictions
 
 
@@ -64,7 +70,7 @@ class Laboratory:
         """Give the parameters of the component under which something was measured."""
         law = AWAY if measurement.is_open else BONDED
         if measurement.kind == FORCE:
-            law = UNDAMPED
+            law = STATIC
         found = {**values, **ALONE, **law, **measurement.settings}
         overtravel = float(found.get("contact.overtravel", self.component.start("contact.overtravel")))
         if law is BONDED and overtravel <= 0:
@@ -84,6 +90,7 @@ class Laboratory:
                 self.known.pop(next(iter(self.known)))
             how: dict[str, Callable[[Measurement, Values], Array | Ringing]] = {
                 FORCE: self.force, RINGDOWN: self.ringing, RESPONSE: self.amplitude, CHATTER: self.level,
+                BOUNCE: self.bounces,
             }  # fmt: skip
             self.known[key] = how[measurement.kind](measurement, asked)
         return self.known[key]
@@ -98,7 +105,7 @@ class Laboratory:
         return np.array(forces)
 
     def ringing(self, measurement: Measurement, values: Values) -> Ringing:
-        """Give the motion after a knock that mostly moves the first mode."""
+        """Give the motion some periods after a knock that mostly moved the first mode: nearly that mode alone."""
         self.contact.begin_anew(values)
         (frequency,) = self.contact.real("preload.frequency")
         knock: Values = {
@@ -109,7 +116,7 @@ class Laboratory:
         self.contact.begin_anew({**values, **knock})
         name = OUTPUTS[measurement.quantity]
         now, rows = 0.0, []
-        for time in 0.5 / frequency + measurement.over - measurement.over[0]:
+        for time in FORGOTTEN / frequency + measurement.over - measurement.over[0]:
             self.contact.step(now, time - now)
             now = time
             rows.append([*self.contact.real(name), *self.contact.rates(name), 1.0])
@@ -166,6 +173,25 @@ class Laboratory:
         reserve = preload - interrupting_force(law, monitor.threshold)
         longest = np.minimum(np.pi * measurement.over * monitor.opening, 1.5)
         return max(reserve, 1e-9) / (gains * np.cos(longest))
+
+    def bounces(self, measurement: Measurement, values: Values) -> Array:
+        """Give the lengths (s) of the first bounce after the fixed contact has met the spring at rest, at speeds."""
+        return np.array([self.bounce(float(speed), {**values, **TOUCHING}) for speed in measurement.over])
+
+    def bounce(self, speed: float, values: Values) -> float:
+        """Give the length (s) of the first bounce; nearly nothing if there is none within a period of the spring."""
+        self.contact.begin_anew(values)
+        now, opened = 0.0, -1.0
+        (frequency,) = self.contact.real("preload.frequency")
+        while now < 1 / frequency:
+            self.contact.change("support.displacement", speed * now, speed * (now + WATCHED), WATCHED)
+            self.contact.step(now, WATCHED)
+            now += WATCHED
+            opening, closing = self.contact.real("contact.lastOpening", "contact.lastClosing")
+            opened = opening if opened < 0 else opened
+            if 0 < opened < closing:
+                return closing - opened
+        return NOTHING
 
     def monitor(self, values: Values) -> Contacts:
         """Give what counts as an interruption."""

@@ -15,13 +15,17 @@ from relay_contact.figures import BLACK, BLUE, GREY, RED
 from relay_contact.html import STYLE, document, svg, table
 from relay_contact.identification import relay_file
 from relay_contact.identification.fit import Set
-from relay_contact.identification.measurement import FORCE, RELATIVE, RINGDOWN, UNITS
+from relay_contact.identification.measurement import BOUNCE, FORCE, RELATIVE, RINGDOWN, UNITS
 from relay_contact.identification.result import Found, Identification
 from relay_contact.spring import PREFIX
 
 FILES = ("identification.html", "identification.png", "identification.csv")
 HEAD = ("parameter", "in the file", "identified", "95 % interval", "±")
-OVER = {FORCE: ("travel from the working position [mm]", 1e3), RINGDOWN: ("time [ms]", 1e3)}
+OVER = {
+    FORCE: ("travel from the working position [mm]", 1e3),
+    RINGDOWN: ("time [ms]", 1e3),
+    BOUNCE: ("speed of closing [mm/s]", 1e3),
+}
 FREQUENCY = ("frequency [Hz]", 1.0)
 DENSE = 300  # values from which on points are drawn smaller
 NOTES = """Fitted by least squares, with the component as the model. The scatter of each measurement is that of its

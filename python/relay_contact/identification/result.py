@@ -15,7 +15,7 @@ from relay_contact.identification.prediction import Laboratory
 from relay_contact.qualification.relay import Relay
 from relay_contact.spring import PREFIX, STIFFNESS, known
 
-REACH = float(np.log(30.0))
+REACH = float(np.log(300.0))
 """Of the search, either way."""
 WIDE = 1.0
 """Half of a 95 % interval of a logarithm from which on a parameter is not determined: the value may be another."""
@@ -172,9 +172,7 @@ def reason(fit: Fit, number: int, relay: Relay) -> str:
     """Tell why a parameter is not determined, and what happens with it."""
     row = np.abs(fit.correlation[number])
     partners = [each.label for index, each in enumerate(fit.unknowns) if index != number and row[index] > TOGETHER]
-    # How much doubling or halving it changes the data, relative to their scatter.
-    felt = float(np.abs(fit.jacobian[:, number]).max())
-    why = "the data do not depend on it" if felt < 1e-3 else "the data hardly depend on it"
+    why = "the data hardly depend on it"
     if partners:
         why = f"the data tell it only together with {' and '.join(partners)}"
     part = relay.uncertainty.get(fit.unknowns[number].name)
