@@ -93,14 +93,17 @@ def run_scene(given: argparse.Namespace) -> None:
 def qualify_relay(given: argparse.Namespace) -> None:
     """Test a relay as a standard asks, and print the verdicts."""
     from relay_contact.qualification import qualify
-    from relay_contact.qualification.page import FILES, HEAD, cells
+    from relay_contact.qualification.page import FILES, HEAD, UNVERIFIED, cells, mark
 
     folder = given.out or Path(f"qualification-{Path(given.relay).stem}-{Path(given.standard).stem}")
     parts = qualify(
         given.relay, given.standard, out=folder, tests=given.test, quick=given.quick, cluster=given.cluster,
         component=Component(given.fmu), progress=sys.stderr.isatty(),
     )  # fmt: skip
-    print_table([["position", *HEAD], *([part["position"], *cells(part)] for part in parts)])
+    rows = [(part["position"], mark(part), cells(part)) for part in parts]
+    print_table([["position", *HEAD], *([place, cell[0] + star, *cell[1:]] for place, star, cell in rows)])
+    if any(star for _, star, _ in rows):
+        print(f"* {UNVERIFIED}")
     print(*(folder / name for name in FILES), sep="\n")
 
 

@@ -35,6 +35,7 @@ FILES = ("qualification.html", "qualification.pdf", "qualification.csv", "sweeps
 WIDTHS, LINE = (0.13, 0.18, 0.08, 0.1, 0.09, 0.1, 0.21, 0.11), 135
 """Of the columns in the PDF, as parts of the table, and letters across it."""
 REASONS = ("test", "what limits", "uncertainty of the margin", "chance of failing", "passes from")
+UNVERIFIED = "Not verified: not, or not all, read in the standard's text"
 NOTES = """Margin: the level that interrupts the closed contact, or closes the open one, for the time that the standard
 allows, relative to that of the test, with its uncertainty at 95 %. If they allow both, the verdict is undecided. Fails
 first: the contact that fails at that level. At this level: which contacts fail in the test, and for how long. Left at
@@ -50,6 +51,11 @@ Rice's rate of crossings; the response is that of the component, and its largest
 simulated in full. Gaussian, without clipping at three times the rms.
 Shock: half sine in both directions along the motion of the contact; the worse one is shown.
 Model: along the motion of the contact only, without resonances of the case."""
+
+
+def mark(part: Part) -> str:
+    """Give the mark of a test whose numbers were not all read in the standard's text."""
+    return "" if part["verified"] else " *"
 
 
 def time_text(seconds: float) -> str:
@@ -269,7 +275,7 @@ def limit(standard: Standard) -> str:
         f"A closed contact fails if it is interrupted for {time_text(known.opening)} or more, that is, if its "
         f"resistance exceeds {known.threshold:g} Ω, at which it takes half of a monitor's {known.voltage:g} V; an open "
         f"one if it conducts better than that for {time_text(known.false_make)} or more ({known.clause}{checked}). "
-        "Not verified: not read in the standard's text."
+        f"{UNVERIFIED}."
     )
 
 
@@ -300,7 +306,7 @@ def summary(relay: Relay, standard: Standard, parts: list[Part]) -> Figure:
         fills.append("white")
         for part in mine:
             row = cells(part)
-            row[0] += "" if part["verified"] else " *"
+            row[0] += mark(part)
             rows.append([fill(cell, round(LINE * width)) for cell, width in zip(row, WIDTHS, strict=True)])
             fills.append(FILLS[part["verdict"]])
     grid = axes.table(
@@ -316,7 +322,7 @@ def summary(relay: Relay, standard: Standard, parts: list[Part]) -> Figure:
         grid[number, 2].set_facecolor(colour)
     for cell in grid.get_celld().values():
         cell.set_linewidth(0.3)
-    notes = "\n".join(["* not verified: the numbers were not read in the standard's text", *NOTES.splitlines()])
+    notes = "\n".join([f"* {UNVERIFIED}", *NOTES.splitlines()])
     figure.text(0.05, 0.9 - height, notes, fontsize=7, va="top", linespacing=1.5)
     return figure
 
