@@ -18,9 +18,10 @@ from relay_contact.identification.prediction import Laboratory, Ringing
 
 ROUGH = 0.05
 """Scatter, as a part of the value (of the largest, in static force and ring-down), until it is known."""
-STEP = 3e-4  # of a logarithm, for derivatives
-NEAR, FAR = 3e-3, 2e-2
-"""Change of the logarithms below which derivatives stay: with the periods of ring-downs, and before."""
+STEP, SMALL = 3e-4, 0.05
+"""Of a logarithm, for derivatives, and of the phase (rad) of a ring-down's last period by a logarithm, at most."""
+NEAR, FAR = 10.0, 2e-2
+"""Change of the logarithms below which derivatives stay: in steps, and before ring-downs have periods."""
 ENOUGH, ROUGHLY = 1e-6, 1e-3
 """Relative changes of the sum of squares at which a search ends, and 100 times those of the logarithms."""
 STARTS = tuple(np.arange(1.0, -5.5, -0.5))  # logarithms of contact.damping at which bounces are tried
@@ -126,6 +127,13 @@ class Fit:
             for each in self.sets if each.measurement.kind == RINGDOWN
         }  # fmt: skip
 
+    @property
+    def step(self) -> float:
+        """Give the steps of logarithms for derivatives: the frequency goes with half of that of stiffness or mass."""
+        spans = {id(each): np.ptp(each.measurement.over) for each in self.sets}
+        phases = [np.pi * frequency * spans[key] for key, (frequency, _) in self.ringing.items()]
+        return float(min([STEP, *(SMALL / phase for phase in phases)]))
+
     def values(self, position: str, logarithms: Array) -> Values:
         """Give the parameters in a position."""
         changed = {
@@ -182,8 +190,8 @@ class Fit:
             nonlocal last
             if last is None or np.abs(at - last[0]).max() > near:
                 here = residuals(at)
-                steps = STEP * np.eye(len(at))
-                last = at.copy(), np.column_stack([(residuals(at + step) - here) / STEP for step in steps])
+                steps = self.step * np.eye(len(at))
+                last = at.copy(), np.column_stack([(residuals(at + step) - here) / self.step for step in steps])
             return last[1]
 
         free = len(self.logarithms) - len(self.unknowns)
@@ -210,7 +218,7 @@ class Fit:
             self.search(self.features, FAR, ROUGHLY)
         last = None
         for _ in range(ROUNDS):
-            last = self.search(self.residuals, NEAR, ENOUGH, last)
+            last = self.search(self.residuals, NEAR * self.step, ENOUGH, last)
             self.jacobian = last[1]
             # It scales the derivatives too.
             if self.estimate() < CHANGE:
@@ -268,10 +276,14 @@ class Fit:
     def halves(self) -> Array:
         """Give half of the 95 % intervals of the logarithms of the parameters, by the scatter alone.
 
-        Degrees of freedom of a sum of variances that are estimated each by itself: F. E. Satterthwaite, Biometrics
-        Bulletin 2 (1946) 110-114.
+        That the weights of the measurements are estimates themselves widens them: M. G. Kenward, J. H. Roger,
+        Biometrics 53 (1997) 983-997. Degrees of freedom of a sum of variances that are estimated each by itself:
+        F. E. Satterthwaite, Biometrics Bulletin 2 (1946) 110-114.
         """
         covariance = self.covariance
+        told = [self.jacobian[rows].T @ self.jacobian[rows] for rows in self.slices()]
+        lost = sum(2 / each.freedom * (own - own @ covariance @ own) for each, own in zip(self.sets, told, strict=True))
+        wider = np.maximum(np.diag(covariance + 2 * covariance @ lost @ covariance), np.diag(covariance))
         found = []
         influence = covariance @ self.jacobian.T
         parts = np.array([(influence[:, rows] ** 2).sum(axis=1) for rows in self.slices()])
@@ -279,7 +291,7 @@ class Fit:
         for number in range(len(self.unknowns)):
             variance, own = covariance[number, number], parts[:, number]
             degrees = variance**2 / max(float((own**2 / freedom).sum()), 1e-300)
-            found.append(float(student.ppf(0.975, degrees) * np.sqrt(variance)))
+            found.append(float(student.ppf(0.975, degrees) * np.sqrt(wider[number])))
         return np.array(found)
 
     def shifts(self, name: str, part: float) -> Array:
