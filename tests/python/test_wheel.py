@@ -22,7 +22,7 @@ USE = """
 import numpy, relay_contact
 assert set(relay_contact.scenes()) >= {"paper-1khz", "sweep"}
 result = relay_contact.run("closing-bounce", stop=1e-3, outputs=["contact.force"])
-assert {"paper", "cube-changeover"} <= set(relay_contact.relays())
+assert {"paper", "cube-changeover", "finite-elements"} <= set(relay_contact.relays())
 assert "MIL-PRF-28776" in relay_contact.standards()
 assert result.units["contact.force"] == "N" and result["contact.force"].max() > 0
 print(relay_contact.fmu_path())
