@@ -9,6 +9,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
 
 from relay_contact.component import SIGNS, Array, Component, Unit, units
 from relay_contact.figures import BLACK, BLUE, GREY, RED
@@ -27,6 +28,7 @@ OVER = {
     BOUNCE: ("speed of closing [mm/s]", 1e3),
 }
 FREQUENCY = ("frequency [Hz]", 1.0)
+DECADE = 6.0  # ratio of largest to least value from which on there is no room for labels between powers of ten
 DENSE = 300  # values from which on points are drawn smaller
 NOTES = """Fitted by least squares, with the component as the model. The scatter of each measurement is that of its
 residuals, independent from one value to the next; intervals have 95 % confidence and hold for all parameters that are
@@ -37,7 +39,7 @@ free, so that its sensor needs no calibration. The written relay file has the va
 def shown(component: Component, found: Found) -> tuple[str, str, str, str]:
     """Give value in the file, identified value, interval and uncertainty, in words."""
     unknown = found.unknown
-    factor = Unit("", "times the file's")
+    factor = Unit("", "\N{MULTIPLICATION SIGN} file")
     unit = factor if unknown.name.startswith(PREFIX) else units(component.description).get(unknown.name, Unit("", ""))
     low, high = found.interval
     digits = max(3, 2 - int(np.floor(np.log10(max(found.half, 1e-9)))))
@@ -45,7 +47,7 @@ def shown(component: Component, found: Found) -> tuple[str, str, str, str]:
     def told(value: float) -> str:
         return unit.text(float(f"{value:.{digits}g}")).strip()
 
-    part = f"{100 * found.half:.2g} %"
+    part = f"{100 * found.half:.2g}\N{NO-BREAK SPACE}%"
     return unit.text(unknown.start).strip(), told(found.value), f"{told(low)} to {told(high)}", part
 
 
@@ -102,7 +104,7 @@ def panels(axes: Axes, below: Axes, each: Set, model: Array, curve: tuple[Array,
     if measurement.kind in RELATIVE:
         axes.set_yscale("log")
         axes.yaxis.set_major_formatter("{x:g}")
-        axes.yaxis.set_minor_formatter("{x:g}")
+        axes.yaxis.set_minor_formatter("{x:g}" if np.ptp(np.log(model)) < np.log(DECADE) else NullFormatter())
     state = "spring off its contact" if measurement.is_open else measurement.position
     axes.set(ylabel=f"{measurement.quantity} [{unit}]", title=f"{measurement.kind}: {measurement.path.name}, {state}")
     axes.legend(loc="best")
