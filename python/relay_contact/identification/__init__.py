@@ -30,6 +30,8 @@ def identify(
     component = component or Component()
     path = named("relay", relay, relays())
     described = Relay.read(path, component)
+    if len({values.get("beam.file") for values in described.positions.values()}) > 1:
+        raise RelayContactError(f"{path}: beam.file: not the same in all positions; identify each by itself")
     for each in data:
         if not Path(each).is_file():
             raise RelayContactError(f"{each}: no such file; it has to be a measurement as a CSV file")
