@@ -14,6 +14,20 @@ EXAMPLES = """examples:
   relay-contact run paper-1khz                         writes paper-1khz.csv and paper-1khz.png
   relay-contact run chatter-41g --set excitation.frequency=500 --output contact.voltage
   relay-contact qualify paper --standard MIL-PRF-28776  verdicts and margins, qualification.html
+  relay-contact identify paper --data force.csv ring.csv  damping, rivet, overtravel from measurements
+"""
+
+IDENTIFY = """Find overtravel, stiffness, rivet mass and damping of a relay by measurements of a sample, with intervals;
+write the relay's file with them, and a page. The columns of a file tell what was measured (their units in brackets):
+
+  travel [mm],force [cN]                          static force over travel from the working position
+  time [ms],displacement [um]                     ring-down of the spring off its contact (or velocity; or force)
+  frequency [Hz],acceleration [g],force [cN]      frequency response (or displacement, velocity)
+  frequency [Hz],level [g]                        level of a sine from which on the contact chatters
+  speed [mm/s],bounce [us]                        first bounce after the contact closed at a constant speed
+
+Lines before the columns may say: # position = coil energised   # contact = closed   # calibration = 0.01
+or set a parameter of the component for this measurement: # chatter.minimumDuration = 1e-6
 """
 
 
@@ -79,18 +93,37 @@ def run_scene(given: argparse.Namespace) -> None:
 def qualify_relay(given: argparse.Namespace) -> None:
     """Test a relay as a standard asks, and print the verdicts."""
     from relay_contact.qualification import qualify
-    from relay_contact.qualification.page import FILES, HEAD, cells
+    from relay_contact.qualification.page import FILES, HEAD, UNVERIFIED, cells, mark
 
     folder = given.out or Path(f"qualification-{Path(given.relay).stem}-{Path(given.standard).stem}")
     parts = qualify(
         given.relay, given.standard, out=folder, tests=given.test, quick=given.quick, cluster=given.cluster,
         component=Component(given.fmu), progress=sys.stderr.isatty(),
     )  # fmt: skip
-    rows = [["position", *HEAD], *([part["position"], *cells(part)] for part in parts)]
+    rows = [(part["position"], mark(part), cells(part)) for part in parts]
+    print_table([["position", *HEAD], *([place, cell[0] + star, *cell[1:]] for place, star, cell in rows)])
+    if any(star for _, star, _ in rows):
+        print(f"* {UNVERIFIED}")
+    print(*(folder / name for name in FILES), sep="\n")
+
+
+def identify_relay(given: argparse.Namespace) -> None:
+    """Find parameters of a relay by measurements, and print them."""
+    from relay_contact.identification import identify
+    from relay_contact.identification.report import FILES, HEAD, cells, silent
+
+    folder = given.out or Path(f"identification-{Path(given.relay).stem}")
+    component = Component(given.fmu)
+    result = identify(given.relay, given.data, out=folder, parameters=given.parameter, component=component)
+    print_table([list(HEAD), *cells(component, result)])
+    print(*silent(result), folder / f"{result.path.stem}.toml", *(folder / name for name in FILES), sep="\n")
+
+
+def print_table(rows: list[list[str]]) -> None:
+    """Print texts in columns."""
     widths = [max(map(len, column)) + 2 for column in zip(*rows, strict=True)]
     for row in rows:
         print("".join(f"{cell:{width}}" for cell, width in zip(row, widths, strict=True)).rstrip())
-    print(*(folder / name for name in FILES), sep="\n")
 
 
 def plot_table(given: argparse.Namespace) -> None:
@@ -144,6 +177,18 @@ def line() -> argparse.ArgumentParser:
     )
     text = "folder for what is written (qualification-RELAY-STANDARD); finished tests found there are not run again"
     add("--out", type=Path, metavar="FOLDER", help=text)
+
+    one = commands.add_parser(
+        "identify", parents=[common], description=IDENTIFY, formatter_class=argparse.RawDescriptionHelpFormatter,
+        help="find parameters of a relay by measurements",
+    )  # fmt: skip
+    one.set_defaults(act=identify_relay)
+    add = one.add_argument
+    add("relay", help="name of a relay, as `relay-contact list` prints them, or path of a relay file of your own")
+    add("--data", required=True, nargs="+", metavar="CSV", help="files of measurements")
+    text = "seek this one instead of the usual; may be repeated; spring.thickness and the like are entries of its file"
+    add("--parameter", action="append", metavar="NAME", help=text)
+    add("--out", type=Path, metavar="FOLDER", help="folder for what is written (identification-RELAY)")
 
     about = "Draw a table of outputs, such as `relay-contact run` writes, beside it as PNG."
     one = commands.add_parser("plot", parents=[common], description=about, help="draw a table of outputs")

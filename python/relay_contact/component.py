@@ -17,6 +17,7 @@ from fmpy.fmi1 import FMICallException
 from numpy.typing import NDArray
 
 from relay_contact.files import RelayContactError, fmu_path
+from relay_contact.spring import applied
 
 SIGNS = {"Ohm": "Ω", "mOhm": "mΩ", "um": "µm", "us": "µs", "degC": "°C", "m/s2": "m/s²", "kg/m3": "kg/m³", "1": ""}
 
@@ -131,13 +132,13 @@ class Component:
                 return float(variable.start)
 
     def started(self, values: Values | None = None) -> "Contact":
-        """Give an instance that is initialised with these parameters and inputs, at time 0."""
+        """Give an instance that is initialised with these parameters and inputs, at time 0.
+
+        Entries of the spring file may be among them, as factors (`relay_contact.spring`).
+        """
         contact = Contact(self)
         try:
-            with contact.explained():
-                for name, value in (values or {}).items():
-                    contact.set(name, value)
-                contact.initialise()
+            contact.begin(values or {})
         except BaseException:
             contact.fmu.freeInstance()
             raise
@@ -221,12 +222,31 @@ class Contact:
         values: list[float] = self.fmu.getReal(self.references(*names))
         return values
 
+    def rates(self, *names: str) -> list[float]:
+        """Give the derivatives of several real outputs by time."""
+        rates: list[float] = self.fmu.getRealOutputDerivatives(self.references(*names), [1] * len(names))
+        return rates
+
     def initialise(self, tolerance: float | None = None) -> None:
         """Go through the initialisation at time 0."""
         self.fmu.setupExperiment(tolerance=tolerance, startTime=0.0)
         self.fmu.enterInitializationMode()
         self.fmu.exitInitializationMode()
         self.initialised = True
+
+    def begin(self, values: Values) -> None:
+        """Set parameters, inputs and entries of the spring file, and go through the initialisation."""
+        start = float(self.component.start("beam.youngsModulus"))
+        with self.explained():
+            for name, value in applied(values, start, Path(self.component.folder)).items():
+                self.set(name, value)
+            self.initialise()
+
+    def begin_anew(self, values: Values) -> None:
+        """Begin once more, with these parameters and inputs alone, which is faster than a new instance."""
+        self.messages.clear()
+        self.fmu.reset()
+        self.begin(values)
 
     def step(self, time: float, length: float) -> None:
         """Do a communication step."""

@@ -7,7 +7,7 @@ use anyhow::{Result, anyhow, bail};
 use commands::{cargo, output, run as run_command};
 
 use crate::stage::stage;
-use crate::{fmu, importers, python, report, valgrind};
+use crate::{fmu, importers, python, report, valgrind, wheel};
 
 /// Folders and files with Python in them.
 const PYTHON: [&str; 6] = [
@@ -113,6 +113,8 @@ fn component() -> Result<()> {
     stage("Python lint", || tool(&["ruff", "check"]))?;
     stage("Python format", || tool(&["ruff", "format", "--check"]))?;
     stage("Python types", || tool(&["mypy"]))?;
+    // Which the Python tests install into an empty environment.
+    stage("wheel", wheel::run)?;
     stage("Python tests and examples", || {
         python::test(&["examples/python", "tests/python"], &component)
     })

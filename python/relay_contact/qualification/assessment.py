@@ -37,6 +37,7 @@ from relay_contact.qualification.trials import (
     threshold,
     window,
 )  # fmt: skip
+from relay_contact.spring import PREFIX
 
 Part = dict[str, Any]
 """What a test showed in a position of the coil, as its file holds it."""
@@ -63,8 +64,8 @@ class Position:
         return self.relay.positions[self.name]
 
     def value(self, name: str) -> float:
-        """Give the value of a parameter."""
-        return float(self.values.get(name, self.component.start(name)))
+        """Give the value of a parameter; that of an entry of the spring file is a factor."""
+        return 1.0 if name.startswith(PREFIX) else float(self.values.get(name, self.component.start(name)))
 
     @cached_property
     def specimen(self) -> Specimen:

@@ -1,7 +1,6 @@
 """The results of an assessment as figures, one HTML page, one PDF and tables."""
 
 import csv
-import io
 from html import escape
 from pathlib import Path
 from textwrap import fill
@@ -16,6 +15,7 @@ from matplotlib.transforms import Bbox
 
 from relay_contact.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY
 from relay_contact.figures import GRAVITY as G
+from relay_contact.html import STYLE, document, svg, table
 from relay_contact.qualification.assessment import CHANCE, MODEL, Part
 from relay_contact.qualification.relay import Relay
 from relay_contact.qualification.standards import Contacts, Standard
@@ -25,10 +25,6 @@ LINE_COLOURS = (BLUE, RED, PURPLE, ORANGE, GREEN, SKY, BLACK, GREY)
 COLOURS = (BLUE, RED, PURPLE, ORANGE, GREEN)
 FILLS = {"pass": "#BFE5D8", "FAIL": "#F5CDB8", "undecided": "#FBE8B0", "not judged": "#E4E4E4"}
 LINES = {"pass": GREEN, "FAIL": RED, "undecided": ORANGE}
-STYLE = {
-    "font.size": 8, "axes.titlesize": 9, "legend.fontsize": 7.5, "legend.frameon": False, "axes.grid": True,
-    "grid.alpha": 0.3, "svg.hashsalt": "relay-contact",
-}  # fmt: skip
 HEAD = ("test", "level", "verdict", "margin", "weakest at", "fails first", "at this level", "left at least")
 QUANTITIES = {CLOSED: "force", OPEN: "gap"}
 FAILURES = {CLOSED: "interrupted", OPEN: "makes"}
@@ -39,6 +35,7 @@ FILES = ("qualification.html", "qualification.pdf", "qualification.csv", "sweeps
 WIDTHS, LINE = (0.13, 0.18, 0.08, 0.1, 0.09, 0.1, 0.21, 0.11), 135
 """Of the columns in the PDF, as parts of the table, and letters across it."""
 REASONS = ("test", "what limits", "uncertainty of the margin", "chance of failing", "passes from")
+UNVERIFIED = "Not verified: not, or not all, read in the standard's text"
 NOTES = """Margin: the level that interrupts the closed contact, or closes the open one, for the time that the standard
 allows, relative to that of the test, with its uncertainty at 95 %. If they allow both, the verdict is undecided. Fails
 first: the contact that fails at that level. At this level: which contacts fail in the test, and for how long. Left at
@@ -54,6 +51,11 @@ Rice's rate of crossings; the response is that of the component, and its largest
 simulated in full. Gaussian, without clipping at three times the rms.
 Shock: half sine in both directions along the motion of the contact; the worse one is shown.
 Model: along the motion of the contact only, without resonances of the case."""
+
+
+def mark(part: Part) -> str:
+    """Give the mark of a test whose numbers were not all read in the standard's text."""
+    return "" if part["verified"] else " *"
 
 
 def time_text(seconds: float) -> str:
@@ -234,23 +236,6 @@ def position_figure(parts: list[Part], contacts: Contacts) -> Figure | None:
     return figure
 
 
-def svg(figure: Figure | None) -> str:
-    """Give a figure as a picture for a page."""
-    if figure is None:
-        return ""
-    text = io.StringIO()
-    figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
-    return '<div class="figure">' + text.getvalue()[text.getvalue().index("<svg") :] + "</div>"
-
-
-CSS = """body{font:15px/1.45 system-ui,sans-serif;margin:0 auto;max-width:1000px;padding:1em;color:#222}
-h1{font-size:1.5em;margin-bottom:.2em}h2{font-size:1.15em;margin-top:1.6em}
-table{border-collapse:collapse;width:100%}th,td{border-bottom:1px solid #ccc;padding:.35em .5em;text-align:left;
-vertical-align:top}th{font-weight:600}td.verdict{font-weight:600;white-space:nowrap}
-td.number{white-space:nowrap}.wide,.figure{overflow-x:auto}.figure svg{width:100%;min-width:640px;height:auto}
-small,.note{color:#555}"""
-
-
 def html(relay: Relay, standard: Standard, parts: list[Part], component: str) -> str:
     """Give the page."""
     counts = {verdict: sum(part["verdict"] == verdict for part in parts) for verdict in FILLS}
@@ -274,20 +259,12 @@ def html(relay: Relay, standard: Standard, parts: list[Part], component: str) ->
             body.append(f"<tr>{''.join(columns)}</tr>")
         body.append("</table></div>")
         body.append(svg(position_figure(mine, standard.contacts)))
-        head = "".join(f"<th>{name}</th>" for name in REASONS)
-        body.append(f'<div class="wide"><table><tr>{head}</tr>')
-        for part in mine:
-            body.append("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in reasons(part)) + "</tr>")
-        body.append("</table></div>")
+        body.append(table(REASONS, map(reasons, mine)))
     body.append("<h2>How this was found</h2>")
     body.append(f"<p>{escape(limit(standard))}</p>")
     body += [f"<p>{escape(line)}</p>" for line in sentences()]
     body.append(f'<p class="note">Component {escape(component)}.</p>')
-    title = escape(f"{relay.title}: {standard.title}")
-    head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{title}</title>'
-    return (
-        f'<!doctype html><html lang="en"><head>{head}<style>{CSS}</style></head><body>{"".join(body)}</body></html>\n'
-    )
+    return document(f"{relay.title}: {standard.title}", body)
 
 
 def limit(standard: Standard) -> str:
@@ -298,7 +275,7 @@ def limit(standard: Standard) -> str:
         f"A closed contact fails if it is interrupted for {time_text(known.opening)} or more, that is, if its "
         f"resistance exceeds {known.threshold:g} Ω, at which it takes half of a monitor's {known.voltage:g} V; an open "
         f"one if it conducts better than that for {time_text(known.false_make)} or more ({known.clause}{checked}). "
-        "Not verified: not read in the standard's text."
+        f"{UNVERIFIED}."
     )
 
 
@@ -329,23 +306,23 @@ def summary(relay: Relay, standard: Standard, parts: list[Part]) -> Figure:
         fills.append("white")
         for part in mine:
             row = cells(part)
-            row[0] += "" if part["verified"] else " *"
+            row[0] += mark(part)
             rows.append([fill(cell, round(LINE * width)) for cell, width in zip(row, WIDTHS, strict=True)])
             fills.append(FILLS[part["verdict"]])
-    table = axes.table(
+    grid = axes.table(
         rows,
         colLabels=HEAD,
         colWidths=WIDTHS,
         cellLoc="left",
         bbox=Bbox.from_bounds(0, 0, 1, 1),
     )
-    table.auto_set_font_size(False)
-    table.set_fontsize(5.5)
+    grid.auto_set_font_size(False)
+    grid.set_fontsize(5.5)
     for number, colour in enumerate(fills, 1):
-        table[number, 2].set_facecolor(colour)
-    for cell in table.get_celld().values():
+        grid[number, 2].set_facecolor(colour)
+    for cell in grid.get_celld().values():
         cell.set_linewidth(0.3)
-    notes = "\n".join(["* not verified: the numbers were not read in the standard's text", *NOTES.splitlines()])
+    notes = "\n".join([f"* {UNVERIFIED}", *NOTES.splitlines()])
     figure.text(0.05, 0.9 - height, notes, fontsize=7, va="top", linespacing=1.5)
     return figure
 
@@ -377,11 +354,11 @@ def write(folder: Path, relay: Relay, standard: Standard, parts: list[Part], com
         "limits",
     ]
     with paths[2].open("w", newline="", encoding="utf-8") as file:
-        table = csv.writer(file, lineterminator="\n")
-        table.writerow([*fields, "fails first", *TIMES.values(), *LEAST.values()])
+        judged = csv.writer(file, lineterminator="\n")
+        judged.writerow([*fields, "fails first", *TIMES.values(), *LEAST.values()])
         for part in parts:
             own = [part[key].get(name, "") for key in ("failed", "least") for name in TIMES] if "margin" in part else []
-            table.writerow([*(part.get(field, "") for field in fields), " and ".join(part.get("decides", [])), *own])
+            judged.writerow([*(part.get(field, "") for field in fields), " and ".join(part.get("decides", [])), *own])
     with paths[3].open("w", newline="", encoding="utf-8") as file:
         lines = csv.writer(file, lineterminator="\n")
         means = [f"{text.removesuffix(' [s]')}, mean [s]" for text in TIMES.values()]

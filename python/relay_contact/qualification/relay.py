@@ -7,6 +7,8 @@ from typing import Any
 from relay_contact.component import Component, Values, nearest
 from relay_contact.files import RelayContactError, by_name, found, named, read_toml
 from relay_contact.scene import flat, parameters
+from relay_contact.spring import PREFIX
+from relay_contact.spring import known as known_entries
 
 KEYS = ("title", "parameters", "position", "uncertainty", "model", "monitor")
 
@@ -19,7 +21,7 @@ class Relay:
     positions: dict[str, Values]
     """Parameters of the component in each position of the coil, by its name."""
     uncertainty: dict[str, float]
-    """Of parameters, as parts of their values, with 95 % confidence."""
+    """Of parameters, or entries of the spring file, as parts of their values, with 95 % confidence."""
     model: float
     """Of margins, as a part of them, by what the model leaves out."""
     monitor: dict[str, float]
@@ -47,7 +49,13 @@ class Relay:
         }
         uncertainty = {name: float(value) for name, value in flat(content.get("uncertainty", {})).items()}
         for name in uncertainty:
-            if component.variables[component.settable(name)].type != "Real":
+            if name.startswith(PREFIX):
+                for values in positions.values():
+                    allowed = known_entries(str(values.get("beam.file", "")))
+                    if name not in allowed:
+                        text = f"no such entry in the spring file{nearest(name, allowed)}"
+                        raise RelayContactError(f"{path}: uncertainty of {name}: {text}")
+            elif component.variables[component.settable(name)].type != "Real":
                 raise RelayContactError(f"{path}: uncertainty of {name}: not a real parameter")
         model = float(content.get("model", {}).get("uncertainty", 0.0))
         return cls(content.get("title", path.stem), positions, uncertainty, model, content.get("monitor", {}))

@@ -1,0 +1,47 @@
+"""A relay's parameters from measurements of a sample: values, intervals, and what the data cannot tell."""
+
+from pathlib import Path
+
+from relay_contact.component import Component
+from relay_contact.files import RelayContactError, named
+from relay_contact.identification.measurement import read
+from relay_contact.identification.prediction import Laboratory
+from relay_contact.identification.report import write
+from relay_contact.identification.result import Found, Identification, conclude, sought, unknowns, usual
+from relay_contact.qualification.relay import Relay, relays
+
+__all__ = ["Found", "Identification", "identify"]
+
+
+def identify(
+    relay: str | Path,
+    data: list[str | Path],
+    *,
+    out: Path | None = None,
+    parameters: list[str] | None = None,
+    component: Component | None = None,
+) -> Identification:
+    """Find parameters of a relay, given by its name or its file, by measurements in CSV files.
+
+    `parameters` are names of parameters of the component, or of entries of the spring file, such as "spring.thickness";
+    without them stiffness, damping, rivet, overtravel and contact damping. With `out` a folder is written: the relay's
+    file with the values found and their uncertainties, a table, a page and a figure.
+    """
+    component = component or Component()
+    path = named("relay", relay, relays())
+    described = Relay.read(path, component)
+    if len({values.get("beam.file") for values in described.positions.values()}) > 1:
+        raise RelayContactError(f"{path}: beam.file: not the same in all positions; identify each by itself")
+    for each in data:
+        if not Path(each).is_file():
+            raise RelayContactError(f"{each}: no such file; it has to be a measurement as a CSV file")
+    measurements = [read(Path(each), component, list(described.positions)) for each in data]
+    if not measurements:
+        raise RelayContactError("no data: one file or more is needed")
+    names = parameters or usual(described, measurements)
+    asked = unknowns(component, described, path, measurements, names)
+    fit, missing = sought(Laboratory(component), described, measurements, asked)
+    result = conclude(fit, missing, described, path)
+    if out:
+        write(out, result, component)
+    return result

@@ -1,0 +1,220 @@
+"""What the component predicts for each kind of measurement.
+
+The contact is linear about its preload, as below the level at which it opens; a spring taken off its contact is open by
+the largest gap that the component allows.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from relay_contact.component import Array, Component, Contact, Values
+from relay_contact.files import RelayContactError
+from relay_contact.identification.measurement import BOUNCE, CHATTER, FORCE, RESPONSE, RINGDOWN, Measurement
+from relay_contact.qualification.response import interrupting_force, respond
+from relay_contact.qualification.standards import Contacts
+from relay_contact.qualification.trials import Specimen, steady, threshold
+
+ALONE: Values = {
+    "effects.secondContact": False, "effects.chatter": False, "effects.extremes": False, "effects.excitation": "None",
+    "base.acceleration": 0.0,
+}  # fmt: skip
+AWAY: Values = {"contact.overtravel": -1e-2, "effects.contactLaw": "Hertz"}
+BONDED: Values = {"effects.contactLaw": "Bonded"}
+MODES = 16
+"""Of the spring, where nothing hits it: responses below its third resonance are right to 1e-5, and come faster."""
+STATIC: Values = {
+    "beam.massDamping": 0.0, "beam.stiffnessDamping": 0.0, "contact.damping": 0.0, "solver.modes": 1,
+}  # fmt: skip
+"""What a static force does not depend on is the same, so that it is not computed again."""
+OUTPUTS = {"displacement": "tip.displacement", "velocity": "tip.velocity", "force": "contact.force"}
+FORGOTTEN = 3.5  # periods after the begin of a knock, half a period long
+KNOCK = 1e-4  # m, by about which a knock moves the spring, 1 % of its distance from the contact
+SETTLED, PERIODS, MOST = 1e-6, 64, 2**13
+"""Change of an amplitude between two times, of which the second is twice the first, twice in a row; periods before the
+first of them, and at most."""
+TOUCHING: Values = {"contact.overtravel": -1e-6, "solver.tolerance": 1e-8}
+"""Just before the contact closes; instants of openings are then located well within the steps of derivatives."""
+WATCHED, NOTHING = 5e-6, 1e-9  # s: less than a blow of the contact lasts; a bounce where there is none
+KEPT = 256  # predictions
+
+
+@dataclass(frozen=True)
+class Ringing:
+    """A ring-down of unit size as the spring has it, with its derivative: together they have any size and phase."""
+
+    shapes: Array
+    """Columns: motion, derivative and constant, at the times of the measurement."""
+    frequency: float
+    """First natural frequency (Hz) without damping."""
+
+    def decay(self, first: int, last: int) -> float:
+        """Give the mean rate (1/s) of decay between two rows, for a time of 1 s between them."""
+        motion, rate = self.shapes[:, 0], self.shapes[:, 1] / (2 * np.pi * self.frequency)
+        size = np.hypot(motion, rate)
+        return float(np.log(size[first] / size[last]))
+
+
+@dataclass
+class Laboratory:
+    """The component in place of the sample."""
+
+    component: Component
+    contact: Contact = field(init=False)
+    known: dict[tuple[object, ...], Array | Ringing] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Instantiate the component, once for all."""
+        self.contact = Contact(self.component)
+
+    def conditions(self, measurement: Measurement, values: Values) -> Values:
+        """Give the parameters of the component under which something was measured."""
+        law = AWAY if measurement.is_open else BONDED
+        if measurement.kind == FORCE:
+            law = STATIC
+        if measurement.kind in (RINGDOWN, RESPONSE, CHATTER):
+            law = {**law, "solver.modes": MODES}
+        found = {**values, **ALONE, **law, **measurement.settings}
+        overtravel = float(found.get("contact.overtravel", self.component.start("contact.overtravel")))
+        if law is BONDED and overtravel <= 0:
+            text = f"in the position {measurement.position} the contact is open (contact.overtravel = {overtravel:g} m)"
+            allowed = "a closed one, or the line `# contact = open` before the columns"
+            raise RelayContactError(
+                f"{measurement.path}: {measurement.kind}: {text}: not allowed, allowed is {allowed}"
+            )
+        return found
+
+    def predict(self, measurement: Measurement, values: Values) -> Array | Ringing:
+        """Give the values that the component has in place of those measured."""
+        asked = self.conditions(measurement, values)
+        key = (*measurement.conditions, *sorted(asked.items()))
+        if key not in self.known:
+            if len(self.known) >= KEPT:
+                self.known.pop(next(iter(self.known)))
+            how: dict[str, Callable[[Measurement, Values], Array | Ringing]] = {
+                FORCE: self.force, RINGDOWN: self.ringing, RESPONSE: self.amplitude, CHATTER: self.level,
+                BOUNCE: self.bounces,
+            }  # fmt: skip
+            with self.contact.explained():
+                self.known[key] = how[measurement.kind](measurement, asked)
+        return self.known[key]
+
+    def force(self, measurement: Measurement, values: Values) -> Array:
+        """Give the static contact force (N) over travel from the working position."""
+        overtravel = float(values.get("contact.overtravel", self.component.start("contact.overtravel")))
+        forces = []
+        for travel in measurement.over:
+            self.contact.begin_anew({**values, "contact.overtravel": overtravel + float(travel)})
+            forces += self.contact.real("preload.force")
+        return np.array(forces)
+
+    def ringing(self, measurement: Measurement, values: Values) -> Ringing:
+        """Give the motion some periods after a knock that mostly moved the first mode: nearly that mode alone."""
+        self.contact.begin_anew(values)
+        (frequency,) = self.contact.real("preload.frequency")
+        knock: Values = {
+            "effects.excitation": "HalfSine",
+            "excitation.amplitude": KNOCK * (2 * np.pi * frequency) ** 2,
+            "excitation.duration": 0.5 / frequency,
+        }
+        self.contact.begin_anew({**values, **knock})
+        name = OUTPUTS[measurement.quantity]
+        now, rows = 0.0, []
+        for time in FORGOTTEN / frequency + measurement.over - measurement.over[0]:
+            self.contact.step(now, time - now)
+            now = time
+            rows.append([*self.contact.real(name), *self.contact.rates(name), 1.0])
+        shapes = np.array(rows)
+        if not measurement.is_open and measurement.quantity != "velocity":
+            shapes[:, 0] -= self.rest(name, values)
+        return Ringing(shapes, frequency)
+
+    def rest(self, name: str, values: Values) -> float:
+        """Give an output at rest."""
+        self.contact.begin_anew(values)
+        return self.contact.real(name)[0]
+
+    def gains(self, name: str, frequencies: Array, values: Values) -> tuple[Array, list[float]]:
+        """Give the amplitudes of an output per base acceleration, and force (N) and power law of the resistance."""
+        found = []
+        rest: list[float] = []
+        for frequency in map(float, frequencies):
+            sine: Values = {
+                "effects.excitation": "Sine",
+                "excitation.frequency": frequency,
+                "excitation.amplitude": 1.0,
+            }
+            self.contact.begin_anew({**values, **sine})
+            rest = self.contact.real("preload.force", "resistance.coefficient", "resistance.exponent")
+            found.append(self.steady(name, frequency))
+        return np.array(found), rest
+
+    def steady(self, name: str, frequency: float) -> float:
+        """Give the amplitude of an output once the start is forgotten."""
+        quarter = 0.25 / frequency
+        time, periods, calm, before = 0.0, PERIODS, 0, 0j
+        while True:
+            values = []
+            for instant in (periods / frequency + quarter * np.arange(3)).tolist():
+                self.contact.step(time, instant - time)
+                time = instant
+                values += self.contact.real(name)
+            amplitude = complex((values[0] - values[2]) / 2, values[1] - (values[0] + values[2]) / 2)
+            calm = calm + 1 if abs(amplitude - before) <= SETTLED * abs(amplitude) else 0
+            if calm == 2 or periods >= MOST:
+                return abs(amplitude)
+            periods, before = 2 * periods, amplitude
+
+    def amplitude(self, measurement: Measurement, values: Values) -> Array:
+        """Give the amplitudes of a frequency response."""
+        gains, _ = self.gains(OUTPUTS[measurement.quantity], measurement.over, values)
+        return gains * measurement.acceleration
+
+    def level(self, measurement: Measurement, values: Values) -> Array:
+        """Give the accelerations (m/s2) from which on the contact is interrupted, as far as it is linear."""
+        gains, (preload, *law) = self.gains("contact.force", measurement.over, values)
+        monitor = self.monitor(values)
+        reserve = preload - interrupting_force(law, monitor.threshold)
+        longest = np.minimum(np.pi * measurement.over * monitor.opening, 1.5)
+        return max(reserve, 1e-9) / (gains * np.cos(longest))
+
+    def bounces(self, measurement: Measurement, values: Values) -> Array:
+        """Give the lengths (s) of the first bounce after the fixed contact has met the spring at rest, at speeds."""
+        return np.array([self.bounce(float(speed), {**values, **TOUCHING}) for speed in measurement.over])
+
+    def bounce(self, speed: float, values: Values) -> float:
+        """Give the length (s) of the first bounce; nearly nothing if there is none within a period of the spring."""
+        self.contact.begin_anew(values)
+        now, opened = 0.0, -1.0
+        (frequency,) = self.contact.real("preload.frequency")
+        while now < 1 / frequency:
+            self.contact.change("support.displacement", speed * now, speed * (now + WATCHED), WATCHED)
+            self.contact.step(now, WATCHED)
+            now += WATCHED
+            opening, closing = self.contact.real("contact.lastOpening", "contact.lastClosing")
+            opened = opening if opened < 0 else opened
+            if 0 < opened < closing:
+                return closing - opened
+        return NOTHING
+
+    def monitor(self, values: Values) -> Contacts:
+        """Give what counts as an interruption."""
+        names = ("chatter.minimumDuration", "chatter.resistanceThreshold")
+        opening, resistance = (float(values.get(name, self.component.start(name))) for name in names)
+        return Contacts(opening, 1e-6, resistance, 1.0, "", False)
+
+    def correction(self, measurement: Measurement, values: Values) -> Array:
+        """Give by which factor the levels of a contact that opens differ from those of the linear one."""
+        linear = self.predict(measurement, values)
+        assert isinstance(linear, np.ndarray)
+        asked = self.conditions(measurement, values)
+        monitor = self.monitor(asked)
+        alone = {**asked, "effects.contactLaw": "Hertz", "effects.chatter": True, "effects.extremes": True}
+        response = respond(self.component, asked, monitor.threshold)
+        specimen = Specimen(self.component, alone, monitor, response)
+        levels = [
+            threshold(lambda level, at=float(frequency): steady(specimen, at, level, True)[0], float(guess))[0]  # type: ignore[misc]
+            for frequency, guess in zip(measurement.over, linear, strict=True)
+        ]
+        return np.array(levels) / linear

@@ -1,0 +1,80 @@
+"""The relay's file with what was found: values, their uncertainties, and a spring file beside it."""
+
+import math
+from pathlib import Path
+from typing import Any
+
+import tomlkit
+
+from relay_contact.identification.result import Identification, has
+from relay_contact.spring import PREFIX, text_of
+
+
+def number(value: float, half: float) -> Any:  # noqa: ANN401
+    """Give a value for a file, with two digits more than its interval."""
+    text = f"{value:.{min(12, max(3, 2 - math.floor(math.log10(max(half, 1e-12)))))}g}"
+    return tomlkit.value(text if set(text) & set(".e") else f"{text}.0")
+
+
+def put(table: Any, name: str, item: Any, remark: str = "") -> None:  # noqa: ANN401
+    """Set an entry of a table of a file by its dotted name, with a remark behind it."""
+    if remark:
+        item.comment(remark)
+    path = name.split(".")
+    for number, key in enumerate(path):
+        if key not in table:
+            # Before remarks that belong to what follows.
+            body = table.value.body
+            last = max((place for place, (known, _) in enumerate(body) if known), default=-1) + 1
+            rest, body[last:] = body[last:], []
+            table.append(tomlkit.key(path[number:]), item)
+            body.extend(rest)
+            return
+        if number == len(path) - 1:
+            table[key] = item
+        table = table[key]
+
+
+def text(result: Identification, spring: str) -> str:
+    """Give the text of the relay's file; `spring` is the name of the spring file beside it, if it has one."""
+    content: Any = tomlkit.parse(result.path.read_text(encoding="utf-8"))
+    for name in ("parameters", "uncertainty"):
+        if name not in content:
+            content.append(name, tomlkit.table())
+    content["title"] = f"{result.relay.title}, identified"
+    tables = dict(zip(result.relay.positions, content.get("position", [{}]), strict=True))
+    for each in result.found:
+        name = each.unknown.name
+        if not name.startswith(PREFIX):
+            remark = f"identified, ± {100 * each.half:.2g} %; was {each.unknown.start:g}"
+            own = [tables[place] for place in each.unknown.positions if has(tables[place], name)]
+            for table in [place["parameters"] for place in own] or [content["parameters"]]:
+                put(table, name, number(each.value, each.half), remark)
+        widest = max(other.half for other in result.found if other.unknown.name == name)
+        put(content["uncertainty"], name, number(widest, 0.1), "identified")
+    if spring:
+        for table in (content["parameters"], *(each.get("parameters", {}) for each in tables.values())):
+            if has({"parameters": table}, "beam.file"):
+                put(table, "beam.file", tomlkit.item(spring))
+    return tomlkit.dumps(content)
+
+
+def spring_text(result: Identification) -> tuple[str, str]:
+    """Give name and text of the spring file with what was found of it; nothing if the relay has none."""
+    files = {str(values.get("beam.file", "")) for values in result.relay.positions.values()}
+    if files == {""}:
+        return "", ""
+    # All positions have the same spring.
+    file = Path(next(iter(files)))
+    found = [each for each in result.found if each.unknown.name.startswith(PREFIX)]
+    return file.name, text_of(str(file), {each.unknown.name: each.value for each in found})
+
+
+def write(folder: Path, result: Identification) -> Path:
+    """Write both files; give the relay's."""
+    name, spring = spring_text(result)
+    if name:
+        (folder / name).write_text(spring, encoding="utf-8")
+    path = folder / f"{result.path.stem}.toml"
+    path.write_text(text(result, name), encoding="utf-8")
+    return path

@@ -1,0 +1,164 @@
+"""The results of an identification as a table, a page and a figure: measured and fitted values, and what is left."""
+
+import csv
+from html import escape
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
+
+from relay_contact.component import SIGNS, Array, Component, Unit, units
+from relay_contact.figures import BLACK, BLUE, GREY, RED
+from relay_contact.html import STYLE, document, svg, table
+from relay_contact.identification import relay_file
+from relay_contact.identification.fit import Set
+from relay_contact.identification.measurement import BOUNCE, FORCE, RELATIVE, RINGDOWN, UNITS
+from relay_contact.identification.result import Found, Identification
+from relay_contact.spring import PREFIX
+
+FILES = ("identification.html", "identification.png", "identification.csv")
+HEAD = ("parameter", "in the file", "identified", "95 % interval", "±")
+OVER = {
+    FORCE: ("travel from the working position [mm]", 1e3),
+    RINGDOWN: ("time [ms]", 1e3),
+    BOUNCE: ("speed of closing [mm/s]", 1e3),
+}
+FREQUENCY = ("frequency [Hz]", 1.0)
+DECADE = 6.0  # ratio of largest to least value from which on there is no room for labels between powers of ten
+DENSE = 300  # values from which on points are drawn smaller
+NOTES = """Fitted by least squares, with the component as the model. The scatter of each measurement is that of its
+residuals, independent from one value to the next; intervals have 95 % confidence and hold for all parameters that are
+not in the table being as the relay's file says, or as uncertain as it says. Size, phase and offset of a ring-down are
+free, so that its sensor needs no calibration. The written relay file has the values found, with their uncertainties."""
+
+
+def shown(component: Component, found: Found) -> tuple[str, str, str, str]:
+    """Give value in the file, identified value, interval and uncertainty, in words."""
+    unknown = found.unknown
+    factor = Unit("", "\N{MULTIPLICATION SIGN} file")
+    unit = factor if unknown.name.startswith(PREFIX) else units(component.description).get(unknown.name, Unit("", ""))
+    low, high = found.interval
+    digits = max(3, 2 - int(np.floor(np.log10(max(found.half, 1e-9)))))
+
+    def told(value: float) -> str:
+        return unit.text(float(f"{value:.{digits}g}")).strip()
+
+    part = f"{100 * found.half:.2g}\N{NO-BREAK SPACE}%"
+    return unit.text(unknown.start).strip(), told(found.value), f"{told(low)} to {told(high)}", part
+
+
+def cells(component: Component, result: Identification) -> list[list[str]]:
+    """Give the rows of the table."""
+    rows = [[each.unknown.label, *shown(component, each)] for each in result.found]
+    return rows + [[label, "", "not determined", "", ""] for label in result.missing]
+
+
+def data(result: Identification) -> list[list[str]]:
+    """Give what is to be said of each measurement."""
+    rows = []
+    for each in result.sets:
+        relative = each.measurement.kind in RELATIVE
+        scatter = f"{100 * each.sigma:.2g} % of {'the value' if relative else 'the largest'}"
+        state = "open" if each.measurement.is_open else "closed"
+        own = each.measurement
+        rows.append([own.kind, own.path.name, own.position, state, str(len(own.values)), scatter])
+    return rows
+
+
+def silent(result: Identification) -> list[str]:
+    """Give what the data do not tell, and other remarks."""
+    told = [f"{label}: not determined: {reason}." for label, reason in result.missing.items()]
+    for each in result.found:
+        most = sorted(each.by_others.items(), key=lambda item: -item[1])[:2]
+        words = " and ".join(f"{name} {100 * part:.2g} %" for name, part in most if part > 0.3 * each.half)
+        if words:
+            told.append(f"{each.unknown.label}: of its interval, {words} comes from what the file says of these.")
+    return told + [f"{note}." for note in result.notes]
+
+
+def matrix(result: Identification) -> str:
+    """Give the correlations as a table."""
+    labels = [each.unknown.label for each in result.found]
+    rows = [
+        [label, *(f"{result.correlation[i, j]:+.3f}" if j < i else "" for j in range(len(labels) - 1))]
+        for i, label in enumerate(labels) if i
+    ]  # fmt: skip
+    return table(["", *labels[:-1]], rows)
+
+
+def panels(axes: Axes, below: Axes, each: Set, model: Array, curve: tuple[Array, Array]) -> None:
+    """Draw a measurement with the fitted curve, and the residuals below it."""
+    measurement = each.measurement
+    label, factor = OVER.get(measurement.kind, FREQUENCY)
+    first = measurement.over[0] if measurement.kind == RINGDOWN else 0.0
+    over = factor * (measurement.over - first)
+    scale = UNITS[measurement.quantity].get(measurement.unit, 1.0)
+    size = 2.5 if len(over) < DENSE else 1.0
+    axes.plot(over, measurement.values / scale, "o", color=BLUE, markersize=size, label="measured")
+    axes.plot(factor * (curve[0] - first), curve[1] / scale, color=RED, linewidth=1.0, label="fitted")
+    unit = SIGNS.get(measurement.unit, measurement.unit)
+    if measurement.kind in RELATIVE:
+        axes.set_yscale("log")
+        axes.yaxis.set_major_formatter("{x:g}")
+        axes.yaxis.set_minor_formatter("{x:g}" if np.ptp(np.log(model)) < np.log(DECADE) else NullFormatter())
+    state = "spring off its contact" if measurement.is_open else measurement.position
+    axes.set(ylabel=f"{measurement.quantity} [{unit}]", title=f"{measurement.kind}: {measurement.path.name}, {state}")
+    axes.legend(loc="best")
+    axes.tick_params(labelbottom=False)
+    below.plot(over, 100 * each.residuals(model), "o", color=BLACK, markersize=size)
+    for line in (-2, 0, 2):
+        below.axhline(100 * line * each.sigma, color=GREY, linewidth=0.6, linestyle="-" if line == 0 else ":")
+    relative = "value" if measurement.kind in RELATIVE else "largest"
+    below.set(xlabel=label, ylabel=f"residual\n[% of {relative}]")
+
+
+def draw(result: Identification) -> Figure:
+    """Draw all measurements."""
+    columns = min(2, len(result.sets))
+    rows = -(-len(result.sets) // columns)
+    figure = Figure(figsize=(5.2 * columns, 3.5 * rows), layout="constrained")
+    figure.set_layout_engine("constrained", h_pad=0.08)
+    grid = figure.subplots(2 * rows, columns, squeeze=False, height_ratios=[2.2, 1] * rows)
+    for number in range(rows * columns):
+        row, column = divmod(number, columns)
+        pair = grid[2 * row, column], grid[2 * row + 1, column]
+        if number < len(result.sets):
+            pair[1].sharex(pair[0])
+            panels(*pair, result.sets[number], result.fitted[number], result.curves[number])
+        else:
+            for axes in pair:
+                axes.axis("off")
+    figure.align_ylabels()
+    return figure
+
+
+def write(folder: Path, result: Identification, component: Component) -> list[Path]:
+    """Write the relay's file, page, figure and table; give their paths."""
+    folder.mkdir(parents=True, exist_ok=True)
+    settings: Any = STYLE
+    with mpl.rc_context(settings):
+        figure = draw(result)
+        figure.savefig(folder / FILES[1], dpi=130)
+        body = [f"<h1>{escape(result.relay.title)}, identified</h1>"]
+        body.append(table(HEAD, cells(component, result)))
+        lines = "".join(f"<li>{escape(line)}</li>" for line in silent(result))
+        body.append(f"<h2>What the data do not tell, and remarks</h2><ul>{lines}</ul>" if lines else "")
+        body += ["<h2>Measured and fitted</h2>", svg(figure)]
+        body.append(table(("measurement", "file", "position", "contact", "values", "scatter (rms)"), data(result)))
+        if len(result.found) > 1:
+            body += ["<h2>Correlations</h2>", matrix(result)]
+        body += ["<h2>How this was found</h2>", f"<p>{escape(NOTES)}</p>"]
+        body.append(f'<p class="note">Component {escape(component.description.guid)}.</p>')
+    (folder / FILES[0]).write_text(document(f"{result.relay.title}, identified", body), encoding="utf-8")
+    with (folder / FILES[2]).open("w", newline="", encoding="utf-8") as file:
+        lines_ = csv.writer(file, lineterminator="\n")
+        lines_.writerow(["parameter", "in the file (SI)", "identified (SI)", "low", "high"])
+        for each in result.found:
+            numbers = (each.unknown.start, each.value, *each.interval)
+            lines_.writerow([each.unknown.label, *(f"{number:.9g}" for number in numbers)])
+        lines_.writerows([label, "", "not determined", "", ""] for label in result.missing)
+    return [relay_file.write(folder, result), *(folder / name for name in FILES)]

@@ -1,0 +1,249 @@
+"""Which parameters are sought, what the data tell of them, and what they cannot tell."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from relay_contact.component import Array, Component, nearest
+from relay_contact.files import RelayContactError, read_toml
+from relay_contact.identification.fit import Fit, Set, Unknown
+from relay_contact.identification.measurement import CHATTER, FORCE, RESPONSE, RINGDOWN, Measurement
+from relay_contact.identification.prediction import Laboratory
+from relay_contact.qualification.relay import Relay
+from relay_contact.spring import PREFIX, STIFFNESS, known
+
+REACH = float(np.log(300.0))
+"""Of the search, either way."""
+WIDE = 1.0
+"""Half of a 95 % interval of a logarithm from which on a parameter is not determined: the value may be another."""
+TOGETHER = 0.95  # correlation from which on it is said
+REGULAR = 4.0  # standard deviations of the correlation of neighbouring residuals from which on it is said
+DRAWN = 60  # values of a fitted curve
+OPENS = 0.98  # part of the preload from which on a force amplitude opens the contact
+
+
+@dataclass(frozen=True)
+class Found:
+    """What the data tell of a parameter."""
+
+    unknown: Unknown
+    value: float
+    half: float
+    """Of the 95 % interval, as a part of the value."""
+    by_others: dict[str, float]
+    """What parameters that are not sought, but uncertain in the relay's file, contribute to it."""
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """Give the ends of the 95 % interval; it is symmetrical in the logarithm."""
+        return self.value * float(np.exp(-self.half)), self.value * float(np.exp(self.half))
+
+
+@dataclass(frozen=True)
+class Identification:
+    """A relay's parameters by measurements."""
+
+    relay: Relay
+    path: Path
+    found: list[Found]
+    missing: dict[str, str]
+    """Parameters that the data do not determine, and why."""
+    correlation: Array
+    """Of those found."""
+    sets: list[Set]
+    fitted: list[Array]
+    """The model's values for each measurement."""
+    curves: list[tuple[Array, Array]]
+    """The same closer together, to be drawn."""
+    notes: list[str]
+
+    def __getitem__(self, label: str) -> Found:
+        """Give what was found of a parameter, by its name, with its position where it has one for each."""
+        for each in self.found:
+            if each.unknown.label == label:
+                return each
+        labels = [each.unknown.label for each in self.found]
+        raise KeyError(f"{label}: {self.missing.get(label, 'not sought')}{nearest(label, labels)}")
+
+
+def usual(relay: Relay, measurements: list[Measurement]) -> list[str]:
+    """Give the parameters that are sought unless others are named."""
+    file = str(next(iter(relay.positions.values())).get("beam.file", ""))
+    entries = known(file)
+    own = f"{PREFIX}damping" in entries
+    names = [STIFFNESS if file else "beam.youngsModulus"]
+    names += [f"{PREFIX}damping" if own else "beam.stiffnessDamping", "contact.damping"]
+    if f"{PREFIX}frequency" not in entries:
+        # Modes have the rivet in them.
+        names.append("tip.mass")
+    if any(not each.is_open for each in measurements):
+        names.insert(0, "contact.overtravel")
+    return names
+
+
+def unknowns(
+    component: Component, relay: Relay, path: Path, measurements: list[Measurement], names: list[str]
+) -> list[Unknown]:
+    """Give the parameters sought by name, one for each position of the coil where it is given there."""
+    tables = read_toml(path).get("position", [{}])
+    used = [name for name in relay.positions if any(each.position == name for each in measurements)]
+    found = []
+    for name in names:
+        if not name.startswith(PREFIX):
+            name = component.settable(name)
+            if component.variables[name].type != "Real":
+                raise RelayContactError(f"{name}: not a real parameter, which cannot be identified")
+        own = {place for place, table in zip(relay.positions, tables, strict=True) if has(table, name)}
+        shared = [place for place in used if place not in own]
+        groups = ([tuple(shared)] if shared else []) + [(place,) for place in used if place in own]
+        for group in groups:
+            values = relay.positions[group[0]]
+            if name.startswith(PREFIX):
+                allowed = known(str(values.get("beam.file", "")))
+                if name not in allowed:
+                    raise RelayContactError(f"{name}: no such entry in the spring file{nearest(name, allowed)}")
+                start, least, most = 1.0, 0.0, np.inf
+            else:
+                variable = component.variables[name]
+                start = float(values.get(name, component.start(name)))
+                least, most = float(variable.min or 0.0), float(variable.max or np.inf)
+            if start <= 0:
+                raise RelayContactError(f"{name} = {start:g} in the relay's file: not allowed, a search starts above 0")
+            low = max(-REACH, np.log(least / start) if least > 0 else -REACH)
+            label = f"{name}, {group[0]}" if len(groups) > 1 else name
+            found.append(Unknown(name, group, start, label, low, min(REACH, float(np.log(most / start)))))
+    return found
+
+
+def has(position: Mapping[str, Any], name: str) -> bool:
+    """Tell whether the table of a position gives a parameter itself."""
+    table: Any = position.get("parameters", {})
+    for key in name.split("."):
+        if not isinstance(table, dict) or key not in table:
+            return False
+        table = table[key]
+    return True
+
+
+def sought(
+    laboratory: Laboratory, relay: Relay, measurements: list[Measurement], parameters: list[Unknown], opens: bool = True
+) -> tuple[Fit, dict[str, str]]:
+    """Fit; take out one after the other what the data do not determine, with the reason.
+
+    `opens`: levels at which the contact opens are those of the component with a contact that does, not a linear one.
+    """
+    fit = Fit(laboratory, dict(relay.positions), [Set(each) for each in measurements], parameters)
+    fit.run()
+    missing: dict[str, str] = {}
+    while True:
+        halves = fit.halves()
+        wide = np.flatnonzero(halves > WIDE)
+        if not len(wide):
+            break
+        # What is known from elsewhere is taken out first: the data then tell the others.
+        order = [(relay.uncertainty.get(fit.unknowns[each].name, np.inf), -halves[each], each) for each in wide]
+        worst = int(min(order)[2])
+        missing[fit.unknowns[worst].label] = reason(fit, worst, relay)
+        fit = without(fit, worst)
+        if not fit.unknowns:
+            return fit, missing
+        fit.run()
+    levels = [each for each in fit.sets if each.measurement.kind == CHATTER]
+    if opens and levels:
+        for each in levels:
+            values = fit.values(each.measurement.position, fit.logarithms)
+            each.factor = laboratory.correction(each.measurement, values)
+        fit.run()
+    return fit, missing
+
+
+def without(fit: Fit, number: int) -> Fit:
+    """Give a fit without a parameter, which has the value of the file."""
+    left = [each for index, each in enumerate(fit.unknowns) if index != number]
+    smaller = Fit(fit.laboratory, fit.positions, fit.sets, left)
+    smaller.logarithms = np.delete(fit.logarithms, number)
+    return smaller
+
+
+def reason(fit: Fit, number: int, relay: Relay) -> str:
+    """Tell why a parameter is not determined, and what happens with it."""
+    row = np.abs(fit.correlation[number])
+    partners = [each.label for index, each in enumerate(fit.unknowns) if index != number and row[index] > TOGETHER]
+    why = "the data hardly depend on it"
+    if partners:
+        why = f"the data tell it only together with {' and '.join(partners)}"
+    part = relay.uncertainty.get(fit.unknowns[number].name)
+    kept = f"with its ± {100 * part:g} %" if part else "as if it were exact"
+    return f"{why}; taken from the relay's file {kept}"
+
+
+def conclude(fit: Fit, missing: dict[str, str], relay: Relay, path: Path) -> Identification:
+    """Give intervals, correlations and what else has to be said."""
+    halves = fit.halves() if fit.unknowns else np.zeros(0)
+    names = {unknown.name for unknown in fit.unknowns}
+    others = {name: part for name, part in relay.uncertainty.items() if name not in names and part}
+    shifts = {name: fit.shifts(name, part) for name, part in others.items()} if fit.unknowns else {}
+    found = []
+    for number, unknown in enumerate(fit.unknowns):
+        own = {name: abs(float(shift[number])) for name, shift in shifts.items()}
+        half = float(np.sqrt(halves[number] ** 2 + sum(each**2 for each in own.values())))
+        found.append(Found(unknown, unknown.start * float(np.exp(fit.logarithms[number])), half, own))
+    fitted = [fit.modelled(each, fit.logarithms) for each in fit.sets]
+    curves = [curve(fit, each, model) for each, model in zip(fit.sets, fitted, strict=True)]
+    correlation = fit.correlation if fit.unknowns else np.zeros((0, 0))
+    notes = [line for each, model in zip(fit.sets, fitted, strict=True) for line in remarks(fit, each, model)]
+    notes += [
+        f"{one.label} and {other.label} are known better together than alone (correlation {correlation[i, j]:+.3f})"
+        for i, one in enumerate(fit.unknowns) for j, other in enumerate(fit.unknowns[:i])
+        if abs(correlation[i, j]) > TOGETHER
+    ]  # fmt: skip
+    return Identification(relay, path, found, missing, correlation, fit.sets, fitted, curves, notes)
+
+
+def curve(fit: Fit, each: Set, model: Array) -> tuple[Array, Array]:
+    """Give the model's values closer together; those of a ring-down are close."""
+    own = each.measurement
+    if own.kind == RINGDOWN:
+        return own.over, model
+    order = np.argsort(own.over)
+
+    def between(values: Array, over: Array) -> Array:
+        return np.interp(over, own.over[order], values[order])
+
+    over = np.linspace(own.over.min(), own.over.max(), DRAWN)
+    acceleration = between(own.acceleration, over) if len(own.acceleration) else own.acceleration
+    factor = between(each.factor, over) if isinstance(each.factor, np.ndarray) else each.factor
+    denser = replace(own, over=over, acceleration=acceleration)
+    return over, fit.modelled(replace(each, measurement=denser, factor=factor), fit.logarithms)
+
+
+def remarks(fit: Fit, each: Set, model: Array) -> list[str]:
+    """Tell where a measurement does not agree with the model."""
+    measurement, told = each.measurement, []
+    left = each.residuals(model)
+    together = float((left[1:] * left[:-1]).sum() / max((left**2).sum(), 1e-300))
+    if together > REGULAR / np.sqrt(len(left)):
+        told.append(
+            f"{measurement.name}: neighbouring residuals are alike (correlation {together:.2f}): model or measurement "
+            "is off by more than scatter, and the intervals are too narrow"
+        )
+    factor = float(np.exp(fit.calibration(each, fit.logarithms)))
+    if measurement.calibration and abs(factor - 1) > measurement.calibration:
+        text = f"would have to show {100 * (factor - 1):+.1f} %, more than its {100 * measurement.calibration:g} %"
+        told.append(f"{measurement.name}: the instrument {text}")
+    if measurement.kind == RESPONSE and not measurement.is_open and measurement.quantity == "force":
+        values = fit.values(measurement.position, fit.logarithms)
+        laboratory = fit.laboratory
+        preload = laboratory.rest("preload.force", laboratory.conditions(measurement, values))
+        if (model > OPENS * preload).any():
+            at = measurement.over[int(np.argmax(model > OPENS * preload))]
+            told.append(
+                f"{measurement.name}: the contact opens, at {at:.4g} Hz for one: a frequency response is that of a "
+                "contact that stays closed; leave such rows out, or measure at a lower level"
+            )
+    if measurement.kind == FORCE and (model <= 0).any():
+        told.append(f"{measurement.name}: rows in which the contact is open tell nothing")
+    return told

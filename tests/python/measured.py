@@ -1,0 +1,79 @@
+"""What a laboratory would measure on the published relay, by the second solution of the model, with scatter."""
+
+from pathlib import Path
+
+import numpy as np
+
+from reference import Reference
+from relay_contact import Array, Values
+
+TRUTH: dict[str, float] = {
+    "contact.overtravel": 2.06e-4, "beam.youngsModulus": 1.2e11, "tip.mass": 2.4e-5, "beam.stiffnessDamping": 7.5e-5,
+}  # fmt: skip
+AWAY: Values = {"contact.overtravel": -1e-2}
+SCATTER = {"force": 0.005, "ring": 0.01, "response": 0.03, "chatter": 0.03}
+"""Standard deviations: of the largest force, of the first deflection, and of each amplitude and level."""
+TRAVEL = np.linspace(-1e-4, 2e-4, 7)
+TIME = np.linspace(2e-3, 22e-3, 120)
+FREQUENCY = np.linspace(400.0, 2200.0, 9)
+LEVELS = np.linspace(600.0, 1600.0, 6)
+OPENING, RESISTANCE = 10e-6, 60.0
+
+
+def deflection(values: Values, time: Array) -> Array:
+    """Give that of the open spring (m) after it was bent by 0.1 mm and let go at time 0, all its modes."""
+    spring = Reference({**values, **AWAY})
+    modes = spring.modes()
+    bent = modes.tip * 1e-4 * spring.tip_stiffness / modes.omega_squared
+    decay = modes.damping / 2
+    own = np.sqrt(modes.omega_squared - decay**2 + 0j)
+    since = np.multiply.outer(time, np.ones(len(own)))
+    # Roots of each mode; modes above a frequency do not oscillate.
+    slow, fast = -decay + 1j * own, -decay - 1j * own
+    shape = (fast * np.exp(slow * since) - slow * np.exp(fast * since)) / (fast - slow)
+    return np.asarray((shape * modes.tip * bent).sum(axis=1).real)
+
+
+def exact(values: Values) -> dict[str, Array]:
+    """Give what would be measured without scatter: N, m, N at 20 m/s2, m/s2."""
+    relay = Reference(values)
+    responses = np.array([abs(relay.force_response(f)) for f in FREQUENCY])
+    levels = np.array([abs(relay.force_response(f)) for f in LEVELS])
+    overtravel = relay.overtravel
+    return {
+        "force": np.array([Reference({**values, "contact.overtravel": overtravel + x}).force for x in TRAVEL]),
+        "ring": deflection(values, TIME),
+        "response": 20.0 * responses,
+        # A sine that is below zero for the time; the spring feels 1/4655 of what Hertz's stiffness changes.
+        "chatter": (relay.force - relay.force_of_resistance(RESISTANCE)) / levels / np.cos(np.pi * LEVELS * OPENING),
+    }
+
+
+def scattered(clean: dict[str, Array], seed: int) -> dict[str, Array]:
+    """Give what is measured."""
+    chance = np.random.default_rng(seed)
+    found = {name: values.copy() for name, values in clean.items()}
+    for name, values in found.items():
+        normal = chance.standard_normal(len(values))
+        if name in ("response", "chatter"):
+            found[name] = values * np.exp(SCATTER[name] * normal)
+        else:
+            found[name] = values + SCATTER[name] * np.abs(values).max() * normal
+    return found
+
+
+def files(folder: Path, measured: dict[str, Array]) -> dict[str, Path]:
+    """Write files as a laboratory has them; give their paths."""
+    columns = {
+        "force": ("travel [mm],force [cN]", (1e3 * TRAVEL, 1e2 * measured["force"])),
+        "ring": ("time [ms],displacement [um]", (1e3 * TIME, 1e6 * measured["ring"])),
+        "response": ("frequency [Hz],acceleration [m/s2],force [mN]",
+                     (FREQUENCY, np.full(len(FREQUENCY), 20.0), 1e3 * measured["response"])),
+        "chatter": ("frequency [kHz],level [g]", (1e-3 * LEVELS, measured["chatter"] / 9.80665)),
+    }  # fmt: skip
+    paths = {}
+    for name, (head, values) in columns.items():
+        paths[name] = folder / f"{name}.csv"
+        rows = [",".join(f"{each:.9g}" for each in row) for row in zip(*values, strict=True)]
+        paths[name].write_text("\n".join(["# made by the second solution", head, *rows]) + "\n", encoding="utf-8")
+    return paths

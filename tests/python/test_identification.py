@@ -1,0 +1,193 @@
+"""`identify` on measurements made by the second solution of the model: what the data tell, and what they do not."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.stats import binom
+
+import measured
+from component import COMPONENT, ROOT
+from identification_coverage import errors
+from measured import TRUTH, exact, files, scattered
+from reference import Reference, crossings
+from relay_contact import RelayContactError, identification
+from relay_contact.command import main
+from relay_contact.identification import Identification
+from relay_contact.identification.measurement import read
+from relay_contact.qualification import Relay
+
+SEED = 1
+CLEAN = exact(TRUTH)
+
+
+def found(*data: Path, relay: str | Path = "paper", **asked: Any) -> Identification:  # noqa: ANN401
+    return identification.identify(relay, list(data), component=COMPONENT, **asked)
+
+
+def holds(result: Identification, label: str, true: float) -> bool:
+    low, high = result[label].interval
+    return low <= true <= high
+
+
+def test_what_a_laboratory_measures_gives_the_parameters(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    data = files(tmp_path, scattered(CLEAN, SEED))
+    assert main(["identify", "paper", "--data", *map(str, data.values()), "--out", str(tmp_path / "found")]) == 0
+    printed = capsys.readouterr().out
+    # Of the stiff contact, damping is not felt while it stays closed.
+    assert "contact.damping: not determined: the data hardly depend on it" in printed
+    page = (tmp_path / "found/identification.html").read_text(encoding="utf-8")
+    assert page.count("<svg") == 1
+    assert (tmp_path / "found/identification.png").read_bytes().startswith(b"\x89PNG")
+    relay = Relay.read(tmp_path / "found/paper.toml", COMPONENT)
+    assert set(relay.uncertainty) == set(TRUTH)
+    for name, true in TRUTH.items():
+        value = float(relay.positions["contact closed"][name])
+        # The scatter of the data, some per cent, leaves this of each; the rivet is a small part of the moved mass.
+        assert relay.uncertainty[name] < (0.1 if name == "tip.mass" else 0.03)
+        assert abs(np.log(value / true)) < relay.uncertainty[name], name
+
+
+def test_intervals_hold_the_true_values_as_often_as_they_say() -> None:
+    """A small form of `identification_coverage.py`."""
+    sets = 6
+    inside = int((np.abs([errors(seed) for seed in range(sets)]) <= 1).sum())
+    # Fewer come once in a thousand times, if intervals are right and the parameters of a set independent.
+    assert inside >= binom.ppf(1e-3, sets * len(TRUTH), 0.95)
+
+
+def test_a_ring_down_alone_tells_damping_but_not_mass_and_stiffness(tmp_path: Path) -> None:
+    ring = files(tmp_path, scattered(CLEAN, SEED))["ring"]
+    names = ["beam.youngsModulus", "tip.mass", "beam.stiffnessDamping"]
+    result = found(ring, parameters=names)
+    (label,) = result.missing
+    assert label in names[:2]
+    assert "the data tell it only together with" in result.missing[label]
+    # With the true mass the frequency tells the stiffness: of a beam with a rivet, by the exact solution.
+    relay = tmp_path / "relay.toml"
+    relay.write_text(f"parameters.tip.mass = {TRUTH['tip.mass']}\nuncertainty.tip.mass = 0.1\n")
+    result = found(ring, relay=relay, parameters=names)
+    assert list(result.missing) == ["tip.mass"]
+    assert holds(result, "beam.youngsModulus", TRUTH["beam.youngsModulus"])
+    # It is uncertain by as much as the mass that moves is: frequency 293 Hz, by 10 % of the rivet.
+    stiff = {"beam.youngsModulus": TRUTH["beam.youngsModulus"], **measured.AWAY}
+    frequencies = [
+        Reference({**stiff, "tip.mass": TRUTH["tip.mass"] * part}).modes().omega_squared for part in (1, 1.1)
+    ]
+    moved = float(np.log(min(frequencies[0]) / min(frequencies[1])))
+    assert result["beam.youngsModulus"].by_others["tip.mass"] == pytest.approx(moved, rel=0.05)
+
+
+def test_bounces_tell_the_damping_of_the_contact(tmp_path: Path) -> None:
+    true, speeds = 2e-6, np.array([0.03, 0.04, 0.05, 0.06, 0.08])
+    lengths = []
+    for speed in speeds:
+        relay = Reference({"contact.damping": true, "contact.overtravel": -1e-6})
+        stop = 1e-6 / speed + 6e-5
+        force = relay.motion(lambda _: 0.0, stop, 1e-6, speed, 5e-6)
+        opened, closed = crossings(force, 1e-9, np.arange(0.0, stop, 1e-6))
+        lengths.append(closed[1] - opened[0])
+    noise = np.exp(0.02 * np.random.default_rng(SEED).standard_normal(len(speeds)))
+    data = tmp_path / "bounce.csv"
+    rows = [f"{1e3 * speed};{1e6 * length}" for speed, length in zip(speeds, lengths * noise, strict=True)]
+    # Another separator, and a comma in the numbers.
+    data.write_text("speed [mm/s];bounce [us]\n" + "\n".join(rows).replace(".", ",") + "\n")
+    # With the damping in the file, 80 us, the contact does not bounce at all.
+    result = found(data, parameters=["contact.damping"])
+    assert holds(result, "contact.damping", true)
+    # Five lengths with a scatter of 2 %.
+    assert result["contact.damping"].half < 0.2
+
+
+def test_an_instrument_that_may_be_wrong_widens_the_intervals(tmp_path: Path) -> None:
+    values = scattered(CLEAN, SEED)
+    path = files(tmp_path, {**values, "force": 1.015 * values["force"]})["force"]
+    names = ["beam.youngsModulus"]
+    relay = tmp_path / "relay.toml"
+    relay.write_text(f"parameters.contact.overtravel = {TRUTH['contact.overtravel']}\n")
+    assert not holds(found(path, relay=relay, parameters=names), names[0], TRUTH[names[0]])
+    path.write_text("# calibration = 0.02\n" + path.read_text())
+    result = found(path, relay=relay, parameters=names)
+    assert holds(result, names[0], TRUTH[names[0]])
+    # The gauge is wrong by 2 % with 95 % confidence, and the force is in proportion to the stiffness; scatter adds.
+    assert result[names[0]].half == pytest.approx(0.02, rel=0.15)
+
+
+def test_each_position_has_its_overtravel(tmp_path: Path) -> None:
+    """The force of a spring on a stiff contact is in proportion to the overtravel."""
+    paths, file = [], tmp_path / "relay.toml"
+    text = (ROOT / "relays/cube-changeover.toml").read_text().replace("../scenes", str(ROOT / "scenes"))
+    # The axial force from the deflection would soften the spring by some thousandths.
+    file.write_text(text.replace("[parameters]", '[parameters]\neffects.axialForce = "None"'))
+    true = {"coil without current": 8.4e-4, "coil energised": 5.8e-4}
+    relay = Relay.read(file, COMPONENT)
+    for number, (position, overtravel) in enumerate(true.items()):
+        values = {**relay.positions[position], "contact.overtravel": 1e-3}
+        with COMPONENT.started(values) as contact:
+            force, indentation = contact.real("preload.force", "preload.indentation")
+        stiffness = force / (1e-3 - indentation)
+        travel = np.linspace(-2e-4, 2e-4, 5)
+        paths.append(tmp_path / f"{number}.csv")
+        rows = [f"{x},{stiffness * (overtravel + x - indentation)}" for x in travel]
+        paths[-1].write_text(f"# position = {position}\ntravel,force\n" + "\n".join(rows) + "\n")
+    out = tmp_path / "found"
+    result = found(*paths, relay=file, parameters=["contact.overtravel", "spring.stiffness"], out=out)
+    written = Relay.read(out / "relay.toml", COMPONENT)
+    for position, overtravel in true.items():
+        # The Hertz contact yields by less than the indentation at the larger preload, 0.13 um.
+        assert result[f"contact.overtravel, {position}"].value == pytest.approx(overtravel, abs=2e-7)
+        assert written.positions[position]["contact.overtravel"] == pytest.approx(overtravel, abs=2e-7)
+        # The spring lies beside the file, as it was found.
+        assert Path(str(written.positions[position]["beam.file"])).parent.resolve() == out.resolve()
+    assert result["spring.stiffness"].value == pytest.approx(1.0, abs=1e-3)
+    paths[0].write_text(paths[0].read_text().split("\n", 1)[1])
+    with pytest.raises(RelayContactError, match=r"0.csv: line 1: which position of the coil"):
+        found(*paths, relay=file)
+
+
+HEAD = "travel [mm],force [cN]\n"
+ROWS = "0,1\n1,2\n2,3\n3,4\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("travl [mm],force [cN]\n", "line 1: column travl: unknown; .*did you mean travel"),
+        ("travel [inch],force\n", "line 1: column travel: unit inch: not allowed, allowed is m, mm, um, nm"),
+        (
+            "travel,level\n",
+            "line 1: columns travel, level: no measurement that is known; there are static force: travel",
+        ),
+        (HEAD + "0,1\n1,x\n", "line 3: column force: x: not allowed, allowed is a number"),
+        (HEAD + "0,1\n1,nan\n", "line 3: column force: nan cN: not allowed, allowed is a finite number"),
+        (HEAD + "0,1\n1\n", "line 3: 1 values: not allowed, allowed is 2, one in each column"),
+        (HEAD + ROWS, "line 5: 4 rows: not allowed, allowed is 5 or more for a static force"),
+        ("frequency,level\n-3,1\n", "line 2: column frequency: -3 Hz: not allowed, allowed is more than 0 Hz"),
+        ("time,displacement\n0,1\n0,2\n", "line 3: column time: 0 s: not allowed, allowed is a later one"),
+        ("# positon = a\n" + HEAD + ROWS + "4,5\n", "line 1: positon: unknown; did you mean position"),
+        ("# position = b\n" + HEAD + ROWS + "4,5\n", "line 1: position = b: not allowed, allowed is a"),
+        ("# calibration = 2 %\n" + HEAD + ROWS + "4,5\n", "line 1: calibration = 2 %: not allowed, allowed is 0 to 1"),
+        ("# tip.mas = 1\n" + HEAD + ROWS + "4,5\n", "line 1: tip.mas: no such variable; did you mean tip.mass"),
+        ("", "line 0: no line with the names of the columns"),
+    ],
+)
+def test_wrong_files_are_explained(tmp_path: Path, text: str, message: str) -> None:
+    path = tmp_path / "data.csv"
+    path.write_text(text)
+    with pytest.raises(RelayContactError, match=message):
+        read(path, COMPONENT, ["a"])
+
+
+def test_wrong_questions_are_explained(tmp_path: Path) -> None:
+    data = files(tmp_path, CLEAN)["force"]
+    for asked, message in (
+        ({"parameters": ["tip.mas"]}, "tip.mas: no such variable; did you mean tip.mass"),
+        ({"parameters": ["spring.thickness"]}, "spring.thickness: no such entry in the spring file"),
+        ({"parameters": ["beam.massDamping"]}, "beam.massDamping = 0 in the relay's file: not allowed"),
+        ({"relay": ROOT / "none.toml"}, "no such file, and no relay of this name"),
+    ):
+        with pytest.raises(RelayContactError, match=message):
+            found(data, **asked)
+    with pytest.raises(RelayContactError, match=r"none.csv: no such file"):
+        found(tmp_path / "none.csv")

@@ -1,0 +1,84 @@
+"""Entries of spring files as parameters: varied in the component, and uncertain in the file of a relay."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from component import COMPONENT, ROOT
+from relay_contact import RelayContactError
+from relay_contact.qualification import Relay, Standard
+from relay_contact.qualification.assessment import Position
+from relay_contact.qualification.standards import Shock
+
+SEGMENTS = ROOT / "scenes/springs/tapered-cube.toml"
+MODES = ROOT / "scenes/springs/tapered-cube-modes.toml"
+OPEN: Any = {"contact.overtravel": -1e-3}
+
+
+def frequency(**values: Any) -> float:  # noqa: ANN401
+    """Give the first frequency of the open spring, Hz."""
+    with COMPONENT.started(OPEN | {name.replace("__", "."): value for name, value in values.items()}) as contact:
+        return contact.real("preload.frequency")[0]
+
+
+@pytest.mark.parametrize("file", ["", str(SEGMENTS), str(MODES)])
+def test_stiffness_is_that_of_the_whole_spring(file: str) -> None:
+    stiffer = frequency(beam__file=file, spring__stiffness=1.21)
+    # Clamp included: frequencies rise with its root.
+    assert stiffer == pytest.approx(1.1 * frequency(beam__file=file), rel=1e-9)
+    if file != str(MODES):
+        return
+    closed: Any = {"beam.file": file, "contact.overtravel": 1e-3, "contact.curvatureRadius": 1.0}
+    forces = []
+    for values in (closed, {**closed, "spring.stiffness": 1.21}):
+        with COMPONENT.started(values) as contact:
+            forces += [contact.real("preload.force")[0] / (1e-3 - contact.real("preload.indentation")[0])]
+    assert forces[1] == pytest.approx(1.21 * forces[0], rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new"),
+    [
+        ("spring.thickness", "thickness = 2e-4", "thickness = 2.2e-4"),
+        ("spring.segment.2.width", "4e-3\nwidth_end = 2.4e-3", "4.4e-3\nwidth_end = 2.64e-3"),
+        ("spring.mass.1.mass", "mass = 4e-6", "mass = 4.4e-6"),
+        ("spring.clamp_stiffness", "clamp_stiffness = 1.2", "clamp_stiffness = 1.32"),
+    ],
+)
+def test_an_entry_is_that_of_the_file(tmp_path: Path, name: str, old: str, new: str) -> None:
+    text = SEGMENTS.read_text()
+    assert old in text
+    edited = tmp_path / "edited.toml"
+    edited.write_text(text.replace(old, new))
+    values: Any = {name.replace(".", "__"): 1.1}
+    assert frequency(beam__file=str(SEGMENTS), **values) == pytest.approx(frequency(beam__file=str(edited)), rel=1e-12)
+
+
+def test_uncertain_entries_make_margins_uncertain(tmp_path: Path) -> None:
+    """A slow shock: the preload goes with the cube of the thickness, what is shaken with its first power."""
+    file = tmp_path / "relay.toml"
+    text = f"parameters.beam.file = '{SEGMENTS}'\nparameters.beam.stiffnessDamping = 5e-6\n"
+    rigid = tmp_path / "rigid.toml"
+    rigid.write_text("\n".join(line for line in SEGMENTS.read_text().splitlines() if "clamp" not in line))
+    text = text.replace(str(SEGMENTS), str(rigid)) + "parameters.contact.overtravel = 8e-4\nparameters.tip.mass = 0.0\n"
+    file.write_text(text + "uncertainty.spring.thickness = 0.02\nuncertainty.spring.stiffness = 0.05\n")
+    relay = Relay.read(file, COMPONENT)
+    (name,) = relay.positions
+    position = Position(COMPONENT, relay, name, Standard.read("MIL-PRF-28776").contacts)
+    effects = position.effects(Shock("slow", "", True, 20.0, 0.1))
+    # The mass that the spring carries beside its own is not as thick.
+    assert 2 * 0.02 < effects["spring.thickness"] < 3 * 0.02
+    # 10 us, the indentation, and the vibration of the spring itself, 5 Hz over 1600 Hz.
+    assert effects["spring.stiffness"] == pytest.approx(0.05, rel=5e-3)
+
+
+def test_unknown_entries_are_explained(tmp_path: Path) -> None:
+    file = tmp_path / "relay.toml"
+    file.write_text(f"parameters.beam.file = '{SEGMENTS}'\nuncertainty.spring.segment.3.thickness = 0.02\n")
+    with pytest.raises(
+        RelayContactError, match=r"uncertainty of spring.segment.3.thickness: no such entry.*did you mean"
+    ):
+        Relay.read(file, COMPONENT)
+    with pytest.raises(RelayContactError, match=r"spring.thickness: no such entry; there are spring.stiffness"):
+        frequency(spring__thickness=1.1)
