@@ -125,6 +125,9 @@ fn space(mesh: &Mesh, shapes: &[Bend], section: &Section) -> Space {
         products(shapes.iter().map(moved).collect()),
         products(shapes.iter().map(turned).collect()),
         vector(&loaded),
-        vector(&|shape| mesh.at_contact(shape).0),
+        (
+            vector(&|shape| mesh.at_contact(shape).0),
+            vector(&|shape| mesh.at_contact(shape).1),
+        ),
     )
 }

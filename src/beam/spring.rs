@@ -166,6 +166,7 @@ impl Spring {
                     damping: alpha + beta * mode.omega_squared,
                     tip: mode.tip,
                     participation: mode.participation,
+                    rotation: mode.rotation,
                 };
                 (mode, shape)
             })

@@ -140,7 +140,7 @@ impl Integration<'_> {
     {
         self.workspace.work += 1;
         let (cache, end, inside) = Room::<S>::parts(self.workspace);
-        let whole = (trial, length, &end.loads);
+        let whole = (trial, length, &*end);
         let collocation = cache.collocation();
         part::motion(self.model, self.state, &self.drive, collocation, whole, at, inside)
     }
@@ -152,7 +152,7 @@ impl Integration<'_> {
     {
         let (cache, end, inside) = Room::<S>::parts(self.workspace);
         end.modes = *inside;
-        let whole = (trial, length, &mut end.loads);
+        let whole = (trial, length, &mut end.loads, &mut end.tangential);
         part::first_part(self.model, self.state, &self.drive, cache.collocation(), whole, last)
     }
 
@@ -251,6 +251,8 @@ impl Integration<'_> {
         self.grid.done = target.done;
         self.refusals = 0;
         self.before_event = false;
+        self.changes = 0;
+        self.follow_friction::<S>(target.length);
         self.settle(target.length);
         self.balance(expected_energy);
         Ok(())

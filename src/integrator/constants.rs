@@ -176,6 +176,10 @@ pub const GUESSES: u32 = 8;
 /// fastest velocity there, 1. What swings unseen between so many nodes is no larger. Not pinned by a test.
 pub const DISTANT: f64 = 8.0;
 
+/// Changes between stick and slip that take no time, before the contact goes on as it is for one step. Only rounding makes
+/// them. Not pinned: 0 fails no test.
+pub const MOST_CHANGES: u32 = 16;
+
 /// Pieces of a step in each of which one extreme of its force polynomial is looked for. The degree of long steps. Not
 /// pinned: ÷ 8 fails no test of `tests/chatter.rs`.
 pub const PIECES: u32 = 8;

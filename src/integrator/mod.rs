@@ -266,6 +266,7 @@ pub mod energy;
 pub mod events;
 pub mod exact_step;
 pub mod extremes;
+pub mod friction;
 pub mod grid;
 pub mod integration;
 pub mod motion;

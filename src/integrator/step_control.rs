@@ -2,11 +2,12 @@
 
 use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
+use crate::friction::Phase;
 use crate::integrator::attempt::{growth, shrinkage};
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::constants::{
-    AFTER_REJECTION, COARSEST, GROWING, LEAST_SHRINK, LONGER, MOST_SHRINK, NEXT_LENGTH, REFUSALS, SAFETY, SHARE,
-    SMOOTH, WORTH,
+    AFTER_REJECTION, COARSEST, GROWING, LEAST_SHRINK, LONGER, MOST_CHANGES, MOST_SHRINK, NEXT_LENGTH, REFUSALS, SAFETY,
+    SHARE, SMOOTH, WORTH,
 };
 use crate::integrator::energy::conservation::conserves;
 use crate::integrator::events::Cut;
@@ -70,6 +71,7 @@ pub(crate) fn advance(
         allowed: SHARE * tolerance,
         refusals: 0,
         before_event: false,
+        changes: 0,
         conserves: conserves(model, &drive),
     }
     .run()
@@ -181,11 +183,19 @@ impl Integration<'_> {
         } else {
             growth::<S>(ratio) * self.leaving_kink(target.length)
         };
+        let change = if self.model.friction().is_some() && self.changes <= MOST_CHANGES {
+            self.slip_change(&trial, target.length)
+        } else {
+            None
+        };
         let opens = if self.state.closed {
             self.first_open(&trial)
         } else {
             None
         };
+        // What sticks slips before it opens.
+        let sticks = self.state.tangential.phase == Phase::Stick;
+        let opens = opens.filter(|_| change.is_none() || !sticks);
         let read = self.read_at(&trial, &target);
         let closes = if self.state.closed {
             None
@@ -201,8 +211,17 @@ impl Integration<'_> {
             let shrink = AFTER_REJECTION * (self.allowed_inside() / trial.inner_error).powf(1.0 / S as f64);
             return Ok(self.reject(target.length * shrink.clamp(LEAST_SHRINK, NEXT_LENGTH)));
         }
+        if change.is_some() && trial.inner_error > self.allowed.max(trial.rounding) && !self.is_shortest(&target) {
+            let shrink = AFTER_REJECTION * (self.allowed / trial.inner_error).powf(1.0 / S as f64);
+            return Ok(self.reject(target.length * shrink.clamp(LEAST_SHRINK, NEXT_LENGTH)));
+        }
         let opening = opens.and_then(|part| self.opening(&trial, target.length, part * target.length));
-        let event = opening.or(closes);
+        let event = match (opening.or(closes), &change) {
+            (event, Some(change)) if event.as_ref().is_none_or(|event| change.at < event.end.at) => {
+                Some(self.cut_at_change(&trial, target.length, change))
+            }
+            (event, _) => event,
+        };
         let cut = match (event, read) {
             (Some(event), Some(read)) if event.time <= read => Some(event),
             (_, Some(time)) => Some(Cut {
@@ -210,6 +229,7 @@ impl Integration<'_> {
                 time,
                 switches: false,
                 mirrors: false,
+                slides: None,
             }),
             (event, None) => event,
         };

@@ -3,6 +3,7 @@
 pub mod axial_force;
 pub mod coefficients;
 pub mod error;
+pub mod friction;
 pub mod modal_response;
 pub mod newton;
 pub mod part;

@@ -7,6 +7,7 @@ use crate::excitation::drive::Drive;
 use crate::integrator::collocation::axial_force::{self, NodalModes, Settled};
 use crate::integrator::collocation::coefficients::{EndRows, Prepared, StepCoefficients};
 use crate::integrator::collocation::error::errors;
+use crate::integrator::collocation::friction::{self, TangentialNodes};
 use crate::integrator::collocation::newton::{
     FreeResponse, Solution, Source, Tangent, at_nodes, closed_forces, first_forces,
 };
@@ -60,6 +61,8 @@ pub struct End<const S: usize> {
     pub modes: ModeStates,
     /// Loads of an axial force that follows the deflection, at its nodes.
     pub loads: NodalModes<S>,
+    /// Friction at its nodes.
+    pub tangential: TangentialNodes<S>,
 }
 
 impl<const S: usize> Default for End<S> {
@@ -67,6 +70,7 @@ impl<const S: usize> Default for End<S> {
         Self {
             modes: [ModeState::default(); MAX_MODES],
             loads: [[0.0; S]; MAX_MODES],
+            tangential: TangentialNodes::ZERO,
         }
     }
 }
@@ -94,7 +98,7 @@ impl<const S: usize> Trial<S> {
 }
 
 /// The loads on [`LANES`] modes at the nodes.
-type LaneLoads<const S: usize> = [[f64; LANES]; S];
+pub(super) type LaneLoads<const S: usize> = [[f64; LANES]; S];
 
 /// Computes the prepared step from `state`, contact closed or open as in `state`. `None` if the iteration for contact or
 /// axial force does not converge.
@@ -106,12 +110,14 @@ pub fn trial<const S: usize>(
     source: Source<S>,
     end: &mut End<S>,
 ) -> Option<Trial<S>> {
-    match model.axial() {
-        None => {
+    match (model.axial(), model.friction()) {
+        (None, None) => {
             compiled_for!(model.simd, A => compute::<S, A>(model, state, drive, prepared, source, end))
         }
-        Some(axial) => compiled_for!(model.simd, A =>
+        (Some(axial), _) => compiled_for!(model.simd, A =>
             compute_with_axial_force::<S, A>(model, axial, state, drive, prepared, source, end)),
+        (None, Some(friction)) => compiled_for!(model.simd, A =>
+            friction::compute::<S, A>(model, friction, state, drive, prepared, source, end)),
     }
 }
 
@@ -183,7 +189,7 @@ fn compute_with_axial_force<const S: usize, A: Arithmetic>(
 
 /// Response of the tip to everything but the contact force.
 #[inline(always)]
-fn free_response<'a, const S: usize, A: Arithmetic>(
+pub(super) fn free_response<'a, const S: usize, A: Arithmetic>(
     state: &State,
     drive: &Drive,
     prepared: &Prepared<'a, S>,
@@ -299,7 +305,7 @@ fn judged<const S: usize, A: Arithmetic>(
     clippy::indexing_slicing,
     reason = "the room for the modes is a whole number of lanes"
 )]
-fn loads_on_modes<const S: usize, A: Arithmetic>(
+pub(super) fn loads_on_modes<const S: usize, A: Arithmetic>(
     rows: &EndRows<S>,
     first: usize,
     forces: &Nodal<S>,
@@ -322,7 +328,7 @@ fn loads_on_modes<const S: usize, A: Arithmetic>(
     clippy::indexing_slicing,
     reason = "the room for the modes is a whole number of lanes"
 )]
-fn end_of_modes<const S: usize, A: Arithmetic>(
+pub(super) fn end_of_modes<const S: usize, A: Arithmetic>(
     state: &State,
     step: &StepCoefficients<S>,
     modes: usize,

@@ -8,6 +8,7 @@ pub mod opening;
 pub mod other;
 
 use crate::error::StepError;
+use crate::friction::Phase;
 use crate::integrator::collocation::error::sum_rounding;
 use crate::integrator::collocation::part::Instant;
 use crate::integrator::collocation::step::Trial;
@@ -29,6 +30,8 @@ pub(crate) struct Cut {
     pub(crate) switches: bool,
     /// Whether it is the other contact that closes.
     pub(crate) mirrors: bool,
+    /// Whether the contact begins or ceases to slip, and how it goes on.
+    pub(crate) slides: Option<Phase>,
 }
 
 impl Integration<'_> {
@@ -39,6 +42,7 @@ impl Integration<'_> {
             end,
             switches,
             mirrors: false,
+            slides: None,
         }
     }
 
@@ -135,6 +139,13 @@ impl Integration<'_> {
     {
         if cut.end.at <= 0.0 {
             // The event is at the start of the step.
+            if let Some(phase) = cut.slides {
+                self.change_phase(phase);
+                self.changes += 1;
+                // Rounding must not let it change to and fro for ever.
+                let shrink = if self.changes > 1 { MOST_SHRINK } else { 1.0 };
+                return Ok(self.reject(shrink * requested));
+            }
             self.switch(!self.state.closed);
             return Ok(StepOutcome {
                 switched: true,
@@ -149,6 +160,9 @@ impl Integration<'_> {
         self.take(&part, &end, passages)?;
         if cut.mirrors {
             self.mirror();
+        }
+        if let Some(phase) = cut.slides {
+            self.change_phase(phase);
         }
         if cut.switches {
             self.switch(!self.state.closed);
@@ -180,6 +194,7 @@ impl Integration<'_> {
             self.state.last_opening = self.state.time;
             self.step_after_jump()
         };
+        self.model.settle_friction(self.state);
     }
 
     /// Applies a jump of the velocity of the fixed contact, with which the dissipative force jumps.
@@ -200,6 +215,7 @@ impl Integration<'_> {
             self.switch(closed);
         }
         self.state.force = force;
+        self.model.settle_friction(self.state);
         self.state.last_kink = self.state.time;
         self.state.last_step = 0.0;
         let next = self.first_closed_step();
