@@ -83,7 +83,9 @@ pub enum SceneError {
     )]
     NeedsHertz,
     /// Friction beside something that it cannot be combined with.
-    #[error("{name} = {choice}: not allowed with effects.friction = Coulomb, allowed is {allowed}; or effects.friction = None")]
+    #[error(
+        "{name} = {choice}: not allowed with effects.friction = Coulomb, allowed is {allowed}; or effects.friction = None"
+    )]
     NoFriction {
         /// The other choice.
         name: &'static str,

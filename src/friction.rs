@@ -33,6 +33,7 @@ use serde::{Deserialize, Serialize};
 use crate::beam::mode::{MAX_MODES, Modal, Mode, ModeStates};
 use crate::contact::hertz::Hertz;
 use crate::error::SceneError;
+use crate::math::prediction::Prediction;
 use crate::model::Model;
 use crate::scene::spring::Shape;
 use crate::scene::{Contact, Scene, choices};
@@ -94,18 +95,31 @@ pub struct Tangential {
     pub slip: f64,
     /// Friction force T, N.
     pub force: f64,
+    /// Friction force over the last step, N.
+    pub course: Prediction,
     /// Whether it slips.
     pub phase: Phase,
     /// Distance slipped so far, m.
     pub distance: f64,
     /// Energy dissipated by slip so far, J.
     pub dissipated: f64,
+    /// Length of the first step after slip has begun, and after it has ended, s: as long as the last of them that was taken;
+    /// 0: none was.
+    pub first_steps: [f64; 2],
+    /// Time of the last change between stick and slip, s; -1: none.
+    pub last_change: f64,
 }
 
 impl Tangential {
     /// Deflection z of the tangential spring, m.
     pub fn deflection(&self) -> f64 {
         self.displacement - self.slip
+    }
+
+    /// The length of the first step in this phase.
+    pub(crate) fn first_step(&mut self) -> &mut f64 {
+        let [of_slip, of_stick] = &mut self.first_steps;
+        if self.phase == Phase::Stick { of_stick } else { of_slip }
     }
 
     /// Whether a simulation can reach these numbers.
@@ -115,14 +129,19 @@ impl Tangential {
             rate,
             slip,
             force,
+            course,
             phase: _,
             distance,
             dissipated,
+            first_steps,
+            last_change,
         } = self;
-        [displacement, rate, slip, force, distance, dissipated]
-            .iter()
+        [displacement, rate, slip, force, distance, dissipated, last_change]
+            .into_iter()
+            .chain(course)
             .all(|number| number.is_finite())
             && *distance >= 0.0
+            && first_steps.iter().all(|step| (0.0..f64::INFINITY).contains(step))
     }
 }
 
@@ -202,9 +221,7 @@ fn stiffness_ratio(contact: &Contact) -> f64 {
         .sum();
     let tangential: f64 = materials
         .iter()
-        .map(|material| {
-            (2.0 - material.poisson_ratio) * 2.0 * (1.0 + material.poisson_ratio) / material.youngs_modulus
-        })
+        .map(|material| (2.0 - material.poisson_ratio) * 2.0 * (1.0 + material.poisson_ratio) / material.youngs_modulus)
         .sum();
     4.0 * normal / tangential
 }
@@ -291,8 +308,7 @@ impl Model {
             tangential.phase = Phase::slip(against);
             tangential.force = limit.copysign(against);
             if hertz.damping == 0.0 {
-                tangential.slip =
-                    tangential.displacement - friction.limit_deflection(hertz, against.signum(), d, 0.0);
+                tangential.slip = tangential.displacement - friction.limit_deflection(hertz, against.signum(), d, 0.0);
             }
         } else {
             tangential.phase = Phase::Stick;

@@ -341,10 +341,13 @@ impl Model {
     /// Friction at the preload.
     fn initial_friction(&self) -> Tangential {
         let force = self.friction.map_or(0.0, |friction| friction.preload);
-        let stiffness = self.friction.map_or(0.0, |friction| friction.ratio * self.preload.contact_stiffness);
+        let stiffness = self
+            .friction
+            .map_or(0.0, |friction| friction.ratio * self.preload.contact_stiffness);
         Tangential {
             force,
             slip: if stiffness > 0.0 { force / stiffness } else { 0.0 },
+            last_change: -1.0,
             ..Tangential::default()
         }
     }

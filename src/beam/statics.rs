@@ -72,7 +72,9 @@ impl Statics {
     pub fn gravity_compliance(&self, axial_force: f64) -> f64 {
         let half_mass = self.section.mass_per_length * self.section.length / 2.0;
         let tip_mass = self.section.tip_mass;
-        -self.sum(axial_force, |term| term.tip * (half_mass * term.load + tip_mass * term.tip))
+        -self.sum(axial_force, |term| {
+            term.tip * (half_mass * term.load + tip_mass * term.tip)
+        })
     }
 
     fn sum(&self, axial_force: f64, product: impl Fn(&Term) -> f64) -> f64 {

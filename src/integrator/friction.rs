@@ -7,7 +7,7 @@
 use crate::friction::Phase;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::step::Trial;
-use crate::integrator::constants::LOCATED;
+use crate::integrator::constants::{LOCATED, MOST_SHRINK, WORTH};
 use crate::integrator::course::turning_points;
 use crate::integrator::events::Cut;
 use crate::integrator::integration::Integration;
@@ -50,11 +50,11 @@ impl Integration<'_> {
             add_columns::<S, Separate>(&mut dissipated, &integrals.nodal, &powers);
         }
         if let Some((_, dense)) = &mut self.dense {
-            dense.friction.force = collocation.through(start.force, &forces);
             dense.friction.slip = collocation.through(start.slip, &slips);
             dense.friction.dissipated = collocation.through(start.dissipated, &dissipated);
         }
         let tangential = &mut state.tangential;
+        tangential.course = collocation.through(start.force, &forces);
         (tangential.displacement, tangential.rate) = friction.motion(&state.modes, model.modes.len());
         if !state.closed {
             tangential.slip = tangential.displacement;
@@ -86,8 +86,7 @@ impl Integration<'_> {
             (first(before, &wrong)?, Phase::Stick)
         } else {
             let [back, forth] = [1.0, -1.0].map(|sign| {
-                let excess =
-                    |friction_force: f64, force: f64| sign * friction_force - friction.coefficient * force;
+                let excess = |friction_force: f64, force: f64| sign * friction_force - friction.coefficient * force;
                 let mut values = nodes.forces;
                 for (value, force) in values.iter_mut().zip(&trial.forces) {
                     *value = excess(friction.preload + *value, model.preload.force + force);
@@ -119,21 +118,39 @@ impl Integration<'_> {
         }
     }
 
-    /// Begins or ends slip at the instant of the state.
+    /// Begins or ends slip at the instant of the state. The slope of the friction force jumps, and the spring answers as
+    /// steeply as its highest modes do: the next step is as long as the last one after such a change.
     pub(crate) fn change_phase(&mut self, phase: Phase) {
-        self.state.tangential.phase = phase;
-        self.state.tangential.force = self.model.friction_force(self.state);
+        let state = &mut *self.state;
+        state.tangential.phase = phase;
+        state.tangential.force = self.model.friction_force(state);
+        state.last_kink = state.time;
+        state.tangential.last_change = state.time;
+        let first = *state.tangential.first_step();
+        let length = if first > 0.0 {
+            first
+        } else {
+            0.1 * self.model.first_step(state.time)
+        };
+        state.long_step = state.long_step.min(length);
+        state.short_step = state.short_step.min(length / WORTH);
+    }
+
+    /// Whether the contact begins or ceases to slip at the start of the next step.
+    pub(crate) fn changes_now(&self) -> bool {
+        self.model.friction().is_some() && self.state.tangential.last_change == self.state.time
+    }
+
+    /// Keeps the length (s) of the first step after a change that has been taken, with the factor that its error would have
+    /// allowed.
+    pub(crate) fn keep_first_step(&mut self, length: f64, growth: f64) {
+        *self.state.tangential.first_step() = length * growth.clamp(MOST_SHRINK, 1.0 / MOST_SHRINK);
     }
 }
 
 /// Where the polynomial through `start` and the nodal values first exceeds zero by more than `unsure`: where it passes zero
 /// before, relative to the end of the step in step lengths.
-fn passage<const S: usize>(
-    collocation: &Collocation<S>,
-    start: f64,
-    values: &Nodal<S>,
-    unsure: f64,
-) -> Option<f64> {
+fn passage<const S: usize>(collocation: &Collocation<S>, start: f64, values: &Nodal<S>, unsure: f64) -> Option<f64> {
     if !Collocation::comes_near_zero(-start, &scaled(values, -1.0)) {
         return None;
     }

@@ -61,8 +61,6 @@ pub(crate) struct DenseOutput {
 /// Dense output of friction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct DenseFriction {
-    /// Friction force, N.
-    pub force: Prediction,
     /// Slip, m.
     pub slip: Prediction,
     /// Energy dissipated so far, J.
@@ -92,7 +90,7 @@ pub(crate) enum Steps<'a> {
 pub(crate) struct StepOutcome {
     /// Whether it was accepted.
     pub(crate) taken: bool,
-    /// Whether the contact opened or closed with it: short steps begin anew.
+    /// Whether the contact opened or closed with it, or began or ceased to slip: short steps begin anew.
     pub(crate) switched: bool,
     /// Factor to its length that its error would have allowed.
     pub(crate) growth: f64,

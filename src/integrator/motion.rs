@@ -123,12 +123,8 @@ impl Motion {
             passages,
             friction,
         } = dense;
-        let DenseFriction {
-            force: tangential,
-            slip,
-            dissipated,
-        } = friction;
-        let polynomials = [force, indentation, rate, tangential, slip, dissipated].into_iter().flatten();
+        let DenseFriction { slip, dissipated } = friction;
+        let polynomials = [force, indentation, rate, slip, dissipated].into_iter().flatten();
         let numbers = [
             *time,
             *current,
@@ -229,11 +225,8 @@ impl Motion {
                 dissipated: start.dissipated,
             };
         };
-        let DenseFriction {
-            force,
-            slip,
-            dissipated,
-        } = &self.dense.friction;
+        let force = &self.end.tangential.course;
+        let DenseFriction { slip, dissipated } = &self.dense.friction;
         let at = |values| value_and_slope(values, y).0;
         let (closed, slips) = (self.start.closed, start.phase != Phase::Stick);
         let now = if closed && !slips { start.slip } else { at(slip) };
@@ -241,7 +234,11 @@ impl Motion {
             force: if closed { at(force) } else { 0.0 },
             slip: now,
             distance: start.distance + if closed { (now - start.slip).abs() } else { 0.0 },
-            dissipated: if closed && slips { at(dissipated).max(start.dissipated) } else { start.dissipated },
+            dissipated: if closed && slips {
+                at(dissipated).max(start.dissipated)
+            } else {
+                start.dissipated
+            },
         }
     }
 
@@ -266,8 +263,8 @@ impl Motion {
         let force;
         if let Some(y) = self.inside() {
             let slope = |values| value_and_slope(values, y).1 / self.length();
-            force = value_and_slope(&self.dense.friction.force, y).0;
-            rates.force = slope(&self.dense.friction.force);
+            force = value_and_slope(&self.end.tangential.course, y).0;
+            rates.force = slope(&self.end.tangential.course);
             if start.phase != Phase::Stick {
                 rates.slip = slope(&self.dense.friction.slip);
             }

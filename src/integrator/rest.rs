@@ -22,7 +22,11 @@ use crate::state::State;
 /// stiffness little and there is damping, the bound holds up to a factor near one, for which the hundredth leaves room.
 /// Otherwise only the equilibrium to rounding counts as rest.
 pub(crate) fn rests_until(model: &Model, state: &State, drive: &Drive, tolerance: f64, end: f64) -> Option<f64> {
-    if state.tangential.phase != Phase::Stick || state.with_contact || !drive.is_constant() || model.generator.is_active(state.time) {
+    if state.tangential.phase != Phase::Stick
+        || state.with_contact
+        || !drive.is_constant()
+        || model.generator.is_active(state.time)
+    {
         return None;
     }
     let d = model.preload.indentation + state.indentation;

@@ -7,7 +7,7 @@ use crate::integrator::attempt::{growth, shrinkage};
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::constants::{
     AFTER_REJECTION, COARSEST, GROWING, LEAST_SHRINK, LONGER, MOST_CHANGES, MOST_SHRINK, NEXT_LENGTH, REFUSALS, SAFETY,
-    SHARE, SMOOTH, WORTH,
+    SHARE, SMOOTH, STEP_GROWTH, WORTH,
 };
 use crate::integrator::energy::conservation::conserves;
 use crate::integrator::events::Cut;
@@ -171,7 +171,13 @@ impl Integration<'_> {
             if self.is_shortest(&target) {
                 return Err(self.error(StepErrorCause::NotFinite));
             }
-            return Ok(self.reject(target.length * shrinkage::<S>(ratio)));
+            let shrink = if self.changes_now() {
+                // Where the force bends the error is of order one.
+                (AFTER_REJECTION / ratio).clamp(LEAST_SHRINK, MOST_SHRINK)
+            } else {
+                shrinkage::<S>(ratio)
+            };
+            return Ok(self.reject(target.length * shrink));
         };
         // The energy may reveal an error that the estimate misses.
         if !self.is_shortest(&target) && self.breaks_account(&trial, target.length) {
@@ -239,7 +245,11 @@ impl Integration<'_> {
         let Some(passages) = self.passages(&trial, target.length, self.is_shortest(&target)) else {
             return Ok(self.reject(MOST_SHRINK * target.length));
         };
+        let first = self.changes_now();
         self.take(&trial, &target, passages)?;
+        if first {
+            self.keep_first_step(target.length, self::growth::<S>(ratio));
+        }
         if corner.is_some_and(|corner| corner <= target.time) {
             // What the corner sets vibrating, the step sizes before it do not resolve.
             let next = self.step_after_jump();
@@ -255,8 +265,8 @@ impl Integration<'_> {
         Ok(StepOutcome::after(target.length, requested, growth))
     }
 
-    /// Factor by which the next step may be longer for its distance from the last closing alone: the force there is smooth
-    /// in the logarithm of the time since.
+    /// Factor by which the next step may be longer for its distance from the last closing, or from where slip last began or
+    /// ended, alone: the force there is smooth in the logarithm of the time since.
     fn leaving_kink(&self, length: f64) -> f64 {
         let State {
             time,
@@ -265,7 +275,10 @@ impl Integration<'_> {
             ..
         } = *self.state;
         let elapsed = time - last_kink;
-        if last_kink == last_closing && elapsed > 0.0 {
+        let bends = last_kink == last_closing || last_kink == self.state.tangential.last_change;
+        if self.changes_now() {
+            STEP_GROWTH
+        } else if bends && elapsed > 0.0 {
             (SAFETY * (1.0 + length / elapsed)).max(1.0)
         } else {
             1.0

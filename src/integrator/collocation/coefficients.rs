@@ -283,8 +283,8 @@ impl<const S: usize> StepCoefficients<S> {
         };
         let [mut cross, mut own, mut acceleration] = [Sum::<S>::ZERO; 3];
         for ((mode, lever), rows) in model.modes.iter().zip(levers).zip(&mut tangential.modes) {
-            let response = ModeOverStep::new(mode.omega_squared, mode.damping, h)
-                .response::<S, A>(&collocation.nodes, shapes);
+            let response =
+                ModeOverStep::new(mode.omega_squared, mode.damping, h).response::<S, A>(&collocation.nodes, shapes);
             cross.add::<A>(lever * mode.tip, &response);
             own.add::<A>(lever * lever, &response);
             acceleration.add::<A>(lever * mode.participation, &response);
@@ -292,8 +292,7 @@ impl<const S: usize> StepCoefficients<S> {
         }
         (tangential.cross, tangential.cross_error) = in_seconds(cross.at_nodes::<A>(shapes), h);
         (tangential.own, tangential.own_error) = in_seconds(own.at_nodes::<A>(shapes), h);
-        (tangential.acceleration, tangential.acceleration_error) =
-            in_seconds(acceleration.at_nodes::<A>(shapes), h);
+        (tangential.acceleration, tangential.acceleration_error) = in_seconds(acceleration.at_nodes::<A>(shapes), h);
     }
 }
 

@@ -14,7 +14,9 @@
 
 use crate::excitation::drive::Drive;
 use crate::friction::Friction;
-use crate::integrator::collocation::coefficients::{ErrorColumn, Prepared, StepCoefficients, TangentialCoefficients, TipColumns};
+use crate::integrator::collocation::coefficients::{
+    ErrorColumn, Prepared, StepCoefficients, TangentialCoefficients, TipColumns,
+};
 use crate::integrator::collocation::error::{analytic, errors};
 use crate::integrator::collocation::newton::{FreeResponse, Solution, Source, Tangent, first_forces};
 use crate::integrator::collocation::polynomial::Collocation;
@@ -136,7 +138,14 @@ pub(super) fn compute<const S: usize, A: Arithmetic>(
     };
     let guess = first_forces::<S, A>(model, state, step, collocation, source);
     let coupled = match source {
-        Source::Law(newton) if state.closed => Some(coupled::<S, A>(model, friction, state, &unforced, guess, newton)?),
+        Source::Law(newton) if state.closed => Some(coupled::<S, A>(
+            model,
+            friction,
+            state,
+            (&unforced, collocation),
+            guess,
+            newton,
+        )?),
         _ => None,
     };
     let (forces, loads) = match (&coupled, source) {
@@ -304,7 +313,7 @@ fn coupled<const S: usize, A: Arithmetic>(
     model: &Model,
     friction: &Friction,
     state: &State,
-    unforced: &Unforced<S>,
+    (unforced, collocation): (&Unforced<S>, &Collocation<S>),
     guess: Nodal<S>,
     newton: f64,
 ) -> Option<Coupled<S>> {
@@ -316,6 +325,9 @@ fn coupled<const S: usize, A: Arithmetic>(
     let mut forces = guess;
     let mut loads = if sign.is_some() {
         guess.map(|force| share * (f0 + force) - t0)
+    } else if state.last_step > 0.0 && state.tangential.last_change != state.time {
+        let ahead = collocation.evaluate::<A>(&state.tangential.course, unforced.step.length / state.last_step);
+        ahead.map(|force| force - t0)
     } else {
         [state.tangential.force - t0; S]
     };
@@ -338,7 +350,10 @@ fn coupled<const S: usize, A: Arithmetic>(
         };
         let mut residual = [0.0; 2 * LONG];
         for k in 0..S {
-            #[expect(clippy::indexing_slicing, reason = "every index runs over the fixed size of the arrays")]
+            #[expect(
+                clippy::indexing_slicing,
+                reason = "every index runs over the fixed size of the arrays"
+            )]
             {
                 let d = d0 + motion.d[k];
                 let law = hertz.closed_branch(d, motion.d_rate[k]);
@@ -361,7 +376,10 @@ fn coupled<const S: usize, A: Arithmetic>(
                 .zip(sizes)
                 .map(|(factors, size)| greatest(factors) * size)
                 .fold(0.0, |sum, part| sum + part);
-        let wrong = residual.iter().fold(0.0, |most: f64, value| if value.abs() <= most { most } else { value.abs() });
+        let wrong = residual.iter().fold(
+            0.0,
+            |most: f64, value| if value.abs() <= most { most } else { value.abs() },
+        );
         if let Some(by_defect) = by_defect.filter(|_| wrong <= newton.max(rounding)) {
             return Some(Coupled {
                 forces,
@@ -379,7 +397,11 @@ fn coupled<const S: usize, A: Arithmetic>(
             }
             column.iter_mut().skip(j).take(1).for_each(|entry| *entry += 1.0);
             if j < S {
-                column.iter_mut().skip(S + j).take(1).for_each(|entry| *entry -= laws.share);
+                column
+                    .iter_mut()
+                    .skip(S + j)
+                    .take(1)
+                    .for_each(|entry| *entry -= laws.share);
             }
         }
         let [by_force, by_friction, by_base] = unforced.by_defects();
@@ -538,20 +560,26 @@ fn judged<const S: usize, A: Arithmetic>(
     }
     let own = unforced.by_defects();
     let direct = |of: fn(&Motion<S>) -> &Nodal<S>| -> f64 {
-        defects.iter().zip(&own).map(|(defect, motion)| defect * end(of(motion))).sum()
+        defects
+            .iter()
+            .zip(&own)
+            .map(|(defect, motion)| defect * end(of(motion)))
+            .sum()
     };
     let last = |columns: &[Nodal<S>; S], loads: &Nodal<S>| {
-        columns.iter().zip(loads).map(|(column, load)| end(column) * load).sum::<f64>()
+        columns
+            .iter()
+            .zip(loads)
+            .map(|(column, load)| end(column) * load)
+            .sum::<f64>()
     };
     let (d, v) = (&step.force, unforced.tangential);
-    let wrong_d = direct(|motion| &motion.d)
-        - last(&d.displacement, &wrong)
-        - last(&v.cross.displacement, &wrong_loads);
+    let wrong_d =
+        direct(|motion| &motion.d) - last(&d.displacement, &wrong) - last(&v.cross.displacement, &wrong_loads);
     let wrong_rate =
         direct(|motion| &motion.d_rate) - last(&d.velocity, &wrong) - last(&v.cross.velocity, &wrong_loads);
-    let wrong_v = direct(|motion| &motion.v)
-        + last(&v.cross.displacement, &wrong)
-        + last(&v.own.displacement, &wrong_loads);
+    let wrong_v =
+        direct(|motion| &motion.v) + last(&v.cross.displacement, &wrong) + last(&v.own.displacement, &wrong_loads);
     let wrong_v_rate =
         direct(|motion| &motion.v_rate) + last(&v.cross.velocity, &wrong) + last(&v.own.velocity, &wrong_loads);
 
@@ -569,7 +597,11 @@ fn judged<const S: usize, A: Arithmetic>(
         }
     };
     let sticks = state.tangential.phase.sign().is_none();
-    let grip = if sticks { friction.ratio * tangent.stiffness } else { 0.0 };
+    let grip = if sticks {
+        friction.ratio * tangent.stiffness
+    } else {
+        0.0
+    };
     let fast = (tangent.stiffness * wrong_d).abs()
         + (tangent.damping * wrong_rate).abs()
         + grip * (wrong_v.abs() + beta * wrong_v_rate.abs());

@@ -4,8 +4,8 @@
 use crate::beam::mode::ModeStates;
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::axial_force::NodalModes;
-use crate::integrator::collocation::modal_response::ModeOverStep;
 use crate::integrator::collocation::friction::TangentialNodes;
+use crate::integrator::collocation::modal_response::ModeOverStep;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::step::{End, Trial};
 use crate::math::free_motion::FreeMotion;
@@ -56,7 +56,9 @@ fn compute<const S: usize, A: Arithmetic>(
     let load = |values: &Nodal<S>| shapes.load::<A>(&rows.map(|row| dot::<S, A>(&row, values)));
     let (force, base) = (load(&trial.forces), load(&trial.accelerations));
     let axial = model.axial().is_some();
-    let friction = model.friction().map(|friction| (friction, load(&whole.tangential.forces)));
+    let friction = model
+        .friction()
+        .map(|friction| (friction, load(&whole.tangential.forces)));
     let (mut tip, mut tip_rate) = (0.0, 0.0);
     let modes = model.modes.iter().zip(&whole.loads).enumerate();
     for (((i, (mode, own)), start), end) in modes.zip(&state.modes).zip(ends) {

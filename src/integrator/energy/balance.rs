@@ -40,12 +40,12 @@
 //! A force error `e` over a tip path `s` changes the energy by at most `e s`. So compare the balance with the tolerance
 //! times the force scale times the path.
 
+use crate::integrator::collocation::friction::TangentialNodes;
 use crate::integrator::collocation::newton::Source;
 use crate::integrator::collocation::step::{self, End, Trial};
 use crate::integrator::grid::Target;
 use crate::integrator::integration::Integration;
 use crate::integrator::workspace::{Room, Workspace};
-use crate::integrator::collocation::friction::TangentialNodes;
 use crate::math::nodal::{LONG, Nodal};
 use crate::model::Model;
 use crate::state::State;
@@ -68,9 +68,8 @@ impl Integration<'_> {
         let friction = self.model.friction();
         let loads = friction.map(|_| Room::<S>::parts(self.workspace).1.tangential.forces);
         let polynomial = self.collocation::<S>();
-        let loads = loads.map(|loads| {
-            [0.0, 0.5].map(|start| nodes.map(|node| polynomial.interpolate(&loads, start + 0.5 * node)))
-        });
+        let loads = loads
+            .map(|loads| [0.0, 0.5].map(|start| nodes.map(|node| polynomial.interpolate(&loads, start + 0.5 * node))));
         let Self {
             model, state, drive, ..
         } = self;
@@ -90,7 +89,10 @@ impl Integration<'_> {
                 *power = (*power - (model.law.force(d, *rate) - model.law.force(d, 0.0))) * rate;
             }
             work += half * prepared.collocation.mean(&powers);
-            work -= half * prepared.collocation.mean(&missed_by_friction(model, state, &motion, &end.tangential));
+            work -= half
+                * prepared
+                    .collocation
+                    .mean(&missed_by_friction(model, state, &motion, &end.tangential));
             at.time += half;
             at.modes = end.modes;
             at.support = motion.support;

@@ -144,7 +144,11 @@ impl Integration<'_> {
                 self.changes += 1;
                 // Rounding must not let it change to and fro for ever.
                 let shrink = if self.changes > 1 { MOST_SHRINK } else { 1.0 };
-                return Ok(self.reject(shrink * requested));
+                let length = self.state.long_step.min(shrink * requested);
+                return Ok(StepOutcome {
+                    switched: true,
+                    ..self.reject(length)
+                });
             }
             self.switch(!self.state.closed);
             return Ok(StepOutcome {
@@ -168,9 +172,10 @@ impl Integration<'_> {
             self.switch(!self.state.closed);
         }
         let outcome = StepOutcome::after(target.length, requested, growth);
+        let length = outcome.length.min(requested);
         Ok(StepOutcome {
-            switched: cut.switches,
-            length: outcome.length.min(requested),
+            switched: cut.switches || cut.slides.is_some(),
+            length: cut.slides.map_or(length, |_| self.state.long_step),
             ..outcome
         })
     }
