@@ -7,7 +7,7 @@
 use crate::friction::Phase;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::step::Trial;
-use crate::integrator::constants::{LOCATED, MOST_SHRINK, WORTH};
+use crate::integrator::constants::{LOCATED, MOST_SHRINK, SUM_ROUNDINGS, WORTH};
 use crate::integrator::course::turning_points;
 use crate::integrator::events::Cut;
 use crate::integrator::integration::Integration;
@@ -71,9 +71,9 @@ impl Integration<'_> {
     where
         Workspace: Room<S>,
     {
-        let Self { model, state, .. } = self;
+        let (model, state) = (self.model, &*self.state);
         let friction = model.friction().filter(|_| state.closed)?;
-        let unsure = LOCATED * self.allowed;
+        let unsure = (LOCATED * self.allowed).max(self.friction_rounding());
         let (cache, ends, _) = Room::<S>::parts(self.workspace);
         let (collocation, nodes) = (cache.collocation(), &ends.tangential);
         let start = state.tangential;
@@ -106,6 +106,23 @@ impl Integration<'_> {
         })
     }
 
+    /// Rounding of the trial force and of the limit by the sums over the modes, N.
+    fn friction_rounding(&self) -> f64 {
+        let Self { model, state, .. } = self;
+        let (mut displacement, mut velocity) = (state.tangential.slip.abs(), 0.0);
+        let levers = model.friction().map(|friction| (friction, &friction.levers));
+        let Some((friction, levers)) = levers else {
+            return 0.0;
+        };
+        for (lever, at) in levers.iter().zip(&state.modes) {
+            displacement += (lever * at.q).abs();
+            velocity += (lever * at.v).abs();
+        }
+        let along = SUM_ROUNDINGS * f64::EPSILON * (displacement + model.law.damping() * velocity);
+        let stiffness = model.law.stiffness(model.preload.indentation + state.indentation);
+        stiffness * (friction.ratio * along + friction.coefficient * self.motion_rounding())
+    }
+
     /// The end of the trial of `length` seconds at a change.
     pub(crate) fn cut_at_change<const S: usize>(&mut self, trial: &Trial<S>, length: f64, change: &Change) -> Cut
     where
@@ -121,16 +138,24 @@ impl Integration<'_> {
     /// Begins or ends slip at the instant of the state. The slope of the friction force jumps, and the spring answers as
     /// steeply as its highest modes do: the next step is as long as the last one after such a change.
     pub(crate) fn change_phase(&mut self, phase: Phase) {
-        let state = &mut *self.state;
+        let before = self.state.tangential.phase.sign();
+        let (model, state) = (self.model, &mut *self.state);
+        if let (Some(friction), Some(hertz), Some(sign)) = (model.friction(), model.law.hertz(), phase.sign().or(before)) {
+            // The trial force is the limit, to the last digit.
+            let d = model.preload.indentation + state.indentation;
+            let limit = friction.limit_deflection(hertz, sign, d, state.indentation_rate);
+            let lag = hertz.damping * state.tangential.rate;
+            state.tangential.slip = state.tangential.displacement - (limit - lag);
+        }
         state.tangential.phase = phase;
-        state.tangential.force = self.model.friction_force(state);
+        state.tangential.force = model.friction_force(state);
         state.last_kink = state.time;
         state.tangential.last_change = state.time;
         let first = *state.tangential.first_step();
         let length = if first > 0.0 {
             first
         } else {
-            0.1 * self.model.first_step(state.time)
+            0.1 * model.first_step(state.time)
         };
         state.long_step = state.long_step.min(length);
         state.short_step = state.short_step.min(length / WORTH);
