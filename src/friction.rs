@@ -53,6 +53,10 @@ pub struct Friction {
     pub preload: f64,
     /// Displacement of the contact point along the spring per displacement of each mode, `h T_i'`, 1/sqrt(kg).
     pub levers: Modal,
+    /// Stiffness of the spring against a displacement along it of the contact point, N/m; 0 at no height.
+    pub(crate) stiffness: f64,
+    /// Friction force that holds the contact point per base acceleration that varies slowly, kg.
+    pub(crate) inertia: f64,
 }
 
 /// Whether the contact slips.
@@ -166,6 +170,8 @@ impl Friction {
             height: scene.tip.contact_height,
             preload: share * preload,
             levers: [0.0; MAX_MODES],
+            stiffness: 0.0,
+            inertia: 0.0,
         })
     }
 
@@ -175,6 +181,16 @@ impl Friction {
         for (lever, mode) in self.levers.iter_mut().zip(modes) {
             *lever = self.height * mode.rotation;
         }
+        let sum = |load: &dyn Fn(&Mode, f64) -> f64| -> f64 {
+            let pairs = modes.iter().zip(&self.levers);
+            pairs
+                .map(|(mode, lever)| lever * load(mode, *lever) / mode.omega_squared)
+                .sum()
+        };
+        let stiffness = 1.0 / sum(&|_, lever| lever);
+        let inertia = stiffness * sum(&|mode, _| mode.participation).abs();
+        let held = stiffness.is_finite() && inertia.is_finite();
+        (self.stiffness, self.inertia) = if held { (stiffness, inertia) } else { (0.0, 0.0) };
         self
     }
 

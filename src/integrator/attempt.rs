@@ -4,7 +4,8 @@ use crate::error::{StepError, StepErrorCause};
 use crate::integrator::collocation::error::is_rounding;
 use crate::integrator::collocation::newton::Source;
 use crate::integrator::collocation::part::{self, Instant};
-use crate::integrator::collocation::step::{Trial, trial};
+use crate::integrator::collocation::step::Trial;
+use crate::integrator::collocation::trial::trial;
 use crate::integrator::constants::{
     AFTER_BLOW, AFTER_CHANGE, AFTER_REJECTION, AT_EVENT, FORCE_ROUNDING, INSIDE, LEAST_SHRINK, MOST_GROWTH,
     MOST_SHRINK, NEAR_BLOW, NEWTON, SAFETY,

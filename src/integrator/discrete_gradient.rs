@@ -9,7 +9,8 @@
 
 use crate::error::{StepError, StepErrorCause};
 use crate::integrator::collocation::newton::Source;
-use crate::integrator::collocation::step::{Trial, trial};
+use crate::integrator::collocation::step::Trial;
+use crate::integrator::collocation::trial::trial;
 use crate::integrator::grid::Target;
 use crate::integrator::integration::{Integration, StepOutcome};
 use crate::integrator::workspace::Room;

@@ -140,7 +140,9 @@ impl Integration<'_> {
     pub(crate) fn change_phase(&mut self, phase: Phase) {
         let before = self.state.tangential.phase.sign();
         let (model, state) = (self.model, &mut *self.state);
-        if let (Some(friction), Some(hertz), Some(sign)) = (model.friction(), model.law.hertz(), phase.sign().or(before)) {
+        if let (Some(friction), Some(hertz), Some(sign)) =
+            (model.friction(), model.law.hertz(), phase.sign().or(before))
+        {
             // The trial force is the limit, to the last digit.
             let d = model.preload.indentation + state.indentation;
             let limit = friction.limit_deflection(hertz, sign, d, state.indentation_rate);

@@ -289,6 +289,7 @@ pub mod events;
 pub mod exact_step;
 pub mod extremes;
 pub mod friction;
+pub mod friction_output;
 pub mod grid;
 pub mod integration;
 pub mod motion;

@@ -155,7 +155,7 @@ fn saved_states_go_on_with_the_same_bits() {
         for n in 0..40 {
             let saved = *simulation.motion();
             assert!(saved.is_sound());
-            let mut run = |simulation: &mut Simulation, steps: u32| {
+            let run = |simulation: &mut Simulation, steps: u32| {
                 (0..steps)
                     .map(|_| {
                         simulation.step(&Inputs::default(), simulation.time(), size).unwrap();

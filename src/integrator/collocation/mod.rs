@@ -11,3 +11,5 @@ pub mod polynomial;
 pub mod shapes;
 pub mod step;
 pub mod superposition;
+pub mod tangential;
+pub mod trial;

@@ -4,10 +4,10 @@
 use crate::beam::mode::ModeStates;
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::axial_force::NodalModes;
-use crate::integrator::collocation::friction::TangentialNodes;
 use crate::integrator::collocation::modal_response::ModeOverStep;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::step::{End, Trial};
+use crate::integrator::collocation::tangential::TangentialNodes;
 use crate::math::free_motion::FreeMotion;
 use crate::math::nodal::{Nodal, dot};
 use crate::math::prediction::value_and_slope;

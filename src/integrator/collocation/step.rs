@@ -7,14 +7,14 @@ use crate::excitation::drive::Drive;
 use crate::integrator::collocation::axial_force::{self, NodalModes, Settled};
 use crate::integrator::collocation::coefficients::{EndRows, Prepared, StepCoefficients};
 use crate::integrator::collocation::error::errors;
-use crate::integrator::collocation::friction::{self, TangentialNodes};
 use crate::integrator::collocation::newton::{
     FreeResponse, Solution, Source, Tangent, at_nodes, closed_forces, first_forces,
 };
 use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::collocation::tangential::TangentialNodes;
 use crate::integrator::constants::{FORCE_ROUNDING, QUADRATURE_LONG, QUADRATURE_SHORT};
 use crate::math::nodal::{Nodal, SHORT, add, add_columns, add_products, dot, end};
-use crate::math::simd::{Arithmetic, LANES, compiled_for};
+use crate::math::simd::{Arithmetic, LANES};
 use crate::model::Model;
 use crate::state::State;
 
@@ -100,30 +100,9 @@ impl<const S: usize> Trial<S> {
 /// The loads on [`LANES`] modes at the nodes.
 pub(super) type LaneLoads<const S: usize> = [[f64; LANES]; S];
 
-/// Computes the prepared step from `state`, contact closed or open as in `state`. `None` if the iteration for contact or
-/// axial force does not converge.
-pub fn trial<const S: usize>(
-    model: &Model,
-    state: &State,
-    drive: &Drive,
-    prepared: Prepared<S>,
-    source: Source<S>,
-    end: &mut End<S>,
-) -> Option<Trial<S>> {
-    match (model.axial(), model.friction()) {
-        (None, None) => {
-            compiled_for!(model.simd, A => compute::<S, A>(model, state, drive, prepared, source, end))
-        }
-        (Some(axial), _) => compiled_for!(model.simd, A =>
-            compute_with_axial_force::<S, A>(model, axial, state, drive, prepared, source, end)),
-        (None, Some(friction)) => compiled_for!(model.simd, A =>
-            friction::compute::<S, A>(model, friction, state, drive, prepared, source, end)),
-    }
-}
-
-/// [`trial`] with constant axial force, which is part of the modes.
+/// [`trial`](super::trial::trial) with constant axial force, which is part of the modes.
 #[inline(always)]
-fn compute<const S: usize, A: Arithmetic>(
+pub(super) fn compute<const S: usize, A: Arithmetic>(
     model: &Model,
     state: &State,
     drive: &Drive,
@@ -153,9 +132,9 @@ fn compute<const S: usize, A: Arithmetic>(
     ))
 }
 
-/// [`trial`] with an axial force that follows the deflection, as loads on the modes.
+/// [`trial`](super::trial::trial) with an axial force that follows the deflection, as loads on the modes.
 #[inline(always)]
-fn compute_with_axial_force<const S: usize, A: Arithmetic>(
+pub(super) fn compute_with_axial_force<const S: usize, A: Arithmetic>(
     model: &Model,
     axial: &Feedback,
     state: &State,

@@ -40,9 +40,10 @@
 //! A force error `e` over a tip path `s` changes the energy by at most `e s`. So compare the balance with the tolerance
 //! times the force scale times the path.
 
-use crate::integrator::collocation::friction::TangentialNodes;
 use crate::integrator::collocation::newton::Source;
-use crate::integrator::collocation::step::{self, End, Trial};
+use crate::integrator::collocation::step::{End, Trial};
+use crate::integrator::collocation::tangential::TangentialNodes;
+use crate::integrator::collocation::trial;
 use crate::integrator::grid::Target;
 use crate::integrator::integration::Integration;
 use crate::integrator::workspace::{Room, Workspace};
@@ -82,7 +83,7 @@ impl Integration<'_> {
                 end.tangential.forces = *loads;
             }
             let prepared = cache.prepare(at.time, half, target.recurring, model);
-            let motion = step::trial(model, &at, drive, prepared, Source::Given(forces), &mut end)?;
+            let motion = trial::trial(model, &at, drive, prepared, Source::Given(forces), &mut end)?;
             let mut powers = forces;
             for ((power, d), rate) in powers.iter_mut().zip(&motion.indentations).zip(&motion.rates) {
                 let d = model.preload.indentation + d;
