@@ -225,7 +225,7 @@ impl Friction {
 
 /// Friction force at the preload per contact force, if the scene has friction.
 pub(crate) fn tangential_share(scene: &Scene) -> Option<f64> {
-    (scene.effects.friction == FrictionKind::Coulomb).then(|| scene.friction.initial * scene.friction.coefficient)
+    (scene.effects.friction == FrictionKind::Coulomb).then_some(scene.friction.initial * scene.friction.coefficient)
 }
 
 /// `k_t / k_j = 4 G* / E*`.

@@ -7,9 +7,10 @@
 use crate::friction::Phase;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::step::Trial;
-use crate::integrator::constants::{LOCATED, MOST_SHRINK, SUM_ROUNDINGS, WORTH};
+use crate::integrator::constants::{LOCATED, MOST_CHANGES, MOST_SHRINK, SUM_ROUNDINGS, WORTH};
 use crate::integrator::course::turning_points;
 use crate::integrator::events::Cut;
+use crate::integrator::grid::Target;
 use crate::integrator::integration::Integration;
 use crate::integrator::workspace::{Room, Workspace};
 use crate::math::nodal::{Nodal, add_columns, dot, end, scaled};
@@ -72,7 +73,9 @@ impl Integration<'_> {
         Workspace: Room<S>,
     {
         let (model, state) = (self.model, &*self.state);
-        let friction = model.friction().filter(|_| state.closed)?;
+        let friction = model
+            .friction()
+            .filter(|_| state.closed && self.changes <= MOST_CHANGES)?;
         let unsure = (LOCATED * self.allowed).max(self.friction_rounding());
         let (cache, ends, _) = Room::<S>::parts(self.workspace);
         let (collocation, nodes) = (cache.collocation(), &ends.tangential);
@@ -104,6 +107,11 @@ impl Integration<'_> {
             at: if at <= self.resolution() { 0.0 } else { at },
             phase,
         })
+    }
+
+    /// Whether the trial may end at a change inside. No blow follows.
+    pub(crate) fn may_change_inside<const S: usize>(&self, trial: &Trial<S>, target: &Target) -> bool {
+        trial.inner_error <= self.allowed.max(trial.rounding) || self.is_shortest(target)
     }
 
     /// Rounding of the trial force and of the limit by the sums over the modes, N.
@@ -168,9 +176,12 @@ impl Integration<'_> {
         self.model.friction().is_some() && self.state.tangential.last_change == self.state.time
     }
 
-    /// Keeps the length (s) of the first step after a change that has been taken, with the factor that its error would have
-    /// allowed.
+    /// Keeps the length (s) of a step about to be taken, if it is the first one after a change, with the factor that its error
+    /// would have allowed.
     pub(crate) fn keep_first_step(&mut self, length: f64, growth: f64) {
+        if !self.changes_now() {
+            return;
+        }
         *self.state.tangential.first_step() = length * growth.clamp(MOST_SHRINK, 1.0 / MOST_SHRINK);
     }
 }

@@ -6,8 +6,8 @@ use crate::friction::Phase;
 use crate::integrator::attempt::{growth, shrinkage};
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::constants::{
-    AFTER_REJECTION, COARSEST, GROWING, LEAST_SHRINK, LONGER, MOST_CHANGES, MOST_SHRINK, NEXT_LENGTH, REFUSALS, SAFETY,
-    SHARE, SMOOTH, STEP_GROWTH, WORTH,
+    AFTER_REJECTION, COARSEST, GROWING, LEAST_SHRINK, LONGER, MOST_SHRINK, NEXT_LENGTH, REFUSALS, SAFETY, SHARE,
+    SMOOTH, STEP_GROWTH, WORTH,
 };
 use crate::integrator::energy::conservation::conserves;
 use crate::integrator::events::Cut;
@@ -189,11 +189,7 @@ impl Integration<'_> {
         } else {
             growth::<S>(ratio) * self.leaving_kink(target.length)
         };
-        let change = if self.model.friction().is_some() && self.changes <= MOST_CHANGES {
-            self.slip_change(&trial, target.length)
-        } else {
-            None
-        };
+        let change = self.slip_change(&trial, target.length);
         let opens = if self.state.closed {
             self.first_open(&trial)
         } else {
@@ -217,7 +213,7 @@ impl Integration<'_> {
             let shrink = AFTER_REJECTION * (self.allowed_inside() / trial.inner_error).powf(1.0 / S as f64);
             return Ok(self.reject(target.length * shrink.clamp(LEAST_SHRINK, NEXT_LENGTH)));
         }
-        if change.is_some() && trial.inner_error > self.allowed.max(trial.rounding) && !self.is_shortest(&target) {
+        if change.is_some() && !self.may_change_inside(&trial, &target) {
             let shrink = AFTER_REJECTION * (self.allowed / trial.inner_error).powf(1.0 / S as f64);
             return Ok(self.reject(target.length * shrink.clamp(LEAST_SHRINK, NEXT_LENGTH)));
         }
@@ -245,11 +241,8 @@ impl Integration<'_> {
         let Some(passages) = self.passages(&trial, target.length, self.is_shortest(&target)) else {
             return Ok(self.reject(MOST_SHRINK * target.length));
         };
-        let first = self.changes_now();
+        self.keep_first_step(target.length, self::growth::<S>(ratio));
         self.take(&trial, &target, passages)?;
-        if first {
-            self.keep_first_step(target.length, self::growth::<S>(ratio));
-        }
         if corner.is_some_and(|corner| corner <= target.time) {
             // What the corner sets vibrating, the step sizes before it do not resolve.
             let next = self.step_after_jump();

@@ -100,15 +100,16 @@ fn hysteresis_of_a_slider_moved_to_and_fro() {
 /// force, where it does not stop.
 #[test]
 fn amplitude_of_a_coulomb_damped_oscillator() {
-    const OWN: f64 = 100.0;
+    // So soft that the friction force turns, over 2 mu F / k_t, within 5e-5 of a cycle: the closed form knows no k_t.
+    const OWN: f64 = 2.0;
     for (ratio, friction) in [(0.8, 0.3), (0.8, 0.6), (1.3, 0.5), (1.25, 0.2)] {
         let probe = slider(1.0, OWN * ratio, OWN, 0.0);
         let (limit, stiffness) = grip(&probe);
         let mut scene = slider(limit / friction / LOADED, OWN * ratio, OWN, 0.0);
-        scene.solver.tolerance = 1e-6;
-        let per_cycle = 200;
+        scene.solver.tolerance = 1e-5;
+        let per_cycle = 2000;
         let period = 1.0 / (OWN * ratio);
-        let cycles = 400;
+        let cycles = 80;
         let (rows, _) = course(&scene, period / f64::from(per_cycle), cycles * per_cycle, &ALONG);
         let last = rows.len() - 10 * per_cycle as usize;
         let moved = displacements(&rows[last..], stiffness);
@@ -120,7 +121,7 @@ fn amplitude_of_a_coulomb_damped_oscillator() {
         );
         let expected = limit / friction / spring * (v * v - (friction * u).powi(2)).sqrt();
         println!("{ratio}, {friction}: {found:e} m, expected {expected:e} m");
-        // Two hundred instants a cycle miss the extreme by (pi / 200)^2 / 2; the grip gives by 1e-5 of the spring.
+        // Two thousand instants a cycle miss the extreme by 3e-6 of it.
         assert!(
             (found / expected - 1.0).abs() < 3e-4,
             "{ratio} {friction}: {found} {expected}"

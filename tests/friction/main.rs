@@ -12,13 +12,13 @@ use relay_contact::variables::{FrictionKind, IntegerOutput, RealOutput};
 use testing::scenes::{check_slope, force_scale, largest_difference, shaken};
 
 /// The scene with friction.
-pub fn rubbing(mut scene: Scene) -> Scene {
+fn rubbing(mut scene: Scene) -> Scene {
     scene.effects.friction = FrictionKind::Coulomb;
     scene
 }
 
 /// Tangential over normal stiffness of the contact (Mindlin; MODEL equations written out).
-pub fn stiffness_ratio(contact: &Contact) -> f64 {
+fn stiffness_ratio(contact: &Contact) -> f64 {
     let both = [contact.moving, contact.fixed];
     let shear: f64 = both
         .iter()
@@ -32,7 +32,7 @@ pub fn stiffness_ratio(contact: &Contact) -> f64 {
 }
 
 /// Outputs after each of `count` communication steps of `size` seconds, and the simulation.
-pub fn course(scene: &Scene, size: f64, count: u32, outputs: &[RealOutput]) -> (Vec<Vec<f64>>, Simulation) {
+fn course(scene: &Scene, size: f64, count: u32, outputs: &[RealOutput]) -> (Vec<Vec<f64>>, Simulation) {
     let mut simulation = Simulation::new(scene, &Inputs::default(), 0.0).unwrap();
     let mut rows = Vec::new();
     for k in 0..count {

@@ -52,6 +52,35 @@ impl<const S: usize> Laws<S> {
         }
         both
     }
+
+    /// Derivatives of the residuals with respect to each nodal force, by columns.
+    #[inline(always)]
+    fn jacobian(&self, unforced: &Unforced<S>) -> [Both; 2 * LONG] {
+        let mut jacobian = [[0.0; 2 * LONG]; 2 * LONG];
+        for (j, (column, moved)) in jacobian.iter_mut().zip(unforced.by_nodes()).enumerate() {
+            for (entry, answer) in column.iter_mut().zip(self.answer(&moved)) {
+                *entry = -answer;
+            }
+            column.iter_mut().skip(j).take(1).for_each(|entry| *entry += 1.0);
+            let slip = column.iter_mut().skip(S + j).take(usize::from(j < S));
+            slip.for_each(|entry| *entry -= self.share);
+        }
+        jacobian
+    }
+}
+
+/// Friction forces at the nodes while the contact sticks, extrapolated from the last step.
+#[inline(always)]
+fn predicted_loads<const S: usize, A: Arithmetic>(
+    state: &State,
+    length: f64,
+    collocation: &Collocation<S>,
+) -> Nodal<S> {
+    if state.last_step > 0.0 && state.tangential.last_change != state.time {
+        collocation.evaluate::<A>(&state.tangential.course, length / state.last_step)
+    } else {
+        [state.tangential.force; S]
+    }
 }
 
 /// Newton's method for both forces at the nodes, to residuals of at most `newton` (N) or rounding; `None` if it does not
@@ -73,11 +102,8 @@ pub(super) fn coupled<const S: usize, A: Arithmetic>(
     let mut forces = guess;
     let mut loads = if sign.is_some() {
         guess.map(|force| share * (f0 + force) - t0)
-    } else if state.last_step > 0.0 && state.tangential.last_change != state.time {
-        let ahead = collocation.evaluate::<A>(&state.tangential.course, unforced.step.length / state.last_step);
-        ahead.map(|force| force - t0)
     } else {
-        [state.tangential.force - t0; S]
+        predicted_loads::<S, A>(state, unforced.step.length, collocation).map(|load| load - t0)
     };
     let sizes = [
         greatest(&unforced.motion.d),
@@ -124,10 +150,7 @@ pub(super) fn coupled<const S: usize, A: Arithmetic>(
                 .zip(sizes)
                 .map(|(factors, size)| greatest(factors) * size)
                 .fold(0.0, |sum, part| sum + part);
-        let wrong = residual.iter().fold(
-            0.0,
-            |most: f64, value| if value.abs() <= most { most } else { value.abs() },
-        );
+        let wrong = greatest(&residual);
         if let Some(by_defect) = by_defect.filter(|_| wrong <= newton.max(rounding)) {
             return Some(Coupled {
                 forces,
@@ -137,21 +160,7 @@ pub(super) fn coupled<const S: usize, A: Arithmetic>(
                 by_defect,
             });
         }
-        // Derivatives of the residuals with respect to each nodal force, by columns.
-        let mut jacobian = [[0.0; 2 * LONG]; 2 * LONG];
-        for (j, (column, moved)) in jacobian.iter_mut().zip(unforced.by_nodes()).enumerate() {
-            for (entry, answer) in column.iter_mut().zip(laws.answer(&moved)) {
-                *entry = -answer;
-            }
-            column.iter_mut().skip(j).take(1).for_each(|entry| *entry += 1.0);
-            if j < S {
-                column
-                    .iter_mut()
-                    .skip(S + j)
-                    .take(1)
-                    .for_each(|entry| *entry -= laws.share);
-            }
-        }
+        let mut jacobian = laws.jacobian(unforced);
         let [by_force, by_friction, by_base] = unforced.by_defects();
         let mut right = [
             residual,

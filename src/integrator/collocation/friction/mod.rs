@@ -96,17 +96,16 @@ pub(super) fn compute<const S: usize, A: Arithmetic>(
     let largest = forces.iter().fold(f64::MIN_POSITIVE, |largest, force| {
         largest.max((model.preload.force + force).abs())
     });
-    let judgement = match &coupled {
-        Some(coupled) => judged::<S, A>(model, friction, state, collocation, &unforced, coupled, largest),
-        None => {
-            let solution = Solution::given(forces);
-            let coefficients = (step, collocation);
-            let (error, inner_error) = errors(model, state, coefficients, &solution, 0.0, &unforced.free, largest);
-            Judgement {
-                error,
-                inner_error,
-                ..Judgement::default()
-            }
+    let judgement = if let Some(coupled) = &coupled {
+        judged::<S, A>(model, friction, state, collocation, &unforced, coupled, largest)
+    } else {
+        let solution = Solution::given(forces);
+        let coefficients = (step, collocation);
+        let (error, inner_error) = errors(model, state, coefficients, &solution, 0.0, &unforced.free, largest);
+        Judgement {
+            error,
+            inner_error,
+            ..Judgement::default()
         }
     };
     Some(Trial {
