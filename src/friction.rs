@@ -26,7 +26,13 @@
 //! limit: it is continuous, and stick and slip change where the trial force passes the limit.
 //!
 //! The closing that led to the preload has slid: `T_0 = -mu F_0` (`friction.initial` = -1), which is part of its
-//! equilibrium. Slip is `v - z`; its distance counts to and fro, and the work of the friction force on it is dissipated.
+//! equilibrium; it does not exist where `mu h` reaches the deflection per force over that per moment, two thirds of the length
+//! of a uniform spring: the contact jams. Slip is `v - z`; its distance counts to and fro, and the work of the friction force
+//! on it is dissipated.
+//!
+//! The energy of the tangential spring is `k_t z^2 / 2`. Where `k_t` changes with the indentation while the spring is
+//! deflected, that part of it has no counterpart in the force along the normal (as in Mindlin's own law without history): it
+//! is at most `(mu F)^2 / (2 k_t)` at a time. `energy.balance` compares with the law as it stands.
 
 use serde::{Deserialize, Serialize};
 
