@@ -146,10 +146,3 @@ fn the_advice_on_the_tolerance_holds_for_light_damping() {
         );
     }
 }
-
-#[test]
-fn zz_campaign() {
-    for judged in judge_all(31_000, 300, Relay::friction) {
-        println!("{judged:?}");
-    }
-}
