@@ -82,6 +82,43 @@ pub enum SceneError {
          effects.secondContact = true is Hertz"
     )]
     NeedsHertz,
+    /// Friction beside something that it cannot be combined with.
+    #[error(
+        "{name} = {choice}: not allowed with effects.friction = Coulomb, allowed is {allowed}; or effects.friction = None"
+    )]
+    NoFriction {
+        /// The other choice.
+        name: &'static str,
+        /// Its value.
+        choice: &'static str,
+        /// What it may be.
+        allowed: &'static str,
+    },
+    /// Friction on a spring that is given by modes without rotation.
+    #[error(
+        "effects.friction = Coulomb: not allowed with beam.file = {file}, which gives modes without rotation; allowed with a \
+         rotation of the contact in each [[mode]]"
+    )]
+    NoRotation {
+        /// The spring file.
+        file: String,
+    },
+    /// Friction so strong that the contact jams as it closes: no preload with it at its limit.
+    #[error(
+        "friction.coefficient = {} with tip.contactHeight = {} m: the contact jams as it closes, allowed is a product of less \
+         than {} m for friction.initial = {}",
+        number(*coefficient), number(*height), number(*limit), number(*initial)
+    )]
+    Jams {
+        /// The coefficient.
+        coefficient: f64,
+        /// The height, m.
+        height: f64,
+        /// Their product from which on there is no equilibrium, m.
+        limit: f64,
+        /// Share of the limit at the preload.
+        initial: f64,
+    },
     /// A second contact that the moving contact touches at the preload, or that touches the first.
     #[error(
         "second.gap = {} m with second.displacement = {} m: not allowed, what is left of the gap at the preload must be more \

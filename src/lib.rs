@@ -54,6 +54,7 @@ pub mod error;
 mod excitation;
 pub mod fmi2;
 mod force_error;
+mod friction;
 mod harmonic;
 pub mod inputs;
 mod integrator;

@@ -14,6 +14,7 @@ use crate::electrical::ElectricalContact;
 use crate::error::{Remark, SceneError};
 use crate::excitation::generator::Generator;
 use crate::force_error::ForceError;
+use crate::friction::{self, Friction, Tangential};
 use crate::math::prediction::Predictions;
 use crate::math::simd::Simd;
 use crate::preload::Preload;
@@ -44,6 +45,8 @@ pub struct Model {
     pub(crate) modes: Vec<Mode>,
     /// The axial force, if it follows the deflection continuously.
     pub(crate) axial: Option<Feedback>,
+    /// Friction between the contacts.
+    pub(crate) friction: Option<Friction>,
     /// Modes and contact as one linear system, if the scene is linear, the generator harmonic, and nothing within a
     /// step is requested.
     pub(crate) closed_loop: Option<Box<ClosedLoop>>,
@@ -96,6 +99,7 @@ impl Model {
     /// A [`SceneError`] if the scene cannot be simulated.
     pub fn new(scene: &Scene, support: f64) -> Result<Self, SceneError> {
         scene.validate()?;
+        friction::check(scene)?;
         let spring = Spring::new(scene)?;
         let section = spring.section;
         let mut hertz = Hertz::new(&scene.contact);
@@ -169,6 +173,7 @@ impl Model {
             section,
             law,
             preload,
+            friction: Friction::new(scene, preload.force).map(|friction| friction.on(&modes)),
             modes,
             axial,
             closed_loop,
@@ -202,6 +207,7 @@ impl Model {
         (self.modes, self.law, self.preload) = (parts.modes, parts.law, parts.preload);
         (self.generator, self.force_scale, self.closed_loop) = (parts.generator, parts.force_scale, None);
         self.compliance = self.modes.iter().map(Mode::compliance).sum();
+        self.friction = self.friction.map(|friction| friction.on(&self.modes));
         self.hardest = self.law;
         match self.second.take() {
             Some(second) => self.with_second(second.law),
@@ -307,6 +313,7 @@ impl Model {
             indentation: 0.0,
             indentation_rate: 0.0,
             force: self.preload.force,
+            tangential: self.initial_friction(),
             closed: self.preload.force > 0.0,
             last_opening: -1.0,
             last_closing: -1.0,
@@ -328,6 +335,20 @@ impl Model {
             steps: 0,
             rejected_steps: 0,
             iterations: 0,
+        }
+    }
+
+    /// Friction at the preload.
+    fn initial_friction(&self) -> Tangential {
+        let force = self.friction.map_or(0.0, |friction| friction.preload);
+        let stiffness = self
+            .friction
+            .map_or(0.0, |friction| friction.ratio * self.preload.contact_stiffness);
+        Tangential {
+            force,
+            slip: if stiffness > 0.0 { force / stiffness } else { 0.0 },
+            last_change: -1.0,
+            ..Tangential::default()
         }
     }
 

@@ -3,11 +3,15 @@
 //! The tip deflection `y = w(L)` obeys `y = c(N) F_e(d) + c_g(N) g0` with `d = s + u - y`; `c` and `c_g` are the
 //! compliances of the cantilever under the axial force `N`, which may depend on `y`. The unknown is the indentation
 //! `d`, as `s - y` would lose four digits by cancellation.
+//!
+//! With friction `T_0 = tau F_0` at the height `h` of the contact point, its moment adds `c_m(N) h tau` to `c(N)`, `c_m` the
+//! deflection per moment.
 
 use crate::beam::spring::Spring;
 use crate::beam::statics::Statics;
 use crate::contact::hertz::Hertz;
 use crate::error::SceneError;
+use crate::friction::tangential_share;
 use crate::math::roots;
 use crate::scene::Scene;
 use crate::variables::{AxialForceKind, RealOutput, RealParameter};
@@ -53,6 +57,14 @@ impl Preload {
             })
         };
 
+        let share = tangential_share(scene);
+        let compliance = |n: f64| {
+            let by_force = statics.tip_compliance(n);
+            share.map_or(by_force, |share| {
+                by_force + share * scene.tip.contact_height * statics.moment_compliance(n)
+            })
+        };
+
         let alone = free_deflection(statics, gravity, &axial);
         if total_overtravel <= alone {
             let axial_force = axial(alone);
@@ -65,9 +77,18 @@ impl Preload {
                 axial_force,
             });
         }
+        let n = axial(total_overtravel);
+        if share.is_some() && compliance(n) <= 0.0 {
+            return Err(SceneError::Jams {
+                coefficient: scene.friction.coefficient,
+                height: scene.tip.contact_height,
+                limit: statics.tip_compliance(n) / statics.moment_compliance(n) / scene.friction.initial.abs(),
+                initial: scene.friction.initial,
+            });
+        }
         let residual = |d: f64| {
             let n = axial(total_overtravel - d);
-            let spring = (total_overtravel - d - statics.gravity_compliance(n) * gravity) / statics.tip_compliance(n);
+            let spring = (total_overtravel - d - statics.gravity_compliance(n) * gravity) / compliance(n);
             hertz.elastic_force(d) - spring
         };
         // No sign change: the spring exerts no force on the contact, it has buckled under its own deflection.

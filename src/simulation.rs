@@ -194,6 +194,10 @@ impl Simulation {
             RealOutput::TipVelocity => motion.support().1 - tip().rate,
             RealOutput::ContactLastOpening => state.record(false).last_opening,
             RealOutput::ContactLastClosing => state.record(false).last_closing,
+            RealOutput::ContactTangentialForce => motion.friction().force,
+            RealOutput::ContactSlip => motion.friction().slip,
+            RealOutput::ContactSlipDistance => motion.friction().distance,
+            RealOutput::FrictionEnergy => motion.friction().dissipated,
             RealOutput::PreloadForce => model.preload.force,
             RealOutput::PreloadIndentation => model.preload.indentation,
             RealOutput::PreloadContactStiffness => model.preload.contact_stiffness,
@@ -219,6 +223,7 @@ impl Simulation {
     pub fn rate(&self, output: RealOutput) -> Option<f64> {
         let Self { model, motion, .. } = self;
         let rates = || motion.tip_rates(model);
+        let along = || motion.friction_rates(model);
         // Conductance and its rate.
         let conducting_at = |force, rate| {
             model.electrical.map(|electrical| {
@@ -263,6 +268,10 @@ impl Simulation {
             RealOutput::ContactIndentation => motion.tip(model).rate,
             RealOutput::TipDisplacement => self.real(RealOutput::TipVelocity),
             RealOutput::TipVelocity => -rates().acceleration,
+            RealOutput::ContactTangentialForce => along().force,
+            RealOutput::ContactSlip => along().slip,
+            RealOutput::ContactSlipDistance => along().distance,
+            RealOutput::FrictionEnergy => along().dissipated,
             RealOutput::ContactLastOpening
             | RealOutput::ContactLastClosing
             | RealOutput::StepMinimumForce

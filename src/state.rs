@@ -8,6 +8,7 @@ use serde_big_array::BigArray;
 use crate::beam::mode::ModeStates;
 use crate::chatter::Interruptions;
 use crate::force_error::ForceError;
+use crate::friction::Tangential;
 use crate::math::prediction::Predictions;
 
 /// The state at a time.
@@ -35,6 +36,8 @@ pub struct State {
     pub indentation_rate: f64,
     /// Contact force, N.
     pub force: f64,
+    /// Friction.
+    pub tangential: Tangential,
     /// Whether the contact force is positive.
     pub closed: bool,
     /// Time at which the force last reached zero, s; -1: not yet.
@@ -125,6 +128,7 @@ impl State {
             indentation,
             indentation_rate,
             force,
+            tangential,
             closed: _,
             last_opening,
             last_closing,
@@ -169,6 +173,7 @@ impl State {
             && interruptions.is_sound(*time)
             && other.interruptions.is_sound(*time)
             && force_error.is_sound()
+            && tangential.is_sound()
             && *short_step > 0.0
             && *long_step >= 0.0
             && *flight_step > 0.0

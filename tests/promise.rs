@@ -18,29 +18,35 @@ const COUNT: u64 = 60;
 
 #[test]
 fn relays_keep_their_tolerance_or_say_that_they_may_not() {
-    keep_their_tolerance(&judge_all(0, COUNT, Relay::draw));
+    keep_their_tolerance(&judge_all(0, COUNT, Relay::draw), COUNT);
 }
 
 /// As many modes as a uniform spring has are too few for one in twenty of them.
 #[test]
 fn relays_with_springs_of_segments_keep_their_tolerance_or_say_that_they_may_not() {
-    keep_their_tolerance(&judge_all(10_000, COUNT, Relay::with_segments));
+    keep_their_tolerance(&judge_all(10_000, COUNT, Relay::with_segments), COUNT);
 }
 
 #[test]
 fn changeover_relays_keep_their_tolerance_or_say_that_they_may_not() {
-    keep_their_tolerance(&judge_all(20_000, COUNT, Relay::changeover));
+    keep_their_tolerance(&judge_all(20_000, COUNT, Relay::changeover), COUNT);
 }
 
-fn keep_their_tolerance(judged: &[Judged]) {
-    assert_eq!(judged.len() as u64, COUNT, "a relay does not run");
+/// A third as many.
+#[test]
+fn relays_with_friction_keep_their_tolerance_or_say_that_they_may_not() {
+    keep_their_tolerance(&judge_all(30_000, COUNT / 3, Relay::friction), COUNT / 3);
+}
+
+fn keep_their_tolerance(judged: &[Judged], count: u64) {
+    assert_eq!(judged.len() as u64, count, "a relay does not run");
     for judged in judged.iter().filter(|judged| judged.outcome != Outcome::Kept) {
         println!("{judged:?}");
     }
     let number = |is: fn(&Judged) -> bool| judged.iter().filter(|judged| is(judged)).count() as u64;
     let opening = number(|judged| judged.opens);
     println!("{opening} open");
-    assert!(opening > COUNT / 3 && COUNT - opening > COUNT / 5);
+    assert!(opening > count / 3 && count - opening > count / 5);
     let above = number(|judged| !judged.opens && judged.error > judged.tolerance);
     assert_eq!(above, 0, "closed contacts above the tolerance");
     // Ill-conditioned ones may be above it, but not in silence.
@@ -49,10 +55,10 @@ fn keep_their_tolerance(judged: &[Judged]) {
         100 * silent < opening,
         "{silent} opening contacts above the tolerance in silence"
     );
-    assert!(100 * number(|judged| judged.outcome == Outcome::NotRun) < 5 * COUNT);
+    assert!(100 * number(|judged| judged.outcome == Outcome::NotRun) < 5 * count);
     // The factor of the estimate is that with which 95 % of many relays have a smaller error: three standard deviations.
-    let safe = number(|judged| judged.error <= judged.estimate) as f64 / COUNT as f64;
-    assert!(safe > 0.95 - 3.0 * (0.05 * 0.95 / COUNT as f64).sqrt(), "{safe}");
+    let safe = number(|judged| judged.error <= judged.estimate) as f64 / count as f64;
+    assert!(safe > 0.95 - 3.0 * (0.05 * 0.95 / count as f64).sqrt(), "{safe}");
 }
 
 /// Relays above their tolerance in earlier versions: where a half sine ends, inside a long step, through the quadrature of a

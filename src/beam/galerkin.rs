@@ -22,7 +22,7 @@ pub struct Space {
     /// Value of each function at the tip.
     pub(crate) tip: DVector<f64>,
     /// Slope with respect to xi of each function at the tip.
-    tip_slope: DVector<f64>,
+    pub(crate) tip_slope: DVector<f64>,
 }
 
 /// One mode, normalised to a modal mass of 1 kg.
@@ -34,6 +34,8 @@ pub struct Mode {
     pub tip: f64,
     /// Modal force per base acceleration, sqrt(kg).
     pub participation: f64,
+    /// Rotation at the tip, 1/(m sqrt(kg)).
+    pub rotation: f64,
 }
 
 impl Space {
@@ -59,13 +61,13 @@ impl Space {
 
     /// The space of other functions, orthonormal in strain energy, in units of the section, which carries no rivet: products
     /// of the functions over the mass (kg), of their slopes over the length (m), the mass each moves (kg), and the deflection
-    /// of each at the tip (m).
+    /// (m) and the rotation of each at the tip.
     pub(super) fn with(
         section: &Section,
         mass: DMatrix<f64>,
         slopes: DMatrix<f64>,
         load: DVector<f64>,
-        tip: DVector<f64>,
+        (tip, slope): (DVector<f64>, DVector<f64>),
     ) -> Self {
         let half_mass = section.mass_per_length * section.length / 2.0;
         let half_stiffness = 8.0 * section.bending_stiffness / section.length.powi(3);
@@ -73,7 +75,7 @@ impl Space {
             mass: mass * (half_stiffness / half_mass),
             geometric: slopes * (half_stiffness * section.length / 2.0),
             load: load * (half_stiffness.sqrt() / half_mass),
-            tip_slope: DVector::zeros(tip.len()),
+            tip_slope: slope * (half_stiffness.sqrt() * section.length / 2.0),
             tip: tip * half_stiffness.sqrt(),
         }
     }
@@ -143,6 +145,7 @@ impl Space {
                     omega_squared: half_stiffness / (half_mass * mu),
                     tip,
                     participation: half_mass * shape.dot(&self.load) * normalisation + tip_mass * tip,
+                    rotation: 2.0 / length * shape.dot(&self.tip_slope) * normalisation,
                 };
                 (mode, shape * normalisation)
             })

@@ -69,6 +69,7 @@ impl Given {
                     damping: own.unwrap_or(alpha + beta * omega_squared),
                     tip: mode.contact,
                     participation: mode.participation,
+                    rotation: mode.rotation.unwrap_or_default(),
                 }
             })
             .collect();
@@ -87,6 +88,7 @@ impl Given {
                 damping: beta * omega_squared + 2.0 * omega_squared.sqrt(),
                 tip: (rest * omega_squared).sqrt(),
                 participation: 0.0,
+                rotation: 0.0,
             });
         }
         modes
@@ -100,7 +102,10 @@ impl Given {
             DMatrix::from_diagonal(&vector(&|mode| 1.0 / mode.omega_squared)),
             DMatrix::zeros(modes.len(), modes.len()),
             vector(&|mode| mode.participation / mode.omega_squared.sqrt()),
-            vector(&|mode| mode.tip / mode.omega_squared.sqrt()),
+            (
+                vector(&|mode| mode.tip / mode.omega_squared.sqrt()),
+                vector(&|mode| mode.rotation / mode.omega_squared.sqrt()),
+            ),
         )
     }
 

@@ -139,6 +139,11 @@ impl Mesh {
         self.loaded(self.before_contact.saturating_sub(1), 1.0, 0.0)
     }
 
+    /// Under unit moment at the contact.
+    pub fn turned(&self) -> Bend {
+        self.loaded(self.before_contact.saturating_sub(1), 0.0, 1.0)
+    }
+
     /// Under unit force and under unit moment at the end.
     pub fn pushed_at_end(&self) -> [Bend; 2] {
         let last = self.stretches.len().saturating_sub(1);

@@ -19,6 +19,8 @@ pub struct Mode {
     pub tip: f64,
     /// Load per base acceleration g_i, sqrt(kg).
     pub participation: f64,
+    /// Rotation of the spring at the contact T_i', 1/(m sqrt(kg)).
+    pub rotation: f64,
 }
 
 impl Mode {

@@ -41,9 +41,9 @@ pub fn static_space(spring: &Pieces, section: &Section) -> Space {
     space(&mesh, &static_shapes(&mesh), section)
 }
 
-/// A space of `count` functions for motion under an axial compression (N), in units of the equivalent section. `None` if it
-/// buckles.
-pub fn dynamic_space(spring: &Pieces, section: &Section, count: usize, axial_force: f64) -> Option<Space> {
+/// A space of `count` functions for motion under an axial compression (N), where `rubs` also under a moment at the contact,
+/// in units of the equivalent section. `None` if it buckles.
+pub fn dynamic_space(spring: &Pieces, section: &Section, count: usize, axial_force: f64, rubs: bool) -> Option<Space> {
     let mesh = Mesh::new(spring, count.max(STATIC_SHAPES));
     let [moved, turned] = mesh.shaken();
     let mut starts = vec![pushed_under(&mesh, section, axial_force)?, moved];
@@ -51,6 +51,9 @@ pub fn dynamic_space(spring: &Pieces, section: &Section, count: usize, axial_for
     starts.extend([moment, turned]);
     if spring.goes_on() {
         starts.push(force);
+        if rubs {
+            starts.push(mesh.turned());
+        }
     }
     let shapes = krylov(&mesh, starts, |shape| mesh.swung(shape), count);
     Some(space(&mesh, &shapes, section))
@@ -125,6 +128,9 @@ fn space(mesh: &Mesh, shapes: &[Bend], section: &Section) -> Space {
         products(shapes.iter().map(moved).collect()),
         products(shapes.iter().map(turned).collect()),
         vector(&loaded),
-        vector(&|shape| mesh.at_contact(shape).0),
+        (
+            vector(&|shape| mesh.at_contact(shape).0),
+            vector(&|shape| mesh.at_contact(shape).1),
+        ),
     )
 }

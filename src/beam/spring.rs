@@ -15,7 +15,7 @@ use crate::error::SceneError;
 use crate::math::simd::LANES;
 use crate::scene::spring::{Shape, SpringFile};
 use crate::scene::{Scene, choices};
-use crate::variables::{AxialForceKind, EnumerationParameter};
+use crate::variables::{AxialForceKind, EnumerationParameter, FrictionKind};
 
 /// A spring with its rivet.
 #[derive(Clone, Debug)]
@@ -147,7 +147,10 @@ impl Spring {
         let (alpha, beta) = (scene.beam.mass_damping, scene.beam.stiffness_damping);
         let space = match &self.form {
             Form::Uniform => Space::new(count),
-            Form::Segments(pieces) => ritz::dynamic_space(pieces, &self.section, count, axial_force)?,
+            Form::Segments(pieces) => {
+                let rubs = scene.effects.friction != FrictionKind::None;
+                ritz::dynamic_space(pieces, &self.section, count, axial_force, rubs)?
+            }
             Form::Modes(given) => {
                 let modes = given.modes(count, (alpha, beta));
                 return Some(Basis {
@@ -166,6 +169,7 @@ impl Spring {
                     damping: alpha + beta * mode.omega_squared,
                     tip: mode.tip,
                     participation: mode.participation,
+                    rotation: mode.rotation,
                 };
                 (mode, shape)
             })
@@ -182,7 +186,7 @@ impl Spring {
                     .first()
                     .copied();
             }
-            Form::Segments(pieces) => ritz::dynamic_space(pieces, &self.section, FREQUENCY_TERMS, axial_force)?,
+            Form::Segments(pieces) => ritz::dynamic_space(pieces, &self.section, FREQUENCY_TERMS, axial_force, false)?,
             Form::Modes(given) => given.space(&given.modes(MAX_MODES, (0.0, 0.0))),
         };
         let modes = space.modes(&self.section, axial_force, stiffness)?;

@@ -14,8 +14,16 @@ const TERMS: usize = 20;
 #[derive(Clone, Debug)]
 pub struct Statics {
     section: Section,
-    /// sigma_i, tip_i, load_i.
-    terms: Vec<(f64, f64, f64)>,
+    terms: Vec<Term>,
+}
+
+/// One of the modes of the geometric stiffness.
+#[derive(Clone, Copy, Debug)]
+struct Term {
+    sigma: f64,
+    tip: f64,
+    slope: f64,
+    load: f64,
 }
 
 impl Statics {
@@ -31,7 +39,12 @@ impl Statics {
             .eigenvalues
             .iter()
             .zip(eigen.eigenvectors.column_iter())
-            .map(|(&sigma, shape)| (sigma, shape.dot(&space.tip), shape.dot(&space.load)))
+            .map(|(&sigma, shape)| Term {
+                sigma,
+                tip: shape.dot(&space.tip),
+                slope: shape.dot(&space.tip_slope),
+                load: shape.dot(&space.load),
+            })
             .collect();
         Self {
             section: *section,
@@ -41,23 +54,30 @@ impl Statics {
 
     /// Axial compression at which the cantilever without contact buckles, N.
     pub(super) fn buckling_load(&self) -> f64 {
-        let largest = self.terms.iter().map(|(sigma, ..)| *sigma).fold(0.0, f64::max);
+        let largest = self.terms.iter().map(|term| term.sigma).fold(0.0, f64::max);
         4.0 * self.section.bending_stiffness / (self.section.length.powi(2) * largest)
     }
 
     /// Tip deflection per tip force, m/N; without axial force L^3 / (3 E I).
     pub fn tip_compliance(&self, axial_force: f64) -> f64 {
-        self.sum(axial_force, |tip, _| tip * tip)
+        self.sum(axial_force, |term| term.tip * term.tip)
+    }
+
+    /// Tip deflection per moment at the tip, 1/N; without axial force L^2 / (2 E I).
+    pub fn moment_compliance(&self, axial_force: f64) -> f64 {
+        self.sum(axial_force, |term| term.tip * term.slope) * (2.0 / self.section.length)
     }
 
     /// Tip deflection per constant base acceleration, m per m/s2, negative: the spring lags behind the frame.
     pub fn gravity_compliance(&self, axial_force: f64) -> f64 {
         let half_mass = self.section.mass_per_length * self.section.length / 2.0;
         let tip_mass = self.section.tip_mass;
-        -self.sum(axial_force, |tip, load| tip * (half_mass * load + tip_mass * tip))
+        -self.sum(axial_force, |term| {
+            term.tip * (half_mass * term.load + tip_mass * term.tip)
+        })
     }
 
-    fn sum(&self, axial_force: f64, product: impl Fn(f64, f64) -> f64) -> f64 {
+    fn sum(&self, axial_force: f64, product: impl Fn(&Term) -> f64) -> f64 {
         let Section {
             length,
             bending_stiffness,
@@ -67,7 +87,7 @@ impl Statics {
         let sum: f64 = self
             .terms
             .iter()
-            .map(|&(sigma, tip, load)| product(tip, load) / (1.0 - compression * sigma))
+            .map(|term| product(term) / (1.0 - compression * term.sigma))
             .sum();
         sum * length.powi(3) / (8.0 * bending_stiffness)
     }

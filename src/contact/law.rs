@@ -14,6 +14,15 @@ pub enum Law {
 }
 
 impl Law {
+    /// Hertz, if it is that.
+    #[inline(always)]
+    pub fn hertz(&self) -> Option<&Hertz> {
+        match self {
+            Self::Hertz(hertz) => Some(hertz),
+            Self::Linear(_) => None,
+        }
+    }
+
     /// A length with the sign of the contact force: positive while the contact is closed, m.
     pub fn engagement(&self, d: f64, rate: f64) -> f64 {
         match self {

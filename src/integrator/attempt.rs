@@ -4,10 +4,11 @@ use crate::error::{StepError, StepErrorCause};
 use crate::integrator::collocation::error::is_rounding;
 use crate::integrator::collocation::newton::Source;
 use crate::integrator::collocation::part::{self, Instant};
-use crate::integrator::collocation::step::{Trial, trial};
+use crate::integrator::collocation::step::Trial;
+use crate::integrator::collocation::trial::trial;
 use crate::integrator::constants::{
-    AFTER_BLOW, AFTER_REJECTION, AT_EVENT, FORCE_ROUNDING, INSIDE, LEAST_SHRINK, MOST_GROWTH, MOST_SHRINK, NEAR_BLOW,
-    NEWTON, SAFETY,
+    AFTER_BLOW, AFTER_CHANGE, AFTER_REJECTION, AT_EVENT, FORCE_ROUNDING, INSIDE, LEAST_SHRINK, MOST_GROWTH,
+    MOST_SHRINK, NEAR_BLOW, NEWTON, SAFETY,
 };
 use crate::integrator::course::{Places, turning_points};
 use crate::integrator::grid::Target;
@@ -44,7 +45,8 @@ impl Integration<'_> {
         }
     }
 
-    /// Factor on the error just after a closing, where the force is not smooth enough for the estimate.
+    /// Factor on the error just after a closing, where the force is not smooth enough for the estimate, and just after slip
+    /// has begun or ended.
     fn after_blow(&self, target: &Target) -> f64 {
         let State {
             time,
@@ -54,7 +56,13 @@ impl Integration<'_> {
             ..
         } = *self.state;
         let near = closed && last_kink == last_closing && time - last_kink < NEAR_BLOW * target.length;
-        if near { AFTER_BLOW } else { 1.0 }
+        if near {
+            AFTER_BLOW
+        } else if self.changes_now() {
+            AFTER_CHANGE
+        } else {
+            1.0
+        }
     }
 
     /// Whether a step to the target with this relative error is accepted; one of the shortest length with any finite
@@ -140,7 +148,7 @@ impl Integration<'_> {
     {
         self.workspace.work += 1;
         let (cache, end, inside) = Room::<S>::parts(self.workspace);
-        let whole = (trial, length, &end.loads);
+        let whole = (trial, length, &*end);
         let collocation = cache.collocation();
         part::motion(self.model, self.state, &self.drive, collocation, whole, at, inside)
     }
@@ -152,7 +160,7 @@ impl Integration<'_> {
     {
         let (cache, end, inside) = Room::<S>::parts(self.workspace);
         end.modes = *inside;
-        let whole = (trial, length, &mut end.loads);
+        let whole = (trial, length, &mut end.loads, &mut end.tangential);
         part::first_part(self.model, self.state, &self.drive, cache.collocation(), whole, last)
     }
 
@@ -251,6 +259,8 @@ impl Integration<'_> {
         self.grid.done = target.done;
         self.refusals = 0;
         self.before_event = false;
+        self.changes = 0;
+        self.follow_friction::<S>(target.length);
         self.settle(target.length);
         self.balance(expected_energy);
         Ok(())

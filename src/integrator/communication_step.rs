@@ -71,8 +71,14 @@ fn step_by<const EXTREMES: bool>(
     let inside = steady && until < motion.end.time;
     let mut extremes = EXTREMES.then(|| motion.extremes_now(model));
     let own_step = motion.end.short_step.max(motion.end.long_step);
-    // Where the contact opens and closes, step ends would not lie on the grid of an exact step.
-    let switches = motion.end.last_opening.max(motion.end.last_closing) >= 0.0;
+    // Where the contact opens and closes, or slips and sticks, step ends would not lie on the grid of an exact step.
+    let State {
+        last_opening,
+        last_closing,
+        tangential,
+        ..
+    } = &motion.end;
+    let switches = last_opening.max(*last_closing).max(tangential.last_change) >= 0.0;
     if inside {
         if let Some(extremes) = &mut extremes {
             motion.add_dense(extremes, model, since, until);

@@ -9,7 +9,8 @@
 
 use crate::error::{StepError, StepErrorCause};
 use crate::integrator::collocation::newton::Source;
-use crate::integrator::collocation::step::{Trial, trial};
+use crate::integrator::collocation::step::Trial;
+use crate::integrator::collocation::trial::trial;
 use crate::integrator::grid::Target;
 use crate::integrator::integration::{Integration, StepOutcome};
 use crate::integrator::workspace::Room;
@@ -38,6 +39,7 @@ impl Integration<'_> {
             let rigid = law.damping * self.model.mobility() * target.length > 1.0;
             self.state.force = if rigid { mean } else { law.force };
         }
+        self.model.settle_friction(self.state);
         // No polynomial to predict the next step with.
         self.state.last_step = 0.0;
         Ok(StepOutcome {
@@ -60,6 +62,10 @@ impl Integration<'_> {
         let mut trials = 0;
         let (cache, end, _) = Room::<SHORT>::parts(*workspace);
         let prepared = cache.prepare(state.time, target.length, target.recurring, model);
+        if let Some(friction) = model.friction() {
+            // It is constant too.
+            end.tangential.forces = [state.tangential.force - friction.preload; SHORT];
+        }
         let preload = model.preload;
         let from = preload.indentation + state.indentation;
         let mut under = |force: f64| {
@@ -127,6 +133,7 @@ mod tests {
                 allowed: 1e-8,
                 refusals: 0,
                 before_event: false,
+                changes: 0,
                 conserves: false,
             };
             let target = integration.grid.target(step, integration.state.time, None);

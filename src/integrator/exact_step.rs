@@ -14,7 +14,7 @@ use crate::integrator::attempt::{growth, shrinkage};
 use crate::integrator::constants::{FORCE_ROUNDING, INSIDE, SHARE, UNREST};
 use crate::integrator::course::Places;
 use crate::integrator::grid::round_down;
-use crate::integrator::integration::{DenseOutput, StepOutcome};
+use crate::integrator::integration::{DenseFriction, DenseOutput, StepOutcome};
 use crate::integrator::workspace::Workspace;
 use crate::math::nodal::{LONG, Nodal, dot};
 use crate::math::simd::Separate;
@@ -139,6 +139,7 @@ pub(crate) fn step_ahead(
                 rate,
                 turns: Places::default(),
                 passages: Places::default(),
+                friction: DenseFriction::default(),
             };
             state.time = time;
             state.force_error.add(ratio * allowed);

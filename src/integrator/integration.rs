@@ -35,6 +35,8 @@ pub(crate) struct Integration<'a> {
     pub(crate) refusals: u32,
     /// Whether one of them was too long to end at an event inside.
     pub(crate) before_event: bool,
+    /// Changes between stick and slip in succession that took no time.
+    pub(crate) changes: u32,
     /// Whether the energy changes only by the work of the drive ([`crate::integrator::energy::conservation`]).
     pub(crate) conserves: bool,
 }
@@ -52,6 +54,17 @@ pub(crate) struct DenseOutput {
     pub turns: Places,
     /// Where it passes that of an interruption.
     pub passages: Places,
+    /// Friction.
+    pub friction: DenseFriction,
+}
+
+/// Dense output of friction.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct DenseFriction {
+    /// Slip, m.
+    pub slip: Prediction,
+    /// Energy dissipated so far, J.
+    pub dissipated: Prediction,
 }
 
 /// How far to advance.
@@ -77,7 +90,7 @@ pub(crate) enum Steps<'a> {
 pub(crate) struct StepOutcome {
     /// Whether it was accepted.
     pub(crate) taken: bool,
-    /// Whether the contact opened or closed with it: short steps begin anew.
+    /// Whether the contact opened or closed with it, or began or ceased to slip: short steps begin anew.
     pub(crate) switched: bool,
     /// Factor to its length that its error would have allowed.
     pub(crate) growth: f64,

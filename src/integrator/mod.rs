@@ -24,7 +24,8 @@
 //! ```
 //!
 //! (Machines 2025, 13(1), 52, eqs. 1, 2, 7, 8, 14, 22; the contact's damping is that of Kuwabara and Kono.) With the
-//! axial force that follows the deflection every mode has a further load, see *Axial force*.
+//! axial force that follows the deflection every mode has a further load, see *Axial force*; with friction the spring has one
+//! more at its contact, see *Friction*.
 //!
 //! The modes are Ritz vectors in a space of polynomials that contains the deflection under a static tip load
 //! ([`galerkin`](crate::beam::galerkin)). The static compliance of the tip is therefore exact with any number of them,
@@ -219,6 +220,27 @@
 //! fixed-point iteration around Newton's method ([`collocation::axial_force`]); what they miss at the start enters the
 //! error estimate as the base acceleration does.
 //!
+//! # Friction
+//!
+//! With friction ([`friction`](crate::friction): the law) the friction force `T` is a second load on the modes, a polynomial
+//! through the same nodes, and the displacement `v` of the contact point along the spring a second sum over them. The tables
+//! of the response gain `X = sum T_i (h T_i')` and `Y = sum (h T_i')^2`, formed as `D` is, and Newton's method the nodal
+//! values of `T` ([`collocation::friction`]): `2 S` unknowns, with the law of stick or of slip throughout a step. What both
+//! polynomials miss at the start enters the error estimate with its effect on both forces.
+//!
+//! A step ends where the contact begins or ceases to slip ([`friction`]): where the trial force of stick passes the limit,
+//! or the slip velocity its zero, on the polynomials through the nodes. The motion there is exact under the polynomials, as at
+//! any event; no blow follows, so the error inside need only be that allowed in a step. The slope of the friction force jumps
+//! there, and the spring, which has no rotary inertia at its end unless `tip.rotaryInertia` gives it, answers as steeply as
+//! its highest modes do. So the first step is about as long as the last one after such a change, its error counts
+//! [`constants::AFTER_CHANGE`] times, and the next ones grow with the time since, as after a closing. Rounding could change
+//! stick and slip to and fro at one instant: what is below [`constants::LOCATED`] of the error allowed is no change.
+//!
+//! As the contact opens the limit vanishes, so it slips before; as it closes, the direction of the first motion decides.
+//! A contact that sticks may be at rest, with the friction force among the loads. Exact steps, the return of energy, an axial
+//! force that follows the deflection and the second contact know no friction: such scenes are refused. A step with constant
+//! contact force holds the friction force too.
+//!
 //! # Exact steps
 //!
 //! Where beam and contact are linear, the generator is a sine or none, and neither extremes nor near interruptions are
@@ -266,6 +288,8 @@ pub mod energy;
 pub mod events;
 pub mod exact_step;
 pub mod extremes;
+pub mod friction;
+pub mod friction_output;
 pub mod grid;
 pub mod integration;
 pub mod motion;

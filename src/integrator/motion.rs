@@ -6,7 +6,7 @@
 //! output). When an input changes, the step is repeated from its start to the communication point and integration
 //! restarts there.
 
-use crate::beam::mode::MAX_MODES;
+use crate::beam::mode::{MAX_MODES, Modal};
 use crate::chatter::Interruptions;
 use crate::excitation::drive::Drive;
 use crate::integrator::constants::PIECES;
@@ -14,7 +14,7 @@ use crate::integrator::course::{Places, turning_points};
 use crate::integrator::events::log::Event;
 use crate::integrator::exact_step;
 use crate::integrator::extremes::Extremes;
-use crate::integrator::integration::DenseOutput;
+use crate::integrator::integration::{DenseFriction, DenseOutput};
 use crate::math::prediction::value_and_slope;
 use crate::model::Model;
 use crate::state::State;
@@ -107,8 +107,10 @@ impl Motion {
             rate,
             turns,
             passages,
+            friction,
         } = dense;
-        let polynomials = [force, indentation, rate].into_iter().flatten();
+        let DenseFriction { slip, dissipated } = friction;
+        let polynomials = [force, indentation, rate, slip, dissipated].into_iter().flatten();
         let numbers = [
             *time,
             *current,
@@ -153,7 +155,7 @@ impl Motion {
     }
 
     /// Length of the step of [`Motion::dense`], s.
-    fn length(&self) -> f64 {
+    pub(crate) fn length(&self) -> f64 {
         self.end.time - self.start.time
     }
 
@@ -196,6 +198,29 @@ impl Motion {
             false => 0.0,
         };
         (force, at(&self.dense.indentation), at(&self.dense.rate))
+    }
+
+    /// Acceleration that all loads give to a sum over the modes with these factors, at the end of a step (m/s2), and the sum
+    /// with the tip displacements.
+    pub(crate) fn accelerations(&self, model: &Model, state: &State, factors: &Modal) -> (f64, f64) {
+        let base = self.drive.acceleration(self.time) + model.generator.acceleration_before(self.time);
+        let base = if state.mirrored { -base } else { base };
+        let force = state.force - model.preload.force;
+        let modes = exact_step::modes(model, state);
+        let axial = match (model.axial(), model.friction()) {
+            (Some(axial), _) => axial.loads(&model.modes, &modes),
+            (None, Some(friction)) => {
+                let along = state.tangential.force - friction.preload;
+                friction.levers.map(|lever| lever * along)
+            }
+            (None, None) => [0.0; MAX_MODES],
+        };
+        let modes = model.modes.iter().zip(&modes).zip(&axial).zip(factors);
+        modes.fold((0.0, 0.0), |(along, tip), (((mode, at), axial), factor)| {
+            let load = mode.tip * force - mode.participation * base + axial;
+            let acceleration = load - mode.omega_squared * at.q - mode.damping * at.v;
+            (along + factor * acceleration, tip + mode.tip * acceleration)
+        })
     }
 
     /// Extremes at the communication point alone.
@@ -306,19 +331,8 @@ impl Motion {
             let force = if state.closed { slope(&self.dense.force) } else { 0.0 };
             return of_both(force, slope(&self.dense.rate));
         }
-        let base = self.drive.acceleration(self.time) + model.generator.acceleration_before(self.time);
-        let base = if state.mirrored { -base } else { base };
-        let force = state.force - model.preload.force;
-        let modes = exact_step::modes(model, state);
-        let axial = match model.axial() {
-            Some(axial) => axial.loads(&model.modes, &modes),
-            None => [0.0; MAX_MODES],
-        };
-        let modes = model.modes.iter().zip(&modes).zip(&axial);
-        let acceleration = modes.fold(0.0, |sum, ((mode, at), axial)| {
-            let load = mode.tip * force - mode.participation * base + axial;
-            sum - mode.tip * (load - mode.omega_squared * at.q - mode.damping * at.v)
-        });
+        let (_, tip) = self.accelerations(model, state, &[0.0; MAX_MODES]);
+        let acceleration = -tip;
         let rate = state.indentation_rate;
         let law = model
             .law

@@ -1,6 +1,7 @@
 //! A contact at rest needs no integration until its loads change.
 
 use crate::excitation::drive::Drive;
+use crate::friction::Phase;
 use crate::integrator::constants::{REST_ROUNDING, UNREST, WEAK};
 use crate::model::Model;
 use crate::state::State;
@@ -15,11 +16,17 @@ use crate::state::State;
 /// needs at least
 /// `e^2 / (2 k)` of it, with `k` the greatest tangent stiffness in between.
 ///
+/// Friction that sticks is one spring more, whose force at the present velocity is among the loads.
+///
 /// An axial force that follows the deflection adds its loads. It has no potential; but if it changes the modal
 /// stiffness little and there is damping, the bound holds up to a factor near one, for which the hundredth leaves room.
 /// Otherwise only the equilibrium to rounding counts as rest.
 pub(crate) fn rests_until(model: &Model, state: &State, drive: &Drive, tolerance: f64, end: f64) -> Option<f64> {
-    if state.with_contact || !drive.is_constant() || model.generator.is_active(state.time) {
+    if state.tangential.phase != Phase::Stick
+        || state.with_contact
+        || !drive.is_constant()
+        || model.generator.is_active(state.time)
+    {
         return None;
     }
     let d = model.preload.indentation + state.indentation;
@@ -37,11 +44,15 @@ pub(crate) fn rests_until(model: &Model, state: &State, drive: &Drive, tolerance
         axial = Some(feedback.loads(&model.modes, &state.modes));
     }
     let mut axial = axial.iter().flatten();
+    let friction = model.friction();
+    let mut levers = friction.iter().flat_map(|friction| &friction.levers);
+    let along = friction.map_or(0.0, |friction| state.tangential.force - friction.preload);
     let mut energy = 0.0;
     for (mode, at) in model.modes.iter().zip(&state.modes) {
         let load =
             mode.tip * (force - model.preload.force) - mode.participation * acceleration - mode.omega_squared * at.q
-                + axial.next().copied().unwrap_or_default();
+                + axial.next().copied().unwrap_or_default()
+                + levers.next().map_or(0.0, |lever| lever * along);
         let strain = if load == 0.0 {
             0.0
         } else {

@@ -2,11 +2,12 @@
 
 use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
+use crate::friction::Phase;
 use crate::integrator::attempt::{growth, shrinkage};
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::constants::{
     AFTER_REJECTION, COARSEST, GROWING, LEAST_SHRINK, LONGER, LOOSEST, MOST_SHRINK, NEXT_LENGTH, REFUSALS, SAFETY,
-    SHARE, SMOOTH, WORTH,
+    SHARE, SMOOTH, STEP_GROWTH, WORTH,
 };
 use crate::integrator::energy::conservation::conserves;
 use crate::integrator::events::Cut;
@@ -70,6 +71,7 @@ pub(crate) fn advance(
         allowed: SHARE * tolerance,
         refusals: 0,
         before_event: false,
+        changes: 0,
         conserves: conserves(model, &drive),
     }
     .run()
@@ -169,7 +171,13 @@ impl Integration<'_> {
             if self.is_shortest(&target) {
                 return Err(self.error(StepErrorCause::NotFinite));
             }
-            return Ok(self.reject(target.length * shrinkage::<S>(ratio)));
+            let shrink = if self.changes_now() {
+                // Where the force bends the error is of order one.
+                (AFTER_REJECTION / ratio).clamp(LEAST_SHRINK, MOST_SHRINK)
+            } else {
+                shrinkage::<S>(ratio)
+            };
+            return Ok(self.reject(target.length * shrink));
         };
         // The energy may reveal an error that the estimate misses.
         if !self.is_shortest(&target) && self.breaks_account(&trial, target.length) {
@@ -181,11 +189,15 @@ impl Integration<'_> {
         } else {
             growth::<S>(ratio) * self.leaving_kink(target.length)
         };
+        let change = self.slip_change(&trial, target.length);
         let opens = if self.state.closed {
             self.first_open(&trial)
         } else {
             None
         };
+        // What sticks slips before it opens.
+        let sticks = self.state.tangential.phase == Phase::Stick;
+        let opens = opens.filter(|_| change.is_none() || !sticks);
         let read = self.read_at(&trial, &target);
         let closes = if self.state.closed {
             None
@@ -201,8 +213,17 @@ impl Integration<'_> {
             let shrink = AFTER_REJECTION * (self.allowed_inside() / trial.inner_error).powf(1.0 / S as f64);
             return Ok(self.reject(target.length * shrink.clamp(LEAST_SHRINK, NEXT_LENGTH)));
         }
+        if change.is_some() && !self.may_change_inside(&trial, &target) {
+            let shrink = AFTER_REJECTION * (self.allowed / trial.inner_error).powf(1.0 / S as f64);
+            return Ok(self.reject(target.length * shrink.clamp(LEAST_SHRINK, NEXT_LENGTH)));
+        }
         let opening = opens.and_then(|part| self.opening(&trial, target.length, part * target.length));
-        let event = opening.or(closes);
+        let event = match (opening.or(closes), &change) {
+            (event, Some(change)) if event.as_ref().is_none_or(|event| change.at < event.end.at) => {
+                Some(self.cut_at_change(&trial, target.length, change))
+            }
+            (event, _) => event,
+        };
         let cut = match (event, read) {
             (Some(event), Some(read)) if event.time <= read => Some(event),
             (_, Some(time)) => Some(Cut {
@@ -210,6 +231,7 @@ impl Integration<'_> {
                 time,
                 switches: false,
                 mirrors: false,
+                slides: None,
             }),
             (event, None) => event,
         };
@@ -219,6 +241,7 @@ impl Integration<'_> {
         let Some(passages) = self.passages(&trial, target.length, self.is_shortest(&target)) else {
             return Ok(self.reject(MOST_SHRINK * target.length));
         };
+        self.keep_first_step(target.length, self::growth::<S>(ratio));
         self.take(&trial, &target, passages)?;
         if corner.is_some_and(|corner| corner <= target.time) {
             // What the corner sets vibrating, the step sizes before it do not resolve.
@@ -235,8 +258,8 @@ impl Integration<'_> {
         Ok(StepOutcome::after(target.length, requested, growth))
     }
 
-    /// Factor by which the next step may be longer for its distance from the last closing alone: the force there is smooth
-    /// in the logarithm of the time since.
+    /// Factor by which the next step may be longer for its distance from the last closing, or from where slip last began or
+    /// ended, alone: the force there is smooth in the logarithm of the time since.
     fn leaving_kink(&self, length: f64) -> f64 {
         let State {
             time,
@@ -245,7 +268,10 @@ impl Integration<'_> {
             ..
         } = *self.state;
         let elapsed = time - last_kink;
-        if last_kink == last_closing && elapsed > 0.0 {
+        let bends = last_kink == last_closing || last_kink == self.state.tangential.last_change;
+        if self.changes_now() {
+            STEP_GROWTH
+        } else if bends && elapsed > 0.0 {
             (SAFETY * (1.0 + length / elapsed)).max(1.0)
         } else {
             1.0

@@ -1,6 +1,6 @@
 //! The parameters and effects, grouped by what they describe, and their start values, those of `modelDescription.xml`: the specimen.
 
-use crate::variables::{AxialForceKind, ContactLawKind, ExcitationKind, ResistanceKind, start};
+use crate::variables::{AxialForceKind, ContactLawKind, ExcitationKind, FrictionKind, ResistanceKind, start};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -19,6 +19,8 @@ pub struct Scene {
     pub contact: Contact,
     /// The second contact, on the other side of the spring.
     pub second: Second,
+    /// Friction between the contacts.
+    pub friction: Friction,
     /// Contact resistance.
     pub resistance: Resistance,
     /// Generated base acceleration.
@@ -61,6 +63,8 @@ pub struct Tip {
     pub mass: f64,
     /// Rotary inertia, kg m2.
     pub rotary_inertia: f64,
+    /// Distance of the contact point from the neutral axis of the spring, m.
+    pub contact_height: f64,
 }
 
 /// Contact geometry and law.
@@ -102,6 +106,15 @@ pub struct Material {
     pub youngs_modulus: f64,
     /// Poisson's ratio.
     pub poisson_ratio: f64,
+}
+
+/// Friction between the contacts.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Friction {
+    /// Coefficient mu.
+    pub coefficient: f64,
+    /// Friction force at the preload as a share of its limit; -1: as closing has left it.
+    pub initial: f64,
 }
 
 /// Contact resistance, by power law or by Holm, in series with a film, both in parallel with the open resistance.
@@ -213,6 +226,8 @@ pub struct Effects {
     pub energy: bool,
     /// Whether there is a second contact.
     pub second_contact: bool,
+    /// Friction.
+    pub friction: FrictionKind,
 }
 
 impl Default for Scene {
@@ -232,6 +247,7 @@ impl Default for Scene {
             tip: Tip {
                 mass: start::TIP_MASS,
                 rotary_inertia: start::TIP_ROTARY_INERTIA,
+                contact_height: start::TIP_CONTACT_HEIGHT,
             },
             contact: Contact {
                 overtravel: start::CONTACT_OVERTRAVEL,
@@ -253,6 +269,10 @@ impl Default for Scene {
                 curvature_radius: start::SECOND_CURVATURE_RADIUS,
                 damping: start::SECOND_DAMPING,
                 minimum_duration: start::SECOND_MINIMUM_DURATION,
+            },
+            friction: Friction {
+                coefficient: start::FRICTION_COEFFICIENT,
+                initial: start::FRICTION_INITIAL,
             },
             resistance: Resistance {
                 coefficient: start::RESISTANCE_COEFFICIENT,
@@ -297,6 +317,7 @@ impl Default for Scene {
                 extremes: start::EFFECTS_EXTREMES,
                 energy: start::EFFECTS_ENERGY,
                 second_contact: start::EFFECTS_SECOND_CONTACT,
+                friction: start::EFFECTS_FRICTION,
             },
         }
     }

@@ -7,8 +7,8 @@ use crate::error::{SceneError, number};
 use crate::scene::Scene;
 use crate::scene::spring::SpringFile;
 use crate::variables::{
-    AxialForceKind, BooleanParameter, ContactLawKind, EnumerationParameter, ExcitationKind, Group, IntegerParameter,
-    RealParameter, ResistanceKind, StringParameter, VARIABLES, Variable,
+    AxialForceKind, BooleanParameter, ContactLawKind, EnumerationParameter, ExcitationKind, FrictionKind, Group,
+    IntegerParameter, RealParameter, ResistanceKind, StringParameter, VARIABLES, Variable,
 };
 
 impl Scene {
@@ -56,6 +56,7 @@ impl Scene {
             EnumerationParameter::EffectsContactLaw => self.effects.contact_law as i32,
             EnumerationParameter::EffectsAxialForce => self.effects.axial_force as i32,
             EnumerationParameter::EffectsResistance => self.effects.resistance as i32,
+            EnumerationParameter::EffectsFriction => self.effects.friction as i32,
         }
     }
 
@@ -130,6 +131,9 @@ impl Scene {
             EnumerationParameter::EffectsResistance => {
                 self.effects.resistance = ResistanceKind::from_value(value).ok_or_else(unknown)?;
             }
+            EnumerationParameter::EffectsFriction => {
+                self.effects.friction = FrictionKind::from_value(value).ok_or_else(unknown)?;
+            }
         }
         Ok(())
     }
@@ -169,6 +173,7 @@ impl Scene {
             P::BeamAxialForce => &mut self.beam.axial_force,
             P::TipMass => &mut self.tip.mass,
             P::TipRotaryInertia => &mut self.tip.rotary_inertia,
+            P::TipContactHeight => &mut self.tip.contact_height,
             P::ContactOvertravel => &mut self.contact.overtravel,
             P::ContactCurvatureRadius => &mut self.contact.curvature_radius,
             P::ContactDamping => &mut self.contact.damping,
@@ -182,6 +187,8 @@ impl Scene {
             P::SecondCurvatureRadius => &mut self.second.curvature_radius,
             P::SecondDamping => &mut self.second.damping,
             P::SecondMinimumDuration => &mut self.second.minimum_duration,
+            P::FrictionCoefficient => &mut self.friction.coefficient,
+            P::FrictionInitial => &mut self.friction.initial,
             P::ResistanceCoefficient => &mut self.resistance.coefficient,
             P::ResistanceExponent => &mut self.resistance.exponent,
             P::ResistanceFilm => &mut self.resistance.film,
@@ -213,6 +220,7 @@ pub fn choices(parameter: EnumerationParameter) -> &'static [(&'static str, i32)
         EnumerationParameter::EffectsContactLaw => ContactLawKind::CHOICES,
         EnumerationParameter::EffectsAxialForce => AxialForceKind::CHOICES,
         EnumerationParameter::EffectsResistance => ResistanceKind::CHOICES,
+        EnumerationParameter::EffectsFriction => FrictionKind::CHOICES,
     }
 }
 

@@ -8,7 +8,7 @@ use relay_contact::error::{SceneError, StepError};
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{AxialForceKind, ContactLawKind, ExcitationKind, RealOutput};
+use relay_contact::variables::{AxialForceKind, ContactLawKind, ExcitationKind, FrictionKind, RealOutput};
 
 use crate::scenes::{propped_mass, tip_stiffness};
 
@@ -105,6 +105,24 @@ impl Relay {
         scene.second.gap = scene.contact.overtravel.abs() * logarithmic(rng, 0.02, 0.5);
         scene.second.curvature_radius = logarithmic(rng, 3e-4, 3e-2);
         scene.second.damping = logarithmic(rng, 1e-7, 1e-4);
+        relay
+    }
+
+    /// The relay of a number with friction.
+    pub fn friction(number: u64) -> Self {
+        let mut relay = Self::draw(number);
+        let rng = &mut Rng::with_seed(!number);
+        let scene = &mut relay.scene;
+        scene.effects.friction = FrictionKind::Coulomb;
+        scene.effects.contact_law = ContactLawKind::Hertz;
+        if scene.effects.axial_force == AxialForceKind::FromDeflection {
+            scene.effects.axial_force = AxialForceKind::FromPreload;
+        }
+        scene.friction.coefficient = logarithmic(rng, 0.05, 1.0);
+        scene.tip.contact_height = scene.beam.length * logarithmic(rng, 0.01, 0.2);
+        if rng.u8(..3) == 0 {
+            scene.friction.initial = uniform(rng, -1.0, 1.0);
+        }
         relay
     }
 

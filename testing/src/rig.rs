@@ -131,6 +131,7 @@ pub fn oscillator(mass: f64, stiffness: f64) -> Mode {
         damping: 0.0,
         tip: 1.0 / mass.sqrt(),
         participation: mass.sqrt(),
+        rotation: 0.0,
     }
 }
 

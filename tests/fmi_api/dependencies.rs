@@ -20,7 +20,7 @@ const ALWAYS: Values = &[("effects.heating", 1.0), ("contact.current", 0.1)];
 
 /// Scenes in which every known that matters at all matters somewhere: the start values with these changes. A threshold of
 /// [`CRITICAL`] is the resistance at rest, an overtravel of it closes the contact without force.
-const SCENES: [Values; 24] = [
+const SCENES: [Values; 27] = [
     &[],
     &[("effects.axialForce", 2.0)],
     &[("effects.axialForce", 3.0)],
@@ -65,8 +65,17 @@ const SCENES: [Values; 24] = [
         ("beam.stiffnessDamping", 3e-6),
     ],
     &[SECOND, ("effects.extremes", 0.0), ("effects.chatter", 0.0)],
+    &[
+        RUBBING,
+        ALL_COUNT,
+        ("effects.axialForce", 4.0),
+        ("chatter.resistanceThreshold", CRITICAL),
+    ],
+    &[RUBBING, PULLED, ("effects.axialForce", 4.0)],
+    &[RUBBING, ("solver.tolerance", 1e-9), ("beam.stiffnessDamping", 3e-6)],
 ];
 const SECOND: (&str, f64) = ("effects.secondContact", 1.0);
+const RUBBING: (&str, f64) = ("effects.friction", 2.0);
 const CRITICAL: f64 = f64::NAN;
 const PULLED: (&str, f64) = ("environment.gravity", -9.81);
 const ALL_COUNT: (&str, f64) = ("chatter.minimumDuration", 0.0);

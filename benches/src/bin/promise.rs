@@ -28,11 +28,19 @@ struct Arguments {
     /// Number of relays
     #[arg(long, default_value_t = 2_000)]
     count: u64,
+    /// Relays with friction instead
+    #[arg(long)]
+    friction: bool,
 }
 
 fn main() -> Result<()> {
     let arguments = Arguments::parse();
-    let judged = judge_all(arguments.first, arguments.count, Relay::draw);
+    let draw = if arguments.friction {
+        Relay::friction
+    } else {
+        Relay::draw
+    };
+    let judged = judge_all(arguments.first, arguments.count, draw);
     page::write(&arguments.folder.join("promise.csv"), &csv(&judged))?;
     let text = report(&judged);
     println!("{text}");

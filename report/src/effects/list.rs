@@ -169,6 +169,15 @@ pub const EFFECTS: &[Effect] = &[
                   reach it changes nothing. Measured out of reach, without reading its outputs.",
         ..NOTHING
     },
+    Effect {
+        name: "friction",
+        setting: &[("effects.friction", "Coulomb")],
+        reads: "contact.force,contact.tangentialForce,friction.energy",
+        off: &[("effects.friction", "None")],
+        matters: "where the contact point lies off the neutral axis, so that the spring rubs as it bends: it stiffens the spring while it \
+                  sticks and damps it while it slips; and for fretting, by slip and dissipated energy.",
+        ..NOTHING
+    },
 ];
 
 /// What is changed in the minimal scene to see the effect.

@@ -248,8 +248,9 @@ mod tests {
                 let mut moved = |length| {
                     let prepared = cache.prepare(state.time, length, true, &model);
                     let drive = Drive::default();
-                    let trial =
-                        crate::integrator::collocation::step::trial(&model, &state, &drive, prepared, source, &mut end);
+                    let trial = crate::integrator::collocation::trial::trial(
+                        &model, &state, &drive, prepared, source, &mut end,
+                    );
                     (trial.unwrap(), end.modes)
                 };
                 // Radau quadrature of the power, from steps to the nodes.

@@ -7,7 +7,7 @@ use crate::excitation::waveform::Accelerations;
 use crate::integrator::collocation::modal_response::ModeOverStep;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::Table;
-use crate::integrator::collocation::superposition::{Pair, Sum};
+use crate::integrator::collocation::superposition::{Pair, Response, Sum};
 use crate::integrator::constants::SLOTS;
 use crate::math::free_motion::FreeMotion;
 use crate::math::nodal::{Nodal, add, scaled};
@@ -46,6 +46,26 @@ pub struct EndRows<const S: usize> {
     pub tip: Modal,
     /// Modal load per base acceleration, with opposite sign.
     pub participation: Modal,
+}
+
+impl<const S: usize> NodeRows<S> {
+    const ZERO: Self = Self {
+        tip_from_q: [0.0; S],
+        tip_from_v: [0.0; S],
+        rate_from_q: [0.0; S],
+        rate_from_v: [0.0; S],
+    };
+
+    /// Sets them to a multiple of the free motion of a mode over a step of `h` seconds.
+    #[inline(always)]
+    fn set<A: Arithmetic>(&mut self, factor: f64, mode: &Mode, response: &Response<S>, h: f64) {
+        let Pair { q, v } = &response.impulse;
+        self.tip_from_v = scaled(q, factor * h);
+        self.rate_from_v = scaled(v, factor);
+        self.tip_from_q = scaled(v, factor);
+        add::<S, A>(&mut self.tip_from_q, factor * mode.damping * h, q);
+        self.rate_from_q = scaled(q, -factor * mode.omega_squared * h);
+    }
 }
 
 impl<const S: usize> EndRows<S> {
@@ -120,6 +140,25 @@ pub struct ModeColumns<const S: usize> {
     pub error: ErrorColumn<S>,
 }
 
+/// The coefficients for friction: of the displacement of the contact point along the spring.
+#[derive(Clone, Debug)]
+pub struct TangentialCoefficients<const S: usize> {
+    /// Free motion, mode by mode.
+    pub modes: Vec<NodeRows<S>>,
+    /// Motion along the spring per tip force, and with opposite sign indentation per friction force.
+    pub cross: TipColumns<S>,
+    /// Motion along the spring per friction force.
+    pub own: TipColumns<S>,
+    /// Motion along the spring per base acceleration, with opposite sign.
+    pub acceleration: TipColumns<S>,
+    /// As `cross`, per defect of the force.
+    pub cross_error: ErrorColumn<S>,
+    /// As `own`, per defect of the force.
+    pub own_error: ErrorColumn<S>,
+    /// As `acceleration`, per defect of the base acceleration.
+    pub acceleration_error: ErrorColumn<S>,
+}
+
 /// The coefficients of a step of one length.
 #[derive(Clone, Debug)]
 pub struct StepCoefficients<const S: usize> {
@@ -129,6 +168,8 @@ pub struct StepCoefficients<const S: usize> {
     pub modes: Vec<NodeRows<S>>,
     /// Motion of each mode, for an axial force that follows the deflection; else empty.
     pub columns: Vec<ModeColumns<S>>,
+    /// For friction; else none.
+    pub tangential: Option<Box<TangentialCoefficients<S>>>,
     /// The modes at the end.
     pub end: EndRows<S>,
     /// Tip motion per tip force.
@@ -160,15 +201,20 @@ impl<const S: usize> ErrorColumn<S> {
 impl<const S: usize> StepCoefficients<S> {
     /// Allocates for the model; no length yet.
     fn empty(model: &Model) -> Self {
-        let mode = NodeRows {
-            tip_from_q: [0.0; S],
-            tip_from_v: [0.0; S],
-            rate_from_q: [0.0; S],
-            rate_from_v: [0.0; S],
-        };
         Self {
             length: 0.0,
-            modes: vec![mode; model.modes.len()],
+            modes: vec![NodeRows::ZERO; model.modes.len()],
+            tangential: model.friction().map(|_| {
+                Box::new(TangentialCoefficients {
+                    modes: vec![NodeRows::ZERO; model.modes.len()],
+                    cross: TipColumns::ZERO,
+                    own: TipColumns::ZERO,
+                    acceleration: TipColumns::ZERO,
+                    cross_error: ErrorColumn::ZERO,
+                    own_error: ErrorColumn::ZERO,
+                    acceleration_error: ErrorColumn::ZERO,
+                })
+            }),
             columns: vec![
                 ModeColumns {
                     q_from_q: [0.0; S],
@@ -190,6 +236,9 @@ impl<const S: usize> StepCoefficients<S> {
     /// Computes the coefficients for a length in place.
     fn fill(&mut self, length: f64, model: &Model, collocation: &Collocation<S>) {
         compiled_for!(model.simd, A => self.compute::<A>(length, model, collocation));
+        if let Some(friction) = model.friction() {
+            compiled_for!(model.simd, A => self.compute_tangential::<A>(&friction.levers, model, collocation));
+        }
     }
 
     #[inline(always)]
@@ -205,18 +254,14 @@ impl<const S: usize> StepCoefficients<S> {
             force.add::<A>(tip * tip, &response);
             acceleration.add::<A>(tip * mode.participation, &response);
 
-            let Pair { q, v } = &response.impulse;
-            step.tip_from_v = scaled(q, tip * h);
-            step.rate_from_v = scaled(v, tip);
-            step.tip_from_q = scaled(v, tip);
-            add::<S, A>(&mut step.tip_from_q, tip * mode.damping * h, q);
-            step.rate_from_q = scaled(q, -tip * mode.omega_squared * h);
+            step.set::<A>(tip, mode, &response, h);
 
             let end = FreeMotion::new(mode.omega_squared, mode.damping, h);
             let loads = response.at_end::<A>(shapes);
             self.end
                 .set(i, mode, &end, &scaled(&loads.q, h * h), &scaled(&loads.v, h));
             if let Some(columns) = self.columns.get_mut(i) {
+                let Pair { q, v } = &response.impulse;
                 let mut alone = Sum::ZERO;
                 alone.add::<A>(1.0, &response);
                 columns.q_from_v = scaled(q, h);
@@ -227,6 +272,27 @@ impl<const S: usize> StepCoefficients<S> {
         }
         (self.force, self.force_error) = in_seconds(force.at_nodes::<A>(shapes), h);
         (self.acceleration, self.acceleration_error) = in_seconds(acceleration.at_nodes::<A>(shapes), h);
+    }
+
+    /// Those for friction, with the levers of the modes.
+    #[inline(always)]
+    fn compute_tangential<A: Arithmetic>(&mut self, levers: &Modal, model: &Model, collocation: &Collocation<S>) {
+        let (h, shapes) = (self.length, &collocation.shapes);
+        let Some(tangential) = &mut self.tangential else {
+            return;
+        };
+        let [mut cross, mut own, mut acceleration] = [Sum::<S>::ZERO; 3];
+        for ((mode, lever), rows) in model.modes.iter().zip(levers).zip(&mut tangential.modes) {
+            let response =
+                ModeOverStep::new(mode.omega_squared, mode.damping, h).response::<S, A>(&collocation.nodes, shapes);
+            cross.add::<A>(lever * mode.tip, &response);
+            own.add::<A>(lever * lever, &response);
+            acceleration.add::<A>(lever * mode.participation, &response);
+            rows.set::<A>(*lever, mode, &response, h);
+        }
+        (tangential.cross, tangential.cross_error) = in_seconds(cross.at_nodes::<A>(shapes), h);
+        (tangential.own, tangential.own_error) = in_seconds(own.at_nodes::<A>(shapes), h);
+        (tangential.acceleration, tangential.acceleration_error) = in_seconds(acceleration.at_nodes::<A>(shapes), h);
     }
 }
 

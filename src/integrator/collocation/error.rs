@@ -95,7 +95,7 @@ pub(crate) fn sum_rounding(model: &Model, state: &State) -> (f64, f64) {
 /// lies `distance` step lengths before the step. Interpolation converges with the power `S` of the size of the
 /// Bernstein ellipse, quadrature with the power `2 S - 1` (L. N. Trefethen, Approximation Theory and Approximation
 /// Practice, 2013, chapters 8 and 19).
-fn analytic<const S: usize>(distance: f64) -> f64 {
+pub(super) fn analytic<const S: usize>(distance: f64) -> f64 {
     let ellipse = 1.0 + 2.0 * distance + 2.0 * (distance * (distance + 1.0)).sqrt();
     (1..S).fold(1.0, |product, _| product / ellipse)
 }

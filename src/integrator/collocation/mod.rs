@@ -3,6 +3,7 @@
 pub mod axial_force;
 pub mod coefficients;
 pub mod error;
+pub mod friction;
 pub mod modal_response;
 pub mod newton;
 pub mod part;
@@ -10,3 +11,5 @@ pub mod polynomial;
 pub mod shapes;
 pub mod step;
 pub mod superposition;
+pub mod tangential;
+pub mod trial;

@@ -6,7 +6,8 @@ use crate::excitation::drive::Drive;
 use crate::integrator::collocation::axial_force::NodalModes;
 use crate::integrator::collocation::modal_response::ModeOverStep;
 use crate::integrator::collocation::polynomial::Collocation;
-use crate::integrator::collocation::step::Trial;
+use crate::integrator::collocation::step::{End, Trial};
+use crate::integrator::collocation::tangential::TangentialNodes;
 use crate::math::free_motion::FreeMotion;
 use crate::math::nodal::{Nodal, dot};
 use crate::math::prediction::value_and_slope;
@@ -25,19 +26,19 @@ pub(crate) struct Instant {
     pub(crate) rate: f64,
 }
 
-/// The motion `at` seconds after the start of a trial of `length` seconds, with the modes in `ends`. `loads`: those of an
-/// axial force on the modes at the nodes of the trial.
+/// The motion `at` seconds after the start of a trial of `length` seconds, with the modes in `ends`. `whole`: what the trial
+/// has left.
 pub(crate) fn motion<const S: usize>(
     model: &Model,
     state: &State,
     drive: &Drive,
     collocation: &Collocation<S>,
-    (trial, length, loads): (&Trial<S>, f64, &NodalModes<S>),
+    (trial, length, whole): (&Trial<S>, f64, &End<S>),
     at: f64,
     ends: &mut ModeStates,
 ) -> Instant {
     compiled_for!(model.simd, A =>
-        compute::<S, A>(model, state, drive, collocation, (trial, length, loads), at, ends))
+        compute::<S, A>(model, state, drive, collocation, (trial, length, whole), at, ends))
 }
 
 #[inline(always)]
@@ -46,7 +47,7 @@ fn compute<const S: usize, A: Arithmetic>(
     state: &State,
     drive: &Drive,
     collocation: &Collocation<S>,
-    (trial, length, loads): (&Trial<S>, f64, &NodalModes<S>),
+    (trial, length, whole): (&Trial<S>, f64, &End<S>),
     at: f64,
     ends: &mut ModeStates,
 ) -> Instant {
@@ -55,9 +56,12 @@ fn compute<const S: usize, A: Arithmetic>(
     let load = |values: &Nodal<S>| shapes.load::<A>(&rows.map(|row| dot::<S, A>(&row, values)));
     let (force, base) = (load(&trial.forces), load(&trial.accelerations));
     let axial = model.axial().is_some();
+    let friction = model
+        .friction()
+        .map(|friction| (friction, load(&whole.tangential.forces)));
     let (mut tip, mut tip_rate) = (0.0, 0.0);
-    let modes = model.modes.iter().zip(loads);
-    for (((mode, own), start), end) in modes.zip(&state.modes).zip(ends) {
+    let modes = model.modes.iter().zip(&whole.loads).enumerate();
+    for (((i, (mode, own)), start), end) in modes.zip(&state.modes).zip(ends) {
         let free = FreeMotion::new(mode.omega_squared, mode.damping, at);
         let over = ModeOverStep::new(mode.omega_squared, mode.damping, at);
         let [by_force, by_base] = over.under::<S, A>(shapes, &free, (&force, &base));
@@ -66,6 +70,12 @@ fn compute<const S: usize, A: Arithmetic>(
         if axial {
             let [by_axial, _] = over.under::<S, A>(shapes, &free, (&load(own), &base));
             (q, v) = (q + by_axial.q, v + by_axial.v);
+        }
+        if let Some((friction, load)) = &friction
+            && let Some(lever) = friction.levers.get(i)
+        {
+            let [by_friction, _] = over.under::<S, A>(shapes, &free, (load, &base));
+            (q, v) = (q + lever * by_friction.q, v + lever * by_friction.v);
         }
         end.q = free.q_from_q * start.q + free.q_from_v * start.v + at * at * q;
         end.v = free.v_from_q * start.q + free.v_from_v * start.v + at * v;
@@ -79,13 +89,13 @@ fn compute<const S: usize, A: Arithmetic>(
     }
 }
 
-/// The trial of `length` seconds up to an instant inside it, and the loads on the modes at its nodes.
+/// The trial of `length` seconds up to an instant inside it, and what it leaves beside the modes.
 pub(crate) fn first_part<const S: usize>(
     model: &Model,
     state: &State,
     drive: &Drive,
     collocation: &Collocation<S>,
-    (trial, length, loads): (&Trial<S>, f64, &mut NodalModes<S>),
+    (trial, length, loads, tangential): (&Trial<S>, f64, &mut NodalModes<S>, &mut TangentialNodes<S>),
     end: &Instant,
 ) -> Trial<S> {
     let nodes = collocation.nodes.map(|node| node * (end.at / length));
@@ -98,6 +108,9 @@ pub(crate) fn first_part<const S: usize>(
         for load in loads.iter_mut() {
             *load = nodal(load);
         }
+    }
+    if model.friction().is_some() {
+        *tangential = tangential.first_part(collocation, state, end.at / length);
     }
     Trial {
         forces: nodal(&trial.forces),

@@ -222,8 +222,9 @@ impl<const S: usize> Collocation<S> {
         )
     }
 
+    /// A polynomial over the last step at the nodes of one `ratio` times as long that follows it.
     #[inline(always)]
-    fn evaluate<A: Arithmetic>(&self, prediction: &Prediction, ratio: f64) -> Nodal<S> {
+    pub fn evaluate<A: Arithmetic>(&self, prediction: &Prediction, ratio: f64) -> Nodal<S> {
         let at = scaled(&self.nodes, ratio).map(centred);
         let mut values = [0.0; S];
         for coefficient in prediction.iter().rev() {

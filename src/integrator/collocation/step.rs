@@ -11,9 +11,10 @@ use crate::integrator::collocation::newton::{
     FreeResponse, Solution, Source, Tangent, at_nodes, closed_forces, first_forces,
 };
 use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::collocation::tangential::TangentialNodes;
 use crate::integrator::constants::{FORCE_ROUNDING, QUADRATURE_LONG, QUADRATURE_SHORT};
 use crate::math::nodal::{Nodal, SHORT, add, add_columns, add_products, dot, end};
-use crate::math::simd::{Arithmetic, LANES, compiled_for};
+use crate::math::simd::{Arithmetic, LANES};
 use crate::model::Model;
 use crate::state::State;
 
@@ -60,6 +61,8 @@ pub struct End<const S: usize> {
     pub modes: ModeStates,
     /// Loads of an axial force that follows the deflection, at its nodes.
     pub loads: NodalModes<S>,
+    /// Friction at its nodes.
+    pub tangential: TangentialNodes<S>,
 }
 
 impl<const S: usize> Default for End<S> {
@@ -67,6 +70,7 @@ impl<const S: usize> Default for End<S> {
         Self {
             modes: [ModeState::default(); MAX_MODES],
             loads: [[0.0; S]; MAX_MODES],
+            tangential: TangentialNodes::ZERO,
         }
     }
 }
@@ -94,30 +98,11 @@ impl<const S: usize> Trial<S> {
 }
 
 /// The loads on [`LANES`] modes at the nodes.
-type LaneLoads<const S: usize> = [[f64; LANES]; S];
+pub(super) type LaneLoads<const S: usize> = [[f64; LANES]; S];
 
-/// Computes the prepared step from `state`, contact closed or open as in `state`. `None` if the iteration for contact or
-/// axial force does not converge.
-pub fn trial<const S: usize>(
-    model: &Model,
-    state: &State,
-    drive: &Drive,
-    prepared: Prepared<S>,
-    source: Source<S>,
-    end: &mut End<S>,
-) -> Option<Trial<S>> {
-    match model.axial() {
-        None => {
-            compiled_for!(model.simd, A => compute::<S, A>(model, state, drive, prepared, source, end))
-        }
-        Some(axial) => compiled_for!(model.simd, A =>
-            compute_with_axial_force::<S, A>(model, axial, state, drive, prepared, source, end)),
-    }
-}
-
-/// [`trial`] with constant axial force, which is part of the modes.
+/// [`trial`](super::trial::trial) with constant axial force, which is part of the modes.
 #[inline(always)]
-fn compute<const S: usize, A: Arithmetic>(
+pub(super) fn compute<const S: usize, A: Arithmetic>(
     model: &Model,
     state: &State,
     drive: &Drive,
@@ -147,9 +132,9 @@ fn compute<const S: usize, A: Arithmetic>(
     ))
 }
 
-/// [`trial`] with an axial force that follows the deflection, as loads on the modes.
+/// [`trial`](super::trial::trial) with an axial force that follows the deflection, as loads on the modes.
 #[inline(always)]
-fn compute_with_axial_force<const S: usize, A: Arithmetic>(
+pub(super) fn compute_with_axial_force<const S: usize, A: Arithmetic>(
     model: &Model,
     axial: &Feedback,
     state: &State,
@@ -183,7 +168,7 @@ fn compute_with_axial_force<const S: usize, A: Arithmetic>(
 
 /// Response of the tip to everything but the contact force.
 #[inline(always)]
-fn free_response<'a, const S: usize, A: Arithmetic>(
+pub(super) fn free_response<'a, const S: usize, A: Arithmetic>(
     state: &State,
     drive: &Drive,
     prepared: &Prepared<'a, S>,
@@ -299,7 +284,7 @@ fn judged<const S: usize, A: Arithmetic>(
     clippy::indexing_slicing,
     reason = "the room for the modes is a whole number of lanes"
 )]
-fn loads_on_modes<const S: usize, A: Arithmetic>(
+pub(super) fn loads_on_modes<const S: usize, A: Arithmetic>(
     rows: &EndRows<S>,
     first: usize,
     forces: &Nodal<S>,
@@ -322,7 +307,7 @@ fn loads_on_modes<const S: usize, A: Arithmetic>(
     clippy::indexing_slicing,
     reason = "the room for the modes is a whole number of lanes"
 )]
-fn end_of_modes<const S: usize, A: Arithmetic>(
+pub(super) fn end_of_modes<const S: usize, A: Arithmetic>(
     state: &State,
     step: &StepCoefficients<S>,
     modes: usize,

@@ -28,6 +28,8 @@
 //! taken, by the step's polynomial of the base acceleration, by an impulse it applied, or by a programming error. This
 //! difference is included.
 //!
+//! Friction adds the work that its polynomial `T_p` misses of its law `T`, `-integral of (T_p - T) v' dt`.
+//!
 //! So the balance measures the integration in time, not the truncation to a number of modes, nor the exact solution of
 //! a single mode, which it relies on. A contact at rest and exact linear steps contribute nothing: one does not move,
 //! the other has no polynomial and satisfies the law at every instant to rounding.
@@ -39,11 +41,14 @@
 //! times the force scale times the path.
 
 use crate::integrator::collocation::newton::Source;
-use crate::integrator::collocation::step::{self, End, Trial};
+use crate::integrator::collocation::step::{End, Trial};
+use crate::integrator::collocation::tangential::TangentialNodes;
+use crate::integrator::collocation::trial;
 use crate::integrator::grid::Target;
 use crate::integrator::integration::Integration;
 use crate::integrator::workspace::{Room, Workspace};
-use crate::math::nodal::LONG;
+use crate::math::nodal::{LONG, Nodal};
+use crate::model::Model;
 use crate::state::State;
 
 impl Integration<'_> {
@@ -61,6 +66,11 @@ impl Integration<'_> {
         let polynomial = self.collocation::<S>();
         let halves =
             [0.0, 0.5].map(|start| nodes.map(|node| polynomial.interpolate(&trial.forces, start + 0.5 * node)));
+        let friction = self.model.friction();
+        let loads = friction.map(|_| Room::<S>::parts(self.workspace).1.tangential.forces);
+        let polynomial = self.collocation::<S>();
+        let loads = loads
+            .map(|loads| [0.0, 0.5].map(|start| nodes.map(|node| polynomial.interpolate(&loads, start + 0.5 * node))));
         let Self {
             model, state, drive, ..
         } = self;
@@ -68,15 +78,22 @@ impl Integration<'_> {
         let mut end = End::default();
         let mut at: State = **state;
         let mut work = 0.0;
-        for forces in halves {
+        for (half_step, forces) in halves.into_iter().enumerate() {
+            if let Some(loads) = loads.as_ref().and_then(|loads| loads.get(half_step)) {
+                end.tangential.forces = *loads;
+            }
             let prepared = cache.prepare(at.time, half, target.recurring, model);
-            let motion = step::trial(model, &at, drive, prepared, Source::Given(forces), &mut end)?;
+            let motion = trial::trial(model, &at, drive, prepared, Source::Given(forces), &mut end)?;
             let mut powers = forces;
             for ((power, d), rate) in powers.iter_mut().zip(&motion.indentations).zip(&motion.rates) {
                 let d = model.preload.indentation + d;
                 *power = (*power - (model.law.force(d, *rate) - model.law.force(d, 0.0))) * rate;
             }
             work += half * prepared.collocation.mean(&powers);
+            work -= half
+                * prepared
+                    .collocation
+                    .mean(&missed_by_friction(model, state, &motion, &end.tangential));
             at.time += half;
             at.modes = end.modes;
             at.support = motion.support;
@@ -99,6 +116,30 @@ impl Integration<'_> {
     }
 }
 
+/// Power of what the friction forces of a motion miss of the law at its nodes, W; 0 without friction.
+fn missed_by_friction(
+    model: &Model,
+    state: &State,
+    motion: &Trial<LONG>,
+    along: &TangentialNodes<LONG>,
+) -> Nodal<LONG> {
+    let mut powers = [0.0; LONG];
+    let (Some(friction), Some(hertz), true) = (model.friction(), model.law.hertz(), state.closed) else {
+        return powers;
+    };
+    let tip = motion.indentations.iter().zip(&motion.rates);
+    let moved = along.displacements.iter().zip(&along.rates).zip(&along.forces);
+    for ((power, (d, d_rate)), ((v, rate), load)) in powers.iter_mut().zip(tip).zip(moved) {
+        let d = model.preload.indentation + d;
+        let force = match state.tangential.phase.sign() {
+            Some(sign) => sign * friction.coefficient * model.law.force(d, *d_rate),
+            None => friction.trial(hertz, d, v - state.tangential.slip, *rate).force,
+        };
+        *power = (friction.preload + load - force) * rate;
+    }
+    powers
+}
+
 #[cfg(test)]
 mod tests {
     use nalgebra::SVector;
@@ -111,8 +152,7 @@ mod tests {
     use crate::integrator::course::Places;
     use crate::integrator::grid::Grid;
     use crate::integrator::integration::Steps;
-    use crate::math::nodal::{LONG, SHORT};
-    use crate::model::Model;
+    use crate::math::nodal::SHORT;
     use crate::scene::Scene;
     use crate::variables::ExcitationKind;
 
@@ -167,6 +207,7 @@ mod tests {
             allowed: 1e-9,
             refusals: 0,
             before_event: false,
+            changes: 0,
             conserves: false,
         };
         let target = integration.grid.target(length, integration.state.time, None);

@@ -19,6 +19,7 @@ pub(crate) fn conserves(model: &Model, drive: &Drive) -> bool {
     // An axial force that follows the deflection has no potential.
     undamped
         && model.axial().is_none()
+        && model.friction().is_none()
         && model.law.damping() == 0.0
         && model.generator == Generator::None
         && drive.jerk == 0.0

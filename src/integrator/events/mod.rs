@@ -8,6 +8,7 @@ pub mod opening;
 pub mod other;
 
 use crate::error::StepError;
+use crate::friction::Phase;
 use crate::integrator::collocation::error::sum_rounding;
 use crate::integrator::collocation::part::Instant;
 use crate::integrator::collocation::step::Trial;
@@ -29,6 +30,8 @@ pub(crate) struct Cut {
     pub(crate) switches: bool,
     /// Whether it is the other contact that closes.
     pub(crate) mirrors: bool,
+    /// Whether the contact begins or ceases to slip, and how it goes on.
+    pub(crate) slides: Option<Phase>,
 }
 
 impl Integration<'_> {
@@ -39,6 +42,7 @@ impl Integration<'_> {
             end,
             switches,
             mirrors: false,
+            slides: None,
         }
     }
 
@@ -135,6 +139,17 @@ impl Integration<'_> {
     {
         if cut.end.at <= 0.0 {
             // The event is at the start of the step.
+            if let Some(phase) = cut.slides {
+                self.change_phase(phase);
+                self.changes += 1;
+                // Rounding must not let it change to and fro for ever.
+                let shrink = if self.changes > 1 { MOST_SHRINK } else { 1.0 };
+                let length = self.state.long_step.min(shrink * requested);
+                return Ok(StepOutcome {
+                    switched: true,
+                    ..self.reject(length)
+                });
+            }
             self.switch(!self.state.closed);
             return Ok(StepOutcome {
                 switched: true,
@@ -150,13 +165,17 @@ impl Integration<'_> {
         if cut.mirrors {
             self.mirror();
         }
+        if let Some(phase) = cut.slides {
+            self.change_phase(phase);
+        }
         if cut.switches {
             self.switch(!self.state.closed);
         }
         let outcome = StepOutcome::after(target.length, requested, growth);
+        let length = outcome.length.min(requested);
         Ok(StepOutcome {
-            switched: cut.switches,
-            length: outcome.length.min(requested),
+            switched: cut.switches || cut.slides.is_some(),
+            length: cut.slides.map_or(length, |_| self.state.long_step),
             ..outcome
         })
     }
@@ -180,6 +199,7 @@ impl Integration<'_> {
             self.state.last_opening = self.state.time;
             self.step_after_jump()
         };
+        self.model.settle_friction(self.state);
     }
 
     /// Applies a jump of the velocity of the fixed contact, with which the dissipative force jumps.
@@ -200,6 +220,7 @@ impl Integration<'_> {
             self.switch(closed);
         }
         self.state.force = force;
+        self.model.settle_friction(self.state);
         self.state.last_kink = self.state.time;
         self.state.last_step = 0.0;
         let next = self.first_closed_step();

@@ -1,0 +1,186 @@
+//! A trial step with friction: contact force and friction force at the nodes, found together.
+//!
+//! The friction force `T` is a second load on the modes, a polynomial through the nodes as the contact force `F` is, and it
+//! moves the contact point along the spring by `v`:
+//!
+//! ```text
+//! d_k = d_k(free) - sum_j (D_kj F_j + X_kj T_j)      X = sum_i T_i (h T_i') (response of mode i at x_k to l_j)
+//! v_k = v_k(free) + sum_j (X_kj F_j + Y_kj T_j)      Y = sum_i (h T_i')^2 (the same)
+//! stick:  T_k = -k_t(d_k) (v_k - s + beta_c v'_k), s the slip so far;  slip:  T_k = -+ mu F_k
+//! ```
+//!
+//! with Newton's method for all nodal values ([`crate::friction`]: the law). While the contact slips the deflection `z` of
+//! the tangential spring follows from `beta_c z' + z = -T / k_t`, collocated at the same nodes.
+
+mod coupled;
+mod judgement;
+mod motion;
+
+use crate::excitation::drive::Drive;
+use crate::friction::Friction;
+use crate::integrator::collocation::coefficients::Prepared;
+use crate::integrator::collocation::error::errors;
+use crate::integrator::collocation::friction::coupled::{coupled, solve};
+use crate::integrator::collocation::friction::judgement::{Judgement, judged};
+use crate::integrator::collocation::friction::motion::{Motion, Unforced, along};
+use crate::integrator::collocation::newton::{Solution, Source, first_forces};
+use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::collocation::step::{End, Trial, end_of_modes, free_response, loads_on_modes};
+use crate::integrator::collocation::tangential::TangentialNodes;
+use crate::integrator::constants::FORCE_ROUNDING;
+use crate::math::nodal::{LONG, Nodal, add_columns, end, scaled};
+use crate::math::simd::{Arithmetic, LANES};
+use crate::model::Model;
+use crate::state::State;
+
+/// [`trial`](super::trial::trial) with friction. Where the contact forces are given, so are the friction forces: those left in
+/// `end`.
+#[inline(always)]
+pub(super) fn compute<const S: usize, A: Arithmetic>(
+    model: &Model,
+    friction: &Friction,
+    state: &State,
+    drive: &Drive,
+    prepared: Prepared<S>,
+    source: Source<S>,
+    ends: &mut End<S>,
+) -> Option<Trial<S>> {
+    let Prepared { step, collocation, .. } = prepared;
+    let tangential = step.tangential.as_deref()?;
+    let free = free_response::<S, A>(state, drive, &prepared);
+    let motion = along::<S, A>(state, tangential, &free);
+    let unforced = Unforced {
+        step,
+        tangential,
+        free,
+        motion,
+    };
+    let guess = first_forces::<S, A>(model, state, step, collocation, source);
+    let coupled = match source {
+        Source::Law(newton) if state.closed => Some(coupled::<S, A>(
+            model,
+            friction,
+            state,
+            (&unforced, collocation),
+            guess,
+            newton,
+        )?),
+        _ => None,
+    };
+    let (forces, loads) = match (&coupled, source) {
+        (Some(coupled), _) => (coupled.forces, coupled.tangential),
+        (None, Source::Law(_)) => (guess, [-friction.preload; S]),
+        (None, Source::Given(_)) => (guess, ends.tangential.forces),
+    };
+    let motion = unforced.under::<A>(&forces, &loads);
+    ends.tangential = nodes::<S, A>(model, friction, state, (step.length, collocation), &motion, loads);
+
+    let accelerations = unforced.free.accelerations;
+    let (tip, tip_rate) = end_of_modes::<S, A>(
+        state,
+        step,
+        model.modes.len(),
+        #[inline(always)]
+        |first, lanes| {
+            loads_on_modes::<S, A>(&step.end, first, &forces, &accelerations, lanes);
+            let levers = friction.levers.iter().skip(first).take(LANES);
+            for (i, lever) in levers.enumerate() {
+                for (lanes, load) in lanes.iter_mut().zip(&loads) {
+                    lanes.iter_mut().skip(i).take(1).for_each(|lane| *lane += lever * load);
+                }
+            }
+        },
+        &mut ends.modes,
+    );
+    let support = state.support + drive.support_rate * step.length;
+    let largest = forces.iter().fold(f64::MIN_POSITIVE, |largest, force| {
+        largest.max((model.preload.force + force).abs())
+    });
+    let judgement = if let Some(coupled) = &coupled {
+        judged::<S, A>(model, friction, state, collocation, &unforced, coupled, largest)
+    } else {
+        let solution = Solution::given(forces);
+        let coefficients = (step, collocation);
+        let (error, inner_error) = errors(model, state, coefficients, &solution, 0.0, &unforced.free, largest);
+        Judgement {
+            error,
+            inner_error,
+            ..Judgement::default()
+        }
+    };
+    Some(Trial {
+        forces,
+        indentations: motion.d,
+        rates: motion.d_rate,
+        accelerations,
+        support,
+        indentation: support - tip,
+        rate: drive.support_rate - tip_rate,
+        force: end(&forces),
+        error: judgement.error,
+        inner_error: judgement.inner_error,
+        rounding: FORCE_ROUNDING * largest.max(model.preload.force),
+        start_defect: judgement.start_defect,
+        next_terms: judgement.next_terms,
+        iterations: coupled.as_ref().map_or(0, |coupled| coupled.iterations),
+        tangent: judgement.tangent,
+    })
+}
+
+/// Friction at the nodes under these forces.
+#[inline(always)]
+fn nodes<const S: usize, A: Arithmetic>(
+    model: &Model,
+    friction: &Friction,
+    state: &State,
+    (length, collocation): (f64, &Collocation<S>),
+    motion: &Motion<S>,
+    loads: Nodal<S>,
+) -> TangentialNodes<S> {
+    let start = &state.tangential;
+    let mut nodes = TangentialNodes {
+        forces: loads,
+        displacements: motion.v,
+        rates: motion.v_rate,
+        ..TangentialNodes::ZERO
+    };
+    let (Some(hertz), true) = (model.law.hertz(), state.closed) else {
+        return nodes;
+    };
+    let Some(sign) = start.phase.sign() else {
+        let slip = start.slip;
+        nodes.deflections = motion.v.map(|v| v - slip);
+        return nodes;
+    };
+    // z = z_0 + integral of z', beta_c z' + z = -T / k_t at the nodes.
+    let Some(integrals) = collocation.shapes.integrals.first() else {
+        return nodes;
+    };
+    let mut right = [[0.0; 2 * LONG]; 4];
+    let moved = motion.d.iter().zip(&motion.d_rate);
+    for (entry, (d, rate)) in right.iter_mut().take(1).flatten().zip(moved) {
+        let d = model.preload.indentation + d;
+        *entry = (friction.limit_deflection(hertz, sign, d, *rate) - start.deflection()) / (hertz.damping + length);
+    }
+    let mut matrix = [[0.0; 2 * LONG]; 2 * LONG];
+    let lag = hertz.damping / (hertz.damping + length);
+    for (j, (column, integral)) in matrix.iter_mut().zip(&integrals.nodal).enumerate() {
+        for (entry, integral) in column.iter_mut().zip(integral) {
+            *entry = (1.0 - lag) * integral;
+        }
+        column.iter_mut().skip(j).take(1).for_each(|entry| *entry += lag);
+    }
+    if solve::<A>(&mut matrix, &mut right, S).is_none() {
+        return nodes;
+    }
+    let mut rates = [0.0; S];
+    for (rate, solved) in rates.iter_mut().zip(right.iter().flatten()) {
+        *rate = *solved;
+    }
+    nodes.deflections = [start.deflection(); S];
+    add_columns::<S, A>(&mut nodes.deflections, &integrals.nodal, &scaled(&rates, length));
+    for ((slip, rate), lagging) in nodes.slip_rates.iter_mut().zip(&motion.v_rate).zip(&rates) {
+        *slip = rate - lagging;
+    }
+    nodes
+}

@@ -1,0 +1,215 @@
+//! Friction from step to step: what a step leaves of it, and where the contact begins or ceases to slip. A step ends there.
+//!
+//! While the contact sticks, the friction force of the step is the trial force, and slip begins where it exceeds the limit,
+//! `mu` times the contact force, by either sign. While it slips, it sticks again where the slip velocity would turn. Both
+//! are polynomials through the nodes; between the places where they turn they are monotone, so that nothing is missed.
+
+use crate::friction::Phase;
+use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::collocation::step::Trial;
+use crate::integrator::constants::{LOCATED, MOST_CHANGES, MOST_SHRINK, SUM_ROUNDINGS, WORTH};
+use crate::integrator::course::turning_points;
+use crate::integrator::events::Cut;
+use crate::integrator::grid::Target;
+use crate::integrator::integration::Integration;
+use crate::integrator::workspace::{Room, Workspace};
+use crate::math::nodal::{Nodal, add_columns, dot, end, scaled};
+use crate::math::prediction::value_and_slope;
+use crate::math::roots;
+use crate::math::simd::Separate;
+
+/// Where in a step the contact begins or ceases to slip.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Change {
+    /// After its start, s.
+    pub(crate) at: f64,
+    /// From then on.
+    phase: Phase,
+}
+
+impl Integration<'_> {
+    /// Friction at the end of a step of `length` seconds that has been taken, in the phase in which it began.
+    pub(crate) fn follow_friction<const S: usize>(&mut self, length: f64)
+    where
+        Workspace: Room<S>,
+    {
+        let Self { model, state, .. } = self;
+        let Some(friction) = model.friction() else {
+            return;
+        };
+        let (cache, ends, _) = Room::<S>::parts(self.workspace);
+        let (collocation, nodes) = (cache.collocation(), &ends.tangential);
+        let start = state.tangential;
+        let forces = nodes.forces.map(|force| friction.preload + force);
+        let slips = difference(&nodes.displacements, &nodes.deflections);
+        let mut dissipated = [start.dissipated; S];
+        if let Some(integrals) = collocation.shapes.integrals.first() {
+            let mut powers = nodes.slip_rates;
+            for (power, force) in powers.iter_mut().zip(&forces) {
+                *power *= -length * force;
+            }
+            add_columns::<S, Separate>(&mut dissipated, &integrals.nodal, &powers);
+        }
+        if let Some((_, dense)) = &mut self.dense {
+            dense.friction.slip = collocation.through(start.slip, &slips);
+            dense.friction.dissipated = collocation.through(start.dissipated, &dissipated);
+        }
+        let tangential = &mut state.tangential;
+        tangential.course = collocation.through(start.force, &forces);
+        (tangential.displacement, tangential.rate) = friction.motion(&state.modes, model.modes.len());
+        if !state.closed {
+            tangential.slip = tangential.displacement;
+        } else if start.phase.sign().is_some() {
+            tangential.slip = tangential.displacement - end(&nodes.deflections);
+            tangential.distance += (tangential.slip - start.slip).abs();
+            tangential.dissipated = start.dissipated.max(end(&dissipated));
+        }
+        state.tangential.force = model.friction_force(state);
+    }
+
+    /// Where in the trial of `length` seconds the contact first begins or ceases to slip.
+    pub(crate) fn slip_change<const S: usize>(&mut self, trial: &Trial<S>, length: f64) -> Option<Change>
+    where
+        Workspace: Room<S>,
+    {
+        let (model, state) = (self.model, &*self.state);
+        let friction = model
+            .friction()
+            .filter(|_| state.closed && self.changes <= MOST_CHANGES)?;
+        let unsure = (LOCATED * self.allowed).max(self.friction_rounding());
+        let (cache, ends, _) = Room::<S>::parts(self.workspace);
+        let (collocation, nodes) = (cache.collocation(), &ends.tangential);
+        let start = state.tangential;
+        let first = |start: f64, values: &Nodal<S>| passage(collocation, start, values, unsure);
+        let (y, phase) = if let Some(sign) = start.phase.sign() {
+            // The friction force that is missing for the slip velocity.
+            let stiffness = friction.ratio * model.law.tangent_stiffness(model.force_scale);
+            let wrong = scaled(&nodes.slip_rates, sign * stiffness * (model.law.damping() + length));
+            let before = dot::<S, Separate>(&wrong, &collocation.at_start).min(0.0);
+            (first(before, &wrong)?, Phase::Stick)
+        } else {
+            let [back, forth] = [1.0, -1.0].map(|sign| {
+                let excess = |friction_force: f64, force: f64| sign * friction_force - friction.coefficient * force;
+                let mut values = nodes.forces;
+                for (value, force) in values.iter_mut().zip(&trial.forces) {
+                    *value = excess(friction.preload + *value, model.preload.force + force);
+                }
+                first(excess(start.force, state.force), &values).map(|y| (y, Phase::slip(sign)))
+            });
+            match (back, forth) {
+                (Some(back), Some(forth)) if forth.0 < back.0 => forth,
+                (Some(back), _) => back,
+                (None, forth) => forth?,
+            }
+        };
+        let at = (1.0 + y) * length;
+        Some(Change {
+            at: if at <= self.resolution() { 0.0 } else { at },
+            phase,
+        })
+    }
+
+    /// Whether the trial may end at a change inside. No blow follows.
+    pub(crate) fn may_change_inside<const S: usize>(&self, trial: &Trial<S>, target: &Target) -> bool {
+        trial.inner_error <= self.allowed.max(trial.rounding) || self.is_shortest(target)
+    }
+
+    /// Rounding of the trial force and of the limit by the sums over the modes, N.
+    fn friction_rounding(&self) -> f64 {
+        let Self { model, state, .. } = self;
+        let (mut displacement, mut velocity) = (state.tangential.slip.abs(), 0.0);
+        let levers = model.friction().map(|friction| (friction, &friction.levers));
+        let Some((friction, levers)) = levers else {
+            return 0.0;
+        };
+        for (lever, at) in levers.iter().zip(&state.modes) {
+            displacement += (lever * at.q).abs();
+            velocity += (lever * at.v).abs();
+        }
+        let along = SUM_ROUNDINGS * f64::EPSILON * (displacement + model.law.damping() * velocity);
+        let stiffness = model.law.stiffness(model.preload.indentation + state.indentation);
+        stiffness * (friction.ratio * along + friction.coefficient * self.motion_rounding())
+    }
+
+    /// The end of the trial of `length` seconds at a change.
+    pub(crate) fn cut_at_change<const S: usize>(&mut self, trial: &Trial<S>, length: f64, change: &Change) -> Cut
+    where
+        Workspace: Room<S>,
+    {
+        let end = self.inside(trial, length, change.at);
+        Cut {
+            slides: Some(change.phase),
+            ..self.cut(end, false)
+        }
+    }
+
+    /// Begins or ends slip at the instant of the state. The slope of the friction force jumps, and the spring answers as
+    /// steeply as its highest modes do: the next step is as long as the last one after such a change.
+    pub(crate) fn change_phase(&mut self, phase: Phase) {
+        let before = self.state.tangential.phase.sign();
+        let (model, state) = (self.model, &mut *self.state);
+        if let (Some(friction), Some(hertz), Some(sign)) =
+            (model.friction(), model.law.hertz(), phase.sign().or(before))
+        {
+            // The trial force is the limit, to the last digit.
+            let d = model.preload.indentation + state.indentation;
+            let limit = friction.limit_deflection(hertz, sign, d, state.indentation_rate);
+            let lag = hertz.damping * state.tangential.rate;
+            state.tangential.slip = state.tangential.displacement - (limit - lag);
+        }
+        state.tangential.phase = phase;
+        state.tangential.force = model.friction_force(state);
+        state.last_kink = state.time;
+        state.tangential.last_change = state.time;
+        let first = *state.tangential.first_step();
+        let length = if first > 0.0 {
+            first
+        } else {
+            0.1 * model.first_step(state.time)
+        };
+        state.long_step = state.long_step.min(length);
+        state.short_step = state.short_step.min(length / WORTH);
+    }
+
+    /// Whether the contact begins or ceases to slip at the start of the next step.
+    pub(crate) fn changes_now(&self) -> bool {
+        self.model.friction().is_some() && self.state.tangential.last_change == self.state.time
+    }
+
+    /// Keeps the length (s) of a step about to be taken, if it is the first one after a change, with the factor that its error
+    /// would have allowed.
+    pub(crate) fn keep_first_step(&mut self, length: f64, growth: f64) {
+        if !self.changes_now() {
+            return;
+        }
+        *self.state.tangential.first_step() = length * growth.clamp(MOST_SHRINK, 1.0 / MOST_SHRINK);
+    }
+}
+
+/// Where the polynomial through `start` and the nodal values first exceeds zero by more than `unsure`: where it passes zero
+/// before, relative to the end of the step in step lengths.
+fn passage<const S: usize>(collocation: &Collocation<S>, start: f64, values: &Nodal<S>, unsure: f64) -> Option<f64> {
+    if !Collocation::comes_near_zero(-start, &scaled(values, -1.0)) {
+        return None;
+    }
+    let polynomial = collocation.through(start, values);
+    let value = |y: f64| value_and_slope(&polynomial, y).0;
+    let mut before = (-1.0, start);
+    for y in turning_points(&polynomial).iter().chain([0.0]) {
+        let now = (y, value(y));
+        if now.1 > unsure {
+            return Some(roots::between(value, before, now, 1e-12).unwrap_or(before.0));
+        }
+        before = now;
+    }
+    None
+}
+
+/// `a - b`.
+fn difference<const S: usize>(a: &Nodal<S>, b: &Nodal<S>) -> Nodal<S> {
+    let mut a = *a;
+    for (a, b) in a.iter_mut().zip(b) {
+        *a -= b;
+    }
+    a
+}

@@ -1,0 +1,280 @@
+//! Friction between the contacts: closed forms, its absence, the tolerance, energy, and hard cases.
+
+#![allow(clippy::unwrap_used)]
+
+mod closed_forms;
+mod refused;
+
+use relay_contact::inputs::Inputs;
+use relay_contact::scene::{Contact, Scene};
+use relay_contact::simulation::Simulation;
+use relay_contact::variables::{FrictionKind, IntegerOutput, RealOutput};
+use testing::scenes::{check_slope, force_scale, largest_difference, shaken};
+
+/// The scene with friction.
+fn rubbing(mut scene: Scene) -> Scene {
+    scene.effects.friction = FrictionKind::Coulomb;
+    scene
+}
+
+/// Tangential over normal stiffness of the contact (Mindlin; MODEL equations written out).
+fn stiffness_ratio(contact: &Contact) -> f64 {
+    let both = [contact.moving, contact.fixed];
+    let shear: f64 = both
+        .iter()
+        .map(|of| (2.0 - of.poisson_ratio) / (of.youngs_modulus / (2.0 * (1.0 + of.poisson_ratio))))
+        .sum();
+    let normal: f64 = both
+        .iter()
+        .map(|of| (1.0 - of.poisson_ratio * of.poisson_ratio) / of.youngs_modulus)
+        .sum();
+    8.0 / shear / (2.0 / normal)
+}
+
+/// Outputs after each of `count` communication steps of `size` seconds, and the simulation.
+fn course(scene: &Scene, size: f64, count: u32, outputs: &[RealOutput]) -> (Vec<Vec<f64>>, Simulation) {
+    let mut simulation = Simulation::new(scene, &Inputs::default(), 0.0).unwrap();
+    let mut rows = Vec::new();
+    for k in 0..count {
+        simulation.step(&Inputs::default(), f64::from(k) * size, size).unwrap();
+        rows.push(outputs.iter().map(|output| simulation.real(*output)).collect());
+    }
+    (rows, simulation)
+}
+
+fn column(scene: &Scene, size: f64, count: u32, output: RealOutput) -> Vec<f64> {
+    course(scene, size, count, &[output]).0.concat()
+}
+
+const WATCHED: [RealOutput; 7] = [
+    RealOutput::ContactForce,
+    RealOutput::ContactTangentialForce,
+    RealOutput::ContactSlip,
+    RealOutput::ContactSlipDistance,
+    RealOutput::FrictionEnergy,
+    RealOutput::StepMinimumForce,
+    RealOutput::StepMaximumForce,
+];
+
+/// At the limit of no friction, and where the contact point lies on the neutral axis, the contact moves as without.
+#[test]
+fn without_a_coefficient_or_a_height_it_moves_as_without_friction() {
+    for amplitude in [98.0, 400.0] {
+        let plain = shaken(amplitude, 1000.0);
+        let tolerance = plain.solver.effective_tolerance();
+        let expected = column(&plain, 7e-6, 600, RealOutput::ContactForce);
+        let largest = expected.iter().copied().fold(force_scale(&plain), f64::max);
+        for (coefficient, height) in [(0.0, 1e-3), (0.2, 0.0)] {
+            let mut scene = rubbing(plain.clone());
+            (scene.friction.coefficient, scene.tip.contact_height) = (coefficient, height);
+            let found = column(&scene, 7e-6, 600, RealOutput::ContactForce);
+            let wrong = largest_difference(&found, &expected) / largest;
+            println!("{amplitude} m/s2, mu {coefficient}, {height} m: {wrong:e}");
+            // Each is right to the tolerance.
+            assert!(wrong < 2.0 * tolerance, "{wrong:e}");
+        }
+    }
+}
+
+/// Force, friction force (both relative to the force scale and the largest force), slip and energy (relative to the largest)
+/// against the same scene at a tolerance a hundred times tighter than the tightest asked.
+#[test]
+fn the_tolerance_is_kept_and_no_energy_is_made() {
+    for (amplitude, coefficient, height, damping) in [
+        (98.0, 0.2, 1e-3, 8.063e-5),
+        (400.0, 0.2, 1e-3, 8.063e-5),
+        (400.0, 1.0, 1e-3, 2e-6),
+        (150.0, 0.1, 3e-3, 1e-6),
+        (60.0, 0.3, 2e-3, 0.0),
+    ] {
+        let mut scene = rubbing(shaken(amplitude, 1000.0));
+        (scene.friction.coefficient, scene.tip.contact_height) = (coefficient, height);
+        scene.contact.damping = damping;
+        scene.effects.energy = true;
+        // The number of modes is another question.
+        scene.solver.modes = 20;
+        let scale = force_scale(&scene);
+        let rows = |tolerance: f64| {
+            let mut scene = scene.clone();
+            scene.solver.tolerance = tolerance;
+            course(&scene, 9e-6, 500, &WATCHED)
+        };
+        let (expected, _) = rows(1e-10);
+        for tolerance in [1e-4, 1e-6] {
+            let (found, simulation) = rows(tolerance);
+            let mut errors = WATCHED.map(|_| 0.0_f64);
+            let mut largest = WATCHED.map(|_| scale);
+            for (n, error) in errors.iter_mut().enumerate() {
+                if (2..5).contains(&n) {
+                    largest[n] = expected
+                        .iter()
+                        .map(|row| row[n].abs())
+                        .fold(f64::MIN_POSITIVE, f64::max);
+                }
+                let mut so_far = largest[n];
+                for (row, other) in found.iter().zip(&expected) {
+                    if !(2..5).contains(&n) {
+                        so_far = so_far.max(other[0]);
+                    }
+                    *error = error.max((row[n] - other[n]).abs() / so_far);
+                }
+            }
+            let balance = simulation.real(RealOutput::EnergyBalance);
+            let path: f64 = found
+                .windows(2)
+                .map(|pair| (pair[1][2] - pair[0][2]).abs())
+                .sum::<f64>()
+                + 1e-6;
+            println!(
+                "{amplitude} m/s2, mu {coefficient}, {height} m, {damping} s at {tolerance:e}: {:?} tolerances, {balance:e} J, steps {} + {}",
+                errors.map(|error| error / tolerance),
+                simulation.integer(IntegerOutput::SolverSteps),
+                simulation.integer(IntegerOutput::SolverRejectedSteps)
+            );
+            for (n, error) in errors.iter().enumerate() {
+                // Slip and energy are integrals of what is right to the tolerance.
+                let allowed = if (2..5).contains(&n) { 10.0 } else { 1.0 };
+                assert!(*error < allowed * tolerance, "{:?}: {error:e}", WATCHED[n]);
+            }
+            assert!(balance.abs() < tolerance * scale * path * 100.0, "{balance:e} J");
+        }
+        // Energy dissipated and distance never fall.
+        for pair in expected.windows(2) {
+            assert!(pair[1][3] >= pair[0][3] && pair[1][4] >= pair[0][4]);
+        }
+    }
+}
+
+/// What is set back goes on with the same bits, wherever it was saved.
+#[test]
+fn saved_states_go_on_with_the_same_bits() {
+    for (amplitude, size) in [(98.0, 3e-6), (98.0, 4e-5), (400.0, 3e-6), (400.0, 4e-5)] {
+        let scene = rubbing(shaken(amplitude, 1000.0));
+        let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
+        let bits = |simulation: &Simulation| WATCHED.map(|output| simulation.real(output).to_bits());
+        for n in 0..40 {
+            let saved = *simulation.motion();
+            assert!(saved.is_sound());
+            let run = |simulation: &mut Simulation, steps: u32| {
+                (0..steps)
+                    .map(|_| {
+                        simulation.step(&Inputs::default(), simulation.time(), size).unwrap();
+                        bits(simulation)
+                    })
+                    .collect::<Vec<_>>()
+            };
+            let steps = 1 + 7 * n % 19;
+            let once = run(&mut simulation, steps);
+            let mut other = Simulation::resume(&scene, 0.0, &saved).unwrap();
+            assert_eq!(once, run(&mut other, steps));
+            simulation.go_on_from(&saved);
+            assert_eq!(once, run(&mut simulation, steps));
+        }
+    }
+}
+
+/// A derivative lies between the slopes just before and just after it.
+#[test]
+fn derivatives_are_the_slopes_of_the_courses() {
+    const NEAR: f64 = 1e-7;
+    const CONTINUOUS: [RealOutput; 5] = [
+        RealOutput::ContactForce,
+        RealOutput::ContactTangentialForce,
+        RealOutput::ContactSlip,
+        RealOutput::ContactSlipDistance,
+        RealOutput::FrictionEnergy,
+    ];
+    for (size, damping) in [(1e-6, 8.063e-5), (1e-5, 8.063e-5), (1e-5, 0.0)] {
+        let mut scene = rubbing(shaken(98.0, 1000.0));
+        scene.solver.tolerance = 1e-9;
+        scene.contact.damping = damping;
+        let inputs = Inputs::default();
+        let mut simulation = Simulation::new(&scene, &inputs, 0.0).unwrap();
+        let mut rows = Vec::new();
+        while simulation.time() < 2e-3 {
+            rows.push([size - 2.0 * NEAR, NEAR, NEAR].map(|step| {
+                simulation.step(&inputs, simulation.time(), step).unwrap();
+                CONTINUOUS.map(|output| (simulation.real(output), simulation.rate(output).unwrap()))
+            }));
+        }
+        for (n, output) in CONTINUOUS.into_iter().enumerate() {
+            let values = || rows.iter().map(|[_, now, _]| now[n].0);
+            let range = values().fold(f64::MIN, f64::max) - values().fold(f64::MAX, f64::min);
+            let noise = 4.0 * 1e-9 * range.max(if n == 1 { 0.15 } else { 0.0 }) / NEAR;
+            let slips = |row: &[[(f64, f64); 5]; 3]| [0, 1, 2].map(|k| row[k][2].1 != 0.0);
+            let mut since = 0.0;
+            for (row, next) in rows.iter().zip(&rows[1..]) {
+                // The slope of the friction force jumps where it begins or ceases to slip, and the spring answers within
+                // microseconds.
+                since += size;
+                if slips(row) != slips(next) {
+                    since = 0.0;
+                }
+                if since < 2e-5 {
+                    continue;
+                }
+                let [before, now, after] = next;
+                let values = [before[n].0, now[n].0, after[n].0];
+                check_slope(
+                    values,
+                    NEAR,
+                    noise,
+                    now[n].1,
+                    &format!("{output:?}, {size} s, {damping} s"),
+                );
+            }
+        }
+    }
+}
+
+/// Extreme coefficients and heights, an opening at the limit, blows, and a contact released and closed by its support: all
+/// run, within few steps, and the friction force keeps to its limit.
+#[test]
+fn hard_cases_run_and_keep_to_the_limit() {
+    for coefficient in [0.0, 0.2, 10.0] {
+        for height in [0.0, 1e-3, 1e-2] {
+            for (amplitude, damping) in [(30.0, 8e-5), (400.0, 8e-5), (1000.0, 1e-6), (400.0, 0.0)] {
+                for initial in [-1.0, 0.0, 1.0] {
+                    let mut scene = rubbing(shaken(amplitude, 700.0));
+                    (scene.friction.coefficient, scene.tip.contact_height) = (coefficient, height);
+                    (scene.friction.initial, scene.contact.damping) = (initial, damping);
+                    scene.solver.tolerance = 1e-4;
+                    let case = format!("mu {coefficient}, {height} m, {amplitude} m/s2, {damping} s, {initial}");
+                    let mut simulation = match Simulation::new(&scene, &Inputs::default(), 0.0) {
+                        Ok(simulation) => simulation,
+                        Err(error) => {
+                            assert!(coefficient * height * -initial > 0.0103, "{case}: {error}");
+                            continue;
+                        }
+                    };
+                    for k in 0..100 {
+                        let time = 3e-5 * f64::from(k);
+                        // The support lifts and comes back.
+                        let inputs = Inputs {
+                            support_displacement: if k > 50 {
+                                -1e-5 * (0.1 * f64::from(k)).sin()
+                            } else {
+                                0.0
+                            },
+                            ..Inputs::default()
+                        };
+                        simulation
+                            .step(&inputs, time, 3e-5)
+                            .unwrap_or_else(|error| panic!("{case}: {error}"));
+                        let force = simulation.real(RealOutput::ContactForce);
+                        let along = simulation.real(RealOutput::ContactTangentialForce);
+                        let scale = force_scale(&scene).max(simulation.real(RealOutput::StepMaximumForce));
+                        assert!(force.is_finite() && along.is_finite(), "{case}");
+                        assert!(
+                            along.abs() <= coefficient * force + 2e-4 * scale * (1.0 + coefficient),
+                            "{case}: {along} at {force} N, {time} s"
+                        );
+                    }
+                    let steps = simulation.integer(IntegerOutput::SolverSteps)
+                        + simulation.integer(IntegerOutput::SolverRejectedSteps);
+                    assert!(steps < 20_000, "{case}: {steps} steps");
+                }
+            }
+        }
+    }
+}
