@@ -28,6 +28,7 @@ FORCES = {"first": "contact.force", "second": "second.force"}
 DECADES = 1e3
 # What the outputs are called in words, where it is not the words of their names.
 WORDS = {
+    "contact.elasticForce": "elastic force\nof the contact",
     "contact.lastOpening": "last opening",
     "contact.lastClosing": "last closing",
     "contact.indentation": "indentation\n(negative: gap)",
