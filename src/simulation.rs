@@ -157,6 +157,7 @@ impl Simulation {
         let of_second = || extremes().filter(|_| second);
         match output {
             RealOutput::ContactForce => force(),
+            RealOutput::ContactElasticForce => motion.elastic_force(model).0,
             RealOutput::ContactConductance => conductance().unwrap_or_default(),
             RealOutput::ContactResistance => conductance().map_or(0.0, |conductance| 1.0 / conductance),
             RealOutput::ContactVoltage => conductance().map_or(0.0, |conductance| {
@@ -246,6 +247,7 @@ impl Simulation {
                 second_conducting().map_or(0.0, |(conductance, rate)| -rate / conductance.powi(2))
             }
             RealOutput::ContactForce => rates().forces[0],
+            RealOutput::ContactElasticForce => motion.elastic_force(model).1,
             RealOutput::ContactConductance => conducting().map_or(0.0, |(_, rate)| rate),
             RealOutput::ContactResistance => {
                 conducting().map_or(0.0, |(conductance, rate)| -rate / conductance.powi(2))

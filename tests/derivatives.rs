@@ -184,8 +184,9 @@ fn an_open_contact_has_the_voltage_of_the_source_at_most() {
     }
 }
 
-const CONTINUOUS: [RealOutput; 7] = [
+const CONTINUOUS: [RealOutput; 8] = [
     RealOutput::ContactForce,
+    RealOutput::ContactElasticForce,
     RealOutput::ContactResistance,
     RealOutput::ContactConductance,
     RealOutput::ContactVoltage,
@@ -223,8 +224,12 @@ fn derivatives_of_outputs_are_the_slopes_of_their_courses() {
                 rows.push([before, now, after]);
             }
             for (n, output) in CONTINUOUS.into_iter().enumerate() {
-                // Where the contact opens these jump to what `resistance.open` says; the conductance tells the same.
-                let jumps = matches!(output, RealOutput::ContactResistance | RealOutput::ContactVoltage);
+                // Where the contact opens these jump: to what `resistance.open` says, which the conductance tells too; or to
+                // zero, as the force without damping is not zero yet.
+                let jumps = matches!(
+                    output,
+                    RealOutput::ContactResistance | RealOutput::ContactVoltage | RealOutput::ContactElasticForce
+                );
                 if jumps && amplitude > 98.0 {
                     continue;
                 }

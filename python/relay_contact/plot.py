@@ -28,9 +28,14 @@ FORCES = {"first": "contact.force", "second": "second.force"}
 DECADES = 1e3
 # What the outputs are called in words, where it is not the words of their names.
 WORDS = {
+    "contact.elasticForce": "elastic force\nof the contact",
     "contact.lastOpening": "last opening",
     "contact.lastClosing": "last closing",
     "contact.indentation": "indentation\n(negative: gap)",
+    "contact.tangentialForce": "friction force",
+    "contact.slip": "slip",
+    "contact.slipDistance": "distance\nslipped",
+    "friction.energy": "energy\ndissipated\nby slip",
     "tip.displacement": "deflection\nof the spring",
     "tip.velocity": "velocity\nof the spring",
     "step.minimumForce": "least contact force\nin a step",

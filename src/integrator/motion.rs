@@ -184,6 +184,17 @@ impl Motion {
         }
     }
 
+    /// Force of the first contact without what its damping adds (N), and the rate of that (N/s).
+    pub fn elastic_force(&self, model: &Model) -> (f64, f64) {
+        let (tip, law) = (self.tip(model), &model.law);
+        if tip.forces[0] <= 0.0 && !law.never_opens() {
+            return (0.0, 0.0);
+        }
+        let indentation = model.preload.indentation + tip.indentation;
+        let stiffness = law.stiffness(indentation);
+        (law.closed_branch(indentation, 0.0).force, stiffness * tip.rate)
+    }
+
     /// Force, indentation and its velocity in the view of this state.
     #[inline(always)]
     fn seen(&self, model: &Model, state: &State) -> (f64, f64, f64) {

@@ -33,6 +33,8 @@ class Modes:
     omega_squared: Array
     damping: Array
     tip: Array
+    # Rotation of the tip.
+    rotation: Array
     # Load per base acceleration.
     participation: Array
     # Integrals of products of their slopes.
@@ -106,8 +108,11 @@ class Reference:
         pushed = per_force * self.hertz * indentation**1.5 + per_acceleration * self.gravity
         return float(deflection - pushed)
 
-    def compliances(self, omega: float, axial_force: float, damped: bool = True) -> Any:  # noqa: ANN401
-        """Tip deflection (m) per tip force (N) and per base acceleration (m/s2), at an angular frequency; exact."""
+    def responses(self, omega: float, axial_force: float, damped: bool = True) -> Any:  # noqa: ANN401
+        """Deflection (m) and rotation of the tip, in rows, at an angular frequency; exact.
+
+        Per force (N) and moment (N m) on it and per base acceleration (m/s2).
+        """
         alpha, beta = (damped * self.values[f"beam.{kind}Damping"] for kind in ("mass", "stiffness"))
         loss, inertial = 1 + 1j * omega * beta, -(omega**2) + 1j * omega * alpha
         bending, axial = self.stiffness * loss, axial_force * loss
@@ -117,10 +122,14 @@ class Reference:
         end = expm(along * self.length)
         moment = bending * end[2] + self.inertia * inertial * end[1]
         shear = bending * end[3] + axial * end[1] - self.mass * inertial * end[0]
-        # The unknown w'' and w''' at the clamp, under unit force and under unit acceleration.
-        loads = np.array([[0, -moment[4]], [-1, self.mass - shear[4]]])
+        # The unknown w'' and w''' at the clamp, under unit force, unit moment and unit acceleration.
+        loads = np.array([[0, 1, -moment[4]], [-1, 0, self.mass - shear[4]]])
         clamp = np.linalg.solve(np.array([moment[2:4], shear[2:4]]), loads)
-        return end[0, 2:4] @ clamp + np.array([0, end[0, 4]])
+        return end[:2, 2:4] @ clamp + np.outer(end[:2, 4], [0, 0, 1])
+
+    def compliances(self, omega: float, axial_force: float, damped: bool = True) -> Any:  # noqa: ANN401
+        """Tip deflection (m) per tip force (N) and per base acceleration (m/s2), at an angular frequency; exact."""
+        return self.responses(omega, axial_force, damped)[0, [0, 2]]
 
     def force_response(self, frequency: float) -> complex:
         """Contact force (N) per base acceleration (m/s2) of the linear contact, at a frequency (Hz); exact."""
@@ -165,6 +174,7 @@ class Reference:
             omega_squared,
             self.values["beam.massDamping"] + self.values["beam.stiffnessDamping"] * omega_squared,
             tip @ shapes,
+            tip_slope @ shapes,
             (self.density * value @ weights + self.mass * tip) @ shapes,
             shapes.T @ slopes @ shapes,
         )

@@ -8,7 +8,8 @@ from fmpy.fmi1 import FMICallException
 
 from component import Instance, run
 from reference import Reference, crossings
-from relay_contact import Array, Values
+from relay_contact import Array, Scene, Values
+from relay_contact import run as run_scene
 
 SHAKEN: Values = {"effects.excitation": "Sine", "excitation.frequency": 1000.0, "effects.axialForce": "None"}
 # Pressed all the time, and open for a part of every period.
@@ -105,6 +106,37 @@ def test_current_heats_the_closed_contact(current: float, melts: str, source: fl
     expected = np.full(len(force), surroundings)
     expected[closed] = np.sqrt(surroundings**2 + capped**2 / (4 * 2.45e-8))
     assert hot["contact.temperature"] == pytest.approx(expected, rel=ROUNDING, abs=0)
+
+
+@pytest.mark.parametrize("law", ["Hertz", "Linearised", "Bonded"])
+def test_the_elastic_force_is_the_contact_force_without_what_damping_adds(law: str) -> None:
+    values: Values = {**OPENING, "effects.contactLaw": law}
+    output = ["contact.force", "contact.elasticForce", "contact.indentation", "tip.velocity"]
+    result = run(values, 2e-3, 1e-5, output)
+    force, elastic, indentation, rate = (result[name] for name in output)
+    reference = Reference(values)
+    linear = reference.force + reference.tangent * (indentation - reference.indentation)
+    expected = reference.hertz * np.maximum(indentation, 0) ** 1.5 if law == "Hertz" else linear
+    closed = (force > 0) | (law == "Bonded")
+    largest = np.max(np.abs(force))
+    assert elastic == pytest.approx(np.where(closed, expected, 0.0), rel=0, abs=ROUNDING * largest)
+    stiffness = 1.5 * reference.hertz * np.sqrt(indentation[closed]) if law == "Hertz" else reference.tangent
+    damped = reference.contact_damping * stiffness * -rate[closed]
+    # Force and motion are each right to the tolerance.
+    allowed = 2 * 1e-6 * max(FORCE_SCALE, largest)
+    assert np.max(np.abs(damped)) > 1e4 * allowed
+    assert np.max(np.abs((force - elastic)[closed] - damped)) <= allowed
+
+
+def test_the_elastic_force_has_the_published_amplitude_in_the_scene_that_is_fitted_to_it() -> None:
+    scene = Scene.read("paper-elastic")
+    elastic = run_scene(scene)["contact.elasticForce"][-100:]
+    reference = Reference(scene.values)
+    linear = 98 * abs(reference.force_response(1000.0) / (1 + 2j * pi * 1000 * reference.contact_damping))
+    # The contact is 4655 times as stiff as the spring: what its nonlinearity can change.
+    assert np.ptp(elastic) / 2 == pytest.approx(linear, rel=1 / 4655)
+    # What the fit to the six published amplitudes leaves of this one.
+    assert linear == pytest.approx(4.812e-2, rel=3e-3)
 
 
 CHATTER = ["chatter.count", "chatter.longestInterruption", "chatter.totalInterruption"]

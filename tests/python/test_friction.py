@@ -1,0 +1,161 @@
+"""Friction between the contacts, by motions solved by other means (frictional.py)."""
+
+from functools import cache
+from math import pi, sin
+
+import numpy as np
+import pytest
+
+from frictional import Frictional, FrictionalMotion, Phase
+from relay_contact import Array, Values
+from relay_contact.scene import Scene, run
+
+TOLERANCE, STEP = 1e-6, 5e-6
+# Instants are located to 1 ns.
+LOCATED = 1e-9
+SHAKEN: Values = {
+    "effects.axialForce": "None",
+    "effects.friction": "Coulomb",
+    "effects.excitation": "Sine",
+    "excitation.amplitude": 98.0,
+    "excitation.frequency": 1000.0,
+    "solver.tolerance": TOLERANCE,
+}
+LIGHT: Values = {"beam.stiffnessDamping": 1e-5, "contact.damping": 1e-5}
+# The specimen sticks where friction is as large as this.
+OUTPUTS = [
+    "contact.force",
+    "contact.tangentialForce",
+    "contact.slip",
+    "contact.slipDistance",
+    "friction.energy",
+    "contact.lastOpening",
+    "contact.lastClosing",
+]
+MOTIONS: dict[str, tuple[Values, float]] = {
+    "sticks": ({**SHAKEN, "friction.coefficient": 10.0, "friction.initial": 0.0}, 2e-3),
+    "slips": (SHAKEN, 3e-3),
+    "slips without damping of the contact": ({**SHAKEN, "effects.contactDamping": False}, 3e-3),
+    "slips on a high contact": ({**SHAKEN, "tip.contactHeight": 3e-3, "friction.initial": 0.5}, 3e-3),
+    "opens": ({**SHAKEN, **LIGHT, "excitation.frequency": 1350.0}, 4e-3),
+    "shock": (
+        {**SHAKEN, "effects.excitation": "HalfSine", "excitation.amplitude": -490.0, "excitation.duration": 1e-3},
+        3e-3,
+    ),
+    "no friction": ({**SHAKEN, "friction.coefficient": 0.0}, 2e-3),
+}
+CLOSED = {Phase.STICK, Phase.FORTH, Phase.BACK}
+FORCES, WAYS, ENERGY = OUTPUTS[:2], OUTPUTS[2:4], OUTPUTS[4]
+
+
+def solved(name: str, tolerance: float) -> FrictionalMotion:
+    """Solve the equations of motion."""
+    values, stop = MOTIONS[name]
+    reference = Frictional(values)
+    known = reference.values
+    amplitude, omega = known["excitation.amplitude"], 2 * pi * known["excitation.frequency"]
+
+    def acceleration(time: float) -> float:
+        if known["effects.excitation"] == "Sine":
+            return float(amplitude * sin(omega * time))
+        duration = known["excitation.duration"]
+        return float(amplitude * sin(pi * time / duration)) if time < duration else 0.0
+
+    return reference.moves(acceleration, stop, tolerance)
+
+
+@cache
+def results(name: str) -> tuple[dict[str, Array], FrictionalMotion, Frictional]:
+    """Run the component; give the reference too."""
+    values, stop = MOTIONS[name]
+    found = run(Scene("", stop, STEP, OUTPUTS, dict(values), {})).columns
+    return found, solved(name, 1e-10), Frictional(values)
+
+
+def allowed(name: str, expected: dict[str, Array]) -> dict[str, float]:
+    """Give the errors allowed in outputs: the tolerance relative to the largest force, and to what belongs to it."""
+    _, _, reference = results(name)
+    force = TOLERANCE * max(reference.force_scale, np.max(expected["contact.force"]))
+    limit = reference.friction.coefficient * reference.force
+    # What the tangential spring yields before it slips counts where the contact sticks.
+    yields = limit / reference.tangential
+    ways = {each: TOLERANCE * max(yields, np.max(np.abs(expected[each]))) for each in WAYS}
+    return dict.fromkeys(FORCES, force) | ways | {ENERGY: TOLERANCE * max(limit * yields, expected[ENERGY][-1])}
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+def test_forces_slip_and_energy(name: str) -> None:
+    found, motion, _ = results(name)
+    # Where the contact opens or closes forces change as a root of time, and a sample may be on either side.
+    changes = np.concatenate([[0.0], *openings_and_closings(motion)])
+    away = np.min(np.abs(found["time"][:, None] - changes), axis=1) > 2 * LOCATED
+    expected, coarser = (each.outputs(found["time"]) for each in (motion, solved(name, 1e-9)))
+    for output, error in allowed(name, expected).items():
+        # The reference's own error is less than this difference.
+        assert np.max(np.abs(coarser[output] - expected[output])[away]) <= 0.3 * error, output
+        assert np.max(np.abs(found[output] - expected[output])[away]) <= error, output
+
+
+def openings_and_closings(motion: FrictionalMotion) -> tuple[Array, Array]:
+    """Give their instants, s."""
+    return motion.instants(CLOSED, {Phase.OPEN}), motion.instants({Phase.OPEN}, CLOSED)
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+def test_the_instants_of_opening_and_closing(name: str) -> None:
+    found, motion, _ = results(name)
+    expected = openings_and_closings(motion)
+    assert bool(len(expected[0])) == (name in ("opens", "shock"))
+    for output, instants in zip(OUTPUTS[5:], expected, strict=True):
+        seen = np.unique(found[output])
+        assert seen[seen > 0] == pytest.approx(instants, rel=0, abs=LOCATED)
+
+
+def test_the_motions_are_what_their_names_say() -> None:
+    phases = {name: {piece.phase for piece in results(name)[1].pieces} for name in MOTIONS}
+    assert phases["sticks"] == {Phase.STICK}
+    for name in ("slips", "slips without damping of the contact", "slips on a high contact"):
+        assert phases[name] == CLOSED
+    assert phases["opens"] == phases["shock"] == set(Phase)
+
+
+def test_without_a_coefficient_friction_changes_nothing() -> None:
+    found, _, reference = results("no friction")
+    values, stop = MOTIONS["no friction"]
+    without = run(Scene("", stop, STEP, OUTPUTS[:5], {**values, "effects.friction": "None"}, {})).columns
+    # Two runs, each right to the tolerance.
+    error = 2 * TOLERANCE * max(reference.force_scale, found["contact.force"].max())
+    assert np.max(np.abs(found["contact.force"] - without["contact.force"])) <= error
+    for output in OUTPUTS[1:5]:
+        assert (without[output] == 0).all()
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {},
+        {"friction.initial": 1.0, "friction.coefficient": 3.0},
+        {"friction.initial": -0.3, "tip.contactHeight": 5e-3, "effects.axialForce": "FromPreload"},
+        {"effects.axialForce": "Prescribed", "beam.axialForce": 2.0, "environment.gravity": 9.81},
+    ],
+)
+def test_the_preload_holds_the_friction_that_closing_left(values: Values) -> None:
+    values = {"effects.axialForce": "None", "effects.friction": "Coulomb", **values}
+    outputs = ["contact.force", "contact.tangentialForce", "contact.slip", "contact.indentation"]
+    found = {name: course[0] for name, course in run(Scene("", STEP, STEP, outputs, dict(values), {})).columns.items()}
+    reference = Frictional(values)
+    friction = reference.share * reference.force
+    expected = [reference.force, friction, friction / reference.tangential, reference.indentation]
+    assert reference.force != pytest.approx(Frictional({**values, "friction.initial": 0.0}).force, rel=1e-3)
+    # Static equilibrium by two roots of one equation.
+    assert [found[name] for name in outputs] == pytest.approx(expected, rel=1e-11)
+
+
+def test_friction_decides_whether_the_contact_opens() -> None:
+    scene = Scene.read("friction-opening")
+    outputs = ["chatter.count", "step.minimumForce"]
+    count, least = (run(scene, outputs=outputs)[name] for name in outputs)
+    assert count[-1] == 0
+    # Far from opening, a quarter of the preload.
+    assert least[1:].min() > 0.25 * Frictional(scene.values).force
+    assert run(scene, outputs=outputs, friction_coefficient=0.0)["chatter.count"][-1] > 10
