@@ -64,8 +64,9 @@ impl Blow {
     fn first_digits(&self, section: &Section) -> f64 {
         let first = 3.516 * section.rate();
         let damping = 0.5 * (self.mass_damping / first + self.stiffness_damping * first);
-        // Undamped springs ring for ever; no number of modes is right for that.
-        FIRST_DIGITS + (RINGING / damping).log10().clamp(0.0, 1.0)
+        // Undamped springs ring for ever, and no number of modes is right for that.
+        let ringing = if damping > 0.0 { RINGING / damping } else { 1.0 };
+        FIRST_DIGITS + ringing.log10().clamp(0.0, 1.0)
     }
 
     /// The largest wave number `x` that the blow excites, 1 / L.
