@@ -12,7 +12,9 @@ use proptest::test_runner::RngSeed;
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::{Scene, choices};
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{AxialForceKind, ExcitationKind, Group, ResistanceKind, VARIABLES, Variable};
+use relay_contact::variables::{
+    AxialForceKind, ExcitationKind, FrictionKind, Group, ResistanceKind, VARIABLES, Variable,
+};
 
 /// Longest communication step drawn, s. With the shortest oscillations of the stiffest scenes some 1e-8 s long it
 /// keeps the work within seconds.
@@ -154,7 +156,9 @@ proptest! {
             match ride.run(4) {
                 Ok(outcome) => {
                     let energy = outcome.energy();
-                    prop_assert!(energy.is_kept(), "{energy}: {}", summary(&ride));
+                    // The energy of friction is not computed here but in `tests/friction/`.
+                    let rubs = ride.scene.effects.friction != FrictionKind::None;
+                    prop_assert!(rubs || energy.is_kept(), "{energy}: {}", summary(&ride));
                 }
                 Err(error) => prop_assert!(false, "{error:#}: {}", summary(&ride)),
             }
