@@ -218,7 +218,7 @@ mod tests {
     fn an_unknown_scene_is_told_with_those_there_are() {
         let message = find("paper-2khz").map_or_else(|error| error.to_string(), |_| String::new());
         assert!(
-            message.contains("paper-2khz") && message.contains("opening, paper-1khz, paper-grid"),
+            message.contains("paper-2khz") && message.contains("opening, paper-1khz, paper-elastic"),
             "{message}"
         );
     }
