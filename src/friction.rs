@@ -296,7 +296,7 @@ pub(crate) fn check(scene: &Scene) -> Result<(), SceneError> {
 }
 
 impl Model {
-    /// Friction and the law it acts with, where there is friction.
+    /// Friction, where there is any.
     #[inline(always)]
     pub(crate) fn friction(&self) -> Option<&Friction> {
         self.friction.as_ref()

@@ -5,6 +5,7 @@
 //! are polynomials through the nodes; between the places where they turn they are monotone, so that nothing is missed.
 
 use crate::friction::Phase;
+use crate::integrator::collocation::error::sum_rounding;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::constants::{LOCATED, MOST_CHANGES, MOST_SHRINK, SUM_ROUNDINGS, WORTH};
@@ -117,16 +118,12 @@ impl Integration<'_> {
     /// Rounding of the trial force and of the limit by the sums over the modes, N.
     fn friction_rounding(&self) -> f64 {
         let Self { model, state, .. } = self;
-        let (mut displacement, mut velocity) = (state.tangential.slip.abs(), 0.0);
-        let levers = model.friction().map(|friction| (friction, &friction.levers));
-        let Some((friction, levers)) = levers else {
+        let Some(friction) = model.friction() else {
             return 0.0;
         };
-        for (lever, at) in levers.iter().zip(&state.modes) {
-            displacement += (lever * at.q).abs();
-            velocity += (lever * at.v).abs();
-        }
-        let along = SUM_ROUNDINGS * f64::EPSILON * (displacement + model.law.damping() * velocity);
+        let (displacement, velocity) = sum_rounding(friction.levers.iter().copied(), state);
+        let slip = SUM_ROUNDINGS * f64::EPSILON * state.tangential.slip.abs();
+        let along = slip + displacement + model.law.damping() * velocity;
         let stiffness = model.law.stiffness(model.preload.indentation + state.indentation);
         stiffness * (friction.ratio * along + friction.coefficient * self.motion_rounding())
     }

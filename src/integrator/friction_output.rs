@@ -87,7 +87,9 @@ impl Motion {
                     start.rate + sign * friction.coefficient / friction.ratio * 2.0 / 3.0 * state.indentation_rate
                 };
             } else {
-                let (acceleration, _) = self.accelerations(model, state, &friction.levers);
+                let accelerations = self.accelerations(model, state);
+                let modes = friction.levers.iter().zip(&accelerations).take(model.modes.len());
+                let acceleration: f64 = modes.map(|(lever, acceleration)| lever * acceleration).sum();
                 rates.force = stick.by_indentation * state.indentation_rate
                     - stick.stiffness * (start.rate + hertz.damping * acceleration);
             }

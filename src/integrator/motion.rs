@@ -211,9 +211,8 @@ impl Motion {
         (force, at(&self.dense.indentation), at(&self.dense.rate))
     }
 
-    /// Acceleration that all loads give to a sum over the modes with these factors, at the end of a step (m/s2), and the sum
-    /// with the tip displacements.
-    pub(crate) fn accelerations(&self, model: &Model, state: &State, factors: &Modal) -> (f64, f64) {
+    /// Accelerations of the modes under all loads at the end of a step.
+    pub(crate) fn accelerations(&self, model: &Model, state: &State) -> Modal {
         let base = self.drive.acceleration(self.time) + model.generator.acceleration_before(self.time);
         let base = if state.mirrored { -base } else { base };
         let force = state.force - model.preload.force;
@@ -226,12 +225,12 @@ impl Motion {
             }
             (None, None) => [0.0; MAX_MODES],
         };
-        let modes = model.modes.iter().zip(&modes).zip(&axial).zip(factors);
-        modes.fold((0.0, 0.0), |(along, tip), (((mode, at), axial), factor)| {
-            let load = mode.tip * force - mode.participation * base + axial;
-            let acceleration = load - mode.omega_squared * at.q - mode.damping * at.v;
-            (along + factor * acceleration, tip + mode.tip * acceleration)
-        })
+        let mut accelerations = axial;
+        for ((acceleration, mode), at) in accelerations.iter_mut().zip(&model.modes).zip(&modes) {
+            let load = mode.tip * force - mode.participation * base + *acceleration;
+            *acceleration = load - mode.omega_squared * at.q - mode.damping * at.v;
+        }
+        accelerations
     }
 
     /// Extremes at the communication point alone.
@@ -342,8 +341,9 @@ impl Motion {
             let force = if state.closed { slope(&self.dense.force) } else { 0.0 };
             return of_both(force, slope(&self.dense.rate));
         }
-        let (_, tip) = self.accelerations(model, state, &[0.0; MAX_MODES]);
-        let acceleration = -tip;
+        let accelerations = self.accelerations(model, state);
+        let modes = model.modes.iter().zip(&accelerations);
+        let acceleration = modes.fold(0.0, |sum, (mode, acceleration)| sum - mode.tip * acceleration);
         let rate = state.indentation_rate;
         let law = model
             .law

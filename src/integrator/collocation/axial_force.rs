@@ -53,9 +53,11 @@ pub(crate) fn settle<const S: usize, A: Arithmetic>(
     let stiffness = model.law.stiffness(model.preload.indentation + state.indentation);
     let mut iterations = 0;
     let mut solved: Option<Solution<S>> = None;
+    let mut motion = [[0.0; S]; MAX_MODES];
+    let mut next = motion;
     for _ in 0..ROUNDS {
-        let motion = motion_of_modes::<S, A>(model, state, step, &forces, &free.accelerations, &loads);
-        let mut next = [[0.0; S]; MAX_MODES];
+        let acting = (&forces, &free.accelerations, &loads);
+        set_motion::<S, A>(model, state, step, acting, &mut motion);
         set_loads::<S, A>(model, axial, &motion, &mut next);
         let (change, size) = force_of_change(model, &loads, &next);
         let settled = change <= tolerance + FORCE_ROUNDING * size;
@@ -84,27 +86,25 @@ pub(crate) fn settle<const S: usize, A: Arithmetic>(
     None
 }
 
-/// Modal displacements at the nodes under contact forces, base acceleration and loads.
+/// Computes the modal displacements at the nodes under contact forces, base acceleration and loads.
 #[inline(always)]
-fn motion_of_modes<const S: usize, A: Arithmetic>(
+fn set_motion<const S: usize, A: Arithmetic>(
     model: &Model,
     state: &State,
     step: &StepCoefficients<S>,
-    forces: &Nodal<S>,
-    accelerations: &Nodal<S>,
-    loads: &NodalModes<S>,
-) -> NodalModes<S> {
-    let mut motion = [[0.0; S]; MAX_MODES];
+    (forces, accelerations, loads): (&Nodal<S>, &Nodal<S>, &NodalModes<S>),
+    motion: &mut NodalModes<S>,
+) {
     let modes = model.modes.iter().zip(&state.modes).zip(&step.columns).zip(loads);
     for (q, (((mode, at), columns), load)) in motion.iter_mut().zip(modes) {
         let mut load = *load;
+        *q = [0.0; S];
         add::<S, A>(&mut load, mode.tip, forces);
         add::<S, A>(&mut load, -mode.participation, accelerations);
         add::<S, A>(q, at.q, &columns.q_from_q);
         add::<S, A>(q, at.v, &columns.q_from_v);
         add_columns::<S, A>(q, &columns.load.displacement, &load);
     }
-    motion
 }
 
 /// Computes the modal loads of a motion at the nodes.

@@ -236,9 +236,6 @@ impl<const S: usize> StepCoefficients<S> {
     /// Computes the coefficients for a length in place.
     fn fill(&mut self, length: f64, model: &Model, collocation: &Collocation<S>) {
         compiled_for!(model.simd, A => self.compute::<A>(length, model, collocation));
-        if let Some(friction) = model.friction() {
-            compiled_for!(model.simd, A => self.compute_tangential::<A>(&friction.levers, model, collocation));
-        }
     }
 
     #[inline(always)]
@@ -247,6 +244,12 @@ impl<const S: usize> StepCoefficients<S> {
         self.length = length;
         self.turns.fill(&model.generator, length, &collocation.nodes);
         let (mut force, mut acceleration) = (Sum::<S>::ZERO, Sum::<S>::ZERO);
+        let sums = [Sum::<S>::ZERO; 3];
+        let mut along = self
+            .tangential
+            .as_deref_mut()
+            .zip(model.friction())
+            .map(|both| (both, sums));
         for (i, (mode, step)) in model.modes.iter().zip(&mut self.modes).enumerate() {
             let tip = mode.tip;
             let mode_over_step = ModeOverStep::new(mode.omega_squared, mode.damping, h);
@@ -255,6 +258,14 @@ impl<const S: usize> StepCoefficients<S> {
             acceleration.add::<A>(tip * mode.participation, &response);
 
             step.set::<A>(tip, mode, &response, h);
+            if let Some(((tangential, friction), [cross, own, acceleration])) = &mut along
+                && let (Some(rows), Some(lever)) = (tangential.modes.get_mut(i), friction.levers.get(i))
+            {
+                cross.add::<A>(lever * tip, &response);
+                own.add::<A>(lever * lever, &response);
+                acceleration.add::<A>(lever * mode.participation, &response);
+                rows.set::<A>(*lever, mode, &response, h);
+            }
 
             let end = FreeMotion::new(mode.omega_squared, mode.damping, h);
             let loads = response.at_end::<A>(shapes);
@@ -272,27 +283,12 @@ impl<const S: usize> StepCoefficients<S> {
         }
         (self.force, self.force_error) = in_seconds(force.at_nodes::<A>(shapes), h);
         (self.acceleration, self.acceleration_error) = in_seconds(acceleration.at_nodes::<A>(shapes), h);
-    }
-
-    /// Those for friction, with the levers of the modes.
-    #[inline(always)]
-    fn compute_tangential<A: Arithmetic>(&mut self, levers: &Modal, model: &Model, collocation: &Collocation<S>) {
-        let (h, shapes) = (self.length, &collocation.shapes);
-        let Some(tangential) = &mut self.tangential else {
-            return;
-        };
-        let [mut cross, mut own, mut acceleration] = [Sum::<S>::ZERO; 3];
-        for ((mode, lever), rows) in model.modes.iter().zip(levers).zip(&mut tangential.modes) {
-            let response =
-                ModeOverStep::new(mode.omega_squared, mode.damping, h).response::<S, A>(&collocation.nodes, shapes);
-            cross.add::<A>(lever * mode.tip, &response);
-            own.add::<A>(lever * lever, &response);
-            acceleration.add::<A>(lever * mode.participation, &response);
-            rows.set::<A>(*lever, mode, &response, h);
+        if let Some(((tangential, _), sums)) = along {
+            let [cross, own, acceleration] = sums.map(|sum| in_seconds(sum.at_nodes::<A>(shapes), h));
+            (tangential.cross, tangential.cross_error) = cross;
+            (tangential.own, tangential.own_error) = own;
+            (tangential.acceleration, tangential.acceleration_error) = acceleration;
         }
-        (tangential.cross, tangential.cross_error) = in_seconds(cross.at_nodes::<A>(shapes), h);
-        (tangential.own, tangential.own_error) = in_seconds(own.at_nodes::<A>(shapes), h);
-        (tangential.acceleration, tangential.acceleration_error) = in_seconds(acceleration.at_nodes::<A>(shapes), h);
     }
 }
 

@@ -33,12 +33,7 @@ pub(crate) fn errors<const S: usize>(
         let wrong_d = by_load.0 * free.start_defect - by_force.0 * start_defect;
         let wrong_r = by_load.1 * free.start_defect - by_force.1 * start_defect;
         let fast = (solution.tangent.stiffness * wrong_d).abs() + (solution.tangent.damping * wrong_r).abs();
-        let elapsed = state.time - state.last_kink;
-        let kinked = if elapsed < FAR * step.length {
-            KINKED * start_defect.abs() * analytic::<S>(elapsed / step.length)
-        } else {
-            0.0
-        };
+        let kinked = kinked::<S>(state, step.length, start_defect.abs());
         let reaction = solution.tangent.gain / (1.0 + solution.tangent.gain);
         let missed = model.inertia * free.missed_mean;
         let slow = 3.0 * start_defect * start_defect / largest + kinked + missed;
@@ -73,29 +68,41 @@ pub(crate) fn errors<const S: usize>(
 /// Whether the error (N) of a step from `state` is explained by rounding of the sums over the modes: after an impact the
 /// modal velocities are large and their sum at the tip is small.
 pub(crate) fn is_rounding<const S: usize>(model: &Model, state: &State, tangent: &Tangent, error: f64) -> bool {
-    let (displacement, velocity) = sum_rounding(model, state);
+    let (displacement, velocity) = sum_rounding(model.modes.iter().map(|mode| mode.tip), state);
     // The force at the first node feeds back only over the time up to it, some 1 / S^2 of the step.
     let reaction = 1.0 + tangent.gain / (S * S) as f64;
     let Tangent { stiffness, damping, .. } = *tangent;
     error <= (stiffness * displacement + damping * velocity) / reaction
 }
 
-/// Rounding of displacement (m) and velocity (m/s) of the tip as sums over the modes.
-pub(crate) fn sum_rounding(model: &Model, state: &State) -> (f64, f64) {
+/// Rounding of a displacement (m) and its velocity (m/s) as sums over the modes with these factors.
+pub(crate) fn sum_rounding(factors: impl Iterator<Item = f64>, state: &State) -> (f64, f64) {
     let (mut displacement, mut velocity) = (0.0, 0.0);
-    for (mode, at) in model.modes.iter().zip(&state.modes) {
-        displacement += (mode.tip * at.q).abs();
-        velocity += (mode.tip * at.v).abs();
+    for (factor, at) in factors.zip(&state.modes) {
+        displacement += (factor * at.q).abs();
+        velocity += (factor * at.v).abs();
     }
     let rounding = SUM_ROUNDINGS * f64::EPSILON;
     (rounding * displacement, rounding * velocity)
+}
+
+/// Error of slow modes, N, that a defect (N) of the force at the start of a step of `length` seconds makes near a kink, where
+/// the force is not smooth.
+#[inline(always)]
+pub(super) fn kinked<const S: usize>(state: &State, length: f64, defect: f64) -> f64 {
+    let elapsed = state.time - state.last_kink;
+    if elapsed < FAR * length {
+        KINKED * defect * analytic::<S>(elapsed / length)
+    } else {
+        0.0
+    }
 }
 
 /// Ratio of the quadrature error to the interpolation error with `S` nodes for a square root of time whose branch point
 /// lies `distance` step lengths before the step. Interpolation converges with the power `S` of the size of the
 /// Bernstein ellipse, quadrature with the power `2 S - 1` (L. N. Trefethen, Approximation Theory and Approximation
 /// Practice, 2013, chapters 8 and 19).
-pub(super) fn analytic<const S: usize>(distance: f64) -> f64 {
+fn analytic<const S: usize>(distance: f64) -> f64 {
     let ellipse = 1.0 + 2.0 * distance + 2.0 * (distance * (distance + 1.0)).sqrt();
     (1..S).fold(1.0, |product, _| product / ellipse)
 }

@@ -219,14 +219,17 @@ fn iterated<const S: usize, A: Arithmetic, const DAMPED: bool>(
         }
         // Derivatives of the residuals with respect to each nodal force.
         let mut jacobian = step.force.displacement;
-        for (column, velocity) in jacobian.iter_mut().zip(&step.force.velocity) {
+        for (k, (column, velocity)) in jacobian.iter_mut().zip(&step.force.velocity).enumerate() {
             *column = react::<S, A, DAMPED>(column, velocity, &stiffness, &damping);
+            if let Some(entry) = column.get_mut(k) {
+                *entry += 1.0;
+            }
         }
         let answer =
             |error: &ErrorColumn<S>| react::<S, A, DAMPED>(&error.displacement, &error.velocity, &stiffness, &damping);
         let by_force = answer(&step.force_error);
         let by_load = answer(error);
-        let [correction, by_force, by_load] = solve::<S, 3, A>(jacobian, [residual, by_force, by_load])?;
+        let [correction, by_force, by_load] = solve::<S, 3, A>(jacobian, [residual, by_force, by_load], S)?;
         for (force, correction) in forces.iter_mut().zip(&correction) {
             *force -= correction;
         }
@@ -235,24 +238,19 @@ fn iterated<const S: usize, A: Arithmetic, const DAMPED: bool>(
     None
 }
 
-/// Solves `(1 + A) x = b` for several `b`, `A` by columns, by Gauss-Jordan elimination, whose inner loops run down
+/// Solves `n` equations `A x = b` for several `b`, `A` by columns, by Gauss-Jordan elimination, whose inner loops run down
 /// columns. Rows are exchanged only for a small pivot, which occurs in violent steps only. `None` if the matrix is
 /// singular.
-#[expect(
-    clippy::indexing_slicing,
-    reason = "every index runs over the fixed size of the arrays"
-)]
+#[expect(clippy::indexing_slicing, reason = "n is at most the size of the arrays")]
 #[inline(always)]
-fn solve<const S: usize, const R: usize, A: Arithmetic>(
-    mut a: [Nodal<S>; S],
-    mut right: [Nodal<S>; R],
-) -> Option<[Nodal<S>; R]> {
-    for (k, column) in a.iter_mut().enumerate() {
-        column[k] += 1.0;
-    }
-    for p in 0..S {
+pub(super) fn solve<const N: usize, const R: usize, A: Arithmetic>(
+    mut a: [Nodal<N>; N],
+    mut right: [Nodal<N>; R],
+    n: usize,
+) -> Option<[Nodal<N>; R]> {
+    for p in 0..n {
         if a[p][p].abs() < SMALL_PIVOT {
-            let largest = (p..S).max_by(|i, j| a[p][*i].abs().total_cmp(&a[p][*j].abs()))?;
+            let largest = (p..n).max_by(|i, j| a[p][*i].abs().total_cmp(&a[p][*j].abs()))?;
             for column in a.iter_mut().chain(&mut right) {
                 column.swap(p, largest);
             }
@@ -260,25 +258,22 @@ fn solve<const S: usize, const R: usize, A: Arithmetic>(
         let pivot = a[p];
         let inverse = 1.0 / pivot[p];
         // Two loops, as a chained iterator may not be inlined and would then be compiled for the generic processor.
-        for column in a.iter_mut().skip(p + 1) {
-            eliminate::<S, A>(column, p, &pivot, inverse);
+        for column in &mut a[p + 1..n] {
+            eliminate::<N, A>(column, p, &pivot, inverse, n);
         }
         for column in &mut right {
-            eliminate::<S, A>(column, p, &pivot, inverse);
+            eliminate::<N, A>(column, p, &pivot, inverse, n);
         }
     }
     right.iter().flatten().all(|x| x.is_finite()).then_some(right)
 }
 
-/// Eliminates row `p` of a column from all other rows, and divides it by the pivot.
-#[expect(
-    clippy::indexing_slicing,
-    reason = "every index runs over the fixed size of the arrays"
-)]
+/// Eliminates row `p` of a column of `n` from all other rows, and divides it by the pivot.
+#[expect(clippy::indexing_slicing, reason = "n is at most the size of the arrays")]
 #[inline(always)]
-fn eliminate<const S: usize, A: Arithmetic>(column: &mut Nodal<S>, p: usize, pivot: &Nodal<S>, inverse: f64) {
+fn eliminate<const N: usize, A: Arithmetic>(column: &mut Nodal<N>, p: usize, pivot: &Nodal<N>, inverse: f64, n: usize) {
     let share = column[p] * inverse;
-    for k in 0..S {
+    for k in 0..n {
         column[k] = A::mul_add(-pivot[k], share, column[k]);
     }
     column[p] = share;

@@ -63,14 +63,13 @@ impl Integration<'_> {
         }
         let half = 0.5 * target.length;
         let nodes = self.collocation::<LONG>().nodes;
-        let polynomial = self.collocation::<S>();
-        let halves =
-            [0.0, 0.5].map(|start| nodes.map(|node| polynomial.interpolate(&trial.forces, start + 0.5 * node)));
         let friction = self.model.friction();
         let loads = friction.map(|_| Room::<S>::parts(self.workspace).1.tangential.forces);
         let polynomial = self.collocation::<S>();
-        let loads = loads
-            .map(|loads| [0.0, 0.5].map(|start| nodes.map(|node| polynomial.interpolate(&loads, start + 0.5 * node))));
+        let in_halves = |values: &Nodal<S>| {
+            [0.0, 0.5].map(|start| nodes.map(|node| polynomial.interpolate(values, start + 0.5 * node)))
+        };
+        let (halves, loads) = (in_halves(&trial.forces), loads.as_ref().map(in_halves));
         let Self {
             model, state, drive, ..
         } = self;
@@ -89,11 +88,8 @@ impl Integration<'_> {
                 let d = model.preload.indentation + d;
                 *power = (*power - (model.law.force(d, *rate) - model.law.force(d, 0.0))) * rate;
             }
+            subtract_friction(&mut powers, model, state, &motion, &end.tangential);
             work += half * prepared.collocation.mean(&powers);
-            work -= half
-                * prepared
-                    .collocation
-                    .mean(&missed_by_friction(model, state, &motion, &end.tangential));
             at.time += half;
             at.modes = end.modes;
             at.support = motion.support;
@@ -116,16 +112,16 @@ impl Integration<'_> {
     }
 }
 
-/// Power of what the friction forces of a motion miss of the law at its nodes, W; 0 without friction.
-fn missed_by_friction(
+/// Subtracts the power of what the friction forces of a motion miss of the law at its nodes, W.
+fn subtract_friction(
+    powers: &mut Nodal<LONG>,
     model: &Model,
     state: &State,
     motion: &Trial<LONG>,
     along: &TangentialNodes<LONG>,
-) -> Nodal<LONG> {
-    let mut powers = [0.0; LONG];
+) {
     let (Some(friction), Some(hertz), true) = (model.friction(), model.law.hertz(), state.closed) else {
-        return powers;
+        return;
     };
     let tip = motion.indentations.iter().zip(&motion.rates);
     let moved = along.displacements.iter().zip(&along.rates).zip(&along.forces);
@@ -135,9 +131,8 @@ fn missed_by_friction(
             Some(sign) => sign * friction.coefficient * model.law.force(d, *d_rate),
             None => friction.trial(hertz, d, v - state.tangential.slip, *rate).force,
         };
-        *power = (friction.preload + load - force) * rate;
+        *power -= (friction.preload + load - force) * rate;
     }
-    powers
 }
 
 #[cfg(test)]

@@ -121,7 +121,7 @@ impl Integration<'_> {
 
     /// Rounding of the engagement by the sums over the modes, m.
     pub(crate) fn motion_rounding(&self) -> f64 {
-        let (displacement, velocity) = sum_rounding(self.model, self.state);
+        let (displacement, velocity) = sum_rounding(self.model.modes.iter().map(|mode| mode.tip), self.state);
         displacement + self.model.law.damping() * velocity
     }
 

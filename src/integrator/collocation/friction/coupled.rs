@@ -2,8 +2,9 @@
 
 use crate::friction::Friction;
 use crate::integrator::collocation::friction::motion::{Motion, Unforced};
+use crate::integrator::collocation::newton::solve;
 use crate::integrator::collocation::polynomial::Collocation;
-use crate::integrator::constants::{ITERATIONS, MOTION_ROUNDING, SMALL_PIVOT};
+use crate::integrator::constants::{ITERATIONS, MOTION_ROUNDING};
 use crate::math::nodal::{LONG, Nodal, greatest};
 use crate::math::simd::Arithmetic;
 use crate::model::Model;
@@ -160,55 +161,19 @@ pub(super) fn coupled<const S: usize, A: Arithmetic>(
                 by_defect,
             });
         }
-        let mut jacobian = laws.jacobian(unforced);
         let [by_force, by_friction, by_base] = unforced.by_defects();
-        let mut right = [
+        let right = [
             residual,
             laws.answer(&by_force),
             laws.answer(&by_friction),
             laws.answer(&by_base),
         ];
-        solve::<A>(&mut jacobian, &mut right, 2 * S)?;
-        let [correction, by_force, by_friction, by_base] = right;
+        let [correction, by_force, by_friction, by_base] =
+            solve::<{ 2 * LONG }, 4, A>(laws.jacobian(unforced), right, 2 * S)?;
         for (force, correction) in forces.iter_mut().chain(&mut loads).zip(&correction) {
             *force -= correction;
         }
         by_defect = Some([by_force, by_friction, by_base]);
     }
     None
-}
-
-/// Solves `A x = b` of `n` equations for several `b`, by columns: Gauss-Jordan elimination as in
-/// [`newton`](super::newton), with exchange of rows at small pivots. `None` if the matrix is singular.
-#[expect(clippy::indexing_slicing, reason = "n is at most the size of the arrays")]
-#[inline(always)]
-pub(super) fn solve<A: Arithmetic>(a: &mut [Both; 2 * LONG], right: &mut [Both; 4], n: usize) -> Option<()> {
-    for p in 0..n {
-        if a[p][p].abs() < SMALL_PIVOT {
-            let largest = (p..n).max_by(|i, j| a[p][*i].abs().total_cmp(&a[p][*j].abs()))?;
-            for column in a.iter_mut().chain(right.iter_mut()) {
-                column.swap(p, largest);
-            }
-        }
-        let pivot = a[p];
-        let inverse = 1.0 / pivot[p];
-        for column in a.iter_mut().take(n).skip(p + 1) {
-            eliminate::<A>(column, p, &pivot, inverse, n);
-        }
-        for column in right.iter_mut() {
-            eliminate::<A>(column, p, &pivot, inverse, n);
-        }
-    }
-    right.iter().flatten().all(|x| x.is_finite()).then_some(())
-}
-
-/// Eliminates row `p` of a column from all other rows, and divides it by the pivot.
-#[expect(clippy::indexing_slicing, reason = "n is at most the size of the arrays")]
-#[inline(always)]
-fn eliminate<A: Arithmetic>(column: &mut Both, p: usize, pivot: &Both, inverse: f64, n: usize) {
-    let share = column[p] * inverse;
-    for k in 0..n {
-        column[k] = A::mul_add(-pivot[k], share, column[k]);
-    }
-    column[p] = share;
 }

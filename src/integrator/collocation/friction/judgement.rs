@@ -1,12 +1,11 @@
 //! The error estimate of a trial step with friction.
 
 use crate::friction::Friction;
-use crate::integrator::collocation::error::analytic;
+use crate::integrator::collocation::error::kinked;
 use crate::integrator::collocation::friction::coupled::Coupled;
 use crate::integrator::collocation::friction::motion::{Motion, Unforced};
 use crate::integrator::collocation::newton::Tangent;
 use crate::integrator::collocation::polynomial::Collocation;
-use crate::integrator::constants::{FAR, KINKED};
 use crate::math::nodal::{Nodal, dot, end, greatest};
 use crate::math::simd::Arithmetic;
 use crate::model::Model;
@@ -105,12 +104,7 @@ pub(super) fn judged<const S: usize, A: Arithmetic>(
         + grip * (wrong_v.abs() + memory * wrong_v_rate.abs())
         + friction.inertia * free.missed_mean;
     let both = normal.abs() + along.abs();
-    let elapsed = state.time - state.last_kink;
-    let kinked = if elapsed < FAR * step.length {
-        KINKED * both * analytic::<S>(elapsed / step.length)
-    } else {
-        0.0
-    };
+    let kinked = kinked::<S>(state, step.length, both);
     let reaction = tangent.gain / (1.0 + tangent.gain);
     let missed = model.inertia * free.missed_mean;
     let slow = 3.0 * (normal * normal + along * along) / largest + kinked + missed;

@@ -20,15 +20,15 @@ use crate::excitation::drive::Drive;
 use crate::friction::Friction;
 use crate::integrator::collocation::coefficients::Prepared;
 use crate::integrator::collocation::error::errors;
-use crate::integrator::collocation::friction::coupled::{coupled, solve};
+use crate::integrator::collocation::friction::coupled::coupled;
 use crate::integrator::collocation::friction::judgement::{Judgement, judged};
 use crate::integrator::collocation::friction::motion::{Motion, Unforced, along};
-use crate::integrator::collocation::newton::{Solution, Source, first_forces};
+use crate::integrator::collocation::newton::{Solution, Source, first_forces, solve};
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::step::{End, Trial, end_of_modes, free_response, loads_on_modes};
 use crate::integrator::collocation::tangential::TangentialNodes;
 use crate::integrator::constants::FORCE_ROUNDING;
-use crate::math::nodal::{LONG, Nodal, add_columns, end, scaled};
+use crate::math::nodal::{Nodal, add_columns, end, scaled};
 use crate::math::simd::{Arithmetic, LANES};
 use crate::model::Model;
 use crate::state::State;
@@ -156,13 +156,13 @@ fn nodes<const S: usize, A: Arithmetic>(
     let Some(integrals) = collocation.shapes.integrals.first() else {
         return nodes;
     };
-    let mut right = [[0.0; 2 * LONG]; 4];
+    let mut rates = [0.0; S];
     let moved = motion.d.iter().zip(&motion.d_rate);
-    for (entry, (d, rate)) in right.iter_mut().take(1).flatten().zip(moved) {
+    for (entry, (d, rate)) in rates.iter_mut().zip(moved) {
         let d = model.preload.indentation + d;
         *entry = (friction.limit_deflection(hertz, sign, d, *rate) - start.deflection()) / (hertz.damping + length);
     }
-    let mut matrix = [[0.0; 2 * LONG]; 2 * LONG];
+    let mut matrix = [[0.0; S]; S];
     let lag = hertz.damping / (hertz.damping + length);
     for (j, (column, integral)) in matrix.iter_mut().zip(&integrals.nodal).enumerate() {
         for (entry, integral) in column.iter_mut().zip(integral) {
@@ -170,13 +170,9 @@ fn nodes<const S: usize, A: Arithmetic>(
         }
         column.iter_mut().skip(j).take(1).for_each(|entry| *entry += lag);
     }
-    if solve::<A>(&mut matrix, &mut right, S).is_none() {
+    let Some([rates]) = solve::<S, 1, A>(matrix, [rates], S) else {
         return nodes;
-    }
-    let mut rates = [0.0; S];
-    for (rate, solved) in rates.iter_mut().zip(right.iter().flatten()) {
-        *rate = *solved;
-    }
+    };
     nodes.deflections = [start.deflection(); S];
     add_columns::<S, A>(&mut nodes.deflections, &integrals.nodal, &scaled(&rates, length));
     for ((slip, rate), lagging) in nodes.slip_rates.iter_mut().zip(&motion.v_rate).zip(&rates) {
