@@ -191,3 +191,9 @@ def test_wrong_questions_are_explained(tmp_path: Path) -> None:
             found(data, **asked)
     with pytest.raises(RelayContactError, match=r"none.csv: no such file"):
         found(tmp_path / "none.csv")
+    open_relay = tmp_path / "open.toml"
+    text = (ROOT / "relays/paper.toml").read_text().replace("contact.overtravel = 0.2e-3", "contact.overtravel = -1e-4")
+    open_relay.write_text(text)
+    closed = files(tmp_path, CLEAN)["response"]
+    with pytest.raises(RelayContactError, match=r"the contact is open \(contact.overtravel = -0.0001 m\): not allowed"):
+        found(closed, relay=open_relay, parameters=["tip.mass"])

@@ -71,11 +71,10 @@ class Laboratory:
     def conditions(self, measurement: Measurement, values: Values) -> Values:
         """Give the parameters of the component under which something was measured."""
         law = AWAY if measurement.is_open else BONDED
+        modes: Values = {"solver.modes": MODES} if measurement.kind in (RINGDOWN, RESPONSE, CHATTER) else {}
         if measurement.kind == FORCE:
             law = STATIC
-        if measurement.kind in (RINGDOWN, RESPONSE, CHATTER):
-            law = {**law, "solver.modes": MODES}
-        found = {**values, **ALONE, **law, **measurement.settings}
+        found = {**values, **ALONE, **law, **modes, **measurement.settings}
         overtravel = float(found.get("contact.overtravel", self.component.start("contact.overtravel")))
         if law is BONDED and overtravel <= 0:
             text = f"in the position {measurement.position} the contact is open (contact.overtravel = {overtravel:g} m)"
