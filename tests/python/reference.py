@@ -20,6 +20,8 @@ from component import STARTS
 from relay_contact import Array, Values
 
 Acceleration = Callable[[float], float]
+# Force (N) on the tip by time, deflection and rate, and how fast it falls with the last two.
+Contact = Callable[[float, float, float], tuple[float, float, float]]
 
 # Functions of Galerkin's method where solver.modes is not set. Where the beam is damped, the contact force of motion
 # without blows is then right to 1e-10 of its scale.
@@ -39,6 +41,19 @@ class Modes:
     participation: Array
     # Integrals of products of their slopes.
     slopes: Array
+
+
+@dataclass(frozen=True)
+class Equations:
+    """Equations of motion of the modes: of their displacements times the angular frequency, then their velocities."""
+
+    size: int
+    rates: Callable[[float, Array], Array]
+    jacobian: Callable[[float, Array], Array]
+    # Deflection (m) of the tip and its rate by the motion.
+    tip: Callable[[Array], Any]
+    # What a tolerance of the motion is relative to, m/s.
+    scale: float
 
 
 class Reference:
@@ -242,18 +257,8 @@ class Reference:
         tip = self.tip(acceleration, stop, tolerance, contact, max_step)
         return lambda time: contact(time, *tip(time))[0]
 
-    def tip(
-        self,
-        acceleration: Acceleration,
-        stop: float,
-        tolerance: float,
-        contact: Callable[[float, float, float], tuple[float, float, float]],
-        max_step: float = np.inf,
-    ) -> Callable[[Any], Any]:
-        """Deflection (m) of the tip from the preload and its rate as functions of time, from rest at 0.
-
-        `contact` gives the force (N) on the tip by time, deflection and rate, and how fast it falls with the last two.
-        """
+    def equations(self, acceleration: Acceleration, contact: Contact) -> Equations:
+        """Equations of motion of the tip from the preload, under a base acceleration and the force of the contact."""
         modes = self.modes()
         n, omega = len(modes.tip), np.sqrt(modes.omega_squared)
         preload = (modes.tip * self.force - modes.participation * self.gravity) / modes.omega_squared
@@ -280,19 +285,31 @@ class Reference:
 
         # Velocity that the force scale gives the first mode in 1 / omega.
         scale = self.force_scale * abs(modes.tip[-1]) / omega.min()
+        return Equations(2 * n, rates, jacobian, of, scale)
+
+    def tip(
+        self,
+        acceleration: Acceleration,
+        stop: float,
+        tolerance: float,
+        contact: Contact,
+        max_step: float = np.inf,
+    ) -> Callable[[Any], Any]:
+        """Deflection (m) of the tip from the preload and its rate as functions of time, from rest at 0."""
+        equations = self.equations(acceleration, contact)
         solution = solve_ivp(
-            rates,
+            equations.rates,
             (0.0, stop),
-            np.zeros(2 * n),
+            np.zeros(equations.size),
             method="Radau",
-            jac=jacobian,
+            jac=equations.jacobian,
             rtol=tolerance,
-            atol=tolerance * scale,
+            atol=tolerance * equations.scale,
             dense_output=True,
             max_step=max_step,
         )
         assert solution.success, solution.message
-        return lambda time: of(solution.sol(time))
+        return lambda time: equations.tip(solution.sol(time))
 
     def frequency_following(self) -> float:
         """Lowest natural frequency with the contact as a spring and the axial force following the deflection, Hz."""

@@ -1,13 +1,14 @@
 """The second contact of a changeover relay, by the motion of the spring between both, solved by other means."""
 
-from functools import cache, partial
+from functools import cache
 from math import pi, sin
 from typing import Any
 
 import numpy as np
 import pytest
+from sksundae.cvode import CVODE
 
-from reference import Reference, crossings
+from reference import Reference
 from relay_contact import Array, Values
 from relay_contact.scene import Scene, run
 
@@ -35,18 +36,46 @@ OUTPUTS = [
 
 
 class Between:
-    """The spring between two contacts, by the equations of motion with both forces."""
+    """The spring between two contacts, by the equations of motion with both forces and SUNDIALS CVODE."""
 
-    def __init__(self, values: Values, speeds: tuple[float, float], stop: float, tolerance: float) -> None:
+    def __init__(self, values: Values, speeds: tuple[float, float], times: Array, tolerance: float) -> None:
         """Solve them; both fixed contacts come at these constant speeds (m/s), the second relative to the first."""
         self.first = Reference(values)
         known = self.first.values
         of_second = {f"contact.{name}": known[f"second.{name}"] for name in ("curvatureRadius", "damping")}
         self.laws = self.first, Reference({**values, **of_second})
         self.gap: float = known["second.gap"]
+        self.limit = self.first.force_of_resistance(known["chatter.resistanceThreshold"])
         self.speeds = speeds
         amplitude, omega = known["excitation.amplitude"], 2 * pi * known["excitation.frequency"]
-        self.tip = self.first.tip(lambda time: amplitude * sin(omega * time), stop, tolerance, self._load)
+        equations = self.first.equations(lambda time: amplitude * sin(omega * time), self._load)
+
+        def rates(time: float, motion: Array, rates: Array) -> None:
+            rates[:] = equations.rates(time, motion)
+
+        def jacobian(time: float, motion: Array, _: Array, matrix: Array) -> None:
+            matrix[:] = equations.jacobian(time, motion)
+
+        def events(time: float, motion: Array, values: Array) -> None:
+            tip = time, *equations.tip(motion)
+            values[:] = [self._overlap(side, *tip) for side in (0, 1)] + self._margins(*tip)
+
+        events.terminal = [False] * 4  # type: ignore[attr-defined]
+        solver = CVODE(
+            rates,
+            jacfn=jacobian,
+            eventsfn=events,
+            num_events=4,
+            rtol=tolerance,
+            atol=tolerance * equations.scale,
+            max_num_steps=100_000,
+        )
+        solution = solver.solve(times, np.zeros(equations.size))
+        assert solution.success, solution.message
+        # The instants of events are among its times.
+        asked = np.searchsorted(solution.t, times)
+        self.times, self.tip = times, equations.tip(solution.y[asked].T)
+        self.event_times, self.events = solution.t_events, solution.i_events
 
     def _indentations(self, time: Any, deflection: Any, rate: Any) -> list[Any]:  # noqa: ANN401
         """Give indentation and its rate for each contact."""
@@ -57,26 +86,40 @@ class Between:
             (second * time - self.gap - change, second - change_rate),
         ]
 
-    def _load(self, time: float, deflection: float, rate: float) -> tuple[float, float, float]:
-        first, second = (
-            law.law_force(*indentation)
-            for law, indentation in zip(self.laws, self._indentations(time, deflection, rate), strict=True)
-        )
+    def _laws(self, *tip: float) -> list[tuple[float, float, float]]:
+        return [law.law_force(*at) for law, at in zip(self.laws, self._indentations(*tip), strict=True)]
+
+    def _load(self, *tip: float) -> tuple[float, float, float]:
+        first, second = self._laws(*tip)
         return first[0] - second[0], first[1] + second[1], first[2] + second[2]
 
-    def force(self, side: int, time: float) -> float:
-        """Force of a contact, N."""
-        return self.laws[side].law_force(*self._indentations(time, *self.tip(time))[side])[0]
+    def _margins(self, *tip: float) -> list[float]:
+        """Force of each contact above that of the threshold resistance, N."""
+        return [law[0] - self.limit for law in self._laws(*tip)]
 
-    def overlap(self, side: int, time: Any) -> Any:  # noqa: ANN401
+    def _overlap(self, side: int, *tip: Any) -> Any:  # noqa: ANN401
         """Give what is positive where a contact has a force: its indentation, or what damping leaves of it (m)."""
-        indentation, rate = self._indentations(time, *self.tip(time))[side]
+        indentation, rate = self._indentations(*tip)[side]
         return np.minimum(indentation, indentation + 1.5 * self.laws[side].contact_damping * rate)
 
-    def gaps(self, times: Array) -> Array:
-        """Gap at the second contact, m."""
-        indentation: Array = self._indentations(times, *self.tip(times))[1][0]
+    def forces(self, side: int, times: Array) -> Array:
+        """Force of a contact at some of the times, N."""
+        at = np.searchsorted(self.times, times - 0.1 * self.times[1])
+        tips = zip(times, self.tip[0][at], self.tip[1][at], strict=True)
+        return np.array([self._laws(*tip)[side][0] for tip in tips])
+
+    def closed(self, side: int) -> Any:  # noqa: ANN401
+        """Whether a contact has a force, at all times."""
+        return self._overlap(side, self.times, *self.tip) > 0
+
+    def gaps(self) -> Array:
+        """Gap at the second contact at all times, m."""
+        indentation: Array = self._indentations(self.times, *self.tip)[1][0]
         return -indentation
+
+    def instants(self, event: int) -> tuple[Array, Array]:
+        """Give the instants at which an event's value falls through zero and those at which it rises."""
+        return tuple(self.event_times[self.events[:, event] == turn] for turn in (-1, 1))
 
 
 # Vibration between fixed contacts at rest; and vibration while both move past the spring, as the armature of a relay
@@ -87,6 +130,16 @@ MOTIONS: dict[str, tuple[Values, tuple[float, float], float]] = {
 }
 
 
+# Places at which each step is looked at for its smallest gap.
+PLACES = 100
+
+
+def solved(name: str, places: int, tolerance: float) -> Between:
+    """Solve the equations of motion at as many times in each step."""
+    values, speeds, stop = MOTIONS[name]
+    return Between(values, speeds, np.linspace(0.0, stop, round(stop / STEP) * places + 1), tolerance)
+
+
 @cache
 def results(name: str) -> tuple[dict[str, Array], Between, float]:
     """Run the component and the reference; give the error allowed in a force too, N."""
@@ -94,7 +147,7 @@ def results(name: str) -> tuple[dict[str, Array], Between, float]:
     ends = np.array([0.0, stop])
     moved = {"support.displacement": speeds[0] * ends, "second.displacement": speeds[1] * ends}
     found = run(Scene("", stop, STEP, OUTPUTS, dict(values), {"time": ends, **moved})).columns
-    between = Between(values, speeds, stop, 1e-10)
+    between = solved(name, PLACES, 1e-12)
     # Relative to the largest force of the run; here that of a blow.
     largest = max(found[f"{side}.force"].max() for side in SIDES)
     assert largest > 10 * between.first.force_scale
@@ -104,15 +157,14 @@ def results(name: str) -> tuple[dict[str, Array], Between, float]:
 @pytest.mark.parametrize("name", MOTIONS)
 def test_the_forces_of_both_contacts(name: str) -> None:
     found, between, allowed = results(name)
-    values, speeds, stop = MOTIONS[name]
-    coarser = Between(values, speeds, stop, 1e-9)
     # At time 0 the fixed contacts have not moved yet, and the forces are those of the preload.
-    times = found["time"][1:]
+    coarser = solved(name, 1, 1e-11)
+    times = coarser.times[1:]
     for side, contact in enumerate(SIDES):
         force = found[f"{contact}.force"][1:]
-        expected, coarse = (np.array([each.force(side, time) for time in times]) for each in (between, coarser))
-        # The reference's own error is some tenth of this difference, which is up to 0.2 of what is allowed, by how sums
-        # are rounded; 24 modes in place of 16 change its forces by less than 0.1 of that.
+        expected, coarse = (each.forces(side, times) for each in (between, coarser))
+        # The reference's own error is some tenth of this difference; 24 modes in place of 16 change its forces by less
+        # than 0.1 of what is allowed.
         assert np.max(np.abs(coarse - expected)) <= 0.5 * allowed
         assert np.max(np.abs(force - expected)) <= allowed
         assert (found[f"{contact}.closed"][1:].astype(bool) == (force > 0)).all()
@@ -122,10 +174,8 @@ def test_the_forces_of_both_contacts(name: str) -> None:
 @pytest.mark.parametrize("name", MOTIONS)
 def test_the_instants_at_which_both_contacts_open_and_close(name: str) -> None:
     found, between, _ = results(name)
-    # No contact is open or closed for less than 10 us.
-    times = np.arange(0.0, found["time"][-1], 1e-6)
     for side, contact in enumerate(SIDES):
-        openings, closings = crossings(partial(between.overlap, side), 0.0, times)
+        openings, closings = between.instants(side)
         assert len(closings) >= 2
         for output, expected in (("lastOpening", openings), ("lastClosing", closings)):
             instants = np.unique(found[f"{contact}.{output}"])
@@ -136,32 +186,31 @@ def test_the_instants_at_which_both_contacts_open_and_close(name: str) -> None:
 @pytest.mark.parametrize("name", MOTIONS)
 def test_the_smallest_gap_of_each_step(name: str) -> None:
     found, between, allowed = results(name)
-    times = np.linspace(found["time"][:-1], found["time"][1:], 401)
-    gaps = between.gaps(times.ravel()).reshape(times.shape)
+    # Those of each step with both of its ends.
+    steps = np.arange(len(found["time"]) - 1)
+    inside = PLACES * steps + np.arange(PLACES + 1)[:, None]
+    gaps = between.gaps()[inside]
     places = np.argmin(gaps, axis=0)
     expected = np.min(gaps, axis=0)
-    closed = between.overlap(1, times[places, np.arange(len(places))]) > 0
+    closed = between.closed(1)[inside[places, steps]]
     assert np.any(closed)
     # The gap is as wrong as the force over the stiffness, of the second contact or, where it is open, of the spring.
     stiffness = np.full(len(places), between.first.tip_stiffness)
     stiffness[closed] = 1.5 * between.laws[1].hertz * np.sqrt(-expected[closed])
-    # Between the samples it is smaller by an eighth of their second difference at most.
-    between_samples = np.max(np.diff(gaps, 2, axis=0), axis=0) / 8
-    assert (np.abs(found["step.minimumGap"][1:] - expected) <= allowed / stiffness + between_samples).all()
+    # Between the places it is smaller by an eighth of their second difference at most.
+    between_places = np.max(np.diff(gaps, 2, axis=0), axis=0).clip(0) / 8
+    assert (np.abs(found["step.minimumGap"][1:] - expected) <= allowed / stiffness + between_places).all()
 
 
 @pytest.mark.parametrize("name", MOTIONS)
 def test_false_makes_of_both_contacts(name: str) -> None:
     found, between, _ = results(name)
-    known = between.first.values
-    limit = between.first.force_of_resistance(known["chatter.resistanceThreshold"])
-    times = np.arange(0.0, found["time"][-1], 1e-6)
     for side, monitor in enumerate(MONITORS):
-        ends, starts = crossings(partial(between.force, side), limit, times)
+        ends, starts = between.instants(2 + side)
         # What is closed at the start is no make; what is closed at the end is one that lasts.
         ends = np.append(ends[ends > starts[0]], found["time"][-1])[: len(starts)]
         lasting = ends - starts
-        assert (lasting > known["second.minimumDuration"]).all()
+        assert (lasting > between.first.values["second.minimumDuration"]).all()
         count, longest, total = (
             found[f"{monitor}.{name}"][-1] for name in ("falseMakes", "longestFalseMake", "totalFalseMake")
         )

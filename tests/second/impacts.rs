@@ -180,9 +180,19 @@ fn a_spring_between_two_contacts() {
     }
 }
 
-/// Nothing adds up over two thousand impacts on both sides.
+/// Nothing adds up over the impacts on both sides.
 #[test]
 fn no_energy_is_made_or_lost_between_two_undamped_stops() {
+    energy_is_kept_over(2000);
+}
+
+#[test]
+#[ignore = "ten minutes in release"]
+fn no_energy_is_made_or_lost_in_a_million_impacts() {
+    energy_is_kept_over(1_000_000);
+}
+
+fn energy_is_kept_over(impacts: u32) {
     let mut scene = changeover(1e-5);
     scene.effects.contact_damping = false;
     scene.beam.stiffness_damping = 0.0;
@@ -216,7 +226,7 @@ fn no_energy_is_made_or_lost_between_two_undamped_stops() {
     };
     let start = energy(&rig);
     let (mut closings, mut last, mut point, mut off) = ([0, 0], [-1.0; 2], 0_u32, 0.0_f64);
-    while closings[0] + closings[1] < 2000 {
+    while closings[0] + closings[1] < impacts {
         point += 1;
         rig.run_to(&Inputs::default(), 1e-5 * f64::from(point)).unwrap();
         let own = usize::from(rig.state.mirrored);
@@ -228,7 +238,7 @@ fn no_energy_is_made_or_lost_between_two_undamped_stops() {
         off = off.max((energy(&rig) / start - 1.0).abs());
     }
     println!("{off:e}, closings {closings:?}");
-    assert!(closings.iter().all(|closings| *closings > 500), "{closings:?}");
+    assert!(closings.iter().all(|closings| *closings > impacts / 4), "{closings:?}");
     // The bar of the hard cases: relative to the energy as the force is to its scale.
     assert!(off <= scene.solver.tolerance, "{off:e}");
 }
