@@ -224,7 +224,8 @@ fn bytes_that_are_no_state_are_an_error_that_says_which() {
         assert!(made.is_null());
         fmu.expect_message(fmi2Error, &["fmi2DeSerializeFMUstate", "serializedState", reason]);
     };
-    for length in 0..bytes.len() {
+    // Some of thousands, each with an instance of its own.
+    for length in (0..bytes.len()).step_by(7) {
         expect(&bytes[..length], "before it is complete");
     }
     let longer = [&bytes[..], &[0; 3]].concat();
@@ -237,7 +238,7 @@ fn bytes_that_are_no_state_are_an_error_that_says_which() {
     expect(&with(2, 1), "not made by this component");
     expect(&with(8, 2), "its format is version 6, allowed is 4");
     expect(&with(20, 1), "belongs to the component");
-    for at in 58..bytes.len() {
+    for at in (58..bytes.len()).step_by(7) {
         expect(&with(at, 1), "checksum");
     }
     // The room has to be that of the state.

@@ -15,7 +15,7 @@ use crate::release::trial::{Runner, Trial};
 const CAMPAIGN: &str = "loaded_library";
 
 /// Random calls made under valgrind, fifty times slower there.
-const CALLS: &str = "5000";
+const CALLS: &str = "2000";
 
 /// The message where valgrind is missing.
 pub const MISSING: &str = "valgrind is missing (on Debian: apt-get install valgrind)";
