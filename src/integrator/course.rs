@@ -48,6 +48,9 @@ impl Places {
 
 /// Where a polynomial over a step turns.
 pub(crate) fn turning_points(polynomial: &Prediction) -> Places {
+    if is_monotone(polynomial) {
+        return Places::default();
+    }
     let slope = |y: f64| value_and_slope(polynomial, y).1;
     let mut places = Places::default();
     let mut before = (-1.0, slope(-1.0));
@@ -62,4 +65,15 @@ pub(crate) fn turning_points(polynomial: &Prediction) -> Places {
         before = now;
     }
     places
+}
+
+/// Whether a polynomial over a step rises or falls throughout, as its steepest terms show.
+fn is_monotone(polynomial: &Prediction) -> bool {
+    let [_, slope, bends @ ..] = polynomial;
+    let most = bends
+        .iter()
+        .zip(2_u8..)
+        .fold(0.0, |most, (bend, power)| most + f64::from(power) * bend.abs());
+    // Beyond what rounding makes of the sum.
+    slope.abs() > 1.001 * most
 }

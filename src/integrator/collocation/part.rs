@@ -11,7 +11,7 @@ use crate::integrator::collocation::tangential::TangentialNodes;
 use crate::math::free_motion::FreeMotion;
 use crate::math::nodal::{Nodal, dot};
 use crate::math::prediction::value_and_slope;
-use crate::math::simd::{Arithmetic, compiled_for};
+use crate::math::simd::{Arithmetic, Separate, compiled_for};
 use crate::model::Model;
 use crate::state::State;
 
@@ -99,7 +99,8 @@ pub(crate) fn first_part<const S: usize>(
     end: &Instant,
 ) -> Trial<S> {
     let nodes = collocation.nodes.map(|node| node * (end.at / length));
-    let nodal = |values: &Nodal<S>| nodes.map(|x| collocation.interpolate(values, x));
+    let rows = nodes.map(|x| collocation.lagrange(x));
+    let nodal = |values: &Nodal<S>| rows.map(|row| dot::<S, Separate>(&row, values));
     let with_start = |start: f64, values: &Nodal<S>| {
         let polynomial = collocation.through(start, values);
         nodes.map(|x| value_and_slope(&polynomial, x - 1.0).0)

@@ -192,16 +192,21 @@ impl<const S: usize> Collocation<S> {
 
     #[inline(always)]
     fn compute<A: Arithmetic>(&self, start: f64, values: &Nodal<S>, before: &Predictions, ratio: f64) -> Predictions {
-        let wrong = |prediction| {
-            let predicted = self.evaluate::<A>(prediction, ratio);
-            let errors = predicted.iter().zip(values).map(|(a, b)| (a - b).abs());
-            errors.fold(0.0_f64, |worst, error| if error > worst { error } else { worst })
-        };
         Predictions {
             steep: combine::<A>(&self.steep, [start].iter().chain(values)),
             flat: combine::<A>(&self.flat, values.iter().skip(S - FLAT)),
-            use_flat: ratio > 0.0 && wrong(&before.flat) < wrong(&before.steep),
+            use_flat: ratio > 0.0
+                && self.mistake::<A>(&before.flat, ratio, values) < self.mistake::<A>(&before.steep, ratio, values),
         }
+    }
+
+    /// The greatest difference of a prediction, made for a step `ratio` times as long as the one before, from the values. Not a
+    /// closure, which may not be inlined and would then be compiled for the generic processor.
+    #[inline(always)]
+    fn mistake<A: Arithmetic>(&self, prediction: &Prediction, ratio: f64, values: &Nodal<S>) -> f64 {
+        let predicted = self.evaluate::<A>(prediction, ratio);
+        let errors = predicted.iter().zip(values).map(|(a, b)| (a - b).abs());
+        errors.fold(0.0_f64, |worst, error| if error > worst { error } else { worst })
     }
 
     /// The polynomial through the values at the start and at the nodes.
