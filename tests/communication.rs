@@ -227,3 +227,113 @@ fn every_event_is_reported_once() {
         }
     }
 }
+
+/// Length of a communication step (s), base acceleration at its start (m/s2), and the rate of that (m/s3).
+type Driven = (f64, f64, f64);
+
+/// What comes from outside anew in each communication step.
+fn plans() -> [(&'static str, Vec<Driven>); 6] {
+    // The golden ratio's fractional parts fill an interval evenly; other multiples serve as random numbers.
+    let part = |k: u32| (f64::from(k) * 0.618_033_988_749_894_9).fract();
+    let random = |k: u32| (f64::from(k) * 0.754_877_666_246_692_8 * 1e3).fract() - 0.5;
+    let wave = |time: f64| 50.0 * (1e3 * time).sin();
+    // From 1 ns to 20 us.
+    let wide = |k: u32| 1e-9 * 2e4_f64.powf(part(k));
+    let mut time = 0.0;
+    let mut walk = 0.0;
+    let smooth = (0..1000).map(|k| {
+        let (start, size) = (wave(time), wide(k));
+        time += size;
+        (size, start, (wave(time) - start) / size)
+    });
+    let smooth = smooth.collect();
+    let walking = (0..1000).map(|k| {
+        walk += 0.5 * random(k);
+        (1e-6, walk, 0.0)
+    });
+    [
+        (
+            "sampled",
+            (0..1000).map(|k| (1e-6, wave(1e-6 * f64::from(k)), 0.0)).collect(),
+        ),
+        (
+            "random lengths",
+            (0..1000).map(|k| (wide(k), 20.0 * random(k), 0.0)).collect(),
+        ),
+        ("random lengths, linear", smooth),
+        ("random walk", walking.collect()),
+        ("random", (0..500).map(|k| (1e-6, 200.0 * random(k), 0.0)).collect()),
+        ("jumps", (0..150).map(|k| (1e-5, f64::from(k % 5), 0.0)).collect()),
+    ]
+}
+
+/// Force, least and greatest force of each communication step; steps taken and rejected.
+fn driven(scene: &Scene, plan: &[Driven]) -> (Vec<[f64; 3]>, [i32; 2]) {
+    let mut inputs = Inputs::default();
+    let mut simulation = Simulation::new(scene, &inputs, 0.0).unwrap();
+    let rows = plan.iter().map(|(size, acceleration, rate)| {
+        (inputs.base_acceleration, inputs.base_acceleration_rate) = (*acceleration, *rate);
+        simulation.step(&inputs, simulation.time(), *size).unwrap();
+        [
+            RealOutput::ContactForce,
+            RealOutput::StepMinimumForce,
+            RealOutput::StepMaximumForce,
+        ]
+        .map(|output| simulation.real(output))
+    });
+    let rows = rows.collect();
+    let steps = [IntegerOutput::SolverSteps, IntegerOutput::SolverRejectedSteps];
+    (rows, steps.map(|output| simulation.integer(output)))
+}
+
+/// For closed and opening contacts with 34 and 0.3 % damping of the first mode.
+#[test]
+fn inputs_and_lengths_that_are_new_in_each_step_keep_the_tolerance() {
+    let closed = [(98.0, 1.0, false), (98.0, 1.0, true), (98.0, 0.01, true)];
+    for (amplitude, damping, watched) in closed.into_iter().chain([(330.0, 1.0, true), (330.0, 0.01, true)]) {
+        for (name, plan) in plans() {
+            let with = |tolerance: f64, modes: i32| {
+                let mut scene = shaken(amplitude, tolerance);
+                scene.beam.stiffness_damping *= damping;
+                scene.solver.modes = modes;
+                scene.effects.extremes = watched;
+                scene.effects.chatter = watched;
+                scene
+            };
+            for tolerance in [1e-3, 1e-6, 1e-8] {
+                let scene = with(tolerance, 0);
+                let modes = Simulation::new(&scene, &Inputs::default(), 0.0)
+                    .unwrap()
+                    .model()
+                    .modes()
+                    .len();
+                // What the number of modes makes is no matter of the steps.
+                let (exact, _) = driven(&with(1e-11, i32::try_from(modes).unwrap()), &plan);
+                let (found, [steps, rejected]) = driven(&scene, &plan);
+                let mut scale = scenes::force_scale(&scene);
+                let mut most = 0.0_f64;
+                for (found, exact) in found.iter().zip(&exact) {
+                    scale = scale.max(exact[2]);
+                    most = (0..if watched { 3 } else { 1 })
+                        .fold(most, |most, i| most.max((found[i] - exact[i]).abs() / scale));
+                }
+                println!(
+                    "{amplitude} m/s2, {damping}, {name}, {tolerance:e}: {most:.1e}, {steps} steps, {rejected} rejected"
+                );
+                assert!(
+                    most <= tolerance,
+                    "{amplitude} m/s2, {damping}, {name}, {tolerance:e}: {most:e}"
+                );
+            }
+        }
+    }
+}
+
+/// After each change of an input the force bends, which needs steps about as short as after the last one.
+#[test]
+fn steps_after_an_input_has_changed_begin_with_the_length_that_the_last_change_needed() {
+    let [.., (_, plan)] = plans();
+    let (_, [steps, rejected]) = driven(&shaken(98.0, 1e-6), &plan);
+    println!("{steps} steps, {rejected} rejected");
+    assert!(5 * rejected < steps && steps < 10 * i32::try_from(plan.len()).unwrap());
+}

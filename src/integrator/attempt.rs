@@ -7,8 +7,8 @@ use crate::integrator::collocation::part::{self, Instant};
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::collocation::trial::trial;
 use crate::integrator::constants::{
-    AFTER_BLOW, AFTER_CHANGE, AFTER_REJECTION, AT_EVENT, FORCE_ROUNDING, INSIDE, LEAST_SHRINK, MOST_GROWTH,
-    MOST_SHRINK, NEAR_BLOW, NEWTON, SAFETY,
+    AFTER_BLOW, AFTER_CHANGE, AFTER_REJECTION, AT_EVENT, FORCE_ROUNDING, INSIDE, INSIDE_DRIVEN, LEAST_SHRINK,
+    MOST_GROWTH, MOST_SHRINK, NEAR_BLOW, NEWTON, SAFETY,
 };
 use crate::integrator::course::{Places, turning_points};
 use crate::integrator::grid::Target;
@@ -31,14 +31,16 @@ impl Integration<'_> {
         // 4-node steps may be inaccurate inside: they end where they are read.
         let inside = if (read || watched || !self.state.closed) && S != SHORT {
             self.inaccuracy(trial, target.length)
+        } else if self.driven && watched && self.state.closed {
+            INSIDE_DRIVEN * self.inaccuracy(trial, target.length)
         } else {
             0.0
         };
-        let ratio = self.after_blow(target) * trial.error / self.allowed.max(trial.rounding);
+        let ratio = self.after_blow(target) * trial.error.counted(self.driven) / self.allowed.max(trial.rounding);
         // Not `max`, which would hide NaN.
         let ratio = if ratio < inside { inside } else { ratio };
         let rounding = self.state.closed || inside < 1.0;
-        if ratio > 1.0 && rounding && is_rounding::<S>(self.model, self.state, &trial.tangent, trial.error) {
+        if ratio > 1.0 && rounding && is_rounding::<S>(self.model, self.state, &trial.tangent, trial.error.total) {
             0.0
         } else {
             ratio
@@ -112,20 +114,34 @@ impl Integration<'_> {
         most / (self.tolerance * self.model.compliance)
     }
 
-    /// Error allowed in a step that ends inside, N.
-    pub(crate) fn allowed_inside(&self) -> f64 {
-        if self.state.closed {
-            AT_EVENT * self.allowed
+    /// Whether the step ends with the communication step, inside the trial.
+    pub(crate) fn is_cut(&self, target: &Target) -> bool {
+        !self.grid.recurs && target.time > self.grid.end()
+    }
+
+    /// Error of a trial that ends inside, at an event or else where it is read or the communication step ends, and the one
+    /// allowed there, N.
+    pub(crate) fn inner_error<const S: usize>(&self, trial: &Trial<S>, target: &Target, event: bool) -> (f64, f64) {
+        let error = trial.inner_error;
+        if self.is_cut(target) && !event {
+            (error.counted(self.driven), self.allowed)
+        } else if self.state.closed {
+            (error.total, AT_EVENT * self.allowed)
         } else {
-            self.allowed
+            (error.total, self.allowed)
         }
     }
 
-    /// Whether the trial may end inside, by an event.
-    pub(crate) fn may_end_inside<const S: usize>(&self, trial: &Trial<S>, target: &Target) -> bool {
-        trial.inner_error <= self.allowed_inside().max(trial.rounding)
+    /// Whether the trial may end inside with this error (N) where that one is allowed.
+    pub(crate) fn may_end_inside<const S: usize>(
+        &self,
+        trial: &Trial<S>,
+        target: &Target,
+        (error, allowed): (f64, f64),
+    ) -> bool {
+        error <= allowed.max(trial.rounding)
             || self.is_shortest(target)
-            || is_rounding::<S>(self.model, self.state, &trial.tangent, trial.inner_error)
+            || is_rounding::<S>(self.model, self.state, &trial.tangent, error)
     }
 
     /// A trial step to the target; the modes at its end are kept for [`Integration::take`].
@@ -199,10 +215,12 @@ impl Integration<'_> {
         }
         self.enter(trial, target.length);
         self.note_approach(trial, target.length);
-        let Self { model, state, .. } = self;
+        let Self {
+            model, state, driven, ..
+        } = self;
         let (cache, end, _) = Room::<S>::parts(self.workspace);
         let collocation = cache.collocation();
-        state.force_error.add(trial.error);
+        state.force_error.add(trial.error.counted(*driven));
         if state.force_error.deviates() {
             let closed = state.closed;
             if let Some(step) = cache.known(target.length, target.recurring) {

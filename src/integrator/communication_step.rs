@@ -1,12 +1,14 @@
 //! A communication step: integrated exactly to its end, or read from the dense output of a longer integration step
 //! ([`crate::integrator::motion`]).
 
+use std::mem::replace;
+
 use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
 use crate::inputs::Inputs;
 use crate::integrator::constants::MANY_STEPS;
 use crate::integrator::extremes::Extremes;
-use crate::integrator::integration::Steps;
+use crate::integrator::integration::{News, Steps};
 use crate::integrator::motion::Motion;
 use crate::integrator::rest::rests_until;
 use crate::integrator::step_control::advance;
@@ -94,7 +96,11 @@ fn step_by<const EXTREMES: bool>(
             }
         } else {
             let (mut end, time) = (motion.end, motion.end.time);
-            let steps = Steps::Exactly { time, size: remaining };
+            let steps = Steps::Exactly {
+                time,
+                size: remaining,
+                news: News::default(),
+            };
             if let Some(extremes) = &mut extremes {
                 motion.add_dense(extremes, model, since, time);
             }
@@ -103,21 +109,29 @@ fn step_by<const EXTREMES: bool>(
             (motion.start, motion.end) = (end, end);
         }
     } else {
-        let mut end = motion.end;
+        // Elsewhere the start of the integration step is its end.
+        let mut former = None;
         if ahead {
-            end = state(model, motion, workspace)?;
+            let now = state(model, motion, workspace)?;
+            former = Some(replace(&mut motion.end, now));
             workspace.events.forget_after(since);
         }
-        let steps = Steps::Exactly { time, size };
-        if let Err(error) = advance(model, &mut end, workspace, drive, steps, extremes.as_mut()) {
+        let news = News {
+            // One after a time without changes is none that recurs.
+            inputs: !steady && !ahead && motion.size > 0.0,
+            length: size != motion.size,
+        };
+        let steps = Steps::Exactly { time, size, news };
+        let end = &mut motion.end;
+        if let Err(error) = advance(model, end, workspace, drive, steps, extremes.as_mut()) {
+            motion.end = former.unwrap_or(motion.start);
             workspace.events.forget_after(since);
             return Err(error);
         }
         end.second_support = second;
         end.support = if end.mirrored { second - support } else { support };
         end.time = until;
-        motion.start = end;
-        motion.end = end;
+        motion.start = motion.end;
         motion.drive = drive;
     }
     motion.size = size;
@@ -151,7 +165,8 @@ pub fn state(model: &Model, motion: &Motion, workspace: &mut Workspace) -> Resul
     let mut state = *motion.state();
     let (time, size) = (state.time, motion.time - state.time);
     if size > 0.0 {
-        let steps = Steps::Exactly { time, size };
+        let news = News::default();
+        let steps = Steps::Exactly { time, size, news };
         advance(model, &mut state, workspace, motion.drive, steps, None)?;
     }
     Ok(state)

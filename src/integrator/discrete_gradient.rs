@@ -134,6 +134,7 @@ mod tests {
                 refusals: 0,
                 before_event: false,
                 changes: 0,
+                driven: false,
                 conserves: false,
             };
             let target = integration.grid.target(step, integration.state.time, None);

@@ -5,6 +5,7 @@
 //! are polynomials through the nodes; between the places where they turn they are monotone, so that nothing is missed.
 
 use crate::friction::Phase;
+use crate::integrator::attempt::growth;
 use crate::integrator::collocation::error::sum_rounding;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::step::Trial;
@@ -112,7 +113,7 @@ impl Integration<'_> {
 
     /// Whether the trial may end at a change inside. No blow follows.
     pub(crate) fn may_change_inside<const S: usize>(&self, trial: &Trial<S>, target: &Target) -> bool {
-        trial.inner_error <= self.allowed.max(trial.rounding) || self.is_shortest(target)
+        trial.inner_error.total <= self.allowed.max(trial.rounding) || self.is_shortest(target)
     }
 
     /// Rounding of the trial force and of the limit by the sums over the modes, N.
@@ -175,11 +176,11 @@ impl Integration<'_> {
 
     /// Keeps the length (s) of a step about to be taken, if it is the first one after a change, with the factor that its error
     /// would have allowed.
-    pub(crate) fn keep_first_step(&mut self, length: f64, growth: f64) {
+    pub(crate) fn keep_first_step<const S: usize>(&mut self, length: f64, ratio: f64) {
         if !self.changes_now() {
             return;
         }
-        *self.state.tangential.first_step() = length * growth.clamp(MOST_SHRINK, 1.0 / MOST_SHRINK);
+        *self.state.tangential.first_step() = length * growth::<S>(ratio).clamp(MOST_SHRINK, 1.0 / MOST_SHRINK);
     }
 }
 

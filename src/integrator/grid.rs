@@ -1,5 +1,5 @@
 //! The grid of a communication step. Integration steps are dyadic fractions of it, or free steps of a few rounded
-//! lengths; either way step lengths recur, so that their coefficients can be cached.
+//! lengths, of which the last may be cut; either way step lengths recur, so that their coefficients can be cached.
 
 /// Progress within a communication step.
 #[derive(Clone, Copy, Debug)]
@@ -12,6 +12,8 @@ pub struct Grid {
     pub done: f64,
     /// A single step that may be longer than `size`.
     pub free: bool,
+    /// Whether `size` is expected to recur. If not, steps have the lengths of free ones, and the last one is cut.
+    pub recurs: bool,
 }
 
 /// The next integration step.
@@ -35,6 +37,7 @@ impl Grid {
             size,
             done: 0.0,
             free: false,
+            recurs: true,
         }
     }
 
@@ -76,6 +79,9 @@ impl Grid {
                 |corner| self.cut(corner - time, corner),
             );
         }
+        if !self.recurs {
+            return self.rounded(requested, time, corner);
+        }
         let done = if self.done == 0.0 && requested >= self.size {
             1.0
         } else {
@@ -95,9 +101,30 @@ impl Grid {
         }
     }
 
+    /// As [`Grid::target`], with a length of free steps, that may reach beyond the communication step.
+    fn rounded(&self, requested: f64, time: f64, corner: Option<f64>) -> Target {
+        let (end, remaining) = (self.end(), self.remaining());
+        let shorter = round_down(requested);
+        let (length, done) = if shorter < remaining {
+            (shorter, self.done + shorter / self.size)
+        } else {
+            (round_up(remaining), 1.0)
+        };
+        let corner = corner.filter(|corner| *corner < time + length);
+        corner.map_or(
+            Target {
+                length,
+                recurring: true,
+                done,
+                time: time + length,
+            },
+            |corner| self.cut(corner.min(end) - time, corner.min(end)),
+        )
+    }
+
     /// The step of `length` (s) that ends at `time` (s), off the grid.
     pub fn cut(&self, length: f64, time: f64) -> Target {
-        let done = if self.free {
+        let done = if self.free || !self.recurs && time >= self.end() {
             1.0
         } else {
             (self.done + length / self.size).min(1.0)
@@ -145,4 +172,46 @@ impl Grid {
 /// Rounds down to `2^n` or `1.5 2^n`, so that the lengths of free steps recur.
 pub(crate) fn round_down(length: f64) -> f64 {
     f64::from_bits(length.to_bits() & (u64::MAX << (f64::MANTISSA_DIGITS - 2)))
+}
+
+/// Rounds up to `2^n` or `1.5 2^n`.
+fn round_up(length: f64) -> f64 {
+    let below = round_down(length);
+    let half = 1_u64 << (f64::MANTISSA_DIGITS - 2);
+    if below == length {
+        length
+    } else {
+        f64::from_bits(below.to_bits() + half)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_of_a_length_that_does_not_recur_have_lengths_that_do() {
+        let mut seen = Vec::new();
+        for k in 0..1000 {
+            // From 1 to 16 us.
+            let size = 1e-6 * 16_f64.powf(f64::from(k) / 1000.0);
+            let mut grid = Grid {
+                recurs: false,
+                ..Grid::over(0.5, size)
+            };
+            let mut time = grid.start;
+            while grid.done < 1.0 {
+                let target = grid.target(0.7e-6 * f64::from(k % 7 + 1), time, None);
+                assert!(target.recurring && target.length == round_down(target.length));
+                seen.push(target.length);
+                // Only the last one reaches beyond the end.
+                assert!(target.time <= grid.end() || target.done == 1.0);
+                (time, grid.done) = (target.time, target.done);
+            }
+            assert!(time >= grid.end() - f64::EPSILON && time < grid.end() + 0.51 * size);
+        }
+        seen.sort_by(f64::total_cmp);
+        seen.dedup();
+        assert!(seen.len() < 120, "{seen:?}");
+    }
 }

@@ -37,6 +37,8 @@ pub(crate) struct Integration<'a> {
     pub(crate) before_event: bool,
     /// Changes between stick and slip in succession that took no time.
     pub(crate) changes: u32,
+    /// Whether an input has changed as the communication step began, in a contact that is closed since the beginning.
+    pub(crate) driven: bool,
     /// Whether the energy changes only by the work of the drive ([`crate::integrator::energy::conservation`]).
     pub(crate) conserves: bool,
 }
@@ -76,6 +78,8 @@ pub(crate) enum Steps<'a> {
         time: f64,
         /// s.
         size: f64,
+        /// What is new in it.
+        news: News,
     },
     /// By one step as long as the error allows, with dense output.
     Own {
@@ -84,6 +88,15 @@ pub(crate) enum Steps<'a> {
         /// The tip during the step.
         dense: &'a mut DenseOutput,
     },
+}
+
+/// What a communication step has that the one before it had not, as if that were to go on.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct News {
+    /// An input that has changed.
+    pub(crate) inputs: bool,
+    /// Another length.
+    pub(crate) length: bool,
 }
 
 /// Outcome of a step: accepted or rejected, and the size of the next one.

@@ -187,6 +187,13 @@
 //!
 //! Where the contact has opened or closed once, the integrator always runs ahead while inputs do not change.
 //!
+//! *Inputs that change each time.* Each change bends the force, which with contact damping follows within a fraction of a
+//! microsecond. A wrong velocity of the tip that is left by it is taken back by the contact's damper as soon, so that it counts
+//! only [`constants::DRIVEN`] times ([`Estimate`](collocation::error::Estimate)); a wrong way and what slow modes feel count in full,
+//! and all of it once the contact has opened, as a blow would multiply it. The next communication step begins with the step
+//! length that this one began with. Where its length is new too, no coefficients are formed for it: steps have the lengths of
+//! free ones, and the last one is cut at the communication point, as at an event ([`grid`]).
+//!
 //! Extremes of the force in a communication step come from the same polynomials ([`extremes`]): the places where the force
 //! turns are found once for each step ([`course`]) and kept with them.
 //!

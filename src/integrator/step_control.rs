@@ -6,8 +6,8 @@ use crate::friction::Phase;
 use crate::integrator::attempt::{growth, shrinkage};
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::constants::{
-    AFTER_REJECTION, COARSEST, GROWING, LEAST_SHRINK, LONGER, LOOSEST, MOST_SHRINK, NEXT_LENGTH, REFUSALS, SAFETY,
-    SHARE, SMOOTH, STEP_GROWTH, WORTH,
+    AFTER_REJECTION, AGAIN, COARSEST, GROWING, LEAST_SHRINK, LONGER, LOOSEST, MOST_SHRINK, NEXT_LENGTH, REFUSALS,
+    SAFETY, SHARE, SMOOTH, STEP_GROWTH, WORTH,
 };
 use crate::integrator::energy::conservation::conserves;
 use crate::integrator::events::Cut;
@@ -39,22 +39,28 @@ pub(crate) fn advance(
     let (model, other) = model.views(state);
     let drive = drive.seen(state);
     let tolerance = model.tolerance().min(LOOSEST * model.force_scale());
-    let (grid, dense) = match steps {
-        Steps::Exactly { time, size } => {
+    let (grid, dense, driven) = match steps {
+        Steps::Exactly { time, size, news } => {
             exact_step::leave_before_rest(model, state, &drive, tolerance);
             state.time = rests_until(model, state, &drive, tolerance, time + size).unwrap_or(time);
             let remaining = size - (state.time - time);
             if remaining <= 0.0 || exact_step::step_exactly(model, state, workspace, &drive, remaining) {
                 return Ok(());
             }
-            (Grid::over(state.time, remaining), None)
+            let grid = Grid {
+                recurs: !(news.inputs && news.length),
+                ..Grid::over(state.time, remaining)
+            };
+            // A blow would make more of an error than it is here.
+            let driven = news.inputs && state.closed && state.last_opening.max(state.last_closing) < 0.0;
+            (grid, None, driven)
         }
         Steps::Own { until, dense } => {
             if exact_step::step_ahead(model, state, workspace, &drive, (until, &mut *dense)) {
                 return Ok(());
             }
             let size = state.short_step.max(state.long_step);
-            (Grid::free(state.time, size), Some((until, dense)))
+            (Grid::free(state.time, size), Some((until, dense)), false)
         }
     };
     exact_step::leave(model, state);
@@ -72,6 +78,7 @@ pub(crate) fn advance(
         refusals: 0,
         before_event: false,
         changes: 0,
+        driven,
         conserves: conserves(model, &drive),
     }
     .run()
@@ -90,9 +97,14 @@ impl Integration<'_> {
         self.set_support_rate();
         self.note_force();
         let budget = Budget::new(self.workspace);
+        let steps = self.state.steps;
+        let mut first = None;
         while self.grid.done < 1.0 {
             budget.check(self.workspace, self.state.time)?;
             self.advance()?;
+            if self.driven && first.is_none() && self.state.steps > steps {
+                first = Some((self.state.short_step, self.state.long_step));
+            }
             self.note_force();
             let Grid { free, done, .. } = self.grid;
             let end = self.grid.end();
@@ -103,6 +115,11 @@ impl Integration<'_> {
                 let target = self.grid.cut(until - self.state.time, until);
                 (self.state.time, self.grid.done) = (target.time, target.done);
             }
+        }
+        if let Some((short_step, long_step)) = first {
+            // The next change will need steps as short as this one.
+            self.state.short_step = self.state.short_step.min(short_step);
+            self.state.long_step = self.state.long_step.min(long_step);
         }
         Ok(())
     }
@@ -143,7 +160,8 @@ impl Integration<'_> {
             }
             // A long step cut far below its possible size: a short one will do next time.
             if outcome.taken && !outcome.switched {
-                self.state.short_step = short_step.max(outcome.growth * remaining.min(long_step) / LONGER);
+                let again = if self.driven { AGAIN } else { 1.0 };
+                self.state.short_step = (again * short_step).max(outcome.growth * remaining.min(long_step) / LONGER);
             }
         }
         Ok(())
@@ -204,17 +222,19 @@ impl Integration<'_> {
         } else {
             self.closing_of_either(&trial, target.length)
         };
-        if (opens.is_some() || closes.is_some() || read.is_some()) && !self.may_end_inside(&trial, &target) {
+        let event = opens.is_some() || closes.is_some();
+        let inside = self.inner_error(&trial, &target, event);
+        if (event || read.is_some()) && !self.may_end_inside(&trial, &target, inside) {
             self.before_event = true;
             if self.state.closed {
                 // More nodes do better inside than a shorter step.
                 self.state.long_step = self.state.long_step.max(target.length);
             }
-            let shrink = AFTER_REJECTION * (self.allowed_inside() / trial.inner_error).powf(1.0 / S as f64);
+            let shrink = AFTER_REJECTION * (inside.1 / inside.0).powf(1.0 / S as f64);
             return Ok(self.reject(target.length * shrink.clamp(LEAST_SHRINK, NEXT_LENGTH)));
         }
         if change.is_some() && !self.may_change_inside(&trial, &target) {
-            let shrink = AFTER_REJECTION * (self.allowed / trial.inner_error).powf(1.0 / S as f64);
+            let shrink = AFTER_REJECTION * (self.allowed / trial.inner_error.total).powf(1.0 / S as f64);
             return Ok(self.reject(target.length * shrink.clamp(LEAST_SHRINK, NEXT_LENGTH)));
         }
         let opening = opens.and_then(|part| self.opening(&trial, target.length, part * target.length));
@@ -241,7 +261,7 @@ impl Integration<'_> {
         let Some(passages) = self.passages(&trial, target.length, self.is_shortest(&target)) else {
             return Ok(self.reject(MOST_SHRINK * target.length));
         };
-        self.keep_first_step(target.length, self::growth::<S>(ratio));
+        self.keep_first_step::<S>(target.length, ratio);
         self.take(&trial, &target, passages)?;
         if corner.is_some_and(|corner| corner <= target.time) {
             // What the corner sets vibrating, the step sizes before it do not resolve.
@@ -278,12 +298,15 @@ impl Integration<'_> {
         }
     }
 
-    /// The instant (s) in a trial at which it will be read, if its polynomials are not accurate there.
+    /// The instant (s) in a trial at which it will be read, if its polynomials are not accurate there, or the communication
+    /// step ends.
     fn read_at<const S: usize>(&mut self, trial: &Trial<S>, target: &Target) -> Option<f64>
     where
         Workspace: Room<S>,
     {
-        let (read, _) = self.dense.as_ref()?;
+        let Some((read, _)) = &self.dense else {
+            return self.is_cut(target).then(|| self.grid.end());
+        };
         let read = *read;
         let inside = read > self.state.time && read < target.time;
         (inside && S == SHORT && self.inaccuracy(trial, target.length) > 1.0).then_some(read)

@@ -3,10 +3,35 @@
 use crate::integrator::collocation::coefficients::StepCoefficients;
 use crate::integrator::collocation::newton::{FreeResponse, Solution, Tangent};
 use crate::integrator::collocation::polynomial::Collocation;
-use crate::integrator::constants::{FAR, KINKED, SUM_ROUNDINGS};
+use crate::integrator::constants::{DRIVEN, FAR, KINKED, SUM_ROUNDINGS};
 use crate::math::nodal::{Nodal, greatest};
 use crate::model::Model;
 use crate::state::State;
+
+/// Estimate of an error, N.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Estimate {
+    /// All of it.
+    pub total: f64,
+    /// Without what the contact's damper takes back.
+    pub lasting: f64,
+}
+
+impl Estimate {
+    /// Of which nothing is known to die out sooner.
+    pub fn lasting(total: f64) -> Self {
+        Self { total, lasting: total }
+    }
+
+    /// As it counts: where an input changes each time (`driven`), what the damper takes back is gone at the next change.
+    pub fn counted(&self, driven: bool) -> f64 {
+        if driven {
+            self.lasting + DRIVEN * (self.total - self.lasting)
+        } else {
+            self.total
+        }
+    }
+}
 
 /// Estimates of the error that a step adds to the contact force, N: if it is taken to its end, and if it ends inside.
 ///
@@ -27,12 +52,13 @@ pub(crate) fn errors<const S: usize>(
     start_defect: f64,
     free: &FreeResponse<S>,
     largest: f64,
-) -> (f64, f64) {
+) -> [Estimate; 2] {
     if state.closed {
         let (by_force, by_load) = (solution.by_force, solution.by_load);
         let wrong_d = by_load.0 * free.start_defect - by_force.0 * start_defect;
         let wrong_r = by_load.1 * free.start_defect - by_force.1 * start_defect;
-        let fast = (solution.tangent.stiffness * wrong_d).abs() + (solution.tangent.damping * wrong_r).abs();
+        let of_way = (solution.tangent.stiffness * wrong_d).abs();
+        let fast = of_way + (solution.tangent.damping * wrong_r).abs();
         let kinked = kinked::<S>(state, step.length, start_defect.abs());
         let reaction = solution.tangent.gain / (1.0 + solution.tangent.gain);
         let missed = model.inertia * free.missed_mean;
@@ -46,7 +72,12 @@ pub(crate) fn errors<const S: usize>(
             model.inertia * free.start_defect.abs()
         };
         let impulse = collocation.impulse * (start_defect.abs() + base) + missed;
-        (fast + slow * reaction, inside + impulse * reaction)
+        // The contact's damper takes back what a wrong velocity makes, not a wrong way.
+        let kept = of_way / fast.max(f64::MIN_POSITIVE);
+        [(fast, slow), (inside, impulse)].map(|(fast, slow)| Estimate {
+            total: fast + slow * reaction,
+            lasting: kept * fast + slow * reaction,
+        })
     } else {
         // Of the indentation that is read, searched for a contact, or left at an instant inside.
         let most = |values: &Nodal<S>| greatest(values) * free.start_defect.abs();
@@ -58,10 +89,7 @@ pub(crate) fn errors<const S: usize>(
             + missed_velocity * (model.memory + law.damping());
         let stiffness = law.tangent_stiffness(model.force_scale);
         // At the end the velocity is that of the quadrature.
-        (
-            stiffness * wrong,
-            stiffness * (wrong + model.memory * most(&rows.velocity)),
-        )
+        [wrong, wrong + model.memory * most(&rows.velocity)].map(|wrong| Estimate::lasting(stiffness * wrong))
     }
 }
 

@@ -6,7 +6,7 @@ use crate::beam::mode::{MAX_MODES, Modal, ModeState, ModeStates};
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::axial_force::{self, NodalModes, Settled};
 use crate::integrator::collocation::coefficients::{EndRows, Prepared, StepCoefficients};
-use crate::integrator::collocation::error::errors;
+use crate::integrator::collocation::error::{Estimate, errors};
 use crate::integrator::collocation::newton::{
     FreeResponse, Solution, Source, Tangent, at_nodes, closed_forces, first_forces,
 };
@@ -39,9 +39,9 @@ pub struct Trial<const S: usize> {
     /// inside the step that was computed.
     pub force: f64,
     /// Estimate of the error this step adds to the contact force, N.
-    pub error: f64,
+    pub error: Estimate,
     /// Estimate of the same at instants inside the step, N.
-    pub inner_error: f64,
+    pub inner_error: Estimate,
     /// Rounding of the contact force, N: an error estimate below it is meaningless.
     pub rounding: f64,
     /// Defect of the force polynomial at the start: difference from the contact force there, N.
@@ -258,7 +258,7 @@ fn judged<const S: usize, A: Arithmetic>(
     } else {
         (0.0, 0.0)
     };
-    let (error, inner_error) = errors(model, state, (step, collocation), solution, start_defect, free, largest);
+    let [error, inner_error] = errors(model, state, (step, collocation), solution, start_defect, free, largest);
     Trial {
         forces,
         indentations,

@@ -146,7 +146,7 @@ mod tests {
     use crate::integrator::collocation::polynomial::Collocation;
     use crate::integrator::course::Places;
     use crate::integrator::grid::Grid;
-    use crate::integrator::integration::Steps;
+    use crate::integrator::integration::{News, Steps};
     use crate::math::nodal::SHORT;
     use crate::scene::Scene;
     use crate::variables::ExcitationKind;
@@ -170,7 +170,11 @@ mod tests {
             ..Inputs::default()
         };
         let drive = Drive::new(&inputs, 0.0, 1e-3, [-2e-8, 0.0]);
-        let steps = Steps::Exactly { time: 0.0, size: 4e-4 };
+        let steps = Steps::Exactly {
+            time: 0.0,
+            size: 4e-4,
+            news: News::default(),
+        };
         let mut workspace = Workspace::new(&model);
         crate::integrator::step_control::advance(&model, &mut state, &mut workspace, drive, steps, None).unwrap();
         state.energy_balance = 0.0;
@@ -203,6 +207,7 @@ mod tests {
             refusals: 0,
             before_event: false,
             changes: 0,
+            driven: false,
             conserves: false,
         };
         let target = integration.grid.target(length, integration.state.time, None);

@@ -183,6 +183,7 @@ impl Integration<'_> {
     /// Opens or closes the contact at the instant of the state. Short steps begin anew.
     pub(crate) fn switch(&mut self, closed: bool) {
         self.state.closed = closed;
+        self.driven = false;
         self.state.force_error.begin(&self.model.modes);
         self.workspace.events.record(Event {
             time: self.state.time,

@@ -19,7 +19,7 @@ mod motion;
 use crate::excitation::drive::Drive;
 use crate::friction::Friction;
 use crate::integrator::collocation::coefficients::Prepared;
-use crate::integrator::collocation::error::errors;
+use crate::integrator::collocation::error::{Estimate, errors};
 use crate::integrator::collocation::friction::coupled::coupled;
 use crate::integrator::collocation::friction::judgement::{Judgement, judged};
 use crate::integrator::collocation::friction::motion::{Motion, Unforced, along};
@@ -101,10 +101,10 @@ pub(super) fn compute<const S: usize, A: Arithmetic>(
     } else {
         let solution = Solution::given(forces);
         let coefficients = (step, collocation);
-        let (error, inner_error) = errors(model, state, coefficients, &solution, 0.0, &unforced.free, largest);
+        let [error, inner_error] = errors(model, state, coefficients, &solution, 0.0, &unforced.free, largest);
         Judgement {
-            error,
-            inner_error,
+            error: error.total,
+            inner_error: inner_error.total,
             ..Judgement::default()
         }
     };
@@ -117,8 +117,8 @@ pub(super) fn compute<const S: usize, A: Arithmetic>(
         indentation: support - tip,
         rate: drive.support_rate - tip_rate,
         force: end(&forces),
-        error: judgement.error,
-        inner_error: judgement.inner_error,
+        error: Estimate::lasting(judgement.error),
+        inner_error: Estimate::lasting(judgement.inner_error),
         rounding: FORCE_ROUNDING * largest.max(model.preload.force),
         start_defect: judgement.start_defect,
         next_terms: judgement.next_terms,
