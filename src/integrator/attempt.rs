@@ -7,8 +7,8 @@ use crate::integrator::collocation::part::{self, Instant};
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::collocation::trial::trial;
 use crate::integrator::constants::{
-    AFTER_BLOW, AFTER_CHANGE, AFTER_REJECTION, AT_EVENT, FORCE_ROUNDING, INSIDE, INSIDE_DRIVEN, LEAST_SHRINK,
-    MOST_GROWTH, MOST_SHRINK, NEAR_BLOW, NEWTON, SAFETY,
+    AFTER_BLOW, AFTER_REJECTION, AT_EVENT, FORCE_ROUNDING, INSIDE, INSIDE_DRIVEN, LEAST_SHRINK, MOST_GROWTH,
+    MOST_SHRINK, NEAR_BLOW, NEWTON, SAFETY,
 };
 use crate::integrator::course::{Places, turning_points};
 use crate::integrator::grid::Target;
@@ -47,8 +47,7 @@ impl Integration<'_> {
         }
     }
 
-    /// Factor on the error just after a closing, where the force is not smooth enough for the estimate, and just after slip
-    /// has begun or ended.
+    /// Factor on the error just after a closing, where the force is not smooth enough for the estimate.
     fn after_blow(&self, target: &Target) -> f64 {
         let State {
             time,
@@ -58,13 +57,7 @@ impl Integration<'_> {
             ..
         } = *self.state;
         let near = closed && last_kink == last_closing && time - last_kink < NEAR_BLOW * target.length;
-        if near {
-            AFTER_BLOW
-        } else if self.changes_now() {
-            AFTER_CHANGE
-        } else {
-            1.0
-        }
+        if near { AFTER_BLOW } else { 1.0 }
     }
 
     /// Whether a step to the target with this relative error is accepted; one of the shortest length with any finite

@@ -11,6 +11,10 @@
 /// errors add up. Pinned: × 100, `tests/calibration.rs`.
 pub const SHARE: f64 = 0.004;
 
+/// The same where the contact has slipped and never opened, 1: friction damps what steps miss, and no blow magnifies it. Random
+/// closed relays with friction come near the tolerance with 0.04. Not pinned by a test.
+pub const SHARE_SLIPPING: f64 = 0.016;
+
 /// Tolerance of steps where a looser one is asked, 1: with that, first guesses are poor and more steps are rejected, so that
 /// the work grows. Cost.
 pub const LOOSEST: f64 = 1e-2;
@@ -104,10 +108,6 @@ pub const DRIVEN: f64 = 0.02;
 /// Pinned: 0, the same test.
 pub const INSIDE_DRIVEN: f64 = 0.5;
 
-/// Factor on the estimated error of the first step after slip has begun or ended, 1: what the friction force misses there
-/// dies out in the closed contact. Observed: errors of friction are a hundredth of the tolerance. Cost.
-pub const AFTER_CHANGE: f64 = 0.1;
-
 /// Time since a closing up to which that holds, steps. Observed. Pinned: 0, `former_excesses_are_within_the_tolerance`.
 pub const NEAR_BLOW: f64 = 3.0;
 
@@ -131,6 +131,9 @@ pub const NEWTON: f64 = 0.2;
 /// Iterations before a step is judged too long. Most solutions need one or two. Not pinned: ÷ 12 fails no test of
 /// `tests/calibration.rs` (Cost).
 pub const ITERATIONS: u64 = 12;
+
+/// Largest ratio of a residual to the one before it with which the Jacobian of a contact that sticks still serves, 1. Cost.
+pub const STALE: f64 = 0.03;
 
 /// Rounding of the motion at the nodes, relative to what it would be without contact force, 1. Four roundings. Not
 /// pinned by a test.
@@ -198,7 +201,7 @@ pub const GUESSES: u32 = 8;
 pub const DISTANT: f64 = 8.0;
 
 /// Changes between stick and slip that take no time, before the contact goes on as it is for one step. Only rounding makes
-/// them. Not pinned: 0 fails no test.
+/// them. Pinned: 0, `amplitude_of_a_coulomb_damped_oscillator`.
 pub const MOST_CHANGES: u32 = 16;
 
 /// Pieces of a step in each of which one extreme of its force polynomial is looked for. The degree of long steps. Not

@@ -4,14 +4,14 @@
 //! `mu` times the contact force, by either sign. While it slips, it sticks again where the slip velocity would turn. Both
 //! are polynomials through the nodes; between the places where they turn they are monotone, so that nothing is missed.
 
-use crate::friction::Phase;
+use crate::friction::{Friction, Phase};
 use crate::integrator::attempt::growth;
 use crate::integrator::collocation::error::sum_rounding;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::constants::{LOCATED, MOST_CHANGES, MOST_SHRINK, SUM_ROUNDINGS, WORTH};
 use crate::integrator::course::turning_points;
-use crate::integrator::events::Cut;
+use crate::integrator::events::{Cut, motion_rounding};
 use crate::integrator::grid::Target;
 use crate::integrator::integration::Integration;
 use crate::integrator::workspace::{Room, Workspace};
@@ -19,6 +19,8 @@ use crate::math::nodal::{Nodal, add_columns, dot, end, scaled};
 use crate::math::prediction::value_and_slope;
 use crate::math::roots;
 use crate::math::simd::Separate;
+use crate::model::Model;
+use crate::state::State;
 
 /// Where in a step the contact begins or ceases to slip.
 #[derive(Clone, Copy, Debug)]
@@ -78,10 +80,11 @@ impl Integration<'_> {
         let friction = model
             .friction()
             .filter(|_| state.closed && self.changes <= MOST_CHANGES)?;
-        let unsure = (LOCATED * self.allowed).max(self.friction_rounding());
         let (cache, ends, _) = Room::<S>::parts(self.workspace);
         let (collocation, nodes) = (cache.collocation(), &ends.tangential);
         let start = state.tangential;
+        let allowed = LOCATED * self.allowed;
+        let unsure = || allowed.max(rounding(model, friction, state));
         let first = |start: f64, values: &Nodal<S>| passage(collocation, start, values, unsure);
         let (y, phase) = if let Some(sign) = start.phase.sign() {
             // The friction force that is missing for the slip velocity.
@@ -114,19 +117,6 @@ impl Integration<'_> {
     /// Whether the trial may end at a change inside. No blow follows.
     pub(crate) fn may_change_inside<const S: usize>(&self, trial: &Trial<S>, target: &Target) -> bool {
         trial.inner_error.total <= self.allowed.max(trial.rounding) || self.is_shortest(target)
-    }
-
-    /// Rounding of the trial force and of the limit by the sums over the modes, N.
-    fn friction_rounding(&self) -> f64 {
-        let Self { model, state, .. } = self;
-        let Some(friction) = model.friction() else {
-            return 0.0;
-        };
-        let (displacement, velocity) = sum_rounding(friction.levers.iter().copied(), state);
-        let slip = SUM_ROUNDINGS * f64::EPSILON * state.tangential.slip.abs();
-        let along = slip + displacement + model.law.damping() * velocity;
-        let stiffness = model.law.stiffness(model.preload.indentation + state.indentation);
-        stiffness * (friction.ratio * along + friction.coefficient * self.motion_rounding())
     }
 
     /// The end of the trial of `length` seconds at a change.
@@ -184,9 +174,23 @@ impl Integration<'_> {
     }
 }
 
+/// Rounding of the trial force and of the limit by the sums over the modes, N.
+fn rounding(model: &Model, friction: &Friction, state: &State) -> f64 {
+    let (displacement, velocity) = sum_rounding(friction.levers.iter().copied(), state);
+    let slip = SUM_ROUNDINGS * f64::EPSILON * state.tangential.slip.abs();
+    let along = slip + displacement + model.law.damping() * velocity;
+    let stiffness = model.law.stiffness(model.preload.indentation + state.indentation);
+    stiffness * (friction.ratio * along + friction.coefficient * motion_rounding(model, state))
+}
+
 /// Where the polynomial through `start` and the nodal values first exceeds zero by more than `unsure`: where it passes zero
 /// before, relative to the end of the step in step lengths.
-fn passage<const S: usize>(collocation: &Collocation<S>, start: f64, values: &Nodal<S>, unsure: f64) -> Option<f64> {
+fn passage<const S: usize>(
+    collocation: &Collocation<S>,
+    start: f64,
+    values: &Nodal<S>,
+    unsure: impl Fn() -> f64,
+) -> Option<f64> {
     if !Collocation::comes_near_zero(-start, &scaled(values, -1.0)) {
         return None;
     }
@@ -195,7 +199,7 @@ fn passage<const S: usize>(collocation: &Collocation<S>, start: f64, values: &No
     let mut before = (-1.0, start);
     for y in turning_points(&polynomial).iter().chain([0.0]) {
         let now = (y, value(y));
-        if now.1 > unsure {
+        if now.1 > 0.0 && now.1 > unsure() {
             return Some(roots::between(value, before, now, 1e-12).unwrap_or(before.0));
         }
         before = now;

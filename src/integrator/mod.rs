@@ -232,16 +232,20 @@
 //! With friction ([`friction`](crate::friction): the law) the friction force `T` is a second load on the modes, a polynomial
 //! through the same nodes, and the displacement `v` of the contact point along the spring a second sum over them. The tables
 //! of the response gain `X = sum T_i (h T_i')` and `Y = sum (h T_i')^2`, formed as `D` is, and Newton's method the nodal
-//! values of `T` ([`collocation::friction`]): `2 S` unknowns, with the law of stick or of slip throughout a step. What both
-//! polynomials miss at the start enters the error estimate with its effect on both forces.
+//! values of `T` ([`collocation::friction`]), with the law of stick or of slip throughout a step. While the contact slips, `T`
+//! is a share of `F` and each contact force moves the tip with its friction force: there are `S` unknowns, as without friction,
+//! with other coefficients. While it sticks there are `2 S`; the friction forces are eliminated first, and a Jacobian serves as
+//! long as each iteration reduces the residuals to [`constants::STALE`] of what they were. What both polynomials miss at the start enters
+//! the error estimate with its effect on both forces. Where the contact has slipped and never opened, a step may add
+//! [`constants::SHARE_SLIPPING`] of the tolerance.
 //!
 //! A step ends where the contact begins or ceases to slip ([`friction`]): where the trial force of stick passes the limit,
 //! or the slip velocity its zero, on the polynomials through the nodes. The motion there is exact under the polynomials, as at
 //! any event; no blow follows, so the error inside need only be that allowed in a step. The slope of the friction force jumps
 //! there, and the spring, which has no rotary inertia at its end unless `tip.rotaryInertia` gives it, answers as steeply as
-//! its highest modes do. So the first step is about as long as the last one after such a change, its error counts
-//! [`constants::AFTER_CHANGE`] times, and the next ones grow with the time since, as after a closing. Rounding could change
-//! stick and slip to and fro at one instant: what is below [`constants::LOCATED`] of the error allowed is no change.
+//! its highest modes do. So the first step is about as long as the last one after such a change, and the next ones grow with the
+//! time since, as after a closing. Rounding could change stick and slip to and fro at one instant: what is below
+//! [`constants::LOCATED`] of the error allowed is no change.
 //!
 //! As the contact opens the limit vanishes, so it slips before; as it closes, the direction of the first motion decides.
 //! A contact that sticks may be at rest, with the friction force among the loads. Exact steps, the return of energy, an axial

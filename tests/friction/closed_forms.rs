@@ -1,5 +1,6 @@
 //! Closed forms: a slider on a spring of its own, under the constant force of another mode; and a contact that sticks.
 
+use std::env;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -129,10 +130,11 @@ fn amplitude_of_a_coulomb_damped_oscillator() {
     }
 }
 
-/// Many slips to and fro: what the friction dissipates is what the drive puts in, no more and no less.
+/// Many slips to and fro: what the friction dissipates is what the drive puts in, no more and no less. A million with
+/// `CYCLES=1000000 cargo test --release --test friction over_many -- --nocapture`; the figure is in `docs/friction.md`.
 #[test]
 fn no_energy_is_made_over_many_cycles() {
-    const CYCLES: u32 = 60;
+    let cycles = env::var("CYCLES").map_or(60, |cycles| cycles.parse::<u32>().unwrap());
     let probe = slider(1.0, 80.0, 100.0, 0.0);
     let (limit, stiffness) = grip(&probe);
     let mut scene = slider(limit / 0.5 / LOADED, 80.0, 100.0, 0.0);
@@ -141,7 +143,7 @@ fn no_energy_is_made_over_many_cycles() {
     let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
     let period = 1.0 / 80.0;
     let mut distance = 0.0;
-    for k in 0..CYCLES / 10 {
+    for k in 0..cycles / 10 {
         simulation
             .step(&Inputs::default(), 10.0 * period * f64::from(k), 10.0 * period)
             .unwrap();

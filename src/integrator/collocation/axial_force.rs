@@ -75,7 +75,13 @@ pub(crate) fn settle<const S: usize, A: Arithmetic>(
                     start_defect: 1.0,
                     ..with_loads::<S, A>(model, free, step, &loads)
                 };
-                closed_forces::<S, A>(model, step, &free, forces, (newton, stiffness))?
+                closed_forces::<S, A>(
+                    model,
+                    (&step.force, &step.force_error),
+                    &free,
+                    forces,
+                    (newton, stiffness),
+                )?
             }
             _ => Solution::given(forces),
         };

@@ -4,9 +4,10 @@ use crate::beam::mode::{MAX_MODES, Modal, Mode};
 use crate::excitation::generator::Turns;
 use crate::excitation::random::Piece;
 use crate::excitation::waveform::Accelerations;
+use crate::integrator::collocation::elimination::solve;
 use crate::integrator::collocation::modal_response::ModeOverStep;
 use crate::integrator::collocation::polynomial::Collocation;
-use crate::integrator::collocation::shapes::Table;
+use crate::integrator::collocation::shapes::{Shapes, Table};
 use crate::integrator::collocation::superposition::{Pair, Response, Sum};
 use crate::integrator::constants::SLOTS;
 use crate::math::free_motion::FreeMotion;
@@ -157,6 +158,9 @@ pub struct TangentialCoefficients<const S: usize> {
     pub own_error: ErrorColumn<S>,
     /// As `acceleration`, per defect of the base acceleration.
     pub acceleration_error: ErrorColumn<S>,
+    /// Velocity of a deflection z that follows another with the contact's damping time, `beta_c z' + z = z_1`, per
+    /// difference of the two from the start, 1/s.
+    pub following: [Nodal<S>; S],
 }
 
 /// The coefficients of a step of one length.
@@ -213,6 +217,7 @@ impl<const S: usize> StepCoefficients<S> {
                     cross_error: ErrorColumn::ZERO,
                     own_error: ErrorColumn::ZERO,
                     acceleration_error: ErrorColumn::ZERO,
+                    following: [[0.0; S]; S],
                 })
             }),
             columns: vec![
@@ -288,8 +293,27 @@ impl<const S: usize> StepCoefficients<S> {
             (tangential.cross, tangential.cross_error) = cross;
             (tangential.own, tangential.own_error) = own;
             (tangential.acceleration, tangential.acceleration_error) = acceleration;
+            tangential.following = following::<S, A>(model.law.damping(), h, shapes);
         }
     }
+}
+
+/// See [`TangentialCoefficients::following`]; `damping`: the damping time, s.
+#[inline(always)]
+fn following<const S: usize, A: Arithmetic>(damping: f64, h: f64, shapes: &Shapes<S>) -> [Nodal<S>; S] {
+    let mut matrix = shapes.integrals.first().map_or([[0.0; S]; S], |table| table.nodal);
+    let mut right = [[0.0; S]; S];
+    let scale = 1.0 / (damping + h);
+    for (j, (column, right)) in matrix.iter_mut().zip(&mut right).enumerate() {
+        *column = scaled(column, h * scale);
+        column
+            .iter_mut()
+            .skip(j)
+            .take(1)
+            .for_each(|entry| *entry += damping * scale);
+        right.iter_mut().skip(j).take(1).for_each(|entry| *entry = scale);
+    }
+    solve::<S, S, A>(matrix, right).unwrap_or([[0.0; S]; S])
 }
 
 /// Scales tables in units of the step length `h` (s) to seconds.

@@ -114,38 +114,37 @@ impl ModeOverStep {
         }
     }
 
-    /// The responses at the end to two loads, from rest; displacement in step lengths squared, velocity in step lengths.
+    /// The responses at the end to loads, from rest; displacement in step lengths squared, velocity in step lengths.
     /// `free`: the free motion to there.
     #[inline(always)]
-    pub(crate) fn under<const S: usize, A: Arithmetic>(
+    pub(crate) fn under<const S: usize, A: Arithmetic, const N: usize>(
         &self,
         shapes: &Shapes<S>,
         free: &FreeMotion,
-        (one, other): (&Load, &Load),
-    ) -> [Pair<f64>; 2] {
-        let (mut a, mut b) = (Pair { q: 0.0, v: 0.0 }, Pair { q: 0.0, v: 0.0 });
-        let integrals = one.integrals.iter().zip(&other.integrals);
-        self.for_integrals::<S, A, _>(shapes, integrals, |by_q, by_v, (of_a, of_b)| {
-            (a.q, a.v) = (A::mul_add(by_q, *of_a, a.q), A::mul_add(by_v, *of_a, a.v));
-            (b.q, b.v) = (A::mul_add(by_q, *of_b, b.q), A::mul_add(by_v, *of_b, b.v));
+        loads: [&Load; N],
+    ) -> [Pair<f64>; N] {
+        let mut responses = [Pair { q: 0.0, v: 0.0 }; N];
+        self.for_integrals::<S, A, _>(shapes, 0..TERMS, |by_q, by_v, n| {
+            for (Pair { q, v }, load) in responses.iter_mut().zip(loads) {
+                if let Some(of) = load.integrals.get(n) {
+                    (*q, *v) = (A::mul_add(by_q, *of, *q), A::mul_add(by_v, *of, *v));
+                }
+            }
         });
         if let Regime::Slow = self.regime {
-            return [a, b];
+            return responses;
         }
         // What the free motion cancels at the start.
-        let (mut from_a, mut from_b) = (Pair { q: 0.0, v: 0.0 }, Pair { q: 0.0, v: 0.0 });
-        let derivatives = one.derivatives.iter().zip(&other.derivatives);
-        self.for_derivatives::<S, _>(derivatives, |by_q, by_v, ([start_a, end_a], [start_b, end_b])| {
-            (a.q, a.v) = (A::mul_add(by_q, *end_a, a.q), A::mul_add(by_v, *end_a, a.v));
-            (b.q, b.v) = (A::mul_add(by_q, *end_b, b.q), A::mul_add(by_v, *end_b, b.v));
-            (from_a.q, from_a.v) = (
-                A::mul_add(by_q, *start_a, from_a.q),
-                A::mul_add(by_v, *start_a, from_a.v),
-            );
-            (from_b.q, from_b.v) = (
-                A::mul_add(by_q, *start_b, from_b.q),
-                A::mul_add(by_v, *start_b, from_b.v),
-            );
+        let mut starts = [Pair { q: 0.0, v: 0.0 }; N];
+        self.for_derivatives::<S, _>(0..MAX_SHAPES, |by_q, by_v, m| {
+            for ((response, from), load) in responses.iter_mut().zip(&mut starts).zip(loads) {
+                if let Some([start, end]) = load.derivatives.get(m) {
+                    response.q = A::mul_add(by_q, *end, response.q);
+                    response.v = A::mul_add(by_v, *end, response.v);
+                    from.q = A::mul_add(by_q, *start, from.q);
+                    from.v = A::mul_add(by_v, *start, from.v);
+                }
+            }
         });
         let (q_from_q, q_from_v, v_from_q, v_from_v) = if let Regime::Split(_, fast) = self.regime {
             let decay = decayed(fast);
@@ -154,11 +153,11 @@ impl ModeOverStep {
             let h = self.h;
             (free.q_from_q, free.q_from_v / h, free.v_from_q * h, free.v_from_v)
         };
-        for (response, from) in [(&mut a, from_a), (&mut b, from_b)] {
+        for (response, from) in responses.iter_mut().zip(&starts) {
             response.q -= q_from_q * from.q + q_from_v * from.v;
             response.v -= v_from_q * from.q + v_from_v * from.v;
         }
-        [a, b]
+        responses
     }
 
     #[inline(always)]

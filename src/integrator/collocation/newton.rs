@@ -1,8 +1,9 @@
 //! Newton's method for the nodal forces on the closed branch: each is that of the law at the motion that they cause.
 
-use crate::integrator::collocation::coefficients::{ErrorColumn, StepCoefficients};
+use crate::integrator::collocation::coefficients::{ErrorColumn, StepCoefficients, TipColumns};
+use crate::integrator::collocation::elimination::solve;
 use crate::integrator::collocation::polynomial::Collocation;
-use crate::integrator::constants::{ITERATIONS, MOTION_ROUNDING, SMALL_PIVOT};
+use crate::integrator::constants::{ITERATIONS, MOTION_ROUNDING};
 use crate::math::nodal::{Nodal, add_columns, end, greatest, scaled};
 use crate::math::simd::Arithmetic;
 use crate::model::Model;
@@ -82,7 +83,7 @@ impl<const S: usize> Solution<S> {
     /// causes. From these the effects at the end are formed.
     #[inline(always)]
     fn new(
-        step: &StepCoefficients<S>,
+        (columns, defect): (&TipColumns<S>, &ErrorColumn<S>),
         forces: Nodal<S>,
         iterations: u64,
         (stiffness, damping): (f64, f64),
@@ -95,16 +96,16 @@ impl<const S: usize> Solution<S> {
         };
         let tip = |error: &ErrorColumn<S>, loads: &Nodal<S>| {
             (
-                end(&error.displacement) - last(&step.force.displacement, loads),
-                end(&error.velocity) - last(&step.force.velocity, loads),
+                end(&error.displacement) - last(&columns.displacement, loads),
+                end(&error.velocity) - last(&columns.velocity, loads),
             )
         };
         let steady = [1.0; S];
-        let gain = stiffness * last(&step.force.displacement, &steady) + damping * last(&step.force.velocity, &steady);
+        let gain = stiffness * last(&columns.displacement, &steady) + damping * last(&columns.velocity, &steady);
         Self {
             forces,
             iterations,
-            by_force: tip(&step.force_error, force_error),
+            by_force: tip(defect, force_error),
             by_load: tip(load_error.0, load_error.1),
             nodal_by_force: *force_error,
             nodal_by_load: *load_error.1,
@@ -149,20 +150,20 @@ pub(crate) fn first_forces<const S: usize, A: Arithmetic>(
 }
 
 /// Solves for the nodal forces from an initial guess, to residuals of at most `newton` (N) or rounding; `None` if the
-/// iteration does not converge. `start`: the stiffness at the start, N/m. Velocities are computed only for a contact with
-/// damping.
+/// iteration does not converge. `tip`: its motion per nodal force and per defect of the force at the start; `start`: the
+/// stiffness at the start, N/m. Velocities are computed only for a contact with damping.
 #[inline(always)]
 pub(crate) fn closed_forces<const S: usize, A: Arithmetic>(
     model: &Model,
-    step: &StepCoefficients<S>,
+    tip: (&TipColumns<S>, &ErrorColumn<S>),
     free: &FreeResponse<S>,
     guess: Nodal<S>,
     (newton, start): (f64, f64),
 ) -> Option<Solution<S>> {
     if model.law.damping() > 0.0 {
-        iterated::<S, A, true>(model, step, free, guess, (newton, start))
+        iterated::<S, A, true>(model, tip, free, guess, (newton, start))
     } else {
-        iterated::<S, A, false>(model, step, free, guess, (newton, start))
+        iterated::<S, A, false>(model, tip, free, guess, (newton, start))
     }
 }
 
@@ -170,7 +171,7 @@ pub(crate) fn closed_forces<const S: usize, A: Arithmetic>(
 #[inline(always)]
 fn iterated<const S: usize, A: Arithmetic, const DAMPED: bool>(
     model: &Model,
-    step: &StepCoefficients<S>,
+    (columns, defect): (&TipColumns<S>, &ErrorColumn<S>),
     free: &FreeResponse<S>,
     guess: Nodal<S>,
     (newton, start): (f64, f64),
@@ -184,9 +185,9 @@ fn iterated<const S: usize, A: Arithmetic, const DAMPED: bool>(
     let mut by_errors = None;
     for iterations in 0..=ITERATIONS {
         let (indentations, rates) = if DAMPED {
-            at_nodes::<S, A>(step, free, free_rate, &forces)
+            at_nodes::<S, A>(columns, free, free_rate, &forces)
         } else {
-            (displaced::<S, A>(free, &step.force.displacement, &forces), [0.0; S])
+            (displaced::<S, A>(free, &columns.displacement, &forces), [0.0; S])
         };
         let mut residual = forces;
         let (mut stiffness, mut damping) = ([0.0; S], [0.0; S]);
@@ -206,7 +207,7 @@ fn iterated<const S: usize, A: Arithmetic, const DAMPED: bool>(
         let rounding = MOTION_ROUNDING * (greatest(&stiffness) * farthest + greatest(&damping) * fastest);
         if let Some((by_force, by_load)) = by_errors.filter(|_| greatest(&residual) <= newton.max(rounding)) {
             return Some(Solution::new(
-                step,
+                (columns, defect),
                 forces,
                 iterations,
                 (
@@ -218,8 +219,8 @@ fn iterated<const S: usize, A: Arithmetic, const DAMPED: bool>(
             ));
         }
         // Derivatives of the residuals with respect to each nodal force.
-        let mut jacobian = step.force.displacement;
-        for (k, (column, velocity)) in jacobian.iter_mut().zip(&step.force.velocity).enumerate() {
+        let mut jacobian = columns.displacement;
+        for (k, (column, velocity)) in jacobian.iter_mut().zip(&columns.velocity).enumerate() {
             *column = react::<S, A, DAMPED>(column, velocity, &stiffness, &damping);
             if let Some(entry) = column.get_mut(k) {
                 *entry += 1.0;
@@ -227,56 +228,15 @@ fn iterated<const S: usize, A: Arithmetic, const DAMPED: bool>(
         }
         let answer =
             |error: &ErrorColumn<S>| react::<S, A, DAMPED>(&error.displacement, &error.velocity, &stiffness, &damping);
-        let by_force = answer(&step.force_error);
+        let by_force = answer(defect);
         let by_load = answer(error);
-        let [correction, by_force, by_load] = solve::<S, 3, A>(jacobian, [residual, by_force, by_load], S)?;
+        let [correction, by_force, by_load] = solve::<S, 3, A>(jacobian, [residual, by_force, by_load])?;
         for (force, correction) in forces.iter_mut().zip(&correction) {
             *force -= correction;
         }
         by_errors = Some((by_force, by_load));
     }
     None
-}
-
-/// Solves `n` equations `A x = b` for several `b`, `A` by columns, by Gauss-Jordan elimination, whose inner loops run down
-/// columns. Rows are exchanged only for a small pivot, which occurs in violent steps only. `None` if the matrix is
-/// singular.
-#[expect(clippy::indexing_slicing, reason = "n is at most the size of the arrays")]
-#[inline(always)]
-pub(super) fn solve<const N: usize, const R: usize, A: Arithmetic>(
-    mut a: [Nodal<N>; N],
-    mut right: [Nodal<N>; R],
-    n: usize,
-) -> Option<[Nodal<N>; R]> {
-    for p in 0..n {
-        if a[p][p].abs() < SMALL_PIVOT {
-            let largest = (p..n).max_by(|i, j| a[p][*i].abs().total_cmp(&a[p][*j].abs()))?;
-            for column in a.iter_mut().chain(&mut right) {
-                column.swap(p, largest);
-            }
-        }
-        let pivot = a[p];
-        let inverse = 1.0 / pivot[p];
-        // Two loops, as a chained iterator may not be inlined and would then be compiled for the generic processor.
-        for column in &mut a[p + 1..n] {
-            eliminate::<N, A>(column, p, &pivot, inverse, n);
-        }
-        for column in &mut right {
-            eliminate::<N, A>(column, p, &pivot, inverse, n);
-        }
-    }
-    right.iter().flatten().all(|x| x.is_finite()).then_some(right)
-}
-
-/// Eliminates row `p` of a column of `n` from all other rows, and divides it by the pivot.
-#[expect(clippy::indexing_slicing, reason = "n is at most the size of the arrays")]
-#[inline(always)]
-fn eliminate<const N: usize, A: Arithmetic>(column: &mut Nodal<N>, p: usize, pivot: &Nodal<N>, inverse: f64, n: usize) {
-    let share = column[p] * inverse;
-    for k in 0..n {
-        column[k] = A::mul_add(-pivot[k], share, column[k]);
-    }
-    column[p] = share;
 }
 
 /// Linearised law: nodal forces for displacements and velocities of the tip.
@@ -301,14 +261,14 @@ fn react<const S: usize, A: Arithmetic, const DAMPED: bool>(
 /// Indentation and its velocity at the nodes under the nodal forces.
 #[inline(always)]
 pub(crate) fn at_nodes<const S: usize, A: Arithmetic>(
-    step: &StepCoefficients<S>,
+    columns: &TipColumns<S>,
     free: &Nodal<S>,
     free_rate: &Nodal<S>,
     forces: &Nodal<S>,
 ) -> (Nodal<S>, Nodal<S>) {
     (
-        displaced::<S, A>(free, &step.force.displacement, forces),
-        displaced::<S, A>(free_rate, &step.force.velocity, forces),
+        displaced::<S, A>(free, &columns.displacement, forces),
+        displaced::<S, A>(free_rate, &columns.velocity, forces),
     )
 }
 

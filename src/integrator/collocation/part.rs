@@ -7,6 +7,7 @@ use crate::integrator::collocation::axial_force::NodalModes;
 use crate::integrator::collocation::modal_response::ModeOverStep;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::step::{End, Trial};
+use crate::integrator::collocation::superposition::Pair;
 use crate::integrator::collocation::tangential::TangentialNodes;
 use crate::math::free_motion::FreeMotion;
 use crate::math::nodal::{Nodal, dot};
@@ -58,24 +59,30 @@ fn compute<const S: usize, A: Arithmetic>(
     let axial = model.axial().is_some();
     let friction = model
         .friction()
-        .map(|friction| (friction, load(&whole.tangential.forces)));
+        .map(|friction| (&friction.levers, load(&whole.tangential.forces)));
     let (mut tip, mut tip_rate) = (0.0, 0.0);
     let modes = model.modes.iter().zip(&whole.loads).enumerate();
     for (((i, (mode, own)), start), end) in modes.zip(&state.modes).zip(ends) {
         let free = FreeMotion::new(mode.omega_squared, mode.damping, at);
         let over = ModeOverStep::new(mode.omega_squared, mode.damping, at);
-        let [by_force, by_base] = over.under::<S, A>(shapes, &free, (&force, &base));
-        let mut q = mode.tip * by_force.q - mode.participation * by_base.q;
-        let mut v = mode.tip * by_force.v - mode.participation * by_base.v;
-        if axial {
-            let [by_axial, _] = over.under::<S, A>(shapes, &free, (&load(own), &base));
-            (q, v) = (q + by_axial.q, v + by_axial.v);
-        }
-        if let Some((friction, load)) = &friction
-            && let Some(lever) = friction.levers.get(i)
-        {
-            let [by_friction, _] = over.under::<S, A>(shapes, &free, (load, &base));
+        let by_loads = |by_force: Pair<f64>, by_base: Pair<f64>| {
+            let q = mode.tip * by_force.q - mode.participation * by_base.q;
+            let v = mode.tip * by_force.v - mode.participation * by_base.v;
+            (q, v)
+        };
+        let (mut q, mut v);
+        if let Some((levers, along)) = &friction {
+            let [by_force, by_base, by_friction] = over.under::<S, A, 3>(shapes, &free, [&force, &base, along]);
+            let lever = levers.get(i).copied().unwrap_or_default();
+            (q, v) = by_loads(by_force, by_base);
             (q, v) = (q + lever * by_friction.q, v + lever * by_friction.v);
+        } else {
+            let [by_force, by_base] = over.under::<S, A, 2>(shapes, &free, [&force, &base]);
+            (q, v) = by_loads(by_force, by_base);
+        }
+        if axial {
+            let [by_axial] = over.under::<S, A, 1>(shapes, &free, [&load(own)]);
+            (q, v) = (q + by_axial.q, v + by_axial.v);
         }
         end.q = free.q_from_q * start.q + free.q_from_v * start.v + at * at * q;
         end.v = free.v_from_q * start.q + free.v_from_v * start.v + at * v;

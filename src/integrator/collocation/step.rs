@@ -116,7 +116,13 @@ pub(super) fn compute<const S: usize, A: Arithmetic>(
     let solution = match source {
         Source::Law(newton) if state.closed => {
             let stiffness = model.law.stiffness(model.preload.indentation + state.indentation);
-            closed_forces::<S, A>(model, step, &free, guess, (newton, stiffness))?
+            closed_forces::<S, A>(
+                model,
+                (&step.force, &step.force_error),
+                &free,
+                guess,
+                (newton, stiffness),
+            )?
         }
         _ => Solution::given(guess),
     };
@@ -244,7 +250,7 @@ fn judged<const S: usize, A: Arithmetic>(
         end_modes,
     );
     let Solution { forces, iterations, .. } = *solution;
-    let (indentations, rates) = at_nodes::<S, A>(step, &free.free, &free.free_rate, &forces);
+    let (indentations, rates) = at_nodes::<S, A>(&step.force, &free.free, &free.free_rate, &forces);
     let support = state.support + drive.support_rate * step.length;
     let (indentation, rate) = (support - tip, drive.support_rate - tip_rate);
 

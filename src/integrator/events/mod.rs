@@ -19,6 +19,8 @@ use crate::integrator::integration::{Integration, StepOutcome};
 use crate::integrator::workspace::{Room, Workspace};
 use crate::math::prediction::value_and_slope;
 use crate::math::roots;
+use crate::model::Model;
+use crate::state::State;
 
 /// The end of a step inside the trial that was made for it.
 pub(crate) struct Cut {
@@ -119,10 +121,9 @@ impl Integration<'_> {
         (LOCATED * self.allowed / stiffness).max(self.motion_rounding())
     }
 
-    /// Rounding of the engagement by the sums over the modes, m.
+    /// Rounding of the engagement, m.
     pub(crate) fn motion_rounding(&self) -> f64 {
-        let (displacement, velocity) = sum_rounding(self.model.modes.iter().map(|mode| mode.tip), self.state);
-        displacement + self.model.law.damping() * velocity
+        motion_rounding(self.model, self.state)
     }
 
     /// Takes the trial to `target` up to a cut, in place of a step of `requested` seconds with the growth factor `growth`.
@@ -252,4 +253,10 @@ impl Integration<'_> {
         }
         h
     }
+}
+
+/// Rounding of the engagement by the sums over the modes, m.
+pub(crate) fn motion_rounding(model: &Model, state: &State) -> f64 {
+    let (displacement, velocity) = sum_rounding(model.modes.iter().map(|mode| mode.tip), state);
+    displacement + model.law.damping() * velocity
 }

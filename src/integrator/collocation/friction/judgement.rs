@@ -2,11 +2,11 @@
 
 use crate::friction::Friction;
 use crate::integrator::collocation::error::kinked;
-use crate::integrator::collocation::friction::coupled::Coupled;
-use crate::integrator::collocation::friction::motion::{Motion, Unforced};
+use crate::integrator::collocation::friction::Solved;
+use crate::integrator::collocation::friction::motion::Unforced;
 use crate::integrator::collocation::newton::Tangent;
 use crate::integrator::collocation::polynomial::Collocation;
-use crate::math::nodal::{Nodal, dot, end, greatest};
+use crate::math::nodal::{Nodal, end, greatest};
 use crate::math::simd::Arithmetic;
 use crate::model::Model;
 use crate::state::State;
@@ -30,61 +30,35 @@ pub(super) fn judged<const S: usize, A: Arithmetic>(
     state: &State,
     collocation: &Collocation<S>,
     unforced: &Unforced<S>,
-    coupled: &Coupled<S>,
+    solved: &Solved<S>,
     largest: f64,
 ) -> Judgement {
     let Unforced { step, free, .. } = unforced;
-    let Coupled {
+    let Solved {
         forces,
-        tangential,
-        laws,
-        by_defect,
+        loads,
+        wrong,
+        wrong_loads,
         ..
-    } = coupled;
-    let starts = [
-        state.force - model.preload.force,
-        state.tangential.force - friction.preload,
-    ];
-    let [normal, along] = [(starts[0], forces), (starts[1], tangential)]
-        .map(|(start, values)| start - dot::<S, A>(values, &collocation.at_start));
-    let defects = [normal, along, free.start_defect];
-    // Both forces at the nodes, and what moves the tip at the end.
-    let (mut wrong, mut wrong_loads) = ([0.0; S], [0.0; S]);
-    for (defect, both) in defects.iter().zip(by_defect) {
-        for (sum, value) in wrong.iter_mut().chain(&mut wrong_loads).zip(both) {
-            *sum += defect * value;
-        }
-    }
-    let own = unforced.by_defects();
-    let direct = |of: fn(&Motion<S>) -> &Nodal<S>| -> f64 {
-        defects
-            .iter()
-            .zip(&own)
-            .map(|(defect, motion)| defect * end(of(motion)))
-            .sum()
-    };
+    } = solved;
+    let [normal, along, _] = solved.defects;
+    // What moves the tip at the end.
+    let own = unforced.under_defects::<A>(&solved.defects);
     let last = |columns: &[Nodal<S>; S], loads: &Nodal<S>| {
-        columns
-            .iter()
-            .zip(loads)
-            .map(|(column, load)| end(column) * load)
-            .sum::<f64>()
+        let entries = columns.iter().zip(loads);
+        entries.map(|(column, load)| end(column) * load).sum::<f64>()
     };
     let (d, v) = (&step.force, unforced.tangential);
-    let wrong_d =
-        direct(|motion| &motion.d) - last(&d.displacement, &wrong) - last(&v.cross.displacement, &wrong_loads);
-    let wrong_rate =
-        direct(|motion| &motion.d_rate) - last(&d.velocity, &wrong) - last(&v.cross.velocity, &wrong_loads);
-    let wrong_v =
-        direct(|motion| &motion.v) + last(&v.cross.displacement, &wrong) + last(&v.own.displacement, &wrong_loads);
-    let wrong_v_rate =
-        direct(|motion| &motion.v_rate) + last(&v.cross.velocity, &wrong) + last(&v.own.velocity, &wrong_loads);
+    let wrong_d = end(&own.d) - last(&d.displacement, wrong) - last(&v.cross.displacement, wrong_loads);
+    let wrong_rate = end(&own.d_rate) - last(&d.velocity, wrong) - last(&v.cross.velocity, wrong_loads);
+    let wrong_v = end(&own.v) + last(&v.cross.displacement, wrong) + last(&v.own.displacement, wrong_loads);
+    let wrong_v_rate = end(&own.v_rate) + last(&v.cross.velocity, wrong) + last(&v.own.velocity, wrong_loads);
 
     let start_stiffness = model.law.stiffness(model.preload.indentation + state.indentation);
     let beta = model.law.damping();
     let tangent = {
-        let stiffness = greatest(&laws.stiffness).max(start_stiffness);
-        let damping = greatest(&laws.damping).max(beta * start_stiffness);
+        let stiffness = solved.hardest.0.max(start_stiffness);
+        let damping = solved.hardest.1.max(beta * start_stiffness);
         let steady = [1.0; S];
         let gain = stiffness * last(&d.displacement, &steady) + damping * last(&d.velocity, &steady);
         Tangent {
@@ -112,12 +86,13 @@ pub(super) fn judged<const S: usize, A: Arithmetic>(
     let terms = |start, values: &Nodal<S>| collocation.next_terms::<A>(start, values);
     Judgement {
         error: fast + slow * reaction,
-        inner_error: greatest(&wrong)
-            + greatest(&wrong_loads)
+        inner_error: greatest(wrong)
+            + greatest(wrong_loads)
             + impulse * reaction
             + friction.inertia * (collocation.impulse * free.start_defect.abs() + free.missed_mean),
         start_defect: normal.abs().max(along.abs()),
-        next_terms: terms(starts[0], forces).max(terms(starts[1], tangential)),
+        next_terms: terms(state.force - model.preload.force, forces)
+            .max(terms(state.tangential.force - friction.preload, loads)),
         tangent,
     }
 }

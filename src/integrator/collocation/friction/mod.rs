@@ -9,29 +9,51 @@
 //! stick:  T_k = -k_t(d_k) (v_k - s + beta_c v'_k), s the slip so far;  slip:  T_k = -+ mu F_k
 //! ```
 //!
-//! with Newton's method for all nodal values ([`crate::friction`]: the law). While the contact slips the deflection `z` of
+//! with Newton's method for all nodal values while the contact sticks ([`sticking`]), for the contact forces while it slips
+//! ([`slipping`]; [`crate::friction`]: the law). While the contact slips the deflection `z` of
 //! the tangential spring follows from `beta_c z' + z = -T / k_t`, collocated at the same nodes.
 
-mod coupled;
 mod judgement;
 mod motion;
+mod slipping;
+mod sticking;
 
 use crate::excitation::drive::Drive;
 use crate::friction::Friction;
-use crate::integrator::collocation::coefficients::Prepared;
+use crate::integrator::collocation::coefficients::{Prepared, StepCoefficients, TangentialCoefficients};
 use crate::integrator::collocation::error::{Estimate, errors};
-use crate::integrator::collocation::friction::coupled::coupled;
 use crate::integrator::collocation::friction::judgement::{Judgement, judged};
 use crate::integrator::collocation::friction::motion::{Motion, Unforced, along};
-use crate::integrator::collocation::newton::{Solution, Source, first_forces, solve};
+use crate::integrator::collocation::friction::slipping::slipping;
+use crate::integrator::collocation::friction::sticking::sticking;
+use crate::integrator::collocation::newton::{Solution, Source, first_forces};
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::step::{End, Trial, end_of_modes, free_response, loads_on_modes};
 use crate::integrator::collocation::tangential::TangentialNodes;
 use crate::integrator::constants::FORCE_ROUNDING;
-use crate::math::nodal::{Nodal, add_columns, end, scaled};
+use crate::math::nodal::{Nodal, add, add_columns, end, scaled};
 use crate::math::simd::{Arithmetic, LANES};
 use crate::model::Model;
 use crate::state::State;
+
+/// The nodal forces of a step.
+struct Solved<const S: usize> {
+    /// Contact forces as deviation from the preload, N.
+    forces: Nodal<S>,
+    /// Friction forces as deviation from that of the preload, N.
+    loads: Nodal<S>,
+    iterations: u64,
+    /// Motion at the nodes under both.
+    motion: Motion<S>,
+    /// Greatest stiffness (N/m) and damping (N s/m) of the contact at the nodes.
+    hardest: (f64, f64),
+    /// See [`Unforced::defects`].
+    defects: [f64; 3],
+    /// What the defects do to the contact forces, and to the friction forces, N.
+    wrong: Nodal<S>,
+    /// See `wrong`.
+    wrong_loads: Nodal<S>,
+}
 
 /// [`trial`](super::trial::trial) with friction. Where the contact forces are given, so are the friction forces: those left in
 /// `end`.
@@ -56,24 +78,29 @@ pub(super) fn compute<const S: usize, A: Arithmetic>(
         motion,
     };
     let guess = first_forces::<S, A>(model, state, step, collocation, source);
-    let coupled = match source {
-        Source::Law(newton) if state.closed => Some(coupled::<S, A>(
-            model,
-            friction,
-            state,
-            (&unforced, collocation),
-            guess,
-            newton,
-        )?),
+    let solved = match source {
+        Source::Law(newton) if state.closed => {
+            let unforced = (&unforced, collocation);
+            Some(match state.tangential.phase.sign() {
+                Some(sign) => {
+                    let share = sign * friction.coefficient;
+                    slipping::<S, A>(model, friction, state, unforced, share, guess, newton)?
+                }
+                None => sticking::<S, A>(model, friction, state, unforced, guess, newton)?,
+            })
+        }
         _ => None,
     };
-    let (forces, loads) = match (&coupled, source) {
-        (Some(coupled), _) => (coupled.forces, coupled.tangential),
-        (None, Source::Law(_)) => (guess, [-friction.preload; S]),
-        (None, Source::Given(_)) => (guess, ends.tangential.forces),
+    let (forces, loads, motion) = if let Some(solved) = &solved {
+        (solved.forces, solved.loads, solved.motion)
+    } else {
+        let loads = match source {
+            Source::Law(_) => [-friction.preload; S],
+            Source::Given(_) => ends.tangential.forces,
+        };
+        (guess, loads, unforced.under::<A>(&guess, &loads))
     };
-    let motion = unforced.under::<A>(&forces, &loads);
-    ends.tangential = nodes::<S, A>(model, friction, state, (step.length, collocation), &motion, loads);
+    ends.tangential = nodes::<S, A>(model, friction, state, (step, tangential, collocation), &motion, loads);
 
     let accelerations = unforced.free.accelerations;
     let (tip, tip_rate) = end_of_modes::<S, A>(
@@ -83,10 +110,10 @@ pub(super) fn compute<const S: usize, A: Arithmetic>(
         #[inline(always)]
         |first, lanes| {
             loads_on_modes::<S, A>(&step.end, first, &forces, &accelerations, lanes);
-            let levers = friction.levers.iter().skip(first).take(LANES);
-            for (i, lever) in levers.enumerate() {
+            let (levers, _) = friction.levers.as_chunks::<LANES>();
+            for levers in levers.iter().skip(first / LANES).take(1) {
                 for (lanes, load) in lanes.iter_mut().zip(&loads) {
-                    lanes.iter_mut().skip(i).take(1).for_each(|lane| *lane += lever * load);
+                    add::<LANES, A>(lanes, *load, levers);
                 }
             }
         },
@@ -96,8 +123,8 @@ pub(super) fn compute<const S: usize, A: Arithmetic>(
     let largest = forces.iter().fold(f64::MIN_POSITIVE, |largest, force| {
         largest.max((model.preload.force + force).abs())
     });
-    let judgement = if let Some(coupled) = &coupled {
-        judged::<S, A>(model, friction, state, collocation, &unforced, coupled, largest)
+    let judgement = if let Some(solved) = &solved {
+        judged::<S, A>(model, friction, state, collocation, &unforced, solved, largest)
     } else {
         let solution = Solution::given(forces);
         let coefficients = (step, collocation);
@@ -122,7 +149,7 @@ pub(super) fn compute<const S: usize, A: Arithmetic>(
         rounding: FORCE_ROUNDING * largest.max(model.preload.force),
         start_defect: judgement.start_defect,
         next_terms: judgement.next_terms,
-        iterations: coupled.as_ref().map_or(0, |coupled| coupled.iterations),
+        iterations: solved.as_ref().map_or(0, |solved| solved.iterations),
         tangent: judgement.tangent,
     })
 }
@@ -133,7 +160,7 @@ fn nodes<const S: usize, A: Arithmetic>(
     model: &Model,
     friction: &Friction,
     state: &State,
-    (length, collocation): (f64, &Collocation<S>),
+    (step, tangential, collocation): (&StepCoefficients<S>, &TangentialCoefficients<S>, &Collocation<S>),
     motion: &Motion<S>,
     loads: Nodal<S>,
 ) -> TangentialNodes<S> {
@@ -153,28 +180,18 @@ fn nodes<const S: usize, A: Arithmetic>(
         return nodes;
     };
     // z = z_0 + integral of z', beta_c z' + z = -T / k_t at the nodes.
+    let mut ahead = [0.0; S];
+    for (ahead, (d, rate)) in ahead.iter_mut().zip(motion.d.iter().zip(&motion.d_rate)) {
+        let d = model.preload.indentation + d;
+        *ahead = friction.limit_deflection(hertz, sign, d, *rate) - start.deflection();
+    }
+    let mut rates = [0.0; S];
+    add_columns::<S, A>(&mut rates, &tangential.following, &ahead);
     let Some(integrals) = collocation.shapes.integrals.first() else {
         return nodes;
     };
-    let mut rates = [0.0; S];
-    let moved = motion.d.iter().zip(&motion.d_rate);
-    for (entry, (d, rate)) in rates.iter_mut().zip(moved) {
-        let d = model.preload.indentation + d;
-        *entry = (friction.limit_deflection(hertz, sign, d, *rate) - start.deflection()) / (hertz.damping + length);
-    }
-    let mut matrix = [[0.0; S]; S];
-    let lag = hertz.damping / (hertz.damping + length);
-    for (j, (column, integral)) in matrix.iter_mut().zip(&integrals.nodal).enumerate() {
-        for (entry, integral) in column.iter_mut().zip(integral) {
-            *entry = (1.0 - lag) * integral;
-        }
-        column.iter_mut().skip(j).take(1).for_each(|entry| *entry += lag);
-    }
-    let Some([rates]) = solve::<S, 1, A>(matrix, [rates], S) else {
-        return nodes;
-    };
     nodes.deflections = [start.deflection(); S];
-    add_columns::<S, A>(&mut nodes.deflections, &integrals.nodal, &scaled(&rates, length));
+    add_columns::<S, A>(&mut nodes.deflections, &integrals.nodal, &scaled(&rates, step.length));
     for ((slip, rate), lagging) in nodes.slip_rates.iter_mut().zip(&motion.v_rate).zip(&rates) {
         *slip = rate - lagging;
     }

@@ -1,9 +1,12 @@
 //! Motion of the tip at the nodes of a step, across the contact and along the spring, under both forces.
 
-use crate::integrator::collocation::coefficients::{ErrorColumn, StepCoefficients, TangentialCoefficients, TipColumns};
+use crate::friction::Friction;
+use crate::integrator::collocation::coefficients::{ErrorColumn, StepCoefficients, TangentialCoefficients};
 use crate::integrator::collocation::newton::FreeResponse;
-use crate::math::nodal::{Nodal, add, add_columns, scaled};
+use crate::integrator::collocation::polynomial::Collocation;
+use crate::math::nodal::{Nodal, add, add_columns, dot, scaled};
 use crate::math::simd::Arithmetic;
+use crate::model::Model;
 use crate::state::State;
 
 /// Motion of the tip at the nodes: indentation and displacement along the spring, with their velocities.
@@ -66,37 +69,45 @@ impl<const S: usize> Unforced<'_, S> {
         motion
     }
 
-    /// Motion under unit contact force or friction force at one node.
+    /// What the polynomials miss at the start: of contact force, friction force (N) and base acceleration (m/s2).
     #[inline(always)]
-    pub(super) fn by_nodes(&self) -> impl Iterator<Item = Motion<S>> {
-        let Self { step, tangential, .. } = self;
-        let pairs = |columns: &'_ TipColumns<S>| columns.displacement.into_iter().zip(columns.velocity);
-        let by_force = pairs(&step.force).zip(pairs(&tangential.cross));
-        let by_friction = pairs(&tangential.cross).zip(pairs(&tangential.own));
-        by_force.chain(by_friction).map(|((d, d_rate), (v, v_rate))| Motion {
-            d: scaled(&d, -1.0),
-            d_rate: scaled(&d_rate, -1.0),
-            v,
-            v_rate,
-        })
+    pub(super) fn defects<A: Arithmetic>(
+        &self,
+        model: &Model,
+        friction: &Friction,
+        state: &State,
+        collocation: &Collocation<S>,
+        (forces, loads): (&Nodal<S>, &Nodal<S>),
+    ) -> [f64; 3] {
+        let missed = |start: f64, values: &Nodal<S>| start - dot::<S, A>(values, &collocation.at_start);
+        [
+            missed(state.force - model.preload.force, forces),
+            missed(state.tangential.force - friction.preload, loads),
+            self.free.start_defect,
+        ]
     }
 
-    /// Motion per unit defect at the start: of contact force, friction force and base acceleration.
+    /// Motion at the nodes that these defects make, with forces as they are.
     #[inline(always)]
-    pub(super) fn by_defects(&self) -> [Motion<S>; 3] {
+    pub(super) fn under_defects<A: Arithmetic>(&self, [normal, along, base]: &[f64; 3]) -> Motion<S> {
         let Self {
             step, tangential, free, ..
         } = self;
-        let of = |d: &ErrorColumn<S>, v: &ErrorColumn<S>, sign: f64| Motion {
-            d: scaled(&d.displacement, -sign),
-            d_rate: scaled(&d.velocity, -sign),
-            v: scaled(&v.displacement, sign),
-            v_rate: scaled(&v.velocity, sign),
-        };
-        [
-            of(&step.force_error, &tangential.cross_error, 1.0),
-            of(&tangential.cross_error, &tangential.own_error, 1.0),
-            of(free.error, &tangential.acceleration_error, -1.0),
-        ]
+        let (across, cross, own) = (&step.force_error, &tangential.cross_error, &tangential.own_error);
+        let [d, d_rate] = sum::<S, A>([(across, -normal), (cross, -along), (free.error, *base)]);
+        let [v, v_rate] = sum::<S, A>([(cross, *normal), (own, *along), (&tangential.acceleration_error, -base)]);
+        Motion { d, d_rate, v, v_rate }
     }
+}
+
+/// Displacements and velocities, each of these times its factor.
+#[inline(always)]
+fn sum<const S: usize, A: Arithmetic>(parts: [(&ErrorColumn<S>, f64); 3]) -> [Nodal<S>; 2] {
+    let mut sums = [[0.0; S]; 2];
+    let [displacement, velocity] = &mut sums;
+    for (column, factor) in parts {
+        add::<S, A>(displacement, factor, &column.displacement);
+        add::<S, A>(velocity, factor, &column.velocity);
+    }
+    sums
 }
