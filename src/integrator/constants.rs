@@ -11,33 +11,29 @@
 /// errors add up. Pinned: × 100, `tests/calibration.rs`.
 pub const SHARE: f64 = 0.004;
 
-/// The same where the contact has slipped and never opened, 1: friction damps what steps miss, and no blow magnifies it. Random
-/// closed relays with friction come near the tolerance with 0.04. Not pinned by a test.
-pub const SHARE_SLIPPING: f64 = 0.016;
-
 /// Tolerance of steps where a looser one is asked, 1: with that, first guesses are poor and more steps are rejected, so that
 /// the work grows. Cost.
 pub const LOOSEST: f64 = 1e-2;
 
-/// Factor on the length that the error estimate allows, 1. Chosen, as usual in step size control. Not pinned by a test.
+/// Factor on the length that the error estimate allows, 1. Chosen, as usual in step size control. Cost.
 pub const SAFETY: f64 = 0.9;
 
-/// The same after a rejection, 1. Chosen. Not pinned by a test.
+/// The same after a rejection, 1. Chosen. Cost.
 pub const AFTER_REJECTION: f64 = 0.8;
 
-/// Least factor on the length after a rejection, 1. Chosen. Not pinned by a test.
+/// Least factor on the length after a rejection, 1. Chosen. Cost.
 pub const LEAST_SHRINK: f64 = 0.1;
 
-/// Largest factor on the length after a rejection, and the least after a step taken, 1. Chosen. Not pinned by a test.
+/// Largest factor on the length after a rejection, and the least after a step taken, 1. Chosen. Cost.
 pub const MOST_SHRINK: f64 = 0.5;
 
 /// Largest factor on the length of a step that cannot end at an event inside, 1: to the next length of free steps. Cost.
 pub const NEXT_LENGTH: f64 = 0.75;
 
-/// Largest growth that a step taken reports, 1. Chosen. Not pinned by a test.
+/// Largest growth that a step taken reports, 1. Chosen. Cost.
 pub const MOST_GROWTH: f64 = 64.0;
 
-/// Largest growth from one step to the next, 1. Chosen. Not pinned by a test.
+/// Largest growth from one step to the next, 1. Chosen. Cost.
 pub const STEP_GROWTH: f64 = 4.0;
 
 /// Growth from step to step that shows that short steps still find their length, 1. Chosen by the work in the scenes.
@@ -204,8 +200,8 @@ pub const DISTANT: f64 = 8.0;
 /// them. Pinned: 0, `amplitude_of_a_coulomb_damped_oscillator`.
 pub const MOST_CHANGES: u32 = 16;
 
-/// Pieces of a step in each of which one extreme of its force polynomial is looked for. The degree of long steps. Not
-/// pinned: ÷ 8 fails no test of `tests/chatter.rs`.
+/// Pieces of a step in each of which one extreme of its force polynomial is looked for. The degree of long steps. Pinned: ÷ 8,
+/// `tests/promise.rs`.
 pub const PIECES: u32 = 8;
 
 /// Openings and closings of a communication step that are kept for the log. Pinned: ÷ 512,
@@ -255,6 +251,5 @@ pub const REST_ROUNDING: f64 = 1e-14;
 /// fails.
 pub const WEAK: f64 = 0.1;
 
-/// Share of the tolerance that the force may be wrong by to return energy, 1. Not pinned: 0 fails no test of
-/// `tests/benchmarks`.
+/// Share of the tolerance that the force may be wrong by to return energy, 1. Pinned: 0, `a_mass_between_two_stops`.
 pub const RETURNED: f64 = 0.05;

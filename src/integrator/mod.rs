@@ -235,9 +235,8 @@
 //! values of `T` ([`collocation::friction`]), with the law of stick or of slip throughout a step. While the contact slips, `T`
 //! is a share of `F` and each contact force moves the tip with its friction force: there are `S` unknowns, as without friction,
 //! with other coefficients. While it sticks there are `2 S`; the friction forces are eliminated first, and a Jacobian serves as
-//! long as each iteration reduces the residuals to [`constants::STALE`] of what they were. What both polynomials miss at the start enters
-//! the error estimate with its effect on both forces. Where the contact has slipped and never opened, a step may add
-//! [`constants::SHARE_SLIPPING`] of the tolerance.
+//! long as each iteration reduces the residuals to [`constants::STALE`] of what they were. What both polynomials miss at the
+//! start enters the error estimate with its effect on both forces.
 //!
 //! A step ends where the contact begins or ceases to slip ([`friction`]): where the trial force of stick passes the limit,
 //! or the slip velocity its zero, on the polynomials through the nodes. The motion there is exact under the polynomials, as at

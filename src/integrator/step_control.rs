@@ -7,7 +7,7 @@ use crate::integrator::attempt::{growth, shrinkage};
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::constants::{
     AFTER_REJECTION, AGAIN, COARSEST, GROWING, LEAST_SHRINK, LONGER, LOOSEST, MOST_SHRINK, NEXT_LENGTH, REFUSALS,
-    SAFETY, SHARE, SHARE_SLIPPING, SMOOTH, STEP_GROWTH, WORTH,
+    SAFETY, SHARE, SMOOTH, STEP_GROWTH, WORTH,
 };
 use crate::integrator::energy::conservation::conserves;
 use crate::integrator::events::Cut;
@@ -64,7 +64,6 @@ pub(crate) fn advance(
         }
     };
     exact_step::leave(model, state);
-    let allowed = share(model, state) * tolerance;
     Integration {
         model,
         other,
@@ -75,7 +74,7 @@ pub(crate) fn advance(
         dense,
         extremes,
         tolerance,
-        allowed,
+        allowed: SHARE * tolerance,
         refusals: 0,
         before_event: false,
         changes: 0,
@@ -83,16 +82,6 @@ pub(crate) fn advance(
         conserves: conserves(model, &drive),
     }
     .run()
-}
-
-/// Share of the tolerance that one step may add to the error.
-fn share(model: &Model, state: &State) -> f64 {
-    let slips = model.friction().is_some() && state.tangential.last_change >= 0.0;
-    if slips && state.last_opening < 0.0 && state.last_closing < 0.0 {
-        SHARE_SLIPPING
-    } else {
-        SHARE
-    }
 }
 
 impl Integration<'_> {
