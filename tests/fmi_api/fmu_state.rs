@@ -218,14 +218,14 @@ fn bytes_that_are_no_state_are_an_error_that_says_which() {
     let state = save(&fmu);
     let bytes = to_bytes(&fmu, state);
     let expect = |bytes: &[fmi2Byte], reason: &str| {
-        let fmu = Instance::initialized();
+        // A state may be read before initialization, which would take most of the time.
+        let fmu = Instance::new();
         let mut made = ptr::null_mut();
         assert_eq!(from_bytes(&fmu, bytes, &mut made), fmi2Error, "{reason}");
         assert!(made.is_null());
         fmu.expect_message(fmi2Error, &["fmi2DeSerializeFMUstate", "serializedState", reason]);
     };
-    // Some of thousands, each with an instance of its own.
-    for length in (0..bytes.len()).step_by(7) {
+    for length in 0..bytes.len() {
         expect(&bytes[..length], "before it is complete");
     }
     let longer = [&bytes[..], &[0; 3]].concat();
@@ -238,7 +238,7 @@ fn bytes_that_are_no_state_are_an_error_that_says_which() {
     expect(&with(2, 1), "not made by this component");
     expect(&with(8, 2), "its format is version 6, allowed is 4");
     expect(&with(20, 1), "belongs to the component");
-    for at in (58..bytes.len()).step_by(7) {
+    for at in 58..bytes.len() {
         expect(&with(at, 1), "checksum");
     }
     // The room has to be that of the state.

@@ -9,7 +9,7 @@ use crate::beam::mode::Mode;
 use crate::integrator::collocation::part::Instant;
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::constants::{DEPTH, HALVINGS, SHORTEST_FLIGHT, UNSEEN};
-use crate::integrator::events::Cut;
+use crate::integrator::events::{Cut, motion_rounding};
 use crate::integrator::integration::Integration;
 use crate::integrator::workspace::{Room, Workspace};
 use crate::math::nodal::LONG;
@@ -99,7 +99,7 @@ impl Integration<'_> {
             return 0.0;
         }
         let left = model.engagement(state.indentation, state.indentation_rate).max(0.0);
-        left + self.motion_rounding()
+        left + motion_rounding(model, state)
     }
 
     /// Whether the flight begins here.

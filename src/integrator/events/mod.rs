@@ -118,12 +118,7 @@ impl Integration<'_> {
     /// Engagement that counts as zero where the contact opens or closes, m.
     pub(crate) fn located(&self) -> f64 {
         let stiffness = self.model.law.tangent_stiffness(self.model.force_scale);
-        (LOCATED * self.allowed / stiffness).max(self.motion_rounding())
-    }
-
-    /// Rounding of the engagement, m.
-    pub(crate) fn motion_rounding(&self) -> f64 {
-        motion_rounding(self.model, self.state)
+        (LOCATED * self.allowed / stiffness).max(motion_rounding(self.model, self.state))
     }
 
     /// Takes the trial to `target` up to a cut, in place of a step of `requested` seconds with the growth factor `growth`.

@@ -1,7 +1,7 @@
 //! The error estimate of a trial step with friction.
 
 use crate::friction::Friction;
-use crate::integrator::collocation::error::kinked;
+use crate::integrator::collocation::error::{Estimate, kinked};
 use crate::integrator::collocation::friction::Solved;
 use crate::integrator::collocation::friction::motion::Unforced;
 use crate::integrator::collocation::newton::Tangent;
@@ -14,8 +14,8 @@ use crate::state::State;
 /// How good a trial is.
 #[derive(Default)]
 pub(super) struct Judgement {
-    pub(super) error: f64,
-    pub(super) inner_error: f64,
+    pub(super) error: Estimate,
+    pub(super) inner_error: Estimate,
     pub(super) start_defect: f64,
     pub(super) next_terms: f64,
     pub(super) tangent: Tangent,
@@ -85,11 +85,13 @@ pub(super) fn judged<const S: usize, A: Arithmetic>(
     let impulse = collocation.impulse * (both + model.inertia * free.start_defect.abs()) + missed;
     let terms = |start, values: &Nodal<S>| collocation.next_terms::<A>(start, values);
     Judgement {
-        error: fast + slow * reaction,
-        inner_error: greatest(wrong)
-            + greatest(wrong_loads)
-            + impulse * reaction
-            + friction.inertia * (collocation.impulse * free.start_defect.abs() + free.missed_mean),
+        error: Estimate::lasting(fast + slow * reaction),
+        inner_error: Estimate::lasting(
+            greatest(wrong)
+                + greatest(wrong_loads)
+                + impulse * reaction
+                + friction.inertia * (collocation.impulse * free.start_defect.abs() + free.missed_mean),
+        ),
         start_defect: normal.abs().max(along.abs()),
         next_terms: terms(state.force - model.preload.force, forces)
             .max(terms(state.tangential.force - friction.preload, loads)),

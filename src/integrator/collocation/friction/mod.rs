@@ -21,7 +21,7 @@ mod sticking;
 use crate::excitation::drive::Drive;
 use crate::friction::Friction;
 use crate::integrator::collocation::coefficients::{Prepared, StepCoefficients, TangentialCoefficients};
-use crate::integrator::collocation::error::{Estimate, errors};
+use crate::integrator::collocation::error::errors;
 use crate::integrator::collocation::friction::judgement::{Judgement, judged};
 use crate::integrator::collocation::friction::motion::{Motion, Unforced, along};
 use crate::integrator::collocation::friction::slipping::slipping;
@@ -130,8 +130,8 @@ pub(super) fn compute<const S: usize, A: Arithmetic>(
         let coefficients = (step, collocation);
         let [error, inner_error] = errors(model, state, coefficients, &solution, 0.0, &unforced.free, largest);
         Judgement {
-            error: error.total,
-            inner_error: inner_error.total,
+            error,
+            inner_error,
             ..Judgement::default()
         }
     };
@@ -144,8 +144,8 @@ pub(super) fn compute<const S: usize, A: Arithmetic>(
         indentation: support - tip,
         rate: drive.support_rate - tip_rate,
         force: end(&forces),
-        error: Estimate::lasting(judgement.error),
-        inner_error: Estimate::lasting(judgement.inner_error),
+        error: judgement.error,
+        inner_error: judgement.inner_error,
         rounding: FORCE_ROUNDING * largest.max(model.preload.force),
         start_defect: judgement.start_defect,
         next_terms: judgement.next_terms,
