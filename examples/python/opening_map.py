@@ -46,11 +46,14 @@ from fmpy.fmi1 import FMICallException
 from tqdm import tqdm
 
 import relay_contact
-from common import parser, read_arguments
-from opening_map_figures import draw_map, draw_tolerances
 from opening_map_study import TOLERANCES, Point, Row, Study
 from relay_contact import Component, Contact, units
-from relay_contact.figures import GRAVITY
+
+# The processes of a local cluster import this file, too, and need nothing that draws: it takes long to import.
+if __name__ != "__mp_main__":
+    from common import parser, read_arguments
+    from opening_map_figures import draw_map, draw_tolerances
+    from relay_contact.figures import GRAVITY
 
 CHANGE = 1e-4  # relative difference below which two periods count as equal
 PATIENCE = 200  # periods after which the motion counts as not periodic

@@ -8,7 +8,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pyarrow as pa
 from matplotlib.colors import LogNorm
-from scipy.stats import binomtest
+from scipy.special import betaincinv
 
 from common import save
 from relay_contact import Array
@@ -84,6 +84,12 @@ def draw_map(table: pa.Table, labels: list[str], scales: list[Any], path: Path) 
     save(figure, path, dpi=130)
 
 
+def confidence(count: int, total: int) -> tuple[float, float]:
+    """Give the 95 % confidence interval of a share by Clopper and Pearson."""
+    low = float(betaincinv(count, total - count + 1, 0.025)) if count else 0.0
+    return low, float(betaincinv(count + 1, total - count, 0.975)) if count < total else 1.0
+
+
 def draw_tolerances(table: pa.Table, settings: dict[str, Any], path: Path) -> None:
     """Draw the distribution of the longest interruption, and the share beyond the limit; print the latter."""
     accelerations = np.array(settings["accelerations"])
@@ -92,15 +98,14 @@ def draw_tolerances(table: pa.Table, settings: dict[str, Any], path: Path) -> No
     shares = []
     for i, (acceleration, all_values) in enumerate(zip(accelerations, longest, strict=True)):
         values = np.sort(all_values[np.isfinite(all_values)])
-        test = binomtest(int(np.sum(values > LIMIT)), max(1, len(values)))
-        interval = test.proportion_ci(0.95, method="exact")
-        shares.append((test.statistic, interval.low, interval.high))
-        bounds = f"{100 * interval.low:.2f} to {100 * interval.high:.2f} %"
+        count, total = int(np.sum(values > LIMIT)), max(1, len(values))
+        low, high = confidence(count, total)
+        shares.append((count / total, low, high))
         print(
-            f"{acceleration:.1f} m/s2 ({acceleration / GRAVITY:.1f} g): {test.k} of {len(values)} contacts open",
-            end=" ",
+            f"{acceleration:.1f} m/s2 ({acceleration / GRAVITY:.1f} g): {count} of {len(values)} contacts open",
+            f"for longer than 10 us, {100 * count / total:.2f} %,",
+            f"with 95 % confidence {100 * low:.2f} to {100 * high:.2f} %",
         )
-        print(f"for longer than 10 us, {100 * test.statistic:.2f} %, with 95 % confidence {bounds}")
         label = f"{acceleration / GRAVITY:.3g} g"
         # From zero at the left, where the contacts without interruption are, to all at the right.
         across = np.concatenate(([1e-7], np.maximum(values, 1e-7), [1.0]))
@@ -110,8 +115,8 @@ def draw_tolerances(table: pa.Table, settings: dict[str, Any], path: Path) -> No
     left.set(xscale="log", xlim=(0.5, 1e7 * max(LIMIT, np.nanmax(longest, initial=0.0))), ylim=(-2, 102))
     left.set(xlabel="longest interruption [µs] (left edge: none)", ylabel="cumulative share of contacts [%]")
     left.set_title(f"Longest interruption at {settings['frequency']:g} Hz", fontsize="medium")
-    share, low, high = 100 * np.array(shares).T
-    right.errorbar(accelerations, share, [share - low, high - share], color=COLOURS[0], marker="o", capsize=4)
+    share, below, above = 100 * np.array(shares).T
+    right.errorbar(accelerations, share, [share - below, above - share], color=COLOURS[0], marker="o", capsize=4)
     right.set(xlabel="base acceleration [m/s²]", ylabel="contacts that open for longer than 10 µs [%]", ylim=(-2, 102))
     level = float(RELAYS.amplitude(np.array(settings["frequency"])))
     right.axvline(level, label=f"{NAME}, {level / GRAVITY:.3g} g", **STANDARD)

@@ -194,8 +194,9 @@ class Contact:
 
     def change(self, name: str, begin: float, end: float, length: float) -> None:
         """Have an input change linearly over the next step, of this length."""
-        self.fmu.setReal(self.references(name), [begin])
-        self.fmu.setRealInputDerivatives(self.references(name), [1], [(end - begin) / length])
+        references = self.references(name)
+        self.fmu.setReal(references, [begin])
+        self.fmu.setRealInputDerivatives(references, [1], [(end - begin) / length])
 
     def rise(self, frequency: float, amplitude: float, periods: int, pieces: int) -> None:
         """Start the sine generator, which vibrates at full level from time 0 on, gently over these periods.

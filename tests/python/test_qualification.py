@@ -338,18 +338,19 @@ def test_a_changeover_relay_names_the_contact_that_fails(tmp_path: Path) -> None
     text = "parameters.effects.secondContact = true\nparameters.contact.overtravel = 2e-4\n"
     relay = tmp_path / "relay.toml"
 
-    def shocked(gap: float, opening: float, acceleration: float) -> Part:
+    def shocked(gap: float, opening: float, acceleration: float, tables: bool = False) -> Part:
         relay.write_text(f"{text}parameters.second.gap = {gap}\n")
         specimen = Relay.read(relay, COMPONENT)
         contacts = replace(MILITARY.contacts, opening=opening)
         shock = Shock("slow", "", True, acceleration, 0.1)
         standard = replace(MILITARY, contacts=contacts, tests=(shock,))
         (part,) = assessment.assess(COMPONENT, specimen, standard, tmp_path, FEW)
-        write(tmp_path, specimen, standard, [part], "")
+        if tables:
+            write(tmp_path, specimen, standard, [part], "")
         return part
 
     # 200 g bend the free spring by 0.9 mm: both fail, the interruption first, where the preload is taken away.
-    both = shocked(3e-4, 10e-6, 200.0)
+    both = shocked(3e-4, 10e-6, 200.0, tables=True)
     assert 200 * both["margin"] == pytest.approx(SPECIMEN.force / SPECIMEN.carried_mass / G, rel=0.01)
     assert both["decides"] == ["closed contact"]
     assert both["least"]["open contact"] < 0

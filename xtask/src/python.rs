@@ -16,6 +16,8 @@ pub fn test(tests: &[&str], component: &Path) -> Result<()> {
     run(python()
         .args(["-m", "pytest", "--quiet", "-rs"])
         .args(tests)
+        // Their matrices are small: two threads wait for each other longer than one computes.
+        .env("OPENBLAS_NUM_THREADS", "1")
         .env("RELAY_CONTACT_FMU", component))
 }
 

@@ -4,6 +4,7 @@ import csv
 import subprocess
 import sys
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -19,18 +20,19 @@ Run = Callable[..., str]
 """Runs an example by its name with arguments; gives what it printed."""
 
 
+def run_example(folder: Path, name: str, *arguments: str) -> str:
+    """Run an example in its short form, its files in a folder; give what it printed, fail where it fails."""
+    quick = [] if name == "paper_1khz" else ["--quick"]
+    command = [sys.executable, str(FOLDER / f"{name}.py"), *quick, "--fmu", str(FMU), "--out", str(folder)]
+    result = subprocess.run([*command, *arguments], capture_output=True, text=True, check=False)
+    assert result.returncode == 0, result.stdout + result.stderr
+    return result.stdout
+
+
 @pytest.fixture
 def run(tmp_path: Path) -> Run:
-    """Run an example in its short form, its files in the test's folder; fail where it fails."""
-
-    def example(name: str, *arguments: str) -> str:
-        quick = [] if name == "paper_1khz" else ["--quick"]
-        command = [sys.executable, str(FOLDER / f"{name}.py"), *quick, "--fmu", str(FMU), "--out", str(tmp_path)]
-        result = subprocess.run([*command, *arguments], capture_output=True, text=True, check=False)
-        assert result.returncode == 0, result.stdout + result.stderr
-        return result.stdout
-
-    return example
+    """Run examples with their files in the test's folder."""
+    return partial(run_example, tmp_path)
 
 
 def table(path: Path) -> list[dict[str, str]]:

@@ -2,14 +2,15 @@
 
 import ctypes
 import re
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from conftest import CAPACITOR, COIL, FMU, LOAD, SOURCE, Run, advanced, contact_voltage, is_picture, run_inside
+from conftest import CAPACITOR, COIL, FMU, LOAD, SOURCE, advanced, contact_voltage, is_picture, run_example, run_inside
 from relay_contact import Array, Component, Scene, read_table, scenes
 from relay_contact import run as simulate
 
@@ -28,12 +29,22 @@ def load_ngspice() -> bool:
     return True
 
 
-@pytest.fixture(params=CIRCUITS)
-def circuit(request: pytest.FixtureRequest) -> str:
-    """Either circuit."""
+@dataclass
+class Shown:
+    """What the example showed with a circuit."""
+
+    circuit: str
+    said: str
+    folder: Path
+
+
+@pytest.fixture(scope="module", params=CIRCUITS)
+def shown(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Shown:
+    """Run the example with either circuit."""
     if request.param == "ngspice" and not load_ngspice():
         pytest.skip("libngspice.so.0 is not installed")
-    return str(request.param)
+    circuit, folder = str(request.param), tmp_path_factory.mktemp("circuit")
+    return Shown(circuit, run_example(folder, "circuit_rl", "--circuit", circuit), folder)
 
 
 def slopes(state: Array, conductance: float) -> list[float]:
@@ -43,10 +54,9 @@ def slopes(state: Array, conductance: float) -> list[float]:
     return [(SOURCE - LOAD * state[0] - voltage) / COIL, charging / CAPACITOR, conductance * voltage**2]
 
 
-def test_waveforms_and_heat(run: Run, tmp_path: Path, circuit: str) -> None:
-    said = run("circuit_rl", "--circuit", circuit)
-    got = read_table(tmp_path / "circuit-rl.csv")
-    assert is_picture(tmp_path / "circuit-rl.png")
+def test_waveforms_and_heat(shown: Shown) -> None:
+    got = read_table(shown.folder / "circuit-rl.csv")
+    assert is_picture(shown.folder / "circuit-rl.png")
 
     # The instants of the opening at 400 m/s2 and 1 kHz from rest, converged by two other methods; the component locates
     # to 1 ns.
@@ -64,24 +74,40 @@ def test_waveforms_and_heat(run: Run, tmp_path: Path, circuit: str) -> None:
         states.append(solution.y[:, -1])
     current, capacitor, heat = np.array(states).T
     # 1e-9: a thousand steps at 1e-10, damped; 1e-11: the digits of the table.
-    slack = 1e-9 if circuit == "built-in" else TRAPEZOID
+    slack = 1e-9 if shown.circuit == "built-in" else TRAPEZOID
     assert np.abs(got["load.current"] - current).max() < 0.1 * slack + 1e-11
     assert np.abs(got["capacitor.voltage"] - capacitor).max() < 6.7 * slack + 1e-11
     # The fastest the power does is twice as fast as the circuit, over the points of at most 0.25 us of a step.
-    told = re.search(r"heat in the contact: (\S+) uJ", said)
+    told = re.search(r"heat in the contact: (\S+) uJ", shown.said)
     assert told
     assert float(told[1]) == pytest.approx(1e6 * heat[-1], rel=(2 * 1e5 * 0.25e-6) ** 2 / 12, abs=5e-4)
 
     # The circuit's own current: closed that of the load, open hardly any; never beyond the range without arcs.
     assert got["circuit.current"] == pytest.approx(got["circuit.voltage"] * conductance, rel=1e-9)
-    assert "inside the range without arcs" in said
+    assert "inside the range without arcs" in shown.said
     assert 6 < np.abs(got["circuit.voltage"]).max() < 12
     assert np.abs(got["circuit.current"]).max() < 0.4
 
 
-def test_error_falls_with_the_first_power_of_the_step(run: Run, tmp_path: Path, circuit: str) -> None:
-    run("circuit_rl", "--circuit", circuit)
-    study = read_table(tmp_path / "circuit-rl-convergence.csv")
+@cache
+def solved() -> tuple[Array, Array]:
+    """Give times and the load current by another solution: the mean conductance of steps of 0.1 us, cut at events."""
+    scene = Scene.read(scenes()["chatter-41g"])
+    names = ["contact.conductance", "contact.lastOpening", "contact.lastClosing"]
+    fine = simulate(replace(scene, stop=2.5e-3, step=1e-7, outputs=names), component=Component(FMU))
+    events = np.concatenate([np.unique(fine[f"contact.last{name}"])[1:] for name in ("Opening", "Closing")])
+    times, conductances = np.append(fine["time"], events), np.append(fine["contact.conductance"], 0 * events + 1e-9)
+    ordered = np.argsort(times)
+    times, conductances = times[ordered], conductances[ordered]
+    rest = SOURCE / (LOAD + 1 / conductances[0])
+    states = [np.array([rest, rest / conductances[0]])]
+    for conductance, length in zip((conductances[:-1] + conductances[1:]) / 2, np.diff(times), strict=True):
+        states.append(advanced(states[-1], conductance, length))
+    return times, np.array(states)[:, 0]
+
+
+def test_error_falls_with_the_first_power_of_the_step(shown: Shown) -> None:
+    study = read_table(shown.folder / "circuit-rl-convergence.csv")
     step, root, largest = study.values()
     # Four events, each late by a part of the step that is as good as random: a root mean square scatters by a quarter,
     # and a line through six of them, over steps of 1 to 40, by 0.08 in its slope. Three times that.
@@ -90,19 +116,9 @@ def test_error_falls_with_the_first_power_of_the_step(run: Run, tmp_path: Path, 
     # A step late at most, at a slope changed by 6 V / 1 mH at most.
     assert np.all(largest < step * SOURCE / COIL)
 
-    # The error of 2 us against another solution: the mean conductance of steps of 0.1 us, cut at the events.
-    got = read_table(tmp_path / "circuit-rl.csv")
-    scene = Scene.read(scenes()["chatter-41g"])
-    names = ["contact.conductance", "contact.lastOpening", "contact.lastClosing"]
-    fine = simulate(replace(scene, stop=2.5e-3, step=1e-7, outputs=names), component=Component(FMU))
-    events = np.concatenate([np.unique(fine[f"contact.last{name}"])[1:] for name in ("Opening", "Closing")])
-    times, conductances = np.append(fine["time"], events), np.append(fine["contact.conductance"], 0 * events + 1e-9)
-    ordered = np.argsort(times)
-    times, conductances = times[ordered], conductances[ordered]
-    states = [np.array([got["load.current"][0], got["capacitor.voltage"][0]])]
-    for conductance, length in zip((conductances[:-1] + conductances[1:]) / 2, np.diff(times), strict=True):
-        states.append(advanced(states[-1], conductance, length))
-    errors = got["load.current"] - np.interp(got["time"], times, np.array(states)[:, 0])
+    # The error of 2 us against another solution.
+    got = read_table(shown.folder / "circuit-rl.csv")
+    errors = got["load.current"] - np.interp(got["time"], *solved())
     # Second order in 0.1 us: 1e5 1/s times 0.1 us, squared, of 0.1 A.
     row = np.argmin(np.abs(step - STEP))
     assert np.sqrt(np.mean(errors**2)) == pytest.approx(root[row], abs=1e-5)

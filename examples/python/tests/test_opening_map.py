@@ -3,11 +3,12 @@
 import math
 import os
 import re
+import runpy
 import socket
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -25,8 +26,11 @@ SPECIMEN = Reference({"effects.axialForce": "None"})
 # axial force; 4.4e-4 for twice the square of 20 Hz over 1354 Hz, the lowest frequency of the closed contact.
 CLOSED_FORM = 1.3e-3
 # A study of some seconds, so that it can be killed in its middle.
-LONG = ["--study", "tolerances", "--samples", "300", "--accelerations", "294", "353", "--chunk", "15"]
-CHUNKS = 40
+CHUNK, CHUNKS = 5, 40
+LONG = ["--study", "tolerances", "--samples", "100", "--accelerations", "294", "353", "--chunk", str(CHUNK)]
+
+Study = Callable[..., str]
+"""Runs a study with arguments; gives what it printed."""
 
 
 def opening(overtravel: float) -> float:
@@ -61,10 +65,45 @@ def test_short_form_draws_and_tells(run: Run, tmp_path: Path) -> None:
     assert len(re.findall("opens from", printed)) == 3
 
 
-def test_low_frequencies_open_at_the_closed_form(run: Run, tmp_path: Path) -> None:
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """Start a cluster as on other machines, which have neither the files nor the folder; give its address."""
+    elsewhere = tmp_path_factory.mktemp("elsewhere")
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        address = f"tcp://127.0.0.1:{free.getsockname()[1]}"
+    dask = [sys.executable, "-m", "dask"]
+    place = {"cwd": elsewhere, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    place["env"] = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    scheduler = subprocess.Popen([*dask, "scheduler", "--host", address, "--no-dashboard"], **place)  # type: ignore[call-overload]
+    # Two threads share the instance of the process.
+    options = [address, "--no-nanny", "--no-dashboard", "--nthreads", "2", "--local-directory", str(elsewhere)]
+    worker = subprocess.Popen([*dask, "worker", *options], **place)  # type: ignore[call-overload]
+    yield address
+    for process in (worker, scheduler):
+        process.terminate()
+        process.wait()
+
+
+@pytest.fixture
+def study(cluster: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Study:
+    """Run a study on the cluster, in this process, its files in the test's folder; fail where it fails."""
+
+    def printed(*arguments: str) -> str:
+        given = ["--quick", "--fmu", str(FMU), "--out", str(tmp_path), "--scheduler", cluster, *arguments]
+        monkeypatch.setattr(sys, "argv", ["opening_map.py", *given])
+        with pytest.raises(SystemExit) as end:
+            runpy.run_path(str(FOLDER / "opening_map.py"), run_name="__main__")
+        assert end.value.code == 0
+        return capsys.readouterr().out
+
+    return printed
+
+
+def test_low_frequencies_open_at_the_closed_form(study: Study, tmp_path: Path) -> None:
     overtravels = [1.5e-4, OVERTRAVEL]
     levels = [round(opening(s)) + k for s in overtravels for k in range(-3, 4)]
-    run("opening_map", "--frequencies", "20", "--accelerations", *map(str, levels), "--values", *map(str, overtravels))
+    study("--frequencies", "20", "--accelerations", *map(str, levels), "--values", *map(str, overtravels))
     rows = numbers(tmp_path / "opening-map.csv")
     for overtravel in overtravels:
         mine = [row for row in rows if row["contact.overtravel"] == overtravel]
@@ -81,9 +120,9 @@ def test_low_frequencies_open_at_the_closed_form(run: Run, tmp_path: Path) -> No
         assert near["least_force"] == pytest.approx(preload * (1 - closed / exact), abs=CLOSED_FORM * preload)
 
 
-def test_another_master_finds_the_same_interruptions(run: Run, tmp_path: Path) -> None:
+def test_another_master_finds_the_same_interruptions(study: Study, tmp_path: Path) -> None:
     """One a period, two a period after a bounce, none."""
-    run("opening_map", "--frequencies", "100", "1250", "--accelerations", "320", "1400", "--values", "2e-4")
+    study("--frequencies", "100", "1250", "--accelerations", "320", "1400", "--values", "2e-4")
     rows = {
         (row["excitation.frequency"], row["excitation.amplitude"]): row for row in numbers(tmp_path / "opening-map.csv")
     }
@@ -108,7 +147,9 @@ def test_another_master_finds_the_same_interruptions(run: Run, tmp_path: Path) -
         assert row["interruptions_per_period"] == each_period == len(starts) / 2
 
 
-def test_above_the_resonance_a_sudden_start_opens_what_steady_vibration_leaves_closed(run: Run, tmp_path: Path) -> None:
+def test_above_the_resonance_a_sudden_start_opens_what_steady_vibration_leaves_closed(
+    study: Study, tmp_path: Path
+) -> None:
     frequency, specimen = 2000.0, Reference({})
     # Steady: where the linear force is as large as the preload. The Hertz contact is linear to 1e-3 (the spring feels
     # 1/4655 of it); a sine below zero for 10 us exceeds that by (10 us omega)^2 / 8 = 2e-3.
@@ -116,16 +157,16 @@ def test_above_the_resonance_a_sudden_start_opens_what_steady_vibration_leaves_c
     assert steady / 9.80665 == pytest.approx(65, abs=0.5)
     # A sudden start adds free vibration of up to 2000 / 1355 times the forced one, which the damping lowers.
     levels = [round(part * steady, 3) for part in (0.7, 0.85, 0.997, 1.004)]
-    run("opening_map", "--frequencies", str(frequency), "--accelerations", *map(str, levels), "--values", "2e-4")
+    study("--frequencies", str(frequency), "--accelerations", *map(str, levels), "--values", "2e-4")
     rows = numbers(tmp_path / "opening-map.csv")
     assert [row["longest_interruption"] > 0 for row in rows] == [False, False, False, True]
     assert [row["longest_after_sudden_start"] > 10e-6 for row in rows] == [False, True, True, True]
 
 
-def test_each_contact_opens_as_its_overtravel_says(run: Run, tmp_path: Path) -> None:
+def test_each_contact_opens_as_its_overtravel_says(study: Study, tmp_path: Path) -> None:
     level, contacts = opening(OVERTRAVEL - DEVIATION), 200
-    study = ["--study", "tolerances", "--frequencies", "20", "--accelerations", str(level), "--samples", str(contacts)]
-    printed = run("opening_map", *study)
+    asked = ["--study", "tolerances", "--frequencies", "20", "--accelerations", str(level), "--samples", str(contacts)]
+    printed = study(*asked)
     assert is_picture(tmp_path / "opening-map-tolerances.png")
     rows = numbers(tmp_path / "opening-map-tolerances.csv")
     clear = [row for row in rows if abs(opening(row["contact.overtravel"]) / level - 1) > CLOSED_FORM]
@@ -149,9 +190,9 @@ def test_each_contact_opens_as_its_overtravel_says(run: Run, tmp_path: Path) -> 
         assert tail == pytest.approx(0.025, abs=1e-3)
 
 
-def test_a_refused_simulation_is_told_and_ends_nothing(run: Run, tmp_path: Path) -> None:
+def test_a_refused_simulation_is_told_and_ends_nothing(study: Study, tmp_path: Path) -> None:
     values = ["--parameter", "contact.curvatureRadius", "--values", "0.02177", "20", "--chunk", "2"]
-    printed = run("opening_map", "--frequencies", "1000", "--accelerations", "200", "300", "400", *values)
+    printed = study("--frequencies", "1000", "--accelerations", "200", "300", "400", *values)
     rows = table(tmp_path / "opening-map.csv")
     assert [row["longest_interruption"] == "nan" for row in rows] == [False] * 3 + [True] * 3
     assert all("contact.curvatureRadius" in row["message"] and "20" in row["message"] for row in rows[3:])
@@ -160,10 +201,10 @@ def test_a_refused_simulation_is_told_and_ends_nothing(run: Run, tmp_path: Path)
 
 
 @pytest.fixture(scope="module")
-def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> tuple[bytes, bytes]:
-    """Give the tables of the long study, in one go on two workers."""
+def undisturbed(cluster: str, tmp_path_factory: pytest.TempPathFactory) -> tuple[bytes, bytes]:
+    """Give the tables of the long study in one go on the cluster elsewhere, in chunks of another size."""
     folder = tmp_path_factory.mktemp("undisturbed")
-    subprocess.run(command(folder, "--workers", "2"), check=True, capture_output=True)
+    subprocess.run(command(folder, "--chunk", "13", "--scheduler", cluster), check=True, capture_output=True)
     return files(folder)
 
 
@@ -201,7 +242,7 @@ def chunks(folder: Path, least: int) -> list[Path]:
     raise TimeoutError(f"no {least} chunks in {folder}")
 
 
-def test_a_killed_worker_loses_nothing(
+def test_a_killed_worker_loses_nothing_and_a_cluster_elsewhere_gives_the_same_bytes(
     started: subprocess.Popen[str], tmp_path: Path, undisturbed: tuple[bytes, bytes]
 ) -> None:
     finished = chunks(tmp_path, 3)
@@ -237,27 +278,6 @@ def test_a_killed_study_goes_on(
     assert f"{CHUNKS} chunks, {len(whole)} finished before, {left} to do" in result.stdout
     simulated = re.search(r"^(\d+) simulations in", result.stdout, re.MULTILINE)
     assert simulated
-    assert int(simulated[1]) == 15 * left
+    assert int(simulated[1]) == CHUNK * left
     assert {path: path.stat().st_mtime_ns for path in whole} == before
-    assert files(tmp_path) == undisturbed
-
-
-def test_a_cluster_elsewhere_gives_the_same_bytes(run: Run, tmp_path: Path, undisturbed: tuple[bytes, bytes]) -> None:
-    elsewhere = tmp_path / "elsewhere"
-    elsewhere.mkdir()
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        address = f"tcp://127.0.0.1:{free.getsockname()[1]}"
-    dask = [sys.executable, "-m", "dask"]
-    place = {"cwd": elsewhere, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    scheduler = subprocess.Popen([*dask, "scheduler", "--host", address, "--no-dashboard"], **place)  # type: ignore[call-overload]
-    options = [address, "--no-nanny", "--no-dashboard", "--nthreads", "2", "--local-directory", str(elsewhere)]
-    worker = subprocess.Popen([*dask, "worker", *options], **place)  # type: ignore[call-overload]
-    try:
-        # Another size of chunks, too, and two threads that share the instance of the process.
-        run("opening_map", *LONG[:-1], "37", "--scheduler", address)
-    finally:
-        for process in (worker, scheduler):
-            process.terminate()
-            process.wait()
     assert files(tmp_path) == undisturbed

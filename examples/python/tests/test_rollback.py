@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from conftest import COIL, FMU, SOURCE, Run, advanced, is_picture, run_inside, table
+from conftest import COIL, FMU, SOURCE, advanced, is_picture, run_inside, table
 from relay_contact import Array, Component, Scene, read_table
 
 STOP = 2.5e-3
@@ -22,11 +22,43 @@ def outputs(steps: Array, names: list[str]) -> Array:
     return np.array(values)
 
 
-def test_rejected_steps_leave_no_trace(run: Run, tmp_path: Path) -> None:
-    said = run("rollback")
+COUNTED = """
+from fmpy.fmi2 import FMU2Slave
+alive, most, all = set(), 0, 0
+def get(self, get=FMU2Slave.getFMUstate):
+    global most, all
+    state = get(self)
+    alive.add(state.value)
+    most, all = max(most, len(alive)), all + 1
+    return state
+def free(self, state, free=FMU2Slave.freeFMUstate):
+    alive.remove(state.value)
+    free(self, state)
+def end(self, end=FMU2Slave.freeInstance):
+    assert not alive, "states outlive their instance"
+    end(self)
+FMU2Slave.getFMUstate, FMU2Slave.freeFMUstate, FMU2Slave.freeInstance = get, free, end
+try:
+    run()
+finally:
+    print("states:", all, most, len(alive))
+"""
+
+
+@pytest.fixture(scope="module")
+def ran(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
+    """Run the example, its states counted; give what it printed and the folder of its files."""
+    folder = tmp_path_factory.mktemp("rollback")
+    result = run_inside(COUNTED, "rollback", "--out", str(folder))
+    assert result.returncode == 0, result.stderr
+    return result.stdout, folder
+
+
+def test_rejected_steps_leave_no_trace(ran: tuple[str, Path]) -> None:
+    said, folder = ran
     assert "the same bits" in said
-    assert is_picture(tmp_path / "rollback-steps.png")
-    rows = np.column_stack(list(read_table(tmp_path / "rollback-steps.csv").values()))
+    assert is_picture(folder / "rollback-steps.png")
+    rows = np.column_stack(list(read_table(folder / "rollback-steps.csv").values()))
     assert len(rows) > 100
     time, length, current, voltage, mean = rows.T
 
@@ -50,11 +82,11 @@ def test_rejected_steps_leave_no_trace(run: Run, tmp_path: Path) -> None:
         assert np.abs(ends - instant).min() < 1e-9
 
 
-def test_error_falls_with_the_tolerance_and_with_the_step(run: Run, tmp_path: Path) -> None:
-    run("rollback")
-    assert is_picture(tmp_path / "rollback.png")
+def test_error_falls_with_the_tolerance_and_with_the_step(ran: tuple[str, Path]) -> None:
+    folder = ran[1]
+    assert is_picture(folder / "rollback.png")
     work: dict[str, list[tuple[float, float, float]]] = defaultdict(list)
-    for row in table(tmp_path / "rollback.csv"):
+    for row in table(folder / "rollback.csv"):
         entry = float(row["setting"]), float(row["steps.done"]), float(row["error.load.current"])
         work[row["master"]].append(entry)
 
@@ -83,31 +115,8 @@ def test_error_falls_with_the_tolerance_and_with_the_step(run: Run, tmp_path: Pa
     assert with_events[0, 2] < fixed[-1, 2] / 50
 
 
-def test_every_state_is_freed(tmp_path: Path) -> None:
-    count = """
-from fmpy.fmi2 import FMU2Slave
-alive, most, all = set(), 0, 0
-def get(self, get=FMU2Slave.getFMUstate):
-    global most, all
-    state = get(self)
-    alive.add(state.value)
-    most, all = max(most, len(alive)), all + 1
-    return state
-def free(self, state, free=FMU2Slave.freeFMUstate):
-    alive.remove(state.value)
-    free(self, state)
-def end(self, end=FMU2Slave.freeInstance):
-    assert not alive, "states outlive their instance"
-    end(self)
-FMU2Slave.getFMUstate, FMU2Slave.freeFMUstate, FMU2Slave.freeInstance = get, free, end
-try:
-    run()
-finally:
-    print("states:", all, most, len(alive))
-"""
-    result = run_inside(count, "rollback", "--out", str(tmp_path))
-    assert result.returncode == 0, result.stderr
-    saved, most, left = (int(word) for word in result.stdout.splitlines()[-1].split()[1:])
+def test_every_state_is_freed(ran: tuple[str, Path]) -> None:
+    saved, most, left = (int(word) for word in ran[0].splitlines()[-1].split()[1:])
     assert saved > 1000
     assert (most, left) == (1, 0)
-    assert "FMU states not freed: 0" in result.stdout
+    assert "FMU states not freed: 0" in ran[0]

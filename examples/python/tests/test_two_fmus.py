@@ -14,7 +14,7 @@ from fmpy.ssp.ssd import read_ssd
 from fmpy.validation import validate_fmu
 from numpy.typing import NDArray
 
-from conftest import LOAD, SOURCE, Run, advanced, contact_voltage, is_picture
+from conftest import LOAD, SOURCE, Run, advanced, contact_voltage, is_picture, run_example
 from relay_contact import Array, read_table
 
 if platform.machine() not in ("x86_64", "AMD64") or sys.platform == "darwin":
@@ -62,12 +62,19 @@ def simulate_alone(system: Path, folder: Path, steps: int, edit: Callable[[str],
     return {name: np.array(values) for name, values in json.loads(output).items()}
 
 
-def test_the_circuit_obeys_its_equations_and_the_coupling_converges(run: Run, tmp_path: Path) -> None:
-    printed = run("two_fmus")
+@pytest.fixture(scope="module")
+def ran(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
+    """Run the example; give what it printed and the folder of its files."""
+    folder = tmp_path_factory.mktemp("two-fmus")
+    return run_example(folder, "two_fmus"), folder
+
+
+def test_the_circuit_obeys_its_equations_and_the_coupling_converges(ran: tuple[str, Path]) -> None:
+    printed, folder = ran
     assert "4 openings" in printed
-    assert is_picture(tmp_path / "two-fmus.png")
-    assert validate_fmu(str(tmp_path / "TestBench.fmu")) == []
-    measured = read_table(tmp_path / "two-fmus-FMPy.csv")
+    assert is_picture(folder / "two-fmus.png")
+    assert validate_fmu(str(folder / "TestBench.fmu")) == []
+    measured = read_table(folder / "two-fmus-FMPy.csv")
 
     # Table: its sine. Circuit: the matrix exponential of its equations, given the conductance of each step.
     time = measured["time"]
@@ -91,7 +98,7 @@ def test_the_circuit_obeys_its_equations_and_the_coupling_converges(run: Run, tm
     def order(values: Array) -> float:
         return float(np.polyfit(np.log(steps), np.log(values), 1)[0])
 
-    steps, late, difference = read_table(tmp_path / "two-fmus-convergence.csv").values()
+    steps, late, difference = read_table(folder / "two-fmus-convergence.csv").values()
     assert np.allclose(1e9 * steps, [NANOSECONDS, 2 * NANOSECONDS, 4 * NANOSECONDS])
     assert np.all(np.abs(late / steps - 0.5) < 0.05)
     assert abs(order(late) - 1) < 0.05
@@ -100,13 +107,15 @@ def test_the_circuit_obeys_its_equations_and_the_coupling_converges(run: Run, tm
     assert abs(order(difference) - 1) < 0.22
 
 
-def test_both_ways_give_the_same_and_the_system_runs_alone_by_its_parameters(run: Run, tmp_path: Path) -> None:
+def test_both_ways_give_the_same_and_the_system_runs_alone_by_its_parameters(
+    ran: tuple[str, Path], tmp_path: Path
+) -> None:
     pytest.importorskip("libcosimpy", exc_type=ImportError)
-    run("two_fmus")
-    fmpy, libcosim = (read_table(tmp_path / f"two-fmus-{way}.csv") for way in ("FMPy", "libcosim"))
+    folder = ran[1]
+    fmpy, libcosim = (read_table(folder / f"two-fmus-{way}.csv") for way in ("FMPy", "libcosim"))
     assert all(np.array_equal(column, fmpy[name][1:]) for name, column in libcosim.items())
 
-    system = tmp_path / "system.ssp"
+    system = folder / "system.ssp"
     elements = read_ssd(str(system), validate=True).system.elements
     assert [element.name for element in elements] == ["contact", "bench"]
     with zipfile.ZipFile(system) as archive:

@@ -196,7 +196,7 @@ def random(position: Position, test: Random) -> Part:
         ratios.append(level / guess)
     linear = response.random(test, specimen.lasting)
     rms, _ = response.moments(test)
-    lengths, rows = window(specimen, found[0][0], 1.0)
+    lengths, rows = window(specimen, found[0][0], 1.0, watched=True)
     density = test.spectrum(response.frequency) * response.gain**2
     share = np.cumsum(density) / density.sum()
     half = response.frequency[np.searchsorted(share, [0.25, 0.75])]

@@ -77,15 +77,20 @@ class Specimen:
         The gap of an open first contact is that at the end of the step.
         """
         if self.is_open:
-            return [contact.get("tip.displacement") - contact.get("contact.overtravel")]
+            tip, gap = contact.real("tip.displacement", "contact.overtravel")
+            return [tip - gap]
         return contact.real("step.minimumForce", "step.minimumGap")[: len(self.monitors)]
 
-    def course(self, contact: Contact) -> float:
-        """Give the force (N) of the closed contact less that of the open one, or the gap (m) of a lone open contact."""
+    def observed(self, contact: Contact) -> list[float]:
+        """Give the force (N) of the closed contact less that of the open one, or the gap (m) of a lone open contact.
+
+        And what `left` gives.
+        """
+        left = self.left(contact)
         if self.is_open:
-            return self.left(contact)[0]
+            return [left[0], *left]
         first, second = contact.real("contact.force", "second.force")
-        return first - second
+        return [first - second, *left]
 
     def longest(self, contact: Contact) -> Lengths:
         """Give the longest failure so far, by contact."""
@@ -184,7 +189,7 @@ def shock(specimen: Specimen, test: Shock, factor: float, points: int = 1) -> tu
             if instant > time:
                 contact.step(time, instant - time)
                 time = float(instant)
-                rows.append([time, specimen.course(contact), *specimen.left(contact)])
+                rows.append([time, *specimen.observed(contact)])
         return specimen.longest(contact), np.array(rows)
 
 
@@ -210,8 +215,8 @@ def record(specimen: Specimen, test: Random) -> tuple[Array, Array]:
     return np.fft.irfft(spectrum / np.sinc(frequency * SAMPLE) ** 2, count), change
 
 
-def window(specimen: Specimen, acceleration: Array, factor: float) -> tuple[Lengths, Array]:
-    """Run part of a record, its first half as a rise; give the longest failures, and rows of force or gap and least."""
+def window(specimen: Specimen, acceleration: Array, factor: float, watched: bool = False) -> tuple[Lengths, Array]:
+    """Run part of a record, its first half as a rise; give the longest failures, and what is observed if watched."""
     rise = len(acceleration) // 2
     shape = np.ones(len(acceleration))
     shape[:rise] = (1 - np.cos(np.pi * np.arange(rise) / rise)) / 2
@@ -221,7 +226,8 @@ def window(specimen: Specimen, acceleration: Array, factor: float) -> tuple[Leng
         for number in range(len(course) - 1):
             contact.change("base.acceleration", course[number], course[number + 1], SAMPLE)
             contact.step(number * SAMPLE, SAMPLE)
-            rows.append([specimen.course(contact), *specimen.left(contact)])
+            if watched:
+                rows.append(specimen.observed(contact))
         return specimen.longest(contact), np.array(rows)
 
 
