@@ -1,8 +1,10 @@
 """Colours and scales of all figures."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from matplotlib.axes import Axes
+# What only computes takes the constants from here, and does not wait for matplotlib.
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 GRAVITY = 9.80665  # m/s2
 # Colours of Okabe and Ito, told apart also by the colour-blind.
@@ -10,12 +12,12 @@ BLUE, ORANGE, RED, GREEN = "#0072B2", "#E69F00", "#D55E00", "#009E73"
 PURPLE, SKY, BLACK, GREY = "#CC79A7", "#56B4E9", "#000000", "#666666"
 
 
-def legend_beside(axes: Axes) -> None:
+def legend_beside(axes: "Axes") -> None:
     """Put the legend to the right of a panel."""
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize="small", frameon=False)
 
 
-def acceleration_in_g(axes: Axes, vertical: bool = True) -> None:
+def acceleration_in_g(axes: "Axes", vertical: bool = True) -> None:
     """Give an axis of base acceleration in m/s2 a second scale in g."""
     functions: Any = (lambda a: a / GRAVITY, lambda a: a * GRAVITY)
     if vertical:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.optimize import least_squares
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 from relay_contact.component import Array, Values
 from relay_contact.identification.measurement import BOUNCE, RELATIVE, RINGDOWN, Measurement
@@ -291,7 +291,7 @@ class Fit:
         for number in range(len(self.unknowns)):
             variance, own = covariance[number, number], parts[:, number]
             degrees = variance**2 / max(float((own**2 / freedom).sum()), 1e-300)
-            found.append(float(student.ppf(0.975, degrees) * np.sqrt(wider[number])))
+            found.append(float(stdtrit(degrees, 0.975) * np.sqrt(wider[number])))
         return np.array(found)
 
     def shifts(self, name: str, part: float) -> Array:

@@ -7,7 +7,6 @@ from tqdm import tqdm
 
 from relay_contact.component import Component
 from relay_contact.qualification.assessment import Part, assess, chosen
-from relay_contact.qualification.page import write
 from relay_contact.qualification.relay import Relay, relays
 from relay_contact.qualification.standards import Standard, standards
 
@@ -34,6 +33,9 @@ def qualify(
     run again. `quick` vibrates at fewer frequencies; margins are the same. `cluster` is the address of a Dask
     cluster whose workers have this package.
     """
+    # Workers and lists of relays import this package, too, and draw nothing.
+    from relay_contact.qualification.page import write
+
     component = component or Component()
     described = Relay.read(relay, component)
     asked = chosen(Standard.read(standard), tests or [])
