@@ -51,7 +51,7 @@ def test_what_a_laboratory_measures_gives_the_parameters(tmp_path: Path, capsys:
 
 def test_intervals_hold_the_true_values_as_often_as_they_say() -> None:
     """A small form of `identification_coverage.py`."""
-    sets = 4
+    sets = 6
     inside = int((np.abs([errors(seed) for seed in range(sets)]) <= 1).sum())
     # Fewer come once in a thousand times, if intervals are right and the parameters of a set independent.
     assert inside >= binom.ppf(1e-3, sets * len(TRUTH), 0.95)
