@@ -3,6 +3,7 @@
 //! The other side is the crate `fmi`, whose types bindgen makes from the headers of the standard. Building it needs
 //! libclang (`LIBCLANG_PATH`: its folder) and, where only the bare library is installed, the folder of the C compiler's own
 //! headers (`BINDGEN_EXTRA_CLANG_ARGS=-I$(cc -print-file-name=include)`). `cargo xtask test` sets both.
+#![cfg(feature = "types")]
 #![allow(non_camel_case_types)]
 
 use fmi::fmi2::binding as official;

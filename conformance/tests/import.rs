@@ -6,7 +6,6 @@ use fmi::fmi2::Fmi2Error;
 use fmi::fmi2::import::Fmi2Import;
 use fmi::fmi2::instance::{CoSimulation, Common, InstanceCS};
 use fmi::traits::FmiImport;
-use relay_contact::variables::{ExcitationKind, GUID};
 
 fn import() -> Fmi2Import {
     let path = std::env::var("RELAY_CONTACT_FMU").expect(
@@ -30,14 +29,8 @@ fn instantiate(import: &Fmi2Import) -> InstanceCS {
 }
 
 #[test]
-fn the_package_belongs_to_this_source() {
-    let import = import();
-    assert_eq!(
-        import.model_description().guid,
-        GUID,
-        "RelayContact.fmu is older than the source"
-    );
-    let instance = instantiate(&import);
+fn it_says_which_standard_it_follows() {
+    let instance = instantiate(&import());
     assert_eq!(Common::get_version(&instance), "2.0");
     assert_eq!(instance.get_types_platform(), "default");
 }
@@ -110,9 +103,9 @@ fn the_published_run_gives_the_forces_of_our_own() {
     let rows: Vec<_> = forces.iter().map(|[force]| [0.0, *force]).collect();
     assert_eq!(rows.len(), 2001);
     compare("published run", &rows, |import, instance| {
-        let sine = ExcitationKind::Sine as i32;
+        // 2: `Sine`.
         instance
-            .set_integer(&[reference(import, "effects.excitation")], &[sine])
+            .set_integer(&[reference(import, "effects.excitation")], &[2])
             .expect("the excitation");
     });
 }

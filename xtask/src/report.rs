@@ -52,7 +52,8 @@ pub fn start(task: &str, arguments: &[impl AsRef<OsStr>]) -> Result<()> {
 
 fn program() -> Command {
     let mut program = cargo();
-    program.args(["run", "--quiet", "--package=report", "--"]);
+    // Without `--package`: that would select other features of what others wrote, and compile nearly all again.
+    program.args(["run", "--quiet", "--bin=report", "--"]);
     program
 }
 

@@ -27,26 +27,15 @@ pub struct Arguments {
     /// For daily work: only format, lint, unit and integration tests
     #[arg(long)]
     quick: bool,
-    /// Only stages that run in parallel with others
+    /// Only the stages with the packed component, which run in parallel with the others
     #[arg(long, hide = true)]
-    part: Option<Part>,
-}
-
-/// Stages that run in parallel with others, as a program of their own, so that their output stays together.
-#[derive(clap::ValueEnum, Clone, Copy)]
-enum Part {
-    /// The packed component, and Python.
-    Component,
-    /// The component in other importers.
-    Importers,
+    component: bool,
 }
 
 /// Runs all stages up to the first failure, but completes those running in parallel.
 pub fn run(arguments: Arguments) -> Result<()> {
-    match arguments.part {
-        Some(Part::Component) => return component(),
-        Some(Part::Importers) => return other_importers(),
-        None => {}
+    if arguments.component {
+        return component();
     }
     stage("cargo xtask test", || {
         stage("format", || run_command(cargo().args(["fmt", "--all", "--check"])))?;
@@ -54,19 +43,11 @@ pub fn run(arguments: Arguments) -> Result<()> {
         if arguments.quick {
             return rust();
         }
-        let part = |name| move || output(Command::new(env::current_exe()?).args(["test", "--part", name]));
-        both(library, part("component"))?;
-        both(browser, part("importers"))
+        // A program of its own, so that its output stays together.
+        both(library, || {
+            output(Command::new(env::current_exe()?).args(["test", "--component"]))
+        })
     })
-}
-
-/// The report in a browser.
-fn browser() -> Result<()> {
-    if report::chromium().is_none() {
-        println!("== report: NOT RUN, {}", report::CHROMIUM_MISSING);
-        return Ok(());
-    }
-    stage("report", report::test)
 }
 
 /// Runs both in parallel, as most of the work uses one core. The output of the second is printed at the end.
@@ -96,11 +77,12 @@ fn rust() -> Result<()> {
 /// The stages with the library only.
 fn library() -> Result<()> {
     rust()?;
-    if !valgrind::is_installed() {
+    if valgrind::is_installed() {
+        stage("valgrind", valgrind::run)
+    } else {
         println!("== valgrind: NOT RUN, {}", valgrind::MISSING);
-        return Ok(());
+        Ok(())
     }
-    stage("valgrind", valgrind::run)
 }
 
 /// The stages with the packed component, and Python.
@@ -115,13 +97,19 @@ fn component() -> Result<()> {
     stage("wheel", wheel::run)?;
     stage("Python tests and examples", || {
         python::test(&["examples/python", "tests/python"], &component)
-    })
+    })?;
+    stage("conformance lint", || {
+        run_command(importers::conformance("clippy")?.arg("--features=types").args(LINT))
+    })?;
+    importers::stages(&component)?;
+    browser()
 }
 
-/// The stages with other importers. They share a target folder with the Rust tests, and would wait while these are compiled.
-fn other_importers() -> Result<()> {
-    stage("conformance lint", || {
-        run_command(importers::conformance("clippy")?.args(LINT))
-    })?;
-    importers::stages(&fmu::build()?)
+/// The report in a browser.
+fn browser() -> Result<()> {
+    if report::chromium().is_none() {
+        println!("== report: NOT RUN, {}", report::CHROMIUM_MISSING);
+        return Ok(());
+    }
+    stage("report", report::test)
 }
