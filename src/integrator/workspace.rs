@@ -5,7 +5,7 @@ use crate::closed_loop::dense::DensePropagator;
 use crate::closed_loop::propagator::{ByLength, Propagator};
 use crate::error::{StepError, StepErrorCause};
 use crate::integrator::collocation::coefficients::Cache;
-use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::collocation::polynomial::{Collocation, OF_LONG, OF_SHORT};
 use crate::integrator::collocation::step::End;
 use crate::integrator::constants::{LENGTHS, NEW_LENGTH, STEPS};
 use crate::integrator::events::log::Events;
@@ -42,8 +42,8 @@ impl Workspace {
             .map(|closed_loop| closed_loop.oscillators.len());
         let lengths = if oscillators.is_some() { LENGTHS } else { 0 };
         Self {
-            short: Cache::new(model),
-            long: Cache::new(model),
+            short: Cache::new(model, &OF_SHORT),
+            long: Cache::new(model, &OF_LONG),
             short_end: End::default(),
             long_end: End::default(),
             inside: [ModeState::default(); MAX_MODES],

@@ -47,7 +47,15 @@ fn requirements() -> Result<String> {
 
 fn pip() -> Command {
     let mut pip = python();
-    pip.args(["-m", "pip", "install", "--disable-pip-version-check", "--quiet"]);
+    // What is not imported need not be compiled.
+    pip.args([
+        "-m",
+        "pip",
+        "install",
+        "--disable-pip-version-check",
+        "--quiet",
+        "--no-compile",
+    ]);
     pip
 }
 

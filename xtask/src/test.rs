@@ -74,21 +74,26 @@ fn rust() -> Result<()> {
     stage("Rust tests", || run_command(cargo().arg("test")))
 }
 
-/// The stages with the library only.
+/// The stages with the library only, and last the report, for whose test in a browser the Python environment is there by then.
 fn library() -> Result<()> {
     rust()?;
     if valgrind::is_installed() {
-        stage("valgrind", valgrind::run)
+        stage("valgrind", valgrind::run)?;
     } else {
         println!("== valgrind: NOT RUN, {}", valgrind::MISSING);
+    }
+    if report::chromium().is_some() {
+        stage("report", report::test)
+    } else {
+        println!("== report: NOT RUN, {}", report::CHROMIUM_MISSING);
         Ok(())
     }
 }
 
 /// The stages with the packed component, and Python.
 fn component() -> Result<()> {
-    let component = stage("component", fmu::build)?;
     stage("Python environment", python::prepare)?;
+    let component = stage("component", fmu::build)?;
     let tool = |arguments: &[&str]| run_command(commands::python().arg("-m").args(arguments).args(PYTHON));
     stage("Python lint", || tool(&["ruff", "check"]))?;
     stage("Python format", || tool(&["ruff", "format", "--check"]))?;
@@ -101,15 +106,5 @@ fn component() -> Result<()> {
     stage("conformance lint", || {
         run_command(importers::conformance("clippy")?.arg("--features=types").args(LINT))
     })?;
-    importers::stages(&component)?;
-    browser()
-}
-
-/// The report in a browser.
-fn browser() -> Result<()> {
-    if report::chromium().is_none() {
-        println!("== report: NOT RUN, {}", report::CHROMIUM_MISSING);
-        return Ok(());
-    }
-    stage("report", report::test)
+    importers::stages(&component)
 }

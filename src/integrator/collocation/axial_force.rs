@@ -214,6 +214,7 @@ mod tests {
     use super::*;
     use crate::excitation::drive::Drive;
     use crate::integrator::collocation::coefficients::Cache;
+    use crate::integrator::collocation::polynomial::OF_LONG;
     use crate::integrator::collocation::step::End;
     use crate::math::nodal::LONG;
     use crate::scene::Scene;
@@ -243,7 +244,7 @@ mod tests {
     fn energy_changes_by_the_work_of_the_axial_force() {
         for source in [Source::Law(1e-12), Source::Given([0.3; LONG])] {
             let (model, mut state) = pushed();
-            let mut cache = Cache::<LONG>::new(&model);
+            let mut cache = Cache::new(&model, &OF_LONG);
             let (mut most, mut wrong) = (0.0_f64, 0.0_f64);
             let start = model.energy(&state.modes, 0.0);
             let length = 1e-5;

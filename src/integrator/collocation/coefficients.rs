@@ -345,7 +345,7 @@ fn slot(length: f64) -> usize {
 /// Cache of coefficients by step length. Its content never affects results, only the time they take.
 #[derive(Clone, Debug)]
 pub struct Cache<const S: usize> {
-    collocation: Collocation<S>,
+    collocation: &'static Collocation<S>,
     /// For recurring lengths, each in the slot of its hash.
     slots: Vec<StepCoefficients<S>>,
     /// For the last other length.
@@ -367,9 +367,9 @@ pub struct Prepared<'a, const S: usize> {
 
 impl<const S: usize> Cache<S> {
     /// Allocates for the model.
-    pub fn new(model: &Model) -> Self {
+    pub fn new(model: &Model, collocation: &'static Collocation<S>) -> Self {
         Self {
-            collocation: Collocation::new(),
+            collocation,
             slots: vec![StepCoefficients::empty(model); SLOTS],
             other: StepCoefficients::empty(model),
             piece: Piece::default(),
@@ -377,8 +377,8 @@ impl<const S: usize> Cache<S> {
     }
 
     /// The polynomials.
-    pub fn collocation(&self) -> &Collocation<S> {
-        &self.collocation
+    pub fn collocation(&self) -> &'static Collocation<S> {
+        self.collocation
     }
 
     /// The coefficients for a length, with the base acceleration of a step from `time` (s) on.

@@ -78,3 +78,20 @@ fn eliminate<const N: usize, A: Arithmetic>(column: &mut Nodal<N>, p: usize, piv
     }
     column[p] = share;
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::simd::Separate;
+
+    #[test]
+    fn a_small_pivot_costs_no_digits() {
+        // By columns: 1e-10 x + y = 1, x + y = 2; y is 1 to ten digits, and x the rest.
+        let matrix = [[1e-10, 1.0], [1.0, 1.0]];
+        let [[x, y]] = solve::<2, 1, Separate>(matrix, [[1.0, 2.0]]).unwrap();
+        let exact = 1.0 / (1.0 - 1e-10);
+        // Without exchange the elimination multiplies rounding by 1e10.
+        assert!((x - exact).abs() < 4.0 * f64::EPSILON, "{x} {exact}");
+        assert!((y - (2.0 - exact)).abs() < 4.0 * f64::EPSILON, "{y}");
+    }
+}

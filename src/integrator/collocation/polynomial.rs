@@ -4,18 +4,26 @@
 //! however stiff its damping (Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.5): eight for long
 //! steps, four for short ones (communication steps of a microsecond, the time just after an impact).
 
+use std::sync::LazyLock;
+
 use crate::integrator::collocation::shapes::{MAX_SHAPES, Shapes};
 use crate::integrator::constants::{FLAT, LOOKS, NEAR, SLOWEST_DECAY};
 use crate::math::legendre;
-use crate::math::nodal::{LONG, Nodal, add, dot, scaled};
+use crate::math::nodal::{LONG, Nodal, SHORT, add, dot, scaled};
 use crate::math::prediction::{Prediction, Predictions, centred, value_and_slope};
 use crate::math::simd::{Arithmetic, Separate, Simd, compiled_for};
 
 /// Golden ratio, of the golden-section search.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
+/// The polynomials of a short step, computed once.
+pub static OF_SHORT: LazyLock<Collocation<SHORT>> = LazyLock::new(Collocation::new);
+
+/// The polynomials of a long step, computed once.
+pub static OF_LONG: LazyLock<Collocation<LONG>> = LazyLock::new(Collocation::new);
+
 /// The polynomials of a step with `S` nodes.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Collocation<const S: usize> {
     /// Nodes on [0, 1], ascending.
     pub nodes: Nodal<S>,
@@ -238,12 +246,6 @@ impl<const S: usize> Collocation<S> {
             }
         }
         values
-    }
-}
-
-impl<const S: usize> Default for Collocation<S> {
-    fn default() -> Self {
-        Self::new()
     }
 }
 
