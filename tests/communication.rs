@@ -2,11 +2,12 @@
 
 #![allow(clippy::unwrap_used)]
 
+use relay_contact::error::StepErrorCause;
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::{Event, Simulation};
 use relay_contact::variables::{BooleanOutput, IntegerOutput, RealOutput};
-use testing::scenes;
+use testing::scenes::{self, at_rest};
 
 fn shaken(amplitude: f64, tolerance: f64) -> Scene {
     let mut scene = scenes::shaken(amplitude, 1000.0);
@@ -98,6 +99,32 @@ fn a_step_of_a_rounding_from_a_point_early_by_more_does_not_turn_time_back() {
         // It changes by some hundreds of newtons a second.
         let found = simulation.real(RealOutput::ContactForce);
         assert!((found - force).abs() < 1e-13, "{time}: {found} {force}");
+    }
+}
+
+/// The spacing of floating-point numbers of time may be a tenth of a fiftieth of the lowest period: the motion still has the
+/// steps that it needs.
+#[test]
+fn a_time_too_coarse_for_the_motion_is_refused() {
+    let scene = Scene::default();
+    let frequency = at_rest(&scene, RealOutput::PreloadFrequency);
+    for start in [0.0, 1e9, 1e11] {
+        let mut simulation = Simulation::new(&scene, &Inputs::default(), start).unwrap();
+        let inputs = Inputs {
+            base_acceleration: 98.0,
+            ..Inputs::default()
+        };
+        let stepped = simulation.step(&inputs, start, 1e-3).map_err(|error| error.cause);
+        let coarse = f64::EPSILON * (start + 1e-3);
+        if coarse > 2e-3 / frequency {
+            let Err(StepErrorCause::Resolution { spacing, allowed }) = stepped else {
+                panic!("{start} s: {stepped:?}");
+            };
+            assert_eq!(spacing, coarse);
+            assert!((allowed * frequency / 2e-3 - 1.0).abs() < 1e-12, "{allowed} s");
+        } else {
+            assert_eq!(stepped, Ok(()), "{start} s");
+        }
     }
 }
 
