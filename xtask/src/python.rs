@@ -47,15 +47,7 @@ fn requirements() -> Result<String> {
 
 fn pip() -> Command {
     let mut pip = python();
-    // What is not imported need not be compiled.
-    pip.args([
-        "-m",
-        "pip",
-        "install",
-        "--disable-pip-version-check",
-        "--quiet",
-        "--no-compile",
-    ]);
+    pip.args(["-m", "pip", "install", "--disable-pip-version-check", "--quiet"]);
     pip
 }
 

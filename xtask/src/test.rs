@@ -74,7 +74,7 @@ fn rust() -> Result<()> {
     stage("Rust tests", || run_command(cargo().arg("test")))
 }
 
-/// The stages with the library only, and last the report, for whose test in a browser the Python environment is there by then.
+/// The stages with the library only; the last two use the Python environment, which is there by then.
 fn library() -> Result<()> {
     rust()?;
     if valgrind::is_installed() {
@@ -82,6 +82,9 @@ fn library() -> Result<()> {
     } else {
         println!("== valgrind: NOT RUN, {}", valgrind::MISSING);
     }
+    stage("conformance lint", || {
+        run_command(importers::conformance("clippy")?.arg("--features=types").args(LINT))
+    })?;
     if report::chromium().is_some() {
         stage("report", report::test)
     } else {
@@ -102,9 +105,6 @@ fn component() -> Result<()> {
     stage("wheel", wheel::run)?;
     stage("Python tests and examples", || {
         python::test(&["examples/python", "tests/python"], &component)
-    })?;
-    stage("conformance lint", || {
-        run_command(importers::conformance("clippy")?.arg("--features=types").args(LINT))
     })?;
     importers::stages(&component)
 }
