@@ -29,8 +29,16 @@ fn instantiate(import: &Fmi2Import) -> InstanceCS {
 }
 
 #[test]
-fn it_says_which_standard_it_follows() {
-    let instance = instantiate(&import());
+fn the_package_belongs_to_this_source() {
+    let import = import();
+    let packed = std::fs::read_to_string(import.archive_path().join("modelDescription.xml")).expect("a description");
+    let guid = format!("guid=\"{}\"", import.model_description().guid);
+    // Not by `assert_eq`, which would print both.
+    assert!(
+        packed.replacen(&guid, "guid=\"\"", 1) == include_str!("../../modelDescription.xml"),
+        "RelayContact.fmu is older than the source"
+    );
+    let instance = instantiate(&import);
     assert_eq!(Common::get_version(&instance), "2.0");
     assert_eq!(instance.get_types_platform(), "default");
 }

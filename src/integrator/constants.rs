@@ -130,7 +130,7 @@ pub const ITERATIONS: u64 = 12;
 pub const STALE: f64 = 0.03;
 
 /// Rounding of the motion at the nodes, relative to what it would be without contact force, 1. Four roundings.
-/// Pinned: × 1e6, `tests/promise.rs`; 0 only adds rejected steps.
+/// Pinned: × 1e8, `tests/promise.rs`; 0 only adds rejected steps.
 pub const MOTION_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Pivot below which rows are exchanged, 1. An elimination multiplies rounding by its inverse. Pinned: 0,

@@ -1,12 +1,12 @@
 //! The Python environment `.venv`, with exactly what `requirements.txt` lists.
 
 use std::env::consts::EXE_SUFFIX;
-use std::fs;
+use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result, bail};
-use commands::{command, output, python, root, run};
+use commands::{command, output, python, root, run, write};
 
 /// Oldest Python for which the pinned packages exist.
 const OLDEST: (u32, u32) = (3, 11);
@@ -21,8 +21,10 @@ pub fn test(tests: &[&str], component: &Path) -> Result<()> {
         .env("RELAY_CONTACT_FMU", component))
 }
 
-/// Creates the environment, unless it exists with the same requirements.
+/// Creates the environment, unless it exists with the same requirements. Where another stage does so, waits for it.
 pub fn prepare() -> Result<()> {
+    let lock = File::open(write("out/python.lock", b"")?)?;
+    lock.lock()?;
     let required = requirements()?;
     // Written last, so that an unfinished environment is created again.
     let stamp = root().join(".venv/requirements.txt");

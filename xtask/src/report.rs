@@ -52,7 +52,7 @@ pub fn start(task: &str, arguments: &[impl AsRef<OsStr>]) -> Result<()> {
 
 fn program() -> Command {
     let mut program = cargo();
-    // Without `--package`: that would select other features of what others wrote, and compile nearly all again.
+    // Not `--package`, for the reason in `.cargo/config.toml`.
     program.args(["run", "--quiet", "--bin=report", "--"]);
     program
 }

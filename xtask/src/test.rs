@@ -74,23 +74,25 @@ fn rust() -> Result<()> {
     stage("Rust tests", || run_command(cargo().arg("test")))
 }
 
-/// The stages with the library only; the last two use the Python environment, which is there by then.
+/// The stages with the library only; the last two use the Python environment.
 fn library() -> Result<()> {
     rust()?;
-    if valgrind::is_installed() {
-        stage("valgrind", valgrind::run)?;
-    } else {
-        println!("== valgrind: NOT RUN, {}", valgrind::MISSING);
-    }
+    if_installed("valgrind", valgrind::is_installed(), valgrind::MISSING, valgrind::run)?;
+    python::prepare()?;
     stage("conformance lint", || {
         run_command(importers::conformance("clippy")?.arg("--features=types").args(LINT))
     })?;
-    if report::chromium().is_some() {
-        stage("report", report::test)
-    } else {
-        println!("== report: NOT RUN, {}", report::CHROMIUM_MISSING);
-        Ok(())
+    let chromium = report::chromium().is_some();
+    if_installed("report", chromium, report::CHROMIUM_MISSING, report::test)
+}
+
+/// A stage with a program that a machine may lack.
+fn if_installed(name: &str, installed: bool, missing: &str, run: impl FnOnce() -> Result<()>) -> Result<()> {
+    if installed {
+        return stage(name, run);
     }
+    println!("== {name}: NOT RUN, {missing}");
+    Ok(())
 }
 
 /// The stages with the packed component, and Python.
