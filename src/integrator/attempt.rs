@@ -238,9 +238,12 @@ impl Integration<'_> {
         } else {
             Places::default()
         };
-        if let Some((_, dense)) = &mut self.dense {
-            dense.indentation = collocation.through(state.indentation, &trial.indentations);
-            dense.rate = collocation.through(state.indentation_rate, &trial.rates);
+        if let Some((read, dense)) = &mut self.dense {
+            // Of the other contact the approach is read from all steps.
+            if target.time > *read || self.other.is_some() {
+                dense.indentation = collocation.through(state.indentation, &trial.indentations);
+                dense.rate = collocation.through(state.indentation_rate, &trial.rates);
+            }
             (dense.force, dense.turns, dense.passages) = (*force, turns, passages);
         }
         if let Some(extremes) = &mut self.extremes

@@ -52,7 +52,7 @@ pub const LONGER: f64 = 16.0;
 
 /// Factor on the length of short steps after a long one in a communication step that begins with another input, 1: whether
 /// they suffice shows when they are tried again. Cost.
-pub const AGAIN: f64 = 1.25;
+pub const AGAIN: f64 = 1.1;
 
 /// Length of a communication step, in steps of the integrator, from which one of them ends with it, 1. Chosen by the
 /// work in the scenes. Cost.
@@ -136,6 +136,9 @@ pub const MOTION_ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// Pivot below which rows are exchanged, 1. An elimination multiplies rounding by its inverse. Pinned: 0,
 /// `a_small_pivot_costs_no_digits`.
 pub const SMALL_PIVOT: f64 = 0.1;
+
+/// Length of a step, in those of the one before, beyond which its forces with friction are first guessed by a parabola. Cost.
+pub const FAR_AHEAD: f64 = 1.5;
 
 /// Nodes of the flatter of the two predictions of the force. Chosen by the work in the scenes. Cost.
 pub const FLAT: usize = 4;

@@ -54,7 +54,9 @@ impl Integration<'_> {
             }
             add_columns::<S, Separate>(&mut dissipated, &integrals.nodal, &powers);
         }
-        if let Some((_, dense)) = &mut self.dense {
+        if let Some((read, dense)) = &mut self.dense
+            && state.time > *read
+        {
             dense.friction.slip = collocation.through(start.slip, &slips);
             dense.friction.dissipated = collocation.through(start.dissipated, &dissipated);
         }

@@ -144,9 +144,9 @@
 //! # Events
 //!
 //! A step ends where the contact opens or closes ([`events`]): the step accepted is cut there. Inside it the motion of the
-//! modes is exact under the polynomials of force and base acceleration ([`collocation::part`]): up to an instant these are
-//! nodal polynomials again, so no coefficients of a step of that length are needed but those of its end, and no Newton
-//! iteration. The instant is found by Chandrupatla's bracketing method ([`roots`](crate::math::roots)) on the polynomials
+//! modes is exact under the polynomials of force and base acceleration ([`collocation::part`], with the modes
+//! [`side by side`](collocation::side_by_side)): up to an instant these are nodal polynomials again, so no coefficients of a
+//! step of that length are needed and no Newton iteration. The instant is found by Chandrupatla's bracketing method ([`roots`](crate::math::roots)) on the polynomials
 //! through indentations and velocities at the nodes, then by the secant method on the exact motion, until the force there
 //! is below [`constants::LOCATED`] of the error allowed in a step. Where the error inside is too large the step is
 //! repeated, shorter but of a length whose coefficients are known.
@@ -243,7 +243,8 @@
 //! any event; no blow follows, so the error inside need only be that allowed in a step. The slope of the friction force jumps
 //! there, and the spring, which has no rotary inertia at its end unless `tip.rotaryInertia` gives it, answers as steeply as
 //! its highest modes do. So the first step is about as long as the last one after such a change, and the next ones grow with the
-//! time since, as after a closing. Rounding could change stick and slip to and fro at one instant: what is below
+//! time since, as after a closing. Over steps that grow so fast the polynomials of the last one lead astray, so the first guess
+//! is a parabola. Rounding could change stick and slip to and fro at one instant: what is below
 //! [`constants::LOCATED`] of the error allowed is no change.
 //!
 //! As the contact opens the limit vanishes, so it slips before; as it closes, the direction of the first motion decides.

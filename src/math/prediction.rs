@@ -35,6 +35,15 @@ pub fn centred(y: f64) -> f64 {
     2.0 * y + 1.0
 }
 
+/// Value, slope and half the curvature of a polynomial at the end of the step, by time in step lengths.
+pub fn parabola_at_end(coefficients: &Prediction) -> [f64; 3] {
+    let terms = coefficients.iter().rev();
+    let [value, slope, half_curvature] = terms.fold([0.0; 3], |[value, slope, half_curvature], coefficient| {
+        [value + coefficient, slope + value, half_curvature + slope]
+    });
+    [value, 2.0 * slope, 4.0 * half_curvature]
+}
+
 /// A polynomial at `y`, relative to the end of the step in step lengths, and its derivative by `y` (Horner's rule).
 pub fn value_and_slope(coefficients: &Prediction, y: f64) -> (f64, f64) {
     let z = centred(y);

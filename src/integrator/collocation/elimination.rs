@@ -15,8 +15,8 @@ pub(super) fn solve<const N: usize, const R: usize, A: Arithmetic>(
 }
 
 /// Solves equations for several right-hand sides by Gauss-Jordan elimination by columns, whose inner loops run down columns.
-/// What [`substitute`] needs for others remains in place; returned are the rows exchanged, only for a small pivot, which occurs
-/// in violent steps only.
+/// What [`substitute`] needs for others remains in place, with the inverse of each pivot; returned are the rows exchanged, only
+/// for a small pivot, which occurs in violent steps only.
 #[expect(
     clippy::indexing_slicing,
     reason = "every index runs over the fixed size of the arrays"
@@ -44,6 +44,7 @@ pub(super) fn factorise<const N: usize, const R: usize, A: Arithmetic>(
         for column in &mut *right {
             eliminate::<N, A>(column, p, &pivot, inverse);
         }
+        a[p][p] = inverse;
     }
     Some(exchanges)
 }
@@ -61,7 +62,7 @@ pub(super) fn substitute<const N: usize, A: Arithmetic>(
 ) {
     for p in 0..N {
         right.swap(p, exchanges[p]);
-        eliminate::<N, A>(right, p, &a[p], 1.0 / a[p][p]);
+        eliminate::<N, A>(right, p, &a[p], a[p][p]);
     }
 }
 

@@ -10,6 +10,7 @@ pub mod newton;
 pub mod part;
 pub mod polynomial;
 pub mod shapes;
+pub(crate) mod side_by_side;
 pub mod step;
 pub mod superposition;
 pub mod tangential;

@@ -6,7 +6,7 @@
 //! integrated by parts). For a fast mode: derivatives of the shape (the quasi-static particular solution) and a free
 //! motion that cancels its initial value. A strongly overdamped mode with one fast and one slow root uses one of each.
 
-use crate::integrator::collocation::shapes::{Load, MAX_SHAPES, Row, Shapes};
+use crate::integrator::collocation::shapes::{MAX_SHAPES, Row, Shapes};
 use crate::integrator::collocation::superposition::{Combination, Fading, Pair, Response};
 use crate::integrator::constants::{FAST, FREE, NEGLIGIBLE, SLOW, TERMS};
 use crate::math::free_motion::FreeMotion;
@@ -15,7 +15,7 @@ use crate::math::simd::Arithmetic;
 
 /// Which characteristic roots of a mode are slow compared with the step.
 #[derive(Clone, Copy, Debug)]
-enum Regime {
+pub(super) enum Regime {
     /// Both roots are slow.
     Slow,
     /// Both roots are fast.
@@ -27,13 +27,13 @@ enum Regime {
 /// A mode over a step: `q'' + c q' + omega^2 q = r(t)`.
 #[derive(Clone, Copy, Debug)]
 pub struct ModeOverStep {
-    omega_squared: f64,
-    damping: f64,
+    pub(super) omega_squared: f64,
+    pub(super) damping: f64,
     /// Step length, s.
-    h: f64,
+    pub(super) h: f64,
     /// Magnitude of the faster root times h.
-    fast: f64,
-    regime: Regime,
+    pub(super) fast: f64,
+    pub(super) regime: Regime,
 }
 
 impl ModeOverStep {
@@ -112,52 +112,6 @@ impl ModeOverStep {
             fading,
             impulse,
         }
-    }
-
-    /// The responses at the end to loads, from rest; displacement in step lengths squared, velocity in step lengths.
-    /// `free`: the free motion to there.
-    #[inline(always)]
-    pub(crate) fn under<const S: usize, A: Arithmetic, const N: usize>(
-        &self,
-        shapes: &Shapes<S>,
-        free: &FreeMotion,
-        loads: [&Load; N],
-    ) -> [Pair<f64>; N] {
-        let mut responses = [Pair { q: 0.0, v: 0.0 }; N];
-        self.for_integrals::<S, A, _>(shapes, 0..TERMS, |by_q, by_v, n| {
-            for (Pair { q, v }, load) in responses.iter_mut().zip(loads) {
-                if let Some(of) = load.integrals.get(n) {
-                    (*q, *v) = (A::mul_add(by_q, *of, *q), A::mul_add(by_v, *of, *v));
-                }
-            }
-        });
-        if let Regime::Slow = self.regime {
-            return responses;
-        }
-        // What the free motion cancels at the start.
-        let mut starts = [Pair { q: 0.0, v: 0.0 }; N];
-        self.for_derivatives::<S, _>(0..MAX_SHAPES, |by_q, by_v, m| {
-            for ((response, from), load) in responses.iter_mut().zip(&mut starts).zip(loads) {
-                if let Some([start, end]) = load.derivatives.get(m) {
-                    response.q = A::mul_add(by_q, *end, response.q);
-                    response.v = A::mul_add(by_v, *end, response.v);
-                    from.q = A::mul_add(by_q, *start, from.q);
-                    from.v = A::mul_add(by_v, *start, from.v);
-                }
-            }
-        });
-        let (q_from_q, q_from_v, v_from_q, v_from_v) = if let Regime::Split(_, fast) = self.regime {
-            let decay = decayed(fast);
-            (decay, 0.0, fast * decay, 0.0)
-        } else {
-            let h = self.h;
-            (free.q_from_q, free.q_from_v / h, free.v_from_q * h, free.v_from_v)
-        };
-        for (response, from) in responses.iter_mut().zip(&starts) {
-            response.q -= q_from_q * from.q + q_from_v * from.v;
-            response.v -= v_from_q * from.q + v_from_v * from.v;
-        }
-        responses
     }
 
     #[inline(always)]
@@ -312,7 +266,7 @@ impl ModeOverStep {
 
 /// The exponential of a negative number; zero below `e^-50`, which is far below rounding.
 #[inline(always)]
-fn decayed(exponent: f64) -> f64 {
+pub(super) fn decayed(exponent: f64) -> f64 {
     if exponent > -50.0 { exponent.exp() } else { 0.0 }
 }
 

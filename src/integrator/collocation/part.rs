@@ -1,18 +1,19 @@
 //! The first part of a step that has been computed: the exact motion of the modes under the polynomials of the whole step.
 //! A step ends at an event inside it without new coefficients and without another solution for the nodal forces.
 
-use crate::beam::mode::ModeStates;
+use std::array;
+
+use crate::beam::mode::{Mode, ModeState, ModeStates};
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::axial_force::NodalModes;
-use crate::integrator::collocation::modal_response::ModeOverStep;
 use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::collocation::shapes::{Load, Shapes};
+use crate::integrator::collocation::side_by_side::Loads;
 use crate::integrator::collocation::step::{End, Trial};
-use crate::integrator::collocation::superposition::Pair;
 use crate::integrator::collocation::tangential::TangentialNodes;
-use crate::math::free_motion::FreeMotion;
 use crate::math::nodal::{Nodal, dot};
 use crate::math::prediction::value_and_slope;
-use crate::math::simd::{Arithmetic, Separate, compiled_for};
+use crate::math::simd::{Arithmetic, LANES, Separate, compiled_for};
 use crate::model::Model;
 use crate::state::State;
 
@@ -54,38 +55,44 @@ fn compute<const S: usize, A: Arithmetic>(
 ) -> Instant {
     let shapes = &collocation.shapes;
     let rows = collocation.nodes.map(|node| collocation.lagrange(node * (at / length)));
-    let load = |values: &Nodal<S>| shapes.load::<A>(&rows.map(|row| dot::<S, A>(&row, values)));
-    let (force, base) = (load(&trial.forces), load(&trial.accelerations));
-    let axial = model.axial().is_some();
-    let friction = model
-        .friction()
-        .map(|friction| (&friction.levers, load(&whole.tangential.forces)));
-    let (mut tip, mut tip_rate) = (0.0, 0.0);
-    let modes = model.modes.iter().zip(&whole.loads).enumerate();
-    for (((i, (mode, own)), start), end) in modes.zip(&state.modes).zip(ends) {
-        let free = FreeMotion::new(mode.omega_squared, mode.damping, at);
-        let over = ModeOverStep::new(mode.omega_squared, mode.damping, at);
-        let by_loads = |by_force: Pair<f64>, by_base: Pair<f64>| {
-            let q = mode.tip * by_force.q - mode.participation * by_base.q;
-            let v = mode.tip * by_force.v - mode.participation * by_base.v;
-            (q, v)
+    let force = load_on::<S, A>(shapes, &rows, &trial.forces);
+    let base = load_on::<S, A>(shapes, &rows, &trial.accelerations);
+    if let Some(friction) = model.friction() {
+        let along = load_on::<S, A>(shapes, &rows, &whole.tangential.forces);
+        let loads = Loads {
+            shapes,
+            length: at,
+            polynomials: [&force, &base, &along],
         };
-        let (mut q, mut v);
-        if let Some((levers, along)) = &friction {
-            let [by_force, by_base, by_friction] = over.under::<S, A, 3>(shapes, &free, [&force, &base, along]);
-            let lever = levers.get(i).copied().unwrap_or_default();
-            (q, v) = by_loads(by_force, by_base);
-            (q, v) = (q + lever * by_friction.q, v + lever * by_friction.v);
-        } else {
-            let [by_force, by_base] = over.under::<S, A, 2>(shapes, &free, [&force, &base]);
-            (q, v) = by_loads(by_force, by_base);
+        let factors = |i: usize, mode: &Mode| {
+            let lever = friction.levers.get(i).copied().unwrap_or_default();
+            [mode.tip, -mode.participation, lever]
+        };
+        moved::<S, A, 3>(&model.modes, &loads, factors, &state.modes, ends);
+    } else {
+        let loads = Loads {
+            shapes,
+            length: at,
+            polynomials: [&force, &base],
+        };
+        let factors = |_, mode: &Mode| [mode.tip, -mode.participation];
+        moved::<S, A, 2>(&model.modes, &loads, factors, &state.modes, ends);
+    }
+    if model.axial().is_some() {
+        for ((mode, own), end) in model.modes.iter().zip(&whole.loads).zip(ends.iter_mut()) {
+            let loads = Loads {
+                shapes,
+                length: at,
+                polynomials: [&load_on::<S, A>(shapes, &rows, own)],
+            };
+            let mut by_axial = [ModeState::default()];
+            loads.moved::<A, 1>(array::from_ref(mode), &[[1.0]], &[ModeState::default()], &mut by_axial);
+            let [ModeState { q, v }] = by_axial;
+            (end.q, end.v) = (end.q + q, end.v + v);
         }
-        if axial {
-            let [by_axial] = over.under::<S, A, 1>(shapes, &free, [&load(own)]);
-            (q, v) = (q + by_axial.q, v + by_axial.v);
-        }
-        end.q = free.q_from_q * start.q + free.q_from_v * start.v + at * at * q;
-        end.v = free.v_from_q * start.q + free.v_from_v * start.v + at * v;
+    }
+    let (mut tip, mut tip_rate) = (0.0, 0.0);
+    for (mode, end) in model.modes.iter().zip(ends) {
         tip = A::mul_add(mode.tip, end.q, tip);
         tip_rate = A::mul_add(mode.tip, end.v, tip_rate);
     }
@@ -93,6 +100,49 @@ fn compute<const S: usize, A: Arithmetic>(
         at,
         d: state.support + drive.support_rate * at - tip,
         rate: drive.support_rate - tip_rate,
+    }
+}
+
+/// The load of these nodal values up to an instant, at which the Lagrange polynomials take the nodes to `rows`. Not a closure,
+/// which may not be inlined and would then be compiled for the generic processor.
+#[inline(always)]
+fn load_on<const S: usize, A: Arithmetic>(shapes: &Shapes<S>, rows: &[Nodal<S>; S], values: &Nodal<S>) -> Load {
+    let mut nodal = [0.0; S];
+    for (value, row) in nodal.iter_mut().zip(rows) {
+        *value = dot::<S, A>(row, values);
+    }
+    shapes.load::<A>(&nodal)
+}
+
+/// Modes at the end of the loads, each with its factors of them, [`LANES`] side by side.
+#[inline(always)]
+fn moved<const S: usize, A: Arithmetic, const LOADS: usize>(
+    modes: &[Mode],
+    loads: &Loads<S, LOADS>,
+    factors: impl Fn(usize, &Mode) -> [f64; LOADS],
+    starts: &ModeStates,
+    ends: &mut ModeStates,
+) {
+    let (groups, rest) = modes.as_chunks::<LANES>();
+    let (starts, _) = starts.as_chunks::<LANES>();
+    let (ends, _) = ends.as_chunks_mut::<LANES>();
+    let mut states = starts.iter().zip(ends);
+    for (k, (group, (starts, ends))) in groups.iter().zip(&mut states).enumerate() {
+        let mut of_group = [[0.0; LANES]; LOADS];
+        for (i, mode) in group.iter().enumerate() {
+            for (row, factor) in of_group.iter_mut().zip(factors(k * LANES + i, mode)) {
+                row.iter_mut().skip(i).take(1).for_each(|entry| *entry = factor);
+            }
+        }
+        loads.moved::<A, LANES>(group, &of_group, starts, ends);
+    }
+    if let Some((starts, ends)) = states.next() {
+        let done = modes.len() - rest.len();
+        for (i, ((mode, start), end)) in rest.iter().zip(starts).zip(ends).enumerate() {
+            let of_mode = factors(done + i, mode).map(|factor| [factor]);
+            let (mode, start, end) = (array::from_ref(mode), array::from_ref(start), array::from_mut(end));
+            loads.moved::<A, 1>(mode, &of_mode, start, end);
+        }
     }
 }
 

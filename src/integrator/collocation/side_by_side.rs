@@ -1,0 +1,294 @@
+//! Modes side by side, for vector arithmetic: their motion up to the end of a step under polynomial loads.
+//!
+//! The sums over integrals and derivatives of the loads are those of
+//! [`modal_response`](crate::integrator::collocation::modal_response). Their factors follow from recurrences, so a sum is
+//! taken from its last term on (Horner's rule, Clenshaw's algorithm): displacement and velocity result from one pass.
+
+use crate::beam::mode::{Mode, ModeState};
+use crate::integrator::collocation::modal_response::{ModeOverStep, Regime, decayed};
+use crate::integrator::collocation::shapes::{Load, Shapes};
+use crate::integrator::collocation::superposition::Pair;
+use crate::integrator::constants::{NEGLIGIBLE, TERMS};
+use crate::math::free_motion::FreeMotion;
+use crate::math::nodal::{add, add_products};
+use crate::math::simd::Arithmetic;
+
+/// Loads up to the end of a step of `length` seconds.
+pub(super) struct Loads<'a, const S: usize, const LOADS: usize> {
+    pub(super) shapes: &'a Shapes<S>,
+    pub(super) length: f64,
+    pub(super) polynomials: [&'a Load; LOADS],
+}
+
+impl<const S: usize, const LOADS: usize> Loads<'_, S, LOADS> {
+    /// The modes at the end from those at the start, each under the sum of the loads times its factors; modes of one regime
+    /// side by side, others one by one.
+    #[inline(always)]
+    pub(super) fn moved<A: Arithmetic, const N: usize>(
+        &self,
+        modes: &[Mode; N],
+        factors: &[[f64; N]; LOADS],
+        starts: &[ModeState; N],
+        ends: &mut [ModeState; N],
+    ) {
+        let over = modes
+            .each_ref()
+            .map(|mode| ModeOverStep::new(mode.omega_squared, mode.damping, self.length));
+        let free = over.each_ref().map(free_motion);
+        let response = if let Some(regime) = Together::of(&over) {
+            regime.under::<S, A, LOADS>(self, &free, factors)
+        } else {
+            let mut responses = Pair {
+                q: [0.0; N],
+                v: [0.0; N],
+            };
+            for i in 0..N {
+                #[expect(clippy::indexing_slicing, reason = "there is a value for each mode")]
+                let (over, free, factors) = ([over[i]], [free[i]], factors.each_ref().map(|factors| [factors[i]]));
+                if let Some(alone) = Together::of(&over) {
+                    let Pair { q: [q], v: [v] } = alone.under::<S, A, LOADS>(self, &free, &factors);
+                    #[expect(clippy::indexing_slicing, reason = "there is a value for each mode")]
+                    {
+                        (responses.q[i], responses.v[i]) = (q, v);
+                    }
+                }
+            }
+            responses
+        };
+        let h = self.length;
+        let by_loads = response.q.iter().zip(&response.v);
+        for (((end, start), free), (q, v)) in ends.iter_mut().zip(starts).zip(&free).zip(by_loads) {
+            end.q = free.q_from_q * start.q + free.q_from_v * start.v + h * h * q;
+            end.v = free.v_from_q * start.q + free.v_from_v * start.v + h * v;
+        }
+    }
+
+    /// A value of the loads, such as an integral, for each mode.
+    #[inline(always)]
+    fn sum<A: Arithmetic, const N: usize>(
+        &self,
+        factors: &[[f64; N]; LOADS],
+        value: impl Fn(&Load) -> f64,
+    ) -> [f64; N] {
+        let mut sum = [0.0; N];
+        for (load, factors) in self.polynomials.iter().zip(factors) {
+            add::<N, A>(&mut sum, value(load), factors);
+        }
+        sum
+    }
+
+    /// Number of integrals of which the powers of a root times the step length are not negligible.
+    #[inline(always)]
+    fn terms(&self, root: f64) -> usize {
+        // At the last node the powers are 1 / n!.
+        let sizes = self.shapes.powers.iter().filter_map(|power| power.last());
+        let mut power = 1.0;
+        let counts = sizes.take_while(|size| {
+            let counts = power * **size >= NEGLIGIBLE;
+            power *= root;
+            counts
+        });
+        (counts.count() + 1).min(TERMS)
+    }
+}
+
+/// The free motion of a mode over its step. Roots that are far apart need two exponentials only.
+fn free_motion(over: &ModeOverStep) -> FreeMotion {
+    let Regime::Split(slow, fast) = over.regime else {
+        return FreeMotion::new(over.omega_squared, over.damping, over.h);
+    };
+    let share = 1.0 / (slow - fast);
+    let (by_slow, by_fast) = (share * slow.exp(), share * decayed(fast));
+    let q_from_v = over.h * (by_slow - by_fast);
+    FreeMotion {
+        q_from_q: slow * by_fast - fast * by_slow,
+        q_from_v,
+        v_from_q: -over.omega_squared * q_from_v,
+        v_from_v: slow * by_slow - fast * by_fast,
+    }
+}
+
+/// Modes over a step that are of one [`Regime`].
+enum Together<const N: usize> {
+    /// Factors of velocity and displacement in the acceleration; the largest root. All times the step length.
+    Slow([f64; N], [f64; N], f64),
+    /// The same factors over that of the displacement, and its inverse.
+    Fast([f64; N], [f64; N]),
+    /// The roots times the step length.
+    Split([f64; N], [f64; N]),
+}
+
+impl<const N: usize> Together<N> {
+    /// These modes, if they are of one regime.
+    #[inline(always)]
+    fn of(modes: &[ModeOverStep; N]) -> Option<Self> {
+        let count = |which: fn(&Regime) -> bool| modes.iter().filter(|mode| which(&mode.regime)).count();
+        let squared = |mode: &ModeOverStep| mode.omega_squared * mode.h * mode.h;
+        if count(|regime| matches!(regime, Regime::Slow)) == N {
+            let root = modes.iter().fold(0.0, |root, mode| mode.fast.max(root));
+            let damping = modes.each_ref().map(|mode| -mode.damping * mode.h);
+            Some(Self::Slow(damping, modes.each_ref().map(|mode| -squared(mode)), root))
+        } else if count(|regime| matches!(regime, Regime::Fast)) == N {
+            let damping = modes.each_ref().map(|mode| -mode.damping * mode.h / squared(mode));
+            Some(Self::Fast(damping, modes.each_ref().map(|mode| -1.0 / squared(mode))))
+        } else if count(|regime| matches!(regime, Regime::Split(..))) == N {
+            let roots = modes.each_ref().map(|mode| match mode.regime {
+                Regime::Split(slow, fast) => (slow, fast),
+                _ => (0.0, 0.0),
+            });
+            Some(Self::Split(roots.map(|(slow, _)| slow), roots.map(|(_, fast)| fast)))
+        } else {
+            None
+        }
+    }
+
+    /// The responses to the loads times these factors, from rest; displacement in step lengths squared, velocity in step
+    /// lengths. `free`: the free motions.
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "there is a value for each mode")]
+    fn under<const S: usize, A: Arithmetic, const LOADS: usize>(
+        &self,
+        loads: &Loads<S, LOADS>,
+        free: &[FreeMotion; N],
+        factors: &[[f64; N]; LOADS],
+    ) -> Pair<[f64; N]> {
+        let integral = |n: usize| loads.sum::<A, N>(factors, |load| load.integrals[n]);
+        let derivative = |m: usize, end: usize| loads.sum::<A, N>(factors, |load| load.derivatives[m][end]);
+        match self {
+            Self::Slow(damping, squared, root) => {
+                let (mut v, mut q) = ([0.0; N], [0.0; N]);
+                for n in (0..loads.terms(*root)).rev() {
+                    let mut next = integral(n);
+                    add_products::<N, A>(&mut next, squared, &q);
+                    add_products::<N, A>(&mut next, damping, &v);
+                    (v, q) = (next, v);
+                }
+                Pair { q, v }
+            }
+            Self::Fast(damping, inverse) => {
+                let mut ends = [Pair {
+                    q: [0.0; N],
+                    v: [0.0; N],
+                }; 2];
+                for m in (0..=S).rev() {
+                    for (end, Pair { q, v }) in ends.iter_mut().enumerate() {
+                        let mut next = derivative(m, end);
+                        add_products::<N, A>(&mut next, inverse, v);
+                        add_products::<N, A>(&mut next, damping, q);
+                        (*q, *v) = (next, *q);
+                    }
+                }
+                let [start, mut end] = ends;
+                for i in 0..N {
+                    let FreeMotion {
+                        q_from_q,
+                        q_from_v,
+                        v_from_q,
+                        v_from_v,
+                    } = free[i];
+                    let h = loads.length;
+                    end.q[i] -= q_from_q * start.q[i] + q_from_v / h * start.v[i];
+                    end.v[i] -= v_from_q * h * start.q[i] + v_from_v * start.v[i];
+                    end.q[i] *= -inverse[i];
+                    end.v[i] *= -inverse[i];
+                }
+                end
+            }
+            Self::Split(slow, fast) => {
+                let root = slow.iter().fold(0.0_f64, |root, slow| root.max(slow.abs()));
+                let mut by_slow = [0.0; N];
+                for n in (0..loads.terms(root)).rev() {
+                    let mut next = integral(n);
+                    add_products::<N, A>(&mut next, slow, &by_slow);
+                    by_slow = next;
+                }
+                let inverse = fast.map(f64::recip);
+                let [mut start, mut end] = [[0.0; N]; 2];
+                for m in (0..=S).rev() {
+                    for (k, sum) in [&mut start, &mut end].into_iter().enumerate() {
+                        let mut next = derivative(m, k);
+                        add_products::<N, A>(&mut next, &inverse, sum);
+                        *sum = next;
+                    }
+                }
+                let mut response = Pair {
+                    q: [0.0; N],
+                    v: [0.0; N],
+                };
+                for i in 0..N {
+                    let share = 1.0 / (slow[i] - fast[i]);
+                    // What the fast root follows, less what fades of it.
+                    let decay = free[i].v_from_v - slow[i] * free[i].q_from_v / loads.length;
+                    let followed = end[i] - decay * start[i];
+                    response.q[i] = share * (by_slow[i] + inverse[i] * followed);
+                    response.v[i] = share * (slow[i] * by_slow[i] + followed);
+                }
+                response
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integrator::collocation::polynomial::Collocation;
+    use crate::math::nodal::{LONG, dot};
+    use crate::math::simd::{LANES, Separate};
+
+    /// Modes with these roots of `omega^2` times the step, and damping ratios.
+    fn modes(h: f64, roots: [(f64, f64); LANES]) -> [Mode; LANES] {
+        roots.map(|(omega_h, ratio)| Mode {
+            omega_squared: (omega_h / h).powi(2),
+            damping: 2.0 * ratio * omega_h / h,
+            tip: 1.0,
+            participation: 1.0,
+            rotation: 1.0,
+        })
+    }
+
+    #[test]
+    #[expect(
+        clippy::indexing_slicing,
+        reason = "every index runs over the fixed size of the arrays"
+    )]
+    fn they_move_as_each_does_alone() {
+        let h = 1e-4;
+        let collocation = Collocation::<LONG>::new();
+        let values: [[f64; LONG]; 2] = [1.0, 3.0].map(|k| std::array::from_fn(|j| (k * (1.0 + j as f64)).sin()));
+        let both = values.map(|values| collocation.shapes.load::<Separate>(&values));
+        let loads = Loads {
+            shapes: &collocation.shapes,
+            length: h,
+            polynomials: [&both[0], &both[1]],
+        };
+        for roots in [
+            [(0.001, 0.0), (0.3, 0.1), (2.0, 1.0), (3.0, 0.9)],
+            [(6.8, 0.0), (25.0, 0.3), (9.0, 1.0), (40.0, 1.01)],
+            [(4.0, 3.0), (9.0, 5.0), (2.0, 30.0), (1.0, 5.0)],
+            [(0.3, 0.1), (25.0, 0.3), (9.0, 5.0), (4.0, 0.3)],
+        ] {
+            let modes = modes(h, roots);
+            let factors = [[1.0, -2.0, 0.5, 3.0], [0.3, 1.0, -1.0, 2.0]];
+            let starts = [ModeState { q: 1e-9, v: 1e-5 }; LANES];
+            let mut ends = [ModeState::default(); LANES];
+            loads.moved::<Separate, LANES>(&modes, &factors, &starts, &mut ends);
+            for (i, mode) in modes.iter().enumerate() {
+                let over = ModeOverStep::new(mode.omega_squared, mode.damping, h);
+                let response = over.response::<LONG, Separate>(&collocation.nodes, &collocation.shapes);
+                let Pair { q, v } = response.at_end::<Separate>(&collocation.shapes);
+                let mut load = [0.0; LONG];
+                for (values, factors) in values.iter().zip(&factors) {
+                    add::<LONG, Separate>(&mut load, factors[i], values);
+                }
+                let free = FreeMotion::new(mode.omega_squared, mode.damping, h);
+                let q = free.q_from_q * 1e-9 + free.q_from_v * 1e-5 + h * h * dot::<LONG, Separate>(&q, &load);
+                let v = free.v_from_q * 1e-9 + free.v_from_v * 1e-5 + h * dot::<LONG, Separate>(&v, &load);
+                // Cancellation of the power series and of the derivatives, as in the test of the responses: twelve digits of
+                // the motion of a mode without spring under the load.
+                let errors = ((ends[i].q - q) / (h * h), (ends[i].v - v) / h);
+                assert!(errors.0.abs().max(errors.1.abs()) < 1e-11, "{roots:?} {i} {errors:?}");
+            }
+        }
+    }
+}
