@@ -15,7 +15,7 @@ use crate::error::{Remark, SceneError};
 use crate::excitation::generator::Generator;
 use crate::force_error::ForceError;
 use crate::friction::{self, Friction, Tangential};
-use crate::math::prediction::Predictions;
+use crate::math::prediction::Prediction;
 use crate::math::simd::Simd;
 use crate::preload::Preload;
 use crate::scene::Scene;
@@ -320,7 +320,7 @@ impl Model {
             last_kink: time,
             short_step: self.first_step(time),
             long_step: self.first_step(time),
-            predictions: Predictions::default(),
+            course: Prediction::default(),
             last_step: 0.0,
             flight_step: self.first_step(time),
             energy_surplus: 0.0,

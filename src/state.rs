@@ -9,7 +9,7 @@ use crate::beam::mode::ModeStates;
 use crate::chatter::Interruptions;
 use crate::force_error::ForceError;
 use crate::friction::Tangential;
-use crate::math::prediction::Predictions;
+use crate::math::prediction::Prediction;
 
 /// The state at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -50,8 +50,8 @@ pub struct State {
     pub short_step: f64,
     /// Longest step with many nodes that the error estimate allows while the contact is closed, s.
     pub long_step: f64,
-    /// Force over the last step as deviation from the preload force, N; used to predict that of the next.
-    pub predictions: Predictions,
+    /// Force over the last step as deviation from the preload force, N; that of the next is guessed from it.
+    pub course: Prediction,
     /// Length of that step, s; 0: none.
     pub last_step: f64,
     /// Longest step in flight that the error estimate allowed in the last one, s.
@@ -135,7 +135,7 @@ impl State {
             last_kink,
             short_step,
             long_step,
-            predictions,
+            course,
             last_step,
             flight_step,
             energy_surplus,
@@ -169,7 +169,7 @@ impl State {
         ];
         numbers.into_iter().all(|number| number.is_finite())
             && modes.iter().all(|mode| mode.q.is_finite() && mode.v.is_finite())
-            && predictions.is_finite()
+            && course.iter().all(|number| number.is_finite())
             && interruptions.is_sound(*time)
             && other.interruptions.is_sound(*time)
             && force_error.is_sound()

@@ -16,7 +16,7 @@ use crate::variables::GUID;
 const MAGIC: &[u8] = b"relay\0st";
 
 /// Incremented whenever the contents change.
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 
 /// The bytes of a saved state.
 pub(super) fn to_bytes(snapshot: &Snapshot) -> Result<Vec<u8>, Failure> {

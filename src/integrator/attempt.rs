@@ -89,9 +89,9 @@ impl Integration<'_> {
     where
         Workspace: Room<S>,
     {
-        let start = self.state.indentation;
+        let (start, simd) = (self.state.indentation, self.model.simd);
         let collocation = self.collocation::<S>();
-        let polynomial = collocation.through(start, &trial.indentations);
+        let polynomial = collocation.through(simd, start, &trial.indentations);
         let wrong = |x: f64, rate: f64| (rate * length - value_and_slope(&polynomial, x - 1.0).1).abs();
         let mut before = (0.0, wrong(0.0, self.state.indentation_rate));
         let mut most = 0.0_f64;
@@ -225,14 +225,9 @@ impl Integration<'_> {
                 state.force_error.advance(&model.modes, free, trial.tangent, closed);
             }
         }
-        let ratio = if state.last_step > 0.0 {
-            target.length / state.last_step
-        } else {
-            0.0
-        };
         let start = state.force - model.preload.force;
-        state.predictions = collocation.predictions(model.simd, start, &trial.forces, &state.predictions, ratio);
-        let force = state.predictions.through_all();
+        state.course = collocation.through(model.simd, start, &trial.forces);
+        let force = &state.course;
         let turns = if model.scene.effects.extremes && state.closed {
             turning_points(force)
         } else {
@@ -241,8 +236,8 @@ impl Integration<'_> {
         if let Some((read, dense)) = &mut self.dense {
             // Of the other contact the approach is read from all steps.
             if target.time > *read || self.other.is_some() {
-                dense.indentation = collocation.through(state.indentation, &trial.indentations);
-                dense.rate = collocation.through(state.indentation_rate, &trial.rates);
+                dense.indentation = collocation.through(model.simd, state.indentation, &trial.indentations);
+                dense.rate = collocation.through(model.simd, state.indentation_rate, &trial.rates);
             }
             (dense.force, dense.turns, dense.passages) = (*force, turns, passages);
         }

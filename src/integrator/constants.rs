@@ -137,11 +137,8 @@ pub const MOTION_ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// `a_small_pivot_costs_no_digits`.
 pub const SMALL_PIVOT: f64 = 0.1;
 
-/// Length of a step, in those of the one before, beyond which its forces with friction are first guessed by a parabola. Cost.
+/// Length of a step, in those of the one before, beyond which its forces are first guessed by a parabola. Cost.
 pub const FAR_AHEAD: f64 = 1.5;
-
-/// Nodes of the flatter of the two predictions of the force. Chosen by the work in the scenes. Cost.
-pub const FLAT: usize = 4;
 
 // Work.
 

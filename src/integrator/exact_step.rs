@@ -123,8 +123,8 @@ pub(crate) fn step_ahead(
         let force = elastic + stiffness * start.law.damping * defect(state.indentation_rate, &rates);
         let ratio = INSIDE * elastic.abs().max(force.abs()) / allowed;
         if ratio <= 1.0 {
-            let indentation = collocation.through(state.indentation, &indentations);
-            let rate = collocation.through(state.indentation_rate, &rates);
+            let indentation = collocation.through(model.simd, state.indentation, &indentations);
+            let rate = collocation.through(model.simd, state.indentation_rate, &rates);
             if !start.end(model, state, &free, drive, length, &propagator.whole) {
                 return false;
             }

@@ -18,7 +18,7 @@ use crate::integrator::workspace::{Room, Workspace};
 use crate::math::nodal::{Nodal, add_columns, dot, end, scaled};
 use crate::math::prediction::value_and_slope;
 use crate::math::roots;
-use crate::math::simd::Separate;
+use crate::math::simd::{Separate, Simd};
 use crate::model::Model;
 use crate::state::State;
 
@@ -57,11 +57,11 @@ impl Integration<'_> {
         if let Some((read, dense)) = &mut self.dense
             && state.time > *read
         {
-            dense.friction.slip = collocation.through(start.slip, &slips);
-            dense.friction.dissipated = collocation.through(start.dissipated, &dissipated);
+            dense.friction.slip = collocation.through(model.simd, start.slip, &slips);
+            dense.friction.dissipated = collocation.through(model.simd, start.dissipated, &dissipated);
         }
         let tangential = &mut state.tangential;
-        tangential.course = collocation.through(start.force, &forces);
+        tangential.course = collocation.through(model.simd, start.force, &forces);
         (tangential.displacement, tangential.rate) = friction.motion(&state.modes, model.modes.len());
         if !state.closed {
             tangential.slip = tangential.displacement;
@@ -87,7 +87,7 @@ impl Integration<'_> {
         let start = state.tangential;
         let allowed = LOCATED * self.allowed;
         let unsure = || allowed.max(rounding(model, friction, state));
-        let first = |start: f64, values: &Nodal<S>| passage(collocation, start, values, unsure);
+        let first = |start: f64, values: &Nodal<S>| passage((collocation, model.simd), start, values, unsure);
         let (y, phase) = if let Some(sign) = start.phase.sign() {
             // The friction force that is missing for the slip velocity.
             let stiffness = friction.ratio * model.law.tangent_stiffness(model.force_scale);
@@ -188,7 +188,7 @@ fn rounding(model: &Model, friction: &Friction, state: &State) -> f64 {
 /// Where the polynomial through `start` and the nodal values first exceeds zero by more than `unsure`: where it passes zero
 /// before, relative to the end of the step in step lengths.
 fn passage<const S: usize>(
-    collocation: &Collocation<S>,
+    (collocation, simd): (&Collocation<S>, Simd),
     start: f64,
     values: &Nodal<S>,
     unsure: impl Fn() -> f64,
@@ -196,7 +196,7 @@ fn passage<const S: usize>(
     if !Collocation::comes_near_zero(-start, &scaled(values, -1.0)) {
         return None;
     }
-    let polynomial = collocation.through(start, values);
+    let polynomial = collocation.through(simd, start, values);
     let value = |y: f64| value_and_slope(&polynomial, y).0;
     let mut before = (-1.0, start);
     for y in turning_points(&polynomial).iter().chain([0.0]) {

@@ -80,11 +80,11 @@
 //! ```
 //!
 //! and is solved by Gauss-Jordan elimination together with the right-hand sides of the error estimate. The first guess
-//! extrapolates the force of the last step: the polynomial through all of its nodes or the one through its last few,
-//! whichever predicted the last step better. That makes most solutions one or two iterations. Iteration ends when all
-//! residuals are below [`constants::NEWTON`] of the error allowed in a step, or below what the rounding of the motion
-//! makes of the law ([`constants::MOTION_ROUNDING`]); after [`constants::ITERATIONS`] the step is rejected. In free
-//! flight the nodal forces are known and there is no iteration.
+//! continues the force of the last step: by its polynomial, or over a much longer step ([`constants::FAR_AHEAD`]) by the
+//! parabola at its end, as polynomials of high degree lead astray. That makes most solutions one or two iterations.
+//! Iteration ends when all residuals are below [`constants::NEWTON`] of the error allowed in a step, or below what the
+//! rounding of the motion makes of the law ([`constants::MOTION_ROUNDING`]); after [`constants::ITERATIONS`] the step is
+//! rejected. In free flight the nodal forces are known and there is no iteration.
 //!
 //! # Error estimate
 //!
@@ -243,8 +243,7 @@
 //! any event; no blow follows, so the error inside need only be that allowed in a step. The slope of the friction force jumps
 //! there, and the spring, which has no rotary inertia at its end unless `tip.rotaryInertia` gives it, answers as steeply as
 //! its highest modes do. So the first step is about as long as the last one after such a change, and the next ones grow with the
-//! time since, as after a closing. Over steps that grow so fast the polynomials of the last one lead astray, so the first guess
-//! is a parabola. Rounding could change stick and slip to and fro at one instant: what is below
+//! time since, as after a closing. Rounding could change stick and slip to and fro at one instant: what is below
 //! [`constants::LOCATED`] of the error allowed is no change.
 //!
 //! As the contact opens the limit vanishes, so it slips before; as it closes, the direction of the first motion decides.

@@ -1,33 +1,10 @@
 //! Polynomials of a quantity over a step, expanded about its middle: for dense output, and to extrapolate to the next
 //! step. About an end, rounding would be a thousand times as large.
 
-use serde::{Deserialize, Serialize};
-
 use crate::math::nodal::LONG;
 
 /// Coefficients of a polynomial through the nodes of a step: of powers of [`centred`] time.
 pub type Prediction = [f64; LONG + 1];
-
-/// Two extrapolations of the force to the next step, through all nodes and through the last few, and which of the two
-/// was better last time.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Predictions {
-    pub(crate) steep: Prediction,
-    pub(crate) flat: Prediction,
-    pub(crate) use_flat: bool,
-}
-
-impl Predictions {
-    /// The polynomial through the start and all nodes of the last step.
-    pub fn through_all(&self) -> &Prediction {
-        &self.steep
-    }
-
-    /// Whether all numbers are finite.
-    pub fn is_finite(&self) -> bool {
-        self.steep.iter().chain(&self.flat).all(|number| number.is_finite())
-    }
-}
 
 /// Time relative to the middle of a step, -1 to 1 within it, from time relative to its end in step lengths.
 #[inline(always)]

@@ -127,7 +127,7 @@ fn predicted_forces<const S: usize, A: Arithmetic>(
     collocation: &Collocation<S>,
 ) -> Nodal<S> {
     if state.last_step > 0.0 {
-        collocation.predict::<A>(&state.predictions, step.length / state.last_step)
+        collocation.guess::<A>(&state.course, step.length / state.last_step)
     } else {
         [state.force - model.preload.force; S]
     }

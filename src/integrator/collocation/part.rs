@@ -159,7 +159,7 @@ pub(crate) fn first_part<const S: usize>(
     let rows = nodes.map(|x| collocation.lagrange(x));
     let nodal = |values: &Nodal<S>| rows.map(|row| dot::<S, Separate>(&row, values));
     let with_start = |start: f64, values: &Nodal<S>| {
-        let polynomial = collocation.through(start, values);
+        let polynomial = collocation.through(model.simd, start, values);
         nodes.map(|x| value_and_slope(&polynomial, x - 1.0).0)
     };
     if model.axial().is_some() {
@@ -168,7 +168,7 @@ pub(crate) fn first_part<const S: usize>(
         }
     }
     if model.friction().is_some() {
-        *tangential = tangential.first_part(collocation, state, end.at / length);
+        *tangential = tangential.first_part((collocation, model.simd), state, end.at / length);
     }
     Trial {
         forces: nodal(&trial.forces),

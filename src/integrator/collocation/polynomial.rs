@@ -7,10 +7,10 @@
 use std::sync::LazyLock;
 
 use crate::integrator::collocation::shapes::{MAX_SHAPES, Shapes};
-use crate::integrator::constants::{FLAT, LOOKS, NEAR, SLOWEST_DECAY};
+use crate::integrator::constants::{FAR_AHEAD, LOOKS, NEAR, SLOWEST_DECAY};
 use crate::math::legendre;
 use crate::math::nodal::{LONG, Nodal, SHORT, add, dot, scaled};
-use crate::math::prediction::{Prediction, Predictions, centred, value_and_slope};
+use crate::math::prediction::{Prediction, centred, parabola_at_end, value_and_slope};
 use crate::math::simd::{Arithmetic, Separate, Simd, compiled_for};
 
 /// Golden ratio, of the golden-section search.
@@ -42,11 +42,9 @@ pub struct Collocation<const S: usize> {
     pub impulse: f64,
     /// Lagrange polynomials of the start and the nodes, by powers of [`centred`] time; the first row is that of the
     /// start.
-    steep: Vec<Prediction>,
+    with_start: Vec<Prediction>,
     /// The same for the nodes without the start.
     nodal: Vec<Prediction>,
-    /// The same for the last few nodes only, which is better for long extrapolation.
-    flat: Vec<Prediction>,
 }
 
 impl<const S: usize> Collocation<S> {
@@ -94,9 +92,8 @@ impl<const S: usize> Collocation<S> {
             .into_iter()
             .chain(nodes.map(|node| centred(node - 1.0)))
             .collect();
-        let steep = lagrange(&places);
+        let with_start = lagrange(&places);
         let nodal = lagrange(places.get(1..).unwrap_or_default());
-        let flat = lagrange(places.get(S + 1 - FLAT..).unwrap_or_default());
         Self {
             nodes,
             shapes,
@@ -105,9 +102,8 @@ impl<const S: usize> Collocation<S> {
             weights,
             leading,
             impulse: impulses.iter().fold(0.0, |most, impulse| most.max(impulse.abs())),
-            steep,
+            with_start,
             nodal,
-            flat,
         }
     }
 
@@ -184,60 +180,26 @@ impl<const S: usize> Collocation<S> {
         dot::<S, Separate>(values, &self.weights)
     }
 
-    /// Predictions for the next step from the values at the start and at the nodes of this one. The previous
-    /// predictions, made for a step `ratio` times as long as the one before, are compared with the values to choose
-    /// between the two.
-    pub fn predictions(
-        &self,
-        simd: Simd,
-        start: f64,
-        values: &Nodal<S>,
-        before: &Predictions,
-        ratio: f64,
-    ) -> Predictions {
-        compiled_for!(simd, A => self.compute::<A>(start, values, before, ratio))
-    }
-
-    #[inline(always)]
-    fn compute<A: Arithmetic>(&self, start: f64, values: &Nodal<S>, before: &Predictions, ratio: f64) -> Predictions {
-        Predictions {
-            steep: combine::<A>(&self.steep, [start].iter().chain(values)),
-            flat: combine::<A>(&self.flat, values.iter().skip(S - FLAT)),
-            use_flat: ratio > 0.0
-                && self.mistake::<A>(&before.flat, ratio, values) < self.mistake::<A>(&before.steep, ratio, values),
-        }
-    }
-
-    /// The greatest difference of a prediction, made for a step `ratio` times as long as the one before, from the values. Not a
-    /// closure, which may not be inlined and would then be compiled for the generic processor.
-    #[inline(always)]
-    fn mistake<A: Arithmetic>(&self, prediction: &Prediction, ratio: f64, values: &Nodal<S>) -> f64 {
-        let predicted = self.evaluate::<A>(prediction, ratio);
-        let errors = predicted.iter().zip(values).map(|(a, b)| (a - b).abs());
-        errors.fold(0.0_f64, |worst, error| if error > worst { error } else { worst })
-    }
-
     /// The polynomial through the values at the start and at the nodes.
-    pub fn through(&self, start: f64, values: &Nodal<S>) -> Prediction {
-        combine::<Separate>(&self.steep, [start].iter().chain(values))
+    pub fn through(&self, simd: Simd, start: f64, values: &Nodal<S>) -> Prediction {
+        compiled_for!(simd, A => combine::<A>(&self.with_start, [start].iter().chain(values)))
     }
 
-    /// Predicted values at the nodes of a step `ratio` times as long as the one that the predictions were made from.
+    /// First guess of a quantity at the nodes of a step `ratio` times as long as the last one, from its course there. Far
+    /// ahead polynomials of high degree lead astray: there it is the parabola that continues the course.
     #[inline(always)]
-    pub fn predict<A: Arithmetic>(&self, predictions: &Predictions, ratio: f64) -> Nodal<S> {
-        self.evaluate::<A>(
-            if predictions.use_flat {
-                &predictions.flat
-            } else {
-                &predictions.steep
-            },
-            ratio,
-        )
+    pub fn guess<A: Arithmetic>(&self, course: &Prediction, ratio: f64) -> Nodal<S> {
+        if ratio > FAR_AHEAD {
+            let [value, slope, half_curvature] = parabola_at_end(course);
+            scaled(&self.nodes, ratio).map(|y| value + y * (slope + y * half_curvature))
+        } else {
+            self.evaluate::<A>(course, ratio)
+        }
     }
 
     /// A polynomial over the last step at the nodes of one `ratio` times as long that follows it.
     #[inline(always)]
-    pub fn evaluate<A: Arithmetic>(&self, prediction: &Prediction, ratio: f64) -> Nodal<S> {
+    fn evaluate<A: Arithmetic>(&self, prediction: &Prediction, ratio: f64) -> Nodal<S> {
         let at = scaled(&self.nodes, ratio).map(centred);
         let mut values = [0.0; S];
         for coefficient in prediction.iter().rev() {

@@ -3,6 +3,7 @@
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::math::nodal::Nodal;
 use crate::math::prediction::value_and_slope;
+use crate::math::simd::Simd;
 use crate::state::State;
 
 /// Friction at the nodes of a step.
@@ -30,11 +31,11 @@ impl<const S: usize> TangentialNodes<S> {
     };
 
     /// The first part of the step, up to the share `part` of it.
-    pub(crate) fn first_part(&self, collocation: &Collocation<S>, state: &State, part: f64) -> Self {
+    pub(crate) fn first_part(&self, (collocation, simd): (&Collocation<S>, Simd), state: &State, part: f64) -> Self {
         let nodes = collocation.nodes.map(|node| node * part);
         let nodal = |values: &Nodal<S>| nodes.map(|x| collocation.interpolate(values, x));
         let with_start = |start: f64, values: &Nodal<S>| {
-            let polynomial = collocation.through(start, values);
+            let polynomial = collocation.through(simd, start, values);
             nodes.map(|x| value_and_slope(&polynomial, x - 1.0).0)
         };
         let start = &state.tangential;

@@ -27,12 +27,12 @@ impl Integration<'_> {
         };
         let mut interrupted = self.state.interruptions.in_progress();
         let excess = |force: f64| preload.force + force - criterion.force;
-        let start = self.state.force - preload.force;
+        let (start, simd) = (self.state.force - preload.force, self.model.simd);
         let ahead = |force: f64| if interrupted { -excess(force) } else { excess(force) };
         if !Collocation::comes_near_zero(ahead(start), &trial.forces.map(ahead)) {
             return Some(passages);
         }
-        let polynomial = self.collocation::<S>().through(start, &trial.forces);
+        let polynomial = self.collocation::<S>().through(simd, start, &trial.forces);
         let value = |y: f64| excess(value_and_slope(&polynomial, y).0);
         let turns = turning_points(&polynomial);
         let inaccuracy = self.inaccuracy(trial, length);

@@ -64,10 +64,11 @@ impl Integration<'_> {
         Workspace: Room<S>,
     {
         let (d, rate) = (self.state.indentation, self.state.indentation_rate);
+        let simd = self.model.simd;
         let collocation = self.collocation::<S>();
         let (d, rate) = (
-            collocation.through(d, &trial.indentations),
-            collocation.through(rate, &trial.rates),
+            collocation.through(simd, d, &trial.indentations),
+            collocation.through(simd, rate, &trial.rates),
         );
         let on_polynomials = |at: f64| {
             let y = at / length - 1.0;

@@ -120,7 +120,8 @@ impl Integration<'_> {
             turns |= before > 0.0 && now <= 0.0;
             before = now;
         }
-        let inside = turns.then(|| self.collocation::<S>().through(start, &indentations));
+        let simd = self.model.simd;
+        let inside = turns.then(|| self.collocation::<S>().through(simd, start, &indentations));
         if let Some(extremes) = &mut self.extremes {
             extremes.approach(nearest - gap);
             if let Some(polynomial) = inside {

@@ -30,9 +30,8 @@ use crate::integrator::collocation::newton::{Solution, Source, first_forces};
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::step::{End, Trial, end_of_modes, free_response, loads_on_modes};
 use crate::integrator::collocation::tangential::TangentialNodes;
-use crate::integrator::constants::{FAR_AHEAD, FORCE_ROUNDING};
+use crate::integrator::constants::FORCE_ROUNDING;
 use crate::math::nodal::{Nodal, add, add_columns, end, scaled};
-use crate::math::prediction::{Prediction, parabola_at_end};
 use crate::math::simd::{Arithmetic, LANES};
 use crate::model::Model;
 use crate::state::State;
@@ -78,13 +77,7 @@ pub(super) fn compute<const S: usize, A: Arithmetic>(
         free,
         motion,
     };
-    let ratio = step.length / state.last_step;
-    let guess = match source {
-        Source::Law(_) if state.closed && state.last_step > 0.0 && ratio > FAR_AHEAD => {
-            far_ahead(collocation, state.predictions.through_all(), ratio)
-        }
-        _ => first_forces::<S, A>(model, state, step, collocation, source),
-    };
+    let guess = first_forces::<S, A>(model, state, step, collocation, source);
     let solved = match source {
         Source::Law(newton) if state.closed => {
             let unforced = (&unforced, collocation);
@@ -159,14 +152,6 @@ pub(super) fn compute<const S: usize, A: Arithmetic>(
         iterations: solved.as_ref().map_or(0, |solved| solved.iterations),
         tangent: judgement.tangent,
     })
-}
-
-/// A force at the nodes of a step `ratio` times as long as the last one, extrapolated from its course there to second order:
-/// after slip has begun or ended steps grow fast, and polynomials of high degree lead astray.
-#[inline(always)]
-fn far_ahead<const S: usize>(collocation: &Collocation<S>, course: &Prediction, ratio: f64) -> Nodal<S> {
-    let [value, slope, half_curvature] = parabola_at_end(course);
-    scaled(&collocation.nodes, ratio).map(|y| value + y * (slope + y * half_curvature))
 }
 
 /// Friction at the nodes under these forces.

@@ -5,10 +5,10 @@
 
 use crate::friction::Friction;
 use crate::integrator::collocation::elimination::{factorise, substitute};
+use crate::integrator::collocation::friction::Solved;
 use crate::integrator::collocation::friction::motion::{Motion, Unforced};
-use crate::integrator::collocation::friction::{Solved, far_ahead};
 use crate::integrator::collocation::polynomial::Collocation;
-use crate::integrator::constants::{FAR_AHEAD, ITERATIONS, MOTION_ROUNDING, STALE};
+use crate::integrator::constants::{ITERATIONS, MOTION_ROUNDING, STALE};
 use crate::math::nodal::{Nodal, add, add_columns, add_products, greatest, scaled};
 use crate::math::simd::Arithmetic;
 use crate::model::Model;
@@ -123,12 +123,7 @@ fn predicted_loads<const S: usize, A: Arithmetic>(
     collocation: &Collocation<S>,
 ) -> Nodal<S> {
     if state.last_step > 0.0 && state.tangential.last_change != state.time {
-        let (course, ratio) = (&state.tangential.course, length / state.last_step);
-        if ratio > FAR_AHEAD {
-            far_ahead(collocation, course, ratio)
-        } else {
-            collocation.evaluate::<A>(course, ratio)
-        }
+        collocation.guess::<A>(&state.tangential.course, length / state.last_step)
     } else {
         [state.tangential.force; S]
     }
