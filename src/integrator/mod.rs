@@ -192,7 +192,8 @@
 //! only [`constants::DRIVEN`] times ([`Estimate`](collocation::error::Estimate)); a wrong way and what slow modes feel count in full,
 //! and all of it once the contact has opened, as a blow would multiply it. The next communication step begins with the step
 //! length that this one began with. Where its length is new too, no coefficients are formed for it: steps have the lengths of
-//! free ones, and the last one is cut at the communication point, as at an event ([`grid`]).
+//! free ones, and the last one is cut at the communication point, as at an event ([`grid`]), unless the law there differs from
+//! the force polynomial by more than the tolerance.
 //!
 //! Extremes of the force in a communication step come from the same polynomials ([`extremes`]): the places where the force
 //! turns are found once for each step ([`course`]) and kept with them.
