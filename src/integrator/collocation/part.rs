@@ -13,7 +13,7 @@ use crate::integrator::collocation::step::{End, Trial};
 use crate::integrator::collocation::tangential::TangentialNodes;
 use crate::math::nodal::{Nodal, dot};
 use crate::math::prediction::value_and_slope;
-use crate::math::simd::{Arithmetic, LANES, Separate, compiled_for};
+use crate::math::simd::{Arithmetic, Separate, compiled_for};
 use crate::model::Model;
 use crate::state::State;
 
@@ -68,7 +68,7 @@ fn compute<const S: usize, A: Arithmetic>(
             let lever = friction.levers.get(i).copied().unwrap_or_default();
             [mode.tip, -mode.participation, lever]
         };
-        moved::<S, A, 3>(&model.modes, &loads, factors, &state.modes, ends);
+        loads.move_all::<A>(&model.modes, factors, &state.modes, ends);
     } else {
         let loads = Loads {
             shapes,
@@ -76,7 +76,7 @@ fn compute<const S: usize, A: Arithmetic>(
             polynomials: [&force, &base],
         };
         let factors = |_, mode: &Mode| [mode.tip, -mode.participation];
-        moved::<S, A, 2>(&model.modes, &loads, factors, &state.modes, ends);
+        loads.move_all::<A>(&model.modes, factors, &state.modes, ends);
     }
     if model.axial().is_some() {
         for ((mode, own), end) in model.modes.iter().zip(&whole.loads).zip(ends.iter_mut()) {
@@ -112,38 +112,6 @@ fn load_on<const S: usize, A: Arithmetic>(shapes: &Shapes<S>, rows: &[Nodal<S>; 
         *value = dot::<S, A>(row, values);
     }
     shapes.load::<A>(&nodal)
-}
-
-/// Modes at the end of the loads, each with its factors of them, [`LANES`] side by side.
-#[inline(always)]
-fn moved<const S: usize, A: Arithmetic, const LOADS: usize>(
-    modes: &[Mode],
-    loads: &Loads<S, LOADS>,
-    factors: impl Fn(usize, &Mode) -> [f64; LOADS],
-    starts: &ModeStates,
-    ends: &mut ModeStates,
-) {
-    let (groups, rest) = modes.as_chunks::<LANES>();
-    let (starts, _) = starts.as_chunks::<LANES>();
-    let (ends, _) = ends.as_chunks_mut::<LANES>();
-    let mut states = starts.iter().zip(ends);
-    for (k, (group, (starts, ends))) in groups.iter().zip(&mut states).enumerate() {
-        let mut of_group = [[0.0; LANES]; LOADS];
-        for (i, mode) in group.iter().enumerate() {
-            for (row, factor) in of_group.iter_mut().zip(factors(k * LANES + i, mode)) {
-                row.iter_mut().skip(i).take(1).for_each(|entry| *entry = factor);
-            }
-        }
-        loads.moved::<A, LANES>(group, &of_group, starts, ends);
-    }
-    if let Some((starts, ends)) = states.next() {
-        let done = modes.len() - rest.len();
-        for (i, ((mode, start), end)) in rest.iter().zip(starts).zip(ends).enumerate() {
-            let of_mode = factors(done + i, mode).map(|factor| [factor]);
-            let (mode, start, end) = (array::from_ref(mode), array::from_ref(start), array::from_mut(end));
-            loads.moved::<A, 1>(mode, &of_mode, start, end);
-        }
-    }
 }
 
 /// The trial of `length` seconds up to an instant inside it, and what it leaves beside the modes.

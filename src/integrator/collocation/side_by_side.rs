@@ -4,14 +4,16 @@
 //! [`modal_response`](crate::integrator::collocation::modal_response). Their factors follow from recurrences, so a sum is
 //! taken from its last term on (Horner's rule, Clenshaw's algorithm): displacement and velocity result from one pass.
 
-use crate::beam::mode::{Mode, ModeState};
+use std::array;
+
+use crate::beam::mode::{Mode, ModeState, ModeStates};
 use crate::integrator::collocation::modal_response::{ModeOverStep, Regime, decayed};
 use crate::integrator::collocation::shapes::{Load, Shapes};
 use crate::integrator::collocation::superposition::Pair;
 use crate::integrator::constants::{NEGLIGIBLE, TERMS};
 use crate::math::free_motion::FreeMotion;
 use crate::math::nodal::{add, add_products};
-use crate::math::simd::Arithmetic;
+use crate::math::simd::{Arithmetic, LANES};
 
 /// Loads up to the end of a step of `length` seconds.
 pub(super) struct Loads<'a, const S: usize, const LOADS: usize> {
@@ -21,8 +23,40 @@ pub(super) struct Loads<'a, const S: usize, const LOADS: usize> {
 }
 
 impl<const S: usize, const LOADS: usize> Loads<'_, S, LOADS> {
-    /// The modes at the end from those at the start, each under the sum of the loads times its factors; modes of one regime
-    /// side by side, others one by one.
+    /// The modes at the end from those at the start, [`LANES`] side by side; each under the sum of the loads times its `factors`.
+    #[inline(always)]
+    pub(super) fn move_all<A: Arithmetic>(
+        &self,
+        modes: &[Mode],
+        factors: impl Fn(usize, &Mode) -> [f64; LOADS],
+        starts: &ModeStates,
+        ends: &mut ModeStates,
+    ) {
+        let (groups, rest) = modes.as_chunks::<LANES>();
+        let (starts, _) = starts.as_chunks::<LANES>();
+        let (ends, _) = ends.as_chunks_mut::<LANES>();
+        let mut states = starts.iter().zip(ends);
+        for (k, (group, (starts, ends))) in groups.iter().zip(&mut states).enumerate() {
+            let mut of_group = [[0.0; LANES]; LOADS];
+            for (i, mode) in group.iter().enumerate() {
+                for (row, factor) in of_group.iter_mut().zip(factors(k * LANES + i, mode)) {
+                    row.iter_mut().skip(i).take(1).for_each(|entry| *entry = factor);
+                }
+            }
+            self.moved::<A, LANES>(group, &of_group, starts, ends);
+        }
+        if let Some((starts, ends)) = states.next() {
+            let done = modes.len() - rest.len();
+            for (i, ((mode, start), end)) in rest.iter().zip(starts).zip(ends).enumerate() {
+                let of_mode = factors(done + i, mode).map(|factor| [factor]);
+                let (mode, start, end) = (array::from_ref(mode), array::from_ref(start), array::from_mut(end));
+                self.moved::<A, 1>(mode, &of_mode, start, end);
+            }
+        }
+    }
+
+    /// The modes at the end from those at the start, each under the sum of the loads times its factors; side by side if they
+    /// are of one regime, else one by one.
     #[inline(always)]
     pub(super) fn moved<A: Arithmetic, const N: usize>(
         &self,
@@ -234,7 +268,7 @@ mod tests {
     use super::*;
     use crate::integrator::collocation::polynomial::Collocation;
     use crate::math::nodal::{LONG, dot};
-    use crate::math::simd::{LANES, Separate};
+    use crate::math::simd::Separate;
 
     /// Modes with these roots of `omega^2` times the step, and damping ratios.
     fn modes(h: f64, roots: [(f64, f64); LANES]) -> [Mode; LANES] {
