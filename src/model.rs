@@ -19,7 +19,6 @@ use crate::math::prediction::Prediction;
 use crate::math::simd::Simd;
 use crate::preload::Preload;
 use crate::scene::Scene;
-use crate::second_contact;
 use crate::state::{Record, State};
 use crate::variables::{AxialForceKind, ContactLawKind, RealParameter};
 
@@ -106,7 +105,7 @@ impl Model {
         if !scene.effects.contact_damping {
             hertz.damping = 0.0;
         }
-        let second = second_contact::of(scene);
+        let second = Hertz::of_second(scene);
         let preload = Preload::new(scene, &spring, &hertz, support)?;
         let law = law(scene, hertz, &preload)?;
         let tolerance = scene.solver.effective_tolerance();
@@ -285,6 +284,12 @@ impl Model {
     /// Axial force from the deflection, with `effects.axialForce` FromDeflection.
     pub fn axial(&self) -> Option<&Feedback> {
         self.axial.as_ref()
+    }
+
+    /// Friction, where there is any.
+    #[inline(always)]
+    pub(crate) fn friction(&self) -> Option<&Friction> {
+        self.friction.as_ref()
     }
 
     /// The engagement of the contact law, m, positive while the contact is closed; the indentation is given as

@@ -16,24 +16,10 @@
 //! all that is done for the first contact is done for the second, with the same code and the same bits.
 
 use crate::beam::axial::Feedback;
-use crate::contact::hertz::Hertz;
 use crate::contact::law::Law;
 use crate::model::Model;
 use crate::preload::Preload;
-use crate::scene::{Contact, Scene};
 use crate::state::State;
-
-/// The second contact of a scene, if it has one.
-pub(crate) fn of(scene: &Scene) -> Option<Hertz> {
-    let (second, damped) = (scene.second, scene.effects.contact_damping);
-    scene.effects.second_contact.then(|| {
-        Hertz::new(&Contact {
-            curvature_radius: second.curvature_radius,
-            damping: if damped { second.damping } else { 0.0 },
-            ..scene.contact
-        })
-    })
-}
 
 impl Model {
     /// With a second contact of this law.

@@ -9,7 +9,7 @@
 //! positive.
 
 use crate::contact::Branch;
-use crate::scene::Contact;
+use crate::scene::{Contact, Scene};
 
 /// Constants of the contact law.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,6 +31,18 @@ impl Hertz {
             coefficient: 4.0 / 3.0 * modulus * contact.curvature_radius.sqrt(),
             damping: contact.damping,
         }
+    }
+
+    /// Of the second contact of a scene, if it has one.
+    pub(crate) fn of_second(scene: &Scene) -> Option<Self> {
+        let (second, damped) = (scene.second, scene.effects.contact_damping);
+        scene.effects.second_contact.then(|| {
+            Self::new(&Contact {
+                curvature_radius: second.curvature_radius,
+                damping: if damped { second.damping } else { 0.0 },
+                ..scene.contact
+            })
+        })
     }
 
     /// Elastic force at the indentation (m), N.

@@ -176,6 +176,60 @@ impl Integration<'_> {
     }
 }
 
+impl Model {
+    /// Sets friction force and phase as they follow from the motion: after a jump, a closing, or in another phase than
+    /// before.
+    pub(crate) fn settle_friction(&self, state: &mut State) {
+        let (Some(friction), Some(hertz)) = (self.friction(), self.law.hertz()) else {
+            return;
+        };
+        let tangential = &mut state.tangential;
+        if !state.closed {
+            (tangential.force, tangential.slip, tangential.phase) = (0.0, tangential.displacement, Phase::Stick);
+            return;
+        }
+        let d = self.preload.indentation + state.indentation;
+        let trial = friction.trial(hertz, d, tangential.deflection(), tangential.rate).force;
+        let limit = friction.coefficient * state.force;
+        // As it closes both are zero: what they begin with decides.
+        let closes = state.force <= 0.0;
+        let slips = if closes {
+            let (weight, slide) = if hertz.damping > 0.0 { (1.0, 1.0) } else { (2.0, 3.0) };
+            slide * friction.ratio * tangential.rate.abs()
+                > weight * friction.coefficient * state.indentation_rate.abs()
+        } else {
+            trial.abs() > limit
+        };
+        if slips {
+            let against = if closes { -tangential.rate } else { trial };
+            tangential.phase = Phase::slip(against);
+            tangential.force = limit.copysign(against);
+            if hertz.damping == 0.0 {
+                tangential.slip = tangential.displacement - friction.limit_deflection(hertz, against.signum(), d, 0.0);
+            }
+        } else {
+            tangential.phase = Phase::Stick;
+            tangential.force = trial;
+        }
+    }
+
+    /// The friction force of the phase of a state at its motion, N.
+    pub(crate) fn friction_force(&self, state: &State) -> f64 {
+        let (Some(friction), Some(hertz)) = (self.friction(), self.law.hertz()) else {
+            return 0.0;
+        };
+        let tangential = state.tangential;
+        match tangential.phase.sign() {
+            _ if !state.closed => 0.0,
+            Some(sign) => sign * friction.coefficient * state.force,
+            None => {
+                let d = self.preload.indentation + state.indentation;
+                friction.trial(hertz, d, tangential.deflection(), tangential.rate).force
+            }
+        }
+    }
+}
+
 /// Rounding of the trial force and of the limit by the sums over the modes, N.
 fn rounding(model: &Model, friction: &Friction, state: &State) -> f64 {
     let (displacement, velocity) = sum_rounding(friction.levers.iter().copied(), state);

@@ -2,8 +2,7 @@
 
 use crate::friction::Friction;
 use crate::integrator::collocation::error::{Estimate, kinked};
-use crate::integrator::collocation::friction::Solved;
-use crate::integrator::collocation::friction::motion::Unforced;
+use crate::integrator::collocation::friction::motion::{Solved, Unforced};
 use crate::integrator::collocation::newton::Tangent;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::math::nodal::{Nodal, end, greatest};
@@ -21,7 +20,7 @@ pub(super) struct Judgement {
     pub(super) tangent: Tangent,
 }
 
-/// The error estimate of [`error`](super::error), for both forces: what the defects of both polynomials and of the base
+/// The error estimate of [`error`](crate::integrator::collocation::error), for both forces: what the defects of both polynomials and of the base
 /// acceleration at the start do to both forces.
 #[inline(always)]
 pub(super) fn judged<const S: usize, A: Arithmetic>(

@@ -9,8 +9,8 @@
 //! stick:  T_k = -k_t(d_k) (v_k - s + beta_c v'_k), s the slip so far;  slip:  T_k = -+ mu F_k
 //! ```
 //!
-//! with Newton's method for all nodal values while the contact sticks ([`sticking`]), for the contact forces while it slips
-//! ([`slipping`]; [`crate::friction`]: the law). While the contact slips the deflection `z` of
+//! with Newton's method for all nodal values while the contact sticks ([`mod@sticking`]), for the contact forces while it slips
+//! ([`mod@slipping`]; [`crate::friction`]: the law). While the contact slips the deflection `z` of
 //! the tangential spring follows from `beta_c z' + z = -T / k_t`, collocated at the same nodes.
 
 mod judgement;
@@ -35,25 +35,6 @@ use crate::math::nodal::{Nodal, add, add_columns, end, scaled};
 use crate::math::simd::{Arithmetic, LANES};
 use crate::model::Model;
 use crate::state::State;
-
-/// The nodal forces of a step.
-struct Solved<const S: usize> {
-    /// Contact forces as deviation from the preload, N.
-    forces: Nodal<S>,
-    /// Friction forces as deviation from that of the preload, N.
-    loads: Nodal<S>,
-    iterations: u64,
-    /// Motion at the nodes under both.
-    motion: Motion<S>,
-    /// Greatest stiffness (N/m) and damping (N s/m) of the contact at the nodes.
-    hardest: (f64, f64),
-    /// See [`Unforced::defects`].
-    defects: [f64; 3],
-    /// What the defects do to the contact forces, and to the friction forces, N.
-    wrong: Nodal<S>,
-    /// See `wrong`.
-    wrong_loads: Nodal<S>,
-}
 
 /// [`trial`](super::trial::trial) with friction. Where the contact forces are given, so are the friction forces: those left in
 /// `end`.

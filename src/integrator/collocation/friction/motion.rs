@@ -26,6 +26,25 @@ pub(super) struct Unforced<'a, const S: usize> {
     pub(super) motion: Motion<S>,
 }
 
+/// The nodal forces of a step.
+pub(super) struct Solved<const S: usize> {
+    /// Contact forces as deviation from the preload, N.
+    pub(super) forces: Nodal<S>,
+    /// Friction forces as deviation from that of the preload, N.
+    pub(super) loads: Nodal<S>,
+    pub(super) iterations: u64,
+    /// Motion at the nodes under both.
+    pub(super) motion: Motion<S>,
+    /// Greatest stiffness (N/m) and damping (N s/m) of the contact at the nodes.
+    pub(super) hardest: (f64, f64),
+    /// See [`Unforced::defects`].
+    pub(super) defects: [f64; 3],
+    /// What the defects do to the contact forces, and to the friction forces, N.
+    pub(super) wrong: Nodal<S>,
+    /// See `wrong`.
+    pub(super) wrong_loads: Nodal<S>,
+}
+
 /// Motion at the nodes without a change of both forces.
 #[inline(always)]
 pub(super) fn along<const S: usize, A: Arithmetic>(

@@ -3,8 +3,7 @@
 
 use crate::friction::Friction;
 use crate::integrator::collocation::coefficients::{ErrorColumn, TipColumns};
-use crate::integrator::collocation::friction::Solved;
-use crate::integrator::collocation::friction::motion::Unforced;
+use crate::integrator::collocation::friction::motion::{Solved, Unforced};
 use crate::integrator::collocation::newton::closed_forces;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::math::nodal::{Nodal, add, add_columns};

@@ -5,8 +5,7 @@
 
 use crate::friction::Friction;
 use crate::integrator::collocation::elimination::{factorise, substitute};
-use crate::integrator::collocation::friction::Solved;
-use crate::integrator::collocation::friction::motion::{Motion, Unforced};
+use crate::integrator::collocation::friction::motion::{Motion, Solved, Unforced};
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::constants::{ITERATIONS, MOTION_ROUNDING, STALE};
 use crate::math::nodal::{Nodal, add, add_columns, add_products, greatest, scaled};
