@@ -298,6 +298,32 @@ fn interruptions_of_microseconds_begin_and_end() {
 }
 
 /// However rounding leaves the force at the instant at which an interruption begins, it goes on.
+/// The fixed contact meets the spring just at a communication point, to the rounding of time and way.
+#[test]
+fn a_touch_at_a_communication_point_is_one_closing() {
+    for case in 0..400 {
+        let (size, steps) = (1e-6 + 1e-7 * f64::from(case % 20), 1 + case / 20);
+        let mut scene = Scene::default();
+        scene.contact.overtravel = -1e-6;
+        scene.contact.damping = 2e-6;
+        let speed = 1e-6 / (f64::from(steps) * size);
+        let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
+        let mut time = 0.0;
+        for _ in 0..=steps {
+            let inputs = Inputs {
+                support_displacement: speed * time,
+                support_displacement_rate: speed,
+                ..Inputs::default()
+            };
+            simulation.step(&inputs, time, size).unwrap();
+            time += size;
+        }
+        // It does not bounce within 3 us.
+        assert!(simulation.real(RealOutput::ContactLastClosing) > 0.0, "{case}");
+        assert_eq!(simulation.real(RealOutput::ContactLastOpening), -1.0, "{case}");
+    }
+}
+
 #[test]
 fn an_interruption_that_hardly_is_one_comes_to_an_end() {
     let mut scene = shaken(98.0);

@@ -152,7 +152,8 @@
 //! repeated, shorter but of a length whose coefficients are known.
 //!
 //! - *Opening* ([`events::opening`]): the law's force reaches zero, at a node or in a dip of the nodal polynomial
-//!   between nodes. With contact damping that is before the surfaces part.
+//!   between nodes. With contact damping that is before the surfaces part. Not within rounding of time after a closing, where
+//!   rounding alone would open it.
 //! - *Closing* ([`events::closing`]): in flight, indentation and velocity at the nodes define cubics, whose error is
 //!   estimated from neighbouring nodes. Intervals in which the highest point of the cubic, plus that error, plus the
 //!   amplitudes of modes that vibrate faster than the interval, stays open are clear; others are halved, first on the

@@ -209,7 +209,8 @@ impl Integration<'_> {
             growth::<S>(ratio) * self.leaving_kink(target.length)
         };
         let change = self.slip_change(&trial, target.length);
-        let opens = if self.state.closed {
+        // Within rounding of time after a closing, rounding alone opens it again.
+        let opens = if self.state.closed && target.time - self.state.last_closing > self.shortest() {
             self.first_open(&trial)
         } else {
             None
