@@ -210,7 +210,8 @@ impl Integration<'_> {
         };
         let change = self.slip_change(&trial, target.length);
         // Within rounding of time after a closing, rounding alone opens it again.
-        let opens = if self.state.closed && target.time - self.state.last_closing > self.shortest() {
+        let has_just_closed = (0.0..=self.shortest()).contains(&(target.time - self.state.last_closing));
+        let opens = if self.state.closed && !has_just_closed {
             self.first_open(&trial)
         } else {
             None
