@@ -205,7 +205,7 @@ impl Ride {
 impl Outcome {
     /// Allowed error of the contact force, N.
     fn force_error(&self) -> f64 {
-        self.rig.model.force_scale() * self.rig.model.scene().solver.effective_tolerance()
+        self.rig.model.force_scale() * self.tolerance()
     }
 
     /// No energy is generated. A force error of the tolerance generates at most that force times the path of the tip;
@@ -217,13 +217,25 @@ impl Outcome {
 
     /// The forces at the ends of the segments agree with those of another simulation.
     pub fn same_force(&self, other: &Self) -> Check {
+        self.agrees(other, self.rig.model.force_scale())
+    }
+
+    /// The same to what is promised of every scene: the tolerance is relative to the largest force so far.
+    pub fn same_force_as_promised(&self, other: &Self) -> Check {
+        let largest = self.largest.max(other.largest);
+        self.agrees(other, self.rig.model.force_scale().max(largest))
+    }
+
+    /// The forces agree to the tolerance, relative to a force (N).
+    fn agrees(&self, other: &Self, scale: f64) -> Check {
         let pairs = self.forces.iter().zip(&other.forces);
         let difference = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         let property = "the force is independent of the communication step";
-        // The tolerance is relative to the largest force so far.
-        let largest = self.largest.max(other.largest).max(self.rig.model.force_scale());
-        let tolerance = self.rig.model.scene().solver.effective_tolerance();
-        Check::two_runs(property, difference, tolerance * largest)
+        Check::two_runs(property, difference, self.tolerance() * scale)
+    }
+
+    fn tolerance(&self) -> f64 {
+        self.rig.model.scene().solver.effective_tolerance()
     }
 }
 

@@ -146,10 +146,10 @@
 //! A step ends where the contact opens or closes ([`events`]): the step accepted is cut there. Inside it the motion of the
 //! modes is exact under the polynomials of force and base acceleration ([`collocation::part`], with the modes
 //! [`side by side`](collocation::side_by_side)): up to an instant these are nodal polynomials again, so no coefficients of a
-//! step of that length are needed and no Newton iteration. The instant is found by Chandrupatla's bracketing method ([`roots`](crate::math::roots)) on the polynomials
-//! through indentations and velocities at the nodes, then by the secant method on the exact motion, until the force there
-//! is below [`constants::LOCATED`] of the error allowed in a step. Where the error inside is too large the step is
-//! repeated, shorter but of a length whose coefficients are known.
+//! step of that length are needed and no Newton iteration. The instant is found by Chandrupatla's bracketing method
+//! ([`roots`](crate::math::roots)) on the polynomials through indentations and velocities at the nodes, then by the secant
+//! method on the exact motion, until the force there is below [`constants::LOCATED`] of the error allowed in a step. Where
+//! the error inside is too large the step is repeated, shorter but of a length whose coefficients are known.
 //!
 //! - *Opening* ([`events::opening`]): the law's force reaches zero, at a node or in a dip of the nodal polynomial
 //!   between nodes. With contact damping that is before the surfaces part. Not within rounding of time after a closing, where

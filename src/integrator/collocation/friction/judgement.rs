@@ -20,8 +20,8 @@ pub(super) struct Judgement {
     pub(super) tangent: Tangent,
 }
 
-/// The error estimate of [`error`](crate::integrator::collocation::error), for both forces: what the defects of both polynomials and of the base
-/// acceleration at the start do to both forces.
+/// The error estimate of [`error`](crate::integrator::collocation::error), for both forces: what the defects of both
+/// polynomials and of the base acceleration at the start do to both forces.
 #[inline(always)]
 pub(super) fn judged<const S: usize, A: Arithmetic>(
     model: &Model,
