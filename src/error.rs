@@ -310,7 +310,7 @@ pub enum StepErrorCause {
     /// More integration steps than allowed within a communication step.
     #[error("one communication step takes too many integration steps; use shorter communication steps")]
     Budget,
-    /// A time so large that the spacing of floating-point numbers exceeds what the motion needs.
+    /// A time so large that the spacing of floating-point numbers exceeds what the motion or the communication step needs.
     #[error("the floating-point spacing of time is {spacing:e} s, allowed is {allowed:e} s")]
     Resolution {
         /// Spacing of floating-point numbers at the end of the communication step, s.

@@ -103,12 +103,12 @@ fn a_step_of_a_rounding_from_a_point_early_by_more_does_not_turn_time_back() {
 }
 
 /// The spacing of floating-point numbers of time may be a tenth of a fiftieth of the lowest period: the motion still has the
-/// steps that it needs.
+/// steps that it needs; and a communication step cannot be shorter than it.
 #[test]
 fn a_time_too_coarse_for_the_motion_is_refused() {
     let scene = Scene::default();
     let frequency = at_rest(&scene, RealOutput::PreloadFrequency);
-    for start in [0.0, 1e9, 1e11] {
+    for start in [0.0, 1e9, 1e11, 1e15, 1e18] {
         let mut simulation = Simulation::new(&scene, &Inputs::default(), start).unwrap();
         let inputs = Inputs {
             base_acceleration: 98.0,
@@ -121,7 +121,8 @@ fn a_time_too_coarse_for_the_motion_is_refused() {
                 panic!("{start} s: {stepped:?}");
             };
             assert_eq!(spacing, coarse);
-            assert!((allowed * frequency / 2e-3 - 1.0).abs() < 1e-12, "{allowed} s");
+            let expected = if start + 1e-3 == start { 1e-3 } else { 2e-3 / frequency };
+            assert!((allowed / expected - 1.0).abs() < 1e-12, "{allowed} s");
         } else {
             assert_eq!(stepped, Ok(()), "{start} s");
         }

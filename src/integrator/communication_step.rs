@@ -50,6 +50,11 @@ fn step_by<const EXTREMES: bool>(
             cause: StepErrorCause::StepSize,
         });
     }
+    if until == time {
+        let (spacing, allowed) = (f64::EPSILON * time.abs(), size);
+        let cause = StepErrorCause::Resolution { spacing, allowed };
+        return Err(StepError { time, cause });
+    }
     // An importer's rounded time may put the end before the point already reached: no time passes then.
     let until = until.max(motion.time);
     // Step sizes that differ by the rounding of time count as equal, except for exact linear steps.

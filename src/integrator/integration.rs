@@ -37,8 +37,7 @@ pub(crate) struct Integration<'a> {
     pub(crate) before_event: bool,
     /// Changes between stick and slip in succession that took no time.
     pub(crate) changes: u32,
-    /// Whether an input has changed as the communication step began, in a contact with a damper that is closed since the
-    /// beginning.
+    /// Whether an input has changed as the communication step began, in a contact that is closed since the beginning.
     pub(crate) driven: bool,
     /// Whether the energy changes only by the work of the drive ([`crate::integrator::energy::conservation`]).
     pub(crate) conserves: bool,

@@ -278,8 +278,9 @@
 //! opens, and motions in which a change of the excitation by the tolerance moves the force by more, as errors do too.
 //!
 //! `solver.forceError` says what the error may be by now ([`force_error`](crate::force_error)): the largest error that a
-//! step has added, times the growth of a small deviation of the motion that is carried along once the contact has opened
-//! or closed ([`deviation`]), times a factor that makes it an upper bound for 95 % of random relays.
+//! step has added, times the growth of a small deviation of the motion that is carried along once the contact has opened or
+//! closed ([`deviation`]), times a factor that makes it an upper bound for 95 % of random relays. With inputs that jump at
+//! each of thousands of communication steps the errors of as many steps add up, and it is too small for a third of them.
 //!
 //! # Files
 //!

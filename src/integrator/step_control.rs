@@ -51,9 +51,9 @@ pub(crate) fn advance(
                 recurs: !(news.inputs && news.length),
                 ..Grid::over(state.time, remaining)
             };
-            // A blow would make more of an error than it is here, and nothing takes it back without damping.
+            // A blow would make more of an error than it is here.
             let never_opened = state.closed && state.last_opening.max(state.last_closing) < 0.0;
-            let driven = news.inputs && never_opened && model.law.damping() > 0.0;
+            let driven = news.inputs && never_opened;
             (grid, None, driven)
         }
         Steps::Own { until, dense } => {

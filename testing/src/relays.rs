@@ -21,6 +21,8 @@ pub struct Relay {
     pub shake: (f64, f64),
     /// Amplitude (m) and frequency (Hz) of `support.displacement`.
     pub travel: (f64, f64),
+    /// Whether inputs are held over each communication step, and jump to the next; else they change linearly.
+    pub held: bool,
     /// Length of the communication steps, s, and their number.
     pub steps: (f64, u32),
     /// Damping of the first mode of the spring without contact, relative to critical.
@@ -89,9 +91,25 @@ impl Relay {
             scene,
             shake,
             travel,
+            held: false,
             steps: (step, (duration / step).ceil() as u32),
             damping,
         }
+    }
+
+    /// The relay of a number, driven by an input alone that is sampled in steps as short as controllers have.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count of steps
+    pub fn held(number: u64) -> Self {
+        let mut relay = Self::draw(number);
+        let (rng, scene) = (&mut Rng::with_seed(!number), &mut relay.scene);
+        relay.shake = (scene.excitation.amplitude, scene.excitation.frequency);
+        relay.travel = (0.0, 1.0);
+        relay.held = true;
+        scene.effects.excitation = ExcitationKind::None;
+        let step = logarithmic(rng, 2e-6, 2e-5);
+        let duration = (5.0 / relay.shake.1).clamp(2e-3, 6e-3);
+        relay.steps = (step, (duration / step).ceil() as u32);
+        relay
     }
 
     /// The relay of a number with a second contact as near as the spring moves.
@@ -129,7 +147,13 @@ impl Relay {
     /// The inputs over a communication step: values at its start, and the rates that lead to those at its end.
     fn inputs(&self, time: f64, size: f64) -> Inputs {
         let at = |(amplitude, frequency): (f64, f64), time: f64| amplitude * (TAU * frequency * time).sin();
-        let rate = |wave| (at(wave, time + size) - at(wave, time)) / size;
+        let rate = |wave| {
+            if self.held {
+                0.0
+            } else {
+                (at(wave, time + size) - at(wave, time)) / size
+            }
+        };
         Inputs {
             base_acceleration: at(self.shake, time),
             base_acceleration_rate: rate(self.shake),
