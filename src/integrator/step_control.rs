@@ -39,6 +39,7 @@ pub(crate) fn advance(
     let (model, other) = model.views(state);
     let drive = drive.seen(state);
     let tolerance = model.tolerance().min(LOOSEST * model.force_scale());
+    let conserves = conserves(model, &drive);
     let (grid, dense, driven) = match steps {
         Steps::Exactly { time, size, news } => {
             exact_step::leave_before_rest(model, state, &drive, tolerance);
@@ -53,7 +54,8 @@ pub(crate) fn advance(
             };
             // A blow would make more of an error than it is here.
             let never_opened = state.closed && state.last_opening.max(state.last_closing) < 0.0;
-            let driven = news.inputs && never_opened;
+            // Without any damping errors add up over the more steps that this takes.
+            let driven = news.inputs && never_opened && !conserves;
             (grid, None, driven)
         }
         Steps::Own { until, dense } => {
@@ -80,7 +82,7 @@ pub(crate) fn advance(
         before_event: false,
         changes: 0,
         driven,
-        conserves: conserves(model, &drive),
+        conserves,
     }
     .run()
 }
