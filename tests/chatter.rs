@@ -297,7 +297,6 @@ fn interruptions_of_microseconds_begin_and_end() {
     }
 }
 
-/// However rounding leaves the force at the instant at which an interruption begins, it goes on.
 /// The fixed contact meets the spring just at a communication point, to the rounding of time and way.
 #[test]
 fn a_touch_at_a_communication_point_is_one_closing() {
@@ -324,6 +323,7 @@ fn a_touch_at_a_communication_point_is_one_closing() {
     }
 }
 
+/// However rounding leaves the force at the instant at which an interruption begins, it goes on.
 #[test]
 fn an_interruption_that_hardly_is_one_comes_to_an_end() {
     let mut scene = shaken(98.0);

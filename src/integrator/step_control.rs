@@ -39,7 +39,6 @@ pub(crate) fn advance(
     let (model, other) = model.views(state);
     let drive = drive.seen(state);
     let tolerance = model.tolerance().min(LOOSEST * model.force_scale());
-    let conserves = conserves(model, &drive);
     let (grid, dense, driven) = match steps {
         Steps::Exactly { time, size, news } => {
             exact_step::leave_before_rest(model, state, &drive, tolerance);
@@ -54,9 +53,7 @@ pub(crate) fn advance(
             };
             // A blow would make more of an error than it is here.
             let never_opened = state.closed && state.last_opening.max(state.last_closing) < 0.0;
-            // Without any damping errors add up over the more steps that this takes.
-            let driven = news.inputs && never_opened && !conserves;
-            (grid, None, driven)
+            (grid, None, news.inputs && never_opened)
         }
         Steps::Own { until, dense } => {
             if exact_step::step_ahead(model, state, workspace, &drive, (until, &mut *dense)) {
@@ -67,6 +64,7 @@ pub(crate) fn advance(
         }
     };
     exact_step::leave(model, state);
+    let conserves = conserves(model, &drive);
     Integration {
         model,
         other,
@@ -81,7 +79,8 @@ pub(crate) fn advance(
         refusals: 0,
         before_event: false,
         changes: 0,
-        driven,
+        // Without any damping errors add up over the more steps that this takes.
+        driven: driven && !conserves,
         conserves,
     }
     .run()

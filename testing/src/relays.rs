@@ -59,7 +59,6 @@ pub(crate) fn uniform(rng: &mut Rng, least: f64, greatest: f64) -> f64 {
 
 impl Relay {
     /// The relay of a number.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count of steps
     pub fn draw(number: u64) -> Self {
         let rng = &mut Rng::with_seed(number);
         let mut scene = Scene::default();
@@ -92,13 +91,12 @@ impl Relay {
             shake,
             travel,
             held: false,
-            steps: (step, (duration / step).ceil() as u32),
+            steps: steps(step, duration),
             damping,
         }
     }
 
     /// The relay of a number, driven by an input alone that is sampled in steps as short as controllers have.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count of steps
     pub fn held(number: u64) -> Self {
         let mut relay = Self::draw(number);
         let (rng, scene) = (&mut Rng::with_seed(!number), &mut relay.scene);
@@ -108,7 +106,7 @@ impl Relay {
         scene.effects.excitation = ExcitationKind::None;
         let step = logarithmic(rng, 2e-6, 2e-5);
         let duration = (5.0 / relay.shake.1).clamp(2e-3, 6e-3);
-        relay.steps = (step, (duration / step).ceil() as u32);
+        relay.steps = steps(step, duration);
         relay
     }
 
@@ -195,6 +193,12 @@ impl Relay {
         }
         Ok((course, None))
     }
+}
+
+/// Communication steps of this length (s) over a duration (s): their length and number.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count of steps
+fn steps(length: f64, duration: f64) -> (f64, u32) {
+    (length, (duration / length).ceil() as u32)
 }
 
 /// Returns the damping of the first mode, relative to critical.
