@@ -100,8 +100,9 @@ pub const AFTER_BLOW: f64 = 10.0;
 /// `inputs_and_lengths_that_are_new_in_each_step_keep_the_tolerance`.
 pub const DRIVEN: f64 = 0.02;
 
-/// Factor on the error inside such a step if it is short, 1: what is read goes through the start of the step too. Observed.
-/// Pinned: 0, the same test.
+/// Factor on the error inside such a step, 1: what is read goes through the start of the step too, and beyond the first node
+/// the shape that it lacks is 0.4 of what it is at the start. Observed: of 3,300 closed relays with held inputs none is above
+/// its tolerance, one of 1,448 with 0.4. Pinned: 0, the same test.
 pub const INSIDE_DRIVEN: f64 = 0.5;
 
 /// Time since a closing up to which that holds, steps. Observed. Pinned: 0, `former_excesses_are_within_the_tolerance`.
