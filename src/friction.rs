@@ -225,6 +225,13 @@ impl Friction {
     pub(crate) fn limit_deflection(&self, hertz: &Hertz, sign: f64, d: f64, rate: f64) -> f64 {
         -sign * self.coefficient / self.ratio * (2.0 / 3.0 * d + hertz.damping * rate)
     }
+
+    /// Slip velocity times the damping time of the contact, m, positive against the slip under a friction force of this sign:
+    /// as the tangential spring, deflected by `z` (m), tends to its limit, the contact point moving at `along` (m/s), at the
+    /// indentation `d` (m) that grows at `rate` (m/s).
+    pub(crate) fn turned(&self, hertz: &Hertz, sign: f64, (d, rate): (f64, f64), (z, along): (f64, f64)) -> f64 {
+        sign * (z + hertz.damping * along - self.limit_deflection(hertz, sign, d, rate))
+    }
 }
 
 /// Friction force at the preload per contact force, if the scene has friction.

@@ -20,7 +20,7 @@ use crate::math::simd::Simd;
 use crate::preload::Preload;
 use crate::scene::Scene;
 use crate::state::{Record, State};
-use crate::variables::{AxialForceKind, ContactLawKind, RealParameter};
+use crate::variables::{AxialForceKind, ContactLawKind, FrictionKind, RealParameter};
 
 /// Everything that is constant during a simulation.
 #[derive(Clone, Debug)]
@@ -432,6 +432,7 @@ fn blow(scene: &Scene, section: &Section, hertz: &Hertz) -> Blow {
         stiffness_damping: scene.beam.stiffness_damping,
         contact_stiffness: hertz.tangent_stiffness(hertz.indentation(force)),
         contact_damping: hertz.damping,
+        rubs: scene.effects.friction != FrictionKind::None,
     }
 }
 

@@ -7,6 +7,7 @@
 use crate::friction::{Friction, Phase};
 use crate::integrator::attempt::growth;
 use crate::integrator::collocation::error::sum_rounding;
+use crate::integrator::collocation::part::Instant;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::constants::{LOCATED, MOST_CHANGES, MOST_SHRINK, SUM_ROUNDINGS, WORTH};
@@ -29,6 +30,8 @@ pub(crate) struct Change {
     pub(crate) at: f64,
     /// From then on.
     phase: Phase,
+    /// Slope there of what [`Integration::beyond`] gives, N/s.
+    slope: f64,
 }
 
 impl Integration<'_> {
@@ -79,21 +82,29 @@ impl Integration<'_> {
         Workspace: Room<S>,
     {
         let (model, state) = (self.model, &*self.state);
-        let friction = model
-            .friction()
-            .filter(|_| state.closed && self.changes <= MOST_CHANGES)?;
+        let friction = model.friction().filter(|_| self.changes <= MOST_CHANGES)?;
         let (cache, ends, _) = Room::<S>::parts(self.workspace);
         let (collocation, nodes) = (cache.collocation(), &ends.tangential);
         let start = state.tangential;
         let allowed = LOCATED * self.allowed;
         let unsure = || allowed.max(rounding(model, friction, state));
         let first = |start: f64, values: &Nodal<S>| passage((collocation, model.simd), start, values, unsure);
-        let (y, phase) = if let Some(sign) = start.phase.sign() {
+        let damping = model.law.damping();
+        let ((y, slope), phase) = if let Some(sign) = start.phase.sign() {
             // The friction force that is missing for the slip velocity.
             let stiffness = friction.ratio * model.law.tangent_stiffness(model.force_scale);
-            let wrong = scaled(&nodes.slip_rates, sign * stiffness * (model.law.damping() + length));
-            let before = dot::<S, Separate>(&wrong, &collocation.at_start).min(0.0);
-            (first(before, &wrong)?, Phase::Stick)
+            let wrong = scaled(&nodes.slip_rates, sign * stiffness * (damping + length));
+            let before = match model.law.hertz() {
+                // As a jump of the contact force has left it.
+                Some(hertz) if damping > 0.0 => {
+                    let across = (model.preload.indentation + state.indentation, state.indentation_rate);
+                    let turned = friction.turned(hertz, sign, across, (start.deflection(), start.rate));
+                    stiffness * (1.0 + length / damping) * turned
+                }
+                _ => dot::<S, Separate>(&wrong, &collocation.at_start),
+            };
+            let (y, slope) = first(before.min(0.0), &wrong)?;
+            ((y, slope * damping / (damping + length)), Phase::Stick)
         } else {
             let [back, forth] = [1.0, -1.0].map(|sign| {
                 let excess = |friction_force: f64, force: f64| sign * friction_force - friction.coefficient * force;
@@ -101,10 +112,10 @@ impl Integration<'_> {
                 for (value, force) in values.iter_mut().zip(&trial.forces) {
                     *value = excess(friction.preload + *value, model.preload.force + force);
                 }
-                first(excess(start.force, state.force), &values).map(|y| (y, Phase::slip(sign)))
+                first(excess(start.force, state.force), &values).map(|found| (found, Phase::slip(sign)))
             });
             match (back, forth) {
-                (Some(back), Some(forth)) if forth.0 < back.0 => forth,
+                (Some(back), Some(forth)) if forth.0.0 < back.0.0 => forth,
                 (Some(back), _) => back,
                 (None, forth) => forth?,
             }
@@ -113,6 +124,7 @@ impl Integration<'_> {
         Some(Change {
             at: if at <= self.resolution() { 0.0 } else { at },
             phase,
+            slope: slope / length,
         })
     }
 
@@ -121,15 +133,48 @@ impl Integration<'_> {
         trial.inner_error.total <= self.allowed.max(trial.rounding) || self.is_shortest(target)
     }
 
-    /// The end of the trial of `length` seconds at a change.
+    /// The end of the trial of `length` seconds at a change: on the polynomials, then on the exact motion under them, as what
+    /// is missing there would stay in the tangential spring.
     pub(crate) fn cut_at_change<const S: usize>(&mut self, trial: &Trial<S>, length: f64, change: &Change) -> Cut
     where
         Workspace: Room<S>,
     {
-        let end = self.inside(trial, length, change.at);
+        let beyond = |integration: &mut Self, now: &Instant| integration.beyond::<S>(now, length, change.phase);
+        let (before, guess) = ((0.0, -f64::MIN_POSITIVE), (change.at, change.slope));
+        // Without a damper there is no such force for the slip velocity, nor a slope.
+        let end = if change.at > 0.0 && change.slope > 0.0 {
+            self.refined(trial, length, beyond, before, guess, length, self.allowed)
+        } else {
+            self.inside(trial, length, change.at)
+        };
         Cut {
             slides: Some(change.phase),
             ..self.cut(end, false)
+        }
+    }
+
+    /// How far the contact is beyond the change to a phase, at the instant looked at last in a trial of `length` seconds, N:
+    /// the trial force beyond the limit, or the friction force that the slip velocity takes.
+    fn beyond<const S: usize>(&mut self, end: &Instant, length: f64, phase: Phase) -> f64
+    where
+        Workspace: Room<S>,
+    {
+        let (model, state) = (self.model, &*self.state);
+        let (Some(friction), Some(hertz)) = (model.friction(), model.law.hertz()) else {
+            return 0.0;
+        };
+        let (cache, ends, inside) = Room::<S>::parts(self.workspace);
+        let (displacement, rate) = friction.motion(inside, model.modes.len());
+        let d = model.preload.indentation + end.d;
+        let start = &state.tangential;
+        if let Some(sign) = start.phase.sign() {
+            let deflections = &ends.tangential.deflections;
+            let course = cache.collocation().through(model.simd, start.deflection(), deflections);
+            let z = value_and_slope(&course, end.at / length - 1.0).0;
+            friction.ratio * hertz.tangent_stiffness(d) * friction.turned(hertz, sign, (d, end.rate), (z, rate))
+        } else {
+            let trial = friction.trial(hertz, d, displacement - start.slip, rate).force;
+            phase.sign().unwrap_or_default() * trial - friction.coefficient * hertz.closed_branch(d, end.rate).force
         }
     }
 
@@ -240,13 +285,13 @@ fn rounding(model: &Model, friction: &Friction, state: &State) -> f64 {
 }
 
 /// Where the polynomial through `start` and the nodal values first exceeds zero by more than `unsure`: where it passes zero
-/// before, relative to the end of the step in step lengths.
+/// before, relative to the end of the step in step lengths, and the slope there.
 fn passage<const S: usize>(
     (collocation, simd): (&Collocation<S>, Simd),
     start: f64,
     values: &Nodal<S>,
     unsure: impl Fn() -> f64,
-) -> Option<f64> {
+) -> Option<(f64, f64)> {
     if !Collocation::comes_near_zero(-start, &scaled(values, -1.0)) {
         return None;
     }
@@ -256,7 +301,8 @@ fn passage<const S: usize>(
     for y in turning_points(&polynomial).iter().chain([0.0]) {
         let now = (y, value(y));
         if now.1 > 0.0 && now.1 > unsure() {
-            return Some(roots::between(value, before, now, 1e-12).unwrap_or(before.0));
+            let y = roots::between(value, before, now, 1e-12).unwrap_or(before.0);
+            return Some((y, value_and_slope(&polynomial, y).1));
         }
         before = now;
     }

@@ -191,7 +191,8 @@
 //! *Inputs that change each time.* Each change bends the force, which with contact damping follows within a fraction of a
 //! microsecond. A wrong velocity of the tip that is left by it is taken back by the contact's damper as soon, so that it counts
 //! only [`constants::DRIVEN`] times ([`Estimate`](collocation::error::Estimate)); a wrong way and what slow modes feel count in full,
-//! and all of it once the contact has opened, as a blow would multiply it. The next communication step begins with the step
+//! and all of it once the contact has opened, as a blow would multiply it. What is read inside such a step may miss
+//! more at its start ([`constants::INSIDE_DRIVEN`]). The next communication step begins with the step
 //! length that this one began with. Where its length is new too, no coefficients are formed for it: steps have the lengths of
 //! free ones, and the last one is cut at the communication point, as at an event ([`grid`]), unless the law there differs from
 //! the force polynomial by more than the tolerance.
@@ -241,9 +242,9 @@
 //! start enters the error estimate with its effect on both forces.
 //!
 //! A step ends where the contact begins or ceases to slip ([`friction`]): where the trial force of stick passes the limit,
-//! or the slip velocity its zero, on the polynomials through the nodes. The motion there is exact under the polynomials, as at
-//! any event; no blow follows, so the error inside need only be that allowed in a step. The slope of the friction force jumps
-//! there, and the spring, which has no rotary inertia at its end unless `tip.rotaryInertia` gives it, answers as steeply as
+//! or the slip velocity its zero: on the polynomials through the nodes, then on the exact motion under them, as at any event,
+//! because what is missing there stays in the tangential spring as a wrong friction force. No blow follows, so the error
+//! inside need only be that allowed in a step. The slope of the friction force jumps there, and the spring, which has no rotary inertia at its end unless `tip.rotaryInertia` gives it, answers as steeply as
 //! its highest modes do. So the first step is about as long as the last one after such a change, and the next ones grow with the
 //! time since, as after a closing. Rounding could change stick and slip to and fro at one instant: what is below
 //! [`constants::LOCATED`] of the error allowed is no change.

@@ -209,13 +209,12 @@ impl Integration<'_> {
         } else {
             growth::<S>(ratio) * self.leaving_kink(target.length)
         };
-        let change = self.slip_change(&trial, target.length);
-        // Within rounding of time after a closing, rounding alone opens it again.
+        // Within rounding of time after a closing, rounding alone opens it again or makes it slip.
         let has_just_closed = (0.0..=self.shortest()).contains(&(target.time - self.state.last_closing));
-        let opens = if self.state.closed && !has_just_closed {
-            self.first_open(&trial)
+        let (change, opens) = if self.state.closed && !has_just_closed {
+            (self.slip_change(&trial, target.length), self.first_open(&trial))
         } else {
-            None
+            (None, None)
         };
         // What sticks slips before it opens.
         let sticks = self.state.tangential.phase == Phase::Stick;

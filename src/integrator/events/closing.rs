@@ -171,10 +171,11 @@ impl Integration<'_> {
         Workspace: Room<S>,
     {
         let model = self.model;
-        let engagement = |d, rate| model.engagement(d, rate);
+        // Not before the touch: from there a step as short as rounding would find the contact open once more.
+        let rounding = motion_rounding(model, self.state);
+        let engagement = |d, rate| model.engagement(d, rate) - rounding;
         // A flight starts at the opening itself, where rounding may give a positive engagement.
         let start = engagement(a.d, a.rate).min(-f64::MIN_POSITIVE);
-        let rounding = self.located();
         self.instant(trial, length, engagement, (a.at, start), b.at, rounding)
     }
 

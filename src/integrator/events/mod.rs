@@ -77,14 +77,33 @@ impl Integration<'_> {
         };
         let end = (latest, on_polynomials(latest));
         let guess = roots::between(on_polynomials, from, end, 1e-12 * length);
-        let mut at = guess.unwrap_or(latest);
+        let at = guess.unwrap_or(latest);
         let near = at - 1e-4 * (at - from.0);
-        let mut slope = (on_polynomials(at) - on_polynomials(near)) / (at - near);
+        let slope = (on_polynomials(at) - on_polynomials(near)) / (at - near);
+        let exact = |_: &mut Self, now: &Instant| value(now.d, now.rate);
+        self.refined(trial, length, exact, from, (at, slope), latest, rounding)
+    }
+
+    /// The same on the exact motion, from a guess and the slope there (1/s times the value).
+    #[expect(clippy::too_many_arguments, reason = "as many as of what it refines")]
+    pub(crate) fn refined<const S: usize>(
+        &mut self,
+        trial: &Trial<S>,
+        length: f64,
+        value: impl Fn(&mut Self, &Instant) -> f64,
+        from: (f64, f64),
+        (mut at, mut slope): (f64, f64),
+        latest: f64,
+        rounding: f64,
+    ) -> Instant
+    where
+        Workspace: Room<S>,
+    {
         let resolution = self.resolution();
         let (mut low, mut high, mut last) = (from, None, None);
         for _ in 0..GUESSES {
             let now = self.inside(trial, length, at);
-            let found = value(now.d, now.rate);
+            let found = value(self, &now);
             let beyond = (found > 0.0) != (from.1 > 0.0);
             if found.abs() <= rounding || at == latest && !beyond {
                 return now;
@@ -111,7 +130,7 @@ impl Integration<'_> {
         }
         let exact = |at: f64| {
             let now = self.inside(trial, length, at);
-            value(now.d, now.rate)
+            value(self, &now)
         };
         let found = high.and_then(|high| roots::between(exact, low, high, resolution));
         self.inside(trial, length, found.unwrap_or(latest))
@@ -157,9 +176,8 @@ impl Integration<'_> {
         let part = self.shorten(trial, target.length, &cut.end);
         let end = self.grid.cut(cut.end.at, cut.time);
         // Between the nodes the force of the law may miss that of the polynomial, most with a damper that is nearly rigid.
-        let is_read = !cut.switches && cut.slides.is_none();
         let missed = (part.force - nodal::end(&part.forces)).abs();
-        if is_read && missed > self.tolerance && !self.is_shortest(target) {
+        if !cut.switches && missed > self.tolerance && !self.is_shortest(target) {
             return Ok(self.reject(MOST_SHRINK * target.length));
         }
         let Some(passages) = self.passages(&part, end.length, self.is_shortest(target)) else {
