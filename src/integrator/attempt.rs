@@ -29,7 +29,7 @@ impl Integration<'_> {
         let read = self.dense.as_ref().is_some_and(|(until, _)| *until < target.time);
         let watched = self.model.scene.effects.extremes || self.model.criterion.is_some();
         // 4-node steps may be inaccurate inside: they end where they are read.
-        let inside = if self.driven && watched && self.state.closed {
+        let inside = if self.driven && watched {
             INSIDE_DRIVEN * self.inaccuracy(trial, target.length)
         } else if (read || watched || !self.state.closed) && S != SHORT {
             self.inaccuracy(trial, target.length)

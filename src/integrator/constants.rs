@@ -185,7 +185,7 @@ pub const SHORTEST_FLIGHT: f64 = 1e-3;
 /// times larger. Pinned: × 100, `tests/calibration.rs`.
 pub const AT_EVENT: f64 = 0.01;
 
-/// Contact force that counts as zero where the contact opens or closes, in errors allowed in a step, 1. Chosen. Cost.
+/// Force that counts as zero where the contact opens or begins or ceases to slip, in errors allowed in a step, 1. Chosen. Cost.
 pub const LOCATED: f64 = 0.05;
 
 /// Instants at which the exact motion inside a step is looked at to find an event, before it is bracketed. Newton's and the

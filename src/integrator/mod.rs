@@ -244,9 +244,10 @@
 //! A step ends where the contact begins or ceases to slip ([`friction`]): where the trial force of stick passes the limit,
 //! or the slip velocity its zero: on the polynomials through the nodes, then on the exact motion under them, as at any event,
 //! because what is missing there stays in the tangential spring as a wrong friction force. No blow follows, so the error
-//! inside need only be that allowed in a step. The slope of the friction force jumps there, and the spring, which has no rotary inertia at its end unless `tip.rotaryInertia` gives it, answers as steeply as
-//! its highest modes do. So the first step is about as long as the last one after such a change, and the next ones grow with the
-//! time since, as after a closing. Rounding could change stick and slip to and fro at one instant: what is below
+//! inside need only be that allowed in a step. The slope of the friction force jumps there, and the spring, which has no
+//! rotary inertia at its end unless `tip.rotaryInertia` gives it, answers as steeply as its highest modes do. So the first
+//! step is about as long as the last one after such a change, and the next ones grow with the time since, as after a closing.
+//! Rounding could change stick and slip to and fro at one instant: what is below
 //! [`constants::LOCATED`] of the error allowed is no change.
 //!
 //! As the contact opens the limit vanishes, so it slips before; as it closes, the direction of the first motion decides.

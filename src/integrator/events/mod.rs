@@ -136,7 +136,7 @@ impl Integration<'_> {
         self.inside(trial, length, found.unwrap_or(latest))
     }
 
-    /// Engagement that counts as zero where the contact opens or closes, m.
+    /// Engagement that counts as zero where the contact opens, m.
     pub(crate) fn located(&self) -> f64 {
         let stiffness = self.model.law.tangent_stiffness(self.model.force_scale);
         (LOCATED * self.allowed / stiffness).max(motion_rounding(self.model, self.state))
