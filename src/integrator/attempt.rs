@@ -7,8 +7,8 @@ use crate::integrator::collocation::part::{self, Instant};
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::collocation::trial::trial;
 use crate::integrator::constants::{
-    AFTER_BLOW, AFTER_REJECTION, AT_EVENT, FORCE_ROUNDING, INSIDE, INSIDE_DRIVEN, LEAST_SHRINK, MOST_GROWTH,
-    MOST_SHRINK, NEAR_BLOW, NEWTON, SAFETY,
+    AFTER_BLOW, AFTER_REJECTION, AT_EVENT, DRIVEN, FORCE_ROUNDING, INHERITED, INSIDE, INSIDE_DRIVEN, LEAST_SHRINK,
+    MOST_GROWTH, MOST_SHRINK, NEAR_BLOW, NEWTON, ROUNDED, SAFETY,
 };
 use crate::integrator::course::{Places, turning_points};
 use crate::integrator::grid::Target;
@@ -20,9 +20,10 @@ use crate::math::prediction::value_and_slope;
 use crate::state::State;
 
 impl Integration<'_> {
-    /// Estimated error of a trial to the target, relative to the error allowed; 0 where it is mere rounding, which no
-    /// shorter step reduces.
-    pub(crate) fn relative_error<const S: usize>(&mut self, trial: &Trial<S>, target: &Target) -> f64
+    /// Estimated error of a trial to the target, relative to the error allowed: that from which the next length follows, and
+    /// that by which it is accepted, with less of what the contact's damper takes back. [`ROUNDED`] where it is mere
+    /// rounding, which no shorter step reduces.
+    pub(crate) fn relative_errors<const S: usize>(&mut self, trial: &Trial<S>, target: &Target) -> [f64; 2]
     where
         Workspace: Room<S>,
     {
@@ -36,15 +37,24 @@ impl Integration<'_> {
         } else {
             0.0
         };
-        let ratio = self.after_blow(target) * trial.error.counted(self.driven) / self.allowed.max(trial.rounding);
-        // Not `max`, which would hide NaN.
-        let ratio = if ratio < inside { inside } else { ratio };
+        let after_blow = self.after_blow(target);
         let rounding = self.state.closed || inside < 1.0;
-        if ratio > 1.0 && rounding && is_rounding::<S>(self.model, self.state, &trial.tangent, trial.error.total) {
-            0.0
-        } else {
-            ratio
-        }
+        let all = self.passing();
+        [all, all.min(INHERITED)].map(|share| {
+            let ratio = after_blow * trial.error.with(share) / self.allowed.max(trial.rounding);
+            // Not `max`, which would hide NaN.
+            let ratio = if ratio < inside { inside } else { ratio };
+            if ratio > 1.0 && rounding && is_rounding::<S>(self.model, self.state, &trial.tangent, trial.error.total) {
+                ROUNDED
+            } else {
+                ratio
+            }
+        })
+    }
+
+    /// Factor on the error that the contact's damper takes back.
+    fn passing(&self) -> f64 {
+        if self.driven { DRIVEN } else { 1.0 }
     }
 
     /// Factor on the error just after a closing, where the force is not smooth enough for the estimate.
@@ -117,7 +127,7 @@ impl Integration<'_> {
     pub(crate) fn inner_error<const S: usize>(&self, trial: &Trial<S>, target: &Target, event: bool) -> (f64, f64) {
         let error = trial.inner_error;
         if self.is_cut(target) && !event {
-            (error.counted(self.driven), self.allowed)
+            (error.with(self.passing()), self.allowed)
         } else if self.state.closed {
             (error.total, AT_EVENT * self.allowed)
         } else {
@@ -201,6 +211,7 @@ impl Integration<'_> {
         if !(trial.indentation.is_finite() && trial.rate.is_finite()) {
             return Err(self.error(StepErrorCause::NotFinite));
         }
+        let error = trial.error.with(self.passing());
         let expected_energy = self.expected_energy(trial, target);
         if expected_energy.is_some() {
             // The balance repeats the step in two halves.
@@ -208,12 +219,10 @@ impl Integration<'_> {
         }
         self.enter(trial, target.length);
         self.note_approach(trial, target.length);
-        let Self {
-            model, state, driven, ..
-        } = self;
+        let Self { model, state, .. } = self;
         let (cache, end, _) = Room::<S>::parts(self.workspace);
         let collocation = cache.collocation();
-        state.force_error.add(trial.error.counted(*driven));
+        state.force_error.add(error);
         if state.force_error.deviates() {
             let closed = state.closed;
             if let Some(step) = cache.known(target.length, target.recurring) {

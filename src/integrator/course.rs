@@ -2,7 +2,7 @@
 
 use crate::integrator::constants::PIECES;
 use crate::math::nodal::LONG;
-use crate::math::prediction::{Prediction, value_and_slope};
+use crate::math::prediction::{Prediction, derivative, value_and_slope};
 use crate::math::roots;
 use serde::{Deserialize, Serialize};
 
@@ -51,16 +51,37 @@ pub(crate) fn turning_points(polynomial: &Prediction) -> Places {
     if is_monotone(polynomial) {
         return Places::default();
     }
-    let slope = |y: f64| value_and_slope(polynomial, y).1;
+    let rate = derivative(polynomial);
+    let slope_and_bend = |y: f64| value_and_slope(&rate, y);
+    let (slope, bend) = (|y: f64| slope_and_bend(y).0, |y: f64| slope_and_bend(y).1);
     let mut places = Places::default();
-    let mut before = (-1.0, slope(-1.0));
-    for k in 1..=PIECES {
-        let y = f64::from(k) / f64::from(PIECES) - 1.0;
-        let now = (y, slope(y));
-        if (before.1 > 0.0) != (now.1 > 0.0)
-            && let Some(y) = roots::between(slope, before, now, 1e-9)
+    let mut cross = |from: (f64, f64), to: (f64, f64)| {
+        if (from.1 > 0.0) != (to.1 > 0.0)
+            && let Some(y) = roots::between(slope, from, to, 1e-9)
         {
             places.push(y);
+        }
+    };
+    let at = |y: f64| {
+        let (slope, bend) = slope_and_bend(y);
+        ((y, slope), (y, bend))
+    };
+    let mut before = at(-1.0);
+    for k in 1..=PIECES {
+        let now = at(f64::from(k) / f64::from(PIECES) - 1.0);
+        let (from, to) = (before.0, now.0);
+        // Slopes of one sign that first fall towards zero, then rise, may have passed it twice.
+        let dips = (from.1 > 0.0) == (to.1 > 0.0) && from.1 * before.1.1 < 0.0 && to.1 * now.1.1 > 0.0;
+        let least = if dips {
+            roots::between(bend, before.1, now.1, 1e-9)
+        } else {
+            None
+        };
+        if let Some(y) = least {
+            cross(from, (y, slope(y)));
+            cross((y, slope(y)), to);
+        } else {
+            cross(from, to);
         }
         before = now;
     }
@@ -76,4 +97,23 @@ fn is_monotone(polynomial: &Prediction) -> bool {
         .fold(0.0, |most, (bend, power)| most + f64::from(power) * bend.abs());
     // Beyond what rounding makes of the sum.
     slope.abs() > 1.001 * most
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn turning_points_that_lie_side_by_side_are_found() {
+        for (a, b) in [(-0.9, 0.3), (0.05, 0.2), (0.1, 0.101), (-0.7, -0.6)] {
+            // (z - a) (z - b) is its slope.
+            let polynomial = [0.0, a * b, -0.5 * (a + b), 1.0 / 3.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+            let found: Vec<f64> = turning_points(&polynomial).iter().map(|y| 2.0 * y + 1.0).collect();
+            let near = |(found, expected): (&f64, f64)| (found - expected).abs() < 1e-8;
+            assert!(
+                found.len() == 2 && found.iter().zip([a, b]).all(near),
+                "{found:?}, not {a} and {b}"
+            );
+        }
+    }
 }

@@ -10,7 +10,7 @@ use crate::integrator::collocation::error::sum_rounding;
 use crate::integrator::collocation::part::Instant;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::step::Trial;
-use crate::integrator::constants::{LOCATED, MOST_CHANGES, MOST_SHRINK, SUM_ROUNDINGS, WORTH};
+use crate::integrator::constants::{INHERITED, LOCATED, MOST_CHANGES, MOST_SHRINK, SUM_ROUNDINGS, WORTH};
 use crate::integrator::course::turning_points;
 use crate::integrator::events::{Cut, motion_rounding};
 use crate::integrator::grid::Target;
@@ -130,7 +130,7 @@ impl Integration<'_> {
 
     /// Whether the trial may end at a change inside. No blow follows.
     pub(crate) fn may_change_inside<const S: usize>(&self, trial: &Trial<S>, target: &Target) -> bool {
-        trial.inner_error.total <= self.allowed.max(trial.rounding) || self.is_shortest(target)
+        INHERITED * trial.inner_error.total <= self.allowed.max(trial.rounding) || self.is_shortest(target)
     }
 
     /// The end of the trial of `length` seconds at a change: on the polynomials, then on the exact motion under them, as what

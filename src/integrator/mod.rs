@@ -116,13 +116,16 @@
 //! does to the velocity, in `1 / omega_1`. A blow makes it a hundred times larger, so at an opening it has to be below
 //! [`constants::AT_EVENT`] of the error allowed in a step.
 //!
-//! An estimate below what rounding makes of the sums over the modes counts as zero: no shorter step makes it smaller.
+//! An estimate below what rounding makes of the sums over the modes counts as small ([`constants::ROUNDED`]): no shorter
+//! step reduces it.
 //!
 //! # Step size control
 //!
 //! A step may add [`constants::SHARE`] of `solver.tolerance` times the force scale ([`attempt`], [`step_control`]). Its
 //! length is multiplied by `(allowed / estimate)^(1 / (S + 1))` and [`constants::SAFETY`], with bounds on growth and
-//! shrinkage beside it. Step ends lie on a grid: binary fractions of the communication step, or lengths of 1 and 1.5
+//! shrinkage beside it. It is accepted by its estimate with [`constants::INHERITED`] of what the contact's damper takes back:
+//! the velocity at its start is wrong by what the step before has left of that, and a shorter step would be rejected as well.
+//! Step ends lie on a grid: binary fractions of the communication step, or lengths of 1 and 1.5
 //! times powers of two where the integrator runs ahead ([`grid`]), so that coefficients recur; the generator's corners
 //! (start, end, crossover) end a step, and the step size starts anew there. After a closing the force is smooth in the
 //! logarithm of the time since: the next step may be longer in the ratio in which that time grows, beside what the

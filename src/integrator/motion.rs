@@ -9,8 +9,7 @@
 use crate::beam::mode::{MAX_MODES, Modal};
 use crate::chatter::Interruptions;
 use crate::excitation::drive::Drive;
-use crate::integrator::constants::PIECES;
-use crate::integrator::course::{Places, turning_points};
+use crate::integrator::course::turning_points;
 use crate::integrator::events::log::Event;
 use crate::integrator::exact_step;
 use crate::integrator::extremes::Extremes;
@@ -283,12 +282,7 @@ impl Motion {
         if other.is_some() {
             let (second, gap) = (self.start.second_support, model.scene.second.gap);
             let polynomial = &self.dense.indentation;
-            let [rises, still_rises] = [from, to].map(|y| value_and_slope(polynomial, y).1 > 0.0);
-            let turns = if rises != still_rises || (to - from) * f64::from(PIECES) > 1.0 {
-                turning_points(polynomial)
-            } else {
-                Places::default()
-            };
+            let turns = turning_points(polynomial);
             for y in turns.between(from, to).chain([from, to]) {
                 let indentation = value_and_slope(polynomial, y).0;
                 let seen = if self.start.mirrored {

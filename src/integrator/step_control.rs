@@ -180,10 +180,10 @@ impl Integration<'_> {
         let corner = self.model.generator.next_break(self.state.time);
         let target = self.grid.target(requested, self.state.time, corner);
         let attempt = self.attempt::<S>(&target);
-        let ratio = attempt
+        let [ratio, own] = attempt
             .as_ref()
-            .map_or(f64::INFINITY, |trial| self.relative_error(trial, &target));
-        let Some(trial) = attempt.filter(|_| self.is_acceptable(ratio, &target)) else {
+            .map_or([f64::INFINITY; 2], |trial| self.relative_errors(trial, &target));
+        let Some(trial) = attempt.filter(|_| self.is_acceptable(own, &target)) else {
             // The collocation failed; use the discrete-gradient step.
             if self.state.closed && (self.is_shortest(&target) || self.refusals >= REFUSALS) {
                 return self.take_with_constant_force(&target);

@@ -30,3 +30,12 @@ pub fn value_and_slope(coefficients: &Prediction, y: f64) -> (f64, f64) {
     });
     (value, 2.0 * slope)
 }
+
+/// The derivative by `y` of a polynomial.
+pub fn derivative(coefficients: &Prediction) -> Prediction {
+    let mut rate = [0.0; LONG + 1];
+    for ((rate, coefficient), power) in rate.iter_mut().zip(coefficients.iter().skip(1)).zip(1_u8..) {
+        *rate = 2.0 * f64::from(power) * coefficient;
+    }
+    rate
+}

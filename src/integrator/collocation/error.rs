@@ -3,7 +3,7 @@
 use crate::integrator::collocation::coefficients::StepCoefficients;
 use crate::integrator::collocation::newton::{FreeResponse, Solution, Tangent};
 use crate::integrator::collocation::polynomial::Collocation;
-use crate::integrator::constants::{DRIVEN, FAR, KINKED, SUM_ROUNDINGS};
+use crate::integrator::constants::{FAR, KINKED, SUM_ROUNDINGS};
 use crate::math::nodal::{Nodal, greatest};
 use crate::model::Model;
 use crate::state::State;
@@ -23,13 +23,9 @@ impl Estimate {
         Self { total, lasting: total }
     }
 
-    /// As it counts: where an input changes each time (`driven`), what the damper takes back is gone at the next change.
-    pub fn counted(&self, driven: bool) -> f64 {
-        if driven {
-            self.lasting + DRIVEN * (self.total - self.lasting)
-        } else {
-            self.total
-        }
+    /// With this share of what the contact's damper takes back.
+    pub fn with(&self, share: f64) -> f64 {
+        self.lasting + share * (self.total - self.lasting)
     }
 }
 

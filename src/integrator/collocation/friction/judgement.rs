@@ -1,6 +1,6 @@
 //! The error estimate of a trial step with friction.
 
-use crate::friction::Friction;
+use crate::friction::{Friction, Phase};
 use crate::integrator::collocation::error::{Estimate, kinked};
 use crate::integrator::collocation::friction::motion::{Solved, Unforced};
 use crate::integrator::collocation::newton::Tangent;
@@ -67,24 +67,29 @@ pub(super) fn judged<const S: usize, A: Arithmetic>(
         }
     };
     // What slips has no force that answers, but when it turns depends on its motion: that counts as what bends the spring.
-    let (grip, memory) = if state.tangential.phase.sign().is_none() {
+    let sticks = state.tangential.phase == Phase::Stick;
+    let (grip, memory) = if sticks {
         (friction.ratio * tangent.stiffness, beta)
     } else {
         (friction.stiffness, model.memory)
     };
-    let fast = (tangent.stiffness * wrong_d).abs()
-        + (tangent.damping * wrong_rate).abs()
-        + grip * (wrong_v.abs() + memory * wrong_v_rate.abs())
-        + friction.inertia * free.missed_mean;
+    let of_way = (tangent.stiffness * wrong_d).abs() + grip * wrong_v.abs() + friction.inertia * free.missed_mean;
+    let (across, lag) = ((tangent.damping * wrong_rate).abs(), grip * memory * wrong_v_rate.abs());
+    // A contact that slips has no damper along the spring.
+    let (passing, kept) = if sticks { (across + lag, 0.0) } else { (across, lag) };
     let both = normal.abs() + along.abs();
     let kinked = kinked::<S>(state, step.length, both);
     let reaction = tangent.gain / (1.0 + tangent.gain);
     let missed = model.inertia * free.missed_mean;
     let slow = 3.0 * (normal * normal + along * along) / largest + kinked + missed;
+    let lasting = of_way + kept + slow * reaction;
     let impulse = collocation.impulse * (both + model.inertia * free.start_defect.abs()) + missed;
     let terms = |start, values: &Nodal<S>| collocation.next_terms::<A>(start, values);
     Judgement {
-        error: Estimate::lasting(fast + slow * reaction),
+        error: Estimate {
+            total: passing + lasting,
+            lasting,
+        },
         inner_error: Estimate::lasting(
             greatest(wrong)
                 + greatest(wrong_loads)
