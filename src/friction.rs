@@ -234,9 +234,14 @@ impl Friction {
     }
 }
 
+/// Whether a scene has friction.
+pub(crate) fn rubs(scene: &Scene) -> bool {
+    scene.effects.friction != FrictionKind::None
+}
+
 /// Friction force at the preload per contact force, if the scene has friction.
 pub(crate) fn tangential_share(scene: &Scene) -> Option<f64> {
-    (scene.effects.friction == FrictionKind::Coulomb).then_some(scene.friction.initial * scene.friction.coefficient)
+    rubs(scene).then_some(scene.friction.initial * scene.friction.coefficient)
 }
 
 /// `k_t / k_j = 4 G* / E*`.
@@ -258,7 +263,7 @@ fn stiffness_ratio(contact: &Contact) -> f64 {
 /// # Errors
 /// [`SceneError::NoFriction`] or [`SceneError::NoRotation`].
 pub(crate) fn check(scene: &Scene) -> Result<(), SceneError> {
-    if scene.effects.friction == FrictionKind::None {
+    if !rubs(scene) {
         return Ok(());
     }
     let named = |parameter: EnumerationParameter| {

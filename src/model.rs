@@ -14,13 +14,13 @@ use crate::electrical::ElectricalContact;
 use crate::error::{Remark, SceneError};
 use crate::excitation::generator::Generator;
 use crate::force_error::ForceError;
-use crate::friction::{self, Friction, Tangential};
+use crate::friction::{self, Friction, Tangential, rubs};
 use crate::math::prediction::Prediction;
 use crate::math::simd::Simd;
 use crate::preload::Preload;
 use crate::scene::Scene;
 use crate::state::{Record, State};
-use crate::variables::{AxialForceKind, ContactLawKind, FrictionKind, RealParameter};
+use crate::variables::{AxialForceKind, ContactLawKind, RealParameter};
 
 /// Everything that is constant during a simulation.
 #[derive(Clone, Debug)]
@@ -432,7 +432,7 @@ fn blow(scene: &Scene, section: &Section, hertz: &Hertz) -> Blow {
         stiffness_damping: scene.beam.stiffness_damping,
         contact_stiffness: hertz.tangent_stiffness(hertz.indentation(force)),
         contact_damping: hertz.damping,
-        rubs: scene.effects.friction != FrictionKind::None,
+        rubs: rubs(scene),
     }
 }
 

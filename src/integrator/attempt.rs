@@ -8,7 +8,7 @@ use crate::integrator::collocation::step::Trial;
 use crate::integrator::collocation::trial::trial;
 use crate::integrator::constants::{
     AFTER_BLOW, AFTER_REJECTION, AT_EVENT, DRIVEN, FORCE_ROUNDING, INHERITED, INSIDE, INSIDE_DRIVEN, LEAST_SHRINK,
-    MOST_GROWTH, MOST_SHRINK, NEAR_BLOW, NEWTON, ROUNDED, SAFETY,
+    MOST_GROWTH, MOST_SHRINK, NEAR_BLOW, NEWTON, NEXT_LENGTH, ROUNDED, SAFETY,
 };
 use crate::integrator::course::{Places, turning_points};
 use crate::integrator::grid::Target;
@@ -38,18 +38,16 @@ impl Integration<'_> {
             0.0
         };
         let after_blow = self.after_blow(target);
-        let rounding = self.state.closed || inside < 1.0;
         let all = self.passing();
-        [all, all.min(INHERITED)].map(|share| {
+        let [ratio, own] = [all, all.min(INHERITED)].map(|share| {
             let ratio = after_blow * trial.error.with(share) / self.allowed.max(trial.rounding);
             // Not `max`, which would hide NaN.
-            let ratio = if ratio < inside { inside } else { ratio };
-            if ratio > 1.0 && rounding && is_rounding::<S>(self.model, self.state, &trial.tangent, trial.error.total) {
-                ROUNDED
-            } else {
-                ratio
-            }
-        })
+            if ratio < inside { inside } else { ratio }
+        });
+        let rounding = ratio > 1.0
+            && (self.state.closed || inside < 1.0)
+            && is_rounding::<S>(self.model, self.state, &trial.tangent, trial.error.total);
+        if rounding { [ROUNDED; 2] } else { [ratio, own] }
     }
 
     /// Factor on the error that the contact's damper takes back.
@@ -195,6 +193,12 @@ impl Integration<'_> {
         }
     }
 
+    /// Rejects a step of `length` seconds that would end inside with this error (N) where that one is allowed.
+    pub(crate) fn reject_inside<const S: usize>(&mut self, length: f64, (error, allowed): (f64, f64)) -> StepOutcome {
+        let shrink = AFTER_REJECTION * (allowed / error).powf(1.0 / S as f64);
+        self.reject(length * shrink.clamp(LEAST_SHRINK, NEXT_LENGTH))
+    }
+
     /// Accepts the trial as the new state; its force passes that of an interruption at `passages`.
     ///
     /// # Errors
@@ -211,7 +215,6 @@ impl Integration<'_> {
         if !(trial.indentation.is_finite() && trial.rate.is_finite()) {
             return Err(self.error(StepErrorCause::NotFinite));
         }
-        let error = trial.error.with(self.passing());
         let expected_energy = self.expected_energy(trial, target);
         if expected_energy.is_some() {
             // The balance repeats the step in two halves.
@@ -219,10 +222,10 @@ impl Integration<'_> {
         }
         self.enter(trial, target.length);
         self.note_approach(trial, target.length);
+        self.state.force_error.add(trial.error.with(self.passing()));
         let Self { model, state, .. } = self;
         let (cache, end, _) = Room::<S>::parts(self.workspace);
         let collocation = cache.collocation();
-        state.force_error.add(error);
         if state.force_error.deviates() {
             let closed = state.closed;
             if let Some(step) = cache.known(target.length, target.recurring) {

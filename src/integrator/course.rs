@@ -48,41 +48,40 @@ impl Places {
 
 /// Where a polynomial over a step turns.
 pub(crate) fn turning_points(polynomial: &Prediction) -> Places {
+    turning_points_between(polynomial, -1.0, 0.0)
+}
+
+/// Where it turns between two places.
+pub(crate) fn turning_points_between(polynomial: &Prediction, from: f64, to: f64) -> Places {
     if is_monotone(polynomial) {
         return Places::default();
     }
     let rate = derivative(polynomial);
-    let slope_and_bend = |y: f64| value_and_slope(&rate, y);
-    let (slope, bend) = (|y: f64| slope_and_bend(y).0, |y: f64| slope_and_bend(y).1);
+    let slope = |y: f64| value_and_slope(&rate, y).0;
+    let bend = |y: f64| value_and_slope(&rate, y).1;
+    // Place, slope and bend.
+    let look = |y: f64| {
+        let (slope, bend) = value_and_slope(&rate, y);
+        (y, slope, bend)
+    };
     let mut places = Places::default();
-    let mut cross = |from: (f64, f64), to: (f64, f64)| {
-        if (from.1 > 0.0) != (to.1 > 0.0)
-            && let Some(y) = roots::between(slope, from, to, 1e-9)
+    let mut pass = |(a, from, _): (f64, f64, f64), (b, to, _): (f64, f64, f64)| {
+        if (from > 0.0) != (to > 0.0)
+            && let Some(y) = roots::between(slope, (a, from), (b, to), 1e-9)
         {
             places.push(y);
         }
     };
-    let at = |y: f64| {
-        let (slope, bend) = slope_and_bend(y);
-        ((y, slope), (y, bend))
-    };
-    let mut before = at(-1.0);
-    for k in 1..=PIECES {
-        let now = at(f64::from(k) / f64::from(PIECES) - 1.0);
-        let (from, to) = (before.0, now.0);
+    let mut before = look(from);
+    while before.0 < to {
+        let now = look((before.0 + 1.0 / f64::from(PIECES)).min(to));
+        let ((a, first, falls), (b, last, rises)) = (before, now);
         // Slopes of one sign that first fall towards zero, then rise, may have passed it twice.
-        let dips = (from.1 > 0.0) == (to.1 > 0.0) && from.1 * before.1.1 < 0.0 && to.1 * now.1.1 > 0.0;
-        let least = if dips {
-            roots::between(bend, before.1, now.1, 1e-9)
-        } else {
-            None
-        };
-        if let Some(y) = least {
-            cross(from, (y, slope(y)));
-            cross((y, slope(y)), to);
-        } else {
-            cross(from, to);
-        }
+        let dips = (first > 0.0) == (last > 0.0) && first * falls < 0.0 && last * rises > 0.0;
+        let least = dips.then(|| roots::between(bend, (a, falls), (b, rises), 1e-9));
+        let middle = least.flatten().map_or(before, look);
+        pass(before, middle);
+        pass(middle, now);
         before = now;
     }
     places

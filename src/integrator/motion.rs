@@ -9,7 +9,7 @@
 use crate::beam::mode::{MAX_MODES, Modal};
 use crate::chatter::Interruptions;
 use crate::excitation::drive::Drive;
-use crate::integrator::course::turning_points;
+use crate::integrator::course::turning_points_between;
 use crate::integrator::events::log::Event;
 use crate::integrator::exact_step;
 use crate::integrator::extremes::Extremes;
@@ -282,8 +282,8 @@ impl Motion {
         if other.is_some() {
             let (second, gap) = (self.start.second_support, model.scene.second.gap);
             let polynomial = &self.dense.indentation;
-            let turns = turning_points(polynomial);
-            for y in turns.between(from, to).chain([from, to]) {
+            let turns = turning_points_between(polynomial, from, to);
+            for y in turns.iter().chain([from, to]) {
                 let indentation = value_and_slope(polynomial, y).0;
                 let seen = if self.start.mirrored {
                     indentation

@@ -6,8 +6,8 @@ use crate::friction::Phase;
 use crate::integrator::attempt::{growth, shrinkage};
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::constants::{
-    AFTER_REJECTION, AGAIN, COARSEST, GROWING, LEAST_SHRINK, LONGER, LOOSEST, MOST_SHRINK, NEXT_LENGTH, REFUSALS,
-    SAFETY, SHARE, SMOOTH, STEP_GROWTH, WORTH,
+    AFTER_REJECTION, AGAIN, COARSEST, GROWING, LEAST_SHRINK, LONGER, LOOSEST, MOST_SHRINK, REFUSALS, SAFETY, SHARE,
+    SMOOTH, STEP_GROWTH, WORTH,
 };
 use crate::integrator::energy::conservation::conserves;
 use crate::integrator::events::Cut;
@@ -233,12 +233,10 @@ impl Integration<'_> {
                 // More nodes do better inside than a shorter step.
                 self.state.long_step = self.state.long_step.max(target.length);
             }
-            let shrink = AFTER_REJECTION * (inside.1 / inside.0).powf(1.0 / S as f64);
-            return Ok(self.reject(target.length * shrink.clamp(LEAST_SHRINK, NEXT_LENGTH)));
+            return Ok(self.reject_inside::<S>(target.length, inside));
         }
         if change.is_some() && !self.may_change_inside(&trial, &target) {
-            let shrink = AFTER_REJECTION * (self.allowed / trial.inner_error.total).powf(1.0 / S as f64);
-            return Ok(self.reject(target.length * shrink.clamp(LEAST_SHRINK, NEXT_LENGTH)));
+            return Ok(self.reject_inside::<S>(target.length, (trial.inner_error.total, self.allowed)));
         }
         let opening = opens.and_then(|part| self.opening(&trial, target.length, part * target.length));
         let event = match (opening.or(closes), &change) {
