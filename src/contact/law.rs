@@ -87,7 +87,8 @@ impl Law {
 
     /// The force (N), or zero if tensile in a contact that cannot bear tension.
     pub fn without_pull(&self, force: f64) -> f64 {
-        if self.never_opens() { force } else { force.max(0.0) }
+        // Not `max`, which would make zero of NaN: an opening that never was.
+        if force < 0.0 && !self.never_opens() { 0.0 } else { force }
     }
 
     /// Static indentation beyond first touch under `force` (N), m.

@@ -86,33 +86,33 @@ fn step_by<const EXTREMES: bool>(
         ..
     } = &motion.end;
     let switches = last_opening.max(*last_closing).max(tangential.last_change) >= 0.0;
+    // One length decides which way to go: two that differ by rounding could choose none of the ways that fit.
+    let remaining = until - motion.end.time;
+    let many = remaining >= MANY_STEPS * own_step;
     if inside {
         if let Some(extremes) = &mut extremes {
             motion.add_dense(extremes, model, since, until);
         }
-    } else if steady && (ahead || switches || size < own_step || size < MANY_STEPS * own_step && size != motion.size) {
-        let remaining = until - motion.end.time;
-        if switches || remaining < MANY_STEPS * own_step {
-            let (start, end, dense) = (motion.start, motion.end, motion.dense);
-            if let Err(error) = go_ahead(model, motion, workspace, until, extremes.as_mut()) {
-                (motion.start, motion.end, motion.dense) = (start, end, dense);
-                workspace.events.forget_after(motion.end.time);
-                return Err(error);
-            }
-        } else {
-            let (mut end, time) = (motion.end, motion.end.time);
-            let steps = Steps::Exactly {
-                time,
-                size: remaining,
-                news: News::default(),
-            };
-            if let Some(extremes) = &mut extremes {
-                motion.add_dense(extremes, model, since, time);
-            }
-            advance(model, &mut end, workspace, motion.drive, steps, extremes.as_mut())?;
-            end.time = until;
-            (motion.start, motion.end) = (end, end);
+    } else if steady && (switches || !many && (ahead || size < own_step || size != motion.size)) {
+        let (start, end, dense) = (motion.start, motion.end, motion.dense);
+        if let Err(error) = go_ahead(model, motion, workspace, until, extremes.as_mut()) {
+            (motion.start, motion.end, motion.dense) = (start, end, dense);
+            workspace.events.forget_after(motion.end.time);
+            return Err(error);
         }
+    } else if steady && ahead {
+        let (mut end, time) = (motion.end, motion.end.time);
+        let steps = Steps::Exactly {
+            time,
+            size: remaining,
+            news: News::default(),
+        };
+        if let Some(extremes) = &mut extremes {
+            motion.add_dense(extremes, model, since, time);
+        }
+        advance(model, &mut end, workspace, motion.drive, steps, extremes.as_mut())?;
+        end.time = until;
+        (motion.start, motion.end) = (end, end);
     } else {
         // Elsewhere the start of the integration step is its end.
         let mut former = None;

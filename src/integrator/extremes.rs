@@ -24,8 +24,13 @@ impl Range {
 
     /// Includes a force (N).
     pub fn add(&mut self, force: f64) {
-        self.least = self.least.min(force);
-        self.greatest = self.greatest.max(force);
+        // `min` and `max` would hide NaN.
+        if force < self.least || force.is_nan() {
+            self.least = force;
+        }
+        if force > self.greatest || force.is_nan() {
+            self.greatest = force;
+        }
     }
 }
 

@@ -143,7 +143,7 @@ impl Relay {
     }
 
     /// The inputs over a communication step: values at its start, and the rates that lead to those at its end.
-    fn inputs(&self, time: f64, size: f64) -> Inputs {
+    pub fn inputs(&self, time: f64, size: f64) -> Inputs {
         let at = |(amplitude, frequency): (f64, f64), time: f64| amplitude * (TAU * frequency * time).sin();
         let rate = |wave| {
             if self.held {

@@ -1,0 +1,204 @@
+//! What is read after a communication step agrees with itself: extremes, instants of events, force, resistance and counts,
+//! in any scene and with steps of any lengths.
+
+#![allow(clippy::unwrap_used)]
+
+use fastrand::Rng;
+use relay_contact::inputs::Inputs;
+use relay_contact::scene::Scene;
+use relay_contact::scene::file::SceneFile;
+use relay_contact::simulation::Simulation;
+use relay_contact::variables::{BooleanOutput, ContactLawKind, IntegerOutput, RealOutput};
+use testing::relays::Relay;
+use testing::scenes;
+
+/// A contact's outputs that have to agree.
+#[derive(Clone, Copy, Debug)]
+struct Outputs {
+    time: f64,
+    force: f64,
+    least: f64,
+    greatest: f64,
+    last_opening: f64,
+    last_closing: f64,
+    closed: bool,
+}
+
+fn outputs(simulation: &Simulation, second: bool) -> Outputs {
+    let names = if second {
+        [
+            RealOutput::SecondForce,
+            RealOutput::SecondMinimumForce,
+            RealOutput::SecondMaximumForce,
+            RealOutput::SecondLastOpening,
+            RealOutput::SecondLastClosing,
+        ]
+    } else {
+        [
+            RealOutput::ContactForce,
+            RealOutput::StepMinimumForce,
+            RealOutput::StepMaximumForce,
+            RealOutput::ContactLastOpening,
+            RealOutput::ContactLastClosing,
+        ]
+    };
+    let [force, least, greatest, last_opening, last_closing] = names.map(|name| simulation.real(name));
+    let closed = if second {
+        BooleanOutput::SecondClosed
+    } else {
+        BooleanOutput::ContactClosed
+    };
+    Outputs {
+        time: simulation.time(),
+        force,
+        least,
+        greatest,
+        last_opening,
+        last_closing,
+        closed: simulation.boolean(closed),
+    }
+}
+
+/// Says what disagrees after a communication step.
+fn disagreement(before: &Outputs, after: &Outputs, bonded: bool) -> Option<&'static str> {
+    let Outputs {
+        time,
+        force,
+        least,
+        greatest,
+        ..
+    } = *after;
+    let range = least..=greatest;
+    let within = |instant: f64| (before.time..=time).contains(&instant);
+    let opened = within(after.last_opening) && after.last_opening != before.last_opening;
+    let closed = within(after.last_closing) && after.last_closing != before.last_closing;
+    let was_open = opened || closed || before.force == 0.0;
+    let was_closed = opened || closed || before.force != 0.0;
+    [
+        (
+            !range.contains(&force),
+            "the force at the end is not between the extremes",
+        ),
+        (!range.contains(&before.force), "that at the start is not"),
+        (!bonded && least < 0.0, "a tensile force"),
+        (least == 0.0 && !was_open, "no force, and no opening"),
+        (was_open && least != 0.0, "open, with a force"),
+        (greatest > 0.0 && !was_closed, "a force, and no closing"),
+        (after.closed != (force > 0.0), "closed is not a force"),
+        (after.last_opening < before.last_opening, "an opening taken back"),
+        (after.last_closing < before.last_closing, "a closing taken back"),
+        (
+            after.last_opening.max(after.last_closing) > time,
+            "an event in the future",
+        ),
+    ]
+    .into_iter()
+    .find_map(|(wrong, what)| wrong.then_some(what))
+}
+
+/// Steps through a scene, with lengths of all kinds, for `duration` seconds.
+fn ride(case: &str, scene: &Scene, rng: &mut Rng, duration: f64, inputs: impl Fn(f64, f64) -> Inputs) {
+    let Ok(mut simulation) = Simulation::new(scene, &inputs(0.0, 1e-6), 0.0) else {
+        return;
+    };
+    let bonded = scene.effects.contact_law == ContactLawKind::Bonded;
+    let contacts = if scene.effects.second_contact { 2 } else { 1 };
+    let mut before = [false, true].map(|second| outputs(&simulation, second));
+    let count = |simulation: &Simulation| {
+        let [longest, total] = [
+            RealOutput::ChatterLongestInterruption,
+            RealOutput::ChatterTotalInterruption,
+        ]
+        .map(|name| simulation.real(name));
+        (
+            f64::from(simulation.integer(IntegerOutput::ChatterCount)),
+            longest,
+            total,
+        )
+    };
+    let mut counted = count(&simulation);
+    let mut size = 0.0;
+    while simulation.time() < duration {
+        let time = simulation.time();
+        let own_step = simulation.state().short_step.max(simulation.state().long_step);
+        let period = 1.0 / scene.excitation.frequency;
+        size = match rng.u8(..6) {
+            0 if size > 0.0 => size,
+            1 => period,
+            2 => 5.0 * period,
+            // To the rounding, as many as from which the integrator ends a step with the communication step.
+            3 => f64::from_bits((4.0 * own_step).to_bits().saturating_add_signed(rng.i64(-4..4))),
+            _ => period * 10_f64.powf(-3.0 * rng.f64()),
+        }
+        .clamp(1e-9, 0.3 * duration);
+        if simulation.step(&inputs(time, size), time, size).is_err() {
+            return;
+        }
+        let after = [false, true].map(|second| outputs(&simulation, second));
+        for (before, after) in before.iter().zip(&after).take(contacts) {
+            let what = disagreement(before, after, bonded);
+            assert!(
+                what.is_none(),
+                "{case}, step of {size:e} s: {what:?}: {before:?} {after:?}"
+            );
+        }
+        let now = count(&simulation);
+        let (times, longest, total) = now;
+        let in_all = longest < scene.chatter.minimum_duration || longest <= total * (1.0 + 1e-12);
+        let interrupted = simulation.real(RealOutput::StepMaximumResistance) >= scene.chatter.resistance_threshold;
+        assert!(
+            times >= counted.0
+                && longest >= counted.1
+                && total >= counted.2
+                && in_all
+                && (total == counted.2 || interrupted),
+            "{case}, step of {size:e} s: interruptions {counted:?} {now:?}"
+        );
+        (before, counted) = (after, now);
+    }
+}
+
+#[test]
+fn outputs_of_random_relays_agree_with_each_other() {
+    let kinds = [Relay::draw, Relay::changeover, Relay::friction, Relay::held];
+    for (kind, draw) in kinds.into_iter().enumerate() {
+        for number in 50_000..50_150 {
+            let relay = draw(number);
+            let (size, count) = relay.steps;
+            let case = format!("kind {kind}, relay {number}");
+            let duration = (size * f64::from(count)).min(20.0 / relay.scene.excitation.frequency);
+            let rng = &mut Rng::with_seed(number);
+            ride(&case, &relay.scene, rng, duration, |time, size| {
+                relay.inputs(time, size)
+            });
+        }
+    }
+}
+
+#[test]
+fn outputs_of_the_projects_scenes_agree_with_each_other() {
+    for path in scenes::files() {
+        let file = SceneFile::read(&path).unwrap();
+        let inputs = |time, size| file.inputs_over(time, size).unwrap();
+        let mut scene = file.scene.clone();
+        scene.effects.extremes = true;
+        for seed in 0..3 {
+            let case = path.display().to_string();
+            ride(&case, &scene, &mut Rng::with_seed(seed), file.stop.min(0.02), inputs);
+        }
+    }
+}
+
+/// Found in steps of a period after one of five: the integrator's own steps are a quarter of a period there.
+#[test]
+fn closed_contacts_at_any_frequency_stay_closed_in_what_is_read() {
+    let rng = &mut Rng::with_seed(1);
+    for number in 0..300 {
+        let frequency = 1800.0 + 2200.0 * rng.f64();
+        let scene = scenes::shaken(294.1995, frequency);
+        let case = format!("{number}: {frequency} Hz");
+        ride(&case, &scene, &mut Rng::with_seed(number), 30.0 / frequency, |_, _| {
+            Inputs::default()
+        });
+    }
+}
