@@ -183,7 +183,7 @@ pub enum SceneError {
     /// An axial force on a spring that is given by its modes.
     #[error(
         "effects.axialForce = {choice}: not allowed with beam.file = {file}, which gives modes: an axial force needs the \
-         geometry of the spring; allowed are None and FromPreload, both without axial force"
+         geometry of the spring; allowed is None"
     )]
     NeedsGeometry {
         /// The choice.
@@ -248,6 +248,22 @@ pub enum Remark {
         unit: &'static str,
         /// The spring file.
         file: String,
+    },
+    /// A spring bent so far that a linear beam misses a part of its force.
+    #[error(
+        "contact.overtravel = {} m: the spring is bent by {bent:.2} of its length of {} m; an elastica under a load along y is \
+         there {stiffer:.1} % stiffer than this linear beam (first order)",
+        number(*overtravel), number(*length)
+    )]
+    BentFar {
+        /// `contact.overtravel`, m.
+        overtravel: f64,
+        /// Length of the spring, m.
+        length: f64,
+        /// Deflection of the tip at the preload over the length, 1.
+        bent: f64,
+        /// What the linear beam misses of the force, %.
+        stiffer: f64,
     },
     /// Modes that end below what a blow excites.
     #[error(

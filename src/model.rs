@@ -19,8 +19,12 @@ use crate::math::prediction::Prediction;
 use crate::math::simd::Simd;
 use crate::preload::Preload;
 use crate::scene::Scene;
+use crate::scene::spring::SpringFile;
 use crate::state::{Record, State};
 use crate::variables::{AxialForceKind, ContactLawKind, RealParameter};
+
+/// Deflection at the preload, in lengths of the spring, above which the user is told what a linear beam misses, 1.
+const BENT_FAR: f64 = 0.1;
 
 /// Everything that is constant during a simulation.
 #[derive(Clone, Debug)]
@@ -68,6 +72,8 @@ pub struct Model {
     pub(crate) frequency: f64,
     /// Frequency of the highest mode of a spring file, and that up to which a blow excites the spring, if higher, Hz.
     missed: Option<(f64, f64)>,
+    /// Length of the spring, if it is known, m.
+    spring_length: Option<f64>,
     /// Electrical model of the contact.
     pub(crate) electrical: Option<ElectricalContact>,
     /// Criterion for interruptions, if they are counted.
@@ -181,6 +187,7 @@ impl Model {
             force_scale: preload.force.max(bending_force(scene, &section)),
             frequency,
             missed: spring.missed(&blow),
+            spring_length: spring.length(),
             electrical,
             criterion,
             simd: Simd::detect(),
@@ -216,9 +223,27 @@ impl Model {
 
     /// What a user should know of the scene.
     pub fn remarks(&self) -> Vec<Remark> {
-        let Some(spring) = &self.scene.spring else {
-            return Vec::new();
-        };
+        let mut remarks: Vec<_> = self.bent_far().into_iter().collect();
+        if let Some(spring) = &self.scene.spring {
+            remarks.extend(self.remarks_on_file(spring));
+        }
+        remarks
+    }
+
+    /// A spring bent by more than a tenth of its length. Under a load `P` that keeps its direction the elastica has
+    /// `P L^2 / EI = 3 y + (108/35) y^3`, `y = w(L) / L`, to third order (from `EI theta' = P (x(L) - x)`, expanded in `P`).
+    fn bent_far(&self) -> Option<Remark> {
+        let length = self.spring_length?;
+        let bent = (self.preload.deflection / length).abs();
+        (bent > BENT_FAR).then(|| Remark::BentFar {
+            overtravel: self.scene.contact.overtravel,
+            length,
+            bent,
+            stiffer: 100.0 * 36.0 / 35.0 * bent * bent,
+        })
+    }
+
+    fn remarks_on_file(&self, spring: &SpringFile) -> impl Iterator<Item = Remark> {
         let sizes = [
             RealParameter::BeamLength,
             RealParameter::BeamWidth,
@@ -238,7 +263,7 @@ impl Model {
             highest,
             reached,
         });
-        not_used.chain(few).collect()
+        not_used.chain(few)
     }
 
     /// The scene.

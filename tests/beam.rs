@@ -2,7 +2,9 @@
 
 #![allow(clippy::unwrap_used)]
 
-use relay_contact::reference::{self, Section, Space, Statics};
+use relay_contact::error::Remark;
+use relay_contact::reference::{self, Model, Section, Space, Statics};
+use relay_contact::scene::Scene;
 
 /// E I = rho A = L = 1, so that omega = (beta L)^2.
 const UNIT: Section = Section {
@@ -93,5 +95,62 @@ fn static_compliance_follows_the_beam_column() {
             .map(|mode| mode.tip * mode.tip / mode.omega_squared)
             .sum();
         assert!((compliance - 1.0 / 3.0).abs() < 1e-14, "{count}: {compliance}");
+    }
+}
+
+/// Deflection over length of an elastica, clamped at one end, under a load `P L^2 / EI` of constant direction at the other:
+/// `theta'' = -load cos theta`, `theta(0) = 0`, `theta'(1) = 0`, by shooting for the slope at the clamp.
+fn elastica(load: f64) -> f64 {
+    let shoot = |bend: f64| {
+        let count = 400;
+        let h = 1.0 / f64::from(count);
+        let rates = |[theta, curvature, _]: [f64; 3]| [curvature, -load * theta.cos(), theta.sin()];
+        let mut now = [0.0, bend, 0.0];
+        for _ in 0..count {
+            let ahead = |rate: [f64; 3], part: f64| std::array::from_fn(|k| now[k] + part * h * rate[k]);
+            let first = rates(now);
+            let second = rates(ahead(first, 0.5));
+            let third = rates(ahead(second, 0.5));
+            let fourth = rates(ahead(third, 1.0));
+            now = std::array::from_fn(|k| now[k] + h / 6.0 * (first[k] + 2.0 * (second[k] + third[k]) + fourth[k]));
+        }
+        now
+    };
+    let (mut low, mut high) = (0.0, 2.0 * load);
+    for _ in 0..60 {
+        let middle = f64::midpoint(low, high);
+        if shoot(middle)[1] > 0.0 {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    shoot(low)[2]
+}
+
+#[test]
+fn what_a_linear_beam_misses_of_a_spring_bent_far_is_told() {
+    for load in [0.2, 0.31, 0.4, 0.6, 0.9] {
+        let bent = elastica(load);
+        let missed = 100.0 * (load / (3.0 * bent) - 1.0);
+        let mut scene = Scene::default();
+        // What the contact gives way is a part of 1e-3 of it at most.
+        scene.contact.overtravel = bent * scene.beam.length;
+        let model = Model::new(&scene, 0.0).unwrap();
+        match model.remarks().as_slice() {
+            [] => assert!(bent < 0.1, "{bent}: nothing told"),
+            // The next order has (deflection over length)^4, and a factor of 1.2 to 1.4 up to 0.35 (by a solution with collocation).
+            [
+                Remark::BentFar {
+                    stiffer, bent: told, ..
+                },
+            ] => assert!(
+                bent > 0.0999
+                    && (told / bent - 1.0).abs() < 2e-3
+                    && (stiffer - missed).abs() < 100.0 * 1.4 * bent.powi(4) + 0.02,
+                "{bent}: {stiffer} told, {missed} is right"
+            ),
+            others => panic!("{others:?}"),
+        }
     }
 }

@@ -25,7 +25,7 @@ use Phase::{Error, InitializationMode, Instantiated, StepComplete, Terminated};
 pub enum Verdict {
     /// `fmi2OK`.
     Accept,
-    /// `fmi2Warning`: done except for what the log reports.
+    /// `fmi2OK` with a warning in the log: done except for what that says.
     Remark,
     /// `fmi2Discard`, nothing changed.
     Discard,
@@ -33,29 +33,32 @@ pub enum Verdict {
     Fail,
     /// `fmi2Error`, nothing changed.
     Refuse,
-    /// `Accept` or `Fail`, depending on the physics.
-    AcceptOrFail,
     /// `Accept` or `Remark`, depending on the physics: on how far errors have grown.
     AcceptOrRemark,
     /// `Accept` or `Refuse`, depending on the physics.
     AcceptOrRefuse,
-    /// `Accept`, `Remark` or `Fail`, depending on the physics and on what the component takes for rounding or remarks on.
+    /// `Accept`, `Remark` or `Fail`, depending on the physics and on what the component takes for rounding or warns of.
     Open,
 }
 
-use Verdict::{Accept, AcceptOrFail, AcceptOrRefuse, AcceptOrRemark, Discard, Fail, Open, Refuse, Remark};
+use Verdict::{Accept, AcceptOrRefuse, AcceptOrRemark, Discard, Fail, Open, Refuse, Remark};
 
 impl Verdict {
     /// The statuses.
     pub fn statuses(self) -> &'static [fmi2Status] {
         match self {
-            Accept => &[fmi2OK],
-            Remark => &[fmi2Warning],
+            Accept | Remark | AcceptOrRemark => &[fmi2OK],
             Discard => &[fmi2Discard],
             Fail | Refuse => &[fmi2Error],
-            AcceptOrFail | AcceptOrRefuse => &[fmi2OK, fmi2Error],
-            AcceptOrRemark => &[fmi2OK, fmi2Warning],
-            Open => &[fmi2OK, fmi2Warning, fmi2Error],
+            Open | AcceptOrRefuse => &[fmi2OK, fmi2Error],
+        }
+    }
+
+    /// Whether a call that returns `fmi2OK` warns: `None` if it may.
+    pub fn warns(self) -> Option<bool> {
+        match self {
+            AcceptOrRemark | Open => None,
+            _ => Some(self == Remark),
         }
     }
 }
@@ -107,12 +110,11 @@ impl LifeCycle {
                     Accept
                 }
             }
+            // A dimension beside a spring file is worth a warning, and a spring bent far.
             Call::ExitInitializationMode => match (self.now.fits, self.has_spring()) {
-                (Some(true), false) => Accept,
+                (Some(true), false) => AcceptOrRemark,
                 (Some(false), _) => Fail,
-                (None, false) => AcceptOrFail,
-                // A dimension beside a spring file is a remark.
-                (_, true) => Open,
+                _ => Open,
             },
             Call::EnterInitializationMode | Call::Terminate | Call::Reset | Call::Renew => Accept,
             Call::Get {
@@ -249,7 +251,8 @@ impl LifeCycle {
     }
 
     /// Updates the expected state after the call returned `status`, which the verdict allows.
-    pub fn follow(&mut self, call: &Call, status: fmi2Status) {
+    /// `warned`: with a warning in the log.
+    pub fn follow(&mut self, call: &Call, status: fmi2Status, warned: bool) {
         let verdict = self.verdict(call);
         let now = &mut self.now;
         if let (Call::Get { kind, references, .. }, InitializationMode) = (call, now.phase) {
@@ -271,7 +274,7 @@ impl LifeCycle {
             return;
         }
         match call {
-            Call::SetDebugLogging { on, categories, .. } if status == fmi2OK => {
+            Call::SetDebugLogging { on, categories, .. } if verdict != Remark => {
                 let named = |name: &str| categories.iter().flatten().any(|category| category == name);
                 let (errors, warnings) = (named("logStatusError"), named("logStatusWarning"));
                 (self.errors, self.warnings) = match (on, categories.is_empty()) {
@@ -315,7 +318,7 @@ impl LifeCycle {
                 }
             }
             Call::DoStep { point, size } => {
-                self.warned |= status == fmi2Warning;
+                self.warned |= warned;
                 let point = point.instant(now.time, *size);
                 let (end, off) = (point + size, (point - now.time).abs());
                 let rounding = f64::EPSILON * point.abs().max(end.abs());

@@ -112,6 +112,15 @@ impl Spring {
         }
     }
 
+    /// Length, of a spring of segments that of the uniform one with the same deflection and slope under a load at the
+    /// contact, m; modes do not tell it.
+    pub fn length(&self) -> Option<f64> {
+        match self.form {
+            Form::Uniform | Form::Segments(_) => Some(self.section.length),
+            Form::Modes(_) => None,
+        }
+    }
+
     /// Number of modes for a tolerance; all there is room for where they are given.
     pub fn count(&self, blow: &Blow, tolerance: f64) -> usize {
         match &self.form {
@@ -195,7 +204,7 @@ impl Spring {
 /// A spring given by modes has no geometry on which an axial force could act.
 fn no_axial_force(scene: &Scene, file: &SpringFile) -> Result<(), SceneError> {
     let kind = scene.effects.axial_force;
-    if matches!(kind, AxialForceKind::None | AxialForceKind::FromPreload) {
+    if kind == AxialForceKind::None {
         return Ok(());
     }
     let choice = choices(EnumerationParameter::EffectsAxialForce)

@@ -110,7 +110,7 @@ pub(super) enum Failure {
 }
 
 impl Failure {
-    /// The status the call returns.
+    /// The status with which it is logged; with `fmi2Warning` the call has done its work and returns `fmi2OK`.
     pub(super) fn status(&self) -> fmi2Status {
         match self {
             Self::Tolerance(_)

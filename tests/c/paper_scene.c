@@ -90,10 +90,10 @@ static fmi2Real point(int n) {
 }
 
 int main(int count, char **arguments) {
-    static const fmi2ValueReference excitation = RELAY_CONTACT_EFFECTS_EXCITATION,
+    static const fmi2ValueReference choices[] = {RELAY_CONTACT_EFFECTS_EXCITATION, RELAY_CONTACT_EFFECTS_AXIAL_FORCE},
                                     sine[] = {RELAY_CONTACT_EXCITATION_AMPLITUDE, RELAY_CONTACT_EXCITATION_FREQUENCY},
                                     force = RELAY_CONTACT_CONTACT_FORCE;
-    const fmi2Integer kind = RELAY_CONTACT_EXCITATION_KIND_SINE;
+    const fmi2Integer kinds[] = {RELAY_CONTACT_EXCITATION_KIND_SINE, RELAY_CONTACT_AXIAL_FORCE_KIND_FROM_PRELOAD};
     const fmi2Real values[] = {AMPLITUDE, FREQUENCY};
     const fmi2CallbackFunctions callbacks = {logger, NULL, NULL, NULL, NULL};
     Library library;
@@ -121,7 +121,7 @@ int main(int count, char **arguments) {
         end("fmi2Instantiate", "no instance");
     }
     CALL(fmi2SetupExperiment, c, fmi2False, 0.0, 0.0, fmi2True, STOP);
-    CALL(fmi2SetInteger, c, &excitation, 1, &kind);
+    CALL(fmi2SetInteger, c, choices, 2, kinds);
     CALL(fmi2SetReal, c, sine, 2, values);
     CALL(fmi2EnterInitializationMode, c);
     CALL(fmi2ExitInitializationMode, c);

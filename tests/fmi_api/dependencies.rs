@@ -16,7 +16,11 @@ use roxmltree::Document;
 type Values = &'static [(&'static str, f64)];
 
 /// In all scenes.
-const ALWAYS: Values = &[("effects.heating", 1.0), ("contact.current", 0.1)];
+const ALWAYS: Values = &[
+    ("effects.heating", 1.0),
+    ("contact.current", 0.1),
+    ("effects.axialForce", 1.0),
+];
 
 /// Scenes in which every known that matters at all matters somewhere: the start values with these changes. A threshold of
 /// [`CRITICAL`] is the resistance at rest, an overtravel of it closes the contact without force.

@@ -57,7 +57,7 @@ fn errors_and_warnings_are_logged_unless_their_category_is_switched_off() {
 fn an_unknown_category_is_a_warning_that_changes_nothing() {
     let fmu = Instance::new();
     let unknown = c"log%s#r103#All";
-    assert_eq!(choose(&fmu, fmi2False, &[c"logStatusError", unknown]), fmi2Warning);
+    assert_eq!(choose(&fmu, fmi2False, &[c"logStatusError", unknown]), fmi2OK);
     // As a printf format this reads "log%s##r103##All", and there "##" stands for "#", "#r103#" for a variable.
     fmu.expect_message(
         fmi2Warning,
@@ -154,7 +154,7 @@ fn warnings(damping: f64, modes: i32) -> Vec<String> {
     assert_eq!(fmu.set_integer("solver.modes", modes), fmi2OK);
     fmu.initialize();
     for k in 0..20 {
-        assert!(fmu.step(f64::from(k) * 1e-3, 1e-3) <= fmi2Warning);
+        assert_eq!(fmu.step(f64::from(k) * 1e-3, 1e-3), fmi2OK);
     }
     // Thirty times the tolerance.
     let announced = fmu.real("solver.forceError") > 3e-5;

@@ -123,10 +123,9 @@ fn a_dimension_beside_a_spring_is_a_warning_and_the_simulation_goes_on() {
     assert_eq!(fmu.set_string("beam.file", FILE), fmi2OK);
     assert_eq!(fmu.set_real("beam.length", 0.02), fmi2OK);
     assert_eq!(fmu.enter_initialization_mode(), fmi2OK);
-    fmu.answers(
-        fmu.exit_initialization_mode(),
-        fmi2Warning,
-        &["fmi2ExitInitializationMode: beam.length = 0.02 m: not used, the spring is that of beam.file = springs/"],
-    );
+    assert_eq!(fmu.exit_initialization_mode(), fmi2OK);
+    let parts =
+        ["fmi2ExitInitializationMode: beam.length = 0.02 m: not used, the spring is that of beam.file = springs/"];
+    fmu.expect_message(fmi2Warning, &parts);
     assert_eq!(fmu.step(0.0, 1e-4), fmi2OK);
 }

@@ -150,7 +150,7 @@ fn modes_have_no_axial_force() {
     let modes = written(&Model::new(&scene, 0.0).unwrap());
     for (kind, refused) in [
         (AxialForceKind::None, false),
-        (AxialForceKind::FromPreload, false),
+        (AxialForceKind::FromPreload, true),
         (AxialForceKind::FromDeflection, true),
         (AxialForceKind::Prescribed, true),
     ] {

@@ -35,6 +35,7 @@ pub fn specimen(ratio: f64) -> Scene {
 /// The specimen with damping times of beam and contact, s.
 pub fn with_damping(damping: f64) -> Scene {
     let mut scene = Scene::default();
+    scene.effects.axial_force = AxialForceKind::FromPreload;
     scene.beam.stiffness_damping = damping;
     scene.contact.damping = damping;
     scene

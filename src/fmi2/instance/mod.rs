@@ -13,7 +13,7 @@ use super::logger::Logger;
 use super::report::{self, Effort};
 use super::saved::SavedStates;
 use super::states::{Function, State};
-use super::types::fmi2Status;
+use super::types::{fmi2OK, fmi2Status, fmi2Warning};
 use crate::error::{SceneError, number};
 use crate::inputs::Inputs;
 use crate::scene::Scene;
@@ -113,7 +113,8 @@ impl Instance {
         }
         let status = failure.status();
         self.logger.log_status(status, &format!("{}: {failure}", function.name));
-        status
+        // Importers end a run at fmi2Warning, so what was done is fmi2OK: the log and `solver.forceError` tell the rest.
+        if status == fmi2Warning { fmi2OK } else { status }
     }
 
     /// Drops a simulation that may be inconsistent.

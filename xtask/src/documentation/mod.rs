@@ -156,7 +156,7 @@ mod tests {
             assert!(page.contains(&format!("<h2>{title}</h2>")), "{title}");
         }
         assert!(page.contains("<td>m</td><td>parameter</td><td>0.0155</td><td>1e-3</td><td>0.2</td><td>Free length"));
-        assert!(page.contains("<td>AxialForceKind</td><td></td><td>parameter</td><td>FromPreload</td>"));
+        assert!(page.contains("<td>AxialForceKind</td><td></td><td>parameter</td><td>None</td>"));
         Ok(())
     }
 }
