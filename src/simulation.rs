@@ -343,9 +343,13 @@ impl Simulation {
 
     /// A Boolean output.
     pub fn boolean(&self, output: BooleanOutput) -> bool {
-        match output {
-            BooleanOutput::ContactClosed => self.motion.tip(&self.model).forces[0] > 0.0,
-            BooleanOutput::SecondClosed => self.motion.tip(&self.model).forces[1] > 0.0,
-        }
+        let second = match output {
+            BooleanOutput::ContactClosed => false,
+            BooleanOutput::SecondClosed => true,
+        };
+        let (state, forces) = (self.motion.state(), self.motion.tip(&self.model).forces);
+        // At the instant of closing there is no force yet.
+        let closed = state.closed && state.mirrored == second && !self.model.law.never_opens();
+        closed || forces[usize::from(second)] > 0.0
     }
 }

@@ -84,7 +84,10 @@ fn disagreement(before: &Outputs, after: &Outputs, bonded: bool) -> Option<&'sta
         (least == 0.0 && !was_open, "no force, and no opening"),
         (was_open && least != 0.0, "open, with a force"),
         (greatest > 0.0 && !was_closed, "a force, and no closing"),
-        (after.closed != (force > 0.0), "closed is not a force"),
+        (
+            after.closed != (force > 0.0 || !bonded && after.last_closing == time),
+            "closed is not a force",
+        ),
         (after.last_opening < before.last_opening, "an opening taken back"),
         (after.last_closing < before.last_closing, "a closing taken back"),
         (

@@ -133,16 +133,28 @@ impl LifeCycle {
             },
             Call::DirectionalDerivative => Refuse,
             Call::SetInputDerivatives { values, fault } => {
-                let judge = |&(reference, order, value): &(u32, i32, f64)| match continuous(reference, Role::Input) {
+                let judge = |&(reference, order, value): &(u32, i32, f64)| match continuous_input(reference) {
                     true if order == 1 && value.is_finite() => Accept,
                     true if order == 1 => Discard,
+                    true if order > 1 => Accept,
                     _ => Fail,
                 };
-                three_arrays(*fault, values.len()).unwrap_or_else(|| first_wrong(values.iter().map(judge)))
+                let verdict =
+                    three_arrays(*fault, values.len()).unwrap_or_else(|| first_wrong(values.iter().map(judge)));
+                let higher = values.iter().any(|&(_, order, _)| order > 1);
+                // The first time.
+                if verdict == Accept && higher {
+                    AcceptOrRemark
+                } else {
+                    verdict
+                }
             }
             Call::GetOutputDerivatives { values, fault } => {
                 let judge = |&(reference, order): &(u32, i32)| {
-                    if continuous(reference, Role::Output) && order == 1 && self.now.computed {
+                    if of_kind(Kind::Real, reference).is_some_and(|variable| variable.role == Role::Output)
+                        && order == 1
+                        && self.now.computed
+                    {
                         Accept
                     } else {
                         Fail
@@ -293,7 +305,10 @@ impl LifeCycle {
             }
             Call::ExitInitializationMode => (now.phase, now.fits, now.computed) = (StepComplete, Some(true), true),
             Call::Terminate => now.phase = Terminated,
-            Call::Reset => *now = Moment::default(),
+            Call::Reset => {
+                *now = Moment::default();
+                (self.errors, self.warnings, self.warned) = (true, true, false);
+            }
             Call::Renew => {
                 *self = Self {
                     written: std::mem::take(&mut self.written),
@@ -311,7 +326,7 @@ impl LifeCycle {
                 }
             }
             Call::SetInputDerivatives { values, .. } => {
-                for &(reference, _, rate) in values {
+                for &(reference, _, rate) in values.iter().filter(|(_, order, _)| *order == 1) {
                     if let Some(position) = DESCRIPTION.position(reference) {
                         now.rates[position] = rate;
                     }
@@ -358,8 +373,8 @@ pub fn of_kind(kind: Kind, reference: u32) -> Option<&'static Variable> {
     DESCRIPTION.variable(reference).filter(|variable| variable.kind == kind)
 }
 
-fn continuous(reference: u32, role: Role) -> bool {
-    of_kind(Kind::Real, reference).is_some_and(|variable| variable.role == role && variable.continuous)
+fn continuous_input(reference: u32) -> bool {
+    of_kind(Kind::Real, reference).is_some_and(|variable| variable.role == Role::Input && variable.continuous)
 }
 
 /// The value as stored by a variable of the type.

@@ -3,7 +3,9 @@
 use campaign::api::Api;
 use campaign::call::{Call, Fault};
 use campaign::judge::Judge;
+use relay_contact::fmi2::fmi2OK;
 use testing::allocator::Counting;
+use testing::instance::Instance;
 
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
@@ -34,8 +36,25 @@ fn live(api: &Api) {
     Judge::new(api).run(&life).unwrap();
 }
 
+/// Also of what instances share.
+fn the_last_instance_leaves_nothing() {
+    let before = Counting::held();
+    for _ in 0..3 {
+        let instances = [Instance::new(), Instance::new()];
+        for fmu in &instances {
+            assert_eq!(fmu.set_integer("effects.excitation", 2), fmi2OK);
+            fmu.initialize();
+            assert_eq!(fmu.step(0.0, 1e-3), fmi2OK);
+        }
+        assert!(Counting::held() > before, "nothing is counted");
+        drop(instances);
+        assert_eq!(Counting::held(), before, "allocations, after as many before");
+    }
+}
+
 #[test]
 fn an_instance_leaves_nothing_behind_whether_its_saved_states_were_freed_or_not() {
+    the_last_instance_leaves_nothing();
     let api = Api::linked();
     // The first time allocates what stays, such as the description.
     live(&api);

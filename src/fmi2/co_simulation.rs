@@ -9,12 +9,13 @@ use super::failure::Failure;
 use super::instance::Instance;
 use super::states::{self, Function};
 use super::types::{
-    fmi2Boolean, fmi2Component, fmi2False, fmi2Integer, fmi2LastSuccessfulTime, fmi2Real, fmi2Status, fmi2StatusKind,
-    fmi2String, fmi2Terminated, fmi2ValueReference,
+    fmi2Boolean, fmi2Component, fmi2False, fmi2Integer, fmi2LastSuccessfulTime, fmi2OK, fmi2Real, fmi2Status,
+    fmi2StatusKind, fmi2String, fmi2Terminated, fmi2ValueReference,
 };
 
 /// Sets first derivatives of continuous inputs, all or none; they hold for the next communication step only, over
-/// which the inputs change linearly. A value that is not finite gives `fmi2Discard`, and none is set.
+/// which the inputs change linearly. A value that is not finite gives `fmi2Discard`, and none is set. Derivatives of higher
+/// order have no effect, which the first time is a warning in the log: FMI 2.0 has no attribute that would tell before.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
     c: fmi2Component,
@@ -34,8 +35,8 @@ pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
     unsafe { call(c, states::SET_REAL_INPUT_DERIVATIVES, body) }
 }
 
-/// Reads first derivatives of continuous outputs at the communication point, as limits from the left; 0 before the
-/// first step.
+/// Reads first derivatives of outputs at the communication point, as limits from the left; 0 before the first step, and
+/// of discrete outputs.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
     c: fmi2Component,
@@ -70,9 +71,20 @@ pub unsafe extern "C" fn fmi2DoStep(
     communicationStepSize: fmi2Real,
     noSetFMUStatePriorToCurrentPoint: fmi2Boolean,
 ) -> fmi2Status {
-    let body = |instance: &mut Instance| instance.step(currentCommunicationPoint, communicationStepSize);
+    let mut finished = (None, std::ptr::null_mut());
+    let body = |instance: &mut Instance| {
+        finished = instance.step_finished();
+        instance.step(currentCommunicationPoint, communicationStepSize)
+    };
     // SAFETY: the contract of the module.
-    unsafe { call(c, states::DO_STEP, body) }
+    let status = unsafe { call(c, states::DO_STEP, body) };
+    if let (Some(callback), environment) = finished
+        && status == fmi2OK
+    {
+        // SAFETY: the importer promises a callback of this type. No reference into the instance is left, so it may use it.
+        unsafe { callback(environment, status) };
+    }
+    status
 }
 
 /// Always an error: a step is complete when `fmi2DoStep` returns.

@@ -58,8 +58,8 @@ pub unsafe extern "C" fn fmi2SetDebugLogging(
 }
 
 /// Creates an instance. Returns null if the name is missing, the type is not co-simulation, or the GUID belongs to
-/// another description. The callbacks are copied; only the logger is used, which may be null and must not call back
-/// into the instance. The resource location is the folder of relative spring files, and may be null.
+/// another description. The callbacks are copied; logger and `stepFinished` are used, which may be null; the logger must not
+/// call back into the instance. The resource location is the folder of relative spring files, and may be null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2Instantiate(
     instanceName: fmi2String,
@@ -84,7 +84,11 @@ pub unsafe extern "C" fn fmi2Instantiate(
         catch_unwind(AssertUnwindSafe(|| {
             let logger = Logger::new(functions, name.unwrap_or(c"RelayContact"), loggingOn != fmi2False);
             match refusal(name, fmuType, guid) {
-                None => match Instance::new(logger, resources) {
+                None => match Instance::new(
+                    logger,
+                    (functions.stepFinished, functions.componentEnvironment),
+                    resources,
+                ) {
                     Ok(instance) => hand_out(instance),
                     Err(error) => {
                         let logger = Logger::new(functions, name.unwrap_or(c"RelayContact"), false);

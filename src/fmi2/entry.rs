@@ -187,7 +187,8 @@ mod tests {
             stepFinished: None,
             componentEnvironment: ptr::null_mut(),
         };
-        let component = hand_out(Instance::new(Logger::new(&silent, c"relay", false), None).unwrap());
+        let component =
+            hand_out(Instance::new(Logger::new(&silent, c"relay", false), (None, ptr::null_mut()), None).unwrap());
         let state = |instance: &mut Instance, expected| {
             assert_eq!(instance.state(), expected);
             Ok(())

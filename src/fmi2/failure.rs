@@ -86,8 +86,11 @@ pub(super) enum Failure {
     /// A derivative of an unsupported order.
     #[error("{name}: no derivative of order {order}, allowed is 1")]
     Order { name: &'static str, order: i32 },
+    /// A derivative of an input that has no effect.
+    #[error("{name}: its derivative of order {order} has no effect, nor has any above order 1. Not reported again")]
+    Ignored { name: &'static str, order: i32 },
     /// A variable whose derivative cannot be set or read.
-    #[error("{name}: not allowed, only continuous {role} have derivatives")]
+    #[error("{name}: not allowed, only {role} have derivatives")]
     NoDerivative { name: &'static str, role: &'static str },
     /// A status that this component does not have.
     #[error("status kind {0}: this component has no such status of this type")]
@@ -116,6 +119,7 @@ impl Failure {
             Self::Tolerance(_)
             | Self::Offset { .. }
             | Self::Inaccurate { .. }
+            | Self::Ignored { .. }
             | Self::Remarks(_)
             | Self::Category(_) => fmi2Warning,
             Self::Value(_) | Self::StatusKind(_) => fmi2Discard,

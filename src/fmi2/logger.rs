@@ -56,16 +56,25 @@ pub(super) struct Logger {
     instance_name: CString,
     /// In the order of [`Category::ALL`].
     shown: [bool; 4],
+    /// The same after instantiation.
+    initially: [bool; 4],
 }
 
 impl Logger {
     pub(super) fn new(functions: &fmi2CallbackFunctions, instance_name: &CStr, logging_on: bool) -> Self {
+        let initially = [true, true, logging_on, false];
         Self {
             callback: functions.logger,
             environment: functions.componentEnvironment,
             instance_name: instance_name.to_owned(),
-            shown: [true, true, logging_on, false],
+            shown: initially,
+            initially,
         }
+    }
+
+    /// Shows again what it showed after instantiation.
+    pub(super) fn reset(&mut self) {
+        self.shown = self.initially;
     }
 
     /// Selects what is shown. An unknown category changes nothing.

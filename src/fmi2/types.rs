@@ -79,7 +79,7 @@ pub type fmi2CallbackLogger = Option<
 pub type fmi2CallbackAllocateMemory = Option<unsafe extern "C" fn(nobj: size_t, size: size_t) -> *mut c_void>;
 /// Frees memory. Not used by this component.
 pub type fmi2CallbackFreeMemory = Option<unsafe extern "C" fn(obj: *mut c_void)>;
-/// Called at the end of a pending step. Not used by this component.
+/// Called at the end of a step.
 pub type fmi2StepFinished =
     Option<unsafe extern "C" fn(componentEnvironment: fmi2ComponentEnvironment, status: fmi2Status)>;
 
@@ -93,7 +93,7 @@ pub struct fmi2CallbackFunctions {
     pub allocateMemory: fmi2CallbackAllocateMemory,
     /// Not used.
     pub freeMemory: fmi2CallbackFreeMemory,
-    /// Not used.
+    /// Called where a step is done, before `fmi2DoStep` returns; may be null.
     pub stepFinished: fmi2StepFinished,
     /// Passed back in every callback.
     pub componentEnvironment: fmi2ComponentEnvironment,

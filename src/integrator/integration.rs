@@ -153,10 +153,10 @@ impl Integration<'_> {
     }
 
     /// The polynomials of the steps.
-    pub(crate) fn collocation<const S: usize>(&mut self) -> &Collocation<S>
+    pub(crate) fn collocation<const S: usize>(&self) -> &Collocation<S>
     where
         Workspace: Room<S>,
     {
-        self.workspace.parts().0.collocation()
+        Room::<S>::collocation(self.workspace)
     }
 }

@@ -64,17 +64,28 @@ impl Workspace {
 
 /// The parts of the workspace for steps with `S` nodes.
 pub(crate) trait Room<const S: usize> {
+    /// The polynomials of the steps.
+    fn collocation(&self) -> &Collocation<S>;
+
     /// Coefficient cache, end of the trial step, modes at an instant inside it.
     fn parts(&mut self) -> (&mut Cache<S>, &mut End<S>, &mut ModeStates);
 }
 
 impl Room<SHORT> for Workspace {
+    fn collocation(&self) -> &Collocation<SHORT> {
+        self.short.collocation()
+    }
+
     fn parts(&mut self) -> (&mut Cache<SHORT>, &mut End<SHORT>, &mut ModeStates) {
         (&mut self.short, &mut self.short_end, &mut self.inside)
     }
 }
 
 impl Room<LONG> for Workspace {
+    fn collocation(&self) -> &Collocation<LONG> {
+        self.long.collocation()
+    }
+
     fn parts(&mut self) -> (&mut Cache<LONG>, &mut End<LONG>, &mut ModeStates) {
         (&mut self.long, &mut self.long_end, &mut self.inside)
     }

@@ -62,3 +62,38 @@ fn a_derivative_that_is_no_number_is_discarded_with_all_of_its_call() {
         assert_eq!(fmu.real("contact.force"), before);
     }
 }
+
+#[test]
+fn higher_derivatives_of_inputs_have_no_effect_and_are_told_of_once() {
+    let fmu = Instance::initialized();
+    let names = ["support.displacement", "support.displacement", "base.acceleration"];
+    for step in 0..3 {
+        assert_eq!(set(&fmu, &names, &[1, 2, 3], &[1e-3, 5.0, 1e9]), fmi2OK);
+        assert_eq!(fmu.step(f64::from(step) * 1e-4, 1e-4), fmi2OK);
+        let place = fmu.real("tip.displacement") + fmu.real("contact.indentation");
+        assert!((place - 2e-4 - 1e-7).abs() < 1e-18, "{place}");
+    }
+    fmu.expect_message(
+        fmi2Warning,
+        &["fmi2SetRealInputDerivatives: support.displacement", "order 2"],
+    );
+}
+
+#[test]
+fn discrete_outputs_have_no_slope() {
+    let fmu = Instance::new();
+    assert_eq!(fmu.set_integer("effects.excitation", 2), fmi2OK);
+    assert_eq!(fmu.set_real("excitation.amplitude", 400.0), fmi2OK);
+    fmu.initialize();
+    assert_eq!(fmu.step(0.0, 2e-3), fmi2OK);
+    for name in [
+        "step.minimumForce",
+        "contact.lastOpening",
+        "chatter.totalInterruption",
+        "preload.force",
+    ] {
+        assert!(fmu.real(name) >= 0.0);
+        assert_eq!(get(&fmu, name, 1), (fmi2OK, 0.0), "{name}");
+    }
+    assert!(get(&fmu, "contact.force", 1).1 != 0.0 || fmu.real("contact.force") == 0.0);
+}

@@ -54,6 +54,23 @@ fn errors_and_warnings_are_logged_unless_their_category_is_switched_off() {
 }
 
 #[test]
+fn a_reset_shows_again_what_was_shown_after_instantiation() {
+    let fmu = Instance::new();
+    assert_eq!(
+        choose(&fmu, fmi2False, &[c"logStatusError", c"logStatusWarning"]),
+        fmi2OK
+    );
+    assert_eq!(heard(&fmu), [0, 0]);
+    // `heard` ends with a reset.
+    assert_eq!(heard(&fmu), [1, 1]);
+    assert_eq!(choose(&fmu, fmi2True, &[c"logSolver"]), fmi2OK);
+    assert_eq!(fmu.reset(), fmi2OK);
+    fmu.initialize();
+    assert_eq!(fmu.step(0.0, 1e-4), fmi2OK);
+    assert!(fmu.messages().is_empty());
+}
+
+#[test]
 fn an_unknown_category_is_a_warning_that_changes_nothing() {
     let fmu = Instance::new();
     let unknown = c"log%s#r103#All";
@@ -220,5 +237,44 @@ fn a_logger_that_calls_back_is_refused_and_harms_nothing() {
         assert_eq!(STATUS_INSIDE.load(Ordering::SeqCst), fmi2Error);
         assert_eq!(fmi2Reset(made), fmi2OK);
         fmi2FreeInstance(made);
+    }
+}
+
+/// `stepFinished` of an importer that waits for it: keeps the time that it reads, as the step is done.
+unsafe extern "C" fn finished(environment: fmi2ComponentEnvironment, status: fmi2Status) {
+    let (component, times) = unsafe { &mut *environment.cast::<(fmi2Component, Vec<f64>)>() };
+    let mut time = f64::NAN;
+    assert_eq!(status, fmi2OK);
+    assert_eq!(
+        unsafe { fmi2GetRealStatus(*component, fmi2LastSuccessfulTime, &raw mut time) },
+        fmi2OK
+    );
+    times.push(time);
+}
+
+#[test]
+fn an_importer_that_waits_for_the_end_of_a_step_is_told_of_it() {
+    let mut kept: (fmi2Component, Vec<f64>) = (ptr::null_mut(), Vec::new());
+    let place = &raw mut kept;
+    let callbacks = fmi2CallbackFunctions {
+        logger: None,
+        allocateMemory: None,
+        freeMemory: None,
+        stepFinished: Some(finished),
+        componentEnvironment: place.cast(),
+    };
+    let made = Arguments::default().instantiate(fmi2Instantiate, Some(&callbacks));
+    unsafe {
+        (*place).0 = made;
+        assert_eq!(fmi2EnterInitializationMode(made), fmi2OK);
+        assert_eq!(fmi2ExitInitializationMode(made), fmi2OK);
+        for k in 0..3 {
+            assert_eq!(fmi2DoStep(made, f64::from(k), 1.0, 1), fmi2OK);
+        }
+        // None is done.
+        assert_eq!(fmi2DoStep(made, 7.0, 1.0, 1), fmi2Error);
+        assert_eq!(fmi2DoStep(made, 3.0, 1.0, 1), fmi2Error);
+        fmi2FreeInstance(made);
+        assert_eq!((*place).1, [1.0, 2.0, 3.0]);
     }
 }

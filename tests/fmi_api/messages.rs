@@ -137,9 +137,11 @@ fn a_derivative_that_there_is_not_is_named_with_its_order() {
         fmi2GetRealOutputDerivatives(fmu.component, vr.as_ptr(), 1, order.as_ptr(), value.as_mut_ptr())
     };
     for order in [i32::MIN, -1, 0, 2, i32::MAX] {
-        let fmu = Instance::initialized();
-        let parts = ["base.acceleration", &order.to_string(), "allowed is 1"];
-        fmu.answers(set(&fmu, "base.acceleration", order, 1.0), fmi2Error, &parts);
+        if order <= 0 {
+            let fmu = Instance::initialized();
+            let parts = ["base.acceleration", &order.to_string(), "allowed is 1"];
+            fmu.answers(set(&fmu, "base.acceleration", order, 1.0), fmi2Error, &parts);
+        }
         let fmu = Instance::initialized();
         let parts = ["contact.force", &order.to_string(), "allowed is 1"];
         fmu.answers(get(&fmu, "contact.force", order), fmi2Error, &parts);
@@ -152,9 +154,11 @@ fn a_derivative_that_there_is_not_is_named_with_its_order() {
             assert_eq!(fmu.reset(), fmi2OK);
         }
         let fmu = Instance::initialized();
-        if get(&fmu, variable.name, 1) != fmi2OK {
+        if matches!(variable.group, Group::RealOutput(_)) {
+            assert_eq!(get(&fmu, variable.name, 1), fmi2OK, "{}", variable.name);
+        } else {
             let parts = ["fmi2GetRealOutputDerivatives", variable.name];
-            fmu.expect_message(fmi2Error, &parts);
+            fmu.answers(get(&fmu, variable.name, 1), fmi2Error, &parts);
         }
     }
     let fmu = Instance::initialized();

@@ -13,7 +13,7 @@ use super::logger::Logger;
 use super::report::{self, Effort};
 use super::saved::SavedStates;
 use super::states::{Function, State};
-use super::types::{fmi2OK, fmi2Status, fmi2Warning};
+use super::types::{fmi2ComponentEnvironment, fmi2OK, fmi2Status, fmi2StepFinished, fmi2Warning};
 use crate::error::{SceneError, number};
 use crate::inputs::Inputs;
 use crate::scene::Scene;
@@ -43,19 +43,35 @@ pub(super) struct Instance {
     start: Scene,
     /// The string read last.
     text: CString,
-    /// Whether the importer has been told that its time differs.
-    told_of_offset: bool,
-    /// Whether the importer has been told that the tolerance may not be kept.
-    told_of_error: bool,
+    told: Told,
+    step_finished: StepFinished,
     saved_states: SavedStates,
 }
+
+/// What the importer has been told, which is told once.
+#[derive(Clone, Copy, Debug, Default)]
+struct Told {
+    /// That its time differs.
+    of_offset: bool,
+    /// That the tolerance may not be kept.
+    of_error: bool,
+    /// That derivatives of inputs above order 1 have no effect.
+    of_order: bool,
+}
+
+/// The importer's callback at the end of a communication step, and its first argument.
+pub(super) type StepFinished = (fmi2StepFinished, fmi2ComponentEnvironment);
 
 impl Instance {
     /// An instance with start values.
     ///
     /// # Errors
     /// A [`SceneError`] if the component is to carry a spring that it does not have.
-    pub(super) fn new(logger: Logger, resources: Option<PathBuf>) -> Result<Self, SceneError> {
+    pub(super) fn new(
+        logger: Logger,
+        step_finished: StepFinished,
+        resources: Option<PathBuf>,
+    ) -> Result<Self, SceneError> {
         let mut instance = Self {
             state: State::Instantiated,
             scene: Scene::default(),
@@ -67,8 +83,8 @@ impl Instance {
             resources,
             start: Scene::default(),
             text: CString::default(),
-            told_of_offset: false,
-            told_of_error: false,
+            told: Told::default(),
+            step_finished,
             saved_states: SavedStates::default(),
         };
         if !CARRIED_SPRING.is_empty() {
@@ -99,6 +115,10 @@ impl Instance {
 
     pub(super) fn time(&self) -> f64 {
         self.time
+    }
+
+    pub(super) fn step_finished(&self) -> StepFinished {
+        self.step_finished
     }
 
     /// The saved states made by this instance.
@@ -168,7 +188,6 @@ impl Instance {
     pub(super) fn exit_initialization_mode(&mut self) -> Result<(), Failure> {
         self.prepare().map_err(Failure::Initialisation)?;
         self.state = State::StepComplete;
-        self.told_of_error = false;
         let Some(simulation) = &self.simulation else {
             return Ok(());
         };
@@ -187,7 +206,7 @@ impl Instance {
         self.state = State::Terminated;
     }
 
-    /// Restores the start values. The log settings, which belong to the importer, remain.
+    /// Restores the state after instantiation. States that the importer has saved remain.
     pub(super) fn reset(&mut self) {
         self.state = State::Instantiated;
         self.scene = self.start.clone();
@@ -195,6 +214,8 @@ impl Instance {
         self.experiment = Experiment::default();
         self.simulation = None;
         self.time = 0.0;
+        self.logger.reset();
+        self.told = Told::default();
     }
 
     /// A snapshot of the instance.
@@ -297,14 +318,14 @@ impl Instance {
         if let Some(before) = before {
             report::step(&self.logger, simulation, before);
         }
-        if is_off && !std::mem::replace(&mut self.told_of_offset, true) {
+        if is_off && !std::mem::replace(&mut self.told.of_offset, true) {
             return Err(Failure::Offset { point, time: now });
         }
-        if !self.told_of_error {
+        if !self.told.of_error {
             let tolerance = simulation.model().scene.solver.effective_tolerance();
             let error = simulation.force_error();
-            self.told_of_error = error > ANNOUNCED * tolerance;
-            if self.told_of_error {
+            self.told.of_error = error > ANNOUNCED * tolerance;
+            if self.told.of_error {
                 return Err(Failure::Inaccurate {
                     time: end,
                     tolerance,

@@ -146,34 +146,42 @@ impl Instance {
         Ok(())
     }
 
-    /// Sets first derivatives of continuous inputs; all of them or, on an error, none.
+    /// Sets first derivatives of continuous inputs; all of them or, on an error, none. Higher ones have no effect.
     pub(in crate::fmi2) fn set_input_derivatives(
         &mut self,
         references: &[u32],
         orders: &[i32],
         values: &[f64],
     ) -> Result<(), Failure> {
-        let mut inputs = self.inputs;
+        let (mut inputs, mut ignored) = (self.inputs, None);
         for ((&reference, &order), &value) in references.iter().zip(orders).zip(values) {
             let variable = find("Real", reference)?;
             let Group::RealInput(input) = variable.group else {
                 return Err(no_derivative(variable, "inputs"));
             };
+            if order > 1 {
+                ignored = ignored.or(Some((variable.name, order)));
+                continue;
+            }
             first_order(variable, order)?;
             inputs.set_rate(input, value).map_err(Failure::Value)?;
         }
         self.inputs = inputs;
-        Ok(())
+        match ignored {
+            Some((name, order)) if !std::mem::replace(&mut self.told.of_order, true) => {
+                Err(Failure::Ignored { name, order })
+            }
+            _ => Ok(()),
+        }
     }
 
-    /// The first derivative of a continuous output.
+    /// The first derivative of an output, of a discrete one 0 (FMI 2.0.4, 4.2.1).
     pub(in crate::fmi2) fn output_derivative(&mut self, reference: u32, order: i32) -> Result<f64, Failure> {
         let variable = find("Real", reference)?;
         let rate = match variable.group {
-            Group::RealOutput(output) => self.computed(variable)?.rate(output),
-            _ => None,
+            Group::RealOutput(output) => self.computed(variable)?.rate(output).unwrap_or_default(),
+            _ => return Err(no_derivative(variable, "outputs")),
         };
-        let rate = rate.ok_or(no_derivative(variable, "outputs"))?;
         first_order(variable, order)?;
         Ok(rate)
     }

@@ -6,7 +6,7 @@ use crate::excitation::random::Piece;
 use crate::excitation::waveform::Accelerations;
 use crate::integrator::collocation::elimination::solve;
 use crate::integrator::collocation::modal_response::ModeOverStep;
-use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::collocation::polynomial::{Collocation, Home, Shared};
 use crate::integrator::collocation::shapes::{Shapes, Table};
 use crate::integrator::collocation::superposition::{Pair, Response, Sum};
 use crate::integrator::constants::SLOTS;
@@ -345,7 +345,7 @@ fn slot(length: f64) -> usize {
 /// Cache of coefficients by step length. Its content never affects results, only the time they take.
 #[derive(Clone, Debug)]
 pub struct Cache<const S: usize> {
-    collocation: &'static Collocation<S>,
+    collocation: Shared<S>,
     /// For recurring lengths, each in the slot of its hash.
     slots: Vec<StepCoefficients<S>>,
     /// For the last other length.
@@ -367,9 +367,9 @@ pub struct Prepared<'a, const S: usize> {
 
 impl<const S: usize> Cache<S> {
     /// Allocates for the model.
-    pub fn new(model: &Model, collocation: &'static Collocation<S>) -> Self {
+    pub fn new(model: &Model, home: &'static Home<S>) -> Self {
         Self {
-            collocation,
+            collocation: Shared::of(home),
             slots: vec![StepCoefficients::empty(model); SLOTS],
             other: StepCoefficients::empty(model),
             piece: Piece::default(),
@@ -377,8 +377,8 @@ impl<const S: usize> Cache<S> {
     }
 
     /// The polynomials.
-    pub fn collocation(&self) -> &'static Collocation<S> {
-        self.collocation
+    pub fn collocation(&self) -> &Collocation<S> {
+        &self.collocation
     }
 
     /// The coefficients for a length, with the base acceleration of a step from `time` (s) on.

@@ -4,7 +4,8 @@
 //! however stiff its damping (Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.5): eight for long
 //! steps, four for short ones (communication steps of a microsecond, the time just after an impact).
 
-use std::sync::LazyLock;
+use std::ops::Deref;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::integrator::collocation::shapes::{MAX_SHAPES, Shapes};
 use crate::integrator::constants::{FAR_AHEAD, LOOKS, NEAR, SLOWEST_DECAY};
@@ -16,11 +17,53 @@ use crate::math::simd::{Arithmetic, Separate, Simd, compiled_for};
 /// Golden ratio, of the golden-section search.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// The polynomials of a short step, computed once.
-pub static OF_SHORT: LazyLock<Collocation<SHORT>> = LazyLock::new(Collocation::new);
+/// Where polynomials are found that somebody uses.
+pub type Home<const S: usize> = Mutex<Option<Arc<Collocation<S>>>>;
 
-/// The polynomials of a long step, computed once.
-pub static OF_LONG: LazyLock<Collocation<LONG>> = LazyLock::new(Collocation::new);
+/// The polynomials of a short step.
+pub static OF_SHORT: Home<SHORT> = Mutex::new(None);
+
+/// The polynomials of a long step.
+pub static OF_LONG: Home<LONG> = Mutex::new(None);
+
+/// The polynomials of a step, computed by the first who needs them and freed with the last: hosts load and unload the
+/// library thousands of times in a process.
+#[derive(Clone, Debug)]
+pub struct Shared<const S: usize> {
+    polynomials: Arc<Collocation<S>>,
+    home: &'static Home<S>,
+}
+
+impl<const S: usize> Shared<S> {
+    /// Those in use, or new ones.
+    pub fn of(home: &'static Home<S>) -> Self {
+        let polynomials = open(home).get_or_insert_with(|| Arc::new(Collocation::new())).clone();
+        Self { polynomials, home }
+    }
+}
+
+impl<const S: usize> Deref for Shared<S> {
+    type Target = Collocation<S>;
+
+    fn deref(&self) -> &Collocation<S> {
+        &self.polynomials
+    }
+}
+
+impl<const S: usize> Drop for Shared<S> {
+    fn drop(&mut self) {
+        let mut home = open(self.home);
+        // One here, one at home.
+        if Arc::strong_count(&self.polynomials) <= 2 {
+            *home = None;
+        }
+    }
+}
+
+/// A home is whole whenever its lock is free.
+fn open<const S: usize>(home: &'static Home<S>) -> MutexGuard<'static, Option<Arc<Collocation<S>>>> {
+    home.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// The polynomials of a step with `S` nodes.
 #[derive(Debug)]
