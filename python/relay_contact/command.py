@@ -1,6 +1,7 @@
 """The command `relay-contact`."""
 
 import argparse
+import math
 import sys
 from pathlib import Path
 
@@ -73,12 +74,12 @@ def run_scene(given: argparse.Namespace) -> None:
         name = component.settable(name.strip())
         changes[name] = component.read(name, value.strip())
         words.append(f"{name}={value.strip()}")
-    scene = Scene.read(given.scene).changed(component, changes)
+    scene = Scene.read(given.scene, component).changed(component, changes)
     titled = ", ".join([scene.title, *words])
     result = run(
         scene,
         outputs=scene.outputs + [name for name in given.output if name not in scene.outputs],
-        stop=given.stop, step=given.step, component=component, progress=sys.stderr.isatty(),
+        stop=given.stop, step=given.step, component=component, progress=True,
     )  # fmt: skip
     print(titled)
     width = max(map(len, result.columns))
@@ -98,7 +99,7 @@ def qualify_relay(given: argparse.Namespace) -> None:
     folder = given.out or Path(f"qualification-{Path(given.relay).stem}-{Path(given.standard).stem}")
     parts = qualify(
         given.relay, given.standard, out=folder, tests=given.test, quick=given.quick, cluster=given.cluster,
-        component=Component(given.fmu), progress=sys.stderr.isatty(),
+        component=Component(given.fmu), progress=True,
     )  # fmt: skip
     rows = [(part["position"], mark(part), cells(part)) for part in parts]
     print_table([["position", *HEAD], *([place, cell[0] + star, *cell[1:]] for place, star, cell in rows)])
@@ -130,11 +131,34 @@ def plot_table(given: argparse.Namespace) -> None:
     """Draw a table of outputs."""
     from relay_contact.plot import draw
 
+    if given.sweep:
+        first, last, _, duration = given.sweep
+        if min(first, last, duration) <= 0:
+            raise RelayContactError("--sweep: FIRST, LAST and DURATION have to be greater than 0")
     print(draw(given.table, given.title, given.sweep))
 
 
+def finite(text: str) -> float:
+    """Return a number of the command line."""
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number):
+        raise argparse.ArgumentTypeError(f"{text}: not allowed, allowed is a finite number")
+    return number
+
+
+def positive(text: str) -> float:
+    """Return a number of the command line that is greater than 0."""
+    number = finite(text)
+    if number <= 0:
+        raise argparse.ArgumentTypeError(f"{text}: not allowed, allowed is a number greater than 0")
+    return number
+
+
 def line() -> argparse.ArgumentParser:
-    """Give the command line."""
+    """Return the command line."""
     whole = argparse.ArgumentParser(
         prog="relay-contact", description="A relay contact under vibration and shock: does it open, and for how long?",
         epilog=EXAMPLES, formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -157,8 +181,8 @@ def line() -> argparse.ArgumentParser:
     add("--set", action="append", default=[], metavar="NAME=VALUE", help=text)
     text = "a further output, as `relay-contact list --variables` prints them; may be repeated"
     add("--output", action="append", default=[], metavar="NAME", help=text)
-    add("--stop", type=float, metavar="SECONDS", help="end of the run (the scene's)")
-    add("--step", type=float, metavar="SECONDS", help="communication step (the scene's)")
+    add("--stop", type=positive, metavar="SECONDS", help="end of the run (the scene's)")
+    add("--step", type=positive, metavar="SECONDS", help="communication step (the scene's)")
     add("--out", type=Path, default=Path(), metavar="FOLDER", help="folder for what is written (the current one)")
 
     about = "Test a relay as a standard asks: verdicts, and margins with their uncertainty, as a page and tables."
@@ -197,7 +221,7 @@ def line() -> argparse.ArgumentParser:
     add("table", type=Path, help="CSV file with a column `time`")
     add("--title", default="", help="title of the figure")
     sweep = ("FIRST", "LAST", "START", "DURATION")
-    add("--sweep", type=float, nargs=4, metavar=sweep, help="over the frequency of a sweep instead of time [Hz, s]")
+    add("--sweep", type=finite, nargs=4, metavar=sweep, help="over the frequency of a sweep instead of time [Hz, s]")
     return whole
 
 

@@ -2,10 +2,12 @@
 
 import difflib
 import shutil
+import sys
 import weakref
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from numbers import Real
 from pathlib import Path
 from tempfile import mkdtemp
 from types import TracebackType
@@ -16,10 +18,13 @@ from fmpy import extract, instantiate_fmu, platform, read_model_description, sup
 from fmpy.fmi1 import FMICallException
 from numpy.typing import NDArray
 
-from relay_contact.files import RelayContactError, fmu_path
-from relay_contact.spring import applied
+from relay_contact.files import RelayContactError, fmu_path, shown
+from relay_contact.spring import PREFIX, applied
 
 SIGNS = {"Ohm": "Ω", "mOhm": "mΩ", "um": "µm", "us": "µs", "degC": "°C", "m/s2": "m/s²", "kg/m3": "kg/m³", "1": ""}
+
+SETTABLE = ("parameter", "input")
+LARGEST_REAL = sys.float_info.max
 
 Array = NDArray[np.float64]
 Value = float | str
@@ -80,19 +85,26 @@ class Component:
             weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
         self.folder: str = extract(str(self.path), str(folder))
 
-    def name(self, name: str) -> str:
-        """Give the name of a variable, in which underscores may stand for dots; an unknown one is refused."""
+    def name(self, name: str, meant: Collection[str] = ()) -> str:
+        """Return the name of a variable, in which underscores may stand for dots.
+
+        An unknown one is refused; `meant` are the causalities of those that it may have been meant to be, if not any.
+        """
         known = self.variables
         dotted = name if name in known else name.replace("_", ".")
         if dotted not in known:
-            raise RelayContactError(f"{name}: no such variable{nearest(dotted, known)}")
+            near = [each for each, variable in known.items() if not meant or variable.causality in meant]
+            raise RelayContactError(f"{name}: no such variable{nearest(dotted, near)}")
         return dotted
 
-    def settable(self, name: str) -> str:
-        """Give the name of a parameter or an input; another variable is refused."""
-        name = self.name(name)
-        if self.variables[name].causality not in ("parameter", "input"):
+    def settable(self, name: str, kind: str = "") -> str:
+        """Return the name of a parameter or an input, or of the one `kind` of them; another variable is refused."""
+        name = self.name(name, [kind] if kind else SETTABLE)
+        causality = self.variables[name].causality
+        if causality not in SETTABLE:
             raise RelayContactError(f"{name}: an output, which cannot be set")
+        if kind not in ("", causality):
+            raise RelayContactError(f"{name}: not a{'n' * (kind == 'input')} {kind}, which are allowed here alone")
         return name
 
     def choices(self, name: str) -> dict[str, int]:
@@ -100,15 +112,21 @@ class Component:
         return {item.name: int(item.value) for item in self.variables[name].declaredType.items}
 
     def number(self, name: str, value: Value) -> float:
-        """Give the number that stands for a value of a variable."""
+        """Return the number that stands for a value of a variable; a value of another type is refused."""
         kind = self.variables[name].type
-        if isinstance(value, str):
-            choices = self.choices(name) if kind == "Enumeration" else {}
-            if value not in choices:
-                allowed = ", ".join(choices) or ("true, false" if kind == "Boolean" else "a number")
-                raise RelayContactError(f"{name} = {value}: not allowed, allowed is {allowed}{nearest(value, choices)}")
+        choices = self.choices(name) if kind == "Enumeration" else {}
+        if isinstance(value, str) and value in choices:
             return choices[value]
-        return value if kind == "Real" else int(value)
+        # Not a text such as "0.6": whoever writes it may mean a unit, too.
+        if isinstance(value, Real) and (kind == "Boolean" or not isinstance(value, bool)):
+            if kind == "Real" and abs(value) <= LARGEST_REAL:
+                return float(value)
+            if kind != "Real" and abs(value) < 2**31 and value == int(value) and (kind != "Boolean" or value in (0, 1)):
+                return int(value)
+        others = {"Boolean": "true, false", "Real": "a finite number"}
+        allowed = ", ".join(choices) or others.get(kind, "a whole number")
+        near = nearest(value, choices) if isinstance(value, str) else ""
+        raise RelayContactError(f"{name} = {shown(value)}: not allowed, allowed is {allowed}{near}")
 
     def read(self, name: str, text: str) -> Value:
         """Read a value as people write it, such as 1e-3, true or Sine."""
@@ -177,7 +195,11 @@ class Contact:
         try:
             yield
         except FMICallException as error:
-            raise RelayContactError(" ".join(self.messages) or str(error)) from error
+            # Without the functions of FMI that it was refused by.
+            text = " ".join(
+                message.split(": ", 1)[-1] if message.startswith("fmi2") else message for message in self.messages
+            )
+            raise RelayContactError(text or str(error)) from error
 
     def references(self, *names: str) -> list[int]:
         """Give the numbers by which the component knows its variables."""
@@ -187,7 +209,9 @@ class Contact:
         """Set a parameter or an input."""
         kind = self.component.variables[name].type
         if kind == "String":
-            self.fmu.setString(self.references(name), [str(value)])
+            if not isinstance(value, str):
+                raise RelayContactError(f"{name} = {shown(value)}: not allowed, allowed is a text")
+            self.fmu.setString(self.references(name), [value])
             return
         put = getattr(self.fmu, f"set{'Integer' if kind == 'Enumeration' else kind}")
         put(self.references(name), [self.component.number(name, value)])
@@ -239,8 +263,11 @@ class Contact:
         """Set parameters, inputs and entries of the spring file, and go through the initialisation."""
         start = float(self.component.start("beam.youngsModulus"))
         with self.explained():
+            if "beam.file" in values and any(name.startswith(PREFIX) for name in values):
+                # Its entries are changed only once the component has accepted it.
+                self.set("beam.file", values["beam.file"])
             for name, value in applied(values, start, Path(self.component.folder)).items():
-                self.set(name, value)
+                self.set(self.component.settable(name), value)
             self.initialise()
 
     def begin_anew(self, values: Values) -> None:

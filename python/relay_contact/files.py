@@ -1,6 +1,7 @@
 """Where component, scenes, relays and standards are: carried by the wheel, or in the project's folders."""
 
 import os
+import re
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -51,9 +52,23 @@ def named(kind: str, name: str | Path, known: dict[str, Path]) -> Path:
     raise RelayContactError(f"{name}: no such file, and no {kind} of this name; there are {', '.join(known)}")
 
 
+def shown(value: object) -> str:
+    """Return a value that a user gave, for a message."""
+    text = "a table" if isinstance(value, dict) else f'"{value}"' if isinstance(value, str) else repr(value)
+    return text if len(text) < 60 else f"{text[:56]} ..."
+
+
 def read_toml(path: Path) -> dict[str, Any]:
-    """Read a TOML file; an error names the file."""
+    """Return the contents of a TOML file; an error names file and line."""
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise RelayContactError(f"{path}: {error}") from error
+        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except tomllib.TOMLDecodeError as error:
+        text, _, place = str(error).removesuffix(")").rpartition(" (at ")
+        line = re.match(r"line (\d+)", place)
+        at = line[1] if line else path.read_text(encoding="utf-8-sig").count("\n") + 1
+        raise RelayContactError(f"{path}:{at}: not TOML: {text}") from error
+    except UnicodeDecodeError as error:
+        at = error.object.count(b"\n", 0, error.start) + 1
+        raise RelayContactError(f"{path}:{at}: not TOML: not text in UTF-8") from error
+    except RecursionError as error:
+        raise RelayContactError(f"{path}: not TOML: nested too deeply") from error

@@ -1,19 +1,26 @@
 """Scenes, and runs of them."""
 
 import math
+import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, Self
+from typing import Annotated, Any, Self
 
 import numpy as np
 from numpy.lib.recfunctions import unstructured_to_structured
 from numpy.typing import ArrayLike
+from pydantic import ConfigDict, Field
+from pydantic.alias_generators import to_camel
 from tqdm import tqdm
 
 from relay_contact.component import Array, Component, Value, nearest, units
-from relay_contact.files import RelayContactError, named, read_toml, scenes
+from relay_contact.files import RelayContactError, named, scenes
+from relay_contact.schema import Nested, Positive, Table, at, leaves, read, refused, variables
+
+MOST = 10**7
+"""Communication steps of a run, whose rows stay in memory."""
 
 
 def read_table(path: Path) -> dict[str, Array]:
@@ -28,20 +35,17 @@ def write_table(path: Path, names: str, rows: ArrayLike, digits: int = 12) -> No
     np.savetxt(path, rows, delimiter=",", header=names, comments="", fmt=f"%.{digits}g", encoding="utf-8")
 
 
-def flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, Value]:
-    """Give the values of nested TOML tables by their dotted names."""
-    values: dict[str, Value] = {}
-    for key, value in table.items():
-        values |= flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {f"{prefix}{key}": value}
-    return values
+class Content(Table):
+    """Contents of a scene file."""
 
+    model_config = ConfigDict(alias_generator=to_camel)
 
-def parameters(table: Mapping[str, Any], path: Path) -> dict[str, Value]:
-    """Give the parameters in a table of a file; the path of a spring file in it is relative to that file."""
-    values = flat(table)
-    if "beam.file" in values:
-        values["beam.file"] = str(path.resolve().parent / str(values["beam.file"]))
-    return values
+    title: str = ""
+    stop: Positive
+    communication_step: Positive
+    outputs: Annotated[list[str], Field(min_length=1)]
+    parameters: Nested
+    inputs: Nested
 
 
 @dataclass(frozen=True)
@@ -58,23 +62,41 @@ class Scene:
     """Inputs that change, over the column `time`; empty where all are constant."""
 
     @classmethod
-    def read(cls, scene: str | Path) -> Self:
-        """Read a scene by its name, such as "paper-1khz", or a scene file by its path."""
+    def read(cls, scene: str | Path, component: Component | None = None) -> Self:
+        """Read a scene by its name, such as "paper-1khz", or a scene file by its path.
+
+        The component, if given, checks all names and values, which it does as the scene starts otherwise.
+        """
         path = named("scene", scene, scenes())
-        content = read_toml(path)
-        inputs = content.get("inputs", {})
-        file = inputs.pop("file", None)
-        values = parameters(content.get("parameters", {}), path) | flat(inputs)
-        table = read_table(path.with_name(file)) if file else {}
-        try:
-            stop, step, outputs = content["stop"], content["communicationStep"], content["outputs"]
-        except KeyError as error:
-            raise RelayContactError(f"{path}: {error.args[0]} is missing") from error
-        return cls(content.get("title", ""), stop, step, outputs, values, table)
+        content = read(path, Content)
+        inputs = dict(content.inputs)
+        file = inputs.pop("file", "")
+        if not isinstance(file, str):
+            raise refused(path, ("inputs", "file"), file, "allowed is the path of a table beside this file")
+        table = {}
+        if file:
+            with at(path, "inputs", "file"):
+                table = read_table(path.parent / file)
+        for name, keys, value in leaves(inputs):
+            if name in table:
+                raise refused(path, ("inputs", *keys), value, f"{file} has a column for it")
+        values = variables(path, content.parameters, ("parameters",), component)
+        values |= variables(path, inputs, ("inputs",), component, "input")
+        for number, name in enumerate(content.outputs):
+            with at(path, "outputs", number):
+                if component:
+                    component.name(name)
+        return cls(content.title, content.stop, content.communication_step, content.outputs, values, table)
 
     def points(self) -> list[float]:
-        """Give the communication points; the last is the stop."""
-        count = math.ceil(self.stop / self.step - 1e-9)
+        """Return the communication points; the last is the stop."""
+        for name, value in (("stop", self.stop), ("communication step", self.step)):
+            if not 0 < value < math.inf:
+                raise RelayContactError(f"{name} = {value} s: not allowed, allowed is greater than 0")
+        if self.stop / self.step > MOST:
+            text = f"allowed are {MOST:.0e} communication steps: an earlier stop, or longer steps"
+            raise RelayContactError(f"stop = {self.stop:g} s with steps of {self.step:g} s: not allowed, {text}")
+        count = max(1, math.ceil(self.stop / self.step - 1e-9))
         return [min(n * self.step, self.stop) for n in range(count + 1)]
 
     def inputs(self, points: list[float]) -> dict[str, Array]:
@@ -84,8 +106,10 @@ class Scene:
         }
 
     def changed(self, component: Component, changes: Mapping[str, Value]) -> Self:
-        """Give the scene with other parameters and constant inputs."""
-        return replace(self, values=self.values | {component.settable(name): each for name, each in changes.items()})
+        """Return the scene with other parameters and inputs; an input of the table is then constant, too."""
+        changed = {component.settable(name): value for name, value in changes.items()}
+        table = {name: column for name, column in self.table.items() if name not in changed}
+        return replace(self, values=self.values | changed, table=table if table.keys() - {"time"} else {})
 
 
 class Result(np.ndarray[tuple[int], np.dtype[np.void]]):
@@ -134,16 +158,16 @@ def run(
     `progress=True` shows a bar; a function is called after each step with the time that it reached.
     """
     component = component or Component()
-    scene = (scene if isinstance(scene, Scene) else Scene.read(scene)).changed(component, changes)
-    courses = {name: np.asarray(course, dtype=float) for name, course in (inputs or scene.table).items()}
-    if courses and "time" not in courses:
-        raise RelayContactError('inputs: the column "time" is missing')
-    courses = {name if name == "time" else component.settable(name): course for name, course in courses.items()}
-    names = [component.name(name) for name in outputs or scene.outputs]
-    scene = replace(scene, outputs=names, table=courses, stop=stop or scene.stop, step=step or scene.step)
+    scene = (scene if isinstance(scene, Scene) else Scene.read(scene, component)).changed(component, changes)
+    course = courses(component, scene.table if inputs is None else inputs)
+    if twice := course.keys() & {component.settable(name) for name in changes}:
+        raise RelayContactError(f"{', '.join(sorted(twice))}: given twice, as a constant and among the inputs")
+    names = [component.name(name) for name in (scene.outputs if outputs is None else outputs)]
+    stop, step = scene.stop if stop is None else stop, scene.step if step is None else step
+    scene = replace(scene, outputs=names, table=course, stop=stop, step=step)
     points = scene.points()
     form = "{desc} {percentage:3.0f} %|{bar}| {n:.3g} of {total:.3g} ms"
-    with tqdm(total=1e3 * scene.stop, desc="simulated", bar_format=form, disable=progress is not True) as bar:
+    with progress_bar(1e3 * scene.stop, form, progress is True, desc="simulated") as bar:
         tell = progress if callable(progress) else lambda time: bar.update(1e3 * time - bar.n)
         result = simulated(scene, points, component, tell)
     fields = np.dtype([(name, np.float64) for name in ["time", *names]])
@@ -151,6 +175,35 @@ def run(
     shown = units(component.description)
     table.units = {"time": "s"} | {name: shown[name].si if name in shown else "" for name in names}
     return table
+
+
+def progress_bar(total: float, form: str, shown: bool, **more: Any) -> Any:  # noqa: ANN401
+    """Return a bar on the error output, for what takes longer than 2 s; rarely printed where nobody watches."""
+    often = 0.1 if sys.stderr.isatty() else 2.0
+    return tqdm(total=total, bar_format=form, disable=not shown, delay=2, mininterval=often, **more)
+
+
+def courses(component: Component, given: Mapping[str, ArrayLike]) -> dict[str, Array]:
+    """Return inputs over the column `time`, checked."""
+    if not given:
+        return {}
+    if "time" not in given:
+        raise RelayContactError('inputs: the column "time" is missing')
+    found = {}
+    for name, values in given.items():
+        name = name if name == "time" else component.settable(name, "input")
+        try:
+            found[name] = np.asarray(values, dtype=float)
+        except (TypeError, ValueError) as error:
+            raise RelayContactError(f"inputs: {name}: not allowed, allowed are numbers") from error
+    for name, column in found.items():
+        if column.ndim != 1 or not len(column) or len(column) != len(found["time"]) or not np.isfinite(column).all():
+            raise RelayContactError(f"inputs: {name}: not allowed, allowed are finite numbers, as many as times")
+    back = np.flatnonzero(np.diff(found["time"]) <= 0)
+    if len(back):
+        before, after = found["time"][back[0] : back[0] + 2]
+        raise RelayContactError(f"inputs: time = {after:g} s after {before:g} s: not allowed, times have to rise")
+    return found
 
 
 def simulated(scene: Scene, points: list[float], component: Component, tell: Callable[[float], object]) -> Array:

@@ -7,6 +7,7 @@ the whole, clamp included, whether the spring is a uniform section, segments or 
 """
 
 import hashlib
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -70,14 +71,16 @@ def applied(values: Mapping[str, Any], start: float, folder: Path) -> dict[str, 
 
     `start` is Young's modulus of the component (Pa), of all that has none of its own.
     """
-    factors = {name: float(value) for name, value in values.items() if name.startswith(PREFIX)}
+    factors = {name: value for name, value in values.items() if name.startswith(PREFIX)}
     own = {name: value for name, value in values.items() if name not in factors}
     if not factors:
         return own
     file = str(own.get("beam.file", ""))
-    for name in factors:
+    for name, value in factors.items():
         if name not in known(file):
             raise RelayContactError(f"{name}: no such entry; there are {', '.join(known(file))}")
+        if isinstance(value, str) or not 0 < value < math.inf:
+            raise RelayContactError(f"{name} = {value}: not allowed, allowed is a factor greater than 0")
     if STIFFNESS in factors:
         own["beam.youngsModulus"] = float(own.get("beam.youngsModulus", start)) * factors[STIFFNESS]
     if file:

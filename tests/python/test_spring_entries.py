@@ -77,7 +77,7 @@ def test_unknown_entries_are_explained(tmp_path: Path) -> None:
     file = tmp_path / "relay.toml"
     file.write_text(f"parameters.beam.file = '{SEGMENTS}'\nuncertainty.spring.segment.3.thickness = 0.02\n")
     with pytest.raises(
-        RelayContactError, match=r"uncertainty of spring.segment.3.thickness: no such entry.*did you mean"
+        RelayContactError, match=r"relay.toml:2: uncertainty.spring.segment.3.thickness: no such entry.*did you mean"
     ):
         Relay.read(file, COMPONENT)
     with pytest.raises(RelayContactError, match=r"spring.thickness: no such entry; there are spring.stiffness"):

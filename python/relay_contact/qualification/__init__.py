@@ -3,12 +3,11 @@
 from dataclasses import replace
 from pathlib import Path
 
-from tqdm import tqdm
-
 from relay_contact.component import Component
 from relay_contact.qualification.assessment import Part, assess, chosen
 from relay_contact.qualification.relay import Relay, relays
 from relay_contact.qualification.standards import Standard, standards
+from relay_contact.scene import progress_bar
 
 __all__ = ["Part", "Relay", "Standard", "qualify", "relays", "standards"]
 
@@ -41,7 +40,7 @@ def qualify(
     asked = chosen(Standard.read(standard), tests or [])
     asked = replace(asked, contacts=asked.contacts.monitored(described.monitor))
     count = len(asked.tests) * len(described.positions)
-    with tqdm(total=count, bar_format="{desc} |{bar}| {n_fmt} of {total_fmt} tests", disable=not progress) as bar:
+    with progress_bar(count, "{desc} |{bar}| {n_fmt} of {total_fmt} tests", progress) as bar:
 
         def tell(label: str) -> None:
             bar.set_description_str(label) if label else bar.update()

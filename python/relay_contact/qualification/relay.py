@@ -2,15 +2,44 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
+
+from pydantic import Field
 
 from relay_contact.component import Component, Values, nearest
-from relay_contact.files import RelayContactError, by_name, found, named, read_toml
-from relay_contact.scene import flat, parameters
-from relay_contact.spring import PREFIX
-from relay_contact.spring import known as known_entries
+from relay_contact.files import RelayContactError, by_name, found, named
+from relay_contact.qualification.standards import Monitor
+from relay_contact.schema import Nested, Place, Share, Table, at, dotted, leaves, read, refused, variables
+from relay_contact.spring import PREFIX, known
 
-KEYS = ("title", "parameters", "position", "uncertainty", "model", "monitor")
+OF_THE_TEST = ("excitation.", "effects.excitation", "chatter.", "effects.chatter", "effects.extremes", "second.minimum")
+"""Beginnings of the names of parameters that the tests set: in the file of a relay they would contradict them."""
+HALF, STEP, FURTHER = 10, 1e-5, 1e-4
+"""Steps of a blow either way, their length (s), and how far (m) a mass without a spring moves beyond the contacts."""
+
+
+class CoilPosition(Table):
+    """A position of the coil."""
+
+    name: Annotated[str, Field(min_length=1)] | None = None
+    parameters: Nested
+
+
+class Leftover(Table):
+    """Uncertainty of margins, as a part of them, by what the model leaves out."""
+
+    uncertainty: Share = 0.0
+
+
+class Content(Table):
+    """Contents of the file of a relay."""
+
+    title: str | None = None
+    parameters: Nested
+    position: Annotated[list[CoilPosition], Field(min_length=1, default_factory=lambda: [CoilPosition(parameters={})])]
+    uncertainty: Nested
+    model: Leftover = Leftover()
+    monitor: Monitor = Monitor()
 
 
 @dataclass(frozen=True)
@@ -24,41 +53,83 @@ class Relay:
     """Of parameters, or entries of the spring file, as parts of their values, with 95 % confidence."""
     model: float
     """Of margins, as a part of them, by what the model leaves out."""
-    monitor: dict[str, float]
-    """Voltage (V) and current (A) of the monitor, where they are not those of the standard."""
+    monitor: Monitor
 
     @classmethod
     def read(cls, relay: str | Path, component: Component) -> "Relay":
         """Read a relay by its name, such as "paper", or a file of one's own by its path."""
         path = named("relay", relay, relays())
-        content = read_toml(path)
-        for name in content:
-            if name not in KEYS:
-                raise RelayContactError(f"{path}: {name}: unknown{nearest(name, KEYS)}")
+        content = read(path, Content)
+        shared = parameters(path, content.parameters, ("parameters",), component)
+        positions: dict[str, Values] = {}
+        for number, each in enumerate(content.position):
+            place: Place = ("position", number)
+            name = each.name or f"position {number + 1}"
+            if name in positions:
+                raise refused(path, (*place, "name"), name, "given twice")
+            positions[name] = {**shared, **parameters(path, each.parameters, (*place, "parameters"), component)}
+            with at(path, *place):
+                # Parameters that do not fit together.
+                blow(component, positions[name])
+        uncertainty = uncertainties(path, content.uncertainty, positions, component)
+        return cls(content.title or path.stem, positions, uncertainty, content.model.uncertainty, content.monitor)
 
-        def known(table: dict[str, Any]) -> dict[str, Any]:
-            try:
-                return {component.settable(name): value for name, value in parameters(table, path).items()}
-            except RelayContactError as error:
-                raise RelayContactError(f"{path}: {error}") from error
 
-        shared = known(content.get("parameters", {}))
-        positions: dict[str, Values] = {
-            each.get("name", f"position {number}"): shared | known(each.get("parameters", {}))
-            for number, each in enumerate(content.get("position", [{}]), 1)
-        }
-        uncertainty = {name: float(value) for name, value in flat(content.get("uncertainty", {})).items()}
-        for name in uncertainty:
+def parameters(path: Path, table: dict[str, Any], place: Place, component: Component) -> Values:
+    """Return the parameters in a table of a relay's file."""
+    for name, keys, value in leaves(table):
+        if name.startswith(OF_THE_TEST):
+            raise refused(path, (*place, *keys), value, "the tests of a standard set it, not the relay")
+    return variables(path, table, place, component)
+
+
+def uncertainties(
+    path: Path, table: dict[str, Any], positions: dict[str, Values], component: Component
+) -> dict[str, float]:
+    """Return the uncertainties of a relay's file by name; each changes something in one position at least."""
+    rest = {name: blow(component, values) for name, values in positions.items()} if table else {}
+    found = {}
+    for name, keys, part in leaves(table):
+        place = ("uncertainty", *keys)
+        with at(path, *place):
             if name.startswith(PREFIX):
                 for values in positions.values():
-                    allowed = known_entries(str(values.get("beam.file", "")))
+                    allowed = known(str(values.get("beam.file", "")))
                     if name not in allowed:
                         text = f"no such entry in the spring file{nearest(name, allowed)}"
-                        raise RelayContactError(f"{path}: uncertainty of {name}: {text}")
-            elif component.variables[component.settable(name)].type != "Real":
-                raise RelayContactError(f"{path}: uncertainty of {name}: not a real parameter")
-        model = float(content.get("model", {}).get("uncertainty", 0.0))
-        return cls(content.get("title", path.stem), positions, uncertainty, model, content.get("monitor", {}))
+                        raise RelayContactError(f"{dotted(place)}: {text}")
+            elif component.variables[component.settable(name, "parameter")].type != "Real":
+                raise RelayContactError(f"{dotted(place)}: not a real parameter")
+        if isinstance(part, bool) or not isinstance(part, int | float) or not 0 <= part < 1:
+            raise refused(path, place, part, "allowed is a part of the value, from 0 to less than 1")
+        found[name] = float(part)
+        with at(path, *place):
+            used = [part == 0]
+            for position, values in positions.items():
+                start = 1.0 if name.startswith(PREFIX) else value_of(component, values, name)
+                for end in (start * (1 - part), start * (1 + part)):
+                    used.append(blow(component, values, {name: end}) != rest[position])
+            if not any(used):
+                raise RelayContactError(f"{dotted(place)}: not used, {name} changes nothing in this relay, or it is 0")
+    return found
+
+
+def blow(component: Component, values: Values, changed: Values | None = None) -> list[float]:
+    """Return what the contacts do after a blow that closes the first and one that opens it, with other parameters."""
+    watched = ("contact.force", "contact.resistance", "tip.displacement", "second.force", "second.resistance")
+    travel = FURTHER + sum(abs(value_of(component, values, name)) for name in ("contact.overtravel", "second.gap"))
+    with component.started({**values, **(changed or {})}) as contact, contact.explained():
+        found = []
+        for number, sign in enumerate([1.0] * HALF + [-1.0] * HALF):
+            contact.set("base.acceleration", sign * 2 * travel / (HALF * STEP) ** 2)
+            contact.step(number * STEP, STEP)
+            found += contact.real(*watched)
+        return found
+
+
+def value_of(component: Component, values: Values, name: str) -> float:
+    """Return the value of a real parameter."""
+    return float(values.get(name, component.start(name)))
 
 
 def relays() -> dict[str, Path]:

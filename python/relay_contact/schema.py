@@ -1,0 +1,172 @@
+"""Files in TOML against a schema; what is wrong is said with file, line, value, what is allowed, nearest name."""
+
+import re
+import tomllib
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, nullcontext
+from pathlib import Path
+from typing import Annotated, Any, TypeVar, get_args
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+
+from relay_contact.component import Component, Contact, Value, nearest
+from relay_contact.files import RelayContactError, read_toml, shown
+
+STRICT = ConfigDict(extra="forbid")
+"""No entries that the schema does not name."""
+WORDS = {
+    r"a (valid )?dictionary.*": "a table",
+    r"a valid (list|tuple)": "a list",
+    "a valid boolean": "true or false",
+    "valid ": "",
+}
+"""Of pydantic, and those for them in an error."""
+Place = tuple[str | int, ...]
+"""Keys and indices from the top of a file to an entry."""
+Model = TypeVar("Model")
+
+
+def within(least: float, most: float) -> Any:  # noqa: ANN401
+    """Return the condition of a number between two others, which are allowed."""
+    return Field(strict=True, ge=least, le=most, allow_inf_nan=False)
+
+
+Positive = Annotated[float, Field(strict=True, gt=0, allow_inf_nan=False)]
+Share = Annotated[float, Field(strict=True, ge=0, lt=1)]
+"""Part of a value."""
+Nested = Annotated[dict[str, Any], Field(default_factory=dict)]
+"""Values by dotted names, in tables within each other."""
+Flag = Annotated[bool, Field(strict=True)]
+
+
+class Table(BaseModel):
+    """A table of a file."""
+
+    model_config = STRICT | ConfigDict(frozen=True)
+
+
+def read(path: Path, model: type[Model]) -> Model:
+    """Return the contents of a file, checked; all that is wrong is one error."""
+    content = read_toml(path)
+    try:
+        return TypeAdapter(model).validate_python(content)
+    except ValidationError as errors:
+        told = sorted({message(path, model, each) for each in errors.errors()})
+        raise RelayContactError("\n".join(text for _, text in told)) from errors
+
+
+def message(path: Path, model: Any, error: Any) -> tuple[int, str]:  # noqa: ANN401
+    """Return the line of an error that pydantic found, and the error in words."""
+    place = error["loc"]
+    match error["type"]:
+        case "extra_forbidden" | "unexpected_keyword_argument":
+            known = entries(model, place[:-1])
+            what = f"{dotted(place)}: no such entry, allowed are {', '.join(known)}{nearest(str(place[-1]), known)}"
+        case "missing":
+            what = f"{dotted(place)}: missing"
+        case _:
+            text = error["msg"].removeprefix("Value error, ").replace("Input should be ", "allowed is ")
+            for pattern, word in WORDS.items():
+                text = re.sub(pattern, word, text)
+            what = f"{dotted(place)} = {shown(error['input'])}: not allowed, {text}"
+    at = line(path, place)
+    return at, f"{path}:{at}: {what}"
+
+
+def refused(path: Path, place: Place, value: Any, text: str) -> RelayContactError:  # noqa: ANN401
+    """Return the error of an entry of a file; the text says why, or what is allowed."""
+    return RelayContactError(f"{path}:{line(path, place)}: {dotted(place)} = {shown(value)}: not allowed, {text}")
+
+
+def dotted(place: Place) -> str:
+    """Return the name of an entry; those of lists are counted from 1."""
+    return ".".join(str(each + 1) if isinstance(each, int) else each for each in place)
+
+
+def entries(model: Any, place: Place) -> list[str]:  # noqa: ANN401
+    """Return the names of the entries of a table."""
+    for key in place:
+        if isinstance(key, str):
+            model = model.__pydantic_fields__[key].annotation
+            while not hasattr(model, "__pydantic_fields__"):
+                model = get_args(model)[0]
+    return [field.alias or name for name, field in model.__pydantic_fields__.items()]
+
+
+def line(path: Path, place: Place) -> int:
+    """Return the line in which an entry begins, or what it is missing in.
+
+    By bisection over the parts of the file, from its first line on, that are TOML themselves.
+    """
+    lines = path.read_text(encoding="utf-8-sig").split("\n")
+
+    def content(count: int) -> dict[str, Any] | None:
+        try:
+            return tomllib.loads("\n".join(lines[:count]))
+        except tomllib.TOMLDecodeError:
+            return None
+
+    def holds(table: Any) -> bool:  # noqa: ANN401
+        for key in place:
+            try:
+                table = table[key]
+            except (KeyError, IndexError, TypeError):
+                return False
+        return True
+
+    low, high = 0, len(lines)
+    while place and not holds(content(high)):
+        place = place[:-1]
+    if not place:
+        return 1
+    while True:
+        middle = (low + high) // 2
+        count = next((each for each in range(middle, low, -1) if content(each) is not None), None)
+        if count is None:
+            # An entry of several lines, or one line.
+            count = next(each for each in range(middle + 1, high + 1) if content(each) is not None)
+            if holds(content(count)):
+                return low + 1
+            low = count
+        elif holds(content(count)):
+            high = count
+        else:
+            low = count
+
+
+@contextmanager
+def at(path: Path, *place: str | int) -> Iterator[None]:
+    """Add file and line of an entry to an error."""
+    try:
+        yield
+    except RelayContactError as error:
+        raise RelayContactError(f"{path}:{line(path, place)}: {error}") from error
+
+
+def leaves(table: Mapping[str, Any], *above: str) -> Iterator[tuple[str, Place, Any]]:
+    """Return dotted name, keys and value of each value in nested tables; an empty table is one."""
+    for key, value in table.items():
+        keys = (*above, key)
+        if isinstance(value, dict) and value:
+            yield from leaves(value, *keys)
+        else:
+            yield ".".join(keys), keys, value
+
+
+def variables(
+    path: Path, table: Mapping[str, Any], place: Place, component: Component | None, kind: str = "parameter"
+) -> dict[str, Value]:
+    """Return variables of one kind in a table of a file, by name, each accepted by the component, if there is one.
+
+    The path of a spring file is relative to the file.
+    """
+    values = {}
+    with Contact(component) if component else nullcontext() as contact:
+        for name, keys, value in leaves(table):
+            if name == "beam.file" and isinstance(value, str) and value:
+                value = str(path.resolve().parent / value)
+            if contact:
+                with at(path, *place, *keys), contact.explained():
+                    contact.set(contact.component.settable(name, kind), value)
+            values[name] = value
+    return values

@@ -1,0 +1,383 @@
+"""Files of relays, standards and scenes with one thing wrong: told with its line, or in the result; never dropped."""
+
+import re
+import time
+from collections.abc import Callable, Iterator
+from copy import deepcopy
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import tomlkit
+
+from component import COMPONENT, ROOT
+from relay_contact import RelayContactError, Scene, run, scenes
+from relay_contact.command import main
+from relay_contact.files import read_toml
+from relay_contact.qualification import Relay, Standard, relays, standards
+from relay_contact.qualification.response import respond
+from relay_contact.qualification.standards import BAND, NARROWEST, overall
+from relay_contact.schema import line
+
+READERS: dict[str, Callable[[Path], Any]] = {
+    "relay": lambda path: Relay.read(path, COMPONENT),
+    "standard": Standard.read,
+    "scene": lambda path: Scene.read(path, COMPONENT),
+}
+SHIPPED = [
+    (kind, path)
+    for kind, files in (("relay", relays()), ("standard", standards()), ("scene", scenes()))
+    for path in files.values()
+]
+TEXT = ("title", "name", "clause")
+NEVER: tuple[Any, ...] = ("0.6 mm", "100 g", [], {}, {"shok": 1.0}, float("nan"), float("inf"), -float("inf"), 10**400)
+"""Values that a number never has."""
+SOMETIMES = (-1.0, 0, 1e-300, 2**40)
+
+
+def places(table: Any, *above: Any) -> Iterator[tuple[Any, ...]]:  # noqa: ANN401
+    """Give where the entries of a file are, tables and their values."""
+    for key in list(table) if isinstance(table, dict) else range(len(table)):
+        yield (*above, key)
+        if isinstance(table[key], dict | list):
+            yield from places(table[key], *above, key)
+
+
+def wrong(content: dict[str, Any]) -> Iterator[tuple[dict[str, Any], tuple[Any, ...], bool]]:
+    """Give the contents of a file with one entry changed each, where, and whether it has to be refused."""
+    for place in places(content):
+        key, *_ = reversed(place)
+
+        def changed(act: Callable[[Any, Any], object], at: tuple[Any, ...] = place) -> dict[str, Any]:
+            copy = deepcopy(content)
+            table: Any = copy
+            for each in at[:-1]:
+                table = table[each]
+            act(table, at[-1])
+            return copy
+
+        def put(new: Any) -> Callable[[Any, Any], object]:  # noqa: ANN401
+            return lambda table, at: table.__setitem__(at, new)
+
+        value: Any = content
+        for each in place:
+            value = value[each]
+        if isinstance(key, str):
+            yield changed(lambda table, key: table.__setitem__(f"{key}k", table.pop(key))), place[:-1], True
+            yield changed(lambda table, key: table.__setitem__(f"{key}k", table[key])), place[:-1], True
+        if isinstance(value, float | int) and not isinstance(value, bool):
+            for each in NEVER:
+                yield changed(put(each)), place, True
+            for each in SOMETIMES:
+                yield changed(put(each)), place, False
+        elif key not in TEXT:
+            yield changed(put(3.5)), place, True
+        if isinstance(value, list) and len(value) > 1 and not isinstance(value[0], str | dict):
+            yield changed(put(value[::-1])), place, True
+        if isinstance(value, list) and value and isinstance(value[0], dict):
+            yield changed(put([*value, value[0]])), place, True
+
+
+def written(path: Path, content: dict[str, Any]) -> Path:
+    """Write a file; what is not TOML at all is left out."""
+    path.write_text(tomlkit.dumps(content), encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(("kind", "shipped"), SHIPPED, ids=lambda each: getattr(each, "stem", each))
+def test_what_is_wrong_is_told_or_in_the_result(kind: str, shipped: Path, tmp_path: Path) -> None:
+    content = read_toml(shipped)
+    for table in (content.get("inputs", {}), content.get("parameters", {}).get("beam", {})):
+        if "file" in table:
+            table["file"] = str(shipped.parent / table["file"])
+    read, path = READERS[kind], tmp_path / "file.toml"
+    right = read(written(path, content))
+    lines = len(path.read_text().splitlines())
+    refused = 0
+    for changed, place, never in wrong(content):
+        written(path, changed)
+        try:
+            found = read(path)
+        except RelayContactError as error:
+            for each in str(error).splitlines():
+                told = re.match(rf"{re.escape(str(path))}:(\d+): ", each)
+                assert told, each
+                assert 1 <= int(told[1]) <= lines + 10
+            refused += 1
+        else:
+            assert not never, place
+            # Nothing was dropped.
+            assert repr(found) != repr(right) or changed == content, place
+    assert refused > 20
+
+
+NESTED = """title = "no [[table]] = 1"  # line 1
+parameters.beam.stiffnessDamping = 5e-6
+
+[[position]]
+name = '''
+two lines'''
+[position.parameters]  # line 7
+contact.overtravel = 1e-4
+[[position]]
+name = "b"
+parameters = {tip.mass = 1e-5}
+[uncertainty]
+tip.mass = 0.1
+list = [
+  1.0,
+
+  [2.0, 3.0]]
+last = 1
+"""
+
+
+@pytest.mark.parametrize(
+    ("place", "expected"),
+    [
+        ((), 1),
+        (("title",), 1),
+        (("parameters", "beam", "stiffnessDamping"), 2),
+        (("position", 0), 4),
+        (("position", 0, "name"), 5),
+        (("position", 0, "parameters"), 7),
+        (("position", 0, "parameters", "contact", "overtravel"), 8),
+        (("position", 1), 9),
+        (("position", 1, "parameters", "tip", "mass"), 11),
+        (("uncertainty",), 12),
+        (("uncertainty", "list", 1, 0), 14),
+        (("uncertainty", "last"), 18),
+        # What is missing is told where it should be.
+        (("position", 1, "parameters", "tip", "inertia"), 11),
+        (("position", 2, "name"), 4),
+    ],
+)
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_lines_are_those_of_the_entry(tmp_path: Path, place: tuple[str | int, ...], expected: int, end: str) -> None:
+    path = tmp_path / "nested.toml"
+    path.write_bytes(NESTED.replace("\n", end).encode())
+    assert line(path, place) == expected
+    path.write_bytes(b"\xef\xbb\xbf" + 100 * b"# before\n" + NESTED.encode())
+    assert line(path, place) == (expected + 100 if place else 1)
+
+
+PAPER = 'title = "own"\n'
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("[[position]]\n[[position]]\nname = 'position 1'\n", '4: position.2.name = "position 1": .*given twice'),
+        ("[position]\nname = 'a'\n", "2: position = a table: not allowed, allowed is a list"),
+        ("position = []\n", "2: position = \\[\\]: not allowed, .*at least 1 item"),
+        ("[monitor]\nvolts = 6.0\n", "3: monitor.volts: no such entry, .*did you mean voltage"),
+        ("[monitor]\nvoltage = 0.0\n", "3: monitor.voltage = 0.0: not allowed, allowed is greater"),
+        ("uncertainty.second.gap = 0.1\n", "2: uncertainty.second.gap: not used"),
+        ("uncertainty.resistance.hardness = 0.1\n", "2: uncertainty.resistance.hardness: not used"),
+        ("parameters.tip.mass = 0.0\nuncertainty.tip.mass = 0.1\n", "3: uncertainty.tip.mass: not used, .*or it is 0"),
+        ("uncertainty.tip.mass = -0.1\n", "2: uncertainty.tip.mass = -0.1: not allowed, allowed is a part"),
+        ("uncertainty.contact.force = 0.1\n", "2: contact.force: an output, which cannot be set"),
+        ("uncertainty.base.acceleration = 0.1\n", "2: base.acceleration: not a parameter"),
+        ("uncertainty.effects.heating = 0.1\n", "2: uncertainty.effects.heating: not a real parameter"),
+        # At the end of the interval the moving contact has left the range that the component allows.
+        ("parameters.contact.overtravel = 9e-3\nuncertainty.contact.overtravel = 0.2\n", "3: contact.overtravel = 0.0"),
+        ("parameters.excitation.amplitude = 9.0\n", "2: parameters.excitation.amplitude = 9.0: not allowed, the tests"),
+        ("parameters.chatter.minimumDuration = 1.0\n", "2: parameters.chatter.minimumDuration = 1.0: not allowed, the"),
+        ("parameters.base.acceleration = 9.0\n", "2: base.acceleration: not a parameter"),
+        ("parameters.beam.file = 'none.toml'\n", "2: .*none.toml: cannot be read"),
+        # Parameters that are allowed, but not together.
+        ("parameters.effects.secondContact = true\nposition = [{parameters.effects.contactLaw = 'Bonded'}]\n",
+         "3: effects.contactLaw: Linearised and Bonded"),
+        ("a = 1\na = 2\n", "3: not TOML: "),
+        ("a = [1,\n", "3: not TOML: "),
+        ("a = " + 5000 * "[", " not TOML: nested too deeply"),
+        ("a = '\udcff'\n", "2: not TOML: not text in UTF-8"),
+    ],
+)  # fmt: skip
+def test_wrong_relays(tmp_path: Path, text: str, message: str) -> None:
+    path = tmp_path / "relay.toml"
+    path.write_bytes((PAPER + text).encode(errors="surrogateescape"))
+    with pytest.raises(RelayContactError, match=f"^{re.escape(str(path))}:{message}"):
+        Relay.read(path, COMPONENT)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("[[shock]]", "[[shok]]", "20: shok: no such entry, .*did you mean shock"),
+        (
+            "opening = 10e-6",
+            "opening = 10",
+            "5: contacts.opening = 10: not allowed, allowed is less than or equal to 0.1",
+        ),
+        ("opening = 10e-6", "opening = 7e-3", "23: shock.1.duration = 0.006: not allowed, .*longest opening"),
+        ("acceleration = 50.98581", "acceleration = '100 g'", '22: shock.1.acceleration = "100 g": not allowed'),
+        ("rms = 2.83", "rms = 27.8", "15: random.1.rms = 27.8: not allowed, the density has 2.8.. g rms"),
+        ("[10.0, 0.20797], [55.0", "[55.0, 0.20797], [10.0", "14: random.1.density = .*frequencies have to rise"),
+        ("[10.0, 0.20797]", "[10.0, 0.0]", "14: random.1.density.1.2 = 0.0: not allowed, allowed is greater than 0"),
+        ("[10.0, 0.20797]", "[0.0, 0.20797]", "14: random.1.density.1.1 = 0.0: not allowed, allowed is greater"),
+        ("duration = 28800.0", "duration = 0.5", "16: random.1.duration = 0.5: .*10 periods of the lowest frequency"),
+        ('name = "shock on the body"', 'name = "random, test IV"', "21: shock.1.name = .* given twice"),
+    ],
+)
+def test_wrong_standards(tmp_path: Path, old: str, new: str, message: str) -> None:
+    path, text = tmp_path / "standard.toml", standards()["ISO-16750-3"].read_text()
+    assert text.count(old) == 1
+    path.write_text(text.replace(old, new))
+    with pytest.raises(RelayContactError, match=f"(?m)^{re.escape(str(path))}:{message}"):
+        Standard.read(path)
+
+
+@pytest.mark.parametrize("frequencies", ["[500.0, 10.0]", "[100.0, 100.5]", "[0.0, 500.0]", "[10.0, 2e4]", "[10.0]"])
+def test_bands_that_the_response_does_not_resolve(tmp_path: Path, frequencies: str) -> None:
+    path, text = tmp_path / "standard.toml", standards()["IEC-60068-2"].read_text()
+    path.write_text(text.replace("[10.0, 500.0]", frequencies))
+    with pytest.raises(RelayContactError, match=r"standard.toml:16: sine.1.frequencies"):
+        Standard.read(path)
+    known = respond(COMPONENT, {}, 600.0).frequency
+    # The widest band that is allowed is known, and the narrowest holds two lines.
+    assert known[1] < BAND[0]
+    assert known[-1] > BAND[1] - known[1]
+    assert 2 * known[1] < NARROWEST
+
+
+def test_rms_of_a_density_in_closed_form() -> None:
+    corners = ((20.0, 0.01), (80.0, 0.04), (350.0, 0.04), (2000.0, 0.007), (4000.0, 0.0035))
+    frequency = np.linspace(20, 4000, 1_000_000)
+    lines = np.exp(np.interp(np.log(frequency), *np.log(np.transpose(corners))))
+    assert overall(corners) == pytest.approx(np.trapezoid(lines, frequency) ** 0.5, rel=1e-6)
+    # NAVMAT P-9492 prints 6.06 g.
+    assert overall(corners[:4]) == pytest.approx(6.06, abs=0.05)
+
+
+SCENE = 'title = "own"\nstop = 1e-3\ncommunicationStep = 1e-5\noutputs = ["contact.force"]\n'
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            SCENE + "[inputs]\nsupport.displacement = 0.0\nfile = 'moved/in.csv'\n",
+            "6: inputs.support.displacement = 0.0",
+        ),
+        (SCENE + "[inputs]\nfile = 3\n", "6: inputs.file = 3: not allowed"),
+        (SCENE + "[inputs]\ntip.mass = 1e-5\n", "6: tip.mass: not an input"),
+        (SCENE + "[parameters]\nbase.acceleration = 9.0\n", "6: base.acceleration: not a parameter"),
+        (SCENE + "[parameters]\nbeam.length = '15 mm'\n", '6: beam.length = "15 mm": not allowed'),
+        (SCENE.replace("force", "farce"), "4: contact.farce: no such variable; did you mean contact.force"),
+        (SCENE.replace("stop = 1e-3", "stop = 0"), "2: stop = 0: not allowed, allowed is greater than 0"),
+        (SCENE.replace("stop = 1e-3\n", ""), "1: stop: missing"),
+    ],
+)
+def test_wrong_scenes(tmp_path: Path, text: str, message: str) -> None:
+    path = tmp_path / "scene.toml"
+    (tmp_path / "moved").mkdir()
+    (tmp_path / "moved/in.csv").write_text("time,support.displacement\n0,0\n1e-3,1e-6\n")
+    path.write_text(text)
+    with pytest.raises(RelayContactError, match=f"^{re.escape(str(path))}:{message}"):
+        run(path, component=COMPONENT)
+
+
+def test_a_table_in_a_folder_beside_the_scene_and_a_change_of_its_input(tmp_path: Path) -> None:
+    path = tmp_path / "scene.toml"
+    (tmp_path / "moved").mkdir()
+    (tmp_path / "moved/in.csv").write_text("time,support.displacement\n0,0\n1e-3,1e-6\n")
+    path.write_text(SCENE + "[inputs]\nfile = 'moved/in.csv'\n")
+    moved = run(path, component=COMPONENT)["contact.force"]
+    path.write_text(SCENE)
+    held = run(path, component=COMPONENT)["contact.force"]
+    assert moved[-1] > held[-1]
+    path.write_text(SCENE + "[inputs]\nfile = 'moved/in.csv'\n")
+    # As in Rust: an input that is set is held.
+    changes: Any = {"support.displacement": 0.0}
+    assert np.array_equal(run(path, component=COMPONENT, **changes)["contact.force"], held)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"stop": 0.0}, "stop = 0.0 s: not allowed"),
+        ({"stop": -1.0}, "stop = -1.0 s: not allowed"),
+        ({"step": float("nan")}, "communication step = nan s: not allowed"),
+        ({"stop": 1e9}, "stop = 1e.09 s with steps of 1e-05 s: not allowed"),
+        ({"inputs": {"base.acceleration": [0.0]}}, '"time" is missing'),
+        ({"inputs": {"time": [0.0, 2.0, 1.0], "base.acceleration": 3 * [0.0]}}, "time = 1 s after 2 s: .*have to rise"),
+        ({"inputs": {"time": [0.0, 0.0], "base.acceleration": 2 * [0.0]}}, "time = 0 s after 0 s: .*have to rise"),
+        ({"inputs": {"time": [0.0, 1.0], "base.acceleration": [0.0]}}, "base.acceleration: .* as many as times"),
+        ({"inputs": {"time": [0.0], "base.acceleration": [float("nan")]}}, "base.acceleration: .*finite"),
+        ({"inputs": {"time": [], "base.acceleration": []}}, "finite numbers"),
+        ({"inputs": {"time": ["a"], "base.acceleration": [0.0]}}, "time: not allowed, allowed are numbers"),
+        ({"inputs": {"time": [0.0], "tip.mass": [1e-5]}}, "tip.mass: not an input"),
+        ({"inputs": {"time": [0.0], "base.acceleration": [0.0]}, "base.acceleration": 1.0}, "given twice"),
+        (
+            {"spring.thickness": "thick", "beam.file": str(ROOT / "scenes/springs/tapered-cube.toml")},
+            "no such variable",
+        ),
+    ],
+)
+def test_wrong_runs(given: Any, message: str) -> None:  # noqa: ANN401
+    with pytest.raises(RelayContactError, match=message):
+        run("paper-1khz", component=COMPONENT, **given)
+
+
+def test_factors_of_entries_are_checked() -> None:
+    spring = str(ROOT / "scenes/springs/tapered-cube.toml")
+    for factor in ("thick", 0.0, -1.0, float("nan")):
+        values: Any = {"beam.file": spring, "spring.thickness": factor}
+        with pytest.raises(RelayContactError, match=r"spring.thickness = .*a factor greater than 0"):
+            COMPONENT.started(values)
+
+
+def test_a_spring_file_is_refused_before_its_entries_are_changed(tmp_path: Path) -> None:
+    for text, message in (
+        ("segment = 3\n", "line 1: segment"),
+        ("[[segment]]\nlength = 'a'\n", "line 2"),
+        ("[", "TOML"),
+    ):
+        (tmp_path / "spring.toml").write_text(text)
+        values: Any = {"beam.file": str(tmp_path / "spring.toml"), "spring.thickness": 1.1}
+        with pytest.raises(RelayContactError, match=message):
+            COMPONENT.started(values)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--stop", "-1"], "argument --stop: -1: not allowed, allowed is a number greater than 0"),
+        (["--step", "0"], "argument --step: 0: not allowed, allowed is a number greater than 0"),
+        (["--step", "nan"], "argument --step: nan: not allowed, allowed is a finite number"),
+        (["--stop", "1 ms"], "argument --stop: 1 ms: not allowed, allowed is a finite number"),
+        (["--stop", "1e9"], "relay-contact: stop = 1e+09 s with steps of 1e-05 s: not allowed"),
+        (["--set", "solver.modes=inf"], "relay-contact: solver.modes = inf: not allowed, allowed is a whole number"),
+        (["--set", "solver.modes=3000000000"], "relay-contact: solver.modes = 3000000000.0: not allowed"),
+        (["--set", "beam.length=nan"], "relay-contact: beam.length = nan: not allowed, allowed is a finite number"),
+        (
+            ["--set", "beam.length=15 mm"],
+            'relay-contact: beam.length = "15 mm": not allowed, allowed is a finite number',
+        ),
+    ],
+)
+def test_wrong_arguments(arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
+    try:
+        code = main(["run", "paper-1khz", *arguments])
+    except SystemExit as end:
+        code = int(str(end.code))
+    assert code in (1, 2)
+    assert message in capsys.readouterr().err
+
+
+def test_wrong_sweeps(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for sweep in ("0 100 0 1", "10 -1 0 1", "10 100 0 0"):
+        assert main(["plot", str(tmp_path / "none.csv"), "--sweep", *sweep.split()]) == 1
+        assert "FIRST, LAST and DURATION have to be greater than 0" in capsys.readouterr().err
+
+
+def test_what_takes_long_shows_progress(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = ["run", "at-rest", "--out", str(tmp_path), "--step", "1e-5", "--stop"]
+    assert main([*arguments, "0.001"]) == 0
+    assert not capsys.readouterr().err
+    began = time.monotonic()
+    assert main([*arguments, "1.5"]) == 0
+    assert time.monotonic() - began > 2
+    assert re.search(r"simulated +\d+ %", capsys.readouterr().err)
