@@ -1,4 +1,4 @@
-//! The Rust library diffsol: BDF and an ESDIRK of order 3, dense, with analytic Jacobian-vector products and root finding.
+//! The Rust library diffsol: BDF of orders 1 to 5, dense, with analytic Jacobian-vector products and root finding.
 //!
 //! The absolute tolerance is the tolerance in units of [`Problem::scales`], the relative one [`Problem::relative`]
 //! times it. At an opening or a closing the solver is restarted on the other branch.
@@ -15,21 +15,12 @@ use crate::problem::Problem;
 /// Runs with more openings and closings than this fail.
 const MOST_EVENTS: usize = 10_000;
 
-/// A method of diffsol.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Diffsol {
-    /// Backward differentiation, orders 1 to 5.
-    Bdf,
-    /// Explicit first stage, singly diagonally implicit Runge-Kutta, order 3, four stages.
-    Esdirk34,
-}
+/// The BDF of diffsol.
+pub struct Diffsol;
 
 impl Integrator for Diffsol {
     fn name(&self) -> &'static str {
-        match self {
-            Self::Bdf => "diffsol BDF",
-            Self::Esdirk34 => "diffsol ESDIRK34",
-        }
+        "diffsol BDF"
     }
 
     fn run(&self, problem: &Problem, setting: Setting) -> Result<Run, Failure> {
@@ -45,9 +36,8 @@ impl Integrator for Diffsol {
         };
         while run.forces.len() <= problem.cells as usize {
             let stopped = |error: &DiffsolError| Failure::Stopped(format!("t = {:.6e} s: {error}", branch.time));
-            let next = self
-                .branch(problem, &branch, setting.value(), start, &mut run)
-                .map_err(|error| stopped(&error))?;
+            let next =
+                Self::branch(problem, &branch, setting.value(), start, &mut run).map_err(|error| stopped(&error))?;
             if run.events.len() > MOST_EVENTS {
                 return Err(Failure::Stopped("too many openings and closings".to_owned()));
             }
@@ -74,7 +64,6 @@ struct Start {
 impl Diffsol {
     /// Runs on one branch, to its end or to the end of the simulation.
     fn branch(
-        self,
         problem: &Problem,
         from: &Start,
         tolerance: f64,
@@ -103,10 +92,7 @@ impl Diffsol {
             .build()?;
         // The first steps after an impact are short.
         ode.ode_options.min_timestep = 1e-20;
-        match self {
-            Self::Bdf => drive(problem, closed, ode.bdf::<Lu>()?, clock, run),
-            Self::Esdirk34 => drive(problem, closed, ode.esdirk34::<Lu>()?, clock, run),
-        }
+        drive(problem, closed, ode.bdf::<Lu>()?, clock, run)
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::problem::Problem;
 
 /// Processor time an integrator may take for a run, s.
-pub const BUDGET: f64 = 20.0;
+pub const BUDGET: f64 = 5.0;
 
 /// Accuracy setting of an integrator.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,6 +27,15 @@ impl Setting {
         match self {
             Self::Tolerance(_) => "tolerance",
             Self::Step(_) => "step",
+        }
+    }
+}
+
+impl std::fmt::Display for Setting {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Tolerance(value) => write!(f, "{value:.0e}"),
+            Self::Step(value) => write!(f, "{value:.0e} s"),
         }
     }
 }

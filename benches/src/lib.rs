@@ -4,7 +4,7 @@
 //! scenes      what is simulated
 //! problem     the modal equations of a scene, in the form general integrators need
 //! integrator  their interface: forces on a grid, times of opening and closing, time and work spent
-//! component, cvode, diffsol, generalised_alpha    the integrators
+//! component, cvode, diffsol, newmark    the integrators
 //! radau       the reference, with its own error estimate
 //! plan        what is measured
 //! study       runs them against the reference, interleaved;   table    the results
@@ -16,10 +16,10 @@ pub mod c_program;
 pub mod component;
 pub mod cvode;
 pub mod diffsol;
-pub mod generalised_alpha;
 pub mod independent;
 pub mod integrator;
 pub mod machine;
+pub mod newmark;
 pub mod page;
 pub mod plan;
 pub mod problem;

@@ -26,9 +26,8 @@ pub struct Problem {
     pub end: f64,
     /// Number of equal communication steps, at whose ends the force is recorded.
     pub cells: u32,
-    /// Relative tolerance of the states per tolerance of the force, for general integrators: of 1 and 0.01 the one
-    /// that is faster at equal error. If the contact opens, the indentation is a small difference of modal
-    /// displacements up to a thousand times larger.
+    /// Relative tolerance of the states per tolerance of the force, for general integrators. If the contact opens, the
+    /// indentation is a small difference of modal displacements up to a thousand times larger.
     pub relative: f64,
 }
 
@@ -48,15 +47,23 @@ impl Problem {
         })
     }
 
-    /// The same with another number of modes.
+    /// The same with a change of the scene.
     ///
     /// # Errors
     /// A [`SceneError`] if the scene cannot be simulated.
-    pub fn with_modes(&self, modes: i32) -> Result<Self, SceneError> {
+    pub fn with(&self, change: impl FnOnce(&mut Scene)) -> Result<Self, SceneError> {
         let mut scene = self.model.scene().clone();
-        scene.solver.modes = modes;
+        change(&mut scene);
         let model = Model::new(&scene, 0.0)?;
         Ok(Self { model, ..self.clone() })
+    }
+
+    /// The same with another number of modes than the component chooses.
+    ///
+    /// # Errors
+    /// As [`Problem::with`].
+    pub fn with_modes(&self, modes: i32) -> Result<Self, SceneError> {
+        self.with(|scene| scene.solver.modes = modes)
     }
 
     /// Number of modes.

@@ -7,6 +7,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use crate::integrator::{Failure, Integrator, Run, Setting};
 use crate::problem::Problem;
 use crate::radau::Reference;
+use crate::table::PEERS;
 
 /// Runs shorter than this, s, are repeated within a round.
 const SHORT: f64 = 2e-3;
@@ -39,18 +40,13 @@ pub struct Row {
     pub outcome: Result<Measured, Failure>,
 }
 
-impl Row {
-    /// Whether the contact opens or closes.
-    pub fn opens(&self) -> bool {
-        !self.case.reference.events.is_empty()
-    }
-}
-
 /// A completed run, measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
     /// Processor time per simulated time, median of all rounds.
     pub cost: f64,
+    /// The least of all rounds.
+    pub least_cost: f64,
     /// Largest deviation of the contact force on the grid, relative to the force scale.
     pub force_error: f64,
     /// Openings and closings found.
@@ -67,7 +63,41 @@ pub struct Measured {
     pub iterations: u64,
 }
 
-/// Runs all cases in `turns` rounds.
+impl Measured {
+    /// Of the force, relative, and of the instants, s; infinite where their number is wrong.
+    pub fn errors(&self) -> [f64; 2] {
+        [self.force_error, self.event_error.unwrap_or(f64::INFINITY)]
+    }
+
+    /// Whether it is as accurate as another one, and cheaper by this factor.
+    pub fn beats(&self, other: &Self, factor: f64) -> bool {
+        factor * self.cost < other.cost
+            && self
+                .errors()
+                .iter()
+                .zip(other.errors())
+                .all(|(own, error)| *own <= error)
+    }
+}
+
+/// Whether another run of the same integrator, compared in the same scene, beats this one.
+fn beaten(row: &Row, rows: &[Row]) -> bool {
+    let Ok(run) = row.outcome.as_ref() else {
+        return false;
+    };
+    let same = |case: &Case| {
+        case.part == PEERS
+            && case.problem.name == row.case.problem.name
+            && case.integrator.name() == row.case.integrator.name()
+    };
+    let mut others = rows
+        .iter()
+        .filter(|other| same(&other.case))
+        .filter_map(|other| other.outcome.as_ref().ok());
+    row.case.part == PEERS && others.any(|other| other.beats(run, 1.0))
+}
+
+/// Runs all cases in `turns` rounds; of other integrators the runs that no other one of theirs beats are left.
 pub fn run(cases: &[Case], turns: usize) -> Vec<Row> {
     let mut times = vec![Vec::new(); cases.len()];
     let mut first: Vec<Option<Result<Run, Failure>>> = cases.iter().map(|_| None).collect();
@@ -97,26 +127,42 @@ pub fn run(cases: &[Case], turns: usize) -> Vec<Row> {
     }
     progress.finish_and_clear();
     let rows = cases.iter().zip(times).zip(first);
-    rows.filter_map(|((case, mut times), first)| {
+    let rows = rows.filter_map(|((case, mut times), first)| {
         times.sort_by(f64::total_cmp);
-        let time = times.get(times.len() / 2).copied().unwrap_or(f64::NAN);
         Some(Row {
             case: case.clone(),
             modes: case.problem.modes(),
-            outcome: first?.and_then(|run| measure(case, &run, time)),
+            outcome: first?.and_then(|run| measure(case, &run, &times)),
         })
-    })
-    .collect()
+    });
+    let rows: Vec<Row> = rows.collect();
+    let left: Vec<bool> = rows.iter().map(|row| !beaten(row, &rows)).collect();
+    rows.into_iter()
+        .zip(left)
+        .filter_map(|(row, left)| left.then_some(row))
+        .collect()
 }
 
-fn measure(case: &Case, run: &Run, time: f64) -> Result<Measured, Failure> {
+/// A single run of a case.
+///
+/// # Errors
+/// A [`Failure`].
+pub fn once(case: &Case) -> Result<Measured, Failure> {
+    let run = case.integrator.run(&case.problem, case.setting)?;
+    measure(case, &run, &[run.time])
+}
+
+/// A run, and what it took in all rounds, s, in ascending order.
+fn measure(case: &Case, run: &Run, times: &[f64]) -> Result<Measured, Failure> {
+    let time = |place: usize| times.get(place).copied().unwrap_or(f64::NAN);
     let Case { problem, reference, .. } = case;
     if run.forces.len() != reference.forces.len() || run.forces.iter().any(|force| !force.is_finite()) {
         return Err(Failure::Stopped("the force is not finite at every time".to_owned()));
     }
     let found = (run.events.len() == reference.events.len()).then_some(run.events.as_slice());
     Ok(Measured {
-        cost: time / problem.end,
+        cost: time(times.len() / 2) / problem.end,
+        least_cost: time(0) / problem.end,
         force_error: largest_difference(&run.forces, &reference.forces) / problem.model.force_scale(),
         events: run.events.len(),
         event_error: found.map(|events| largest_difference(events, &reference.events)),

@@ -172,14 +172,16 @@ class Study:
 
 def draw_frequencies(axes: Axes, rows: Array) -> None:
     """Draw natural frequencies over overtravel: slipping, sticking, published."""
-    styles = [(BLACK, "slips, or no friction")]
+    styles = [(BLACK, "-", "slips, or no friction")]
     styles += [
-        (colour, f"sticks, height {1e3 * h:g} mm") for colour, h in zip((SKY, BLUE, PURPLE), HEIGHTS, strict=True)
+        (colour, stroke, f"sticks, height {1e3 * h:g} mm")
+        for colour, stroke, h in zip((SKY, BLUE, PURPLE), ("--", "-.", ":"), HEIGHTS, strict=True)
     ]
     for length in LENGTHS:
         own = rows[np.isclose(rows[:, 0], length)]
-        for column, (colour, label) in enumerate(styles, start=2):
-            axes.plot(1e3 * own[:, 1], own[:, column], color=colour, label=label if length == LENGTHS[0] else None)
+        for column, (colour, stroke, label) in enumerate(styles, start=2):
+            name = label if length == LENGTHS[0] else None
+            axes.plot(1e3 * own[:, 1], own[:, column], stroke, color=colour, label=name)
         axes.annotate(f"{1e3 * length:g} mm", (0.5, own[-1, 2]), (3, 0), textcoords="offset points", fontsize="small")
     _, at, frequency = np.array(PUBLISHED).T
     axes.plot(at, frequency, "o", color=RED, label="published, prestressed")
@@ -193,13 +195,15 @@ def draw_frequencies(axes: Axes, rows: Array) -> None:
 
 def draw_responses(axes: Axes, rows: Array) -> None:
     """Draw the response of the contact force over frequency, by level; what opens is left out."""
-    curves = [(level, 1.0, colour) for level, colour in zip(LEVELS, (PURPLE, BLUE, GREEN, ORANGE), strict=True)]
-    for level, friction, colour in [*curves, (LEVELS[0], 0.0, BLACK)]:
+    looks = zip(LEVELS, (PURPLE, BLUE, GREEN, ORANGE), ("s", "o", "^", "v"), strict=True)
+    curves = [(level, 1.0, colour, marker) for level, colour, marker in looks]
+    for level, friction, colour, marker in [*curves, (LEVELS[0], 0.0, BLACK, "")]:
         own = rows[(rows[:, 1] == level) & (rows[:, 2] == friction)]
         if len(own):
             closed = np.where(own[:, 6] == 0, 1e3 * own[:, 3] / level, np.nan)
             label = f"{level:g} m/s²" if friction else "any, without friction"
-            axes.plot(own[:, 0], closed, "-" if friction else "--", color=colour, label=label)
+            stroke = "-" if friction else "--"
+            axes.plot(own[:, 0], closed, stroke, color=colour, label=label, marker=marker, markevery=6, markersize=5)
     axes.set(xlabel="frequency [Hz]", ylabel="force amplitude per acceleration [mN / (m/s²)]")
     axes.set_title("Damping ratio 1, contact closed", fontsize="medium")
 
@@ -218,11 +222,10 @@ def draw_loop(axes: Axes, loop: Array) -> None:
 
 def draw_slip(axes: Axes, rows: Array) -> None:
     """Draw the slip of a period, one way, over frequency."""
-    for level, colour in zip(FRETTED, (PURPLE, BLUE, GREEN), strict=True):
+    for level, colour, marker in zip(FRETTED, (PURPLE, BLUE, GREEN), ("s", "o", "^"), strict=True):
         own = rows[rows[:, 1] == level]
-        axes.plot(
-            own[:, 0], 1e6 * np.where(own[:, 6] == 0, own[:, 4] / 2, np.nan), color=colour, label=f"{level:g} m/s²"
-        )
+        slip = 1e6 * np.where(own[:, 6] == 0, own[:, 4] / 2, np.nan)
+        axes.plot(own[:, 0], slip, color=colour, label=f"{level:g} m/s²", marker=marker, markevery=4, markersize=5)
     axes.axhspan(*FRETTING, color=RED, alpha=0.12, lw=0, label="reported where connectors fret")
     axes.set(xscale="log", yscale="log", xlabel="frequency [Hz]", ylabel="slip in one direction [µm]", ylim=(1e-2, 20))
     axes.set_title("Slip in a period, start values", fontsize="medium")
@@ -237,8 +240,9 @@ def draw(path: Path, frequencies: Array, responses: Array, loop: Array, slips: A
         (frequencies, responses, loop, slips),
         strict=True,
     )
-    for axes, function, rows in drawn:
+    for letter, (axes, function, rows) in zip("abcd", drawn, strict=True):
         function(axes, rows)
+        axes.set_title(letter, loc="left", fontweight="bold")
         axes.grid(alpha=0.3)
         axes.legend(fontsize="small", frameon=False, ncols=2 if function is draw_frequencies else 1)
     save(figure, path)

@@ -3,45 +3,37 @@
 use super::rows::{Relay, Row, of};
 use crate::content::{Axis, Curve, Figure, Style};
 
-/// The scenes, with the anchor of the figure of each.
-pub const SCENES: [(&str, &str); 6] = [
-    ("paper", "accuracy-paper"),
-    ("linear", "accuracy-linear"),
-    ("chatter", "accuracy-chatter"),
-    ("chatter 3 %", "accuracy-chatter-3"),
-    ("chatter 0.3 %", "accuracy-chatter-03"),
-    ("closing bounce", "accuracy-closing-bounce"),
+/// The scenes.
+pub const SCENES: [&str; 6] = [
+    "paper",
+    "linear",
+    "chatter",
+    "chatter 3 %",
+    "chatter 0.3 %",
+    "closing bounce",
 ];
 
-/// Those in which the contact opens.
-const OPENING: [(&str, &str); 2] = [
-    ("chatter", "accuracy-chatter-durations"),
-    ("closing bounce", "accuracy-closing-bounce-durations"),
+/// Figures of all integrators: anchor, scene, and whether of the instants or of the force.
+const COMPARED: [(&str, &str, bool); 6] = [
+    ("accuracy-instants", "chatter", true),
+    ("accuracy-paper", "paper", false),
+    ("accuracy-instants-3", "chatter 3 %", true),
+    ("accuracy-chatter-3", "chatter 3 %", false),
+    ("accuracy-chatter", "chatter", false),
+    ("accuracy-instants-bounce", "closing bounce", true),
 ];
 
 const TIME: Axis = Axis::logarithmic("computing time per simulated second", "s");
 const FORCE: Axis = Axis::logarithmic("error of the contact force, relative to the preload", "");
-const DURATION: Axis = Axis::logarithmic("error of the opening durations", "µs");
+const INSTANTS: Axis = Axis::logarithmic("error of the instants of opening and closing", "µs");
 
 /// Larger errors are not drawn: such a run is of no use. Relative to the preload, and in us.
 const USELESS: (f64, f64) = (1.0, 10.0);
 
 /// All of them.
 pub fn figures(rows: &[Row], relays: &[Relay]) -> Vec<Figure> {
-    let force = |row: &Row| row.force_error.filter(|error| *error <= USELESS.0);
-    let duration = |row: &Row| row.opening_duration_error_us.filter(|error| *error <= USELESS.1);
-    let forces = SCENES.map(|(scene, id)| {
-        let title = format!("Error of the contact force over computing time: {scene}");
-        integrators(rows, scene, id, title, FORCE, &force, |row| row.reference_force_error)
-    });
-    let durations = OPENING.map(|(scene, id)| {
-        let title = format!("Error of the opening durations over computing time: {scene}");
-        integrators(rows, scene, id, title, DURATION, &duration, |row| {
-            row.reference_event_error_us
-        })
-    });
-    let mut figures = vec![tolerances(rows), promise(relays), modes(rows)];
-    figures.extend(forces.into_iter().chain(durations));
+    let mut figures = COMPARED.map(|compared| integrators(rows, compared)).to_vec();
+    figures.extend([tolerances(rows), promise(relays), modes(rows)]);
     figures
 }
 
@@ -59,7 +51,7 @@ fn figure(id: &'static str, title: String, [x, y]: [Axis; 2], curves: Vec<Curve>
 
 /// A curve for each scene over a quantity of the rows of a part.
 fn scenes(rows: &[Row], part: &str, x: impl Fn(&Row) -> f64) -> Vec<Curve> {
-    let curve = |((scene, _), colour): ((&'static str, _), usize)| {
+    let curve = |(scene, colour): (&'static str, usize)| {
         let points = of(rows, part, scene).filter_map(|row| Some((x(row), row.force_error?)));
         Curve::new(scene, points, Style::LineAndMarkers, colour)
     };
@@ -68,7 +60,7 @@ fn scenes(rows: &[Row], part: &str, x: impl Fn(&Row) -> f64) -> Vec<Curve> {
 
 fn tolerances(rows: &[Row]) -> Figure {
     let mut curves = scenes(rows, "delivered", |row| row.value);
-    let tolerances = of(rows, "delivered", SCENES[0].0).map(|row| (row.value, row.value));
+    let tolerances = of(rows, "delivered", SCENES[0]).map(|row| (row.value, row.value));
     curves.push(Curve::new("error = tolerance", tolerances, Style::Dashed, 6));
     let axes = [Axis::logarithmic("solver.tolerance", ""), FORCE];
     figure("accuracy-tolerance", "Error against tolerance".to_owned(), axes, curves)
@@ -111,32 +103,55 @@ fn modes(rows: &[Row]) -> Figure {
     )
 }
 
-/// Error over computing time of all integrators, of the component as it is used, and the error of the reference.
-fn integrators(
-    rows: &[Row],
-    scene: &str,
-    id: &'static str,
-    title: String,
-    errors: Axis,
-    error: &dyn Fn(&Row) -> Option<f64>,
-    reference: fn(&Row) -> f64,
-) -> Figure {
-    let point = |row: &Row| Some((row.seconds_per_second?, error(row)?));
-    let mut names: Vec<&str> = of(rows, "peers", scene).map(|row| row.integrator.as_str()).collect();
-    names.dedup();
-    let curve = |(name, colour): (&&str, usize)| {
-        let runs = of(rows, "peers", scene).filter(|row| row.integrator == *name);
-        Curve::new(name, runs.filter_map(point), Style::LineAndMarkers, colour)
+/// Error over computing time: of each integrator the runs that none of its cheaper ones equals.
+fn integrators(rows: &[Row], (id, scene, instants): (&'static str, &str, bool)) -> Figure {
+    let error = |row: &Row| {
+        let (error, useless) = if instants {
+            (row.event_error_us?, USELESS.1)
+        } else {
+            (row.force_error?, USELESS.0)
+        };
+        (error <= useless).then_some(error)
     };
-    let mut curves: Vec<_> = names.iter().zip(0..).map(curve).collect();
-    let times = curves.iter().flat_map(|curve| &curve.x);
-    let ends = times.fold((f64::INFINITY, 0.0_f64), |(least, most), time| {
-        (least.min(*time), most.max(*time))
+    let runs = || of(rows, "delivered", scene).chain(of(rows, "peers", scene));
+    let mut names: Vec<&str> = runs().map(|row| row.integrator.as_str()).collect();
+    names.dedup();
+    let mut ends = (f64::INFINITY, 0.0_f64);
+    let mut curves = Vec::new();
+    for (colour, name) in names.into_iter().enumerate() {
+        let own = runs().filter(|row| row.integrator == name);
+        let mut points: Vec<_> = own
+            .filter_map(|row| Some((row.seconds_per_second?, error(row)?)))
+            .collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut least = f64::INFINITY;
+        points.retain(|point| {
+            let better = point.1 < least;
+            least = least.min(point.1);
+            better
+        });
+        ends = points
+            .iter()
+            .fold(ends, |(low, high), point| (low.min(point.0), high.max(point.0)));
+        if !points.is_empty() {
+            curves.push(Curve::new(name, points, Style::LineAndMarkers, colour));
+        }
+    }
+    let known = runs().map(|row| {
+        if instants {
+            row.reference_event_error_us
+        } else {
+            row.reference_force_error
+        }
     });
-    let own = of(rows, "delivered", scene).filter_map(point);
-    curves.push(Curve::new("relay-contact, modes chosen by it", own, Style::Dashed, 0));
-    let known = of(rows, "peers", scene).map(reference).fold(0.0, f64::max);
+    let known = known.fold(0.0, f64::max);
     let line = [(ends.0, known), (ends.1, known)];
     curves.push(Curve::new("error of the reference", line, Style::Dashed, 6));
-    figure(id, title, [TIME, errors], curves)
+    let axis = if instants { INSTANTS } else { FORCE };
+    figure(
+        id,
+        format!("{} over computing time: {scene}", axis.label),
+        [TIME, axis],
+        curves,
+    )
 }

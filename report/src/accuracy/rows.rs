@@ -17,9 +17,9 @@ pub struct Row {
     pub seconds_per_second: Option<f64>,
     /// Of the contact force, relative to the preload force.
     pub force_error: Option<f64>,
-    /// Of the durations of openings, us.
-    pub opening_duration_error_us: Option<f64>,
-    /// Of what the force and the durations are compared with.
+    /// Of the instants of opening and closing, us.
+    pub event_error_us: Option<f64>,
+    /// Of what the force and the instants are compared with.
     pub reference_force_error: f64,
     pub reference_event_error_us: f64,
 }

@@ -18,13 +18,8 @@ const STROKES: [&str; 5] = [
     "16px,4px,3px,4px,3px,4px",
     "28px,5px",
 ];
-const DASHES: [&str; 5] = [
-    "6px,4px",
-    "2px,3px",
-    "8px,3px,2px,3px",
-    "3px,6px",
-    "10px,2px,2px,2px,2px,2px",
-];
+/// Of dashed curves, which are thinner: none like one of the above.
+const DASHES: [&str; 5] = ["6px,4px", "2px,3px", "4px,10px", "9px,9px", "2px,8px"];
 const SYMBOLS: [&str; 7] = [
     "circle",
     "square",
@@ -110,7 +105,7 @@ fn trace(figure: &Figure, curve: &Curve) -> Value {
         "x": curve.x.iter().map(|value| rounded(*value)).collect::<Vec<_>>(),
         "y": curve.y.iter().map(|value| rounded(*value)).collect::<Vec<_>>(),
         // plotly.js would leave out points, and with them the tips of peaks.
-        "line": {"color": colour, "dash": dash, "width": 2, "simplify": false},
+        "line": {"color": colour, "dash": dash, "width": if curve.style == Style::Dashed { 1.5 } else { 2.5 }, "simplify": false},
         "marker": {"color": colour, "symbol": format!("{symbol}{hollow}"), "size": 8, "line": {"width": border}},
         "hovertemplate": format!("{}<br>{}", hover("x", &figure.x), hover("y", &figure.y)),
     });
@@ -209,6 +204,27 @@ mod tests {
                 &json!("contact force / N"),
                 &json!("time: %{x:.5~g} ms<br>contact force: %{y:.5~g} N")
             ])
+        );
+    }
+
+    #[test]
+    fn dashed_curves_are_told_from_lines_without_colour() {
+        let lengths = |dash: &str| -> Vec<u32> {
+            let lengths = dash
+                .split(',')
+                .filter_map(|length| length.trim_end_matches("px").parse().ok());
+            lengths.step_by(2).collect()
+        };
+        // Lines are solid or begin with a long dash; of dashed curves all dashes are equal and short.
+        assert!(
+            STROKES
+                .iter()
+                .all(|dash| lengths(dash).first().is_none_or(|length| *length >= 16))
+        );
+        assert!(
+            DASHES
+                .iter()
+                .all(|dash| lengths(dash).len() == 1 && lengths(dash)[0] < 10)
         );
     }
 

@@ -1,12 +1,14 @@
 //! The displacement of the contact, and the points of the spring at which the published one may have been measured.
 
+use std::f64::consts::TAU;
+
 use anyhow::{Context, Result};
 use relay_contact::reference;
 
 use super::published as paper;
 use super::results::Results;
 use super::runs::{self, excitation};
-use super::spring::displacement;
+use super::spring::{displacement, motion};
 use super::table::table;
 use crate::content::Block;
 use crate::numbers::{number, signed};
@@ -22,9 +24,9 @@ pub fn blocks(results: &Results) -> Result<Vec<Block>> {
          The base moves by {} µm at 1000 Hz and 98 m/s². A closed contact moves with it: a force amplitude of {} cN \
          at a contact stiffness of {} N/µm is at most {} nm of relative motion, and the whole indentation at rest is \
          {} nm. The published displacement exceeds that of the base by up to {} µm. The published stiffness and force \
-         do not allow this, so the displacement was measured elsewhere: at another point of the spring, or on a \
-         contact that rotates or slides in the three-dimensional model. The point is not published; neither is that \
-         of the laser for the measured {} µm. The phase of 90° between force and displacement belongs to the same point.",
+         do not allow this of the contact point. Which point of the finite elements was read is not published, nor is \
+         that of the laser for the measured {} µm. Another point of the spring, a contact that rotates or slides, or one \
+         much softer than the published stiffness would move more; none of these is shown here.",
         number(base, 3),
         number(run.amplitude(), 2),
         number(1e-6 * stiffness, 2),
@@ -76,13 +78,18 @@ fn elsewhere() -> Result<Vec<Block>> {
         let found = 1e6 * displacement(&runs::model(&runs::specimen(ratio))?, 1000.0, fitted)?;
         furthest = furthest.max(100.0 * (found / published - 1.0).abs());
     }
+    let force = reference::response(&specimen, TAU * 1000.0).force;
+    let phase = (force / motion(&specimen, 1000.0, fitted)?).arg().to_degrees().abs();
     let text = format!(
         "A point on the spring would explain much of the difference. At {} of the length from the clamp, {} mm before \
          the contact, the spring of this model has the published amplitude for ratio 10 at 1000 Hz, and those for \
-         ratios of 5 to 30 within {} %. At that point it reproduces neither the amplitudes of weak damping nor those at 1250 Hz.",
+         ratios of 5 to 30 within {} %. At that point it reproduces neither the amplitudes of weak damping nor those at 1250 Hz, \
+         and the phase between force and displacement is {}° there, not the published {}°.",
         number(fitted, 3),
         number(1e3 * (1.0 - fitted) * specimen.section().length, 2),
         number(furthest, 1),
+        number(phase, 0),
+        paper::PHASE,
     );
     let heads = ["run".to_owned(), "published".to_owned()].into_iter();
     let points = POINTS.iter().map(|part| format!("this model, at {part} L"));

@@ -80,15 +80,16 @@ pub fn courses(results: &Results) -> Result<[Figure; 2]> {
         (bottom, rest - paper::FORCE_AMPLITUDE),
     ];
     let mut curves = vec![Curve::new("this model", force, Style::Line, 0)];
-    curves.extend(published("amplitude", amplitude, 0));
+    curves.extend(published("amplitude, to which the rivet is fitted", amplitude, 0));
     let force = Figure {
         id: "paper-fig6-force",
         title: "Contact force at 1000 Hz, 98 m/s² (Fig. 6)".to_owned(),
         x: Axis::linear("time", "ms"),
         y: Axis::linear("contact force", "cN"),
         curves,
-        caption: "Three periods after the transients have decayed, damping ratio 10. Published is only the amplitude; \
-                  it is drawn about the static force, at the times of the extremes of this model."
+        caption: "Three periods after the transients have decayed, damping ratio 10. Published is only the amplitude, to \
+                  which the rivet is fitted: the points coincide by construction. They are drawn about the static force, at the times of the \
+                  extremes of this model."
             .to_owned(),
     };
     let displacement = repeated(run, 3, |point| 1e6 * point.2);
@@ -102,8 +103,8 @@ pub fn courses(results: &Results) -> Result<[Figure; 2]> {
         x: Axis::linear("time", "ms"),
         y: Axis::linear("displacement", "µm"),
         curves,
-        caption: "Base included. The contact of this model moves with the base within nanometres, so both are one curve; the published \
-                  displacement was measured elsewhere."
+        caption: "Base included. The contact of this model moves with the base within nanometres, so both are one curve. Which \
+                  point has the published amplitude is not published: see *Not reproduced*."
             .to_owned(),
     };
     Ok([force, displacement])
@@ -126,14 +127,14 @@ pub fn laws() -> Result<Figure> {
         Curve::new("power law", law(ResistanceKind::PowerLaw)?, Style::Line, 0),
         Curve::new("Holm", law(ResistanceKind::Holm)?, Style::Dashed, 1),
     ];
-    curves.extend(published("eq. 29", points, 0));
+    curves.extend(published("eq. 29, which the power law is", points, 0));
     Ok(Figure {
         id: "paper-fig11",
         title: "Contact resistance over contact force (Fig. 11)".to_owned(),
         x: Axis::logarithmic("contact force", "N"),
         y: Axis::logarithmic("contact resistance", "mΩ"),
         curves,
-        caption: "The component's power law is the published fit. Holm's law, with the hardness the publication \
+        caption: "The component's power law is the published fit, so they coincide by construction. Holm's law, with the hardness the publication \
                   measured and the resistivity of AgSnO2, is that of a single clean spot."
             .to_owned(),
     })
@@ -165,7 +166,7 @@ pub fn resistance_course(results: &Results) -> Result<Figure> {
     })
 }
 
-/// Figs. 17 and 18: deviations of the resistance from the measured values at 1000 Hz.
+/// Table 6 and Fig. 18: deviations of the resistance from the measured values at 1000 Hz.
 pub fn deviations(results: &Results) -> Result<[Figure; 2]> {
     let mut found = [Vec::new(), Vec::new()];
     for (ratio, _, _) in paper::RESISTANCE_DEVIATIONS {
@@ -186,13 +187,14 @@ pub fn deviations(results: &Results) -> Result<[Figure; 2]> {
     curves.extend(published("maximum", published_greatest, 0));
     curves.extend(published("minimum", published_least, 1));
     let time = Figure {
-        id: "paper-fig17",
-        title: "Deviation of the resistance from the measurement, time domain, 1000 Hz (Fig. 17, Table 6)".to_owned(),
+        id: "paper-table6",
+        title: "Deviation of the resistance from the measurement, time domain, 1000 Hz (Table 6)".to_owned(),
         x: Axis::linear("damping ratio", ""),
         y: Axis::linear("magnitude of the deviation", "%"),
         curves,
         caption: format!(
-            "Absolute values, as the publication gives no signs. This model deviates by at most {} % from the \
+            "Absolute values, as the publication gives no signs. The publication's Fig. 17 is another: it is over frequency, of which the \
+             measured values are not published. This model deviates by at most {} % from the \
              measured maximum, and is at least {} % above the measured minimum.",
             number(furthest, 1),
             number(nearest, 1)

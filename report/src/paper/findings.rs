@@ -26,6 +26,7 @@ fn damping(results: &Results) -> [Block; 2] {
         .iter()
         .fold(f64::NEG_INFINITY, |greatest, a| greatest.max(*a));
     let omega = paper::ALPHA_PER_BETA.sqrt();
+    let (_, alpha, _) = paper::EQUIVALENT[0];
     let first = results.specimen.frequency();
     let text = format!(
         "### The published stiffness coefficient cannot be used as printed\n\n\
@@ -34,14 +35,19 @@ fn damping(results: &Results) -> [Block; 2] {
          2000 Hz. The publication shows a resonance, 4.812 cN at 1000 Hz and 5.2 cN near 1250 Hz (Figs. 6 and 7).\n\n\
          Its own relation between the two damping coefficients, alpha = 1610065 beta (eq. 33), should be alpha = beta \
          ω² with ω the first angular frequency (eq. 32). The factor is the square of {}: near the first frequency in \
-         Hz ({}), not in rad/s ({}). The coefficient therefore seems to refer to frequencies in Hz; in SI units it is \
-         smaller by a factor of 4 π²: {} s. This supports the calibration but does not prove it. With it the resonance appears.",
+         Hz ({}), not in rad/s ({}). It was not found from a frequency, though: it is the quotient of the two coefficients that came closest to \
+         the measurements, {alpha} 1/s and {beta:.4e} s, {}. If the coefficient refers to frequencies in Hz, it is \
+         smaller by a factor of 4 π² in SI units: {} s. With it the resonance appears. Eq. 32 in SI units, of {alpha} 1/s and {} Hz, gives {} µs. \
+         Both support the calibration, neither proves it.",
         number(least, 3),
         number(greatest, 3),
         number(omega, 1),
         number(first, 1),
         number(TAU * first, 0),
+        number(alpha / beta, 0),
         format_args!("{:.3e}", beta / (4.0 * PI * PI)),
+        paper::WITH_PRESTRESS,
+        number(1e6 * alpha / (TAU * paper::WITH_PRESTRESS).powi(2), 1),
     );
     [Block::Text(text), Block::Figure(literal_figure(results))]
 }

@@ -32,8 +32,8 @@ pub fn blocks() -> Result<Vec<Block>> {
          spring of 15.5 mm would be a plate.\n\n\
          The rivet mass is weakly determined: it depends on one force amplitude. A first frequency higher by 1 % \
          would change it by {} (linearised), half a unit in the last digit of the static force by {} %. If the \
-         published force amplitude is that of the elastic part only (see *Not reproduced*), it is {} mg. The damping \
-         is a calibration (see *Findings*).",
+         published force amplitude is that of the elastic part only (see *Not reproduced*), it is {} mg, and others if \
+         more is fitted. The damping is a calibration (see *Findings*).",
         number(found.values[width], 1),
         percent(slopes[2][rivet]),
         number(precision[0][rivet], 1),

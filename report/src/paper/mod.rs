@@ -1,11 +1,12 @@
 //! The publication compared with this model.
 //!
 //! [`published`]: its numbers;   [`runs`], [`results`]: those of this model;   the crate `identify`: the identification.
-//! Sections, of blocks by [`comparison`], [`resistance`], [`figures`], [`responses`]; [`not_reproduced`] with [`displacement`],
+//! Sections, of blocks by [`comparison`], [`coverage`], [`resistance`], [`figures`], [`responses`]; [`not_reproduced`] with [`displacement`],
 //! [`elastic`]; [`findings`]; [`identification`].   [`table`], [`curves`]: what these are made with;   [`spring`]: the motion
 //! between clamp and contact;   [`validation`]: the same as `docs/validation.md`.
 
 mod comparison;
+mod coverage;
 mod curves;
 mod displacement;
 mod elastic;
@@ -108,5 +109,6 @@ fn paper(results: &Results, quick: bool) -> Result<Vec<Block>> {
         Block::Figure(figures::resistance_course(results)?),
         Block::Figure(time),
         Block::Figure(frequency),
+        coverage::blocks(results)?,
     ])
 }

@@ -32,9 +32,9 @@ fn short_springs(results: &Results) -> Result<String> {
         "The shift of the first frequency by prestress: see *Findings*, eq. 9.\n\n\
          ### The frequencies of the shorter springs\n\n\
          The frequencies of a uniform beam are proportional to 1/L²: from 15.5 mm, {} Hz at 11.5 mm and {} Hz at 7.5 mm. The published \
-         ones follow no single power of the length, being higher at 11.5 mm and lower at 7.5 mm. The shorter the spring, \
-         the greater the influence of rivet, holes, shear and compliance of the support; of these, the model of a \
-         uniform beam includes only the rivet's mass.\n\n\
+         ones follow no single power of the length, being higher at 11.5 mm and lower at 7.5 mm. What a uniform \
+         beam on a rigid clamp lacks, shear, a longer rivet, a compliant support, each lowers a frequency, the more the shorter the spring: \
+         it may explain 7.5 mm, and cannot explain 11.5 mm.\n\n\
          The dependence on overtravel is not reproduced either. Published, L = 11.5 mm: {} Hz from 0.45 to 0.5 mm of \
          overtravel. This model: {} Hz. The contact is {} times as stiff as the spring at its tip, so it acts as a \
          rigid support at any overtravel, and the axial force of eq. 9 is negligible.",

@@ -60,6 +60,8 @@ pub const MEASURED_RESISTANCE: (f64, f64) = (25.0, 63.0);
 /// Deviations of the least and greatest resistance from the measured ones: ratio, %, % (Table 6).
 pub const RESISTANCE_DEVIATIONS: [(f64, f64, f64); 3] =
     [(10.0, 30.23, 1.89), (20.0, 41.63, 16.18), (30.0, 53.69, 24.85)];
+/// Samples of the resistance per second (Table 5).
+pub const RESISTANCE_SAMPLING: f64 = 15_625.0;
 /// Deviation of the greatest resistance at 1000 Hz with a mass coefficient of 5125 1/s, % (section 4.2). The measured
 /// resistances at other frequencies, whose deviations are stated too, are not published.
 pub const FREQUENCY_DOMAIN_DEVIATION: f64 = 1.21;

@@ -15,6 +15,11 @@ use super::published::ACCELERATION;
 /// Amplitude of the displacement including the base at a fraction of the spring's length, under the published
 /// vibration at a frequency (Hz), m.
 pub fn displacement(model: &Model, frequency: f64, part: f64) -> Result<f64> {
+    Ok(motion(model, frequency, part)?.norm())
+}
+
+/// That displacement with its phase, that of the base acceleration being 0.
+pub fn motion(model: &Model, frequency: f64, part: f64) -> Result<Complex<f64>> {
     let section = model.section();
     let omega = TAU * frequency;
     let real = |value: f64| Complex::new(value, 0.0);
@@ -42,9 +47,7 @@ pub fn displacement(model: &Model, frequency: f64, part: f64) -> Result<f64> {
         .solve(&sides)
         .context("no steady motion of the spring")?;
     let at = z * part;
-    Ok(factors
-        .dot(&Vector4::new(at.cos(), at.sin(), at.cosh(), at.sinh()))
-        .norm())
+    Ok(factors.dot(&Vector4::new(at.cos(), at.sin(), at.cosh(), at.sinh())))
 }
 
 #[cfg(test)]

@@ -137,6 +137,21 @@ fn the_elastic_part_fits_both_amplitudes_it_is_fitted_to() {
 }
 
 #[test]
+fn contact_damping_is_not_what_separates_the_domains() {
+    // The contact is stiff against the spring: what it has of the force is what the spring brings.
+    for (ratio, _, _) in paper::EQUIVALENT {
+        let scene = runs::specimen(ratio);
+        let mut without = scene.clone();
+        without.contact.damping = 0.0;
+        let [with, without] = [scene, without].map(|scene| runs::model(&scene).unwrap());
+        for frequency in paper::FREQUENCIES {
+            let ratio = runs::linear_force(&without, frequency) / runs::linear_force(&with, frequency);
+            assert!((ratio - 1.0).abs() < 0.01, "{frequency} Hz: {ratio}");
+        }
+    }
+}
+
+#[test]
 fn displacement_and_phase_are_those_of_the_linear_response() {
     let scene = runs::specimen(paper::BEST);
     let run = runs::periodic(&scene, 1000.0).unwrap();
