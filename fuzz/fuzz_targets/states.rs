@@ -9,7 +9,7 @@ use campaign::hostile::{changed, meet, repaired, specimen};
 use libfuzzer_sys::fuzz_target;
 
 static LINKED: LazyLock<Api> = LazyLock::new(Api::linked);
-static SPECIMEN: LazyLock<Vec<u8>> = LazyLock::new(|| specimen(&LINKED, 0.0));
+static SPECIMEN: LazyLock<Vec<u8>> = LazyLock::new(|| specimen(&LINKED, &[]));
 
 fuzz_target!(|bytes: &[u8]| {
     let Some((&way, rest)) = bytes.split_first() else {

@@ -7,15 +7,15 @@ use crate::integrator::collocation::part::{self, Instant};
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::collocation::trial::trial;
 use crate::integrator::constants::{
-    AFTER_BLOW, AFTER_REJECTION, AT_EVENT, DRIVEN, FORCE_ROUNDING, INHERITED, INSIDE, INSIDE_DRIVEN, LEAST_SHRINK,
-    MOST_GROWTH, MOST_SHRINK, NEAR_BLOW, NEWTON, NEXT_LENGTH, ROUNDED, SAFETY,
+    AFTER_BLOW, AFTER_REJECTION, AT_EVENT, DRIVEN, FORCE_ROUNDING, INHERITED, INSIDE, INSIDE_DRIVEN, ITERATIONS,
+    LEAST_SHRINK, MOST_GROWTH, MOST_SHRINK, NEAR_BLOW, NEWTON, NEXT_LENGTH, ROUNDED, SAFETY,
 };
 use crate::integrator::course::{Places, turning_points};
 use crate::integrator::grid::Target;
 use crate::integrator::integration::{Integration, StepOutcome};
 use crate::integrator::workspace::{Room, Workspace, work};
 use crate::math::free_motion::FreeMotion;
-use crate::math::nodal::{SHORT, greatest};
+use crate::math::nodal::{LONG, SHORT, greatest};
 use crate::math::prediction::value_and_slope;
 use crate::state::State;
 
@@ -150,11 +150,13 @@ impl Integration<'_> {
     where
         Workspace: Room<S>,
     {
-        self.workspace.work += work(target.recurring);
         let (cache, end, _) = self.workspace.parts();
         let prepared = cache.prepare(self.state.time, target.length, target.recurring, self.model);
         let source = Source::Law(NEWTON * self.allowed);
-        trial(self.model, self.state, &self.drive, prepared, source, end)
+        let trial = trial(self.model, self.state, &self.drive, prepared, source, end);
+        let iterations = trial.as_ref().map_or(ITERATIONS, |trial| trial.iterations);
+        self.workspace.work += work::<S>(self.model, target.recurring) + iterations * (S * S) as u64;
+        trial
     }
 
     /// The exact motion under the polynomials of a trial of `length` seconds, `at` seconds after its start; the modes are
@@ -163,7 +165,7 @@ impl Integration<'_> {
     where
         Workspace: Room<S>,
     {
-        self.workspace.work += 1;
+        self.workspace.work += work::<S>(self.model, true);
         let (cache, end, inside) = Room::<S>::parts(self.workspace);
         let whole = (trial, length, &*end);
         let collocation = cache.collocation();
@@ -218,7 +220,7 @@ impl Integration<'_> {
         let expected_energy = self.expected_energy(trial, target);
         if expected_energy.is_some() {
             // The balance repeats the step in two halves.
-            self.workspace.work += work(target.recurring) + 1;
+            self.workspace.work += 2 * work::<LONG>(self.model, target.recurring);
         }
         self.enter(trial, target.length);
         self.note_approach(trial, target.length);

@@ -152,11 +152,11 @@ pub const FAR_AHEAD: f64 = 1.5;
 
 // Work.
 
-/// Steps of known lengths that a communication step may take, however long it is. Computing takes a second or two on
-/// processors of 2026. Pinned: ÷ 1e5 and × 100, `tests/fmi_api`.
-pub const STEPS: u64 = 3_000_000;
+/// Work that a communication step may take, however long it is, in modes at nodes: each takes some forty instructions, all
+/// together a second or two on processors of 2026. Pinned: ÷ 1e5 and × 100, `tests/fmi_api`.
+pub const WORK: u64 = 200_000_000;
 
-/// Work of a step of a new length, in steps of known lengths. Instructions of both. Cost.
+/// Work of a step of a new length, in that of one of a known length. Instructions of both. Cost.
 pub const NEW_LENGTH: u64 = 10;
 
 /// Step lengths whose coefficients are kept, a power of two: those of 32 octaves with and without half of their own, as

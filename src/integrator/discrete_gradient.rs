@@ -13,7 +13,7 @@ use crate::integrator::collocation::step::Trial;
 use crate::integrator::collocation::trial::trial;
 use crate::integrator::grid::Target;
 use crate::integrator::integration::{Integration, StepOutcome};
-use crate::integrator::workspace::Room;
+use crate::integrator::workspace::{Room, work};
 use crate::math::nodal::{SHORT, end};
 use crate::math::roots;
 
@@ -85,7 +85,7 @@ impl Integration<'_> {
         let bracket = ((0.0, -most), (most, excess(most)));
         let force = roots::between(excess, bracket.0, bracket.1, 0.0).unwrap_or(most);
         let trial = under(force);
-        workspace.work += trials;
+        workspace.work += trials * work::<SHORT>(model, true);
         trial
     }
 }

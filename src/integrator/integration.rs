@@ -7,7 +7,7 @@ use crate::integrator::constants::STEP_GROWTH;
 use crate::integrator::course::Places;
 use crate::integrator::extremes::Extremes;
 use crate::integrator::grid::{Grid, Target};
-use crate::integrator::workspace::{Room, Workspace};
+use crate::integrator::workspace::{Budget, Room, Workspace};
 use crate::math::prediction::Prediction;
 use crate::model::Model;
 use crate::state::State;
@@ -21,6 +21,7 @@ pub(crate) struct Integration<'a> {
     pub(crate) other: Option<&'a Model>,
     pub(crate) state: &'a mut State,
     pub(crate) workspace: &'a mut Workspace,
+    pub(crate) budget: Budget,
     pub(crate) drive: Drive,
     pub(crate) grid: Grid,
     /// Dense output of a free step, read from the given instant (s) on.

@@ -133,7 +133,7 @@
 //! `solver.maximumStep`. Without damping, a step that makes more energy than a force wrong by the tolerance would is
 //! rejected too.
 //!
-//! Work is counted and bounded per communication step, however long that is ([`constants::STEPS`]; [`workspace`]):
+//! Work is counted and bounded per communication step, however long that is ([`constants::WORK`]; [`workspace`]):
 //! beyond it the step ends with an error that names the time.
 //!
 //! # Number of modes

@@ -69,6 +69,7 @@ pub(crate) fn advance(
         model,
         other,
         state,
+        budget: Budget::new(workspace),
         workspace,
         drive,
         grid,
@@ -98,12 +99,13 @@ impl Integration<'_> {
         }
         self.set_support_rate();
         self.note_force();
-        let budget = Budget::new(self.workspace);
         let steps = self.state.steps;
         let mut first = None;
         while self.grid.done < 1.0 {
-            budget.check(self.workspace, self.state.time)?;
+            let before = self.state.time;
             self.advance()?;
+            // What a search that gave up has not found is not passed over.
+            self.budget.check(self.workspace, before)?;
             if self.driven && first.is_none() && self.state.steps > steps {
                 first = Some((self.state.short_step, self.state.long_step));
             }

@@ -7,7 +7,7 @@ use crate::error::{StepError, StepErrorCause};
 use crate::integrator::collocation::coefficients::Cache;
 use crate::integrator::collocation::polynomial::{Collocation, OF_LONG, OF_SHORT};
 use crate::integrator::collocation::step::End;
-use crate::integrator::constants::{LENGTHS, NEW_LENGTH, STEPS};
+use crate::integrator::constants::{LENGTHS, NEW_LENGTH, WORK};
 use crate::integrator::events::log::Events;
 use crate::math::nodal::{LONG, SHORT};
 use crate::model::Model;
@@ -27,7 +27,7 @@ pub struct Workspace {
     pub(crate) propagators: ByLength<Propagator>,
     /// See [`Workspace::propagators`].
     dense_propagators: ByLength<DensePropagator>,
-    /// Steps computed so far, including rejected and probe steps, in units of a step with cached coefficients.
+    /// Work so far, of rejected and probe steps too, in modes at nodes.
     pub(crate) work: u64,
     /// Openings and closings of the last communication step.
     pub events: Events,
@@ -91,9 +91,10 @@ impl Room<LONG> for Workspace {
     }
 }
 
-/// Work of a step with coefficients that are kept, or with new ones.
-pub(crate) fn work(recurring: bool) -> u64 {
-    if recurring { 1 } else { NEW_LENGTH }
+/// Work of a motion of the modes over `S` nodes, with coefficients that are kept, or with new ones.
+pub(crate) fn work<const S: usize>(model: &Model, recurring: bool) -> u64 {
+    let nodes = (model.modes.len() * S) as u64;
+    if recurring { nodes } else { NEW_LENGTH * nodes }
 }
 
 /// Limit of the work of a communication step.
@@ -106,7 +107,7 @@ pub(crate) struct Budget {
 impl Budget {
     /// For a communication step that begins now.
     pub(crate) fn new(workspace: &Workspace) -> Self {
-        let limit = workspace.work.saturating_add(STEPS);
+        let limit = workspace.work.saturating_add(WORK);
         Self { limit }
     }
 
@@ -116,7 +117,12 @@ impl Budget {
     /// [`StepErrorCause::Budget`] if it is exhausted.
     pub(crate) fn check(self, workspace: &Workspace, time: f64) -> Result<(), StepError> {
         let cause = StepErrorCause::Budget;
-        let within_limit = workspace.work < self.limit;
-        within_limit.then_some(()).ok_or(StepError { time, cause })
+        let exhausted = self.is_exhausted(workspace);
+        (!exhausted).then_some(()).ok_or(StepError { time, cause })
+    }
+
+    /// Whether it is: a search inside a step then gives up, and the step counts for nothing.
+    pub(crate) fn is_exhausted(self, workspace: &Workspace) -> bool {
+        workspace.work >= self.limit
     }
 }

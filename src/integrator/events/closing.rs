@@ -145,6 +145,9 @@ impl Integration<'_> {
     where
         Workspace: Room<S>,
     {
+        if self.budget.is_exhausted(self.workspace) {
+            return None;
+        }
         if self.is_open(b, unsure) {
             if self.is_clear(a, b, error, unsure) || depth > DEPTH {
                 return None;
