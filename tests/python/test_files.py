@@ -15,7 +15,7 @@ from component import COMPONENT, ROOT
 from relay_contact import RelayContactError, Scene, run, scenes
 from relay_contact.command import main
 from relay_contact.files import read_toml
-from relay_contact.qualification import Relay, Standard, relays, standards
+from relay_contact.qualification import Relay, Standard, qualify, relays, standards
 from relay_contact.qualification.response import respond
 from relay_contact.qualification.standards import BAND, NARROWEST, overall
 from relay_contact.schema import line
@@ -227,6 +227,17 @@ def test_wrong_standards(tmp_path: Path, old: str, new: str, message: str) -> No
     path.write_text(text.replace(old, new))
     with pytest.raises(RelayContactError, match=f"(?m)^{re.escape(str(path))}:{message}"):
         Standard.read(path)
+
+
+def test_a_monitor_that_sees_an_interruption_at_rest(tmp_path: Path) -> None:
+    relay = tmp_path / "relay.toml"
+    relay.write_text("[monitor]\nvoltage = 1e-3\ncurrent = 0.1\n")
+    # The published preload of 0.152 N by the power law: 7.4118e-3 Ohm / 0.152^0.9515 = 44 mOhm.
+    with pytest.raises(
+        RelayContactError,
+        match=r"position 1: a monitor of .* 0.01 Ohm on: not allowed, the contact has 0.0445 Ohm at rest",
+    ):
+        qualify(relay, "MIL-STD-202", out=tmp_path, tests=["213 A"], component=COMPONENT)
 
 
 @pytest.mark.parametrize("frequencies", ["[500.0, 10.0]", "[100.0, 100.5]", "[0.0, 500.0]", "[10.0, 2e4]", "[10.0]"])

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from relay_contact.component import Component, Values, nearest
 from relay_contact.files import RelayContactError, by_name, found, named
-from relay_contact.qualification.standards import Monitor
+from relay_contact.qualification.standards import Contacts, Monitor
 from relay_contact.schema import Nested, Place, Share, Table, at, dotted, leaves, read, refused, variables
 from relay_contact.spring import PREFIX, known
 
@@ -73,6 +73,17 @@ class Relay:
                 blow(component, positions[name])
         uncertainty = uncertainties(path, content.uncertainty, positions, component)
         return cls(content.title or path.stem, positions, uncertainty, content.model.uncertainty, content.monitor)
+
+
+def check_monitor(component: Component, relay: Relay, contacts: Contacts) -> None:
+    """Refuse a monitor for which a closed contact is interrupted at rest."""
+    for name, values in relay.positions.items():
+        with component.started(values) as contact:
+            force, resistance = contact.real("contact.force", "contact.resistance")
+        if force > 0 and resistance >= contacts.threshold:
+            monitor = f"a monitor of {contacts.voltage:g} V and {contacts.current:g} A"
+            text = f"{monitor} sees an interruption from {contacts.threshold:g} Ohm on: not allowed"
+            raise RelayContactError(f"{name}: {text}, the contact has {resistance:.3g} Ohm at rest")
 
 
 def parameters(path: Path, table: dict[str, Any], place: Place, component: Component) -> Values:
