@@ -362,6 +362,10 @@ def test_a_spring_file_is_refused_before_its_entries_are_changed(tmp_path: Path)
         (["--stop", "1e9"], "relay-contact: stop = 1e+09 s with steps of 1e-05 s: not allowed"),
         (["--set", "solver.modes=inf"], "relay-contact: solver.modes = inf: not allowed, allowed is a whole number"),
         (["--set", "solver.modes=3000000000"], "relay-contact: solver.modes = 3000000000.0: not allowed"),
+        (
+            ["--set", "tip.mass=0", "--set", "tip_mass=1e-5"],
+            "relay-contact: --set tip_mass=1e-5: tip.mass is given twice",
+        ),
         (["--set", "beam.length=nan"], "relay-contact: beam.length = nan: not allowed, allowed is a finite number"),
         (
             ["--set", "beam.length=15 mm"],
