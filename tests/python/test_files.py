@@ -189,6 +189,10 @@ PAPER = 'title = "own"\n'
         # Parameters that are allowed, but not together.
         ("parameters.effects.secondContact = true\nposition = [{parameters.effects.contactLaw = 'Bonded'}]\n",
          "3: effects.contactLaw: Linearised and Bonded"),
+        ("parameters.tip.mass = 1e-5\nparameters.'tip.mass' = 2e-5\n", "3: parameters.tip.mass = 2e-05: .* twice"),
+        ("parameters.tip_mass = 1e-5\n", "2: tip_mass: no such variable; did you mean tip.mass"),
+        ("uncertainty.tip_mass = 0.1\n", "2: tip_mass: no such variable; did you mean tip.mass"),
+        ("uncertainty.tip.mass = 0.1\nuncertainty.'tip.mass' = 0.2\n", "3: uncertainty.tip.mass = 0.2: .* given twice"),
         ("a = 1\na = 2\n", "3: not TOML: "),
         ("a = [1,\n", "3: not TOML: "),
         ("a = " + 5000 * "[", " not TOML: nested too deeply"),
@@ -229,15 +233,19 @@ def test_wrong_standards(tmp_path: Path, old: str, new: str, message: str) -> No
         Standard.read(path)
 
 
-def test_a_monitor_that_sees_an_interruption_at_rest(tmp_path: Path) -> None:
+def test_a_monitor_between_the_contact_at_rest_and_open(tmp_path: Path) -> None:
     relay = tmp_path / "relay.toml"
-    relay.write_text("[monitor]\nvoltage = 1e-3\ncurrent = 0.1\n")
     # The published preload of 0.152 N by the power law: 7.4118e-3 Ohm / 0.152^0.9515 = 44 mOhm.
-    with pytest.raises(
-        RelayContactError,
-        match=r"position 1: a monitor of .* 0.01 Ohm on: not allowed, the contact has 0.0445 Ohm at rest",
+    for monitor, message in (
+        ("voltage = 1e-3\ncurrent = 0.1\n", r"0.01 Ohm on: not allowed, the contact has 0.0445 Ohm at rest"),
+        (
+            "voltage = 10.0\ncurrent = 1e-8\n",
+            r"1e\+09 Ohm on: not allowed, the contact has 1e\+09 Ohm while it is open",
+        ),
     ):
-        qualify(relay, "MIL-STD-202", out=tmp_path, tests=["213 A"], component=COMPONENT)
+        relay.write_text(f"[monitor]\n{monitor}")
+        with pytest.raises(RelayContactError, match=rf"position 1: a monitor of .* from {message}"):
+            qualify(relay, "MIL-STD-202", out=tmp_path, tests=["213 A"], component=COMPONENT)
 
 
 @pytest.mark.parametrize("frequencies", ["[500.0, 10.0]", "[100.0, 100.5]", "[0.0, 500.0]", "[10.0, 2e4]", "[10.0]"])

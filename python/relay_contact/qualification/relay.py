@@ -9,7 +9,7 @@ from pydantic import Field
 from relay_contact.component import Component, Values, nearest
 from relay_contact.files import RelayContactError, by_name, found, named
 from relay_contact.qualification.standards import Contacts, Monitor
-from relay_contact.schema import Nested, Place, Share, Table, at, dotted, leaves, read, refused, variables
+from relay_contact.schema import Nested, Place, Share, Table, at, dotted, exact, leaves, read, refused, variables
 from relay_contact.spring import PREFIX, known
 
 OF_THE_TEST = ("excitation.", "effects.excitation", "chatter.", "effects.chatter", "effects.extremes", "second.minimum")
@@ -76,14 +76,16 @@ class Relay:
 
 
 def check_monitor(component: Component, relay: Relay, contacts: Contacts) -> None:
-    """Refuse a monitor for which a closed contact is interrupted at rest."""
+    """Refuse a monitor for which a closed contact is interrupted at rest, or an open one is closed."""
+    monitor = f"a monitor of {contacts.voltage:g} V and {contacts.current:g} A"
+    text = f"{monitor} sees an interruption from {contacts.threshold:g} Ohm on: not allowed, the contact has"
     for name, values in relay.positions.items():
         with component.started(values) as contact:
-            force, resistance = contact.real("contact.force", "contact.resistance")
+            force, resistance, apart = contact.real("contact.force", "contact.resistance", "resistance.open")
         if force > 0 and resistance >= contacts.threshold:
-            monitor = f"a monitor of {contacts.voltage:g} V and {contacts.current:g} A"
-            text = f"{monitor} sees an interruption from {contacts.threshold:g} Ohm on: not allowed"
-            raise RelayContactError(f"{name}: {text}, the contact has {resistance:.3g} Ohm at rest")
+            raise RelayContactError(f"{name}: {text} {resistance:.3g} Ohm at rest")
+        if contacts.threshold >= apart:
+            raise RelayContactError(f"{name}: {text} {apart:g} Ohm while it is open")
 
 
 def parameters(path: Path, table: dict[str, Any], place: Place, component: Component) -> Values:
@@ -109,10 +111,12 @@ def uncertainties(
                     if name not in allowed:
                         text = f"no such entry in the spring file{nearest(name, allowed)}"
                         raise RelayContactError(f"{dotted(place)}: {text}")
-            elif component.variables[component.settable(name, "parameter")].type != "Real":
+            elif component.variables[exact(component, name, "parameter")].type != "Real":
                 raise RelayContactError(f"{dotted(place)}: not a real parameter")
         if isinstance(part, bool) or not isinstance(part, int | float) or not 0 <= part < 1:
             raise refused(path, place, part, "allowed is a part of the value, from 0 to less than 1")
+        if name in found:
+            raise refused(path, place, part, "given twice")
         found[name] = float(part)
         with at(path, *place):
             used = [part == 0]
