@@ -100,8 +100,7 @@ def uncertainties(
     path: Path, table: dict[str, Any], positions: dict[str, Values], component: Component
 ) -> dict[str, float]:
     """Return the uncertainties of a relay's file by name; each changes something in one position at least."""
-    rest = {name: blow(component, values) for name, values in positions.items()} if table else {}
-    found = {}
+    found: dict[str, tuple[Place, float]] = {}
     for name, keys, part in leaves(table):
         place = ("uncertainty", *keys)
         with at(path, *place):
@@ -117,7 +116,9 @@ def uncertainties(
             raise refused(path, place, part, "allowed is a part of the value, from 0 to less than 1")
         if name in found:
             raise refused(path, place, part, "given twice")
-        found[name] = float(part)
+        found[name] = place, float(part)
+    rest = {name: blow(component, values) for name, values in positions.items()} if found else {}
+    for name, (place, part) in found.items():
         with at(path, *place):
             used = [part == 0]
             for position, values in positions.items():
@@ -126,7 +127,7 @@ def uncertainties(
                     used.append(blow(component, values, {name: end}) != rest[position])
             if not any(used):
                 raise RelayContactError(f"{dotted(place)}: not used, {name} changes nothing in this relay, or it is 0")
-    return found
+    return {name: part for name, (_, part) in found.items()}
 
 
 def blow(component: Component, values: Values, changed: Values | None = None) -> list[float]:
