@@ -350,8 +350,8 @@ def test_factors_of_entries_are_checked() -> None:
 
 def test_a_spring_file_is_refused_before_its_entries_are_changed(tmp_path: Path) -> None:
     for text, message in (
-        ("segment = 3\n", "line 1: segment"),
-        ("[[segment]]\nlength = 'a'\n", "line 2"),
+        ("segment = 3\n", r"spring.toml:1: segment"),
+        ("[[segment]]\nlength = 'a'\n", r"spring.toml:2: segment 1: length"),
         ("[", "TOML"),
     ):
         (tmp_path / "spring.toml").write_text(text)
