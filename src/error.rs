@@ -161,12 +161,14 @@ pub enum SceneError {
         allowed: &'static str,
     },
     /// A key that a spring file does not have.
-    #[error("{name}: no such key, allowed are {allowed}")]
+    #[error("{name}: no such key, allowed are {allowed}{}", meant(*nearest))]
     UnknownKey {
         /// The unknown key.
         name: String,
         /// The keys allowed there.
         allowed: String,
+        /// The one of them that it may be meant to be.
+        nearest: Option<&'static str>,
     },
     /// Modes of a spring that are more compliant than the whole spring.
     #[error(
@@ -208,7 +210,7 @@ pub enum SceneError {
         error: Box<SceneError>,
     },
     /// A scene file that is not TOML, or with a key or a type of value that scene files do not have.
-    #[error("not a scene file: {}", .0.trim_end())]
+    #[error("not a scene file: {0}")]
     Syntax(String),
     /// A spring file that is not TOML.
     #[error("not TOML: {0}")]
@@ -217,7 +219,7 @@ pub enum SceneError {
     #[error("not a table of inputs: {0}")]
     InputTable(String),
     /// Any of these, with the file it is in.
-    #[error("{file}: {error}")]
+    #[error("{}", in_file(file, error))]
     InFile {
         /// Path of the file.
         file: String,
@@ -298,6 +300,18 @@ pub(crate) fn number(value: f64) -> String {
         text.truncate(text.len() - 2);
     }
     text
+}
+
+fn meant(nearest: Option<&str>) -> String {
+    nearest.map_or_else(String::new, |name| format!("; did you mean {name}?"))
+}
+
+/// An error of a file as `FILE:LINE: ERROR`, as editors and compilers have it.
+fn in_file(file: &str, error: &SceneError) -> String {
+    match error {
+        SceneError::AtLine { line, error } => format!("{file}:{line}: {error}"),
+        error => format!("{file}: {error}"),
+    }
 }
 
 fn spaced(unit: &str) -> String {

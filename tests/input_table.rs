@@ -89,51 +89,51 @@ fn errors_in_a_table_are_reported_with_their_place() -> Result<(), Box<dyn Error
     for (table, expected) in [
         (
             "time,contact.curent\n0,1\n",
-            "line 1: contact.curent: no such input; similar: contact.current,",
+            ":1: contact.curent: no such input; similar: contact.current,",
         ),
         (
             "time,contact.force\n0,1\n",
-            "line 1: contact.force: no such input; similar: contact.current,",
+            ":1: contact.force: no such input; similar: contact.current,",
         ),
         (
             "contact.current\n1\n",
-            "line 1: time: missing; expected a column of times in s",
+            ":1: time: missing; expected a column of times in s",
         ),
         (
             "time,contact.current,contact.current\n0,1,1\n",
-            "line 1: contact.current: given twice, allowed is one column",
+            ":1: contact.current: given twice, allowed is one column",
         ),
         (
             "time,contact.current\n0,1\n1,one\n",
-            "line 3: contact.current = \"one\": wrong type, allowed is a number",
+            ":3: contact.current = \"one\": wrong type, allowed is a number",
         ),
         (
             "time,contact.current\n0,1\n\n1,\n",
-            "line 4: contact.current = \"\": wrong type, allowed is a number",
+            ":4: contact.current = \"\": wrong type, allowed is a number",
         ),
         (
             "time,support.displacement\n0,1\n",
-            "line 2: support.displacement = 1 m: not allowed, allowed is -0.1 to 0.1",
+            ":2: support.displacement = 1 m: not allowed, allowed is -0.1 to 0.1",
         ),
         (
             "time,contact.current\n0,nan\n",
-            "line 2: contact.current = NaN A: not allowed, allowed is -1000000 to 1000000",
+            ":2: contact.current = NaN A: not allowed, allowed is -1000000 to 1000000",
         ),
         (
             "time,contact.current\n1,0\n1,1\n",
-            "line 3: time = 1 s: not allowed, allowed is any finite number above that of the previous row, 1 s",
+            ":3: time = 1 s: not allowed, allowed is any finite number above that of the previous row, 1 s",
         ),
         (
             "time,contact.current\n0,1,2\n",
-            "not a table of inputs: CSV error: record 1 (line: 2, byte: 21): found record with 3 fields",
+            ": not a table of inputs: CSV error: record 1 (line: 2, byte: 21): found record with 3 fields",
         ),
         (
             "time,contact.current\n",
-            "not a table of inputs: no row below the header",
+            ": not a table of inputs: no row below the header",
         ),
     ] {
         let message = folder.message(table, "");
-        let expected = format!("scene.toml: line 5: table.csv: {expected}");
+        let expected = format!("scene.toml:5: table.csv{expected}");
         assert!(message.starts_with(&expected), "{message}\n{expected}");
     }
     Ok(())
@@ -143,8 +143,7 @@ fn errors_in_a_table_are_reported_with_their_place() -> Result<(), Box<dyn Error
 fn a_missing_table_and_an_input_given_twice_are_reported() -> Result<(), Box<dyn Error>> {
     let folder = Folder::new("missing")?;
     let twice = folder.message("time,contact.current\n0,1\n", "contact.current = 1\n");
-    let expected =
-        "scene.toml: line 6: contact.current: given twice, allowed is either a value here or a column of the file";
+    let expected = "scene.toml:6: contact.current: given twice, allowed is either a value here or a column of the file";
     assert_eq!(twice, expected);
     let missing = format!("{HEAD}[inputs]\nfile = \"no-such.csv\"\n").parse::<SceneFile>();
     let missing = missing.map_or_else(|error| error.to_string(), |_| "accepted".to_owned());

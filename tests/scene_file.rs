@@ -74,7 +74,9 @@ fn an_unknown_name_is_reported_with_its_line_and_the_nearest_names() {
     );
     let key = message("communicationStepp = 1\n");
     assert!(
-        key.contains("line 4,") && key.contains("communicationStepp = 1\n"),
+        key.starts_with(
+            "line 4: not a scene file: unknown field `communicationStepp`, expected one of `title`, `stop`"
+        ),
         "{key}"
     );
     assert!(
@@ -165,7 +167,7 @@ fn a_value_of_the_wrong_type_is_reported_with_the_type_expected() {
     ] {
         assert_eq!(message(&format!("[parameters]\n{rest}\n")), expected);
     }
-    // What is no number, text or table at all, TOML's reader tells, with the line itself.
+    // What is no number, text or table at all, TOML's reader tells.
     for (rest, line, expected) in [
         ("inputs = 3", 4, "invalid type: integer `3`, expected a map"),
         ("title = 3", 4, "invalid type: integer `3`, expected a string"),
@@ -181,10 +183,7 @@ fn a_value_of_the_wrong_type_is_reported_with_the_type_expected() {
         ),
     ] {
         let message = message(rest);
-        let at = format!("not a scene file: TOML parse error at line {line}, ");
-        assert!(message.starts_with(&at) && message.ends_with(expected), "{message}");
-        let key_and_value = rest.lines().last();
-        assert!(key_and_value.is_some_and(|text| message.contains(text)), "{message}");
+        assert_eq!(message, format!("line {line}: not a scene file: {expected}"));
     }
 }
 
@@ -213,7 +212,7 @@ fn the_run_must_have_a_length_and_a_step() {
         parse("stop = 1\ncommunicationStep = 0\noutputs = []"),
         "line 2: communicationStep = 0 s: not allowed, allowed is any positive finite number"
     );
-    assert!(parse("stop = = 1").starts_with("not a scene file: TOML parse error at line 1"));
+    assert!(parse("stop = = 1").starts_with("line 1: not a scene file: "));
 }
 
 #[test]

@@ -72,6 +72,8 @@ def run_scene(given: argparse.Namespace) -> None:
         if not equals:
             raise RelayContactError(f"--set {text}: must be NAME=VALUE")
         name = component.settable(name.strip())
+        if name in changes:
+            raise RelayContactError(f"--set {text}: {name} is given twice")
         changes[name] = component.read(name, value.strip())
         words.append(f"{name}={value.strip()}")
     scene = Scene.read(given.scene, component).changed(component, changes)

@@ -163,10 +163,20 @@ def variables(
     values = {}
     with Contact(component) if component else nullcontext() as contact:
         for name, keys, value in leaves(table):
+            if name in values:
+                raise refused(path, (*place, *keys), value, "given twice")
             if name == "beam.file" and isinstance(value, str) and value:
                 value = str(path.resolve().parent / value)
             if contact:
                 with at(path, *place, *keys), contact.explained():
-                    contact.set(contact.component.settable(name, kind), value)
+                    contact.set(exact(contact.component, name, kind), value)
             values[name] = value
     return values
+
+
+def exact(component: Component, name: str, kind: str) -> str:
+    """Return the name of a variable of a kind; underscores for dots, as in Python, are refused."""
+    known = component.settable(name, kind)
+    if known != name:
+        raise RelayContactError(f"{name}: no such variable; did you mean {known}?")
+    return name

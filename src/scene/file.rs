@@ -16,7 +16,7 @@
 //! file = "closing.csv"        # further inputs over time, in the same folder: see `input_table`
 //! ```
 
-use crate::scene::names::{Role, list, variable};
+use crate::scene::names::{Role, list, located, variable};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -150,7 +150,10 @@ impl SceneFile {
     }
 
     fn parse(text: &str, folder: &Path) -> Result<Self, SceneError> {
-        let mut document: Document = toml::from_str(text).map_err(|error| SceneError::Syntax(error.to_string()))?;
+        let mut document: Document = toml::from_str(text).map_err(|error| {
+            let place = error.span().unwrap_or_default();
+            located(text, &place, SceneError::Syntax(error.message().to_owned()))
+        })?;
         let missing = |name, allowed| SceneError::MissingKey { name, allowed };
         let seconds = |name, value: Option<Spanned<Value>>| {
             let value = value.ok_or(missing(name, "a positive number of seconds"))?;
@@ -334,12 +337,5 @@ fn wrong_type(name: &str, value: &Value, allowed: &'static str) -> SceneError {
 
 /// Adds the line of a position to an error.
 fn at_line<T, U>(text: &str, place: &Spanned<U>, result: Result<T, SceneError>) -> Result<T, SceneError> {
-    result.map_err(|error| SceneError::AtLine {
-        line: 1 + text
-            .bytes()
-            .take(place.span().start)
-            .filter(|byte| *byte == b'\n')
-            .count(),
-        error: Box::new(error),
-    })
+    result.map_err(|error| located(text, &place.span(), error))
 }

@@ -39,6 +39,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::error::SceneError;
+use crate::scene::names::located;
 use crate::scene::spring::{
     CLAMP_STIFFNESS, COMPLIANCE, CONTACT, CONTACT_POSITION, DAMPING, DENSITY, FREQUENCY, Field, GivenMode, LENGTH,
     MASS, Modes, PARTICIPATION, POSITION, PointMass, ROTARY_INERTIA, ROTATION, Segment, Segments, Shape, SpringFile,
@@ -47,6 +48,9 @@ use crate::scene::spring::{
 
 /// Largest file, bytes.
 const LARGEST: u64 = 1 << 20;
+
+/// Likeness by Jaro and Winkler from which on a key may be meant: `thicknes` and `thickness` have 0.98, `segment` and `mode` 0.54.
+const NEAR: f64 = 0.8;
 
 impl SpringFile {
     /// Reads the file `name`; a relative name is one in `folder`.
@@ -202,9 +206,13 @@ impl<'a> Entry<'a> {
     fn knows(&self, keys: &[&'static str]) -> Result<(), SceneError> {
         let unknown = self.table.keys().filter(|key| !keys.contains(&key.get_ref().as_ref()));
         unknown.min_by_key(|key| key.span().start).map_or(Ok(()), |key| {
+            let name = key.get_ref().to_string();
+            let likeness = |known: &str| strsim::jaro_winkler(&name, known);
+            let near = keys.iter().copied().filter(|known| likeness(known) > NEAR);
             let error = SceneError::UnknownKey {
-                name: key.get_ref().to_string(),
+                nearest: near.max_by(|a, b| likeness(a).total_cmp(&likeness(b))),
                 allowed: keys.join(", "),
+                name,
             };
             self.at(&key.span(), Err(error))
         })
@@ -292,12 +300,4 @@ fn number(name: &str, value: &DeValue) -> Result<f64, SceneError> {
         },
         allowed: "a number",
     })
-}
-
-/// Adds the line of a place to an error.
-fn located(text: &str, place: &Range<usize>, error: SceneError) -> SceneError {
-    SceneError::AtLine {
-        line: 1 + text.bytes().take(place.start).filter(|byte| *byte == b'\n').count(),
-        error: Box::new(error),
-    }
 }

@@ -85,7 +85,7 @@ fn what_is_no_spring_is_discarded_and_changes_nothing() {
         ("/dev/zero", &["/dev/zero: cannot be read: not a file"]),
         (
             "at-rest.toml",
-            &["scenes/at-rest.toml: line 2: stop: no such key, allowed are"],
+            &["scenes/at-rest.toml:2: stop: no such key, allowed are"],
         ),
         (
             &long,

@@ -15,7 +15,7 @@ from component import COMPONENT, ROOT
 from relay_contact import RelayContactError, Scene, run, scenes
 from relay_contact.command import main
 from relay_contact.files import read_toml
-from relay_contact.qualification import Relay, Standard, relays, standards
+from relay_contact.qualification import Relay, Standard, qualify, relays, standards
 from relay_contact.qualification.response import respond
 from relay_contact.qualification.standards import BAND, NARROWEST, overall
 from relay_contact.schema import line
@@ -189,6 +189,10 @@ PAPER = 'title = "own"\n'
         # Parameters that are allowed, but not together.
         ("parameters.effects.secondContact = true\nposition = [{parameters.effects.contactLaw = 'Bonded'}]\n",
          "3: effects.contactLaw: Linearised and Bonded"),
+        ("parameters.tip.mass = 1e-5\nparameters.'tip.mass' = 2e-5\n", "3: parameters.tip.mass = 2e-05: .* twice"),
+        ("parameters.tip_mass = 1e-5\n", "2: tip_mass: no such variable; did you mean tip.mass"),
+        ("uncertainty.tip_mass = 0.1\n", "2: tip_mass: no such variable; did you mean tip.mass"),
+        ("uncertainty.tip.mass = 0.1\nuncertainty.'tip.mass' = 0.2\n", "3: uncertainty.tip.mass = 0.2: .* given twice"),
         ("a = 1\na = 2\n", "3: not TOML: "),
         ("a = [1,\n", "3: not TOML: "),
         ("a = " + 5000 * "[", " not TOML: nested too deeply"),
@@ -227,6 +231,21 @@ def test_wrong_standards(tmp_path: Path, old: str, new: str, message: str) -> No
     path.write_text(text.replace(old, new))
     with pytest.raises(RelayContactError, match=f"(?m)^{re.escape(str(path))}:{message}"):
         Standard.read(path)
+
+
+def test_a_monitor_between_the_contact_at_rest_and_open(tmp_path: Path) -> None:
+    relay = tmp_path / "relay.toml"
+    # The published preload of 0.152 N by the power law: 7.4118e-3 Ohm / 0.152^0.9515 = 44 mOhm.
+    for monitor, message in (
+        ("voltage = 1e-3\ncurrent = 0.1\n", r"0.01 Ohm on: not allowed, the contact has 0.0445 Ohm at rest"),
+        (
+            "voltage = 10.0\ncurrent = 1e-8\n",
+            r"1e\+09 Ohm on: not allowed, the contact has 1e\+09 Ohm while it is open",
+        ),
+    ):
+        relay.write_text(f"[monitor]\n{monitor}")
+        with pytest.raises(RelayContactError, match=rf"position 1: a monitor of .* from {message}"):
+            qualify(relay, "MIL-STD-202", out=tmp_path, tests=["213 A"], component=COMPONENT)
 
 
 @pytest.mark.parametrize("frequencies", ["[500.0, 10.0]", "[100.0, 100.5]", "[0.0, 500.0]", "[10.0, 2e4]", "[10.0]"])
@@ -331,8 +350,8 @@ def test_factors_of_entries_are_checked() -> None:
 
 def test_a_spring_file_is_refused_before_its_entries_are_changed(tmp_path: Path) -> None:
     for text, message in (
-        ("segment = 3\n", "line 1: segment"),
-        ("[[segment]]\nlength = 'a'\n", "line 2"),
+        ("segment = 3\n", r"spring.toml:1: segment"),
+        ("[[segment]]\nlength = 'a'\n", r"spring.toml:2: segment 1: length"),
         ("[", "TOML"),
     ):
         (tmp_path / "spring.toml").write_text(text)
@@ -351,6 +370,10 @@ def test_a_spring_file_is_refused_before_its_entries_are_changed(tmp_path: Path)
         (["--stop", "1e9"], "relay-contact: stop = 1e+09 s with steps of 1e-05 s: not allowed"),
         (["--set", "solver.modes=inf"], "relay-contact: solver.modes = inf: not allowed, allowed is a whole number"),
         (["--set", "solver.modes=3000000000"], "relay-contact: solver.modes = 3000000000.0: not allowed"),
+        (
+            ["--set", "tip.mass=0", "--set", "tip_mass=1e-5"],
+            "relay-contact: --set tip_mass=1e-5: tip.mass is given twice",
+        ),
         (["--set", "beam.length=nan"], "relay-contact: beam.length = nan: not allowed, allowed is a finite number"),
         (
             ["--set", "beam.length=15 mm"],

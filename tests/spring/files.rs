@@ -33,8 +33,12 @@ impl Drop for Written {
 fn message(name: &str, text: &str) -> String {
     let file = Written::new(name, text.as_bytes());
     let message = file.read().map_or_else(|message| message, |_| "accepted".to_owned());
-    let prefix = format!("{}: ", file.0.display());
-    message.strip_prefix(&prefix).unwrap_or(&message).to_owned()
+    let prefix = format!("{}:", file.0.display());
+    message
+        .strip_prefix(&prefix)
+        .unwrap_or(&message)
+        .trim_start()
+        .to_owned()
 }
 
 const SEGMENT: &str = "[[segment]]\nlength = 0.01\nwidth = 4e-3\nthickness = 2e-4\n";
@@ -44,20 +48,21 @@ fn what_is_wrong_is_told_with_its_line_entry_and_range() {
     let with = |more: &str| format!("{SEGMENT}{more}");
     for (n, (text, expected)) in [
         (String::new(), "segment = 0 entries: not allowed, allowed are 1 to 500"),
-        (with("width_start = 1e-3\n"), "line 3: segment 1: width: given twice, allowed is either one value, or one at the start and one at the end"),
-        (with(&SEGMENT.replace("2e-4", "0")), "line 8: segment 2: thickness = 0 m: not allowed, allowed is 1e-6 to 0.005"),
-        (with("thicknes = 1e-4\n"), "line 5: segment 1: thicknes: no such key, allowed are length, width, width_start, width_end, thickness, thickness_start, thickness_end, youngs_modulus, density"),
-        (with("[[segment]]\nlength = 1e-3\nwidth_start = 1e-3\nthickness = 1e-4\n"), "line 5: segment 2: width_end: missing; expected a number"),
-        (with("density = \"light\"\n"), "line 5: segment 1: density = \"light\": wrong type, allowed is a number"),
-        (with("density = nan\n"), "line 5: segment 1: density = NaN kg/m3: not allowed, allowed is 1 to 100000"),
-        (format!("contact_position = 0.011\n{SEGMENT}"), "line 1: contact_position = 0.011 m: not allowed, allowed is 0.001 to 0.01"),
-        (with("[[mass]]\nposition = 0.02\nmass = 1e-6\n"), "line 6: mass 1: position = 0.02 m: not allowed, allowed is 1e-6 to 0.01"),
-        (with("[mass]\nposition = 0.02\nmass = 1e-6\n"), "line 5: mass = table: wrong type, allowed is tables, each under its name in double brackets"),
+        (with("width_start = 1e-3\n"), "3: segment 1: width: given twice, allowed is either one value, or one at the start and one at the end"),
+        (with(&SEGMENT.replace("2e-4", "0")), "8: segment 2: thickness = 0 m: not allowed, allowed is 1e-6 to 0.005"),
+        (with("thicknes = 1e-4\n"), "5: segment 1: thicknes: no such key, allowed are length, width, width_start, width_end, thickness, thickness_start, thickness_end, youngs_modulus, density; did you mean thickness?"),
+        ("[[segmnt]]\nlength = 0.01\n".to_owned(), "1: segmnt: no such key, allowed are title, segment, mass, contact_position, clamp_stiffness; did you mean segment?"),
+        (with("[[segment]]\nlength = 1e-3\nwidth_start = 1e-3\nthickness = 1e-4\n"), "5: segment 2: width_end: missing; expected a number"),
+        (with("density = \"light\"\n"), "5: segment 1: density = \"light\": wrong type, allowed is a number"),
+        (with("density = nan\n"), "5: segment 1: density = NaN kg/m3: not allowed, allowed is 1 to 100000"),
+        (format!("contact_position = 0.011\n{SEGMENT}"), "1: contact_position = 0.011 m: not allowed, allowed is 0.001 to 0.01"),
+        (with("[[mass]]\nposition = 0.02\nmass = 1e-6\n"), "6: mass 1: position = 0.02 m: not allowed, allowed is 1e-6 to 0.01"),
+        (with("[mass]\nposition = 0.02\nmass = 1e-6\n"), "5: mass = table: wrong type, allowed is tables, each under its name in double brackets"),
         (SEGMENT.replace("0.01", "1e-5"), "length of all segments = 1e-5 m: not allowed, allowed is 0.001 to 0.2"),
-        (format!("{SEGMENT}length = 3\n"), "line 5: not TOML: duplicate key"),
-        ("compliance = 1e-3\n[[mode]]\nfrequency = 100\ncontact = 50\nparticipation = 0.01\n".to_owned(), "line 1: compliance = 0.001 m/N: not allowed, allowed is 0.006332573977646111 m/N or more, which the modes hold alone (sum of contact^2/omega^2); modes and compliance contradict each other"),
-        ("compliance = 1\n[[mode]]\nfrequency = 100\nparticipation = 0.01\n".to_owned(), "line 2: mode 1: contact: missing; expected a number"),
-        ("compliance = 1\n[[segment]]\nlength = 3\n".to_owned(), "line 2: segment: no such key, allowed are title, compliance, mode"),
+        (format!("{SEGMENT}length = 3\n"), "5: not TOML: duplicate key"),
+        ("compliance = 1e-3\n[[mode]]\nfrequency = 100\ncontact = 50\nparticipation = 0.01\n".to_owned(), "1: compliance = 0.001 m/N: not allowed, allowed is 0.006332573977646111 m/N or more, which the modes hold alone (sum of contact^2/omega^2); modes and compliance contradict each other"),
+        ("compliance = 1\n[[mode]]\nfrequency = 100\nparticipation = 0.01\n".to_owned(), "2: mode 1: contact: missing; expected a number"),
+        ("compliance = 1\n[[segment]]\nlength = 3\n".to_owned(), "2: segment: no such key, allowed are title, compliance, mode"),
     ]
     .iter()
     .enumerate()

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from relay_contact.component import Component
 from relay_contact.qualification.assessment import Part, assess, chosen
-from relay_contact.qualification.relay import Relay, relays
+from relay_contact.qualification.relay import Relay, check_monitor, relays
 from relay_contact.qualification.standards import Standard, standards
 from relay_contact.scene import progress_bar
 
@@ -39,6 +39,7 @@ def qualify(
     described = Relay.read(relay, component)
     asked = chosen(Standard.read(standard), tests or [])
     asked = replace(asked, contacts=asked.contacts.monitored(described.monitor))
+    check_monitor(component, described, asked.contacts)
     count = len(asked.tests) * len(described.positions)
     with progress_bar(count, "{desc} |{bar}| {n_fmt} of {total_fmt} tests", progress) as bar:
 

@@ -354,7 +354,11 @@ def chosen(standard: Standard, texts: list[str]) -> Standard:
     """Give a standard with those of its tests whose names contain one of some texts."""
     if not texts:
         return standard
-    tests = tuple(test for test in standard.tests if any(text.lower() in test.name.lower() for text in texts))
-    if not tests:
-        raise RelayContactError(f"no test named so; there are {', '.join(test.name for test in standard.tests)}")
-    return replace(standard, tests=tests)
+    found = {text: [test for test in standard.tests if text.lower() in test.name.lower()] for text in texts}
+    for text, tests in found.items():
+        if not tests:
+            names = ", ".join(test.name for test in standard.tests)
+            raise RelayContactError(f"{text}: no test named so; there are {names}")
+    return replace(
+        standard, tests=tuple(test for test in standard.tests if any(test in each for each in found.values()))
+    )

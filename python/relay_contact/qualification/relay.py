@@ -8,8 +8,8 @@ from pydantic import Field
 
 from relay_contact.component import Component, Values, nearest
 from relay_contact.files import RelayContactError, by_name, found, named
-from relay_contact.qualification.standards import Monitor
-from relay_contact.schema import Nested, Place, Share, Table, at, dotted, leaves, read, refused, variables
+from relay_contact.qualification.standards import Contacts, Monitor
+from relay_contact.schema import Nested, Place, Share, Table, at, dotted, exact, leaves, read, refused, variables
 from relay_contact.spring import PREFIX, known
 
 OF_THE_TEST = ("excitation.", "effects.excitation", "chatter.", "effects.chatter", "effects.extremes", "second.minimum")
@@ -75,6 +75,19 @@ class Relay:
         return cls(content.title or path.stem, positions, uncertainty, content.model.uncertainty, content.monitor)
 
 
+def check_monitor(component: Component, relay: Relay, contacts: Contacts) -> None:
+    """Refuse a monitor for which a closed contact is interrupted at rest, or an open one is closed."""
+    monitor = f"a monitor of {contacts.voltage:g} V and {contacts.current:g} A"
+    text = f"{monitor} sees an interruption from {contacts.threshold:g} Ohm on: not allowed, the contact has"
+    for name, values in relay.positions.items():
+        with component.started(values) as contact:
+            force, resistance, apart = contact.real("contact.force", "contact.resistance", "resistance.open")
+        if force > 0 and resistance >= contacts.threshold:
+            raise RelayContactError(f"{name}: {text} {resistance:.3g} Ohm at rest")
+        if contacts.threshold >= apart:
+            raise RelayContactError(f"{name}: {text} {apart:g} Ohm while it is open")
+
+
 def parameters(path: Path, table: dict[str, Any], place: Place, component: Component) -> Values:
     """Return the parameters in a table of a relay's file."""
     for name, keys, value in leaves(table):
@@ -87,8 +100,7 @@ def uncertainties(
     path: Path, table: dict[str, Any], positions: dict[str, Values], component: Component
 ) -> dict[str, float]:
     """Return the uncertainties of a relay's file by name; each changes something in one position at least."""
-    rest = {name: blow(component, values) for name, values in positions.items()} if table else {}
-    found = {}
+    found: dict[str, tuple[Place, float]] = {}
     for name, keys, part in leaves(table):
         place = ("uncertainty", *keys)
         with at(path, *place):
@@ -98,11 +110,15 @@ def uncertainties(
                     if name not in allowed:
                         text = f"no such entry in the spring file{nearest(name, allowed)}"
                         raise RelayContactError(f"{dotted(place)}: {text}")
-            elif component.variables[component.settable(name, "parameter")].type != "Real":
+            elif component.variables[exact(component, name, "parameter")].type != "Real":
                 raise RelayContactError(f"{dotted(place)}: not a real parameter")
         if isinstance(part, bool) or not isinstance(part, int | float) or not 0 <= part < 1:
             raise refused(path, place, part, "allowed is a part of the value, from 0 to less than 1")
-        found[name] = float(part)
+        if name in found:
+            raise refused(path, place, part, "given twice")
+        found[name] = place, float(part)
+    rest = {name: blow(component, values) for name, values in positions.items()} if found else {}
+    for name, (place, part) in found.items():
         with at(path, *place):
             used = [part == 0]
             for position, values in positions.items():
@@ -111,7 +127,7 @@ def uncertainties(
                     used.append(blow(component, values, {name: end}) != rest[position])
             if not any(used):
                 raise RelayContactError(f"{dotted(place)}: not used, {name} changes nothing in this relay, or it is 0")
-    return found
+    return {name: part for name, (_, part) in found.items()}
 
 
 def blow(component: Component, values: Values, changed: Values | None = None) -> list[float]:
