@@ -19,7 +19,7 @@ const STROKES: [&str; 5] = [
     "28px,5px",
 ];
 /// Of dashed curves, which are thinner: none like one of the above.
-const DASHES: [&str; 5] = ["6px,4px", "2px,3px", "4px,10px", "9px,9px", "2px,8px"];
+const DASHES: [&str; 5] = ["6px,4px", "2px,3px", "4px,9px", "9px,9px", "9px,3px"];
 const SYMBOLS: [&str; 7] = [
     "circle",
     "square",
@@ -105,7 +105,7 @@ fn trace(figure: &Figure, curve: &Curve) -> Value {
         "x": curve.x.iter().map(|value| rounded(*value)).collect::<Vec<_>>(),
         "y": curve.y.iter().map(|value| rounded(*value)).collect::<Vec<_>>(),
         // plotly.js would leave out points, and with them the tips of peaks.
-        "line": {"color": colour, "dash": dash, "width": if curve.style == Style::Dashed { 1.5 } else { 2.5 }, "simplify": false},
+        "line": {"color": colour, "dash": dash, "width": if curve.style == Style::Dashed { 1.8 } else { 2.5 }, "simplify": false},
         "marker": {"color": colour, "symbol": format!("{symbol}{hollow}"), "size": 8, "line": {"width": border}},
         "hovertemplate": format!("{}<br>{}", hover("x", &figure.x), hover("y", &figure.y)),
     });

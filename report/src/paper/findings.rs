@@ -89,7 +89,8 @@ fn axial_force(results: &Results) -> Result<Block> {
          buckling load of the open contact ({} N).\n\n\
          The published shift comes from a three-dimensional model with friction, and its two frequencies also differ \
          in the boundary condition: bonded in all directions with prestress, a single spring without. A flat contact \
-         without friction exerts no force along the spring. The component uses eq. 9 because the publication does. What \
+         without friction exerts no force along the spring. The component has eq. 9 because the publication does, and leaves it out \
+         unless it is asked for (`effects.axialForce`). What \
          friction explains of the publication, and what not, is in `docs/friction.md`.",
         number(1e3 * force, 2),
         number(shift, 3),
