@@ -153,7 +153,7 @@ def names(effects: dict[str, float]) -> str:
 def chance_text(chance: float) -> str:
     """Return a chance of failing in words, as far as the draws tell it."""
     if chance in (0, 1):
-        return f"{'<' if chance == 0 else '>'} {three(100 * abs(chance - 1 / DRAWS))} %"
+        return f"< {100 / DRAWS:.1f} %" if chance == 0 else f"> {100 - 100 / DRAWS:.1f} %"
     return f"{three(100 * chance)} %"
 
 
@@ -292,16 +292,8 @@ def clipped(axes: Axes, time: Array, course: Array, ends: Array, unit: str, colo
         peaks = [int(run[np.argmax(sign * course[run])]) for run in runs]
         axes.plot(time[peaks], np.full(len(peaks), end), marker, color=colour, markersize=5, clip_on=False)
         most = max(peaks, key=lambda at: sign * course[at])
-        most_text = f"≥ {three(abs(float(course[most])))} {unit}"
-        axes.annotate(
-            most_text,
-            (time[most], end),
-            (6, -9 * sign),
-            textcoords="offset points",
-            color=colour,
-            fontsize=7,
-            va="center",
-        )
+        value = f"≥ {three(abs(float(course[most])))} {unit}"
+        axes.annotate(value, (time[most], end), (6, -9 * sign), textcoords="offset points", color=colour, fontsize=7)
 
 
 def wear(axes: Axes, parts: list[Part]) -> None:
