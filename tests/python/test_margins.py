@@ -16,7 +16,7 @@ from relay_contact.qualification import FEW, Part, Relay, Standard, assessment, 
 from relay_contact.qualification.page import failures, passes_text, write
 from relay_contact.qualification.relay import Model
 from relay_contact.qualification.response import margin, respond
-from relay_contact.qualification.standards import Random, Shock, Sine
+from relay_contact.qualification.standards import Monitor, Random, Shock, Sine
 from relay_contact.qualification.standards import Test as Asked
 from relay_contact.qualification.trials import CLOSED, Specimen, shock, steady
 
@@ -42,7 +42,7 @@ def drawn(seed: int, spread: float = 0.2) -> Relay:
     names = ["contact.overtravel", "tip.mass", "beam.stiffnessDamping", "beam.thickness"]
     sizes = (1.0, 0.5, 2.0, 0.15)
     uncertainty = {name: spread * size for name, size in zip(names, sizes, strict=True)}
-    return Relay(f"relay {seed}", {"closed": values}, uncertainty, (Model("one", {}, 0.0),), {})
+    return Relay(f"relay {seed}", {"closed": values}, uncertainty, (Model("one", {}, 0.0),), Monitor())
 
 
 def judged(relay: Relay, folder: Path, *tests: Asked) -> list[Part]:
@@ -102,12 +102,13 @@ def several(relay: Relay, test: Asked, count: int) -> None:
     shares = (0.025, 0.16, 0.5, 0.84, 0.975)
     levels = np.quantile(position.margins(test, part["margin"], part["linear"]), shares, method="hazen")
     assert (part["low"], part["high"]) == (levels[0], levels[-1])
-    first = np.array([
-        bisect_left(levels, True, key=lambda level, values=values: fails(values, test, float(level)))
-        for values in varied(relay, count, 99)
-    ])  # fmt: skip
+
+    def first(values: Values) -> int:
+        return bisect_left(levels, True, key=lambda level: fails(values, test, float(level)))
+
+    firsts = np.array([first(values) for values in varied(relay, count, 99)])
     for number, (level, share) in enumerate(zip(levels, shares, strict=True)):
-        found = int((first <= number).sum())
+        found = int((firsts <= number).sum())
         # Counts that happen once in a thousand, with a share known to half a per cent.
         least, most = binom.ppf(5e-4, count, share - 0.005), binom.ppf(1 - 5e-4, count, share + 0.005)
         assert least <= found <= most, (level, found, share)
@@ -117,7 +118,7 @@ def test_a_resonance_beside_the_range_makes_the_interval_unsymmetrical(tmp_path:
     """Sine to 96 % of the resonance: the margin falls steeply where the resonance comes nearer."""
     values: Values = {"beam.stiffnessDamping": 5e-6, "contact.damping": 2e-6}
     natural = respond(COMPONENT, values, CONTACTS.threshold).natural
-    relay = Relay("beside", {"closed": values}, {"beam.thickness": 0.04}, (Model("one", {}, 0.0),), {})
+    relay = Relay("beside", {"closed": values}, {"beam.thickness": 0.04}, (Model("one", {}, 0.0),), Monitor())
     test = replace(SINE, frequencies=(10.0, 0.96 * natural), acceleration=3.0)
     (part,) = judged(relay, tmp_path, test)
 
