@@ -163,7 +163,8 @@ def scaled(test: Asked, factor: float) -> Asked:
         case Shock():
             return replace(test, acceleration=factor * test.acceleration)
         case Random():
-            return replace(test, density=tuple((f, factor**2 * value) for f, value in test.density))
+            density = tuple((f, factor**2 * value) for f, value in test.density)
+            return replace(test, density=density, rms=factor * test.rms)
     raise TypeError(test)
 
 
