@@ -14,7 +14,7 @@
 from typing import Any
 
 from relay_contact.component import Array, Component, Contact, Unit, Value, Values, units
-from relay_contact.files import RelayContactError, fmu_path, scenes
+from relay_contact.files import RelayContactError, RelayContactWarning, fmu_path, scenes
 from relay_contact.scene import Result, Scene, read_table, run, write_table
 
 
@@ -32,6 +32,6 @@ def __getattr__(name: str) -> Any:  # noqa: ANN401
 
 
 __all__ = [
-    "Array", "Component", "Contact", "RelayContactError", "Result", "Scene", "Unit", "Value", "Values",
-    "fmu_path", "read_table", "run", "scenes", "units", "write_table",
+    "Array", "Component", "Contact", "RelayContactError", "RelayContactWarning", "Result", "Scene", "Unit", "Value",
+    "Values", "fmu_path", "read_table", "run", "scenes", "units", "write_table",
 ]  # fmt: skip

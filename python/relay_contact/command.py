@@ -3,6 +3,8 @@
 import argparse
 import math
 import sys
+import warnings
+from datetime import date
 from pathlib import Path
 
 from relay_contact.component import Component, Value, units
@@ -96,16 +98,16 @@ def run_scene(given: argparse.Namespace) -> None:
 def qualify_relay(given: argparse.Namespace) -> None:
     """Test a relay as a standard asks, and print the verdicts."""
     from relay_contact.qualification import qualify
-    from relay_contact.qualification.page import FILES, HEAD, UNVERIFIED, cells, mark
+    from relay_contact.qualification.page import FILES, HEAD, UNVERIFIED, mark, rows
 
     folder = given.out or Path(f"qualification-{Path(given.relay).stem}-{Path(given.standard).stem}")
     parts = qualify(
         given.relay, given.standard, out=folder, tests=given.test, quick=given.quick, cluster=given.cluster,
-        component=Component(given.fmu), progress=True,
+        component=Component(given.fmu), progress=True, date=given.date,
     )  # fmt: skip
-    rows = [(part["position"], mark(part), cells(part)) for part in parts]
-    print_table([["position", *HEAD], *([place, cell[0] + star, *cell[1:]] for place, star, cell in rows)])
-    if any(star for _, star, _ in rows):
+    lines = [[part["position"], row[0] + mark(part), *row[1:]] for part in parts for row in rows(part)]
+    print_table([["position", *HEAD], *lines])
+    if any(map(mark, parts)):
         print(f"* {UNVERIFIED}")
     print(*(folder / name for name in FILES), sep="\n")
 
@@ -201,6 +203,8 @@ def line() -> argparse.ArgumentParser:
         metavar="ADDRESS",
         help="of a Dask cluster whose workers have this package, such as tcp://host:8786",
     )
+    text = "date to write on the page, today's if none follows; without it each run writes the same bytes"
+    add("--date", nargs="?", const=date.today().isoformat(), default="", metavar="DATE", help=text)
     text = "folder for what is written (qualification-RELAY-STANDARD); finished tests found there are not run again"
     add("--out", type=Path, metavar="FOLDER", help=text)
 
@@ -231,7 +235,9 @@ def main(arguments: list[str] | None = None) -> int:
     """Run the command."""
     given = line().parse_args(arguments)
     try:
-        given.act(given)
+        with warnings.catch_warnings():
+            warnings.showwarning = lambda message, *_: print(f"relay-contact: warning: {message}", file=sys.stderr)
+            given.act(given)
     except BrokenPipeError:
         # Whoever read what was printed has enough.
         sys.stdout = None

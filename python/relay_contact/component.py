@@ -1,8 +1,10 @@
 """The component under FMPy: its variables by name, and instances of it stepped by hand."""
 
 import difflib
+import re
 import shutil
 import sys
+import warnings
 import weakref
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -16,11 +18,14 @@ from typing import Any, Self
 import numpy as np
 from fmpy import extract, instantiate_fmu, platform, read_model_description, supported_platforms
 from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import fmi2Warning
 from numpy.typing import NDArray
 
-from relay_contact.files import RelayContactError, fmu_path, shown
+from relay_contact.files import RelayContactError, RelayContactWarning, fmu_path, shown
 from relay_contact.spring import PREFIX, applied
 
+DIFFERENCE = re.compile(r"\S*[/\\]\S*|\d[\d.e+-]*")
+"""Paths and numbers, by which two warnings may differ that say the same."""
 SIGNS = {"Ohm": "Ω", "mOhm": "mΩ", "um": "µm", "us": "µs", "degC": "°C", "m/s2": "m/s²", "kg/m3": "kg/m³", "1": ""}
 
 SETTABLE = ("parameter", "input")
@@ -84,6 +89,18 @@ class Component:
             folder = Path(mkdtemp())
             weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
         self.folder: str = extract(str(self.path), str(folder))
+        self.warnings: dict[str, str] = {}
+        """The first warning of each kind since this was cleared, of all instances."""
+        self.told: set[str] = set()
+
+    def warn(self, message: str) -> None:
+        """Keep a warning, and tell it as a Python warning, once for all instances."""
+        message = re.sub(r"^fmi2\w+: ", "", message)
+        kind = DIFFERENCE.sub("", message)
+        self.warnings.setdefault(kind, message)
+        if kind not in self.told:
+            self.told.add(kind)
+            warnings.warn(message, RelayContactWarning, stacklevel=3)
 
     def name(self, name: str, meant: Collection[str] = ()) -> str:
         """Return the name of a variable, in which underscores may stand for dots.
@@ -170,9 +187,14 @@ class Contact:
         """Instantiate the component; errors and warnings are appended to the messages."""
         self.component = component
         self.messages = [] if messages is None else messages
+        self.warnings: list[str] = []
+        """Those messages that are warnings, whatever the status of the call that logged them."""
+        self.told = 0
 
-        def keep(_environment: int, _instance: bytes, _status: int, _category: bytes, message: bytes) -> None:
+        def keep(_environment: int, _instance: bytes, status: int, _category: bytes, message: bytes) -> None:
             self.messages.append(message.decode())
+            if status == fmi2Warning:
+                self.warnings.append(message.decode())
 
         self.fmu = instantiate_fmu(component.folder, component.description, "CoSimulation", logger=keep)
         self.initialised = False
@@ -196,10 +218,15 @@ class Contact:
             yield
         except FMICallException as error:
             # Without the functions of FMI that it was refused by.
-            text = " ".join(
-                message.split(": ", 1)[-1] if message.startswith("fmi2") else message for message in self.messages
-            )
-            raise RelayContactError(text or str(error)) from error
+            errors = [message.split(": ", 1)[-1] if message.startswith("fmi2") else message for message in self.messages
+                      if message not in self.warnings]  # fmt: skip
+            raise RelayContactError(" ".join(errors) or str(error)) from error
+
+    def tell(self) -> None:
+        """Tell the warnings that are new; not within the logger, from which nothing can be raised."""
+        for message in self.warnings[self.told :]:
+            self.component.warn(message)
+        self.told = len(self.warnings)
 
     def references(self, *names: str) -> list[int]:
         """Give the numbers by which the component knows its variables."""
@@ -269,13 +296,18 @@ class Contact:
             for name, value in applied(values, start, Path(self.component.folder)).items():
                 self.set(self.component.settable(name), value)
             self.initialise()
+        self.tell()
 
     def begin_anew(self, values: Values) -> None:
         """Begin once more, with these parameters and inputs alone, which is faster than a new instance."""
         self.messages.clear()
+        self.warnings.clear()
+        self.told = 0
         self.fmu.reset()
         self.begin(values)
 
     def step(self, time: float, length: float) -> None:
         """Do a communication step."""
         self.fmu.doStep(currentCommunicationPoint=time, communicationStepSize=length)
+        if len(self.warnings) > self.told:
+            self.tell()

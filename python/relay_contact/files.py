@@ -15,6 +15,10 @@ class RelayContactError(ValueError):
     """A wrong name or value, or what the component refuses; the message says what is allowed."""
 
 
+class RelayContactWarning(UserWarning):
+    """What the component warns of, such as a parameter without effect, or a tolerance that may not be kept."""
+
+
 def found(name: str, in_project: str) -> Path:
     """Give a file or folder that the wheel carries, else that of the project."""
     carried = HERE / "data" / name

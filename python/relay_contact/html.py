@@ -16,7 +16,10 @@ h1{font-size:1.5em;margin-bottom:.2em}h2{font-size:1.15em;margin-top:1.6em}
 table{border-collapse:collapse;width:100%}th,td{border-bottom:1px solid #ccc;padding:.35em .5em;text-align:left;
 vertical-align:top}th{font-weight:600}td.verdict{font-weight:600;white-space:nowrap}
 td.number{white-space:nowrap}.wide,.figure{overflow-x:auto}.figure svg{width:100%;min-width:640px;height:auto}
-small,.note{color:#555}"""
+small,.note{color:#555}.judged{border-left:4px solid #999;padding-left:.8em}tr.of td{border-bottom-style:dotted}
+@page{size:A4;margin:14mm}@media print{body{font-size:9.5pt;max-width:none;padding:0}.wide,.figure{overflow:visible}
+.figure svg{min-width:0}.figure,tr,pre{break-inside:avoid}h2,h3{break-after:avoid}
+td.verdict{print-color-adjust:exact;-webkit-print-color-adjust:exact}}"""
 
 
 def svg(figure: Figure | None) -> str:

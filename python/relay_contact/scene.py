@@ -113,13 +113,18 @@ class Scene:
 
 
 class Result(np.ndarray[tuple[int], np.dtype[np.void]]):
-    """Time and outputs at the communication points: a structured array; `units` has the SI unit of each field."""
+    """Time and outputs at the communication points: a structured array; `units` has the SI unit of each field.
+
+    `warnings` has what the component warned of, the first message of each kind.
+    """
 
     units: dict[str, str]
+    warnings: list[str]
 
     def __array_finalize__(self, source: Any) -> None:  # noqa: ANN401
-        """Keep the units."""
+        """Keep units and warnings."""
         self.units = getattr(source, "units", {})
+        self.warnings = getattr(source, "warnings", [])
 
     def __getitem__(self, key: Any) -> Any:  # noqa: ANN401
         """Give a field as a plain array; rows as a result."""
@@ -167,6 +172,7 @@ def run(
     scene = replace(scene, outputs=names, table=course, stop=stop, step=step)
     points = scene.points()
     form = "{desc} {percentage:3.0f} %|{bar}| {n:.3g} of {total:.3g} ms"
+    component.warnings.clear()
     with progress_bar(1e3 * scene.stop, form, progress is True, desc="simulated") as bar:
         tell = progress if callable(progress) else lambda time: bar.update(1e3 * time - bar.n)
         result = simulated(scene, points, component, tell)
@@ -174,6 +180,7 @@ def run(
     table = unstructured_to_structured(result, fields).view(Result)
     shown = units(component.description)
     table.units = {"time": "s"} | {name: shown[name].si if name in shown else "" for name in names}
+    table.warnings = list(component.warnings.values())
     return table
 
 

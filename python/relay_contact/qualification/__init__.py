@@ -25,12 +25,14 @@ def qualify(
     component: Component | None = None,
     progress: bool = False,
     cluster: str | None = None,
+    date: str = "",
 ) -> list[Part]:
-    """Test a relay as a standard asks, each by its name or its file; write page, PDF and tables; give the results.
+    """Test a relay as a standard asks, each by its name or its file; write page and tables; return the results.
 
     `tests` are parts of the names of those wanted, without it all. What an interrupted assessment has finished is not
     run again. `quick` vibrates at fewer frequencies; margins are the same. `cluster` is the address of a Dask
-    cluster whose workers have this package.
+    cluster whose workers have this package. `date` stands on the page, without which its bytes are
+    the same for each run.
     """
     # Workers and lists of relays import this package, too, and draw nothing.
     from relay_contact.qualification.page import write
@@ -40,12 +42,12 @@ def qualify(
     asked = chosen(Standard.read(standard), tests or [])
     asked = replace(asked, contacts=asked.contacts.monitored(described.monitor))
     check_monitor(component, described, asked.contacts)
-    count = len(asked.tests) * len(described.positions)
+    count = len(asked.tests) * len(described.positions) * len(described.models)
     with progress_bar(count, "{desc} |{bar}| {n_fmt} of {total_fmt} tests", progress) as bar:
 
         def tell(label: str) -> None:
             bar.set_description_str(label) if label else bar.update()
 
         parts = assess(component, described, asked, out, FEW if quick else POINTS, tell, cluster)
-    write(out, described, asked, parts, component.description.guid)
+    write(out, described, asked, parts, component, date)
     return parts

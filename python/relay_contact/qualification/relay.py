@@ -25,9 +25,11 @@ class CoilPosition(Table):
     parameters: Nested
 
 
-class Leftover(Table):
-    """Uncertainty of margins, as a part of them, by what the model leaves out."""
+class Rival(Table):
+    """One of the models by which a relay is judged."""
 
+    name: Annotated[str, Field(min_length=1)] | None = None
+    parameters: Nested
     uncertainty: Share = 0.0
 
 
@@ -38,8 +40,19 @@ class Content(Table):
     parameters: Nested
     position: Annotated[list[CoilPosition], Field(min_length=1, default_factory=lambda: [CoilPosition(parameters={})])]
     uncertainty: Nested
-    model: Leftover = Leftover()
+    model: Annotated[list[Rival], Field(min_length=1, default_factory=lambda: [Rival(parameters={})])]
     monitor: Monitor = Monitor()
+
+
+@dataclass(frozen=True)
+class Model:
+    """One of the models by which a relay is judged."""
+
+    name: str
+    parameters: Values
+    """Of the component, in place of those of the relay, in all positions."""
+    uncertainty: float
+    """Of margins, as a part of them with 95 % confidence, by what the model leaves out."""
 
 
 @dataclass(frozen=True)
@@ -51,8 +64,8 @@ class Relay:
     """Parameters of the component in each position of the coil, by its name."""
     uncertainty: dict[str, float]
     """Of parameters, or entries of the spring file, as parts of their values, with 95 % confidence."""
-    model: float
-    """Of margins, as a part of them, by what the model leaves out."""
+    models: tuple[Model, ...]
+    """The first is that of figures and tables; a relay passes only by all of them."""
     monitor: Monitor
 
     @classmethod
@@ -72,7 +85,18 @@ class Relay:
                 # Parameters that do not fit together.
                 blow(component, positions[name])
         uncertainty = uncertainties(path, content.uncertainty, positions, component)
-        return cls(content.title or path.stem, positions, uncertainty, content.model.uncertainty, content.monitor)
+        models: dict[str, Model] = {}
+        for number, rival in enumerate(content.model):
+            place = ("model", number)
+            name = rival.name or ("as described" if len(content.model) == 1 else f"model {number + 1}")
+            if name in models:
+                raise refused(path, (*place, "name"), name, "given twice")
+            changed = parameters(path, rival.parameters, (*place, "parameters"), component)
+            models[name] = Model(name, changed, rival.uncertainty)
+            with at(path, *place):
+                for values in positions.values():
+                    blow(component, {**values, **changed})
+        return cls(content.title or path.stem, positions, uncertainty, tuple(models.values()), content.monitor)
 
 
 def check_monitor(component: Component, relay: Relay, contacts: Contacts) -> None:

@@ -105,8 +105,18 @@ def open_at_rest(component: Component, values: Values) -> bool:
     return float(values.get("contact.overtravel", component.start("contact.overtravel"))) < 0
 
 
-def respond(component: Component, values: Values, threshold: float) -> Response:
-    """Have the component answer a pulse; `threshold` is the resistance (Ohm) above which the contact is interrupted."""
+def respond(component: Component, values: Values, threshold: float, calm: float = CALM) -> Response:
+    """Have the component answer a pulse, until only the part `calm` of its largest answer is left.
+
+    `threshold` is the resistance (Ohm) above which the contact is interrupted.
+    """
+    friction = values.get("effects.friction", component.start("effects.friction"))
+    if friction != "None":
+        raise RelayContactError(
+            f"effects.friction = {friction}: not allowed where margins are sought, allowed is None: they start from "
+            "the linear response, which friction.coefficient changes; with friction, levels can be run one by one as "
+            "scenes (relay-contact run)"
+        )
     alone: Values = {"effects.secondContact": False, "effects.chatter": False, "effects.extremes": False}
     is_open = open_at_rest(component, values)
     law: Values = {"effects.contactLaw": "Hertz" if is_open else "Bonded"}
@@ -126,8 +136,8 @@ def respond(component: Component, values: Values, threshold: float) -> Response:
         # Up within a step and down within the next.
         peak = size / STEP
         answer: list[float] = []
-        largest = calm = 1.0
-        while calm >= CALM * largest:
+        largest = left = 1.0
+        while left >= calm * largest:
             if len(answer) >= LONGEST:
                 raise RelayContactError(
                     f"the contact still vibrates {STEP * LONGEST:g} s after a blow: too little damping"
@@ -139,7 +149,7 @@ def respond(component: Component, values: Values, threshold: float) -> Response:
                     contact.fmu.setRealInputDerivatives(input_, [1], [(end - begin) / STEP])
                 contact.step(number * STEP, STEP)
                 answer.append((contact.fmu.getReal(read)[0] - rest) / size)
-            calm, largest = max(map(abs, answer[-WATCHED:])), max(map(abs, answer))
+            left, largest = max(map(abs, answer[-WATCHED:])), max(map(abs, answer))
     # The triangle begins one step before its peak, which the first of these is at.
     course = np.array(answer)
     # Lines close enough for the narrowest resonance, which the answer just shows.
@@ -158,13 +168,16 @@ def interrupting_force(law: list[float], threshold: float) -> float:
     return float((coefficient / threshold) ** (1 / exponent))
 
 
-def margin(response: Response, test: Test, opening: float) -> float:
-    """Give the factor of the level of a test that fails, that is, interrupts or closes the contact for a time (s)."""
+def margin(response: Response, test: Test, opening: float, chance: float = 0.5) -> float:
+    """Return the factor of the level of a test that fails, that is, interrupts or closes the contact for a time (s).
+
+    In random vibration it does so within the test with a chance.
+    """
     match test:
         case Sine():
             return float(response.sine(test, opening)[1].min())
         case Random():
-            return response.random(test, opening)
+            return response.random(test, opening, chance)
         case Shock():
             return min(response.shock(test, opening).values())
     raise TypeError(test)

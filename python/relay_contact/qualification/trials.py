@@ -97,10 +97,15 @@ class Specimen:
         return {name: contact.get(each[2]) for name, each in self.monitors.items() if contact.get(each[0])}
 
 
-def threshold(fails: Callable[[float], Lengths], guess: float) -> tuple[float, list[str]]:
-    """Give the least factor of a level that fails, and which contacts: from a guess outwards, then by bisection."""
-    low, high = guess / 1.01, guess * 1.01
-    failed: Lengths = {}
+def threshold(
+    fails: Callable[[float], Lengths], guess: float, failing: Lengths | None = None
+) -> tuple[float, list[str]]:
+    """Return a factor of a level that fails, just above one that does not, and which contacts fail there.
+
+    From a guess outwards, then by bisection; `failing` is what is known to fail at the guess itself.
+    """
+    low, high = guess / 1.01, guess if failing else guess * 1.01
+    failed: Lengths = failing or {}
     while found := fails(low):
         low, high, failed = low / 1.1, low, found
         if low < 1e-3 * guess:
@@ -119,9 +124,10 @@ def threshold(fails: Callable[[float], Lengths], guess: float) -> tuple[float, l
 
 
 def steady(specimen: Specimen, frequency: float, amplitude: float, gently: bool) -> tuple[Lengths, list[float]]:
-    """Vibrate until the start is forgotten; give the mean length of failures, and what is left at least, then.
+    """Vibrate until the start is forgotten; return the longest failures of contacts that still fail, and what is left.
 
-    Gently: raised from rest.
+    The length is the longest since the start of the vibration, what is left the least after it is forgotten. Gently:
+    raised from rest.
     """
     sine: Values = {"effects.excitation": "Sine", "excitation.frequency": frequency, "excitation.amplitude": amplitude}
     periods = int(np.ceil(max(2.0, specimen.response.settling() * frequency)))
@@ -132,13 +138,10 @@ def steady(specimen: Specimen, frequency: float, amplitude: float, gently: bool)
             time = periods / frequency
         contact.step(time, periods / frequency)
 
-        def failures() -> dict[str, tuple[int, float]]:
-            return {
-                name: (int(contact.get(count)), contact.get(total))
-                for name, (count, total, _) in specimen.monitors.items()
-            }
+        def totals() -> dict[str, float]:
+            return {name: contact.get(total) for name, (_, total, _) in specimen.monitors.items()}
 
-        before = failures()
+        before = totals()
         time += periods / frequency
         pieces = WATCHED * (SAMPLES if specimen.is_open else 1)
         step = 1 / frequency * WATCHED / pieces
@@ -146,11 +149,9 @@ def steady(specimen: Specimen, frequency: float, amplitude: float, gently: bool)
         for piece in range(pieces):
             contact.step(time + piece * step, step)
             left.append(specimen.left(contact))
-        lengths = {}
-        for name, (count, total) in failures().items():
-            known, length = before[name]
-            if count > known:
-                lengths[name] = (total - length) / (count - known)
+        # Of failures that last long enough; also of one without an end.
+        still = [name for name, total in totals().items() if total > before[name]]
+        lengths = {name: length for name, length in specimen.longest(contact).items() if name in still}
         return lengths, np.min(left, axis=0).tolist()
 
 
@@ -164,10 +165,12 @@ def sweep(specimen: Specimen, test: Sine, frequencies: Array) -> list[tuple[Leng
     return rows
 
 
-def sine_threshold(specimen: Specimen, test: Sine, frequency: float, guess: float) -> tuple[float, list[str]]:
-    """Give the factor of the level that fails in steady vibration at a frequency (Hz), and which contacts."""
+def sine_threshold(
+    specimen: Specimen, test: Sine, frequency: float, guess: float, failing: Lengths | None = None
+) -> tuple[float, list[str]]:
+    """Return the factor of the level that fails in steady vibration at a frequency (Hz), and which contacts."""
     amplitude = float(test.amplitude(np.array(frequency)))
-    return threshold(lambda factor: steady(specimen, frequency, factor * amplitude, True)[0], guess)
+    return threshold(lambda factor: steady(specimen, frequency, factor * amplitude, True)[0], guess, failing)
 
 
 def shock(specimen: Specimen, test: Shock, factor: float, points: int = 1) -> tuple[Lengths, Array]:
@@ -193,9 +196,11 @@ def shock(specimen: Specimen, test: Shock, factor: float, points: int = 1) -> tu
         return specimen.longest(contact), np.array(rows)
 
 
-def shock_threshold(specimen: Specimen, test: Shock, sign: float, guess: float) -> tuple[float, list[str]]:
-    """Give the factor of the level that fails in a direction, and which contacts."""
-    return threshold(lambda factor: shock(specimen, test, sign * factor)[0], guess)
+def shock_threshold(
+    specimen: Specimen, test: Shock, sign: float, guess: float, failing: Lengths | None = None
+) -> tuple[float, list[str]]:
+    """Return the factor of the level that fails in a direction, and which contacts."""
+    return threshold(lambda factor: shock(specimen, test, sign * factor)[0], guess, failing)
 
 
 def record(specimen: Specimen, test: Random) -> tuple[Array, Array]:
@@ -229,6 +234,19 @@ def window(specimen: Specimen, acceleration: Array, factor: float, watched: bool
             if watched:
                 rows.append(specimen.observed(contact))
         return specimen.longest(contact), np.array(rows)
+
+
+def middle_dip(specimen: Specimen, test: Random) -> tuple[float, list[str], Array, float]:
+    """Return at which part of the level of linear theory the contacts fail, and which, in the middle of the dips.
+
+    That is, of the largest dips of a record, the one whose part is neither least nor greatest; with its acceleration,
+    and the factor of its level that fails by linear theory.
+    """
+    found = []
+    for course, guess in dips(specimen, test):
+        level, failed = threshold(lambda factor, course=course: window(specimen, course, factor)[0], guess)  # type: ignore[misc]
+        found.append((level / guess, failed, course, guess))
+    return sorted(found, key=lambda each: each[0])[len(found) // 2]
 
 
 def dips(specimen: Specimen, test: Random) -> list[tuple[Array, float]]:

@@ -1,0 +1,278 @@
+"""Margins, their intervals and verdicts over relays drawn at random: by brute force, and without contradictions."""
+
+from bisect import bisect_left
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.stats import binom
+
+from component import COMPONENT
+from relay_contact import RelayContactError, RelayContactWarning, Values, run
+from relay_contact.figures import three
+from relay_contact.qualification import FEW, Part, Relay, Standard, assessment, qualify
+from relay_contact.qualification.page import failures, passes_text, write
+from relay_contact.qualification.relay import Model
+from relay_contact.qualification.response import margin, respond
+from relay_contact.qualification.standards import Monitor, Random, Shock, Sine
+from relay_contact.qualification.standards import Test as Asked
+from relay_contact.qualification.trials import CLOSED, Specimen, shock, steady
+
+CONTACTS = Standard.read("MIL-PRF-28776").contacts
+SINE = Sine("sine", "", True, 30.0, 4.95e-3, (10.0, 3000.0), 1200.0)
+SHOCK = Shock("shock", "", True, 50.0, 3e-3)
+RANDOM = Random("random", "", True, ((50.0, 0.02), (2000.0, 0.02)), 6.24, 900.0)
+
+
+def drawn(seed: int, spread: float = 0.2) -> Relay:
+    """Return a relay with a uniform spring between 0.4 and 4 N/mm, damped at 2 to 40 % of critical, all uncertain."""
+    generator = np.random.default_rng(seed)
+    length, width = generator.uniform(8e-3, 25e-3), generator.uniform(2e-3, 10e-3)
+    stiffness = np.exp(generator.uniform(np.log(400.0), np.log(4000.0)))
+    thickness = length * (4 * stiffness / 1.24e11 / width) ** (1 / 3)
+    values: dict[str, Any] = {
+        "beam.length": length, "beam.width": width, "beam.thickness": thickness,
+        "beam.stiffnessDamping": np.exp(generator.uniform(np.log(5e-6), np.log(1e-4))),
+        "tip.mass": np.exp(generator.uniform(np.log(3e-6), np.log(1e-4))),
+        "contact.overtravel": generator.uniform(5e-5, 5e-4),
+        "contact.damping": np.exp(generator.uniform(np.log(2e-6), np.log(1e-4))),
+    }  # fmt: skip
+    names = ["contact.overtravel", "tip.mass", "beam.stiffnessDamping", "beam.thickness"]
+    sizes = (1.0, 0.5, 2.0, 0.15)
+    uncertainty = {name: spread * size for name, size in zip(names, sizes, strict=True)}
+    return Relay(f"relay {seed}", {"closed": values}, uncertainty, (Model("one", {}, 0.0),), Monitor())
+
+
+def judged(relay: Relay, folder: Path, *tests: Asked) -> list[Part]:
+    """Return what some tests show."""
+    standard = Standard("own", CONTACTS, tests)
+    return assessment.assess(COMPONENT, relay, standard, folder, FEW)
+
+
+def varied(relay: Relay, count: int, seed: int) -> list[Values]:
+    """Return values of a relay with independent normal deviates, as brute force draws them."""
+    (values,) = relay.positions.values()
+    deviates = np.random.default_rng(seed).standard_normal((count, len(relay.uncertainty)))
+    return [
+        {**values, **{name: float(values[name]) * (1 + part * z / 1.96)
+                      for (name, part), z in zip(relay.uncertainty.items(), row, strict=True)}}
+        for row in deviates
+    ]  # fmt: skip
+
+
+def fails(values: Values, test: Asked, level: float) -> bool:
+    """Tell whether a relay fails a test at a factor of its level, by the component alone: no linear response leads it.
+
+    A sine is tried over all frequencies of its range, 2 % apart.
+    """
+    specimen = Specimen(COMPONENT, values, CONTACTS, respond(COMPONENT, values, CONTACTS.threshold, 1e-3))
+    if isinstance(test, Shock):
+        return any(shock(specimen, test, sign * level)[0] for sign in (-1, 1))
+    assert isinstance(test, Sine)
+    low, high = test.frequencies
+    frequencies = np.geomspace(low, high, 1 + int(np.log(high / low) / 0.02))
+    # From the highest, where the weakest usually are: the first failure decides.
+    return any(
+        bool(steady(specimen, f, level * float(test.amplitude(np.array(f))), True)[0]) for f in frequencies[::-1]
+    )
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_the_interval_of_a_shock_is_that_of_brute_force(seed: int) -> None:
+    relay = drawn(seed)
+    several(relay, SHOCK, 150)
+
+
+@pytest.mark.parametrize(("seed", "beside"), [(4, 1.03), (5, 0.97)])
+def test_the_interval_of_a_sine_is_that_of_brute_force(seed: int, beside: float) -> None:
+    """Also where the sweep ends beside the resonance, so that some relays have it within and some do not."""
+    relay = drawn(seed, 0.1)
+    (values,) = relay.positions.values()
+    natural = respond(COMPONENT, values, CONTACTS.threshold).natural
+    test = replace(SINE, frequencies=(natural / 1.5, natural / beside), double_amplitude=1.0)
+    several(relay, test, 60)
+
+
+def several(relay: Relay, test: Asked, count: int) -> None:
+    """Compare the distribution of margins with counts of brute force, at the ends of the interval and between."""
+    position = assessment.Position(COMPONENT, relay, "closed", CONTACTS, (test,), relay.models[0])
+    part = assessment.judged(position, test, FEW)
+    shares = (0.025, 0.16, 0.5, 0.84, 0.975)
+    levels = np.quantile(position.margins(test, part["margin"], part["linear"]), shares, method="hazen")
+    assert (part["low"], part["high"]) == (levels[0], levels[-1])
+
+    def first(values: Values) -> int:
+        return bisect_left(levels, True, key=lambda level: fails(values, test, float(level)))
+
+    firsts = np.array([first(values) for values in varied(relay, count, 99)])
+    for number, (level, share) in enumerate(zip(levels, shares, strict=True)):
+        found = int((firsts <= number).sum())
+        # Counts that happen once in a thousand, with a share known to half a per cent.
+        least, most = binom.ppf(5e-4, count, share - 0.005), binom.ppf(1 - 5e-4, count, share + 0.005)
+        assert least <= found <= most, (level, found, share)
+
+
+def test_a_resonance_beside_the_range_makes_the_interval_unsymmetrical(tmp_path: Path) -> None:
+    """Sine to 96 % of the resonance: the margin falls steeply where the resonance comes nearer."""
+    values: Values = {"beam.stiffnessDamping": 5e-6, "contact.damping": 2e-6}
+    natural = respond(COMPONENT, values, CONTACTS.threshold).natural
+    relay = Relay("beside", {"closed": values}, {"beam.thickness": 0.04}, (Model("one", {}, 0.0),), Monitor())
+    test = replace(SINE, frequencies=(10.0, 0.96 * natural), acceleration=3.0)
+    (part,) = judged(relay, tmp_path, test)
+
+    def at(deviate: float) -> float:
+        changed = {**values, "beam.thickness": COMPONENT.start("beam.thickness") * (1 + 0.04 * deviate / 1.96)}  # type: ignore[operator]
+        found = respond(COMPONENT, changed, CONTACTS.threshold)
+        return float(found.sine(test, CONTACTS.opening)[1].min())
+
+    # The margin rises with the thickness, so that the ends are those of the thickness.
+    assert part["low"] == pytest.approx(at(-1.96), rel=0.02)
+    assert part["high"] == pytest.approx(at(1.96), rel=0.02)
+    # By twice as much as the ends are uncertain.
+    assert abs((part["high"] - part["margin"]) / (part["margin"] - part["low"]) - 1) > 0.1
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_verdict_margin_and_text_agree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seed: int) -> None:
+    """Levels near those that fail, where a contradiction would show."""
+    monkeypatch.setattr(assessment, "DRAWS", 64)
+    relay = drawn(100 + seed, 0.02)
+    generator = np.random.default_rng(seed)
+    tests: list[Asked] = [SINE, SHOCK, RANDOM]
+    (values,) = relay.positions.values()
+    response = respond(COMPONENT, values, CONTACTS.threshold)
+    tests = [
+        scaled(test, margin(response, test, CONTACTS.opening) * generator.choice([0.9, 0.999, 1.001, 1.1]))
+        for test in tests
+    ]
+    for whole in judged(relay, tmp_path, *tests):
+        for part in whole["models"]:
+            coherent(part)
+            assert whole["verdict"] == part["verdict"]
+
+
+def scaled(test: Asked, factor: float) -> Asked:
+    """Return a test at another level."""
+    match test:
+        case Sine():
+            return replace(
+                test, acceleration=factor * test.acceleration, double_amplitude=factor * test.double_amplitude
+            )
+        case Shock():
+            return replace(test, acceleration=factor * test.acceleration)
+        case Random():
+            density = tuple((f, factor**2 * value) for f, value in test.density)
+            return replace(test, density=density, rms=factor * test.rms)
+    raise TypeError(test)
+
+
+def coherent(part: Part) -> None:
+    """Check that nothing that is said of a test contradicts anything else."""
+    assert part["low"] <= part["margin"] <= part["high"]
+    text = failures(part)
+    if part["margin"] > 1:
+        assert not part["failed"]
+        assert text == "none fails"
+    else:
+        assert part["failed"] or "but at" in text, text
+    assert (float(three(part["margin"])) < 1) == (part["margin"] < 1)
+    match part["verdict"]:
+        case "pass":
+            assert part["low"] > 1
+            assert part["chance"] <= 0.025
+        case "FAIL":
+            assert part["high"] < 1
+            assert part["chance"] >= 0.975
+        case _:
+            assert part["low"] <= 1 <= part["high"]
+    if part["passes"] is None:
+        assert part["verdict"] != "pass"
+    else:
+        assert (part["passes"] <= part["overtravel"] * (1 + 1e-12)) == (part["verdict"] == "pass")
+
+
+def test_passes_below_what_was_computed_is_told_so(tmp_path: Path) -> None:
+    relay = replace(drawn(7), uncertainty={})
+    (part,) = judged(relay, tmp_path, replace(SHOCK, acceleration=0.1))
+    (values,) = relay.positions.values()
+    assert passes_text(part) == f"< {three(100 * float(values['contact.overtravel']))} mm overtravel"
+
+
+def test_a_failure_without_an_end_is_a_failure() -> None:
+    """An overtravel so small, and a level so high, that the contact is open most of the time."""
+    values: Values = {"contact.overtravel": 2e-6, "effects.chatter": True}
+    specimen = Specimen(COMPONENT, values, CONTACTS, respond(COMPONENT, values, CONTACTS.threshold))
+    lengths, _ = steady(specimen, 3000.0, 3000.0, False)
+    # More than a period: the longest, not the mean.
+    assert lengths[CLOSED] > 1 / 3000.0
+
+
+def test_each_model_is_judged_and_all_have_to_pass(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(assessment, "DRAWS", 32)
+    relay = drawn(8, 0.02)
+    (part,) = judged(relay, tmp_path, SHOCK)
+    test = replace(SHOCK, acceleration=SHOCK.acceleration * part["margin"] / 1.1)
+    heavier: Values = {"tip.mass": 3 * float(relay.positions["closed"]["tip.mass"])}
+    both = replace(relay, models=(*relay.models, Model("heavier", heavier, 0.01)))
+    (whole,) = judged(both, tmp_path, test)
+    alone = replace(relay, positions={"closed": {**relay.positions["closed"], **heavier}}, models=(both.models[1],))
+    (other,) = judged(alone, tmp_path, test)
+    assert [each["verdict"] for each in whole["models"]] == ["pass", "FAIL"]
+    assert whole["models"][1] == other["models"][0]
+    assert whole["verdict"] == "undecided"
+    write(tmp_path, both, Standard("own", CONTACTS, (test,)), [whole], COMPONENT)
+    page = (tmp_path / "qualification.html").read_text(encoding="utf-8")
+    assert "- heavier" in page
+    assert f"{three(whole['models'][1]['margin'])} to {three(whole['models'][0]['margin'])}" in page
+
+
+def test_friction_is_refused_by_its_own_name() -> None:
+    with pytest.raises(RelayContactError, match=r"effects.friction = Coulomb: not allowed.*friction.coefficient"):
+        respond(COMPONENT, {"effects.friction": "Coulomb"}, 600.0)
+
+
+def test_pages_have_all_inputs_and_the_date_if_asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(assessment, "DRAWS", 16)
+    relay = tmp_path / "relay.toml"
+    relay.write_text("parameters.tip.mass = 12.345e-6\nuncertainty.beam.youngsModulus = 0.0377\n")
+    pages = []
+    for date in ("", "1 April 2030"):
+        qualify(relay, "MIL-STD-202", out=tmp_path, tests=["213 A"], component=COMPONENT, date=date)
+        pages.append((tmp_path / "qualification.html").read_text(encoding="utf-8"))
+    page, dated = pages
+    assert page == dated.replace(" <small>1 April 2030</small>", "")
+    for text in ("12.345 mg", "± 3.77 %", "RelayContact 0.", "rigid relay", "contact.moving.poissonRatio"):
+        assert text in page
+    assert "friction.coefficient" not in page
+
+
+def test_warnings_reach_results_and_pages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Told once, kept by each result; also the one that every draw repeats with another file."""
+    monkeypatch.setattr(assessment, "DRAWS", 16)
+    spring = Path(Relay.read("cube-changeover", COMPONENT).positions["coil energised"]["beam.file"])  # type: ignore[arg-type]
+    unused: Any = {"beam.file": str(spring), "beam.thickness": 1.23e-4, "contact.overtravel": 8e-4}
+    COMPONENT.told.clear()
+    with pytest.warns(RelayContactWarning, match=r"^beam.thickness = 0.000123 m: not used") as told:
+        results = [run("at-rest", component=COMPONENT, **unused) for _ in range(2)]
+    assert len(told) == 1
+    assert [len(result.warnings) for result in results] == [1, 1]
+    relay = tmp_path / "relay.toml"
+    relay.write_text(
+        f"parameters.beam.file = '{spring}'\nparameters.beam.thickness = 1.23e-4\n"
+        "parameters.contact.overtravel = 8e-4\nparameters.beam.stiffnessDamping = 5e-6\n"
+        "uncertainty.spring.thickness = 0.01\n"
+    )
+    (part,) = qualify(relay, "MIL-STD-202", out=tmp_path, tests=["213 A"], component=COMPONENT)
+    assert len([text for text in part["models"][0]["warnings"] if "not used" in text]) == 1
+    assert "not used" in (tmp_path / "qualification.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(0.9914, "0.991"), (9.06, "9.06"), (0.93, "0.930"), (1195.0, "1200"), (12.345e3, "12300"), (0.99996, "0.99996"),
+     (1.0004, "1.0004"), (1.0, "1.00"), (0.0, "0"), (9.999, "10.0")],
+)  # fmt: skip
+def test_three_digits_that_keep_their_side_of_1(value: float, text: str) -> None:
+    assert three(value) == text
