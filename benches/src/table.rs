@@ -190,7 +190,8 @@ pub fn csv(rows: &[Row]) -> String {
 /// A table in Markdown: of each integrator the cheapest run at each level of the error that `error` selects.
 fn envelope(rows: &[Row], scene: &str, levels: &[f64], unit: &str, error: Error) -> String {
     let of_scene = |row: &&Row| row.case.problem.name == scene && [DELIVERED, PEERS].contains(&row.case.part);
-    let rows: Vec<&Row> = rows.iter().filter(of_scene).collect();
+    let installed = |row: &&Row| !matches!(row.outcome, Err(Failure::Unavailable(_)));
+    let rows: Vec<&Row> = rows.iter().filter(of_scene).filter(installed).collect();
     let mut names: Vec<&str> = rows.iter().map(|row| row.case.integrator.name()).collect();
     names.dedup();
     let cheapest = |name: &str, level: f64| {
