@@ -343,13 +343,12 @@ impl Simulation {
 
     /// A Boolean output.
     pub fn boolean(&self, output: BooleanOutput) -> bool {
-        let second = match output {
-            BooleanOutput::ContactClosed => false,
-            BooleanOutput::SecondClosed => true,
+        let (state, [first, other]) = (self.motion.state(), self.motion.tip(&self.model).forces);
+        let (second, force) = match output {
+            BooleanOutput::ContactClosed => (false, first),
+            BooleanOutput::SecondClosed => (true, other),
         };
-        let (state, forces) = (self.motion.state(), self.motion.tip(&self.model).forces);
         // At the instant of closing there is no force yet.
-        let closed = state.closed && state.mirrored == second && !self.model.law.never_opens();
-        closed || forces[usize::from(second)] > 0.0
+        force > 0.0 || state.closed && state.mirrored == second && !self.model.law.never_opens()
     }
 }

@@ -92,6 +92,8 @@ class Relay:
             if name in models:
                 raise refused(path, (*place, "name"), name, "given twice")
             changed = parameters(path, rival.parameters, (*place, "parameters"), component)
+            if twin := next((each.name for each in models.values() if each.parameters == changed), None):
+                raise refused(path, place, name, f"has the parameters of {twin}")
             models[name] = Model(name, changed, rival.uncertainty)
             with at(path, *place):
                 for values in positions.values():
