@@ -16,9 +16,9 @@ from types import TracebackType
 from typing import Any, Self
 
 import numpy as np
-from fmpy import extract, instantiate_fmu, platform, read_model_description, supported_platforms
+from fmpy import extract, platform, read_model_description, supported_platforms
 from fmpy.fmi1 import FMICallException
-from fmpy.fmi2 import fmi2Warning
+from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE, fmi2Warning
 from numpy.typing import NDArray
 
 from relay_contact.files import RelayContactError, RelayContactWarning, fmu_path, shown
@@ -192,11 +192,23 @@ class Contact:
         self.told = 0
 
         def keep(_environment: int, _instance: bytes, status: int, _category: bytes, message: bytes) -> None:
-            self.messages.append(message.decode())
+            # A format without arguments: FMI doubles these two.
+            text = message.decode().replace("%%", "%").replace("##", "#")
+            self.messages.append(text)
             if status == fmi2Warning:
-                self.warnings.append(message.decode())
+                self.warnings.append(text)
 
-        self.fmu = instantiate_fmu(component.folder, component.description, "CoSimulation", logger=keep)
+        # Not by FMPy's instantiate_fmu: its loggers share a single place, so that messages go to the last instance that
+        # was made, and crash the process when that is gone.
+        callbacks = fmi2CallbackFunctions()
+        callbacks.logger = fmi2CallbackLoggerTYPE(keep)
+        description = component.description
+        self.fmu = FMU2Slave(
+            guid=description.guid,
+            modelIdentifier=description.coSimulation.modelIdentifier,
+            unzipDirectory=component.folder,
+        )
+        self.fmu.instantiate(callbacks=callbacks)
         self.initialised = False
 
     def __enter__(self) -> Self:

@@ -1,5 +1,7 @@
 """The package `relay_contact`: runs of scenes, and what it says about wrong names and values."""
 
+import gc
+import re
 from pathlib import Path
 from typing import Any
 from zipfile import ZipFile
@@ -8,9 +10,10 @@ import matplotlib as mpl
 import nbformat
 import numpy as np
 import pytest
+from fmpy import simulate_fmu
 
 from component import COMPONENT, FMU, ROOT, STARTS
-from relay_contact import Component, RelayContactError, Scene, run, scenes
+from relay_contact import Component, Contact, RelayContactError, Scene, run, scenes
 from relay_contact.command import main
 
 
@@ -109,3 +112,19 @@ def test_the_notebook_runs(capsys: pytest.CaptureFixture[str]) -> None:
     # The blows of the shown periods set the axis, not that of the first closing before them.
     assert names["axes"].get_ylim()[1] < 1.1 * 100 * names["chatter"]["contact.force"][-300:].max()
     assert "did you mean beam.length?" in capsys.readouterr().out
+
+
+def test_each_instance_has_its_own_messages_and_leaves_none_that_others_need() -> None:
+    """Warnings of springs bent far: of two instances at a time, then through FMPy alone as both are gone."""
+    bent = [{"contact.overtravel": overtravel} for overtravel in (3e-3, 4e-3)]
+    with Contact(COMPONENT) as first, Contact(COMPONENT) as second:
+        for contact, values in zip((first, second), bent, strict=True):
+            contact.begin(values)
+        for contact, told in ((first, "0.003 m"), (second, "0.004 m")):
+            assert len(contact.warnings) == 1
+            assert told in contact.warnings[0]
+            assert re.search(r"\d % stiffer", contact.warnings[0])
+    del first, second, contact
+    gc.collect()
+    result = simulate_fmu(str(FMU), stop_time=1e-4, start_values=bent[0], output=["contact.force"])
+    assert result["contact.force"].min() > 0
