@@ -190,11 +190,15 @@ class Contact:
         self.warnings: list[str] = []
         """Those messages that are warnings, whatever the status of the call that logged them."""
         self.told = 0
+        self.changed_file = "", ""
+        """A temporary spring file with changed entries, and that of the user, which messages name."""
 
         def keep(_environment: int, _instance: bytes, status: int, _category: bytes, message: bytes) -> None:
-            self.messages.append(message.decode())
+            temporary, own = self.changed_file
+            text = message.decode().replace(temporary, own) if temporary else message.decode()
+            self.messages.append(text)
             if status == fmi2Warning:
-                self.warnings.append(message.decode())
+                self.warnings.append(text)
 
         self.fmu = instantiate_fmu(component.folder, component.description, "CoSimulation", logger=keep)
         self.initialised = False
@@ -293,7 +297,9 @@ class Contact:
             if "beam.file" in values and any(name.startswith(PREFIX) for name in values):
                 # Its entries are changed only once the component has accepted it.
                 self.set("beam.file", values["beam.file"])
-            for name, value in applied(values, start, Path(self.component.folder)).items():
+            own = applied(values, start, Path(self.component.folder))
+            self.changed_file = str(own.get("beam.file", "")), str(values.get("beam.file", ""))
+            for name, value in own.items():
                 self.set(self.component.settable(name), value)
             self.initialise()
         self.tell()
