@@ -31,7 +31,7 @@ STATIC: Values = {
 """What a static force does not depend on is the same, so that it is not computed again."""
 OUTPUTS = {"displacement": "tip.displacement", "velocity": "tip.velocity", "force": "contact.force"}
 KNOCK = 1e-4  # m, by about which a knock moves the spring, 1 % of its distance from the contact
-SAMPLES, DENSITY, MODEL_ORDER = 48, 8, 8
+SAMPLES, DENSITY, MODEL_ORDER = 64, 8, 24
 """Of a motion after a knock: points, points per period, and decaying exponentials at most; pole of the exact beam to
 1e-6 of its size (tests/python/test_identification.py)."""
 WITHIN, EXACT = 1e-9, 1e-10
