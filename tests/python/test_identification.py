@@ -114,7 +114,7 @@ def test_a_response_of_the_open_spring_does_not_tell_masses_and_stiffness(tmp_pa
 
 
 def pole(values: Values) -> Array:
-    """Return rate of decay and angular frequency of the slowest vibration, by the eigenvalues of the second solution."""
+    """Return rate of decay and angular frequency of the slowest vibration, by the second solution."""
     spring = Reference(values)
     modes, count = spring.modes(), len(spring.modes().tip)
     contact = spring.tangent * np.outer(modes.tip, modes.tip)

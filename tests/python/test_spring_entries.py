@@ -91,4 +91,4 @@ def test_what_is_refused_of_a_changed_spring_names_the_file_of_the_user() -> Non
     with pytest.raises(RelayContactError) as refused:
         COMPONENT.started({"beam.file": str(SEGMENTS), "spring.thickness": 1e3})
     assert f"{SEGMENTS}: line " in str(refused.value)
-    assert COMPONENT.folder not in str(refused.value)
+    assert str(COMPONENT.folder) not in str(refused.value)
