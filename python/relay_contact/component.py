@@ -190,10 +190,14 @@ class Contact:
         self.warnings: list[str] = []
         """Those messages that are warnings, whatever the status of the call that logged them."""
         self.told = 0
+        self.changed_file = "", ""
+        """A temporary spring file with changed entries, and that of the user, which messages name."""
 
         def keep(_environment: int, _instance: bytes, status: int, _category: bytes, message: bytes) -> None:
             # A format without arguments: FMI doubles these two.
             text = message.decode().replace("%%", "%").replace("##", "#")
+            temporary, own = self.changed_file
+            text = text.replace(temporary, own) if temporary else text
             self.messages.append(text)
             if status == fmi2Warning:
                 self.warnings.append(text)
@@ -305,7 +309,9 @@ class Contact:
             if "beam.file" in values and any(name.startswith(PREFIX) for name in values):
                 # Its entries are changed only once the component has accepted it.
                 self.set("beam.file", values["beam.file"])
-            for name, value in applied(values, start, Path(self.component.folder)).items():
+            own = applied(values, start, Path(self.component.folder))
+            self.changed_file = str(own.get("beam.file", "")), str(values.get("beam.file", ""))
+            for name, value in own.items():
                 self.set(self.component.settable(name), value)
             self.initialise()
         self.tell()

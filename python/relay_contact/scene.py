@@ -18,16 +18,35 @@ from tqdm import tqdm
 from relay_contact.component import Array, Component, Value, nearest, units
 from relay_contact.files import RelayContactError, named, scenes
 from relay_contact.schema import Nested, Positive, Table, at, leaves, read, refused, variables
+from relay_contact.tables import ACCELERATIONS, CURRENTS, LENGTHS, TIMES, Units
+from relay_contact.tables import read as read_columns
 
 MOST = 10**7
 """Communication steps of a run, whose rows stay in memory."""
+INPUTS: Units = {
+    "time": TIMES, "base.acceleration": ACCELERATIONS, "support.displacement": LENGTHS, "second.displacement": LENGTHS,
+    "contact.current": CURRENTS,
+}  # fmt: skip
+"""Columns of a table of inputs, and their units."""
 
 
 def read_table(path: Path) -> dict[str, Array]:
-    """Read a CSV file of numbers, its columns by name."""
+    """Read a CSV file that `write_table` has written, its columns by name."""
     with path.open(encoding="utf-8") as file:
         names = file.readline().strip().split(",")
         return dict(zip(names, np.loadtxt(file, delimiter=",", ndmin=2).T, strict=True))
+
+
+def input_table(path: Path) -> dict[str, Array]:
+    """Read inputs over time as measuring programs export them (`relay_contact.tables`), SI units."""
+    table = read_columns(path, INPUTS)
+    there = list(table.cells)
+    if "time" not in there or len(there) < 2:
+        names = ", ".join(there + table.passed)
+        allowed = f"time and one or more of {', '.join(name for name in INPUTS if name != 'time')}"
+        raise table.wrong(f"columns {names}: not allowed, allowed is {allowed}")
+    table.ascending("time")
+    return {name: table[name] for name in there}
 
 
 def write_table(path: Path, names: str, rows: ArrayLike, digits: int = 12) -> None:
@@ -76,7 +95,7 @@ class Scene:
         table = {}
         if file:
             with at(path, "inputs", "file"):
-                table = read_table(path.parent / file)
+                table = input_table(path.parent / file)
         for name, keys, value in leaves(inputs):
             if name in table:
                 raise refused(path, ("inputs", *keys), value, f"{file} has a column for it")

@@ -1,11 +1,13 @@
 """What a laboratory would measure on the published relay, by the second solution of the model, with scatter."""
 
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 
 from reference import Reference
 from relay_contact import Array, Values
+from relay_contact.identification.measurement import FORCE, RINGDOWN, Measurement
 
 TRUTH: dict[str, float] = {
     "contact.overtravel": 2.06e-4, "beam.youngsModulus": 1.2e11, "tip.mass": 2.4e-5, "beam.stiffnessDamping": 7.5e-5,
@@ -18,10 +20,18 @@ TIME = np.linspace(2e-3, 22e-3, 120)
 FREQUENCY = np.linspace(400.0, 2200.0, 9)
 LEVELS = np.linspace(600.0, 1600.0, 6)
 OPENING, RESISTANCE = 10e-6, 60.0
+RINGING: dict[str, float] = {**TRUTH, "tip.mass": 1.761e-4, "beam.stiffnessDamping": 1e-5}
+"""A relay whose open spring rings at 223 Hz and decays by a factor e in 0.10 s."""
+GUESSED = {name: value * part for (name, value), part in zip(RINGING.items(), (0.97, 1.05, 0.9, 1.3), strict=True)}
+"""What its drawing says."""
+PRESSED = np.linspace(-1e-4, 2e-4, 13)
+CALIBRATION = 0.005
+SINCE = 0.02
+"""Time (s) after a pluck at which its record begins: of the second vibration, 1 % of the first, exp(-7.6) is left."""
 
 
 def deflection(values: Values, time: Array) -> Array:
-    """Give that of the open spring (m) after it was bent by 0.1 mm and let go at time 0, all its modes."""
+    """Return that of the open spring (m) after it was bent by 0.1 mm and let go at time 0, all its modes."""
     spring = Reference({**values, **AWAY})
     modes = spring.modes()
     bent = modes.tip * 1e-4 * spring.tip_stiffness / modes.omega_squared
@@ -35,7 +45,7 @@ def deflection(values: Values, time: Array) -> Array:
 
 
 def exact(values: Values) -> dict[str, Array]:
-    """Give what would be measured without scatter: N, m, N at 20 m/s2, m/s2."""
+    """Return what would be measured without scatter: N, m, N at 20 m/s2, m/s2."""
     relay = Reference(values)
     responses = np.array([abs(relay.force_response(f)) for f in FREQUENCY])
     levels = np.array([abs(relay.force_response(f)) for f in LEVELS])
@@ -50,7 +60,7 @@ def exact(values: Values) -> dict[str, Array]:
 
 
 def scattered(clean: dict[str, Array], seed: int) -> dict[str, Array]:
-    """Give what is measured."""
+    """Return what is measured."""
     chance = np.random.default_rng(seed)
     found = {name: values.copy() for name, values in clean.items()}
     for name, values in found.items():
@@ -77,3 +87,32 @@ def files(folder: Path, measured: dict[str, Array]) -> dict[str, Path]:
         rows = [",".join(f"{each:.9g}" for each in row) for row in zip(*values, strict=True)]
         paths[name].write_text("\n".join(["# made by the second solution", head, *rows]) + "\n", encoding="utf-8")
     return paths
+
+
+@cache
+def pressed() -> Array:
+    """Return the static force (N) of RINGING over PRESSED without scatter."""
+    overtravel = RINGING["contact.overtravel"]
+    return np.array([Reference({**RINGING, "contact.overtravel": overtravel + x}).force for x in PRESSED])
+
+
+@cache
+def plucked(length: float, rate: float) -> tuple[Array, Array]:
+    """Return times (s) and deflections (m) of RINGING in a record of a length (s) and rate (1/s), without scatter."""
+    time = SINCE + np.arange(round(length * rate)) / rate
+    return time, deflection(RINGING, time)
+
+
+def record(length: float, rate: float, noise: float, seed: int) -> list[Measurement]:
+    """Return a static force, its gauge wrong by chance, and a ring-down with noise, as a part of the largest value."""
+    # Other chances for each length, rate and scatter.
+    chance = np.random.default_rng([seed, round(1e3 * length), round(rate), round(1e4 * noise)])
+    gauge = np.exp(CALIBRATION / 1.96 * chance.standard_normal())
+    force = pressed() * gauge + SCATTER["force"] * pressed().max() * chance.standard_normal(len(PRESSED))
+    time, motion = plucked(length, rate)
+    motion = motion + noise * np.abs(motion).max() * chance.standard_normal(len(time))
+    none, place = np.array([]), "contact closed"
+    return [
+        Measurement(Path("force.csv"), FORCE, PRESSED, "force", "N", force, none, place, False, CALIBRATION),
+        Measurement(Path("ring.csv"), RINGDOWN, time, "displacement", "m", motion, none, place, True, 0.0),
+    ]

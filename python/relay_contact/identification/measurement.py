@@ -10,39 +10,50 @@ instrument, and any parameter of the component for this measurement; others are 
 """
 
 import difflib
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
-from relay_contact.component import Array, Component, Value, nearest
-from relay_contact.figures import GRAVITY
+from relay_contact.component import Array, Component, Value
 from relay_contact.files import RelayContactError
+from relay_contact.tables import (
+    ACCELERATIONS,
+    FORCES,
+    FREQUENCIES,
+    LENGTHS,
+    TIMES,
+    VELOCITIES,
+    Table,
+    Units,
+)
+from relay_contact.tables import read as read_table
 
 FORCE, RINGDOWN, RESPONSE, CHATTER = "static force", "ring-down", "frequency response", "chatter level"
 BOUNCE = "bounce"
-MOVED = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}
-TIMES = {"s": 1.0, "ms": 1e-3, "us": 1e-6}
-ACCELERATIONS = {"m/s2": 1.0, "g": GRAVITY}
-UNITS = {
-    "travel": MOVED, "displacement": MOVED, "time": TIMES, "frequency": {"Hz": 1.0, "kHz": 1e3},
-    "force": {"N": 1.0, "cN": 1e-2, "mN": 1e-3, "gf": 1e-3 * GRAVITY}, "velocity": {"m/s": 1.0, "mm/s": 1e-3},
-    "acceleration": ACCELERATIONS, "level": ACCELERATIONS, "speed": {"m/s": 1.0, "mm/s": 1e-3}, "bounce": TIMES,
+ANY = {"V": 1.0}
+"""Unit of a sensor without calibration: the size of a ring-down is free."""
+COLUMNS: Units = {
+    "travel": LENGTHS, "time": TIMES, "frequency": FREQUENCIES, "acceleration": ACCELERATIONS, "speed": VELOCITIES,
+    "displacement": LENGTHS | ANY, "velocity": VELOCITIES | ANY, "force": FORCES | ANY, "level": ACCELERATIONS,
+    "bounce": TIMES,
 }  # fmt: skip
-"""Columns, and their units in SI; the first is that of a column without one."""
 MOTIONS = ("displacement", "velocity", "force")
 KINDS = {
     FORCE: (("travel",), ("force",)),
-    RINGDOWN: (("time",), MOTIONS),
     RESPONSE: (("frequency", "acceleration"), MOTIONS),
     CHATTER: (("frequency",), ("level",)),
     BOUNCE: (("speed",), ("bounce",)),
+    RINGDOWN: (("time",), MOTIONS),
 }
-"""What is measured: over which columns, and one of which."""
+"""What is measured: over which columns, and one of which. The first kind that a file has all columns of."""
 RELATIVE = (RESPONSE, CHATTER, BOUNCE)
 """Kinds whose scatter is in proportion to the value."""
 SIGNED = ("travel", "time", "force", "displacement", "velocity")
+MOST = {"travel": 0.02, "displacement": 0.02, "force": 100.0, "velocity": 100.0, "acceleration": 1e5, "level": 1e5,
+        "speed": 10.0, "bounce": 0.1, "frequency": 1e6}  # fmt: skip
+"""Sizes (SI) beyond those of any relay: a column has another unit than it says."""
+OPPOSITE = -0.8  # correlation of travel and force below which one of them is reversed
 FEWEST = {FORCE: 5, RINGDOWN: 20, RESPONSE: 5, CHATTER: 5, BOUNCE: 5}
 
 
@@ -70,133 +81,95 @@ class Measurement:
 
     @property
     def conditions(self) -> tuple[object, ...]:
-        """Give all that a prediction depends on, beside the parameters of the component."""
+        """Return all that a prediction depends on, beside the parameters of the component."""
         return self.kind, self.quantity, self.is_open, self.over.tobytes(), self.acceleration.tobytes()
 
     @property
     def name(self) -> str:
-        """Give how it is called."""
+        """Return how it is called."""
         return f"{self.kind}, {self.path.name}"
-
-
-@dataclass
-class Reader:
-    """A file on its way to a measurement."""
-
-    path: Path
-    line: int = 0
-
-    def wrong(self, text: str) -> RelayContactError:
-        """Give an error that names file and line."""
-        return RelayContactError(f"{self.path}: line {self.line}: {text}")
-
-    def lines(self) -> Iterator[str]:
-        """Give the lines that are not empty."""
-        for number, text in enumerate(self.path.read_text(encoding="utf-8-sig").splitlines(), 1):
-            self.line = number
-            if text.strip():
-                yield text.strip()
-
-    def column(self, text: str) -> tuple[str, str]:
-        """Give name and unit of a column."""
-        name, _, unit = (part.strip() for part in text.strip().partition("["))
-        unit = unit.removesuffix("]").replace("µ", "u").replace("²", "2")
-        if name not in UNITS:
-            raise self.wrong(f"column {name}: unknown; there may be {', '.join(UNITS)}{nearest(name, UNITS)}")
-        allowed = UNITS[name]
-        if unit and unit not in (*allowed, "V"):
-            raise self.wrong(f"column {name}: unit {unit}: not allowed, allowed is {', '.join(allowed)}")
-        return name, unit or next(iter(allowed))
-
-    def kind(self, names: list[str]) -> tuple[str, str]:
-        """Give what was measured, and the column of its values."""
-        for kind, (over, either) in KINDS.items():
-            measured = [name for name in either if name in names]
-            if measured and set(names) == {*over, measured[0]}:
-                return kind, measured[0]
-        known = "; ".join(f"{kind}: {', '.join(over)}, {' or '.join(each)}" for kind, (over, each) in KINDS.items())
-        raise self.wrong(f"columns {', '.join(names)}: no measurement that is known; there are {known}")
-
-    def row(self, text: str, separator: str, columns: list[tuple[str, str]]) -> list[float]:
-        """Give the numbers of a row in SI units."""
-        cells = text.split(separator)
-        if len(cells) != len(columns):
-            raise self.wrong(f"{len(cells)} values: not allowed, allowed is {len(columns)}, one in each column")
-        numbers = []
-        for cell, (name, unit) in zip(cells, columns, strict=True):
-            try:
-                number = float(cell.replace(",", "."))
-            except ValueError as error:
-                raise self.wrong(
-                    f"column {name}: {cell.strip() or 'nothing'}: not allowed, allowed is a number"
-                ) from error
-            if not np.isfinite(number) or (name not in SIGNED and number <= 0):
-                allowed = "a finite number" if name in SIGNED else f"more than 0 {unit}"
-                raise self.wrong(f"column {name}: {cell.strip()} {unit}: not allowed, allowed is {allowed}")
-            numbers.append(number * UNITS[name].get(unit, 1.0))
-        return numbers
 
 
 def read(path: Path, component: Component, positions: list[str]) -> Measurement:
     """Read a measurement of a relay with these positions of its coil."""
-    reader = Reader(path)
-    settings: dict[str, tuple[str, int]] = {}
-    columns: list[tuple[str, str]] = []
-    rows: list[list[float]] = []
-    separator = ","
-    try:
-        for text in reader.lines():
-            if text.startswith("#"):
-                name, equals, value = (part.strip() for part in text[1:].partition("="))
-                if equals:
-                    settings[name] = value, reader.line
-            elif not columns:
-                separator = next((each for each in (";", "\t") if each in text), ",")
-                columns = [reader.column(cell) for cell in text.split(separator)]
-                kind, quantity = reader.kind([name for name, _ in columns])
-                head = reader.line
-            else:
-                rows.append(reader.row(text, separator, columns))
-                if kind == RINGDOWN:
-                    at = [name for name, _ in columns].index("time")
-                    if len(rows) > 1 and rows[-1][at] <= rows[-2][at]:
-                        raise reader.wrong(f"column time: {rows[-1][at]:g} s: not allowed, allowed is a later one")
-    except UnicodeDecodeError as error:
-        raise RelayContactError(f"{path}: not a text in UTF-8: {error}") from error
-    if not columns:
-        raise reader.wrong("no line with the names of the columns")
-    if len(rows) < FEWEST[kind]:
-        raise reader.wrong(f"{len(rows)} rows: not allowed, allowed is {FEWEST[kind]} or more for a {kind}")
-    table = dict(zip((name for name, _ in columns), np.array(rows).T, strict=True))
-    units = dict(columns)
-    for name, unit in units.items():
-        if unit == "V" and not (kind == RINGDOWN and name == quantity):
-            reader.line = head
-            raise reader.wrong(f"column {name}: unit V: not allowed, allowed is {', '.join(UNITS[name])}")
-    told = interpreted(reader, settings, component, positions)
+    table = read_table(path, COLUMNS)
+    kind, quantity = what(table)
+    over = KINDS[kind][0]
+    for name in (*over, quantity):
+        sized(table, name, kind == RINGDOWN and name == quantity)
+    if kind == RINGDOWN:
+        table.ascending("time")
+    if len(table.lines) < FEWEST[kind]:
+        allowed = f"{FEWEST[kind]} or more for a {kind}"
+        raise table.wrong(
+            f"{len(table.lines)} rows: not allowed, allowed is {allowed}", ([table.head, *table.lines])[-1]
+        )
+    for name in (over[0], quantity):
+        if kind in (FORCE, RINGDOWN) and np.ptp(table[name]) == 0:
+            raise table.wrong(f"column {name}: the same in all rows: not allowed, allowed are values that differ")
+    if kind == FORCE:
+        signs(table)
+    told = interpreted(table, component, positions)
     is_open = told.pop("contact", "closed" if quantity in ("force", "level") else "open") == "open"
     position, calibration = str(told.pop("position", positions[0])), float(told.pop("calibration", 0.0))
-    if len(positions) > 1 and not is_open and "position" not in settings:
-        reader.line = head
-        raise reader.wrong(f"which position of the coil? A line before says so: # position = {' or '.join(positions)}")
-    over = table[KINDS[kind][0][0]]
+    if len(positions) > 1 and not is_open and "position" not in table.settings:
+        raise table.wrong(f"which position of the coil? A line before says so: # position = {' or '.join(positions)}")
+    acceleration = table["acceleration"] if "acceleration" in over else np.array([])
     return Measurement(
-        path, kind, over, quantity, units[quantity], table[quantity], table.get("acceleration", np.array([])),
+        path, kind, table[over[0]], quantity, table.unit(quantity), table[quantity], acceleration,
         position, is_open, calibration, told,
     )  # fmt: skip
 
 
-def interpreted(
-    reader: Reader, settings: dict[str, tuple[str, int]], component: Component, positions: list[str]
-) -> dict[str, Value]:
-    """Give the settings of a file by name, checked; those of the component among them."""
+def what(table: Table) -> tuple[str, str]:
+    """Return what was measured, and the column of its values."""
+    there = set(table.cells)
+    for kind, (over, either) in KINDS.items():
+        measured = [name for name in either if name in there]
+        if measured and set(over) <= there:
+            if len(measured) > 1:
+                raise table.wrong(f"columns {' and '.join(measured)}: not allowed, allowed is one; rename the other")
+            return kind, measured[0]
+    known = "; ".join(f"{kind}: {', '.join(over)}, {' or '.join(each)}" for kind, (over, each) in KINDS.items())
+    names = ", ".join([*table.cells, *table.passed])
+    raise table.wrong(f"columns {names}: no measurement that is known; there are {known}")
+
+
+def sized(table: Table, name: str, free: bool) -> None:
+    """Refuse values of a column that no relay has; `free`: of any size."""
+    unit, values = table.unit(name), table[name]
+    if free:
+        return
+    if unit in ANY:
+        allowed = ", ".join(each for each in COLUMNS[name] if each not in ANY)
+        raise table.wrong(f"column {name}: unit {unit}: not allowed, allowed is {allowed}")
+    if name not in SIGNED:
+        table.refuse(name, values <= 0, f"more than 0 {unit}")
+    if name in MOST:
+        most = f"up to {MOST[name] / COLUMNS[name][unit]:g} {unit}; is the unit right, as in {name} [{unit}]?"
+        table.refuse(name, np.abs(values) > MOST[name], most)
+
+
+def signs(table: Table) -> None:
+    """Refuse a static force of the wrong sign: it is compression, and travel presses."""
+    travel, force = table["travel"], table["force"]
+    if np.median(force) < 0:
+        text = "negative in most rows: not allowed, allowed is compression as positive; change its sign"
+        raise table.wrong(f"column force: {text}")
+    x, y = travel - travel.mean(), force - force.mean()
+    if (x * y).sum() < OPPOSITE * np.sqrt((x**2).sum() * (y**2).sum()):
+        text = "the force falls as it rises: not allowed, allowed is travel that presses as positive; change its sign"
+        raise table.wrong(f"column travel: {text}")
+
+
+def interpreted(table: Table, component: Component, positions: list[str]) -> dict[str, Value]:
+    """Return the settings of a file by name, checked; those of the component among them."""
     own = {"position": positions, "contact": ["open", "closed"]}
     found: dict[str, Value] = {}
-    for name, (text, line) in settings.items():
-        reader.line = line
+    for name, (text, line) in table.settings.items():
         if name in own:
             if text not in own[name]:
-                raise reader.wrong(f"{name} = {text}: not allowed, allowed is {' or '.join(own[name])}")
+                raise table.wrong(f"{name} = {text}: not allowed, allowed is {' or '.join(own[name])}", line)
             found[name] = text
         elif name == "calibration":
             try:
@@ -204,15 +177,16 @@ def interpreted(
             except ValueError:
                 found[name] = -1.0
             if not 0 <= float(found[name]) <= 1:
-                raise reader.wrong(f"calibration = {text}: not allowed, allowed is 0 to 1, as a part of the value")
-        elif "." in name:
+                allowed = "0 to 1, as a part of the value"
+                raise table.wrong(f"calibration = {text}: not allowed, allowed is {allowed}", line)
+        elif "." in name and " " not in name:
             try:
                 name = component.settable(name)
                 found[name] = component.read(name, text)
                 component.number(name, found[name]) if component.variables[name].type != "String" else None
             except RelayContactError as error:
-                raise reader.wrong(str(error)) from error
+                raise table.wrong(str(error), line) from error
         # Anything else with an equals sign is a remark.
         elif near := difflib.get_close_matches(name, [*own, "calibration"], cutoff=0.75):
-            raise reader.wrong(f"{name}: unknown; did you mean {near[0]}?")
+            raise table.wrong(f"{name}: unknown; did you mean {near[0]}?", line)
     return found

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.linalg import hankel
 
 from relay_contact.component import Array, Component, Contact, Values
 from relay_contact.files import RelayContactError
@@ -29,9 +30,13 @@ STATIC: Values = {
 }  # fmt: skip
 """What a static force does not depend on is the same, so that it is not computed again."""
 OUTPUTS = {"displacement": "tip.displacement", "velocity": "tip.velocity", "force": "contact.force"}
-FORGOTTEN = 3.5  # periods after the begin of a knock, half a period long
 KNOCK = 1e-4  # m, by about which a knock moves the spring, 1 % of its distance from the contact
-SETTLED, PERIODS, MOST = 1e-6, 64, 2**13
+SAMPLES, DENSITY, MODEL_ORDER = 64, 8, 24
+"""Of a motion after a knock: points, points per period, and decaying exponentials at most; pole of the exact beam to
+1e-6 of its size (tests/python/test_identification.py)."""
+WITHIN, EXACT = 1e-9, 1e-10
+"""Singular values, as a part of the largest, that are rounding; solver.tolerance of such a motion."""
+SETTLED, PERIODS, MOST = 1e-7, 64, 2**13
 """Change of an amplitude between two times, of which the second is twice the first, twice in a row; periods before the
 first of them, and at most."""
 TOUCHING: Values = {"contact.overtravel": -1e-6, "solver.tolerance": 1e-8}
@@ -40,36 +45,20 @@ WATCHED, NOTHING = 5e-6, 1e-9  # s: less than a blow of the contact lasts; a bou
 KEPT = 256  # predictions
 
 
-@dataclass(frozen=True)
-class Ringing:
-    """A ring-down of unit size as the spring has it, with its derivative: together they have any size and phase."""
-
-    shapes: Array
-    """Columns: motion, derivative and constant, at the times of the measurement."""
-    frequency: float
-    """First natural frequency (Hz) without damping."""
-
-    def decay(self, first: int, last: int) -> float:
-        """Give the mean rate (1/s) of decay between two rows, for a time of 1 s between them."""
-        motion, rate = self.shapes[:, 0], self.shapes[:, 1] / (2 * np.pi * self.frequency)
-        size = np.hypot(motion, rate)
-        return float(np.log(size[first] / size[last]))
-
-
 @dataclass
 class Laboratory:
     """The component in place of the sample."""
 
     component: Component
     contact: Contact = field(init=False)
-    known: dict[tuple[object, ...], Array | Ringing] = field(default_factory=dict)
+    known: dict[tuple[object, ...], Array] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Instantiate the component, once for all."""
         self.contact = Contact(self.component)
 
     def conditions(self, measurement: Measurement, values: Values) -> Values:
-        """Give the parameters of the component under which something was measured."""
+        """Return the parameters of the component under which something was measured."""
         law = AWAY if measurement.is_open else BONDED
         modes: Values = {"solver.modes": MODES} if measurement.kind in (RINGDOWN, RESPONSE, CHATTER) else {}
         if measurement.kind == FORCE:
@@ -84,14 +73,14 @@ class Laboratory:
             )
         return found
 
-    def predict(self, measurement: Measurement, values: Values) -> Array | Ringing:
-        """Give the values that the component has in place of those measured."""
+    def predict(self, measurement: Measurement, values: Values) -> Array:
+        """Return the values that the component has in place of those measured."""
         asked = self.conditions(measurement, values)
         key = (*measurement.conditions, *sorted(asked.items()))
         if key not in self.known:
             if len(self.known) >= KEPT:
                 self.known.pop(next(iter(self.known)))
-            how: dict[str, Callable[[Measurement, Values], Array | Ringing]] = {
+            how: dict[str, Callable[[Measurement, Values], Array]] = {
                 FORCE: self.force, RINGDOWN: self.ringing, RESPONSE: self.amplitude, CHATTER: self.level,
                 BOUNCE: self.bounces,
             }  # fmt: skip
@@ -100,7 +89,7 @@ class Laboratory:
         return self.known[key]
 
     def force(self, measurement: Measurement, values: Values) -> Array:
-        """Give the static contact force (N) over travel from the working position."""
+        """Return the static contact force (N) over travel from the working position."""
         overtravel = float(values.get("contact.overtravel", self.component.start("contact.overtravel")))
         forces = []
         for travel in measurement.over:
@@ -108,34 +97,49 @@ class Laboratory:
             forces += self.contact.real("preload.force")
         return np.array(forces)
 
-    def ringing(self, measurement: Measurement, values: Values) -> Ringing:
-        """Give the motion some periods after a knock that mostly moved the first mode: nearly that mode alone."""
+    def ringing(self, measurement: Measurement, values: Values) -> Array:
+        """Return rate of decay (1/s) and angular frequency (rad/s) of the strongest vibration after a knock.
+
+        The motion after a knock is a sum of decaying exponentials; their poles are the eigenvalues of the least system
+        that has it (J.-N. Juang, R. S. Pappa, J. Guid. Control Dyn. 8 (1985) 620-627).
+        """
+        name = "tip.displacement" if measurement.is_open else "contact.force"
+        values = {**values, "solver.tolerance": EXACT}
         self.contact.begin_anew(values)
         (frequency,) = self.contact.real("preload.frequency")
+        rest = self.contact.real(name)[0]
         knock: Values = {
             "effects.excitation": "HalfSine",
             "excitation.amplitude": KNOCK * (2 * np.pi * frequency) ** 2,
             "excitation.duration": 0.5 / frequency,
         }
         self.contact.begin_anew({**values, **knock})
-        name = OUTPUTS[measurement.quantity]
-        now, rows = 0.0, []
-        for time in FORGOTTEN / frequency + measurement.over - measurement.over[0]:
-            self.contact.step(now, time - now)
-            now = time
-            rows.append([*self.contact.real(name), *self.contact.rates(name), 1.0])
-        shapes = np.array(rows)
-        if not measurement.is_open and measurement.quantity != "velocity":
-            shapes[:, 0] -= self.rest(name, values)
-        return Ringing(shapes, frequency)
+        step, now, motion = 1 / frequency / DENSITY, 0.0, []
+        for instant in (1 / frequency + step * np.arange(SAMPLES)).tolist():
+            self.contact.step(now, instant - now)
+            now = instant
+            motion.append(self.contact.real(name)[0] - rest)
+        half = SAMPLES // 2
+        table = hankel(motion[:half], motion[half - 1 :])
+        left, sizes, right = np.linalg.svd(table[:, :-1], full_matrices=False)
+        order = min(MODEL_ORDER, int((sizes > WITHIN * sizes[0]).sum()))
+        system = left[:, :order].T @ table[:, 1:] @ right[:order].T / sizes[:order]
+        ratios = np.linalg.eigvals(system).astype(complex)
+        course = ratios ** np.arange(SAMPLES)[:, None]
+        parts = course * np.linalg.lstsq(course, np.array(motion), rcond=None)[0]
+        energy = np.where(ratios.imag > 0, (np.abs(parts) ** 2).sum(axis=0), 0.0)
+        if not energy.any():
+            raise RelayContactError(f"{measurement.path}: {measurement.kind}: with these parameters nothing rings")
+        pole = np.log(ratios[energy.argmax()]) / step
+        return np.array([-pole.real, pole.imag])
 
     def rest(self, name: str, values: Values) -> float:
-        """Give an output at rest."""
+        """Return an output at rest."""
         self.contact.begin_anew(values)
         return self.contact.real(name)[0]
 
     def gains(self, name: str, frequencies: Array, values: Values) -> tuple[Array, list[float]]:
-        """Give the amplitudes of an output per base acceleration, and force (N) and power law of the resistance."""
+        """Return the amplitudes of an output per base acceleration, and force (N) and power law of the resistance."""
         found = []
         rest: list[float] = []
         for frequency in map(float, frequencies):
@@ -150,7 +154,7 @@ class Laboratory:
         return np.array(found), rest
 
     def steady(self, name: str, frequency: float) -> float:
-        """Give the amplitude of an output once the start is forgotten."""
+        """Return the amplitude of an output once the start is forgotten."""
         quarter = 0.25 / frequency
         time, periods, calm, before = 0.0, PERIODS, 0, 0j
         while True:
@@ -166,12 +170,12 @@ class Laboratory:
             periods, before = 2 * periods, amplitude
 
     def amplitude(self, measurement: Measurement, values: Values) -> Array:
-        """Give the amplitudes of a frequency response."""
+        """Return the amplitudes of a frequency response."""
         gains, _ = self.gains(OUTPUTS[measurement.quantity], measurement.over, values)
         return gains * measurement.acceleration
 
     def level(self, measurement: Measurement, values: Values) -> Array:
-        """Give the accelerations (m/s2) from which on the contact is interrupted, as far as it is linear."""
+        """Return the accelerations (m/s2) from which on the contact is interrupted, as far as it is linear."""
         gains, (preload, *law) = self.gains("contact.force", measurement.over, values)
         monitor = self.monitor(values)
         reserve = preload - interrupting_force(law, monitor.threshold)
@@ -179,11 +183,11 @@ class Laboratory:
         return max(reserve, 1e-9) / (gains * np.cos(longest))
 
     def bounces(self, measurement: Measurement, values: Values) -> Array:
-        """Give the lengths (s) of the first bounce after the fixed contact has met the spring at rest, at speeds."""
+        """Return the lengths (s) of the first bounce after the fixed contact has met the spring at rest, at speeds."""
         return np.array([self.bounce(float(speed), {**values, **TOUCHING}) for speed in measurement.over])
 
     def bounce(self, speed: float, values: Values) -> float:
-        """Give the length (s) of the first bounce; nearly nothing if there is none within a period of the spring."""
+        """Return the length (s) of the first bounce; nearly nothing if there is none within a period of the spring."""
         self.contact.begin_anew(values)
         now, opened = 0.0, -1.0
         (frequency,) = self.contact.real("preload.frequency")
@@ -198,15 +202,14 @@ class Laboratory:
         return NOTHING
 
     def monitor(self, values: Values) -> Contacts:
-        """Give what counts as an interruption."""
+        """Return what counts as an interruption."""
         names = ("chatter.minimumDuration", "chatter.resistanceThreshold")
         opening, resistance = (float(values.get(name, self.component.start(name))) for name in names)
         return Contacts(opening, 1e-6, resistance, 1.0, "", False)
 
     def correction(self, measurement: Measurement, values: Values) -> Array:
-        """Give by which factor the levels of a contact that opens differ from those of the linear one."""
+        """Return by which factor the levels of a contact that opens differ from those of the linear one."""
         linear = self.predict(measurement, values)
-        assert isinstance(linear, np.ndarray)
         asked = self.conditions(measurement, values)
         monitor = self.monitor(asked)
         alone = {**asked, "effects.contactLaw": "Hertz", "effects.chatter": True, "effects.extremes": True}

@@ -16,7 +16,7 @@ from relay_contact.figures import BLACK, BLUE, GREY, RED
 from relay_contact.html import STYLE, document, svg, table
 from relay_contact.identification import relay_file
 from relay_contact.identification.fit import Set
-from relay_contact.identification.measurement import BOUNCE, FORCE, RELATIVE, RINGDOWN, UNITS
+from relay_contact.identification.measurement import BOUNCE, COLUMNS, FORCE, RELATIVE, RINGDOWN
 from relay_contact.identification.result import Found, Identification
 from relay_contact.spring import PREFIX
 
@@ -37,7 +37,7 @@ free, so that its sensor needs no calibration. The written relay file has the va
 
 
 def shown(component: Component, found: Found) -> tuple[str, str, str, str]:
-    """Give value in the file, identified value, interval and uncertainty, in words."""
+    """Return value in the file, identified value, interval and uncertainty, in words."""
     unknown = found.unknown
     factor = Unit("", "\N{MULTIPLICATION SIGN} file")
     unit = factor if unknown.name.startswith(PREFIX) else units(component.description).get(unknown.name, Unit("", ""))
@@ -52,13 +52,13 @@ def shown(component: Component, found: Found) -> tuple[str, str, str, str]:
 
 
 def cells(component: Component, result: Identification) -> list[list[str]]:
-    """Give the rows of the table."""
+    """Return the rows of the table."""
     rows = [[each.unknown.label, *shown(component, each)] for each in result.found]
     return rows + [[label, "", "not determined", "", ""] for label in result.missing]
 
 
 def data(result: Identification) -> list[list[str]]:
-    """Give what is to be said of each measurement."""
+    """Return what is to be said of each measurement."""
     rows = []
     for each in result.sets:
         relative = each.measurement.kind in RELATIVE
@@ -70,7 +70,7 @@ def data(result: Identification) -> list[list[str]]:
 
 
 def silent(result: Identification) -> list[str]:
-    """Give what the data do not tell, and other remarks."""
+    """Return what the data do not tell, and other remarks."""
     told = [f"{label}: not determined: {reason}." for label, reason in result.missing.items()]
     for each in result.found:
         most = sorted(each.by_others.items(), key=lambda item: -item[1])[:2]
@@ -81,7 +81,7 @@ def silent(result: Identification) -> list[str]:
 
 
 def matrix(result: Identification) -> str:
-    """Give the correlations as a table."""
+    """Return the correlations as a table."""
     labels = [each.unknown.label for each in result.found]
     rows = [
         [label, *(f"{result.correlation[i, j]:+.3f}" if j < i else "" for j in range(len(labels) - 1))]
@@ -96,7 +96,7 @@ def panels(axes: Axes, below: Axes, each: Set, model: Array, curve: tuple[Array,
     label, factor = OVER.get(measurement.kind, FREQUENCY)
     first = measurement.over[0] if measurement.kind == RINGDOWN else 0.0
     over = factor * (measurement.over - first)
-    scale = UNITS[measurement.quantity].get(measurement.unit, 1.0)
+    scale = COLUMNS[measurement.quantity][measurement.unit]
     size = 2.5 if len(over) < DENSE else 1.0
     axes.plot(over, measurement.values / scale, "o", color=BLUE, markersize=size, label="measured")
     axes.plot(factor * (curve[0] - first), curve[1] / scale, color=RED, linewidth=1.0, label="fitted")
@@ -109,7 +109,7 @@ def panels(axes: Axes, below: Axes, each: Set, model: Array, curve: tuple[Array,
     axes.set(ylabel=f"{measurement.quantity} [{unit}]", title=f"{measurement.kind}: {measurement.path.name}, {state}")
     axes.legend(loc="best")
     axes.tick_params(labelbottom=False)
-    below.plot(over, 100 * each.residuals(model), "o", color=BLACK, markersize=size)
+    below.plot(over, 100 * each.differences(model), "o", color=BLACK, markersize=size)
     for line in (-2, 0, 2):
         below.axhline(100 * line * each.sigma, color=GREY, linewidth=0.6, linestyle="-" if line == 0 else ":")
     relative = "value" if measurement.kind in RELATIVE else "largest"

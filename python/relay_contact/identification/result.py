@@ -10,7 +10,7 @@ import numpy as np
 from relay_contact.component import Array, Component, nearest
 from relay_contact.files import RelayContactError, read_toml
 from relay_contact.identification.fit import Fit, Set, Unknown
-from relay_contact.identification.measurement import CHATTER, FORCE, RESPONSE, RINGDOWN, Measurement
+from relay_contact.identification.measurement import BOUNCE, CHATTER, FORCE, RESPONSE, RINGDOWN, Measurement
 from relay_contact.identification.prediction import Laboratory
 from relay_contact.qualification.relay import Relay
 from relay_contact.spring import PREFIX, STIFFNESS, known
@@ -22,6 +22,15 @@ WIDE = 1.0
 TOGETHER = 0.95  # correlation from which on it is said
 REGULAR = 4.0  # standard deviations of the correlation of neighbouring residuals from which on it is said
 DRAWN = 60  # values of a fitted curve
+CONTRADICT = 1e-3
+"""Chance below which it is said that frequency and rate of decay of a ring-down do not agree with the other data."""
+SAMPLED = 3.0
+"""Rows per period of a ring-down, at least, by the record and by the relay's file: what seems slower than it is would
+have to be twice as fast as the file says."""
+PERIODS = 1.5  # of a ring-down in a record, at least
+BEYOND = {FORCE: 10.0, RESPONSE: 30.0, CHATTER: 30.0, RINGDOWN: 5.0}
+"""Measured over predicted by the relay's file, or the reverse, from which on a unit is wrong: of the stiffness, of the
+median amplitude or level, of the frequency."""
 OPENS = 0.98  # part of the preload from which on a force amplitude opens the contact
 
 
@@ -38,7 +47,7 @@ class Found:
 
     @property
     def interval(self) -> tuple[float, float]:
-        """Give the ends of the 95 % interval; it is symmetrical in the logarithm."""
+        """Return the ends of the 95 % interval; it is symmetrical in the logarithm."""
         return self.value * float(np.exp(-self.half)), self.value * float(np.exp(self.half))
 
 
@@ -61,7 +70,7 @@ class Identification:
     notes: list[str]
 
     def __getitem__(self, label: str) -> Found:
-        """Give what was found of a parameter, by its name, with its position where it has one for each."""
+        """Return what was found of a parameter, by its name, with its position where it has one for each."""
         for each in self.found:
             if each.unknown.label == label:
                 return each
@@ -70,7 +79,7 @@ class Identification:
 
 
 def usual(relay: Relay, measurements: list[Measurement]) -> list[str]:
-    """Give the parameters that are sought unless others are named."""
+    """Return the parameters that are sought unless others are named."""
     file = str(next(iter(relay.positions.values())).get("beam.file", ""))
     entries = known(file)
     own = f"{PREFIX}damping" in entries
@@ -87,7 +96,7 @@ def usual(relay: Relay, measurements: list[Measurement]) -> list[str]:
 def unknowns(
     component: Component, relay: Relay, path: Path, measurements: list[Measurement], names: list[str]
 ) -> list[Unknown]:
-    """Give the parameters sought by name, one for each position of the coil where it is given there."""
+    """Return the parameters sought by name, one for each position of the coil where it is given there."""
     tables = read_toml(path).get("position", [{}])
     used = [name for name in relay.positions if any(each.position == name for each in measurements)]
     found = []
@@ -136,6 +145,8 @@ def sought(
     `opens`: levels at which the contact opens are those of the component with a contact that does, not a linear one.
     """
     fit = Fit(laboratory, dict(relay.positions), [Set(each) for each in measurements], parameters)
+    for each in fit.sets:
+        check(each, fit.predicted(each, fit.logarithms))
     fit.run()
     missing: dict[str, str] = {}
     while True:
@@ -160,8 +171,37 @@ def sought(
     return fit, missing
 
 
+def check(each: Set, predicted: Array) -> None:
+    """Refuse what is far from the prediction by the relay's file, and a ring-down that is sampled too coarsely."""
+    own, ratio, words, why = each.measurement, 1.0, "", ""
+    if own.kind == FORCE:
+        measured, expected = (float(np.polyfit(own.over, values, 1)[0]) for values in (own.values, predicted))
+        ratio = measured / max(expected, 1e-300)
+        words = f"columns travel, force: stiffness {measured:.3g} N/m, by the relay's file {expected:.3g} N/m"
+    elif own.kind in (RESPONSE, CHATTER):
+        ratio = float(np.median(own.values / np.maximum(predicted, 1e-300)))
+        words = f"columns {own.quantity}, frequency: {ratio:.3g} times what the relay's file gives (median)"
+    elif each.ring:
+        frequency, expected = (float(pole[1]) / (2 * np.pi) for pole in (each.ring.pole, predicted))
+        length, rate = float(np.ptp(own.over)), 1 / float(np.median(np.diff(own.over)))
+        ratio, fewest = frequency / expected, SAMPLED * max(frequency, expected)
+        words = f"column time: rings at {frequency:.3g} Hz, by the relay's file at {expected:.3g} Hz"
+        coarse = f"{words}, with {rate:.3g} rows per second: too coarse, it may ring faster than the rows show"
+        why = f", and is {rate:.3g} rows per second enough"
+    limit = BEYOND.get(own.kind, np.inf)
+    if not 1 / limit < ratio < limit:
+        allowed = f"less than {limit:g} times more or less"
+        question = f"are the units of the columns right, and the parameters in the relay's file{why}?"
+        raise RelayContactError(f"{own.path}: {words}: not allowed, allowed is {allowed}; {question}")
+    if each.ring and rate < fewest:
+        raise RelayContactError(f"{own.path}: {coarse}; allowed is {fewest:.3g} or more")
+    if each.ring and length * frequency < PERIODS:
+        text = f"a record of {length:.3g} s: not allowed, allowed is {PERIODS / frequency:.3g} s or more"
+        raise RelayContactError(f"{own.path}: {words}: {text}")
+
+
 def without(fit: Fit, number: int) -> Fit:
-    """Give a fit without a parameter, which has the value of the file."""
+    """Return a fit without a parameter, which has the value of the file."""
     left = [each for index, each in enumerate(fit.unknowns) if index != number]
     smaller = Fit(fit.laboratory, fit.positions, fit.sets, left)
     smaller.logarithms = np.delete(fit.logarithms, number)
@@ -181,7 +221,7 @@ def reason(fit: Fit, number: int, relay: Relay) -> str:
 
 
 def conclude(fit: Fit, missing: dict[str, str], relay: Relay, path: Path) -> Identification:
-    """Give intervals, correlations and what else has to be said."""
+    """Return intervals, correlations and what else has to be said."""
     halves = fit.halves() if fit.unknowns else np.zeros(0)
     names = {unknown.name for unknown in fit.unknowns}
     others = {name: part for name, part in relay.uncertainty.items() if name not in names and part}
@@ -204,7 +244,7 @@ def conclude(fit: Fit, missing: dict[str, str], relay: Relay, path: Path) -> Ide
 
 
 def curve(fit: Fit, each: Set, model: Array) -> tuple[Array, Array]:
-    """Give the model's values closer together; those of a ring-down are close."""
+    """Return the model's values closer together; those of a ring-down are close."""
     own = each.measurement
     if own.kind == RINGDOWN:
         return own.over, model
@@ -223,12 +263,25 @@ def curve(fit: Fit, each: Set, model: Array) -> tuple[Array, Array]:
 def remarks(fit: Fit, each: Set, model: Array) -> list[str]:
     """Tell where a measurement does not agree with the model."""
     measurement, told = each.measurement, []
-    left = each.residuals(model)
+    left = each.differences(model)
     together = float((left[1:] * left[:-1]).sum() / max((left**2).sum(), 1e-300))
     if together > REGULAR / np.sqrt(len(left)):
         told.append(
             f"{measurement.name}: neighbouring residuals are alike (correlation {together:.2f}): model or measurement "
             "is off by more than scatter, and the intervals are too narrow"
+        )
+    if each.ring:
+        misfit = float((fit.left(each, fit.logarithms) ** 2).sum())
+        # Of the two residuals, in units of their scatter: chi squared.
+        if np.exp(-misfit / 2) < CONTRADICT:
+            told.append(
+                f"{measurement.name}: frequency or rate of decay do not agree with the other data, or with parameters "
+                "that are not sought: the intervals are too narrow"
+            )
+    elif not measurement.calibration and measurement.kind != BOUNCE:
+        told.append(
+            f"{measurement.name}: without a line `# calibration = …` its instrument is taken as exact; the intervals "
+            "tell the scatter alone"
         )
     factor = float(np.exp(fit.calibration(each, fit.logarithms)))
     if measurement.calibration and abs(factor - 1) > measurement.calibration:

@@ -1,0 +1,216 @@
+"""Tables of numbers as measuring programs export them: columns by name, in SI units.
+
+Before the line with the names of the columns there may be others; below it a line with their units. Between columns are
+commas, semicolons or tabs; with the last two the decimal sign may be a comma. Further columns are passed over. Lines
+that begin with # are remarks, and settings such as `# calibration = 0.01`.
+"""
+
+import codecs
+import csv
+import difflib
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from relay_contact.component import Array
+from relay_contact.figures import GRAVITY
+from relay_contact.files import RelayContactError
+
+LENGTHS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}
+TIMES = {"s": 1.0, "ms": 1e-3, "us": 1e-6}
+VELOCITIES = {"m/s": 1.0, "mm/s": 1e-3}
+ACCELERATIONS = {"m/s2": 1.0, "g": GRAVITY}
+FORCES = {"N": 1.0, "cN": 1e-2, "mN": 1e-3, "gf": 1e-3 * GRAVITY}
+FREQUENCIES = {"Hz": 1.0, "kHz": 1e3}
+CURRENTS = {"A": 1.0, "mA": 1e-3}
+SPELLINGS = {"\N{MICRO SIGN}": "u", "\N{GREEK SMALL LETTER MU}": "u", "\N{SUPERSCRIPT TWO}": "2", "^2": "2", "**2": "2"}
+OTHERS = {"sec": "s", "msec": "ms", "usec": "us", "hz": "Hz", "khz": "kHz", "G": "g"}
+"""Units as some programs write them."""
+CELL = re.compile(r"(?P<name>.*?)\s*(?:[\[(](?P<bracket>[^\])]*)[\])]|\bin\s+(?P<word>\S+)|\s/\s*(?P<slash>\S+))?")
+"""A name, with a unit as in `travel [mm]`, `travel (mm)`, `travel in mm` or `travel / mm`."""
+SEPARATORS, BLANK = ";\t,", ' \t,;"'
+ALIKE = 0.75  # of names, from which on one is taken for a slip in the other
+
+Units = Mapping[str, Mapping[str, float]]
+"""Columns that are known, with their units in SI; the first is that of a column without one."""
+
+
+def decoded(path: Path) -> str:
+    """Return the text of a file in UTF-8, UTF-16 or, where it is neither, Latin-1 (as Windows has it)."""
+    data = path.read_bytes()
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return data.decode("utf-16", errors="replace")
+    if b"\0" in data[:64]:
+        # Without a mark at its begin: of a letter of ASCII one half is zero.
+        return data.decode("utf-16-be" if data[:1] == b"\0" else "utf-16-le", errors="replace")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("cp1252", errors="replace")
+
+
+def spelled(unit: str) -> str:
+    """Return a unit as it is called here."""
+    for sign, plain in SPELLINGS.items():
+        unit = unit.replace(sign, plain)
+    unit = unit.replace(" ", "")
+    return OTHERS.get(unit, unit)
+
+
+def parted(cell: str) -> tuple[str, str]:
+    """Return name and unit of the head of a column."""
+    found = CELL.fullmatch(cell.strip())
+    assert found  # Every text is a name.
+    name, *units = (each or "" for each in found.group("name", "bracket", "word", "slash"))
+    return name.strip().lower(), spelled("".join(units))
+
+
+@dataclass(frozen=True)
+class Table:
+    """Columns of a file that are known."""
+
+    path: Path
+    known: Units
+    cells: dict[str, list[str]]
+    """By name of the column."""
+    units: dict[str, str]
+    """In which the columns are written; checked when a column is asked for."""
+    passed: list[str]
+    """Names of further columns."""
+    head: int
+    """Line of the names."""
+    lines: list[int]
+    """Lines of the rows."""
+    settings: dict[str, tuple[str, int]]
+    """Texts by name, with their lines."""
+    columns: dict[str, Array] = field(default_factory=dict)
+    """Values of those that were asked for, in SI units."""
+
+    def __getitem__(self, name: str) -> Array:
+        """Return a column in SI units."""
+        if name not in self.columns:
+            self.columns[name] = self.numbers(name) * self.known[name][self.unit(name)]
+        return self.columns[name]
+
+    def unit(self, name: str) -> str:
+        """Return the unit in which a column is written."""
+        allowed = self.known[name]
+        unit = self.units[name] or next(iter(allowed))
+        if unit not in allowed:
+            raise self.wrong(f"column {name}: unit {unit}: not allowed, allowed is {', '.join(allowed)}")
+        return unit
+
+    def numbers(self, name: str) -> Array:
+        """Return the numbers of a column as they are written."""
+        plain = [cell.replace(",", ".") for cell in self.cells[name]]
+        try:
+            values = np.array(plain, dtype=float)
+        except ValueError as error:
+            row = next(n for n, cell in enumerate(plain) if not is_number(cell))
+            text = f"column {name}: {self.cells[name][row] or 'nothing'}: not allowed, allowed is a number"
+            raise self.wrong(text, self.lines[row]) from error
+        self.refuse(name, ~np.isfinite(values), "a finite number")
+        return values
+
+    def refuse(self, name: str, bad: NDArray[np.bool_], allowed: str) -> None:
+        """Raise an error for the first row of a column that is bad."""
+        if bad.any():
+            row = int(bad.argmax())
+            text = f"column {name}: {self.cells[name][row]} {self.unit(name)}: not allowed, allowed is {allowed}"
+            raise self.wrong(text, self.lines[row])
+
+    def ascending(self, name: str) -> None:
+        """Refuse a column that does not rise from row to row."""
+        falls = np.concatenate([[False], np.diff(self[name]) <= 0])
+        self.refuse(name, falls, "more than in the row before")
+
+    def wrong(self, text: str, line: int | None = None) -> RelayContactError:
+        """Return an error that names file and line, of the names of the columns unless another is given."""
+        return RelayContactError(f"{self.path}: line {self.head if line is None else line}: {text}")
+
+
+def read(path: Path, known: Units) -> Table:
+    """Read the columns of a file that are known."""
+    lines = {number: text for number, text in enumerate(decoded(path).splitlines(), 1) if text.strip(BLANK)}
+    head, separator = begin(lines, known)
+    settings: dict[str, tuple[str, int]] = {}
+    rows: list[tuple[int, list[str]]] = []
+    for number, text in lines.items():
+        if text.strip(BLANK).startswith("#") and number != head:
+            name, equals, value = (part.strip(BLANK) for part in text.strip(BLANK).lstrip("#").partition("="))
+            if equals:
+                settings[name] = value, number
+        elif number > head:
+            rows.append((number, split(text, separator)))
+    table = Table(path, known, {}, {}, [], head, [], settings)
+    if not head:
+        raise table.wrong(f"no line with the names of the columns; there may be {', '.join(known)}")
+    names = split(lines[head].lstrip(" #"), separator)
+    places = named(table, names)
+    if rows and (below := units_below(rows[0][1], places)):
+        table.units.update({name: spelled(unit) for name, unit in below.items() if unit})
+        del rows[0]
+    for number, cells in rows:
+        filled = max((place + 1 for place, cell in enumerate(cells) if cell), default=0)
+        if filled > len(names) or len(cells) <= max(places.values()):
+            more = "; decimal commas need semicolons or tabs between columns" if filled > len(names) else ""
+            text = f"{filled} values: not allowed, allowed is {len(names)}, one in each column{more}"
+            raise table.wrong(text, number)
+    table.lines.extend(number for number, _ in rows)
+    table.cells.update({name: [cells[place] for _, cells in rows] for name, place in places.items()})
+    return table
+
+
+def split(text: str, separator: str) -> list[str]:
+    """Return the cells of a line."""
+    return [cell.strip() for cell in next(csv.reader([text], delimiter=separator), [])]
+
+
+def begin(lines: Mapping[int, str], known: Units) -> tuple[int, str]:
+    """Return the line with the most names of columns, and what is between them; the line 0 if there is none."""
+    best, found = 0, (0, ",")
+    for number, text in lines.items():
+        if not any(name in text.lower() for name in known):
+            continue
+        for separator in SEPARATORS:
+            cells = split(text.lstrip(" #"), separator)
+            count = sum(parted(cell)[0] in known for cell in cells) if len(cells) > 1 else 0
+            if count > best:
+                best, found = count, (number, separator)
+    return found
+
+
+def named(table: Table, cells: list[str]) -> dict[str, int]:
+    """Return the places of the columns that are known, whose units are kept; a slip in a name is refused."""
+    places: dict[str, int] = {}
+    for place, (name, unit) in enumerate(map(parted, cells)):
+        if name not in table.known:
+            table.passed.append(name)
+        elif name in places:
+            raise table.wrong(f"column {name}: there twice: not allowed, allowed is once; rename one of them")
+        else:
+            places[name], table.units[name] = place, unit
+    absent = [each for each in table.known if each not in places]
+    for name in table.passed:
+        if meant := difflib.get_close_matches(name, absent, n=1, cutoff=ALIKE):
+            raise table.wrong(f"column {name}: unknown; did you mean {meant[0]}?")
+    return places
+
+
+def units_below(cells: list[str], places: Mapping[str, int]) -> dict[str, str]:
+    """Return the units by column if a row has them; nothing if it has a number."""
+    found = {name: cells[place].strip("[]() ") for name, place in places.items() if place < len(cells)}
+    return {} if any(is_number(cell) for cell in found.values()) else found
+
+
+def is_number(cell: str) -> bool:
+    """Tell whether a cell is a number."""
+    try:
+        float(cell.replace(",", "."))
+    except ValueError:
+        return False
+    return True

@@ -1,0 +1,148 @@
+"""Tables as measuring programs export them: for `identify`, and as inputs of a scene."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from component import COMPONENT
+from relay_contact import RelayContactError, run
+from relay_contact.figures import GRAVITY
+from relay_contact.identification.measurement import COLUMNS
+from relay_contact.identification.measurement import read as read_measurement
+from relay_contact.scene import INPUTS, input_table
+from relay_contact.tables import read
+
+pytestmark = pytest.mark.filterwarnings("error::RuntimeWarning")
+TRAVEL, FORCE = np.array([-50e-6, 0.0, 50e-6, 100e-6, 150e-6]), np.array([0.131, 0.142, 0.1515, 0.16, 0.17])
+PLAIN = "-50,13.1\n0,14.2\n50,15.15\n100,16\n150,17\n"
+
+
+def by_semicolons(text: str) -> str:
+    return text.replace(",", ";").replace(".", ",")
+
+
+EXPORTS = {
+    "plain": "travel [um],force [cN]\n" + PLAIN,
+    "capitals and parentheses": "Travel (um),FORCE (cN)\n" + PLAIN,
+    "units in words": "travel in um,Force / cN\n" + PLAIN,
+    "micro sign": "travel [\N{MICRO SIGN}m],force [cN]\n" + PLAIN,
+    "Greek mu": "travel [\N{GREEK SMALL LETTER MU}m],force [cN]\n" + PLAIN,
+    "row of units": "Travel,Force\n\N{MICRO SIGN}m,cN\n" + PLAIN,
+    "row of units in brackets": "Travel,Force\n[um],[cN]\n" + PLAIN,
+    "preamble": "Tester X;rev. 3\nOperator: A. B., travel and force\n\nDate;23.11.2026\n\nTravel [um];Force [cN]\n"
+    + by_semicolons(PLAIN),
+    "decimal commas": "travel [um];force [cN]\n" + by_semicolons(PLAIN),
+    "decimal commas, quoted": 'travel [um],force [cN]\n-50,"13,1"\n0,"14,2"\n50,"15,15"\n100,"16,0"\n150,"17,0"\n',
+    "tabs": "travel [um]\tforce [cN]\n" + PLAIN.replace(",", "\t"),
+    "tabs and decimal commas": "travel [um]\tforce [cN]\n" + PLAIN.replace(",", "\t").replace(".", ","),
+    "further columns": "No.,Time,Travel [um],Temperature [\N{DEGREE SIGN}C],Force [cN],Remark\n"
+    + "".join(f"{n},12:00:0{n},{row.split(',')[0]},23.5,{row.split(',')[1]},\n" for n, row in enumerate(PLAIN.split())),
+    "separators at the ends": "travel [um];force [cN];;\n" + by_semicolons(PLAIN).replace("\n", ";;\n"),
+    "empty lines": "\n\ntravel [um],force [cN]\n\n" + PLAIN.replace("\n", "\n\n"),
+    "names in a remark": "# travel [um],force [cN]\n" + PLAIN,
+    "exponents": "travel [m],force [N]\n-5E-05,1.31e-1\n0,+.142\n5e-5,0.1515\n1e-4,.16\n1.5e-4,1.7E-01\n",
+}
+
+
+@pytest.mark.parametrize("name", EXPORTS)
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "cp1252", "utf-16", "utf-16-le", "utf-16-be"])
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_exports_are_read_as_they_are(tmp_path: Path, name: str, encoding: str, end: str) -> None:
+    if encoding == "cp1252" and name == "Greek mu":
+        pytest.skip("Latin-1 has no Greek mu")
+    path = tmp_path / "export.csv"
+    path.write_bytes(EXPORTS[name].replace("\n", end).encode(encoding))
+    measured = read_measurement(path, COMPONENT, ["a"])
+    assert measured.kind == "static force"
+    np.testing.assert_allclose(measured.over, TRAVEL, rtol=1e-14, atol=1e-20)
+    np.testing.assert_allclose(measured.values, FORCE, rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("travel [um],force [lbf]\n" + PLAIN, r"line 1: column force: unit lbf: not allowed, allowed is N, cN, mN, gf"),
+        ("travel,force\num,lb\n" + PLAIN, "line 1: column force: unit lb: not allowed"),
+        ("travel,forc [cN]\n" + PLAIN, "line 1: column forc: unknown; did you mean force"),
+        ("travel [um],force [cN]\n" + PLAIN.replace("15.15", "15,15"), "line 4: 3 values: .* need semicolons or tabs"),
+        ("travel [um];force [cN]\n1;1.000,5\n", "line 2: column force: 1.000,5: not allowed, allowed is a number"),
+        ("travel [um];force [cN]\n" + by_semicolons(PLAIN) + "end of data\n", "line 7: 1 values: not allowed"),
+        ("travel [um],force [cN],force [N]\n", "line 1: column force: there twice"),
+        ("time,displacement,velocity\n0,1,1\n", "columns displacement and velocity: not allowed, allowed is one"),
+        ("force 12\nno table\n", "line 0: no line with the names of the columns"),
+    ],
+)
+def test_what_is_wrong_is_told_by_line_and_column(tmp_path: Path, text: str, message: str) -> None:
+    path = tmp_path / "export.csv"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(RelayContactError, match=message):
+        read_measurement(path, COMPONENT, ["a"])
+
+
+def test_any_bytes_are_read_or_refused(tmp_path: Path) -> None:
+    """Chance bytes, and an export with some of its bytes changed: a table, or an error that names the file."""
+    chance = np.random.default_rng(1)
+    path = tmp_path / "export.csv"
+    good = EXPORTS["preamble"].encode()
+    for number in range(300):
+        data = bytearray(good if number % 3 else chance.bytes(200))
+        for place in chance.integers(0, len(data), 3):
+            data[place] = int(chance.integers(0, 256))
+        path.write_bytes(data)
+        message, values = str(path), np.zeros(0)
+        try:
+            table = read(path, COLUMNS)
+            values = table["force"] if "force" in table.cells else values
+        except RelayContactError as error:
+            message = str(error)
+        assert str(path) in message
+        assert np.isfinite(values).all()
+
+
+SCENE = """stop = 2e-3
+communicationStep = 1e-5
+outputs = ["contact.force"]
+inputs.file = "measured.csv"
+"""
+
+
+def test_a_scene_takes_ones_own_measured_acceleration(tmp_path: Path) -> None:
+    time, level = 1e-3 * np.array([0.0, 0.5, 1.0, 1.5]), np.array([0.0, 10.0, -10.0, 0.0])
+    scene, table = tmp_path / "scene.toml", tmp_path / "measured.csv"
+    scene.write_text(SCENE, encoding="utf-8")
+    rows = "".join(f"{1e3 * t:g};{g:g};21,5\n" for t, g in zip(time, level, strict=True)).replace(".", ",")
+    table.write_bytes(f"Recorder 7\n\nTime (ms);Base.Acceleration [g];\N{DEGREE SIGN}C\n{rows}".encode("cp1252"))
+    inputs = {"time": time, "base.acceleration": GRAVITY * level}
+    assert {name: column.tolist() for name, column in input_table(table).items()} == {
+        name: pytest.approx(column.tolist(), rel=1e-15) for name, column in inputs.items()
+    }
+    taken = run(scene, component=COMPONENT)["contact.force"]
+    # The same course, in SI units.
+    expected = run(scene, inputs=inputs, component=COMPONENT)["contact.force"]
+    assert taken.tolist() == expected.tolist()
+    assert np.ptp(taken) > 0.01
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            "time [ms],base.acceleration [mm]\n0,1\n",
+            "column base.acceleration: unit mm: not allowed, allowed is m/s2",
+        ),
+        ("time,base.aceleration [g]\n0,1\n", "column base.aceleration: unknown; did you mean base.acceleration"),
+        ("time,level\n0,1\n", "columns time, level: not allowed, allowed is time and one or more of base.acceleration"),
+        ("base.acceleration [g],x\n0,1\n", "columns base.acceleration, x: not allowed, allowed is time and"),
+        ("time [ms],base.acceleration [g]\n0,1\n0.2,1\n0.1,1\n", "line 4: column time: 0.1 ms: not allowed"),
+    ],
+)
+def test_wrong_inputs_of_a_scene_are_told(tmp_path: Path, text: str, message: str) -> None:
+    (tmp_path / "measured.csv").write_text(text, encoding="utf-8")
+    with pytest.raises(RelayContactError, match=message):
+        input_table(tmp_path / "measured.csv")
+
+
+def test_all_inputs_of_the_component_may_be_in_a_table() -> None:
+    inputs = {name for name, variable in COMPONENT.variables.items() if variable.causality == "input"}
+    assert set(INPUTS) == inputs | {"time"}
