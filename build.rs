@@ -1,6 +1,11 @@
 //! Turns `modelDescription.xml` into Rust: one enum for each group of variables, the table of their
-//! properties, the enumeration types, and the GUID (a hash of the file). Also writes the C header, with GUID,
-//! value references and choices as constants.
+//! properties, the enumeration types, and the GUID. Also writes the plain description, and the C header, with GUID, value
+//! references and choices as constants.
+
+#[path = "src/fingerprint.rs"]
+mod fingerprint;
+#[path = "build/plain.rs"]
+mod plain;
 
 use std::error::Error;
 use std::fmt::Write as _;
@@ -12,28 +17,27 @@ use roxmltree::{Document, Node};
 fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo:rerun-if-changed=modelDescription.xml");
     println!("cargo:rerun-if-changed=build.rs");
+    println!("cargo:rerun-if-changed=build");
+    println!("cargo:rerun-if-changed=src/fingerprint.rs");
     println!("cargo:rerun-if-changed=src/fmi2");
     let out = PathBuf::from(env::var("OUT_DIR")?);
     let xml = fs::read_to_string("modelDescription.xml")?;
-    let guid = guid(&xml);
+    let guid = identified(&xml, &out.join("modelDescription.xml"))?;
+    let plain_guid = identified(&plain::description(&xml)?, &out.join("plain.xml"))?;
+    let document = Document::parse(&xml)?;
+    fs::write(out.join("variables.rs"), variables(&document, &guid, &plain_guid)?)?;
+    header(&out, &constants(&document, &guid)?)
+}
+
+/// Writes a description with its GUID, so that any change of the description changes the GUID, and returns that.
+fn identified(xml: &str, path: &Path) -> Result<String, Box<dyn Error>> {
+    let guid = fingerprint::guid(&[xml.as_bytes()]);
     let described = xml.replacen("guid=\"\"", &format!("guid=\"{guid}\""), 1);
     if described == xml {
         return Err("modelDescription.xml: guid=\"\" not found".into());
     }
-    fs::write(out.join("modelDescription.xml"), &described)?;
-    let document = Document::parse(&xml)?;
-    fs::write(out.join("variables.rs"), variables(&document, &guid)?)?;
-    header(&out, &constants(&document, &guid)?)
-}
-
-/// 128-bit FNV-1a hash of the description, so that any change of a variable changes the GUID.
-fn guid(xml: &str) -> String {
-    let hash = xml
-        .bytes()
-        .fold(0x6c62_272e_07bb_0142_62b8_2175_6295_c58d_u128, |hash, byte| {
-            (hash ^ u128::from(byte)).wrapping_mul(0x0000_0000_0100_0000_0000_0000_0000_013b)
-        });
-    format!("{{{hash:032x}}}")
+    fs::write(path, &described)?;
+    Ok(guid)
 }
 
 /// The groups of variables; each becomes an enum, so that a `match` over it must handle every variable.
@@ -58,7 +62,7 @@ fn group(causality: &str, kind: &str) -> String {
     format!("{kind}{role}")
 }
 
-fn variables(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> {
+fn variables(document: &Document, guid: &str, plain_guid: &str) -> Result<String, Box<dyn Error>> {
     let element = |name: &str| {
         document
             .descendants()
@@ -66,7 +70,8 @@ fn variables(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> 
             .ok_or(format!("modelDescription.xml has no {name}"))
     };
     let mut code = format!(
-        "/// Identifies the variables of this library: a hash of `modelDescription.xml`.\npub const GUID: &str = \"{guid}\";\n"
+        "/// Identifies the variables of this library: a hash of `modelDescription.xml`.\npub const GUID: &str = \"{guid}\";\n\
+         /// The same of the plain description.\npub const PLAIN_GUID: &str = \"{plain_guid}\";\n"
     );
 
     let types = element("TypeDefinitions")?;
@@ -89,7 +94,7 @@ fn variables(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> 
         let kind = value.tag_name().name();
         let unit = unit(document, value);
         let causality = attribute(variable, "causality")?;
-        if causality == "parameter" {
+        if causality == "parameter" && kind != "String" {
             let (kind, start) = start(document, value)?;
             writeln!(starts, "    pub const {}: {kind} = {start};", upper(name))?;
         }
@@ -135,7 +140,7 @@ fn variables(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> 
     )?;
     writeln!(
         code,
-        "/// The start value of every parameter.\n#[allow(clippy::unreadable_literal)]\npub(crate) mod start {{\n{starts}}}"
+        "/// The start value of every parameter but strings, which are empty.\n#[allow(clippy::unreadable_literal)]\npub(crate) mod start {{\n{starts}}}"
     )?;
     writeln!(code, "{}", by_reference(&list)?)?;
     writeln!(
@@ -165,7 +170,6 @@ fn start(document: &Document, value: Node) -> Result<(String, String), Box<dyn E
         "Real" => ("f64".to_owned(), format!("{start}_f64")),
         "Integer" => ("i32".to_owned(), start.to_owned()),
         "Boolean" => ("bool".to_owned(), start.to_owned()),
-        "String" => ("&str".to_owned(), format!("{start:?}")),
         _ => {
             let kind = attribute(value, "declaredType")?;
             let choice = declared(document, value)

@@ -52,6 +52,7 @@ mod contact;
 mod electrical;
 pub mod error;
 mod excitation;
+mod fingerprint;
 pub mod fmi2;
 mod force_error;
 mod friction;
@@ -70,6 +71,9 @@ pub mod variables;
 
 /// `modelDescription.xml` with the GUID filled in, as it stands in the packaged component.
 pub const MODEL_DESCRIPTION: &str = include_str!(concat!(env!("OUT_DIR"), "/modelDescription.xml"));
+
+/// The same with all numbers as Reals, choices and Booleans too, for tools that know nothing else or cannot set enumerations.
+pub const PLAIN_MODEL_DESCRIPTION: &str = include_str!(concat!(env!("OUT_DIR"), "/plain.xml"));
 
 /// The header for C programs that link the library: its functions, the GUID, and the value references by name.
 pub const C_HEADER: &str = include_str!(concat!(env!("OUT_DIR"), "/include/relay_contact.h"));

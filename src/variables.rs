@@ -1,7 +1,14 @@
 //! The variables of the component, generated from `modelDescription.xml` by `build.rs`: an enum for each group, so
 //! that the compiler checks that a `match` over a group handles every variable.
 
+use crate::fingerprint;
+
 include!(concat!(env!("OUT_DIR"), "/variables.rs"));
+
+/// The GUID of a component that carries a spring file: of the GUID of its variables, the file's name, and its contents.
+pub fn guid_carrying(guid: &str, name: &str, contents: &str) -> String {
+    fingerprint::guid(&[guid, name, contents].map(str::as_bytes))
+}
 
 /// The declaration of a variable in `modelDescription.xml`.
 #[derive(Clone, Copy, Debug)]

@@ -19,6 +19,8 @@ SYSTEM = FOLDER / "two-contacts.ssp"
 
 STEP = 1e-5
 TOLERANCE = 1e-7
+# Choices of the published run by number: Sine, FromPreload.
+PUBLISHED = {"effects.excitation": 2, "effects.axialForce": 1}
 # Acceleration of the frame of the two contacts, m/s2.
 JUMP = 50.0
 # In the first run the importer hands over the numbers that our own run took, so nothing is allowed for. The second of
@@ -47,7 +49,7 @@ def staircase(names: list[str]) -> Any:  # noqa: ANN401
 
 def published(times: list[float]) -> list[float]:
     """Give the contact force of the published run, by FMPy, at the communication points as an importer counts them."""
-    with Component(PLAIN).started({"effects.excitation": 2}) as contact:
+    with Component(PLAIN).started(PUBLISHED) as contact:
         forces = [contact.get("contact.force")]
         for begin, end in pairwise(times):
             contact.step(begin, end - begin)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from component import FMU, PLAIN
-from results import JUMP, STEP, SYSTEM, TOLERANCE, column, compare, missing, published
+from results import JUMP, PUBLISHED, STEP, SYSTEM, TOLERANCE, column, compare, missing, published
 
 try:
     # Ecos needs this library of the package tbb, and finds it where it is loaded already.
@@ -53,10 +53,10 @@ def test_a_sine_given_at_the_communication_points() -> None:
             simulation.terminate()
 
 
-def test_the_published_run_by_a_choice_that_is_an_integer() -> None:
+def test_the_published_run_by_a_choice_that_is_a_number() -> None:
     with EcosSimulationStructure() as structure:
         structure.add_model("contact", str(PLAIN))
-        structure.add_parameter_set("sine", {"contact::effects.excitation": 2})
+        structure.add_parameter_set("sine", {f"contact::{name}": float(number) for name, number in PUBLISHED.items()})
         with EcosSimulation(structure=structure, step_size=STEP) as simulation:
             assert simulation.init(parameter_set="sine")
             times = list(itertools.accumulate(itertools.repeat(STEP, 2000), initial=0.0))

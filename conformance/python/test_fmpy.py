@@ -1,6 +1,7 @@
 """The component in FMPy, beside what the other files test: the run common to all importers, and habits of importers."""
 
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -10,8 +11,8 @@ import pytest
 from fmpy import simulate_fmu
 from fmpy.ssp.ssd import read_ssd
 
-from component import COMPONENT, FMU, Instance, run
-from relay_contact import Values, read_table
+from component import COMPONENT, FMU, PLAIN, ROOT, Instance, run
+from relay_contact import Component, Values, read_table
 from results import FOLDER, STEP, SYSTEM, TOLERANCE, compare, published, record, staircase
 
 
@@ -22,7 +23,7 @@ def test_a_sine_given_at_the_communication_points() -> None:
     compare("FMPy", fmpy.__version__, "run", result["contact.force"].tolist())
 
 
-def test_the_published_run_by_a_choice_that_is_an_integer() -> None:
+def test_the_published_run_by_a_choice_that_is_a_number() -> None:
     times = [n * STEP for n in range(2001)]
     expected = read_table(FOLDER / "scenes" / "paper-1khz.csv")["contact.force"].tolist()
     compare("FMPy", fmpy.__version__, "published run", published(times), expected=expected)
@@ -108,3 +109,47 @@ def test_no_stop_time() -> None:
     with_stop = simulate_fmu(str(FMU), **settings)
     without = simulate_fmu(str(FMU), set_stop_time=False, **settings)
     assert np.array_equal(with_stop, without)
+
+
+def test_a_host_that_knows_reals_alone() -> None:
+    """As PathSim and CoFMUPy do: every output is read, every parameter set, by the functions for Reals."""
+    component = Component(PLAIN)
+    names = [name for name, variable in component.variables.items() if variable.causality == "output"]
+    typed: Values = {"effects.excitation": "Sine", "excitation.amplitude": 400.0, "effects.energy": True}
+    plain: Values = {"effects.excitation": 2.0, "excitation.amplitude": 400.0, "effects.energy": 1.0}
+    closed = set()
+    with COMPONENT.started(typed) as expected, component.started(plain) as contact:
+        for step in range(150):
+            for each in (expected, contact):
+                each.step(step * STEP, STEP)
+            closed |= set(contact.real("contact.closed"))
+            assert contact.real(*names) == [expected.get(name) for name in names]
+    assert closed == {0.0, 1.0}
+
+
+def test_a_communication_point_at_every_event() -> None:
+    """The recipe of docs/importers.md: back to an event that a step reports, as often as there is an earlier one."""
+    text = (ROOT / "docs" / "importers.md").read_text(encoding="utf-8")
+    recipe = re.search(r"```python\n(def to_next_event.*?)```", text, re.DOTALL)
+    assert recipe
+    scope: dict[str, Any] = {}
+    exec(recipe[1], scope)
+    names = ("contact.lastOpening", "contact.lastClosing")
+    sine: Values = {"effects.excitation": "Sine", "excitation.amplitude": 400.0}
+    events: set[float] = set()
+    with COMPONENT.started(sine) as contact:
+        for step in range(20000):
+            contact.step(step * 1e-6, 1e-6)
+            events |= set(contact.real(*names)) - {-1.0}
+    references = [COMPONENT.variables[name].valueReference for name in names]
+    with COMPONENT.started(sine) as contact:
+        points = [0.0]
+        while points[-1] < 0.02 - 1e-9:
+            points.append(scope["to_next_event"](contact.fmu, references, points[-1], min(points[-1] + 1e-4, 0.02)))
+            # At the instant of an event it is what it is after it.
+            opening, closing = contact.real(*names)
+            assert contact.get("contact.closed") == (closing >= opening)
+    assert len(events) == 39
+    # Found again to the tolerance by which the component locates them.
+    assert max(min(abs(event - point) for point in points) for event in events) < 1e-9
+    assert len(points) == 1 + 220

@@ -1,10 +1,13 @@
 """The component in libcosim, which reckons time in whole nanoseconds and knows no enumerations."""
 
+import re
+import zipfile
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from component import FMU, PLAIN
-from results import JUMP, STEP, SYSTEM, TOLERANCE, column, compare, missing, published
+from component import FMU, PLAIN, SPRUNG
+from relay_contact import Component
+from results import JUMP, PUBLISHED, STEP, SYSTEM, TOLERANCE, column, compare, missing, published
 
 try:
     from libcosimpy.CosimExecution import CosimExecution
@@ -73,10 +76,11 @@ def test_a_sine_given_at_the_communication_points() -> None:
     compare("libcosim", VERSION, "run", forces, start=1)
 
 
-def test_the_published_run_by_a_choice_that_is_an_integer() -> None:
+def test_the_published_run_by_a_choice_that_is_a_number() -> None:
     run = Execution(CosimExecution.from_step_size(NANOSECONDS))
     run.add("contact", PLAIN)
-    assert run.execution.integer_initial_value(*run.find("contact", "effects.excitation"), 2)
+    for name, number in PUBLISHED.items():
+        run.start("contact", name, number)
     times = [n * NANOSECONDS / 1e9 for n in range(2001)]
     compare("libcosim", VERSION, "published run", run.forces("contact", 2000), start=1, expected=published(times))
 
@@ -100,3 +104,26 @@ def test_two_instances_wired_together() -> None:
 
 def test_a_system_of_two_instances() -> None:
     coupled(Execution(CosimExecution.from_ssp_file(str(SYSTEM), NANOSECONDS)), "SSP")
+
+
+def test_two_springs_in_one_system_are_not_taken_for_each_other(tmp_path: Path) -> None:
+    """Libcosim takes two components of the same GUID for one."""
+    system = tmp_path / "springs.ssp"
+    with zipfile.ZipFile(SYSTEM) as given, zipfile.ZipFile(system, "w") as changed:
+        text = given.read("SystemStructure.ssd").decode()
+        second = r'(name="second".*?)RelayContact'
+        text = re.sub("<ssd:Connections>.*</ssd:Connections>", "", text, flags=re.DOTALL)
+        text = re.sub(second, r"\1RelayContact-tapered-cube", text, count=1, flags=re.DOTALL)
+        changed.writestr("SystemStructure.ssd", text)
+        for fmu in [FMU, SPRUNG]:
+            changed.write(fmu, f"resources/{fmu.name}")
+    run = Execution(CosimExecution.from_ssp_file(str(system), NANOSECONDS))
+    assert run.execution.step()
+    found = []
+    for name in ["first", "second"]:
+        index, reference = run.find(name, "preload.frequency")
+        found.append(float(run.observer.last_real_values(index, [reference])[0]))
+    with Component(FMU).started() as uniform, Component(SPRUNG).started() as tapered:
+        expected = [each.get("preload.frequency") for each in (uniform, tapered)]
+    assert found == expected
+    assert abs(found[0] - found[1]) > 100.0

@@ -6,13 +6,13 @@ import fmpy
 from fmpy import read_model_description
 from fmpy.validation import validate_fmu
 
-from component import FMU, PLAIN, ROOT
+from component import FMU, PLAIN, ROOT, SPRUNG
 from results import record
 
 
 def test_fmpy_finds_no_problem() -> None:
-    assert validate_fmu(str(FMU)) == []
-    assert validate_fmu(str(PLAIN)) == []
+    for fmu in (FMU, PLAIN, SPRUNG):
+        assert validate_fmu(str(fmu)) == []
     record("FMPy", fmpy.__version__, "validation")
 
 
@@ -22,12 +22,30 @@ def test_package_holds_documentation_licences_and_icon() -> None:
         assert archive.testzip() is None
         page = archive.read("documentation/index.html").decode()
         icon = archive.read("model.png")
+        text = archive.read("documentation/licenses/license.txt").decode()
     licences = "documentation/licenses/"
-    assert {f"{licences}LICENSE-MIT", f"{licences}LICENSE-APACHE"} <= names
+    assert {f"{licences}{name}" for name in ("license.txt", "LICENSE-MIT", "LICENSE-APACHE")} <= names
+    listed = {f"{licences}{line}" for line in text.split("\n\n")[1].split()}
+    assert listed | {f"{licences}license.txt"} == {name for name in names if name.startswith(licences)}
     assert any(name.startswith(f"{licences}nalgebra-") for name in names)
     assert icon.startswith(b"\x89PNG\r\n\x1a\n")
     for variable in read_model_description(str(FMU)).modelVariables:
         assert f"<code>{variable.name}</code>" in page
+
+
+def test_a_component_that_carries_a_spring_says_which() -> None:
+    descriptions = [read_model_description(str(fmu)) for fmu in (FMU, PLAIN, SPRUNG)]
+    assert len({description.guid for description in descriptions}) == 3
+    names = [description.modelName for description in descriptions]
+    assert names == ["RelayContact", "RelayContact-plain", "RelayContact-tapered-cube"]
+    start = next(variable.start for variable in descriptions[2].modelVariables if variable.name == "beam.file")
+    assert start == "tapered-cube.toml"
+    with zipfile.ZipFile(SPRUNG) as archive:
+        page = archive.read("documentation/index.html").decode()
+        spring = archive.read("resources/tapered-cube.toml")
+    assert spring == (ROOT / "scenes" / "springs" / "tapered-cube.toml").read_bytes()
+    assert "RelayContact-tapered-cube" in page
+    assert "clamp_stiffness = 1.2" in page
 
 
 def test_library_names_no_folder_of_the_machine_that_built_it() -> None:

@@ -111,10 +111,9 @@ fn the_published_run_gives_the_forces_of_our_own() {
     let rows: Vec<_> = forces.iter().map(|[force]| [0.0, *force]).collect();
     assert_eq!(rows.len(), 2001);
     compare("published run", &rows, |import, instance| {
-        // 2: `Sine`.
-        instance
-            .set_integer(&[reference(import, "effects.excitation")], &[2])
-            .expect("the excitation");
+        // `Sine` and `FromPreload`.
+        let choices = ["effects.excitation", "effects.axialForce"].map(|name| reference(import, name));
+        instance.set_integer(&choices, &[2, 1]).expect("the choices");
     });
 }
 

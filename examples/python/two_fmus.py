@@ -12,7 +12,7 @@ without steps), and the circuit at a finer step.
 
 libcosim
 - cannot set enumerations, so effects.excitation remains None and the table vibrates the contact (the variant of the
-  component that `cargo xtask fmu --plain` makes has integers instead);
+  component that `cargo xtask fmu --plain` makes has numbers instead);
 - counts time in whole nanoseconds and passes differences of times. FMPy gives the same bits at the same times;
 - applies only the first ParameterBinding of each component of an .ssp, and silently ignores all others and those of the
   system: here each component has one. It recognises the prefixes ssd, ssc, ssv by their letters;

@@ -4,6 +4,7 @@
 
 use std::ffi::CStr;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
 use std::ptr;
 
 use libc::{c_char, size_t};
@@ -13,12 +14,13 @@ use super::environment::with_default;
 use super::failure::Failure;
 use super::instance::Instance;
 use super::logger::Logger;
+use super::resources::{self, Identity};
+use super::states;
 use super::types::{
     fmi2Boolean, fmi2CallbackFunctions, fmi2CoSimulation, fmi2Component, fmi2Error, fmi2False, fmi2Real, fmi2Status,
     fmi2String, fmi2Type,
 };
-use super::{resources, states};
-use crate::variables::GUID;
+use crate::variables::{GUID, PLAIN_GUID};
 
 /// The platform types the functions use: "default".
 #[unsafe(no_mangle)]
@@ -58,8 +60,9 @@ pub unsafe extern "C" fn fmi2SetDebugLogging(
 }
 
 /// Creates an instance. Returns null if the name is missing, the type is not co-simulation, or the GUID belongs to
-/// another description. The callbacks are copied; logger and `stepFinished` are used, which may be null; the logger must not
-/// call back into the instance. The resource location is the folder of relative spring files, and may be null.
+/// another description or spring file. The callbacks are copied; logger and `stepFinished` are used, which may be null; the
+/// logger must not call back into the instance. The resource location is the folder of relative spring files, and may be
+/// null unless the component carries one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2Instantiate(
     instanceName: fmi2String,
@@ -80,55 +83,48 @@ pub unsafe extern "C" fn fmi2Instantiate(
     let resources = unsafe { text(fmuResourceLocation, "fmuResourceLocation") };
     let resources = resources.ok().and_then(|text| resources::folder(text.to_str().ok()?));
     let name = name.ok().filter(|name| !name.is_empty());
+    let logger = |on| Logger::new(functions, name.unwrap_or(c"RelayContact"), on);
+    let refuse = |reason: &str| {
+        logger(false).log_status(fmi2Error, &format!("fmi2Instantiate: {reason}"));
+        ptr::null_mut()
+    };
     let made = with_default(|| {
         catch_unwind(AssertUnwindSafe(|| {
-            let logger = Logger::new(functions, name.unwrap_or(c"RelayContact"), loggingOn != fmi2False);
-            match refusal(name, fmuType, guid) {
-                None => match Instance::new(
-                    logger,
-                    (functions.stepFinished, functions.componentEnvironment),
-                    resources,
-                ) {
-                    Ok(instance) => hand_out(instance),
-                    Err(error) => {
-                        let logger = Logger::new(functions, name.unwrap_or(c"RelayContact"), false);
-                        logger.log_status(fmi2Error, &format!("fmi2Instantiate: {error}"));
-                        ptr::null_mut()
-                    }
-                },
-                Some(reason) => {
-                    logger.log_status(fmi2Error, &format!("fmi2Instantiate: {reason}"));
-                    ptr::null_mut()
-                }
-            }
+            let made = identity(name, fmuType, guid, resources.as_deref()).and_then(|identity| {
+                let step_finished = (functions.stepFinished, functions.componentEnvironment);
+                let instance = Instance::new(logger(loggingOn != fmi2False), step_finished, resources, identity);
+                instance.map_err(|error| error.to_string())
+            });
+            made.map_or_else(|reason| refuse(&reason), hand_out)
         }))
     });
-    made.unwrap_or_else(|panic| {
-        let reason = panic_text(panic.as_ref());
-        let logger = Logger::new(functions, c"RelayContact", false);
-        logger.log_status(fmi2Error, &format!("fmi2Instantiate: {}", Failure::Panic(reason)));
-        ptr::null_mut()
-    })
+    made.unwrap_or_else(|panic| refuse(&Failure::Panic(panic_text(panic.as_ref())).to_string()))
 }
 
-/// Why no instance can be created.
-fn refusal(name: Option<&CStr>, kind: fmi2Type, guid: Result<&CStr, Failure>) -> Option<String> {
+/// What is to be instantiated, or why no instance can be created.
+fn identity(
+    name: Option<&CStr>,
+    kind: fmi2Type,
+    guid: Result<&CStr, Failure>,
+    resources: Option<&Path>,
+) -> Result<Identity, String> {
     if name.is_none() {
-        return Some("instanceName is null or empty".to_owned());
+        return Err("instanceName is null or empty".to_owned());
     }
     if kind != fmi2CoSimulation {
-        return Some(format!(
+        return Err(format!(
             "fmuType = {kind}: not allowed, allowed is 1 (fmi2CoSimulation)"
         ));
     }
-    match guid {
-        Err(failure) => Some(failure.to_string()),
-        Ok(guid) if guid.to_bytes() != GUID.as_bytes() => Some(format!(
-            "fmuGUID = {}: not allowed, allowed is {GUID}; library and modelDescription.xml do not belong together",
-            guid.to_string_lossy()
-        )),
-        Ok(_) => None,
-    }
+    let guid = guid.map_err(|failure| failure.to_string())?.to_string_lossy();
+    Identity::of(&guid, resources).ok_or_else(|| {
+        let folder = resources.map_or("none".to_owned(), |folder| folder.display().to_string());
+        format!(
+            "fmuGUID = {guid}: not allowed, allowed is {GUID}, for the plain variant {PLAIN_GUID}, or the GUID of one of \
+             these with a spring file in the folder of resources ({folder}); library, modelDescription.xml and spring file \
+             do not belong together"
+        )
+    })
 }
 
 /// Frees an instance. Null is ignored.

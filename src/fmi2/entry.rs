@@ -176,6 +176,7 @@ mod tests {
     use super::super::types::fmi2CallbackFunctions;
     use super::*;
     use crate::fmi2::logger::Logger;
+    use crate::fmi2::resources::Identity;
 
     #[test]
     #[allow(clippy::panic)]
@@ -187,8 +188,15 @@ mod tests {
             stepFinished: None,
             componentEnvironment: ptr::null_mut(),
         };
-        let component =
-            hand_out(Instance::new(Logger::new(&silent, c"relay", false), (None, ptr::null_mut()), None).unwrap());
+        let component = hand_out(
+            Instance::new(
+                Logger::new(&silent, c"relay", false),
+                (None, ptr::null_mut()),
+                None,
+                Identity::default(),
+            )
+            .unwrap(),
+        );
         let state = |instance: &mut Instance, expected| {
             assert_eq!(instance.state(), expected);
             Ok(())

@@ -1,6 +1,42 @@
-//! The folder of the component's resources, from the URI of `fmi2Instantiate`.
+//! The folder of the component's resources, from the URI of `fmi2Instantiate`, and the spring file carried in it.
 
-use std::path::PathBuf;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::scene::spring_file;
+use crate::variables::{GUID, PLAIN_GUID, guid_carrying};
+
+/// Which component the GUID of `fmi2Instantiate` stands for.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub(super) struct Identity {
+    /// Whether all numbers are Reals.
+    pub(super) plain: bool,
+    /// The name of the spring file that it carries in its resources.
+    pub(super) spring: Option<String>,
+}
+
+impl Identity {
+    /// None if the GUID is neither of this library's nor that of one of these with a spring file in the folder.
+    pub(super) fn of(guid: &str, resources: Option<&Path>) -> Option<Self> {
+        let known = |spring: Option<(String, String)>| {
+            let own = [(GUID, false), (PLAIN_GUID, true)]
+                .into_iter()
+                .find(|(own, _)| match &spring {
+                    None => guid == *own,
+                    Some((name, text)) => guid == guid_carrying(own, name, text),
+                });
+            let plain = own?.1;
+            let spring = spring.map(|(name, _)| name);
+            Some(Self { plain, spring })
+        };
+        let files = || fs::read_dir(resources?).ok();
+        let spring = |file: fs::DirEntry| {
+            let name = file.file_name().into_string().ok()?;
+            known(Some((name, spring_file::text(&file.path()).ok()?)))
+        };
+        known(None).or_else(|| files()?.flatten().find_map(spring))
+    }
+}
 
 /// The folder of a `file:` URI, or of a path, which some importers pass instead; none for another URI.
 pub(super) fn folder(location: &str) -> Option<PathBuf> {

@@ -8,7 +8,7 @@ pub mod input_table;
 pub(crate) mod names;
 mod parameters;
 pub mod spring;
-mod spring_file;
+pub(crate) mod spring_file;
 mod values;
 
 pub use parameters::*;

@@ -73,7 +73,7 @@ impl SpringFile {
 }
 
 /// The text of a file of bounded size: no folder, pipe or device, whose end may never come.
-fn text(path: &Path) -> Result<String, String> {
+pub(crate) fn text(path: &Path) -> Result<String, String> {
     let failed = |error: std::io::Error| error.to_string();
     if !path.metadata().map_err(failed)?.is_file() {
         return Err("not a file".to_owned());

@@ -253,6 +253,14 @@ impl Instance {
         value
     }
 
+    /// The value of a Boolean variable.
+    pub fn boolean(&self, name: &str) -> bool {
+        let (reference, mut value) = (vr(name), -1);
+        let status = unsafe { fmi2GetBoolean(self.component, &raw const reference, 1, &raw mut value) };
+        assert_eq!(status, fmi2OK, "{name}: {:?}", self.log);
+        value == fmi2True
+    }
+
     /// `fmi2DoStep`.
     pub fn step(&self, point: f64, size: f64) -> fmi2Status {
         unsafe { fmi2DoStep(self.component, point, size, fmi2True) }

@@ -3,7 +3,7 @@
 //!
 //! [`messages`], [`logging`]: what is said, and where;   [`values`], [`derivatives`], [`steps`]: what a call does to the
 //! simulation;   [`dependencies`]: of initial unknowns;   [`fmu_state`]: a saved state goes on bit by bit;   [`springs`]: of a file;
-//! [`importers`]: habits of importers;   `environment`: hosts with another floating-point environment.
+//! [`plain`]: all numbers as Reals;   [`importers`]: habits of importers;   `environment`: hosts with another floating-point environment.
 #![allow(clippy::undocumented_unsafe_blocks)] // every block calls a C function with what it needs, or, as the test says, without
 
 mod dependencies;
@@ -14,6 +14,7 @@ mod fmu_state;
 mod importers;
 mod logging;
 mod messages;
+mod plain;
 mod springs;
 mod steps;
 mod values;

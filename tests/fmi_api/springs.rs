@@ -4,7 +4,9 @@ use std::ffi::CString;
 use std::ptr;
 
 use relay_contact::fmi2::*;
+use relay_contact::variables::{GUID, PLAIN_GUID, guid_carrying};
 use testing::instance::{Arguments, Instance, vr};
+use testing::log::{Log, callbacks};
 
 use crate::fmu_state::{from_bytes, restore, save, to_bytes, trace};
 
@@ -128,4 +130,99 @@ fn a_dimension_beside_a_spring_is_a_warning_and_the_simulation_goes_on() {
         ["fmi2ExitInitializationMode: beam.length = 0.02 m: not used, the spring is that of beam.file = springs/"];
     fmu.expect_message(fmi2Warning, &parts);
     assert_eq!(fmu.step(0.0, 1e-4), fmi2OK);
+}
+
+/// The folder of two spring files of the project.
+fn springs() -> CString {
+    let folder = std::env::current_dir().unwrap().join("scenes/springs");
+    CString::new(folder.to_str().unwrap()).unwrap()
+}
+
+fn carrying(guid: &str, name: &str) -> (Instance, String) {
+    let text = std::fs::read_to_string(format!("scenes/springs/{name}")).unwrap();
+    let guid = guid_carrying(guid, name, &text);
+    let fmu = Instance::with(&Arguments {
+        guid: Some(&guid),
+        resources: Some(&springs()),
+        ..Arguments::default()
+    });
+    (fmu, guid)
+}
+
+#[test]
+fn the_guid_says_which_spring_a_component_carries() {
+    let names = ["tapered-cube.toml", "hole-and-rivet-modes.toml"];
+    let mut frequencies = vec![Instance::initialized().real("preload.frequency")];
+    let mut guids = vec![GUID.to_owned(), PLAIN_GUID.to_owned()];
+    for variant in [GUID, PLAIN_GUID] {
+        for name in names {
+            let (fmu, guid) = carrying(variant, name);
+            guids.push(guid);
+            assert_eq!(fmu.string("beam.file"), name);
+            fmu.initialize();
+            frequencies.push(fmu.real("preload.frequency"));
+            assert_eq!(fmu.reset(), fmi2OK);
+            assert_eq!(fmu.string("beam.file"), name, "after a reset");
+        }
+    }
+    let [uniform, tapered, holed, ref plain @ ..] = frequencies[..] else {
+        panic!("{frequencies:?}")
+    };
+    assert_eq!(plain, [tapered, holed]);
+    assert!(
+        (tapered - uniform).abs() > 10.0 && (holed - tapered).abs() > 10.0,
+        "{frequencies:?}"
+    );
+    guids.sort();
+    guids.dedup();
+    assert_eq!(guids.len(), 6);
+}
+
+#[test]
+fn a_description_without_the_spring_that_belongs_to_it_is_refused() {
+    let name = "tapered-cube.toml";
+    let text = std::fs::read_to_string(format!("scenes/springs/{name}")).unwrap();
+    let none = CString::new("/nowhere").unwrap();
+    let springs = springs();
+    for (guid, resources) in [
+        // Another file of this name, the file by another name, that of another library, and no file at all.
+        (guid_carrying(GUID, name, &(text.clone() + "\n")), Some(&springs)),
+        (guid_carrying(GUID, "spring.toml", &text), Some(&springs)),
+        (guid_carrying("{0123}", name, &text), Some(&springs)),
+        (guid_carrying(GUID, name, &text), Some(&none)),
+        (guid_carrying(GUID, name, &text), None),
+    ] {
+        let log = Log::default();
+        let resources = resources.map(CString::as_c_str);
+        let wrong = Arguments {
+            guid: Some(&guid),
+            resources,
+            ..Arguments::default()
+        };
+        assert!(wrong.instantiate(fmi2Instantiate, Some(&callbacks(&log))).is_null());
+        let messages = log.into_inner().unwrap();
+        let told = |part: &str| messages.iter().any(|message| message.text.contains(part));
+        assert!(
+            told("spring file do not belong together") && told(&guid),
+            "{messages:?}"
+        );
+    }
+}
+
+#[test]
+fn a_state_keeps_its_spring_in_a_component_that_carries_another() {
+    let (first, _) = carrying(GUID, "tapered-cube.toml");
+    assert_eq!(first.set_integer("effects.excitation", 2), fmi2OK);
+    first.initialize();
+    trace(&first, 0, 30, 2e-5);
+    let bytes = to_bytes(&first, save(&first));
+    let expected = trace(&first, 30, 60, 2e-5);
+    let (second, _) = carrying(GUID, "hole-and-rivet-modes.toml");
+    let mut state = ptr::null_mut();
+    assert_eq!(from_bytes(&second, &bytes, &mut state), fmi2OK);
+    assert_eq!(restore(&second, state), fmi2OK);
+    assert_eq!(second.string("beam.file"), "tapered-cube.toml");
+    assert_eq!(trace(&second, 30, 60, 2e-5), expected);
+    assert_eq!(second.reset(), fmi2OK);
+    assert_eq!(second.string("beam.file"), "hole-and-rivet-modes.toml");
 }

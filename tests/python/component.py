@@ -10,8 +10,9 @@ from relay_contact import Array, Component, Contact, Values, fmu_path
 
 ROOT = Path(__file__).resolve().parents[2]
 FMU = fmu_path()
-# The same with integers in place of enumerations.
+# The same with all numbers as Reals, and the one that carries a spring.
 PLAIN = FMU.with_name("RelayContact-plain.fmu")
+SPRUNG = FMU.with_name("RelayContact-tapered-cube.fmu")
 COMPONENT = Component(FMU)
 
 # Start values of the parameters.

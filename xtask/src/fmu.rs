@@ -7,84 +7,30 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, bail};
 use cargo_metadata::Metadata;
 use commands::{cargo, command, output, read, run, write};
-use relay_contact::scene::spring::SpringFile;
-use relay_contact::{C_HEADER, MODEL_DESCRIPTION};
+use relay_contact::C_HEADER;
 
 use crate::package::{Files, pack};
-use crate::{bill, documentation, licences, linked, plain};
+use crate::variant::Variant;
+use crate::{bill, documentation, licences, linked};
 
-/// Writes `dist/RelayContact.fmu` and returns its path. Also writes, for C programs, the library to `lib` and its
-/// header to `include`.
+/// Writes the component as `dist/RelayContact.fmu` and returns its path.
 pub fn build() -> Result<PathBuf> {
-    write("dist/RelayContact.fmu", &pack(&package(None)?)?)
+    build_variant(&Variant::new(false, None)?)
 }
 
-/// Writes the component as `dist/RelayContact.fmu`, or with what is added to that name: `-plain` has integers as choices,
-/// `-NAME` carries the spring file NAME.toml. Returns its path.
-pub fn build_variant(plain: bool, spring: Option<&Path>) -> Result<PathBuf> {
-    if !plain && spring.is_none() {
-        return build();
-    }
-    let spring = spring.map(Spring::read).transpose()?;
-    let mut files = package(spring.as_ref())?;
-    let mut name = String::from("RelayContact");
-    let mut description = if plain {
-        plain::description()?
-    } else {
-        MODEL_DESCRIPTION.to_owned()
-    };
-    if plain {
-        name.push_str("-plain");
-    }
-    if let Some(spring) = spring {
-        name = format!("{name}-{}", spring.name.trim_end_matches(".toml"));
-        description = spring.described(&description);
-        files.insert(format!("resources/{}", spring.name), spring.contents);
-    }
-    files.insert("modelDescription.xml".to_owned(), description.into_bytes());
-    write(format!("dist/{name}.fmu"), &pack(&files)?)
-}
-
-/// A spring file to be carried.
-struct Spring {
-    name: String,
-    contents: Vec<u8>,
-}
-
-impl Spring {
-    fn read(path: &Path) -> Result<Self> {
-        let name = path
-            .file_name()
-            .and_then(|name| name.to_str())
-            .unwrap_or_default()
-            .to_owned();
-        let ordinary = |c: char| c.is_alphanumeric() || "-_.".contains(c);
-        if name.is_empty() || !name.chars().all(ordinary) {
-            bail!("{}: allowed in the name are letters, digits and -_.", path.display());
-        }
-        SpringFile::read(Path::new(""), &path.to_string_lossy())?;
-        let contents = std::fs::read(path)?;
-        Ok(Self { name, contents })
-    }
-
-    /// The description with the file as start value of `beam.file`, the only string.
-    fn described(&self, description: &str) -> String {
-        description.replacen("<String start=\"\"/>", &format!("<String start=\"{}\"/>", self.name), 1)
-    }
-}
-
-/// The contents of the archive for this machine.
-fn package(spring: Option<&Spring>) -> Result<Files> {
+/// Writes a variant of the component as `dist/NAME.fmu` and returns its path. Also writes, for C programs, the library to
+/// `lib` and its header to `include`.
+pub fn build_variant(variant: &Variant) -> Result<PathBuf> {
     let metadata = linked::metadata()?;
-    build_library(&metadata, spring)?;
+    build_library(&metadata)?;
     let (folder, prefix, extension) = platform()?;
     let name = format!("{prefix}relay_contact.{extension}");
     let library = read(metadata.target_directory.as_std_path().join("release").join(&name))?;
-    if spring.is_none() {
-        write("dist/include/relay_contact.h", C_HEADER.as_bytes())?;
-        write(format!("dist/lib/{name}"), &library)?;
-    }
-    files(&metadata, [(folder, extension, library)], Path::new("rustc"), &[])
+    write("dist/include/relay_contact.h", C_HEADER.as_bytes())?;
+    write(format!("dist/lib/{name}"), &library)?;
+    let libraries = [(folder, extension, library)];
+    let files = files(variant, &metadata, libraries, Path::new("rustc"), &[], Files::new())?;
+    write(format!("dist/{}.fmu", variant.name), &pack(&files)?)
 }
 
 /// Cargo's arguments to build the shared library only, as otherwise it is not optimised across crates.
@@ -96,14 +42,9 @@ pub const CARGO_RUSTC: [&str; 5] = [
     "--crate-type=cdylib",
 ];
 
-fn build_library(metadata: &Metadata, spring: Option<&Spring>) -> Result<()> {
+fn build_library(metadata: &Metadata) -> Result<()> {
     let mut build = cargo();
     build.args(CARGO_RUSTC);
-    // What it has as the start value of `beam.file`.
-    match spring {
-        Some(spring) => build.env("RELAY_CONTACT_SPRING", &spring.name),
-        None => build.env_remove("RELAY_CONTACT_SPRING"),
-    };
     // Cargo takes rustc's flags from one place only, so these are added to the user's.
     let given = |name, separator: char| {
         let flags = env::var(name).ok()?;
@@ -139,22 +80,28 @@ pub fn path_flags(metadata: &Metadata) -> Vec<String> {
 }
 
 /// The contents of the archive. Libraries come with their folder and extension; `rustc` is the compiler whose standard
-/// library they contain; `targets` are their platforms as it calls them, none stands for this machine.
+/// library they contain; `targets` are their platforms as it calls them, none stands for this machine; `more_licences` are
+/// those of what is linked beside the crates.
 pub fn files<'a>(
+    variant: &Variant,
     metadata: &Metadata,
     libraries: impl IntoIterator<Item = (&'a str, &'a str, Vec<u8>)>,
     rustc: &Path,
     targets: &[&str],
+    more_licences: Files,
 ) -> Result<Files> {
     let crates = linked::crates(metadata, targets)?;
-    let mut files = licences::texts(&crates, rustc)?;
+    let mut files = licences::texts(&crates, rustc, more_licences)?;
     for (path, contents) in [
-        ("modelDescription.xml", MODEL_DESCRIPTION.as_bytes().to_vec()),
+        ("modelDescription.xml", variant.description.clone().into_bytes()),
         ("model.png", read("docs/model.png")?),
-        ("documentation/index.html", documentation::page()?.into_bytes()),
+        ("documentation/index.html", documentation::page(variant)?.into_bytes()),
         ("documentation/sbom.cdx.json", bill::text(&crates, rustc)?.into_bytes()),
     ] {
         files.insert(path.to_owned(), contents);
+    }
+    if let Some((name, text)) = &variant.spring {
+        files.insert(format!("resources/{name}"), text.clone().into_bytes());
     }
     for (folder, extension, library) in libraries {
         files.insert(format!("binaries/{folder}/RelayContact.{extension}"), library);
@@ -180,25 +127,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_spring_becomes_the_start_value_of_the_only_string() {
-        let spring = Spring {
-            name: "my.toml".to_owned(),
-            contents: Vec::new(),
-        };
-        let described = spring.described(MODEL_DESCRIPTION);
-        assert_eq!(described.matches("<String start=\"my.toml\"/>").count(), 1);
-        assert_eq!(described.matches("<String").count(), 1);
-        assert!(Spring::read(Path::new("a&b.toml")).is_err() && Spring::read(Path::new("none.toml")).is_err());
-    }
-
-    #[test]
     fn everything_but_the_library_is_the_same_bytes_every_time() -> Result<()> {
         let metadata = linked::metadata()?;
-        let files = || files(&metadata, [], Path::new("rustc"), &[]);
+        let variant = Variant::new(false, None)?;
+        let files = || files(&variant, &metadata, [], Path::new("rustc"), &[], Files::new());
         let first = files()?;
         assert!(first.contains_key("documentation/licenses/LICENSE-MIT"));
         let of_crate = |path: &String| path.starts_with("documentation/licenses/nalgebra-");
         assert!(first.keys().any(of_crate));
+        // The entry of FMI 2.0.3.
+        let entry = first
+            .get("documentation/licenses/license.txt")
+            .cloned()
+            .unwrap_or_default();
+        let entry = String::from_utf8(entry)?;
+        assert!(entry.starts_with("RelayContact is licensed under MIT OR Apache-2.0") && entry.contains("\nnalgebra-"));
         assert_eq!(pack(&first)?, pack(&files()?)?);
         Ok(())
     }

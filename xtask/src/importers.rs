@@ -13,6 +13,7 @@ use commands::{cargo, command, output, read, root, run as run_command, write};
 
 use crate::package::{Files, pack};
 use crate::stage::stage;
+use crate::variant::Variant;
 use crate::{fmu, python, report};
 
 const FOLDER: &str = "out/conformance";
@@ -57,13 +58,17 @@ pub fn for_report(arguments: &report::Arguments) -> Result<()> {
     python::test(&WITH_ROWS, &component)
 }
 
-/// Writes the reference runs, the system of two contacts and the component without enumerations; clears the table.
+/// Writes the reference runs, the system of two contacts and variants of the component; clears the table.
 fn prepare(component: &Path) -> Result<()> {
     let folder = root().join(FOLDER);
     if folder.exists() {
         fs::remove_dir_all(&folder).context("cannot clear the table of results")?;
     }
-    fmu::build_variant(true, None)?;
+    fmu::build_variant(&Variant::new(true, None)?)?;
+    fmu::build_variant(&Variant::new(
+        false,
+        Some(&root().join("scenes/springs/tapered-cube.toml")),
+    )?)?;
     report::start("reference-runs", &[""; 0])?;
     let description = "SystemStructure.ssd";
     let system = Files::from([

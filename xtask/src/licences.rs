@@ -12,9 +12,9 @@ use crate::package::Files;
 /// Their folder in the archive.
 const FOLDER: &str = "documentation/licenses";
 
-/// The licences of this project, of each crate, and of the Rust standard library of the compiler `rustc`.
-pub fn texts(crates: &Crates, rustc: &Path) -> Result<Files> {
-    let mut files = Files::new();
+/// The licences of this project, of each crate, of the Rust standard library of the compiler `rustc`, and those given, with
+/// a list of all, `license.txt`, where FMI 2.0.3 has importers look.
+pub fn texts(crates: &Crates, rustc: &Path, mut files: Files) -> Result<Files> {
     for name in ["LICENSE-MIT", "LICENSE-APACHE"] {
         files.insert(format!("{FOLDER}/{name}"), read(name)?);
     }
@@ -35,6 +35,15 @@ pub fn texts(crates: &Crates, rustc: &Path) -> Result<Files> {
     if let Some((name, text)) = standard_library(rustc)? {
         files.insert(format!("{FOLDER}/rust-standard-library/{name}"), text);
     }
+    let mut list =
+        "RelayContact is licensed under MIT OR Apache-2.0, at your choice. Its library contains other people's work; \
+                    all licences are in this folder:\n\n"
+            .to_owned();
+    for path in files.keys() {
+        list.push_str(path.strip_prefix(FOLDER).unwrap_or(path).trim_start_matches('/'));
+        list.push('\n');
+    }
+    files.insert(format!("{FOLDER}/license.txt"), list.into_bytes());
     Ok(files)
 }
 

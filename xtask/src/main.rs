@@ -8,19 +8,21 @@ mod importers;
 mod licences;
 mod linked;
 mod package;
-mod plain;
 mod python;
 mod release;
 mod report;
 mod stage;
 mod test;
 mod valgrind;
+mod variant;
 mod wheel;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+
+use self::variant::Variant;
 
 #[derive(Parser)]
 #[command(
@@ -37,7 +39,7 @@ struct Arguments {
 enum Task {
     /// Build the component and pack it as dist/RelayContact.fmu
     Fmu {
-        /// As dist/RelayContact-plain.fmu, with integers in place of enumerations, for tools that cannot set those
+        /// As dist/RelayContact-plain.fmu, with Reals in place of enumerations, integers and Booleans, for tools that lack those
         #[arg(long)]
         plain: bool,
         /// Carrying this spring file (TOML), which is then the start value of beam.file, as dist/RelayContact-NAME.fmu
@@ -80,7 +82,8 @@ const NONE: [&str; 0] = [];
 fn main() -> ExitCode {
     let outcome = match Arguments::parse().task {
         Task::Fmu { plain, spring } => {
-            fmu::build_variant(plain, spring.as_deref()).map(|path| println!("{}", path.display()))
+            let built = Variant::new(plain, spring.as_deref()).and_then(|variant| fmu::build_variant(&variant));
+            built.map(|path| println!("{}", path.display()))
         }
         Task::Scene(arguments) => report::run("scene", &arguments),
         Task::Wheel => wheel::run(),

@@ -14,19 +14,26 @@ pub fn folder() -> PathBuf {
 }
 
 /// Every row that the table has to have.
-const EXPECTED: [(&str, &str); 12] = [
+const EXPECTED: [(&str, &str); 19] = [
     ("FMPy", "validation"),
     ("FMPy", "run"),
+    ("FMPy", "published run"),
     ("FMPy", "saved states"),
     ("FMPy", "SSP description"),
     ("FMPy", "scenes"),
     ("libcosim", "run"),
+    ("libcosim", "published run"),
     ("libcosim", "two coupled"),
     ("libcosim", "SSP"),
     ("Ecos", "run"),
+    ("Ecos", "published run"),
     ("Ecos", "two coupled"),
     ("Ecos", "SSP"),
+    ("FMU container", "run"),
+    ("FMU container", "run as FMI 3"),
+    ("FMU container", "two coupled"),
     ("fmi (Rust)", "run"),
+    ("fmi (Rust)", "published run"),
 ];
 
 /// What became of one task of an importer.

@@ -11,6 +11,7 @@ use snapshot::{Experiment, LARGEST_TOLERANCE, Snapshot};
 use super::failure::Failure;
 use super::logger::Logger;
 use super::report::{self, Effort};
+use super::resources::Identity;
 use super::saved::SavedStates;
 use super::states::{Function, State};
 use super::types::{fmi2ComponentEnvironment, fmi2OK, fmi2Status, fmi2StepFinished, fmi2Warning};
@@ -18,13 +19,7 @@ use crate::error::{SceneError, number};
 use crate::inputs::Inputs;
 use crate::scene::Scene;
 use crate::simulation::Simulation;
-use crate::variables::{StringParameter, start};
-
-/// The start value of `beam.file` in a component packed with a spring: a file of its resources.
-const CARRIED_SPRING: &str = match option_env!("RELAY_CONTACT_SPRING") {
-    Some(file) => file,
-    None => start::BEAM_FILE,
-};
+use crate::variables::StringParameter;
 
 #[derive(Debug)]
 pub(super) struct Instance {
@@ -39,6 +34,8 @@ pub(super) struct Instance {
     logger: Logger,
     /// The folder of the component's resources.
     resources: Option<PathBuf>,
+    /// Whether all numbers are Reals.
+    plain: bool,
     /// The start values, with the spring that the component may carry.
     start: Scene,
     /// The string read last.
@@ -66,11 +63,12 @@ impl Instance {
     /// An instance with start values.
     ///
     /// # Errors
-    /// A [`SceneError`] if the component is to carry a spring that it does not have.
+    /// A [`SceneError`] if the spring that the component carries is none.
     pub(super) fn new(
         logger: Logger,
         step_finished: StepFinished,
         resources: Option<PathBuf>,
+        identity: Identity,
     ) -> Result<Self, SceneError> {
         let mut instance = Self {
             state: State::Instantiated,
@@ -81,15 +79,16 @@ impl Instance {
             time: 0.0,
             logger,
             resources,
+            plain: identity.plain,
             start: Scene::default(),
             text: CString::default(),
             told: Told::default(),
             step_finished,
             saved_states: SavedStates::default(),
         };
-        if !CARRIED_SPRING.is_empty() {
+        if let Some(spring) = identity.spring {
             let mut start = Scene::default();
-            instance.set_string(&mut start, StringParameter::BeamFile, CARRIED_SPRING)?;
+            instance.set_string(&mut start, StringParameter::BeamFile, &spring)?;
             (instance.scene, instance.start) = (start.clone(), start);
         }
         Ok(instance)

@@ -30,7 +30,12 @@ impl Instance {
             Group::RealOutput(output) => Ok(self.computed(variable)?.real(output)),
             Group::RealInput(input) => Ok(self.inputs.real(input)),
             Group::RealParameter(parameter) => Ok(self.scene.real(parameter)),
-            _ => Err(wrong_type("Real", variable)),
+            _ if !self.plain => Err(wrong_type("Real", variable)),
+            Group::BooleanOutput(_) | Group::BooleanParameter(_) => {
+                self.boolean(reference).map(|value| f64::from(u8::from(value)))
+            }
+            Group::StringParameter(_) => Err(wrong_type("Real", variable)),
+            _ => self.integer(reference).map(f64::from),
         }
     }
 
@@ -65,11 +70,35 @@ impl Instance {
                     scene.set_real(parameter, value).map_err(Failure::Value)?;
                 }
                 Group::RealOutput(_) => return Err(self.output_set(variable)),
+                _ if self.plain => self.set_number(&mut scene, variable, value)?,
                 _ => return Err(wrong_type("Real", variable)),
             }
         }
         self.take_over(scene, inputs);
         Ok(())
+    }
+
+    /// Sets an integer, a choice or a Boolean of the plain component, where it is a Real.
+    fn set_number(&self, scene: &mut Scene, variable: &Variable, value: f64) -> Result<(), Failure> {
+        let refused = |allowed: &str| SceneError::out_of_range(variable, value, format!("allowed is {allowed}"));
+        // As text, which a fraction and what is too large do not survive.
+        let whole = value.to_string().parse::<i32>().ok();
+        let whole = whole.ok_or_else(|| refused("a whole number"));
+        let set = match variable.group {
+            Group::IntegerParameter(parameter) => whole.and_then(|whole| scene.set_integer(parameter, whole)),
+            Group::EnumerationParameter(parameter) => whole.and_then(|whole| scene.set_enumeration(parameter, whole)),
+            Group::BooleanParameter(parameter) => match whole {
+                Ok(whole @ (0 | 1)) => {
+                    scene.set_boolean(parameter, whole == 1);
+                    Ok(())
+                }
+                _ => Err(refused("0 or 1")),
+            },
+            Group::IntegerOutput(_) | Group::BooleanOutput(_) => return Err(self.output_set(variable)),
+            _ => return Err(wrong_type("Real", variable)),
+        };
+        self.check_fixed(variable)?;
+        set.map_err(Failure::Value)
     }
 
     /// Sets integer and enumeration parameters; all of them or, on an error, none.
@@ -180,6 +209,10 @@ impl Instance {
         let variable = find("Real", reference)?;
         let rate = match variable.group {
             Group::RealOutput(output) => self.computed(variable)?.rate(output).unwrap_or_default(),
+            Group::IntegerOutput(_) | Group::BooleanOutput(_) if self.plain => {
+                self.computed(variable)?;
+                0.0
+            }
             _ => return Err(no_derivative(variable, "outputs")),
         };
         first_order(variable, order)?;

@@ -1,20 +1,18 @@
-//! The page `documentation/index.html` of the component: the variables from `modelDescription.xml`, the words from
-//! the README, so that neither is written twice.
+//! The page `documentation/index.html` of a variant of the component: the variables from its `modelDescription.xml`, the
+//! words from the README and the page on spring files, so that none is written twice.
 
 mod block;
 mod description;
 
-use std::fs;
-
 use anyhow::{Context, Result, ensure};
-use commands::root;
+use commands::read;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
-use pulldown_cmark::Parser;
-use relay_contact::MODEL_DESCRIPTION;
+use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd};
 use roxmltree::{Document, Node};
 
 use self::block::block;
 use self::description::{attribute, start, unit};
+use crate::variant::Variant;
 
 /// That of the report.
 const STYLE: &str = include_str!("../../../report/src/page/style.css");
@@ -23,9 +21,11 @@ const STYLE: &str = include_str!("../../../report/src/page/style.css");
 const SECTIONS: [&str; 2] = ["Limits of validity", "Source"];
 
 /// The page as HTML.
-pub fn page() -> Result<String> {
-    let readme = fs::read_to_string(root().join("README.md")).context("cannot read README.md")?;
-    let document = Document::parse(MODEL_DESCRIPTION)?;
+pub fn page(variant: &Variant) -> Result<String> {
+    let readme = String::from_utf8(read("README.md")?)?;
+    let springs = String::from_utf8(read("docs/spring-files.md")?)?;
+    let springs = springs.trim_start_matches("# Spring files").replace("\n## ", "\n### ");
+    let document = Document::parse(&variant.description)?;
     let model = document.root_element();
     let name = attribute(model, "modelName");
     let version = attribute(model, "version");
@@ -43,30 +43,55 @@ pub fn page() -> Result<String> {
                 h1 { (name) " " span.faint { (version) } }
                 (markdown(introduction(&readme)?))
                 p { "FMI 2.0 for co-simulation. All values are in SI units. Licence: " (attribute(model, "license"))
-                    "; the texts, also those of the libraries linked in, are in the folder " a href="licenses/" { "licenses" } "." }
+                    "; the texts, also those of the libraries linked in, are listed in " a href="licenses/license.txt" { "licenses/license.txt" } "." }
+                @if let Some((file, _)) = &variant.spring {
+                    p { "This component carries the spring of " a href="#spring" { (file) } ", the start value of " code { "beam.file" } "." }
+                }
                 (scroll("The component as a block", &block(&document)))
                 @for (title, causality) in [("Inputs", "input"), ("Outputs", "output"),
                     ("Calculated parameters", "calculatedParameter"), ("Parameters", "parameter")] {
                     h2 { (title) }
                     (scroll(title, &variables(&document, causality)))
                 }
-                h2 { "Choices" }
-                (scroll("Choices", &choices(&document)))
+                @if let Some(choices) = choices(&document) {
+                    h2 { "Choices" }
+                    (scroll("Choices", &choices))
+                }
                 @for section in sections {
                     @let (title, text) = section?;
                     h2 { (title) }
                     (text)
                 }
+                @if let Some((file, text)) = &variant.spring {
+                    h2 id="spring" { (file) }
+                    (scroll(file, &html! { pre { code { (text) } } }))
+                }
+                h2 { "Spring files" }
+                (markdown(&springs))
             }
         }
     };
     Ok(page.into_string())
 }
 
+/// The text without links to other files of the project, which are not in the archive.
 fn markdown(text: &str) -> Markup {
     let mut html = String::new();
-    pulldown_cmark::html::push_html(&mut html, Parser::new(text));
-    PreEscaped(html)
+    let mut leads_out = false;
+    let events = Parser::new_ext(text, Options::ENABLE_TABLES).filter(|event| match event {
+        Event::Start(Tag::Link { dest_url, .. }) => {
+            leads_out = dest_url.contains("://");
+            leads_out
+        }
+        Event::End(TagEnd::Link) => leads_out,
+        _ => true,
+    });
+    pulldown_cmark::html::push_html(&mut html, events);
+    let (open, close) = (
+        r#"<div class="scroll" role="region" tabindex="0" aria-label="Table"><table>"#,
+        "</table></div>",
+    );
+    PreEscaped(html.replace("<table>", open).replace("</table>", close))
 }
 
 /// What may be wider than the page, in a box that scrolls.
@@ -99,11 +124,14 @@ fn variables(document: &Document, causality: &str) -> Markup {
     }
 }
 
-fn choices(document: &Document) -> Markup {
-    let types = document
+/// The choices of enumerations, if there are any.
+fn choices(document: &Document) -> Option<Markup> {
+    let mut types = document
         .descendants()
-        .filter(|node| node.has_tag_name("Enumeration") && node.has_children());
-    html! {
+        .filter(|node| node.has_tag_name("Enumeration") && node.has_children())
+        .peekable();
+    types.peek()?;
+    Some(html! {
         table {
             tr { th { "type" } th { "choice" } th { "value" } th { "description" } }
             @for list in types {
@@ -118,7 +146,7 @@ fn choices(document: &Document) -> Markup {
                 }
             }
         }
-    }
+    })
 }
 
 /// The README's first paragraph.
@@ -141,13 +169,14 @@ fn section<'a>(readme: &'a str, title: &str) -> Result<&'a str> {
 
 #[cfg(test)]
 mod tests {
+    use commands::root;
     use relay_contact::variables::VARIABLES;
 
     use super::*;
 
     #[test]
     fn every_variable_and_every_section_is_on_the_page() -> Result<()> {
-        let page = page()?;
+        let page = page(&Variant::new(false, None)?)?;
         for variable in &VARIABLES {
             let cell = format!("<td><code>{}</code></td>", variable.name);
             assert_eq!(page.matches(&cell).count(), 1, "{}", variable.name);
@@ -157,6 +186,38 @@ mod tests {
         }
         assert!(page.contains("<td>m</td><td>parameter</td><td>0.0155</td><td>1e-3</td><td>0.2</td><td>Free length"));
         assert!(page.contains("<td>AxialForceKind</td><td></td><td>parameter</td><td>None</td>"));
+        assert!(page.contains("<h2>Choices</h2>") && !page.contains("This component carries"));
+        // The format of spring files, with its tables and examples, and no link out of the archive.
+        assert!(page.contains("<td><code>clamp_stiffness</code></td>") && page.contains("[[segment]]"));
+        let links = page.split("href=\"").skip(1);
+        let outside: Vec<_> = links
+            .filter(|link| !link.starts_with("http") && !link.starts_with("licenses/license.txt"))
+            .collect();
+        assert!(outside.is_empty(), "{outside:?}");
+        Ok(())
+    }
+
+    #[test]
+    fn the_page_is_that_of_the_variant() -> Result<()> {
+        let path = root().join("scenes/springs/tapered-cube.toml");
+        let page = page(&Variant::new(true, Some(&path))?)?;
+        assert!(page.contains("<h1>RelayContact-plain-tapered-cube "));
+        assert!(!page.contains("<h2>Choices</h2>") && !page.contains("Kind<"));
+        assert!(
+            page.contains(
+                "<td>Real</td><td></td><td>parameter</td><td>2</td><td>1</td><td>4</td><td>Source of the axial"
+            )
+        );
+        assert!(page.contains(": 1 FromPreload, 2 None, 3 FromDeflection, 4 Prescribed</td>"));
+        assert!(page.contains("<td>String</td><td></td><td>parameter</td><td>tapered-cube.toml</td>"));
+        let spring = std::fs::read_to_string(path)?;
+        let first = spring
+            .lines()
+            .find(|line| line.starts_with("length"))
+            .context("no length")?;
+        assert!(
+            page.contains("carries the spring of <a href=\"#spring\">tapered-cube.toml</a>") && page.contains(first)
+        );
         Ok(())
     }
 }

@@ -18,6 +18,7 @@ use sha2::{Digest, Sha256};
 use self::platform::{PLATFORMS, Platform};
 use self::tools::Tools;
 use crate::package::pack;
+use crate::variant::Variant;
 use crate::{fmu, linked, python, wheel};
 
 #[derive(clap::Args)]
@@ -67,8 +68,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let binaries = libraries
         .into_iter()
         .map(|(platform, library)| (platform.folder, platform.extension, library));
-    let mut files = fmu::files(&metadata, binaries, &tools.rustc, &targets)?;
-    files.extend(tools.licences()?);
+    let variant = Variant::new(false, None)?;
+    let files = fmu::files(&variant, &metadata, binaries, &tools.rustc, &targets, tools.licences()?)?;
     let packed = pack(&files)?;
     let archive = write("dist/release/RelayContact.fmu", &packed)?;
     write("dist/release/SHA256SUMS", sum("RelayContact.fmu", &packed).as_bytes())?;

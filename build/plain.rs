@@ -1,0 +1,67 @@
+//! The description with all numbers as Reals, choices and Booleans too: for tools that cannot set enumerations, or read
+//! and set everything as Real. The value references and the library stay the same.
+
+use std::error::Error;
+
+use roxmltree::{Document, Node};
+
+/// The plain description. What the numbers stand for moves to the descriptions of the variables.
+pub fn description(xml: &str) -> Result<String, Box<dyn Error>> {
+    let document = Document::parse(xml)?;
+    let discrete = |node: &Node| ["Enumeration", "Integer", "Boolean"].contains(&node.tag_name().name());
+    let mut text = xml.to_owned();
+    let values: Vec<_> = document.descendants().filter(discrete).collect();
+    // From the end, so that positions further up remain valid.
+    for value in values.iter().rev() {
+        let parent = value.parent().ok_or("a value without a parent")?;
+        if parent.has_tag_name("SimpleType") {
+            text.replace_range(parent.range(), "");
+            continue;
+        }
+        let numbers = numbers(&document, value);
+        let attributes = ["start", "min", "max"].map(|name| {
+            let given = value.attribute(name).map(|given| match given {
+                "true" => "1",
+                "false" => "0",
+                number => number,
+            });
+            let bound = match name {
+                "min" => numbers.first(),
+                "max" => numbers.last(),
+                _ => None,
+            };
+            // Outputs have no range.
+            let bound = bound
+                .filter(|_| value.has_attribute("start"))
+                .map(|(number, _)| *number);
+            given
+                .or(bound)
+                .map_or(String::new(), |given| format!(" {name}=\"{given}\""))
+        });
+        text.replace_range(value.range(), &format!("<Real{}/>", attributes.concat()));
+        if !numbers.is_empty() {
+            let described = parent.attribute_node("description").ok_or("no description")?;
+            let numbers: Vec<_> = numbers
+                .iter()
+                .map(|(number, name)| format!("{number} {name}"))
+                .collect();
+            text.insert_str(described.range_value().end, &format!(": {}", numbers.join(", ")));
+        }
+    }
+    Ok(text.replacen("modelName=\"RelayContact\"", "modelName=\"RelayContact-plain\"", 1))
+}
+
+/// What the numbers of a value stand for: none for an Integer.
+fn numbers<'a>(document: &'a Document, value: &Node) -> Vec<(&'a str, &'a str)> {
+    if value.has_tag_name("Boolean") {
+        return vec![("0", "false"), ("1", "true")];
+    }
+    let definitions = document.descendants().filter(|node| {
+        let name = value.attribute("declaredType");
+        name.is_some() && node.has_tag_name("SimpleType") && node.attribute("name") == name
+    });
+    let items = definitions.flat_map(|definition| definition.descendants());
+    items
+        .filter_map(|item| Some((item.attribute("value")?, item.attribute("name")?)))
+        .collect()
+}
