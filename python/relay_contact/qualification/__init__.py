@@ -19,7 +19,7 @@ def qualify(
     relay: str | Path,
     standard: str | Path,
     *,
-    out: Path,
+    out: str | Path,
     tests: list[str] | None = None,
     quick: bool = False,
     component: Component | None = None,
@@ -37,7 +37,7 @@ def qualify(
     # Workers and lists of relays import this package, too, and draw nothing.
     from relay_contact.qualification.page import write
 
-    component = component or Component()
+    component, out = component or Component(), Path(out)
     described = Relay.read(relay, component)
     asked = chosen(Standard.read(standard), tests or [])
     asked = replace(asked, contacts=asked.contacts.monitored(described.monitor))
