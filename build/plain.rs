@@ -19,26 +19,19 @@ pub fn description(xml: &str) -> Result<String, Box<dyn Error>> {
             continue;
         }
         let numbers = numbers(&document, value);
-        let attributes = ["start", "min", "max"].map(|name| {
-            let given = value.attribute(name).map(|given| match given {
-                "true" => "1",
-                "false" => "0",
-                number => number,
-            });
-            let bound = match name {
-                "min" => numbers.first(),
-                "max" => numbers.last(),
-                _ => None,
-            };
-            // Outputs have no range.
-            let bound = bound
-                .filter(|_| value.has_attribute("start"))
-                .map(|(number, _)| *number);
-            given
-                .or(bound)
-                .map_or(String::new(), |given| format!(" {name}=\"{given}\""))
-        });
-        text.replace_range(value.range(), &format!("<Real{}/>", attributes.concat()));
+        let real = match (value.attribute("start"), numbers.first(), numbers.last()) {
+            (None, ..) => "<Real/>".to_owned(),
+            (Some(start), Some((least, _)), Some((most, _))) => {
+                let start = match start {
+                    "true" => "1",
+                    "false" => "0",
+                    choice => choice,
+                };
+                format!("<Real start=\"{start}\" min=\"{least}\" max=\"{most}\"/>")
+            }
+            _ => xml[value.range()].replacen("Integer", "Real", 1),
+        };
+        text.replace_range(value.range(), &real);
         if !numbers.is_empty() {
             let described = parent.attribute_node("description").ok_or("no description")?;
             let numbers: Vec<_> = numbers
