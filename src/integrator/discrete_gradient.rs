@@ -95,7 +95,7 @@ mod tests {
     use super::*;
     use crate::excitation::drive::Drive;
     use crate::integrator::grid::Grid;
-    use crate::integrator::workspace::Workspace;
+    use crate::integrator::workspace::{Budget, Workspace};
     use crate::model::Model;
     use crate::scene::Scene;
     use crate::state::State;
@@ -124,6 +124,7 @@ mod tests {
                 model,
                 other: None,
                 state,
+                budget: Budget::new(&workspace),
                 workspace: &mut workspace,
                 drive: Drive::default(),
                 grid: Grid::over(step * f64::from(k), step),

@@ -147,6 +147,7 @@ mod tests {
     use crate::integrator::course::Places;
     use crate::integrator::grid::Grid;
     use crate::integrator::integration::{News, Steps};
+    use crate::integrator::workspace::Budget;
     use crate::math::nodal::SHORT;
     use crate::scene::Scene;
     use crate::variables::ExcitationKind;
@@ -198,6 +199,7 @@ mod tests {
             other: None,
             grid: Grid::over(state.time, length),
             state,
+            budget: Budget::new(&workspace),
             workspace: &mut workspace,
             drive,
             dense: None,
