@@ -47,8 +47,9 @@ def test_what_a_laboratory_measures_gives_the_parameters(tmp_path: Path, capsys:
     assert set(relay.uncertainty) == set(TRUTH)
     for name, true in TRUTH.items():
         value = float(relay.positions["contact closed"][name])
-        # The scatter of the data, some per cent, leaves this of each; the rivet is a small part of the moved mass.
-        assert relay.uncertainty[name] < (0.1 if name == "tip.mass" else 0.03)
+        # By the information that the data have, their scatter known, 1.1 to 1.5 %, of the rivet 10.6 %: it is a small
+        # part of the moved mass; half as much again for scatters that are estimated from 6 to 9 rows.
+        assert relay.uncertainty[name] < 1.5 * (0.106 if name == "tip.mass" else 0.015)
         assert abs(np.log(value / true)) < relay.uncertainty[name], name
 
 
