@@ -130,7 +130,8 @@ class Table:
 
     def wrong(self, text: str, line: int | None = None) -> RelayContactError:
         """Return an error that names file and line, of the names of the columns unless another is given."""
-        return RelayContactError(f"{self.path}: line {self.head if line is None else line}: {text}")
+        at = self.head if line is None else line
+        return RelayContactError(f"{self.path}:{at}: {text}" if at else f"{self.path}: {text}")
 
 
 def read(path: Path, known: Units) -> Table:

@@ -47,8 +47,9 @@ def test_what_a_laboratory_measures_gives_the_parameters(tmp_path: Path, capsys:
     assert set(relay.uncertainty) == set(TRUTH)
     for name, true in TRUTH.items():
         value = float(relay.positions["contact closed"][name])
-        # The scatter of the data, some per cent, leaves this of each; the rivet is a small part of the moved mass.
-        assert relay.uncertainty[name] < (0.1 if name == "tip.mass" else 0.03)
+        # By the information that the data have, their scatter known, 1.1 to 1.5 %, of the rivet 10.6 %: it is a small
+        # part of the moved mass; half as much again for scatters that are estimated from 6 to 9 rows.
+        assert relay.uncertainty[name] < 1.5 * (0.106 if name == "tip.mass" else 0.015)
         assert abs(np.log(value / true)) < relay.uncertainty[name], name
 
 
@@ -255,7 +256,7 @@ def test_each_position_has_its_overtravel(tmp_path: Path) -> None:
         assert Path(str(written.positions[position]["beam.file"])).parent.resolve() == out.resolve()
     assert result["spring.stiffness"].value == pytest.approx(1.0, abs=1e-3)
     paths[0].write_text(paths[0].read_text().split("\n", 1)[1])
-    with pytest.raises(RelayContactError, match=r"0.csv: line 1: which position of the coil"):
+    with pytest.raises(RelayContactError, match=r"0.csv:1: which position of the coil"):
         found(*paths, relay=file)
 
 
@@ -266,26 +267,26 @@ ROWS = "0,1\n1,2\n2,3\n3,4\n"
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("travl [mm],force [cN]\n", "line 1: column travl: unknown; .*did you mean travel"),
-        ("travel [inch],force\n", "line 1: column travel: unit inch: not allowed, allowed is m, mm, um, nm"),
+        ("travl [mm],force [cN]\n", ":1: column travl: unknown; .*did you mean travel"),
+        ("travel [inch],force\n", ":1: column travel: unit inch: not allowed, allowed is m, mm, um, nm"),
         (
             "travel,level\n",
-            "line 1: columns travel, level: no measurement that is known; there are static force: travel",
+            ":1: columns travel, level: no measurement that is known; there are static force: travel",
         ),
-        (HEAD + "0,1\n1,x\n", "line 3: column force: x: not allowed, allowed is a number"),
-        (HEAD + "0,1\n1,nan\n", "line 3: column force: nan cN: not allowed, allowed is a finite number"),
-        (HEAD + "0,1\n1\n", "line 3: 1 values: not allowed, allowed is 2, one in each column"),
-        (HEAD + ROWS, "line 5: 4 rows: not allowed, allowed is 5 or more for a static force"),
-        ("frequency,level\n-3,1\n", "line 2: column frequency: -3 Hz: not allowed, allowed is more than 0 Hz"),
+        (HEAD + "0,1\n1,x\n", ":3: column force: x: not allowed, allowed is a number"),
+        (HEAD + "0,1\n1,nan\n", ":3: column force: nan cN: not allowed, allowed is a finite number"),
+        (HEAD + "0,1\n1\n", ":3: 1 values: not allowed, allowed is 2, one in each column"),
+        (HEAD + ROWS, ":5: 4 rows: not allowed, allowed is 5 or more for a static force"),
+        ("frequency,level\n-3,1\n", ":2: column frequency: -3 Hz: not allowed, allowed is more than 0 Hz"),
         (
             "time,displacement\n0,1\n0,2\n",
-            "line 3: column time: 0 s: not allowed, allowed is more than in the row before",
+            ":3: column time: 0 s: not allowed, allowed is more than in the row before",
         ),
-        ("# positon = a\n" + HEAD + ROWS + "4,5\n", "line 1: positon: unknown; did you mean position"),
-        ("# position = b\n" + HEAD + ROWS + "4,5\n", "line 1: position = b: not allowed, allowed is a"),
-        ("# calibration = 2 %\n" + HEAD + ROWS + "4,5\n", "line 1: calibration = 2 %: not allowed, allowed is 0 to 1"),
-        ("# tip.mas = 1\n" + HEAD + ROWS + "4,5\n", "line 1: tip.mas: no such variable; did you mean tip.mass"),
-        ("", "line 0: no line with the names of the columns"),
+        ("# positon = a\n" + HEAD + ROWS + "4,5\n", ":1: positon: unknown; did you mean position"),
+        ("# position = b\n" + HEAD + ROWS + "4,5\n", ":1: position = b: not allowed, allowed is a"),
+        ("# calibration = 2 %\n" + HEAD + ROWS + "4,5\n", ":1: calibration = 2 %: not allowed, allowed is 0 to 1"),
+        ("# tip.mas = 1\n" + HEAD + ROWS + "4,5\n", ":1: tip.mas: no such variable; did you mean tip.mass"),
+        ("", "csv: no line with the names of the columns"),
     ],
 )
 def test_wrong_files_are_explained(tmp_path: Path, text: str, message: str) -> None:

@@ -62,15 +62,15 @@ def test_exports_are_read_as_they_are(tmp_path: Path, name: str, encoding: str, 
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("travel [um],force [lbf]\n" + PLAIN, r"line 1: column force: unit lbf: not allowed, allowed is N, cN, mN, gf"),
-        ("travel,force\num,lb\n" + PLAIN, "line 1: column force: unit lb: not allowed"),
-        ("travel,forc [cN]\n" + PLAIN, "line 1: column forc: unknown; did you mean force"),
-        ("travel [um],force [cN]\n" + PLAIN.replace("15.15", "15,15"), "line 4: 3 values: .* need semicolons or tabs"),
-        ("travel [um];force [cN]\n1;1.000,5\n", "line 2: column force: 1.000,5: not allowed, allowed is a number"),
-        ("travel [um];force [cN]\n" + by_semicolons(PLAIN) + "end of data\n", "line 7: 1 values: not allowed"),
-        ("travel [um],force [cN],force [N]\n", "line 1: column force: there twice"),
+        ("travel [um],force [lbf]\n" + PLAIN, r":1: column force: unit lbf: not allowed, allowed is N, cN, mN, gf"),
+        ("travel,force\num,lb\n" + PLAIN, ":1: column force: unit lb: not allowed"),
+        ("travel,forc [cN]\n" + PLAIN, ":1: column forc: unknown; did you mean force"),
+        ("travel [um],force [cN]\n" + PLAIN.replace("15.15", "15,15"), ":4: 3 values: .* need semicolons or tabs"),
+        ("travel [um];force [cN]\n1;1.000,5\n", ":2: column force: 1.000,5: not allowed, allowed is a number"),
+        ("travel [um];force [cN]\n" + by_semicolons(PLAIN) + "end of data\n", ":7: 1 values: not allowed"),
+        ("travel [um],force [cN],force [N]\n", ":1: column force: there twice"),
         ("time,displacement,velocity\n0,1,1\n", "columns displacement and velocity: not allowed, allowed is one"),
-        ("force 12\nno table\n", "line 0: no line with the names of the columns"),
+        ("force 12\nno table\n", "csv: no line with the names of the columns"),
     ],
 )
 def test_what_is_wrong_is_told_by_line_and_column(tmp_path: Path, text: str, message: str) -> None:
@@ -134,7 +134,7 @@ def test_a_scene_takes_ones_own_measured_acceleration(tmp_path: Path) -> None:
         ("time,base.aceleration [g]\n0,1\n", "column base.aceleration: unknown; did you mean base.acceleration"),
         ("time,level\n0,1\n", "columns time, level: not allowed, allowed is time and one or more of base.acceleration"),
         ("base.acceleration [g],x\n0,1\n", "columns base.acceleration, x: not allowed, allowed is time and"),
-        ("time [ms],base.acceleration [g]\n0,1\n0.2,1\n0.1,1\n", "line 4: column time: 0.1 ms: not allowed"),
+        ("time [ms],base.acceleration [g]\n0,1\n0.2,1\n0.1,1\n", ":4: column time: 0.1 ms: not allowed"),
     ],
 )
 def test_wrong_inputs_of_a_scene_are_told(tmp_path: Path, text: str, message: str) -> None:
