@@ -90,7 +90,7 @@ fn best(
             let mut idle = 0;
             for setting in settings(integrator.fixed_step(), quick) {
                 let case = Case {
-                    part: table::PEERS,
+                    part: study::PEERS,
                     problem: Rc::clone(&problem),
                     reference: Rc::clone(reference),
                     integrator: Rc::clone(integrator),

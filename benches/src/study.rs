@@ -7,7 +7,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 use crate::integrator::{Failure, Integrator, Run, Setting};
 use crate::problem::Problem;
 use crate::radau::Reference;
-use crate::table::PEERS;
+
+/// The part of a study with the best runs of other integrators, of any number of modes.
+pub const PEERS: &str = "peers";
 
 /// Runs shorter than this, s, are repeated within a round.
 const SHORT: f64 = 2e-3;

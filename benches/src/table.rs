@@ -3,13 +3,10 @@
 use std::fmt::Write as _;
 
 use crate::integrator::Failure;
-use crate::study::{Measured, Row};
+use crate::study::{Measured, PEERS, Row};
 
 /// The part of a study in which the component runs as it is used: it chooses the number of modes.
 pub const DELIVERED: &str = "delivered";
-
-/// The part of a study with the best runs of other integrators, of any number of modes.
-pub const PEERS: &str = "peers";
 
 /// Selects an error of a run; none if it has none.
 type Error = fn(&Measured) -> Option<f64>;

@@ -16,9 +16,8 @@ from types import TracebackType
 from typing import Any, Self
 
 import numpy as np
-from fmpy import extract, platform, read_model_description, supported_platforms
+from fmpy import extract, fmi2, platform, read_model_description, supported_platforms
 from fmpy.fmi1 import FMICallException
-from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE, fmi2Warning
 from numpy.typing import NDArray
 
 from relay_contact.files import RelayContactError, RelayContactWarning, fmu_path, shown
@@ -199,15 +198,15 @@ class Contact:
             temporary, own = self.changed_file
             text = text.replace(temporary, own) if temporary else text
             self.messages.append(text)
-            if status == fmi2Warning:
+            if status == fmi2.fmi2Warning:
                 self.warnings.append(text)
 
         # Not by FMPy's instantiate_fmu: its loggers share a single place, so that messages go to the last instance that
         # was made, and crash the process when that is gone.
-        callbacks = fmi2CallbackFunctions()
-        callbacks.logger = fmi2CallbackLoggerTYPE(keep)
+        callbacks = fmi2.fmi2CallbackFunctions()
+        callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(keep)
         description = component.description
-        self.fmu = FMU2Slave(
+        self.fmu = fmi2.FMU2Slave(
             guid=description.guid,
             modelIdentifier=description.coSimulation.modelIdentifier,
             unzipDirectory=component.folder,
