@@ -119,7 +119,9 @@ def identify_relay(given: argparse.Namespace) -> None:
 
     folder = given.out or Path(f"identification-{Path(given.relay).stem}")
     component = Component(given.fmu)
-    result = identify(given.relay, given.data, out=folder, parameters=given.parameter, component=component)
+    result = identify(
+        given.relay, given.data, out=folder, parameters=given.parameter, component=component, progress=True
+    )
     print_table([list(HEAD), *cells(component, result)])
     print(*silent(result), folder / f"{result.path.stem}.toml", *(folder / name for name in FILES), sep="\n")
 

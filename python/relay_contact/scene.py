@@ -207,7 +207,7 @@ PATIENCE = 2.0
 """What takes longer than this shows its progress, s."""
 
 
-def progress_bar(total: float, form: str, shown: bool, **more: Any) -> Any:  # noqa: ANN401
+def progress_bar(total: float | None, form: str, shown: bool, **more: Any) -> Any:  # noqa: ANN401
     """Return a bar on the error output, for what takes longer than 2 s; rarely printed where nobody watches."""
     often = 0.1 if sys.stderr.isatty() else PATIENCE
     return tqdm(total=total, bar_format=form, disable=not shown, delay=PATIENCE, mininterval=often, **more)

@@ -1,5 +1,6 @@
 """`identify` on measurements made by the second solution of the model: what the data tell, and what they do not."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -34,10 +35,14 @@ def holds(result: Identification, label: str, true: float) -> bool:
     return low <= true <= high
 
 
-def test_what_a_laboratory_measures_gives_the_parameters(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_a_laboratory_measures_gives_the_parameters(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     data = files(tmp_path, scattered(CLEAN, SEED))
+    monkeypatch.setattr("relay_contact.scene.PATIENCE", 1e-3)
     assert main(["identify", "paper", "--data", *map(str, data.values()), "--out", str(tmp_path / "found")]) == 0
-    printed = capsys.readouterr().out
+    printed, progress = capsys.readouterr()
+    assert re.search(r"\d\d predictions of measurements", progress)
     # Of the stiff contact, damping is not felt while it stays closed.
     assert "contact.damping: not determined: the data hardly depend on it" in printed
     page = (tmp_path / "found/identification.html").read_text(encoding="utf-8")

@@ -9,6 +9,7 @@ from relay_contact.identification.prediction import Laboratory
 from relay_contact.identification.report import write
 from relay_contact.identification.result import Found, Identification, conclude, sought, unknowns, usual
 from relay_contact.qualification.relay import Relay, relays
+from relay_contact.scene import progress_bar
 
 __all__ = ["Found", "Identification", "identify"]
 
@@ -20,6 +21,7 @@ def identify(
     out: Path | None = None,
     parameters: list[str] | None = None,
     component: Component | None = None,
+    progress: bool = False,
 ) -> Identification:
     """Find parameters of a relay, given by its name or its file, by measurements in CSV files.
 
@@ -40,8 +42,10 @@ def identify(
         raise RelayContactError("no data: one file or more is needed")
     names = parameters or usual(described, measurements)
     asked = unknowns(component, described, path, measurements, names)
-    fit, missing = sought(Laboratory(component), described, measurements, asked)
-    result = conclude(fit, missing, described, path)
+    # How many it takes shows as they converge.
+    with progress_bar(None, "{n_fmt} predictions of measurements, {elapsed}", progress) as bar:
+        fit, missing = sought(Laboratory(component, bar.update), described, measurements, asked)
+        result = conclude(fit, missing, described, path)
     if out:
         write(out, result, component)
     return result

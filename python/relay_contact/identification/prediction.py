@@ -50,6 +50,8 @@ class Laboratory:
     """The component in place of the sample."""
 
     component: Component
+    told: Callable[[], object] = lambda: None
+    """Called with each prediction, for those who wait."""
     contact: Contact = field(init=False)
     known: dict[tuple[object, ...], Array] = field(default_factory=dict)
 
@@ -84,6 +86,7 @@ class Laboratory:
                 FORCE: self.force, RINGDOWN: self.ringing, RESPONSE: self.amplitude, CHATTER: self.level,
                 BOUNCE: self.bounces,
             }  # fmt: skip
+            self.told()
             with self.contact.explained():
                 self.known[key] = how[measurement.kind](measurement, asked)
         return self.known[key]
