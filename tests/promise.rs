@@ -77,12 +77,12 @@ fn none_above_in_silence(judged: &[Judged], count: u64) {
 #[test]
 fn former_excesses_are_within_the_tolerance() {
     for number in [10_144, 10_769, 10_244, 11_223, 11_483, 11_458, 11_976] {
-        assert_eq!(judge(number, Relay::draw).outcome, Outcome::Kept);
+        assert_eq!(judge(number, Relay::draw).outcome, Outcome::Kept, "{number}");
     }
     for number in [
         40_109, 40_148, 40_274, 40_282, 40_283, 40_375, 40_377, 40_462, 41_276, 41_346,
     ] {
-        assert_eq!(judge(number, Relay::friction).outcome, Outcome::Kept);
+        assert_eq!(judge(number, Relay::friction).outcome, Outcome::Kept, "{number}");
     }
 }
 

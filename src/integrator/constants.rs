@@ -153,8 +153,8 @@ pub const FAR_AHEAD: f64 = 1.5;
 // Work.
 
 /// Work that a communication step may take, however long it is, in modes at nodes: each takes some forty instructions, all
-/// together a second or two on processors of 2026. Pinned: ÷ 1e5 and × 100, `tests/fmi_api`.
-pub const WORK: u64 = 200_000_000;
+/// together one to three seconds on processors of 2026. Pinned: ÷ 1e5 and × 100, `tests/fmi_api`.
+pub const WORK: u64 = 500_000_000;
 
 /// Work of a step of a new length, in that of one of a known length. Instructions of both. Cost.
 pub const NEW_LENGTH: u64 = 10;
