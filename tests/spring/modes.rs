@@ -9,11 +9,6 @@ use testing::scenes::{largest_difference, shaken};
 
 use super::{TAU, course, with};
 
-fn free(mut scene: Scene) -> Scene {
-    scene.effects.axial_force = AxialForceKind::None;
-    scene
-}
-
 /// The modes of a model, and the static compliance of its spring.
 fn written(model: &Model) -> Modes {
     let mode = |omega_squared: f64, contact, participation| GivenMode {
@@ -36,7 +31,7 @@ fn written(model: &Model) -> Modes {
 #[test]
 fn modes_written_by_our_own_beam_and_read_again_are_the_beam() {
     for amplitude in [98.0, 400.0] {
-        let scene = free(shaken(amplitude, 1000.0));
+        let scene = shaken(amplitude, 1000.0);
         let plain = Model::new(&scene, 0.0).unwrap();
         let given = with(scene.clone(), Shape::Modes(written(&plain)));
         let model = Model::new(&given, 0.0).unwrap();
@@ -63,7 +58,7 @@ fn modes_written_by_our_own_beam_and_read_again_are_the_beam() {
 #[test]
 fn what_the_modes_lack_is_a_spring_in_series() {
     // The eigenvectors of a beam, cut off. Below them the series is exact but for the square of the ratio of frequencies.
-    let mut scene = free(shaken(98.0, 500.0));
+    let mut scene = shaken(98.0, 500.0);
     scene.beam.stiffness_damping = 2e-6;
     let mut fine = scene.clone();
     fine.solver.modes = 64;
@@ -102,7 +97,7 @@ fn a_single_mode_with_its_residual_is_a_mass_between_two_springs() {
             rotation: None,
         }],
     };
-    let mut scene = free(shaken(20.0, 300.0));
+    let mut scene = shaken(20.0, 300.0);
     scene.effects.contact_law = ContactLawKind::Bonded;
     scene.contact.damping = 0.0;
     let scene = with(scene, Shape::Modes(modes));
@@ -132,7 +127,7 @@ fn a_single_mode_with_its_residual_is_a_mass_between_two_springs() {
 
 #[test]
 fn each_mode_may_have_its_own_damping() {
-    let scene = free(Scene::default());
+    let scene = Scene::default();
     let mut modes = written(&Model::new(&scene, 0.0).unwrap());
     for (n, mode) in modes.modes.iter_mut().enumerate() {
         mode.damping = (n > 0).then_some(0.03);
@@ -146,7 +141,7 @@ fn each_mode_may_have_its_own_damping() {
 
 #[test]
 fn modes_have_no_axial_force() {
-    let scene = free(Scene::default());
+    let scene = Scene::default();
     let modes = written(&Model::new(&scene, 0.0).unwrap());
     for (kind, refused) in [
         (AxialForceKind::None, false),
