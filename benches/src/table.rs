@@ -13,49 +13,22 @@ type Error = fn(&Measured) -> Option<f64>;
 
 /// All tables, with machine, date and failed runs.
 pub fn report(rows: &[Row]) -> String {
-    let force: Error = |run| Some(run.force_error);
-    let instants: Error = |run| run.event_error;
+    let force: (_, _, Error) = ("contact force, relative to the preload", "", |run| {
+        Some(run.force_error)
+    });
+    let instants: (_, _, Error) = ("instants of opening and closing", " s", |run| run.event_error);
+    let fine = [1e-6, 1e-7, 1e-8, 1e-9];
+    let coarse = [1e-2, 1e-4, 1e-6, 1e-8];
     // What is asked most comes first: when the contact opens, and the force of a closed one.
     let mut tables = String::new();
-    for (scene, quantity, error, levels) in [
-        (
-            "chatter",
-            "instants of opening and closing",
-            instants,
-            [1e-6, 1e-7, 1e-8, 1e-9],
-        ),
-        (
-            "paper",
-            "contact force, relative to the preload",
-            force,
-            [1e-2, 1e-4, 1e-6, 1e-10],
-        ),
-        (
-            "chatter 3 %",
-            "instants of opening and closing",
-            instants,
-            [1e-6, 1e-7, 1e-8, 1e-9],
-        ),
-        (
-            "chatter 3 %",
-            "contact force, relative to the preload",
-            force,
-            [1e-2, 1e-4, 1e-6, 1e-8],
-        ),
-        (
-            "chatter",
-            "contact force, relative to the preload",
-            force,
-            [1e-2, 1e-4, 1e-6, 1e-8],
-        ),
-        (
-            "closing bounce",
-            "instants of opening and closing",
-            instants,
-            [1e-6, 1e-7, 1e-8, 1e-9],
-        ),
+    for (scene, (quantity, unit, error), levels) in [
+        ("chatter", instants, fine),
+        ("paper", force, [1e-2, 1e-4, 1e-6, 1e-10]),
+        ("chatter 3 %", instants, fine),
+        ("chatter 3 %", force, coarse),
+        ("chatter", force, coarse),
+        ("closing bounce", instants, fine),
     ] {
-        let unit = if quantity.starts_with("contact") { "" } else { " s" };
         let _ = write!(tables, "Scene *{scene}*, error of the {quantity}:\n\n");
         tables += &envelope(rows, scene, &levels, unit, error);
         tables.push('\n');

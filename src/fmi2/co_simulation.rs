@@ -60,9 +60,9 @@ pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
 }
 
 /// Advances to the end of one communication step. `currentCommunicationPoint` must equal the time of the instance up to
-/// 1e-4 of the step, and the step size must be positive. The first difference that is more than rounding is a warning in the log;
-/// the step then goes from the time of the instance to `currentCommunicationPoint + communicationStepSize`. The first
-/// time that the tolerance may not be kept is a warning too. If the motion cannot be integrated, the result is
+/// 1e-4 of the step, and the step size must be positive. The first difference that is more than rounding is a warning in
+/// the log; the step then goes from the time of the instance to `currentCommunicationPoint + communicationStepSize`. The
+/// first time that the tolerance may not be kept is a warning too. If the motion cannot be integrated, the result is
 /// `fmi2Error`, never `fmi2Discard`: the log reports time and cause, and `fmi2GetRealStatus` the last successful time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2DoStep(

@@ -187,6 +187,8 @@ impl Instance {
     pub(super) fn exit_initialization_mode(&mut self) -> Result<(), Failure> {
         self.prepare().map_err(Failure::Initialisation)?;
         self.state = State::StepComplete;
+        // Also of a state saved before: the run begins anew.
+        self.told.of_error = false;
         let Some(simulation) = &self.simulation else {
             return Ok(());
         };
