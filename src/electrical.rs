@@ -1,11 +1,15 @@
 //! Contact resistance and temperature as functions of contact force and current.
 //!
 //! The constriction is a power law of the force: Machines 2025, 13(1), 52, eqs. (28), (29), `R_c = H F^(-n)`, or
-//! Holm's `R_c = (rho / 2) sqrt(pi H_B / F)`. The film is in series with it, the open resistance in parallel to both:
+//! Holm's `R_c = (rho / 2) sqrt(pi H_B / F)`, or follows from the tangent stiffness of the contact, `R_c = rho E* / k(F)`: the
+//! incremental stiffness and the conductance of any two rough bodies are proportional (J. R. Barber, Proc. R. Soc. A 459
+//! (2003) 53); a circle of radius `a` has `k = 2 E* a` and `R = rho / (2 a)`. The film is in series with it, the open resistance in parallel to both:
 //! `G = 1 / (R_c + R_film) + 1 / R_open`, without the first term at zero force. Arcs are not modelled.
 
 use std::f64::consts::PI;
 
+use crate::contact::law::Law;
+use crate::contact::power::reduced_modulus;
 use crate::scene::Scene;
 use crate::variables::ResistanceKind;
 
@@ -26,12 +30,19 @@ pub struct ElectricalContact {
 }
 
 impl ElectricalContact {
-    /// From the scene; `None` without `effects.resistance`.
-    pub fn new(scene: &Scene) -> Option<Self> {
+    /// From the scene and its contact law; `None` without `effects.resistance`.
+    pub fn new(scene: &Scene, law: &Law) -> Option<Self> {
         let resistance = &scene.resistance;
         let (coefficient, exponent) = match scene.effects.resistance {
             ResistanceKind::PowerLaw => (resistance.coefficient, resistance.exponent),
             ResistanceKind::Holm => (0.5 * resistance.resistivity * (PI * resistance.hardness).sqrt(), 0.5),
+            ResistanceKind::Barber => {
+                let (stiffness, exponent) = law.stiffness_by_force();
+                (
+                    resistance.resistivity * reduced_modulus(&scene.contact) / stiffness,
+                    exponent,
+                )
+            }
             ResistanceKind::None => return None,
         };
         Some(Self {
@@ -78,6 +89,14 @@ impl ElectricalContact {
         if constriction <= 0.0 {
             return f64::INFINITY;
         }
+        if self.exponent == 0.0 {
+            // A resistance that does not depend on the force: the contact is interrupted while it is open.
+            return if self.coefficient > constriction {
+                f64::INFINITY
+            } else {
+                f64::MIN_POSITIVE
+            };
+        }
         (self.coefficient / constriction).powf(1.0 / self.exponent)
     }
 
@@ -121,6 +140,8 @@ fn highest_voltage(scene: &Scene) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::power::Power;
+    use crate::variables::ContactLawKind;
 
     fn scene(kind: ResistanceKind) -> Scene {
         let mut scene = Scene::default();
@@ -128,25 +149,57 @@ mod tests {
         scene
     }
 
+    fn of(scene: &Scene) -> Option<ElectricalContact> {
+        ElectricalContact::new(scene, &Law::Power(Power::of(scene)))
+    }
+
     #[test]
     fn published_values() {
-        let electrical = ElectricalContact::new(&scene(ResistanceKind::PowerLaw)).unwrap();
+        let electrical = of(&scene(ResistanceKind::PowerLaw)).unwrap();
         // The power law at the ends of the published waveform, 34.25 and 63.9 mOhm.
         assert!((1.0 / electrical.conductance(0.200_149) - 34.252e-3).abs() < 1e-6);
         assert!((1.0 / electrical.conductance(0.103_905) - 63.90e-3).abs() < 1e-4);
-        let holm = ElectricalContact::new(&scene(ResistanceKind::Holm)).unwrap();
+        let holm = of(&scene(ResistanceKind::Holm)).unwrap();
         // (2.2e-8 / 2) sqrt(pi 0.785e9 / 0.152) by hand.
         assert!((1.0 / holm.conductance(0.152) - 1.401e-3).abs() < 1e-6);
-        assert!(ElectricalContact::new(&scene(ResistanceKind::None)).is_none());
+        assert!(of(&scene(ResistanceKind::None)).is_none());
+    }
+
+    #[test]
+    fn stiffness_gives_resistance() {
+        // A circle of Hertz: R = rho / (2 a), a = sqrt(R d), at 0.152 N.
+        let mut smooth = scene(ResistanceKind::Barber);
+        let d = Power::of(&smooth).indentation(0.152);
+        let circle = 0.5 * smooth.resistance.resistivity / (smooth.contact.curvature_radius * d).sqrt();
+        let found = 1.0 / of(&smooth).unwrap().conductance(0.152);
+        assert!((found / circle - 1.0).abs() < 1e-9, "{found} {circle}");
+        // Rough: rho E* / k_r at F_r, and as k there.
+        smooth.effects.contact_law = ContactLawKind::Rough;
+        let rough = of(&smooth).unwrap();
+        let at_given = smooth.resistance.resistivity * reduced_modulus(&smooth.contact) / 4.37e4;
+        for (force, factor) in [
+            (0.152, 1.0),
+            (0.304, 2_f64.powf(0.54)),
+            (0.01, (0.01_f64 / 0.152).powf(0.54)),
+        ] {
+            let found = 1.0 / rough.conductance(force);
+            assert!((found * factor / at_given - 1.0).abs() < 1e-9, "{found} at {force} N");
+        }
+        // Linear: one resistance while closed, so that any force is enough, or none.
+        smooth.contact.stiffness_exponent = 0.0;
+        let linear = of(&smooth).unwrap();
+        assert_eq!(linear.conductance(1e-9), linear.conductance(1.0));
+        assert_eq!(linear.force_at(60.0), f64::MIN_POSITIVE);
+        assert_eq!(linear.force_at(1e-3), f64::INFINITY);
     }
 
     #[test]
     fn the_force_at_a_threshold_is_where_the_resistance_passes_it() {
-        for kind in [ResistanceKind::PowerLaw, ResistanceKind::Holm] {
+        for kind in [ResistanceKind::PowerLaw, ResistanceKind::Holm, ResistanceKind::Barber] {
             for film in [0.0, 0.5] {
                 let mut scene = scene(kind);
                 scene.resistance.film = film;
-                let electrical = ElectricalContact::new(&scene).unwrap();
+                let electrical = of(&scene).unwrap();
                 for threshold in [1.0, 60.0, 1e6, 9e8] {
                     let force = electrical.force_at(threshold);
                     let found = 1.0 / electrical.conductance(force);
@@ -161,13 +214,13 @@ mod tests {
         }
         let mut filmed = scene(ResistanceKind::PowerLaw);
         filmed.resistance.film = 100.0;
-        assert_eq!(ElectricalContact::new(&filmed).unwrap().force_at(60.0), f64::INFINITY);
+        assert_eq!(of(&filmed).unwrap().force_at(60.0), f64::INFINITY);
     }
 
     #[test]
     fn the_melting_voltage_gives_the_melting_temperature() {
         let scene = scene(ResistanceKind::PowerLaw);
-        let electrical = ElectricalContact::new(&scene).unwrap();
+        let electrical = of(&scene).unwrap();
         // 0.37 V: sqrt(298.15^2 + 0.37^2 / (4 2.45e-8)) = 1218.9 K, near the melting point of silver (1235 K).
         assert!((electrical.temperature(&scene, 0.15, 1e3) - 1218.9).abs() < 0.1);
         assert_eq!(electrical.temperature(&scene, 0.15, 0.0), 298.15);

@@ -79,9 +79,9 @@ pub enum SceneError {
     /// A linear contact law beside a second contact.
     #[error(
         "effects.contactLaw: Linearised and Bonded are laws about the preload, at which the second contact is open; allowed with \
-         effects.secondContact = true is Hertz"
+         effects.secondContact = true are Hertz and Rough"
     )]
-    NeedsHertz,
+    LinearBesideSecond,
     /// Friction beside something that it cannot be combined with.
     #[error(
         "{name} = {choice}: not allowed with effects.friction = Coulomb, allowed is {allowed}; or effects.friction = None"

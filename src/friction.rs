@@ -10,19 +10,19 @@
 //! q_i'' + c_i q_i' + omega_i^2 q_i = T_i (F - F_0) - g_i a + h T_i' (T - T_0)
 //! ```
 //!
-//! with `T_i'` the rotation of mode i at the contact ([`Mode::rotation`]). Under the contact force `F` (Hertz, damped as
-//! there) the contact sticks on the tangential stiffness of R. D. Mindlin (J. Appl. Mech. 16 (1949) 259) with the damping
+//! with `T_i'` the rotation of mode i at the contact ([`Mode::rotation`]). Under the contact force `F` (a power `p` of the
+//! indentation, damped) the contact sticks on the tangential stiffness of R. D. Mindlin (J. Appl. Mech. 16 (1949) 259) with the damping
 //! time of the contact, up to Coulomb's limit:
 //!
 //! ```text
-//! k_t = 8 G* sqrt(R d),  1/G* = (2 - nu_1)/G_1 + (2 - nu_2)/G_2,  G = E / (2 (1 + nu))
+//! k_t = (4 G*/E*) k,  1/G* = (2 - nu_1)/G_1 + (2 - nu_2)/G_2,  G = E / (2 (1 + nu))
 //! stick:  T = -k_t(d) (z + beta_c z'),  z' = v'       while |T| < mu F
 //! slip:   |T| = mu F against the slip velocity v' - z',  z' from T = -k_t(d) (z + beta_c z')
 //! open:   T = 0, z = 0
 //! ```
 //!
-//! `k_t` is a fixed multiple of the stiffness `k_j` of Hertz, so while the contact slips `beta_c z' + z = -+ (mu k_j / k_t)
-//! (2 d / 3 + beta_c d')`, in which nothing is singular as it opens. With damping `T` is the trial force of stick, cut at the
+//! `k_t` is a fixed multiple of the tangent stiffness `k` of the contact, for spheres `8 G* sqrt(R d)`, so while it slips
+//! `beta_c z' + z = -+ (mu k / k_t) (d / p + beta_c d')`, in which nothing is singular as it opens. With damping `T` is the trial force of stick, cut at the
 //! limit: it is continuous, and stick and slip change where the trial force passes the limit.
 //!
 //! The closing that led to the preload has slid: `T_0 = -mu F_0` (`friction.initial` = -1), which is part of its
@@ -37,7 +37,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::beam::mode::{MAX_MODES, Modal, Mode, ModeStates};
-use crate::contact::hertz::Hertz;
+use crate::contact::power::Power;
 use crate::error::SceneError;
 use crate::math::prediction::Prediction;
 use crate::scene::spring::Shape;
@@ -210,27 +210,27 @@ impl Friction {
     /// Trial force of stick at the indentation `d` (m), where the tangential spring is deflected by `z` (m) and goes on at
     /// `rate` (m/s).
     #[inline(always)]
-    pub(crate) fn trial(&self, hertz: &Hertz, d: f64, z: f64, rate: f64) -> Stick {
-        let stiffness = self.ratio * hertz.tangent_stiffness(d);
-        let force = -stiffness * (z + hertz.damping * rate);
+    pub(crate) fn trial(&self, law: &Power, d: f64, z: f64, rate: f64) -> Stick {
+        let stiffness = self.ratio * law.tangent_stiffness(d);
+        let force = -stiffness * (z + law.damping * rate);
         Stick {
             force,
-            by_indentation: if d > 0.0 { 0.5 * force / d } else { 0.0 },
+            by_indentation: if d > 0.0 { (law.exponent - 1.0) * force / d } else { 0.0 },
             stiffness,
         }
     }
 
     /// Deflection to which the tangential spring of a slipping contact tends, m: -T / k_t.
     #[inline(always)]
-    pub(crate) fn limit_deflection(&self, hertz: &Hertz, sign: f64, d: f64, rate: f64) -> f64 {
-        -sign * self.coefficient / self.ratio * (2.0 / 3.0 * d + hertz.damping * rate)
+    pub(crate) fn limit_deflection(&self, law: &Power, sign: f64, d: f64, rate: f64) -> f64 {
+        -sign * self.coefficient / self.ratio * (1.0 / law.exponent * d + law.damping * rate)
     }
 
     /// Slip velocity times the damping time of the contact, m, positive against the slip under a friction force of this sign:
     /// as the tangential spring, deflected by `z` (m), tends to its limit, the contact point moving at `along` (m/s), at the
     /// indentation `d` (m) that grows at `rate` (m/s).
-    pub(crate) fn turned(&self, hertz: &Hertz, sign: f64, (d, rate): (f64, f64), (z, along): (f64, f64)) -> f64 {
-        sign * (z + hertz.damping * along - self.limit_deflection(hertz, sign, d, rate))
+    pub(crate) fn turned(&self, law: &Power, sign: f64, (d, rate): (f64, f64), (z, along): (f64, f64)) -> f64 {
+        sign * (z + law.damping * along - self.limit_deflection(law, sign, d, rate))
     }
 }
 
@@ -244,7 +244,7 @@ pub(crate) fn tangential_share(scene: &Scene) -> Option<f64> {
     rubs(scene).then_some(scene.friction.initial * scene.friction.coefficient)
 }
 
-/// `k_t / k_j = 4 G* / E*`.
+/// `k_t / k = 4 G* / E*`.
 fn stiffness_ratio(contact: &Contact) -> f64 {
     let materials = [contact.moving, contact.fixed];
     let normal: f64 = materials
@@ -271,11 +271,11 @@ pub(crate) fn check(scene: &Scene) -> Result<(), SceneError> {
         let choice = choices(parameter).iter().find(|(_, number)| *number == chosen);
         choice.map_or("", |(label, _)| *label)
     };
-    if scene.effects.contact_law != ContactLawKind::Hertz {
+    if !matches!(scene.effects.contact_law, ContactLawKind::Hertz | ContactLawKind::Rough) {
         return Err(SceneError::NoFriction {
             name: "effects.contactLaw",
             choice: named(EnumerationParameter::EffectsContactLaw),
-            allowed: "Hertz, on whose area the friction acts",
+            allowed: "Hertz and Rough, whose tangential stiffness follows that along the normal",
         });
     }
     if scene.effects.second_contact {

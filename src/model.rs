@@ -7,9 +7,9 @@ use crate::beam::section::Section;
 use crate::beam::spring::{Basis, Spring};
 use crate::chatter::{Criterion, Interruptions};
 use crate::closed_loop::system::ClosedLoop;
-use crate::contact::hertz::Hertz;
 use crate::contact::law::Law;
 use crate::contact::linear::Linear;
+use crate::contact::power::Power;
 use crate::electrical::ElectricalContact;
 use crate::error::{Remark, SceneError};
 use crate::excitation::generator::Generator;
@@ -107,16 +107,13 @@ impl Model {
         friction::check(scene)?;
         let spring = Spring::new(scene)?;
         let section = spring.section;
-        let mut hertz = Hertz::new(&scene.contact);
-        if !scene.effects.contact_damping {
-            hertz.damping = 0.0;
-        }
-        let second = Hertz::of_second(scene);
-        let preload = Preload::new(scene, &spring, &hertz, support)?;
-        let law = law(scene, hertz, &preload)?;
+        let power = Power::of(scene);
+        let second = Power::of_second(scene);
+        let preload = Preload::new(scene, &spring, &power, support)?;
+        let law = law(scene, power, &preload)?;
         let tolerance = scene.solver.effective_tolerance();
         let count = |blow: &Blow| spring.count(blow, tolerance);
-        let own = blow(scene, &section, &hertz);
+        let own = blow(scene, &section, &power);
         let blow = second
             .map(|second| blow(scene, &section, &second))
             .filter(|second| count(second) > count(&own))
@@ -142,7 +139,7 @@ impl Model {
             .or(frequency)
             .map_or(0.0, |omega| omega / std::f64::consts::TAU);
         let generator = Generator::new(scene)?;
-        let electrical = ElectricalContact::new(scene);
+        let electrical = ElectricalContact::new(scene, &law);
         if scene.effects.chatter && electrical.is_none() {
             return Err(SceneError::NoResistance);
         }
@@ -193,7 +190,7 @@ impl Model {
             simd: Simd::detect(),
         };
         Ok(match second {
-            Some(second) => model.with_second(Law::Hertz(second)),
+            Some(second) => model.with_second(Law::Power(second)),
             None => model,
         })
     }
@@ -329,7 +326,7 @@ impl Model {
         if let Some(criterion) = self.criterion.filter(|criterion| self.preload.force < criterion.force) {
             interruptions.turn(&criterion, time);
         }
-        if let Some(criterion) = self.criterion.filter(|_| self.second.is_some()) {
+        if let Some(criterion) = self.second.as_ref().and_then(|second| second.criterion) {
             of_second.turn(&criterion, time);
         }
         State {
@@ -429,16 +426,16 @@ fn inertia(modes: &[Mode]) -> f64 {
 }
 
 /// The law of the first contact.
-fn law(scene: &Scene, hertz: Hertz, preload: &Preload) -> Result<Law, SceneError> {
+fn law(scene: &Scene, power: Power, preload: &Preload) -> Result<Law, SceneError> {
     match scene.effects.contact_law {
-        ContactLawKind::Hertz => Ok(Law::Hertz(hertz)),
+        ContactLawKind::Hertz | ContactLawKind::Rough => Ok(Law::Power(power)),
         ContactLawKind::Linearised | ContactLawKind::Bonded if scene.effects.second_contact => {
-            Err(SceneError::NeedsHertz)
+            Err(SceneError::LinearBesideSecond)
         }
         ContactLawKind::Linearised | ContactLawKind::Bonded if preload.force <= 0.0 => Err(SceneError::NoPreload),
         kind @ (ContactLawKind::Linearised | ContactLawKind::Bonded) => Ok(Law::Linear(Linear {
             stiffness: preload.contact_stiffness,
-            damping: hertz.damping,
+            damping: power.damping,
             offset: preload.indentation - preload.force / preload.contact_stiffness,
             bonded: kind == ContactLawKind::Bonded,
         })),
@@ -446,17 +443,17 @@ fn law(scene: &Scene, hertz: Hertz, preload: &Preload) -> Result<Law, SceneError
 }
 
 /// A blow as the scene may have it.
-fn blow(scene: &Scene, section: &Section, hertz: &Hertz) -> Blow {
-    // A blow fifty times the force of the bent spring; the number of modes follows it by the 18th root.
+fn blow(scene: &Scene, section: &Section, power: &Power) -> Blow {
+    // A blow fifty times the force of the bent spring; with Hertz the number of modes follows it by the 18th root.
     let force = match scene.effects.contact_law {
-        ContactLawKind::Hertz => 50.0 * bending_force(scene, section),
+        ContactLawKind::Hertz | ContactLawKind::Rough => 50.0 * bending_force(scene, section),
         ContactLawKind::Linearised | ContactLawKind::Bonded => bending_force(scene, section),
     };
     Blow {
         mass_damping: scene.beam.mass_damping,
         stiffness_damping: scene.beam.stiffness_damping,
-        contact_stiffness: hertz.tangent_stiffness(hertz.indentation(force)),
-        contact_damping: hertz.damping,
+        contact_stiffness: power.tangent_stiffness(power.indentation(force)),
+        contact_damping: power.damping,
         rubs: rubs(scene),
     }
 }

@@ -9,7 +9,7 @@
 
 use crate::beam::spring::Spring;
 use crate::beam::statics::Statics;
-use crate::contact::hertz::Hertz;
+use crate::contact::power::Power;
 use crate::error::SceneError;
 use crate::friction::tangential_share;
 use crate::math::roots;
@@ -36,7 +36,7 @@ impl Preload {
     ///
     /// # Errors
     /// [`SceneError::Buckled`] where the axial force reaches the buckling load of the cantilever.
-    pub fn new(scene: &Scene, spring: &Spring, hertz: &Hertz, support: f64) -> Result<Self, SceneError> {
+    pub fn new(scene: &Scene, spring: &Spring, law: &Power, support: f64) -> Result<Self, SceneError> {
         let statics = &spring.statics;
         let total_overtravel = scene.contact.overtravel + support;
         let gravity = scene.environment.gravity;
@@ -89,7 +89,7 @@ impl Preload {
         let residual = |d: f64| {
             let n = axial(total_overtravel - d);
             let spring = (total_overtravel - d - statics.gravity_compliance(n) * gravity) / compliance(n);
-            hertz.elastic_force(d) - spring
+            law.elastic_force(d) - spring
         };
         // No sign change: the spring exerts no force on the contact, it has buckled under its own deflection.
         let Some(indentation) = roots::bracketed(residual, 0.0, total_overtravel - alone) else {
@@ -102,9 +102,9 @@ impl Preload {
         let axial_force = axial(deflection);
         check(axial_force)?;
         Ok(Self {
-            force: hertz.elastic_force(indentation),
+            force: law.elastic_force(indentation),
             indentation,
-            contact_stiffness: hertz.tangent_stiffness(indentation),
+            contact_stiffness: law.tangent_stiffness(indentation),
             deflection,
             axial_force,
         })

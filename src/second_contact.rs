@@ -9,14 +9,16 @@
 //! q_i'' + c_i q_i' + omega_i^2 q_i = T_i (F - F_2 - F_0) - g_i a
 //! ```
 //!
-//! The distance of both fixed contacts is `gap - u_2 - d_0`. While it is positive at most one contact is closed, as a Hertz
-//! contact needs an overlap. With `q' = -q`, `a' = -a`, `F_0' = -F_0`, `u' = u_2 - u`, `d' - d_0' = u_2 - (d - d_0)` and
+//! The distance of both fixed contacts is `gap - u_2 - d_0`. While it is positive at most one contact is closed, as a contact
+//! force needs an overlap. With `q' = -q`, `a' = -a`, `F_0' = -F_0`, `u' = u_2 - u`, `d' - d_0' = u_2 - (d - d_0)` and
 //! `d_0' = -gap` the equations of the second contact alone are those of the first. So a model in the view of the second is
 //! one like any other ([`Model::views`]), and the state goes over from one view to the other in flight ([`State::mirror`]):
 //! all that is done for the first contact is done for the second, with the same code and the same bits.
 
 use crate::beam::axial::Feedback;
+use crate::chatter::Criterion;
 use crate::contact::law::Law;
+use crate::electrical::ElectricalContact;
 use crate::model::Model;
 use crate::preload::Preload;
 use crate::state::State;
@@ -35,6 +37,8 @@ impl Model {
             deflection: -self.preload.deflection,
             ..self.preload
         };
+        second.electrical = ElectricalContact::new(&self.scene, &law);
+        second.criterion = (second.electrical.as_ref()).and_then(|contact| Criterion::new(&self.scene, contact));
         second.axial = self.axial.as_ref().map(Feedback::mirrored);
         second.mirrored = true;
         self.second = Some(Box::new(second));

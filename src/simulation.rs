@@ -1,6 +1,7 @@
 //! A running simulation: model, state, and workspace of the steps.
 
 use crate::chatter::{Criterion, Interruptions, Summary};
+use crate::electrical::ElectricalContact;
 use crate::error::{SceneError, StepError};
 use crate::inputs::Inputs;
 use crate::integrator::communication_step;
@@ -148,11 +149,13 @@ impl Simulation {
     pub fn real(&self, output: RealOutput) -> f64 {
         let Self { model, motion, .. } = self;
         let (state, tip) = (motion.state(), || motion.tip(model));
-        let conductance_of = |force| model.electrical.map(|electrical| electrical.conductance(force));
         let force = || tip().forces[0];
-        let conductance = || conductance_of(force());
+        let conductance = || model.electrical.map(|electrical| electrical.conductance(force()));
         let second = model.second.is_some();
-        let second_conductance = || conductance_of(tip().forces[1]).filter(|_| second);
+        let second_conductance = || {
+            let electrical = model.second.as_ref().and_then(|second| second.electrical);
+            electrical.map(|electrical| electrical.conductance(tip().forces[1]))
+        };
         let extremes = || model.scene.effects.extremes.then(|| motion.extremes(model));
         let of_second = || extremes().filter(|_| second);
         match output {
@@ -226,8 +229,8 @@ impl Simulation {
         let rates = || motion.tip_rates(model);
         let along = || motion.friction_rates(model);
         // Conductance and its rate.
-        let conducting_at = |force, rate| {
-            model.electrical.map(|electrical| {
+        let conducting_at = |electrical: Option<ElectricalContact>, force, rate| {
+            electrical.map(|electrical| {
                 (
                     electrical.conductance(force),
                     electrical.conductance_slope(force) * rate,
@@ -235,10 +238,10 @@ impl Simulation {
             })
         };
         let force = || motion.tip(model).forces[0];
-        let conducting = || conducting_at(force(), rates().forces[0]);
+        let conducting = || conducting_at(model.electrical, force(), rates().forces[0]);
         let second_conducting = || {
             let second = model.second.as_ref();
-            second.and_then(|_| conducting_at(motion.tip(model).forces[1], rates().forces[1]))
+            second.and_then(|view| conducting_at(view.electrical, motion.tip(model).forces[1], rates().forces[1]))
         };
         Some(match output {
             RealOutput::SecondForce => rates().forces[1],
@@ -311,7 +314,12 @@ impl Simulation {
     }
 
     fn monitored(&self, second: bool, summary: fn(&Interruptions, &Criterion, f64) -> Summary) -> Summary {
-        let counted = self.model.criterion.filter(|_| !second || self.model.second.is_some());
+        let view = if second {
+            self.model.second.as_deref()
+        } else {
+            Some(&self.model)
+        };
+        let counted = view.and_then(|model| model.criterion);
         counted.map_or_else(Summary::default, |criterion| {
             summary(&self.motion.interruptions(&self.model, second), &criterion, self.time())
         })

@@ -38,6 +38,12 @@ fn changeover_relays_keep_their_tolerance_or_say_that_they_may_not() {
     keep_their_tolerance(&judge_all(20_000, COUNT, Relay::changeover), COUNT);
 }
 
+/// Exponents of the stiffness from 0 to 0.9, stiffnesses over four decades; alone, with a second contact, with friction.
+#[test]
+fn relays_with_rough_contacts_keep_their_tolerance_or_say_that_they_may_not() {
+    keep_their_tolerance(&judge_all(60_000, COUNT, Relay::rough), COUNT);
+}
+
 /// A third as many.
 #[test]
 fn relays_with_friction_keep_their_tolerance_or_say_that_they_may_not() {

@@ -77,7 +77,7 @@ fn question(problem: &Problem, tolerance: f64) -> String {
         line(&[mode.omega_squared, mode.damping, mode.tip, mode.participation]);
     }
     match model.law() {
-        Law::Hertz(hertz) => line(&[0.0, hertz.coefficient, hertz.damping, 0.0]),
+        Law::Power(power) => line(&[0.0, power.coefficient, power.damping, power.exponent]),
         Law::Linear(linear) => line(&[
             if linear.bonded { 2.0 } else { 1.0 },
             linear.stiffness,

@@ -290,7 +290,7 @@ static int advance(course *c, double target) {
         if (c->t < target || next > c->size) c->size = next;
         indentation(p, c->t, y, &d1, &r1);
         double end = c->t, after = engaged(p, end, y);
-        double part = !p->closed && after <= 0.0 && p->law.kind == HERTZ ? peak(end - start, d0, r0, d1, r1) : 0.0;
+        double part = !p->closed && after <= 0.0 && p->law.kind == POWER ? peak(end - start, d0, r0, d1, r1) : 0.0;
         if (part > 0.0) {
             double top = start + part * (end - start);
             if ((flag = step(c, start, top - start, top, 1)) < 0) return flag;

@@ -7,11 +7,11 @@
 #include <stdlib.h>
 #include <time.h>
 
-enum { HERTZ, LINEARISED, BONDED };
+enum { POWER, LINEARISED, BONDED };
 
 typedef struct {
     int kind;
-    double stiffness, damping, offset; /* Hertz: k_H, beta_c, unused; linear: k_j0, beta_c, indentation without force */
+    double stiffness, damping, offset; /* power: factor, beta_c, exponent; linear: k_j0, beta_c, indentation without force */
 } contact_law;
 
 typedef struct {
@@ -42,22 +42,23 @@ static contact_law read_law(void) {
 /* The closed branch, continued past the release so that a step may run over it before the root is found. */
 static branch closed_branch(const contact_law *law, double d, double rate) {
     branch b = {0.0, 0.0, 0.0};
-    if (law->kind != HERTZ) {
+    if (law->kind != POWER) {
         b.force = law->stiffness * (d - law->offset + law->damping * rate);
         b.stiffness = law->stiffness;
         b.damping = law->stiffness * law->damping;
     } else if (d > 0.0) {
-        double root = law->stiffness * sqrt(d), g = d + 1.5 * law->damping * rate;
-        b.force = root * g;
-        b.stiffness = root * (1.0 + 0.5 * g / d);
-        b.damping = 1.5 * law->damping * root;
+        double p = law->offset;
+        double slope = law->stiffness * (p == 1.5 ? sqrt(d) : pow(d, p - 1.0)), g = d + p * law->damping * rate;
+        b.force = slope * g;
+        b.stiffness = slope * (1.0 + (p - 1.0) * g / d);
+        b.damping = p * law->damping * slope;
     }
     return b;
 }
 
 /* Positive while the contact is closed. */
 static double engagement(const contact_law *law, double d, double rate) {
-    if (law->kind == HERTZ) return fmin(d, d + 1.5 * law->damping * rate);
+    if (law->kind == POWER) return fmin(d, d + law->offset * law->damping * rate);
     return d - law->offset + law->damping * rate;
 }
 

@@ -11,7 +11,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use relay_contact::reference::{self, Hertz, Model, Preload, Section, Spring};
+use relay_contact::reference::{self, Model, Power, Preload, Section, Spring};
 use relay_contact::scene::Scene;
 use relay_contact::variables::AxialForceKind;
 
@@ -129,7 +129,7 @@ pub fn scene(published: &Published) -> Result<Scene, Error> {
     let contact = |radius: f64| {
         let mut contact = scene.contact;
         contact.curvature_radius = radius;
-        Hertz::new(&contact)
+        Power::hertz(&contact)
     };
     let excess = |radius: f64| {
         let hertz = contact(radius);
@@ -140,7 +140,7 @@ pub fn scene(published: &Published) -> Result<Scene, Error> {
 
     let excess = |bending: f64| {
         let scene = with_section(&scene, bending, 0.05);
-        let hertz = Hertz::new(&scene.contact);
+        let hertz = Power::hertz(&scene.contact);
         Preload::new(&scene, &Spring::uniform(&Section::new(&scene)), &hertz, 0.0)
             .map_or(f64::NAN, |preload| preload.force - force)
     };
@@ -184,7 +184,7 @@ fn with_rivet(scene: &Scene, bending: f64, mass: f64, frequency: f64) -> Option<
 /// Of beam and contact spring, Hz.
 fn first_frequency(scene: &Scene) -> Option<f64> {
     let section = Section::new(scene);
-    let preload = Preload::new(scene, &Spring::uniform(&section), &Hertz::new(&scene.contact), 0.0).ok()?;
+    let preload = Preload::new(scene, &Spring::uniform(&section), &Power::hertz(&scene.contact), 0.0).ok()?;
     let found = reference::frequencies(&section, 0.0, preload.contact_stiffness, 1);
     found.first().map(|omega| omega / TAU)
 }

@@ -1,24 +1,24 @@
 //! The contact law of a scene.
 
 use crate::contact::Branch;
-use crate::contact::hertz::Hertz;
 use crate::contact::linear::Linear;
+use crate::contact::power::Power;
 
 /// A contact law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Law {
-    /// Hertz with viscoelastic damping.
-    Hertz(Hertz),
+    /// A power of the indentation, with viscoelastic damping: Hertz, or rough.
+    Power(Power),
     /// Linearised about the preload.
     Linear(Linear),
 }
 
 impl Law {
-    /// Hertz, if it is that.
+    /// The power of the indentation, if it is that.
     #[inline(always)]
-    pub fn hertz(&self) -> Option<&Hertz> {
+    pub fn power(&self) -> Option<&Power> {
         match self {
-            Self::Hertz(hertz) => Some(hertz),
+            Self::Power(power) => Some(power),
             Self::Linear(_) => None,
         }
     }
@@ -26,7 +26,7 @@ impl Law {
     /// A length with the sign of the contact force: positive while the contact is closed, m.
     pub fn engagement(&self, d: f64, rate: f64) -> f64 {
         match self {
-            Self::Hertz(hertz) => hertz.engagement(d, rate),
+            Self::Power(power) => power.engagement(d, rate),
             Self::Linear(linear) => linear.engagement(d, rate),
         }
     }
@@ -44,7 +44,7 @@ impl Law {
     #[inline(always)]
     pub fn closed_branch(&self, d: f64, rate: f64) -> Branch {
         match self {
-            Self::Hertz(hertz) => hertz.closed_branch(d, rate),
+            Self::Power(power) => power.closed_branch(d, rate),
             Self::Linear(linear) => linear.closed_branch(d, rate),
         }
     }
@@ -54,7 +54,7 @@ impl Law {
     /// (m/s), the mean velocity. It increases with the second indentation, and is never tensile unless bonded.
     pub fn mean_force(&self, from: f64, to: f64, speed: f64) -> f64 {
         let (elastic, stiffness) = match self {
-            Self::Hertz(hertz) => (hertz.mean_force(from, to), hertz.mean_stiffness(from, to)),
+            Self::Power(power) => (power.mean_force(from, to), power.mean_stiffness(from, to)),
             Self::Linear(linear) => (linear.mean_force(from, to), linear.mean_stiffness(from, to)),
         };
         self.without_pull(elastic + self.damping() * stiffness * speed)
@@ -63,17 +63,18 @@ impl Law {
     /// Elastic energy at the indentation `d0 + deviation` above its tangent at `d0` (m), J; never negative.
     pub fn energy_above_tangent(&self, d0: f64, deviation: f64) -> f64 {
         match self {
-            Self::Hertz(hertz) => hertz.energy_above_tangent(d0, deviation),
+            Self::Power(power) => power.energy_above_tangent(d0, deviation),
             Self::Linear(linear) => linear.energy_above_tangent(d0, deviation),
         }
     }
 
-    /// As hard and as damped as the harder and the more damped of two.
+    /// As hard and as damped as the harder and the more damped of two of the same kind.
     #[must_use]
     pub fn hardest(&self, other: &Self) -> Self {
         match (self, other) {
-            (Self::Hertz(a), Self::Hertz(b)) => Self::Hertz(Hertz {
+            (Self::Power(a), Self::Power(b)) => Self::Power(Power {
                 coefficient: a.coefficient.max(b.coefficient),
+                exponent: a.exponent,
                 damping: a.damping.max(b.damping),
             }),
             _ => *self,
@@ -94,7 +95,7 @@ impl Law {
     /// Static indentation beyond first touch under `force` (N), m.
     pub fn overlap(&self, force: f64) -> f64 {
         match self {
-            Self::Hertz(hertz) => hertz.indentation(force),
+            Self::Power(power) => power.indentation(force),
             Self::Linear(linear) => force / linear.stiffness,
         }
     }
@@ -102,8 +103,16 @@ impl Law {
     /// Tangent stiffness under `force` (N), N/m.
     pub fn tangent_stiffness(&self, force: f64) -> f64 {
         match self {
-            Self::Hertz(hertz) => hertz.tangent_stiffness(hertz.indentation(force)),
+            Self::Power(power) => power.tangent_stiffness(power.indentation(force)),
             Self::Linear(linear) => linear.stiffness,
+        }
+    }
+
+    /// Tangent stiffness of the closed contact as a power of the elastic force: factor (at 1 N, N/m) and exponent (1).
+    pub fn stiffness_by_force(&self) -> (f64, f64) {
+        match self {
+            Self::Power(power) => power.stiffness_by_force(),
+            Self::Linear(linear) => (linear.stiffness, 0.0),
         }
     }
 
@@ -111,7 +120,7 @@ impl Law {
     #[inline(always)]
     pub fn stiffness(&self, d: f64) -> f64 {
         match self {
-            Self::Hertz(hertz) => hertz.tangent_stiffness(d),
+            Self::Power(power) => power.tangent_stiffness(d),
             Self::Linear(linear) => linear.stiffness,
         }
     }
@@ -119,7 +128,7 @@ impl Law {
     /// Damping time beta_c, s.
     pub fn damping(&self) -> f64 {
         match self {
-            Self::Hertz(hertz) => hertz.damping,
+            Self::Power(power) => power.damping,
             Self::Linear(linear) => linear.damping,
         }
     }

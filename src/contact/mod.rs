@@ -1,8 +1,8 @@
 //! The law between indentation and contact force.
 
-pub mod hertz;
 pub mod law;
 pub mod linear;
+pub mod power;
 
 /// Force on the closed branch of a law, with its partial derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]

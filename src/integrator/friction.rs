@@ -94,11 +94,11 @@ impl Integration<'_> {
             // The friction force that is missing for the slip velocity.
             let stiffness = friction.ratio * model.law.tangent_stiffness(model.force_scale);
             let wrong = scaled(&nodes.slip_rates, sign * stiffness * (damping + length));
-            let before = match model.law.hertz() {
+            let before = match model.law.power() {
                 // As a jump of the contact force has left it.
-                Some(hertz) if damping > 0.0 => {
+                Some(law) if damping > 0.0 => {
                     let across = (model.preload.indentation + state.indentation, state.indentation_rate);
-                    let turned = friction.turned(hertz, sign, across, (start.deflection(), start.rate));
+                    let turned = friction.turned(law, sign, across, (start.deflection(), start.rate));
                     stiffness * (1.0 + length / damping) * turned
                 }
                 _ => dot::<S, Separate>(&wrong, &collocation.at_start),
@@ -160,7 +160,7 @@ impl Integration<'_> {
         Workspace: Room<S>,
     {
         let (model, state) = (self.model, &*self.state);
-        let (Some(friction), Some(hertz)) = (model.friction(), model.law.hertz()) else {
+        let (Some(friction), Some(law)) = (model.friction(), model.law.power()) else {
             return 0.0;
         };
         let (cache, ends, inside) = Room::<S>::parts(self.workspace);
@@ -171,10 +171,10 @@ impl Integration<'_> {
             let deflections = &ends.tangential.deflections;
             let course = cache.collocation().through(model.simd, start.deflection(), deflections);
             let z = value_and_slope(&course, end.at / length - 1.0).0;
-            friction.ratio * hertz.tangent_stiffness(d) * friction.turned(hertz, sign, (d, end.rate), (z, rate))
+            friction.ratio * law.tangent_stiffness(d) * friction.turned(law, sign, (d, end.rate), (z, rate))
         } else {
-            let trial = friction.trial(hertz, d, displacement - start.slip, rate).force;
-            phase.sign().unwrap_or_default() * trial - friction.coefficient * hertz.closed_branch(d, end.rate).force
+            let trial = friction.trial(law, d, displacement - start.slip, rate).force;
+            phase.sign().unwrap_or_default() * trial - friction.coefficient * law.closed_branch(d, end.rate).force
         }
     }
 
@@ -183,13 +183,12 @@ impl Integration<'_> {
     pub(crate) fn change_phase(&mut self, phase: Phase) {
         let before = self.state.tangential.phase.sign();
         let (model, state) = (self.model, &mut *self.state);
-        if let (Some(friction), Some(hertz), Some(sign)) =
-            (model.friction(), model.law.hertz(), phase.sign().or(before))
+        if let (Some(friction), Some(law), Some(sign)) = (model.friction(), model.law.power(), phase.sign().or(before))
         {
             // The trial force is the limit, to the last digit.
             let d = model.preload.indentation + state.indentation;
-            let limit = friction.limit_deflection(hertz, sign, d, state.indentation_rate);
-            let lag = hertz.damping * state.tangential.rate;
+            let limit = friction.limit_deflection(law, sign, d, state.indentation_rate);
+            let lag = law.damping * state.tangential.rate;
             state.tangential.slip = state.tangential.displacement - (limit - lag);
         }
         state.tangential.phase = phase;
@@ -225,7 +224,7 @@ impl Model {
     /// Sets friction force and phase as they follow from the motion: after a jump, a closing, or in another phase than
     /// before.
     pub(crate) fn settle_friction(&self, state: &mut State) {
-        let (Some(friction), Some(hertz)) = (self.friction(), self.law.hertz()) else {
+        let (Some(friction), Some(law)) = (self.friction(), self.law.power()) else {
             return;
         };
         let tangential = &mut state.tangential;
@@ -234,14 +233,13 @@ impl Model {
             return;
         }
         let d = self.preload.indentation + state.indentation;
-        let trial = friction.trial(hertz, d, tangential.deflection(), tangential.rate).force;
+        let trial = friction.trial(law, d, tangential.deflection(), tangential.rate).force;
         let limit = friction.coefficient * state.force;
         // As it closes both are zero: what they begin with decides.
         let closes = state.force <= 0.0;
         let slips = if closes {
-            let (weight, slide) = if hertz.damping > 0.0 { (1.0, 1.0) } else { (2.0, 3.0) };
-            slide * friction.ratio * tangential.rate.abs()
-                > weight * friction.coefficient * state.indentation_rate.abs()
+            let slide = if law.damping > 0.0 { 1.0 } else { law.exponent };
+            slide * friction.ratio * tangential.rate.abs() > friction.coefficient * state.indentation_rate.abs()
         } else {
             trial.abs() > limit
         };
@@ -249,8 +247,8 @@ impl Model {
             let against = if closes { -tangential.rate } else { trial };
             tangential.phase = Phase::slip(against);
             tangential.force = limit.copysign(against);
-            if hertz.damping == 0.0 {
-                tangential.slip = tangential.displacement - friction.limit_deflection(hertz, against.signum(), d, 0.0);
+            if law.damping == 0.0 {
+                tangential.slip = tangential.displacement - friction.limit_deflection(law, against.signum(), d, 0.0);
             }
         } else {
             tangential.phase = Phase::Stick;
@@ -260,7 +258,7 @@ impl Model {
 
     /// The friction force of the phase of a state at its motion, N.
     pub(crate) fn friction_force(&self, state: &State) -> f64 {
-        let (Some(friction), Some(hertz)) = (self.friction(), self.law.hertz()) else {
+        let (Some(friction), Some(law)) = (self.friction(), self.law.power()) else {
             return 0.0;
         };
         let tangential = state.tangential;
@@ -269,7 +267,7 @@ impl Model {
             Some(sign) => sign * friction.coefficient * state.force,
             None => {
                 let d = self.preload.indentation + state.indentation;
-                friction.trial(hertz, d, tangential.deflection(), tangential.rate).force
+                friction.trial(law, d, tangential.deflection(), tangential.rate).force
             }
         }
     }

@@ -52,7 +52,7 @@ impl Motion {
     pub(crate) fn friction_rates(&self, model: &Model) -> FrictionNow {
         let state = self.state();
         let mut rates = FrictionNow::default();
-        let (Some(friction), Some(hertz)) = (model.friction(), model.law.hertz()) else {
+        let (Some(friction), Some(law)) = (model.friction(), model.law.power()) else {
             return rates;
         };
         let start = state.tangential;
@@ -77,21 +77,21 @@ impl Motion {
         } else {
             force = start.force;
             let d = model.preload.indentation + state.indentation;
-            let stick = friction.trial(hertz, d, start.deflection(), start.rate);
+            let stick = friction.trial(law, d, start.deflection(), start.rate);
             if let Some(sign) = start.phase.sign() {
                 let normal = self.tip_rates(model).forces[0];
                 rates.force = sign * friction.coefficient * normal;
-                rates.slip = if hertz.damping > 0.0 {
-                    (force - stick.force) / (hertz.damping * stick.stiffness)
+                rates.slip = if law.damping > 0.0 {
+                    (force - stick.force) / (law.damping * stick.stiffness)
                 } else {
-                    start.rate + sign * friction.coefficient / friction.ratio * 2.0 / 3.0 * state.indentation_rate
+                    start.rate + sign * friction.coefficient / friction.ratio / law.exponent * state.indentation_rate
                 };
             } else {
                 let accelerations = self.accelerations(model, state);
                 let modes = friction.levers.iter().zip(&accelerations).take(model.modes.len());
                 let acceleration: f64 = modes.map(|(lever, acceleration)| lever * acceleration).sum();
                 rates.force = stick.by_indentation * state.indentation_rate
-                    - stick.stiffness * (start.rate + hertz.damping * acceleration);
+                    - stick.stiffness * (start.rate + law.damping * acceleration);
             }
         }
         rates.distance = rates.slip.abs();

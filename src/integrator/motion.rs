@@ -300,7 +300,7 @@ impl Motion {
         let state = self.state();
         let mut interruptions = state.record(second).interruptions;
         if let Some(now) = self.inside()
-            && let Some(criterion) = &model.criterion
+            && let Some(criterion) = &model.views(state).0.criterion
             && second == state.mirrored
         {
             for place in self.dense.passages.until(now) {

@@ -74,6 +74,12 @@ pub struct Contact {
     pub overtravel: f64,
     /// Radius of the camber R, m.
     pub curvature_radius: f64,
+    /// Rough: tangent stiffness k_r at the force F_r, N/m.
+    pub stiffness: f64,
+    /// Rough: the force F_r, N.
+    pub stiffness_force: f64,
+    /// Rough: exponent n of the force in the stiffness.
+    pub stiffness_exponent: f64,
     /// Viscoelastic damping time, s.
     pub damping: f64,
     /// Voltage at which the constriction melts, V.
@@ -93,6 +99,8 @@ pub struct Second {
     pub gap: f64,
     /// Radius of the camber, m.
     pub curvature_radius: f64,
+    /// Rough: tangent stiffness at the force F_r of the first, N/m.
+    pub stiffness: f64,
     /// Viscoelastic damping time, s.
     pub damping: f64,
     /// Shortest make of an open contact, first or second, that counts, s.
@@ -252,6 +260,9 @@ impl Default for Scene {
             contact: Contact {
                 overtravel: start::CONTACT_OVERTRAVEL,
                 curvature_radius: start::CONTACT_CURVATURE_RADIUS,
+                stiffness: start::CONTACT_STIFFNESS,
+                stiffness_force: start::CONTACT_STIFFNESS_FORCE,
+                stiffness_exponent: start::CONTACT_STIFFNESS_EXPONENT,
                 damping: start::CONTACT_DAMPING,
                 melting_voltage: start::CONTACT_MELTING_VOLTAGE,
                 open_voltage: start::CONTACT_OPEN_VOLTAGE,
@@ -267,6 +278,7 @@ impl Default for Scene {
             second: Second {
                 gap: start::SECOND_GAP,
                 curvature_radius: start::SECOND_CURVATURE_RADIUS,
+                stiffness: start::SECOND_STIFFNESS,
                 damping: start::SECOND_DAMPING,
                 minimum_duration: start::SECOND_MINIMUM_DURATION,
             },

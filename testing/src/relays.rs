@@ -8,7 +8,9 @@ use relay_contact::error::{SceneError, StepError};
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{AxialForceKind, ContactLawKind, ExcitationKind, FrictionKind, RealOutput};
+use relay_contact::variables::{
+    AxialForceKind, ContactLawKind, ExcitationKind, FrictionKind, RealOutput, ResistanceKind,
+};
 
 use crate::scenes::{propped_mass, tip_stiffness};
 
@@ -139,6 +141,28 @@ impl Relay {
         if rng.u8(..3) == 0 {
             scene.friction.initial = uniform(rng, -1.0, 1.0);
         }
+        relay
+    }
+
+    /// The relay of a number with rough contacts, which are softer than spheres: alone, beside a second contact, or with
+    /// friction.
+    pub fn rough(number: u64) -> Self {
+        let mut relay = match number % 3 {
+            0 => Self::draw(number),
+            1 => Self::changeover(number),
+            _ => Self::friction(number),
+        };
+        let rng = &mut Rng::with_seed(number.rotate_left(32));
+        let scene = &mut relay.scene;
+        let bending = scene.beam.youngs_modulus * scene.beam.width * scene.beam.thickness.powi(3) / 12.0;
+        let tip = 3.0 * bending / scene.beam.length.powi(3);
+        let contact = &mut scene.contact;
+        contact.stiffness_force = tip * contact.overtravel.abs();
+        contact.stiffness = tip * logarithmic(rng, 10.0, 1e4);
+        contact.stiffness_exponent = uniform(rng, 0.0, 0.9);
+        scene.second.stiffness = contact.stiffness * logarithmic(rng, 0.1, 10.0);
+        scene.effects.contact_law = ContactLawKind::Rough;
+        scene.effects.resistance = ResistanceKind::Barber;
         relay
     }
 

@@ -2,7 +2,7 @@
 
 use relay_contact::error::StepError;
 use relay_contact::inputs::Inputs;
-use relay_contact::reference::{Generator, Hertz, Law, Linear, Mode, Model, Preload, State};
+use relay_contact::reference::{Generator, Law, Linear, Mode, Model, Power, Preload, State};
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 
@@ -88,7 +88,7 @@ impl Rig {
             .map(|(mode, at)| 0.5 * (at.v * at.v + mode.omega_squared * at.q * at.q))
             .sum();
         let contact = |d: f64| match model.law() {
-            Law::Hertz(hertz) => 0.4 * hertz.elastic_force(d) * d.max(0.0),
+            Law::Power(power) => power.elastic_force(d) * d.max(0.0) / (power.exponent + 1.0),
             Law::Linear(Linear {
                 stiffness,
                 offset,
@@ -147,5 +147,14 @@ pub fn stop(stiffness: f64) -> Law {
 
 /// Hertzian contact `k d^(3/2)` (N/m^1.5) with the damping time (s).
 pub fn hertz(coefficient: f64, damping: f64) -> Law {
-    Law::Hertz(Hertz { coefficient, damping })
+    power(coefficient, 1.5, damping)
+}
+
+/// Contact `c d^p` with the damping time (s); `c` in N/m^p.
+pub fn power(coefficient: f64, exponent: f64, damping: f64) -> Law {
+    Law::Power(Power {
+        coefficient,
+        exponent,
+        damping,
+    })
 }

@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
-use relay_contact::reference::{Hertz, Preload, Section, Spring};
+use relay_contact::reference::{Power, Preload, Section, Spring};
 use relay_contact::scene::Scene;
 
 use crate::FUNCTIONS;
@@ -12,7 +12,7 @@ use crate::FUNCTIONS;
 /// The equations in the total deflection `w = sum r_a (x/L)^2 P_a(2 x/L - 1)`.
 pub struct Reference {
     section: Section,
-    hertz: Hertz,
+    hertz: Power,
     pub preload: Preload,
     scene: Scene,
     pub inverse_mass: DMatrix<f64>,
@@ -37,7 +37,7 @@ impl Reference {
     pub fn with<const COUNT: usize>(scene: &Scene) -> Self {
         let spring = Spring::new(scene).unwrap();
         let section = spring.section;
-        let hertz = Hertz::new(&scene.contact);
+        let hertz = Power::hertz(&scene.contact);
         let preload = Preload::new(scene, &spring, &hertz, 0.0).unwrap();
         let Section {
             length,

@@ -11,7 +11,7 @@ use crate::changeover;
 
 /// Coefficients (N/m^1.5) and damping times (s) of both contacts.
 fn laws(scene: &Scene, model: &Model) -> [(f64, f64); 2] {
-    let Law::Hertz(hertz) = model.law() else { panic!() };
+    let Law::Power(hertz) = model.law() else { panic!() };
     let second = (scene.second.curvature_radius / scene.contact.curvature_radius).sqrt();
     [
         (hertz.coefficient, hertz.damping),

@@ -2,15 +2,17 @@
 
 use nalgebra::DVector;
 use relay_contact::scene::{Contact, Scene};
-use relay_contact::variables::AxialForceKind;
+use relay_contact::variables::{AxialForceKind, ContactLawKind};
 
 use super::elements::Cantilever;
 
 /// The equilibrium before any vibration.
 #[derive(Clone, Debug)]
 pub struct Equilibrium {
-    /// k_H of Hertz' law `F = k_H d^(3/2)`, N/m^1.5.
+    /// Factor `c` of the law `F = c d^p`, N/m^p.
     pub coefficient: f64,
+    /// Its exponent `p`.
+    pub exponent: f64,
     /// Contact force, N.
     pub force: f64,
     /// Indentation, m; negative: a gap.
@@ -26,7 +28,10 @@ pub struct Equilibrium {
 impl Equilibrium {
     /// That of a scene; none if the spring buckles.
     pub fn new(scene: &Scene, cantilever: &Cantilever) -> Option<Self> {
-        let coefficient = hertz(&scene.contact);
+        let (coefficient, exponent) = match scene.effects.contact_law {
+            ContactLawKind::Rough => rough(&scene.contact),
+            _ => (hertz(&scene.contact), 1.5),
+        };
         let axial = |y: f64| match scene.effects.axial_force {
             AxialForceKind::None => 0.0,
             AxialForceKind::Prescribed => scene.beam.axial_force,
@@ -37,6 +42,7 @@ impl Equilibrium {
         let (gravity, overtravel) = (scene.environment.gravity, scene.contact.overtravel);
         let mut found = Self {
             coefficient,
+            exponent,
             force: 0.0,
             indentation: 0.0,
             deflection: overtravel.max(0.0),
@@ -52,10 +58,11 @@ impl Equilibrium {
             let (by_force, by_gravity) = cantilever.compliances(&cantilever.solver(axial_force)?);
             let compliance = by_force[cantilever.tip];
             let overlap = overtravel - by_gravity[cantilever.tip] * gravity;
-            let indentation = indentation(coefficient, compliance, overlap);
-            let force = coefficient * indentation.max(0.0).powf(1.5);
+            let indentation = indentation((coefficient, exponent), compliance, overlap);
+            let force = coefficient * indentation.max(0.0).powf(exponent);
             found = Self {
                 coefficient,
+                exponent,
                 force,
                 indentation,
                 deflection: overtravel - indentation,
@@ -68,7 +75,8 @@ impl Equilibrium {
 
     /// Tangent stiffness of the contact at a force (N), N/m.
     pub fn contact_stiffness(&self, force: f64) -> f64 {
-        1.5 * self.coefficient.powf(2.0 / 3.0) * force.cbrt()
+        let p = self.exponent;
+        p * self.coefficient.powf(1.0 / p) * force.powf(1.0 - 1.0 / p)
     }
 }
 
@@ -78,8 +86,15 @@ fn hertz(contact: &Contact) -> f64 {
     4.0 / 3.0 / (plane[0] + plane[1]) * contact.curvature_radius.sqrt()
 }
 
-/// The root of `c k_H d^(3/2) + d = overlap`, by bisection down to neighbouring numbers; without overlap the gap.
-fn indentation(coefficient: f64, compliance: f64, overlap: f64) -> f64 {
+/// `F = F_r (d / d_r)^p` with `d_r = p F_r / k_r`.
+fn rough(contact: &Contact) -> (f64, f64) {
+    let p = 1.0 / (1.0 - contact.stiffness_exponent);
+    let depth = p * contact.stiffness_force / contact.stiffness;
+    (contact.stiffness_force * depth.powf(-p), p)
+}
+
+/// The root of `C c d^p + d = overlap`, `C` the compliance of the spring, by bisection down to neighbouring numbers; without overlap the gap.
+fn indentation((coefficient, exponent): (f64, f64), compliance: f64, overlap: f64) -> f64 {
     if overlap <= 0.0 {
         return overlap;
     }
@@ -89,7 +104,7 @@ fn indentation(coefficient: f64, compliance: f64, overlap: f64) -> f64 {
         if middle <= low || middle >= high {
             return middle;
         }
-        if compliance * coefficient * middle.powf(1.5) + middle > overlap {
+        if compliance * coefficient * middle.powf(exponent) + middle > overlap {
             high = middle;
         } else {
             low = middle;

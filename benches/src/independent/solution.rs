@@ -74,7 +74,7 @@ fn question(relay: &Relay, resolution: Resolution) -> Result<(String, f64), Fail
     };
     let stiffness = rest.contact_stiffness(rest.force);
     let law = match scene.effects.contact_law {
-        ContactLawKind::Hertz => [0.0, rest.coefficient, damping, 0.0],
+        ContactLawKind::Hertz | ContactLawKind::Rough => [0.0, rest.coefficient, damping, rest.exponent],
         ContactLawKind::Linearised => [1.0, stiffness, damping, rest.indentation - rest.force / stiffness],
         ContactLawKind::Bonded => return Err(refused("a bonded contact does not open")),
     };

@@ -1,7 +1,7 @@
 //! The publication's figures of frequencies, time histories and resistance.
 
 use anyhow::{Context, Result};
-use relay_contact::reference::ElectricalContact;
+use relay_contact::reference::{ElectricalContact, Law, Power};
 use relay_contact::scene::Scene;
 use relay_contact::variables::{AxialForceKind, ResistanceKind};
 
@@ -115,7 +115,8 @@ pub fn laws() -> Result<Figure> {
     let law = |kind| {
         let mut scene = Scene::default();
         scene.effects.resistance = kind;
-        let path = ElectricalContact::new(&scene).context("no resistance")?;
+        let path =
+            ElectricalContact::new(&scene, &Law::Power(Power::hertz(&scene.contact))).context("no resistance")?;
         Ok::<_, anyhow::Error>((0..=60).map(move |k| {
             let force = 0.01 * 100f64.powf(f64::from(k) / 60.0);
             (force, 1e3 / path.conductance(force))

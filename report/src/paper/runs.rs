@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use anyhow::{Context, Result};
 use relay_contact::inputs::Inputs;
-use relay_contact::reference::{self, ElectricalContact, Model};
+use relay_contact::reference::{self, ElectricalContact, Law, Model, Power};
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{AxialForceKind, ExcitationKind, RealOutput};
@@ -79,7 +79,9 @@ pub fn elastic_force(model: &Model, frequency: f64) -> f64 {
 
 /// Contact resistance of the specimen at a force (N), mOhm.
 pub fn resistance(force: f64) -> f64 {
-    ElectricalContact::new(&Scene::default()).map_or(f64::NAN, |path| 1e3 / path.conductance(force))
+    let scene = Scene::default();
+    let law = Law::Power(Power::hertz(&scene.contact));
+    ElectricalContact::new(&scene, &law).map_or(f64::NAN, |path| 1e3 / path.conductance(force))
 }
 
 /// The periodic motion under the published vibration.

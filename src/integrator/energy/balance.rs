@@ -120,7 +120,7 @@ fn subtract_friction(
     motion: &Trial<LONG>,
     along: &TangentialNodes<LONG>,
 ) {
-    let (Some(friction), Some(hertz), true) = (model.friction(), model.law.hertz(), state.closed) else {
+    let (Some(friction), Some(law), true) = (model.friction(), model.law.power(), state.closed) else {
         return;
     };
     let tip = motion.indentations.iter().zip(&motion.rates);
@@ -129,7 +129,7 @@ fn subtract_friction(
         let d = model.preload.indentation + d;
         let force = match state.tangential.phase.sign() {
             Some(sign) => sign * friction.coefficient * model.law.force(d, *d_rate),
-            None => friction.trial(hertz, d, v - state.tangential.slip, *rate).force,
+            None => friction.trial(law, d, v - state.tangential.slip, *rate).force,
         };
         *power -= (friction.preload + load - force) * rate;
     }

@@ -152,7 +152,7 @@ fn nodes<const S: usize, A: Arithmetic>(
         rates: motion.v_rate,
         ..TangentialNodes::ZERO
     };
-    let (Some(hertz), true) = (model.law.hertz(), state.closed) else {
+    let (Some(law), true) = (model.law.power(), state.closed) else {
         return nodes;
     };
     let Some(sign) = start.phase.sign() else {
@@ -164,7 +164,7 @@ fn nodes<const S: usize, A: Arithmetic>(
     let mut ahead = [0.0; S];
     for (ahead, (d, rate)) in ahead.iter_mut().zip(motion.d.iter().zip(&motion.d_rate)) {
         let d = model.preload.indentation + d;
-        *ahead = friction.limit_deflection(hertz, sign, d, *rate) - start.deflection();
+        *ahead = friction.limit_deflection(law, sign, d, *rate) - start.deflection();
     }
     let mut rates = [0.0; S];
     add_columns::<S, A>(&mut rates, &tangential.following, &ahead);

@@ -138,7 +138,7 @@ pub(super) fn sticking<const S: usize, A: Arithmetic>(
     guess: Nodal<S>,
     newton: f64,
 ) -> Option<Solved<S>> {
-    let hertz = model.law.hertz()?;
+    let law = model.law.power()?;
     let slip = state.tangential.slip;
     let (d0, f0, t0) = (model.preload.indentation, model.preload.force, friction.preload);
     let mut forces = guess;
@@ -164,13 +164,13 @@ pub(super) fn sticking<const S: usize, A: Arithmetic>(
         #[expect(clippy::indexing_slicing, reason = "there is a value for each node")]
         for k in 0..S {
             let d = d0 + motion.d[k];
-            let law = hertz.closed_branch(d, motion.d_rate[k]);
-            residual[k] = forces[k] + f0 - law.force;
-            (laws.stiffness[k], laws.damping[k]) = (law.stiffness, law.damping);
-            let trial = friction.trial(hertz, d, motion.v[k] - slip, motion.v_rate[k]);
+            let branch = law.closed_branch(d, motion.d_rate[k]);
+            residual[k] = forces[k] + f0 - branch.force;
+            (laws.stiffness[k], laws.damping[k]) = (branch.stiffness, branch.damping);
+            let trial = friction.trial(law, d, motion.v[k] - slip, motion.v_rate[k]);
             laws.by_d[k] = trial.by_indentation;
             laws.by_v[k] = -trial.stiffness;
-            laws.by_rate[k] = -trial.stiffness * hertz.damping;
+            laws.by_rate[k] = -trial.stiffness * law.damping;
             residual_along[k] = loads[k] + t0 - trial.force;
         }
         let rounding = MOTION_ROUNDING

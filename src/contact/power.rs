@@ -1,0 +1,356 @@
+//! Contact of bodies whose force is a power of the indentation, with viscoelastic dissipation: smooth spheres and rough
+//! surfaces.
+//!
+//! `F = max(0, c d^p + beta_c k(d) d')`, `k = p c d^(p-1)`, for `d > 0`, else 0. With `g = d + p beta_c d'` this is
+//! `F = c d^(p-1) g`: the contact is closed while both `d` and `g` are positive.
+//!
+//! Hertz: `p = 3/2`, `c = (4/3) E* sqrt(R)`. Machines 2025, 13(1), 52, eqs. (7), (8), and (14) with the stiffness updated at
+//! every instant, which is the law of Kuwabara and Kono (Jpn. J. Appl. Phys. 26 (1987) 1230).
+//!
+//! Rough: the stiffness grows with a power `n` of the elastic force, `dF/dd = k_r (F / F_r)^n`, as it does between rough
+//! surfaces. Integrated, `F = ((1 - n) k_r d / F_r^n)^(1/(1-n))`, so that `p = 1 / (1 - n)`: `n = 0` is a linear spring that can
+//! open, `n = 1/3` Hertz, `n` towards 1 the exponential law of J. A. Greenwood and J. B. P. Williamson (Proc. R. Soc. A 295
+//! (1966) 300).
+
+use crate::contact::Branch;
+use crate::scene::{Contact, Scene};
+use crate::variables::ContactLawKind;
+
+/// Exponent of the indentation in the law of Hertz, 1. Powers of it are square roots.
+const HERTZ: f64 = 1.5;
+
+/// Constants of the contact law.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Power {
+    /// Force at an indentation of 1 m, `c`, N/m^p. Hertz: k_H = (4/3) E* sqrt(R).
+    pub coefficient: f64,
+    /// Exponent of the indentation p, 1 or more.
+    pub exponent: f64,
+    /// Damping time beta_c, s.
+    pub damping: f64,
+}
+
+/// Reduced modulus E* of the two materials, Pa: `1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2`.
+pub fn reduced_modulus(contact: &Contact) -> f64 {
+    let compliance = |nu: f64, e: f64| (1.0 - nu * nu) / e;
+    1.0 / (compliance(contact.moving.poisson_ratio, contact.moving.youngs_modulus)
+        + compliance(contact.fixed.poisson_ratio, contact.fixed.youngs_modulus))
+}
+
+impl Power {
+    /// Smooth spheres: Hertz, from the two materials and the radius of curvature.
+    pub fn hertz(contact: &Contact) -> Self {
+        Self {
+            coefficient: 4.0 / 3.0 * reduced_modulus(contact) * contact.curvature_radius.sqrt(),
+            exponent: HERTZ,
+            damping: contact.damping,
+        }
+    }
+
+    /// Rough surfaces, from the tangent stiffness at a force, and how it grows with the force.
+    pub fn rough(contact: &Contact) -> Self {
+        let n = contact.stiffness_exponent;
+        let exponent = 1.0 / (1.0 - n);
+        Self {
+            coefficient: ((1.0 - n) * contact.stiffness * contact.stiffness_force.powf(-n)).powf(exponent),
+            exponent,
+            damping: contact.damping,
+        }
+    }
+
+    /// The contact of a scene before it is linearised, without damping if that is switched off.
+    pub(crate) fn of(scene: &Scene) -> Self {
+        let contact = Contact {
+            damping: if scene.effects.contact_damping {
+                scene.contact.damping
+            } else {
+                0.0
+            },
+            ..scene.contact
+        };
+        match scene.effects.contact_law {
+            ContactLawKind::Rough => Self::rough(&contact),
+            ContactLawKind::Hertz | ContactLawKind::Linearised | ContactLawKind::Bonded => Self::hertz(&contact),
+        }
+    }
+
+    /// The second contact of a scene, if it has one.
+    pub(crate) fn of_second(scene: &Scene) -> Option<Self> {
+        scene.effects.second_contact.then(|| {
+            let mut as_first = scene.clone();
+            as_first.contact = Contact {
+                curvature_radius: scene.second.curvature_radius,
+                stiffness: scene.second.stiffness,
+                damping: scene.second.damping,
+                ..scene.contact
+            };
+            Self::of(&as_first)
+        })
+    }
+
+    /// `d^(p-1)`, m^(p-1), of a positive indentation (m).
+    #[inline(always)]
+    fn slope(&self, d: f64) -> f64 {
+        if self.exponent == HERTZ {
+            d.sqrt()
+        } else {
+            d.powf(self.exponent - 1.0)
+        }
+    }
+
+    /// Elastic force at the indentation (m), N.
+    pub fn elastic_force(&self, indentation: f64) -> f64 {
+        let d = indentation.max(0.0);
+        self.coefficient * d * self.slope(d)
+    }
+
+    /// Tangent stiffness at the indentation (m), N/m; 0 while there is none.
+    pub fn tangent_stiffness(&self, indentation: f64) -> f64 {
+        if indentation > 0.0 {
+            self.exponent * self.coefficient * self.slope(indentation)
+        } else {
+            0.0
+        }
+    }
+
+    /// Indentation at which the elastic force is `force` (N), m.
+    pub fn indentation(&self, force: f64) -> f64 {
+        (force / self.coefficient).powf(1.0 / self.exponent)
+    }
+
+    /// Tangent stiffness as a power of the elastic force: factor (at 1 N, N/m) and exponent (1).
+    pub fn stiffness_by_force(&self) -> (f64, f64) {
+        let inverse = 1.0 / self.exponent;
+        (self.exponent * self.coefficient.powf(inverse), 1.0 - inverse)
+    }
+
+    /// Mean elastic force between two indentations (m), N: divided difference of the elastic energy
+    /// `c d^(p+1) / (p+1)`, free of cancellation if they are close.
+    pub fn mean_force(&self, a: f64, b: f64) -> f64 {
+        let (low, high) = (a.min(b), a.max(b));
+        if self.exponent != HERTZ {
+            let power = self.exponent + 1.0;
+            return self.coefficient / power * divided_power(power, low, high);
+        }
+        if high <= 0.0 {
+            return 0.0;
+        }
+        // In the square roots of the indentations it is a polynomial over a sum.
+        let y = high.sqrt();
+        if low <= 0.0 {
+            return 0.4 * self.coefficient * high * y * (high / (high - low));
+        }
+        let x = low.sqrt();
+        let sum = (high * high + low * low) + (high + low) * (x * y) + high * low;
+        0.4 * self.coefficient * (sum / (x + y))
+    }
+
+    /// Elastic energy at `d0 + deviation` above its tangent at `d0` (m), J; never negative, and free of cancellation for
+    /// small deviations.
+    pub fn energy_above_tangent(&self, d0: f64, deviation: f64) -> f64 {
+        let d = d0 + deviation;
+        if self.exponent != HERTZ {
+            return self.energy_of_power(d0, deviation);
+        }
+        // In the square roots of the indentations it is a sum of positive terms.
+        let (x, y) = (d0.max(0.0).sqrt(), d.max(0.0).sqrt());
+        self.coefficient
+            * if d0 <= 0.0 {
+                0.4 * y.powi(5)
+            } else if d <= 0.0 {
+                x.powi(3) * (0.6 * d0 - d)
+            } else {
+                let difference = deviation / (x + y);
+                difference * difference * (0.4 * y.powi(3) + 0.8 * y * y * x + 1.2 * y * x * x + 0.6 * x.powi(3))
+            }
+    }
+
+    /// [`Power::energy_above_tangent`] for any exponent: `c d_0^(p+1) ((1 + r)^(p+1) - 1 - (p+1) r) / (p+1)` with the relative
+    /// deviation `r`, by the binomial series where the difference would cancel.
+    fn energy_of_power(&self, d0: f64, deviation: f64) -> f64 {
+        let d = d0 + deviation;
+        let power = self.exponent + 1.0;
+        let energy = |d: f64| self.elastic_force(d) * d.max(0.0) / power;
+        if d0 <= 0.0 {
+            return energy(d);
+        }
+        let r = deviation / d0;
+        if r.abs() > 0.1 {
+            return (energy(d) - energy(d0) - self.elastic_force(d0) * deviation).max(0.0);
+        }
+        let (mut term, mut sum) = (power * r, 0.0);
+        for k in 2..40 {
+            let k = f64::from(k);
+            term *= r * (power + 1.0 - k) / k;
+            sum += term;
+            if term.abs() <= f64::EPSILON * sum.abs() {
+                break;
+            }
+        }
+        (energy(d0) * sum).max(0.0)
+    }
+
+    /// Mean tangent stiffness between two indentations (m), N/m: divided difference of the elastic force.
+    pub fn mean_stiffness(&self, a: f64, b: f64) -> f64 {
+        let (low, high) = (a.min(b), a.max(b));
+        if self.exponent != HERTZ {
+            return self.coefficient * divided_power(self.exponent, low, high);
+        }
+        if high <= 0.0 {
+            return 0.0;
+        }
+        let y = high.sqrt();
+        if low <= 0.0 {
+            return self.coefficient * y * (high / (high - low));
+        }
+        let x = low.sqrt();
+        self.coefficient * ((high + low + x * y) / (x + y))
+    }
+
+    /// `min(d, g)`, m: positive while the contact is closed.
+    pub fn engagement(&self, d: f64, rate: f64) -> f64 {
+        d.min(d + self.exponent * self.damping * rate)
+    }
+
+    /// The closed branch, continued smoothly beyond opening (the force may be negative), for steps in which the contact
+    /// opens.
+    #[inline(always)]
+    pub fn closed_branch(&self, d: f64, rate: f64) -> Branch {
+        if d <= 0.0 {
+            return Branch {
+                force: 0.0,
+                stiffness: 0.0,
+                damping: 0.0,
+            };
+        }
+        let slope = self.coefficient * self.slope(d);
+        let g = d + self.exponent * self.damping * rate;
+        Branch {
+            force: slope * g,
+            stiffness: slope * (1.0 + (self.exponent - 1.0) * g / d),
+            damping: self.exponent * self.damping * slope,
+        }
+    }
+}
+
+/// `(b^power - a^power) / (b - a)` of two lengths (m) in ascending order, of which negative ones count as powers of zero.
+fn divided_power(power: f64, a: f64, b: f64) -> f64 {
+    if b <= 0.0 {
+        return 0.0;
+    }
+    // With s = (b - a) / b: b^(power-1) (1 - (1-s)^power) / s, which tends to power as s vanishes.
+    let s = (b - a.max(0.0)) / b;
+    let ratio = if s > 0.0 {
+        -(power * (-s).ln_1p()).exp_m1() / s
+    } else {
+        power
+    };
+    let inside = if a < 0.0 { b / (b - a) } else { 1.0 };
+    b.powf(power - 1.0) * ratio * inside
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    /// Laws of several exponents through the same point: 1e5 N/m at 0.1 N.
+    fn laws() -> impl Iterator<Item = (f64, Power)> {
+        [0.0, 0.1, 1.0 / 3.0, 0.54, 0.75, 0.9].into_iter().map(|n| {
+            let mut contact = Scene::default().contact;
+            (contact.stiffness, contact.stiffness_force) = (1e5, 0.1);
+            contact.stiffness_exponent = n;
+            (n, Power::rough(&contact))
+        })
+    }
+
+    fn close(a: f64, b: f64, relative: f64) {
+        assert!((a - b).abs() <= relative * b.abs(), "{a:e} and {b:e}");
+    }
+
+    #[test]
+    fn the_stiffness_is_the_given_power_of_the_force() {
+        for (n, law) in laws() {
+            for force in [1e-6, 0.1, 3.0] {
+                let d = law.indentation(force);
+                close(law.elastic_force(d), force, 1e-13);
+                close(law.tangent_stiffness(d), 1e5 * (force / 0.1_f64).powf(n), 1e-13);
+                let (factor, exponent) = law.stiffness_by_force();
+                close(factor * force.powf(exponent), law.tangent_stiffness(d), 1e-13);
+                // Indentation by the integral of dF / k: F / ((1 - n) k).
+                close(d, force / ((1.0 - n) * law.tangent_stiffness(d)), 1e-13);
+            }
+        }
+    }
+
+    #[test]
+    fn a_third_is_hertz() {
+        let contact = Scene::default().contact;
+        let hertz = Power::hertz(&contact);
+        let mut rough = contact;
+        rough.stiffness_exponent = 1.0 / 3.0;
+        // k_r = (6 E*^2 R F_r)^(1/3).
+        let modulus = reduced_modulus(&contact);
+        rough.stiffness = (6.0 * modulus * modulus * contact.curvature_radius * contact.stiffness_force).cbrt();
+        let rough = Power::rough(&rough);
+        close(rough.coefficient, hertz.coefficient, 1e-14);
+        close(rough.exponent, 1.5, 1e-15);
+        // The general formulas beside those in square roots.
+        let general = Power {
+            exponent: 1.5 + 1e-15,
+            ..hertz
+        };
+        for (a, b) in [
+            (-1e-8, 5e-8),
+            (0.0, 5e-8),
+            (1e-8, 5e-8),
+            (5e-8, 5.000_000_1e-8),
+            (4e-8, 4e-8),
+        ] {
+            close(general.mean_force(a, b), hertz.mean_force(a, b), 1e-13);
+            close(general.mean_stiffness(a, b), hertz.mean_stiffness(a, b), 1e-13);
+            close(
+                general.energy_above_tangent(a, b - a),
+                hertz.energy_above_tangent(a, b - a),
+                1e-13,
+            );
+            close(
+                general.energy_above_tangent(b, a - b),
+                hertz.energy_above_tangent(b, a - b),
+                1e-13,
+            );
+        }
+        let (a, b) = (general.closed_branch(4e-8, -1e-4), hertz.closed_branch(4e-8, -1e-4));
+        close(a.force, b.force, 1e-13);
+        close(a.stiffness, b.stiffness, 1e-13);
+        close(a.damping, b.damping, 1e-13);
+    }
+
+    #[test]
+    fn energy_and_divided_differences_are_integrals_of_the_force() {
+        for (_, law) in laws() {
+            let d0 = law.indentation(0.1);
+            for (a, b) in [(-0.5, 0.7), (0.0, 1.0), (0.9, 1.0), (1.0, 1.3), (1.0, 2.5), (1.0, -1.0)] {
+                let (a, b) = (a * d0, b * d0);
+                // By Gauss-Legendre over the closed part, whose smooth powers 20 points integrate to rounding, but for
+                // those that begin at zero.
+                let closed = |f: &dyn Fn(f64) -> f64| {
+                    let (from, to) = (a.max(0.0), b.max(0.0));
+                    let (half, middle) = (0.5 * (to - from), f64::midpoint(from, to));
+                    let pairs = crate::math::legendre::gauss(20);
+                    pairs.map(|(x, w)| w * half * f(middle + half * x)).sum::<f64>()
+                };
+                let tolerance = if a <= 0.0 || b <= 0.0 { 1e-4 } else { 1e-12 };
+                let force = |d: f64| law.elastic_force(d);
+                close(law.mean_force(a, b), closed(&force) / (b - a), tolerance);
+                close(law.mean_stiffness(a, b), (force(b) - force(a)) / (b - a), 1e-12);
+                let above = closed(&force) - force(a) * (b - a);
+                close(law.energy_above_tangent(a, b - a), above, tolerance.max(1e-11));
+            }
+            // Small deviations: k r^2 / 2.
+            let deviation = 1e-7 * d0;
+            let parabola = 0.5 * law.tangent_stiffness(d0) * deviation * deviation;
+            close(law.energy_above_tangent(d0, deviation), parabola, 1e-5);
+        }
+    }
+}
