@@ -1,6 +1,8 @@
 //! Errors of setting up a scene and of integrating it. Every message names the variable, its value and what is
 //! allowed, so that it can be shown to the user unchanged.
 
+use std::ops::Range;
+
 use crate::variables::Variable;
 
 /// A scene that cannot be simulated.
@@ -266,6 +268,18 @@ pub enum Remark {
         bent: f64,
         /// What the linear beam misses of the force, %.
         stiffer: f64,
+    },
+    /// Friction between contacts that are much softer or much stiffer at first touch than those of Hertz.
+    #[error(
+        "effects.friction = Coulomb with contact.stiffnessExponent = {}: where such a contact opens and closes, the tolerance is \
+         not promised for its friction, nor does solver.forceError tell; from {} to {} it is",
+        number(*exponent), number(range.start), number(range.end)
+    )]
+    FrictionAtTouch {
+        /// `contact.stiffnessExponent`.
+        exponent: f64,
+        /// Those for which the tolerance is promised.
+        range: Range<f64>,
     },
     /// Modes that end below what a blow excites.
     #[error(

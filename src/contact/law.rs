@@ -76,6 +76,8 @@ impl Law {
                 coefficient: a.coefficient.max(b.coefficient),
                 exponent: a.exponent,
                 damping: a.damping.max(b.damping),
+                traces: a.traces.min(b.traces),
+                least: a.least.min(b.least),
             }),
             _ => *self,
         }
@@ -90,6 +92,11 @@ impl Law {
     pub fn without_pull(&self, force: f64) -> f64 {
         // Not `max`, which would make zero of NaN: an opening that never was.
         if force < 0.0 && !self.never_opens() { 0.0 } else { force }
+    }
+
+    /// Force that counts as none where the contact opens, N.
+    pub(crate) fn traces(&self) -> f64 {
+        self.power().map_or(0.0, |power| power.traces)
     }
 
     /// Static indentation beyond first touch under `force` (N), m.

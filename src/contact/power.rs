@@ -28,6 +28,10 @@ pub struct Power {
     pub exponent: f64,
     /// Damping time beta_c, s.
     pub damping: f64,
+    /// Force that counts as none where the contact opens, N: [`Power::with_traces`].
+    pub traces: f64,
+    /// Indentation up to which the contact counts as open, m: [`Power::with_traces`].
+    pub least: f64,
 }
 
 /// Reduced modulus E* of the two materials, Pa: `1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2`.
@@ -44,6 +48,8 @@ impl Power {
             coefficient: 4.0 / 3.0 * reduced_modulus(contact) * contact.curvature_radius.sqrt(),
             exponent: HERTZ,
             damping: contact.damping,
+            traces: 0.0,
+            least: 0.0,
         }
     }
 
@@ -55,6 +61,8 @@ impl Power {
             coefficient: ((1.0 - n) * contact.stiffness * contact.stiffness_force.powf(-n)).powf(exponent),
             exponent,
             damping: contact.damping,
+            traces: 0.0,
+            least: 0.0,
         }
     }
 
@@ -88,6 +96,21 @@ impl Power {
         })
     }
 
+    /// With a force (N) that counts as none where the contact opens, and one that is mere rounding (N). A contact softer than
+    /// that of Hertz parts so gradually that its force stays below the error allowed for long, where a computed force changes
+    /// its sign at random, and then below rounding, where nothing tells closed from open.
+    #[must_use]
+    pub(crate) fn with_traces(self, traces: f64, rounding: f64) -> Self {
+        if self.exponent <= HERTZ {
+            return self;
+        }
+        Self {
+            traces,
+            least: self.indentation(rounding),
+            ..self
+        }
+    }
+
     /// `d^(p-1)`, m^(p-1), of a positive indentation (m).
     #[inline(always)]
     fn slope(&self, d: f64) -> f64 {
@@ -108,6 +131,15 @@ impl Power {
     pub fn tangent_stiffness(&self, indentation: f64) -> f64 {
         if indentation > 0.0 {
             self.exponent * self.coefficient * self.slope(indentation)
+        } else {
+            0.0
+        }
+    }
+
+    /// Force (N) as the contact touches at a velocity (m/s): a jump where the stiffness does not vanish at first touch.
+    pub fn force_at_touch(&self, rate: f64) -> f64 {
+        if self.exponent == 1.0 {
+            self.coefficient * self.damping * rate.max(0.0)
         } else {
             0.0
         }
@@ -207,9 +239,9 @@ impl Power {
         self.coefficient * ((high + low + x * y) / (x + y))
     }
 
-    /// `min(d, g)`, m: positive while the contact is closed.
+    /// The lesser of `d`, above the least, and `g`, m: positive while the contact is closed.
     pub fn engagement(&self, d: f64, rate: f64) -> f64 {
-        d.min(d + self.exponent * self.damping * rate)
+        (d - self.least).min(d + self.exponent * self.damping * rate)
     }
 
     /// The closed branch, continued smoothly beyond opening (the force may be negative), for steps in which the contact

@@ -159,7 +159,14 @@ impl Relay {
         let contact = &mut scene.contact;
         contact.stiffness_force = tip * contact.overtravel.abs();
         contact.stiffness = tip * logarithmic(rng, 10.0, 1e4);
-        contact.stiffness_exponent = uniform(rng, 0.0, 0.9);
+        // With friction the tolerance is not promised outside this range.
+        let rubs = scene.effects.friction != FrictionKind::None;
+        let (least, most) = if rubs { (0.1, 0.6) } else { (0.0, 0.9) };
+        let linear = rng.u8(..8) == 0 && !rubs;
+        contact.stiffness_exponent = if linear { 0.0 } else { uniform(rng, least, most) };
+        // The indentation at that force, beyond which the second contact lies.
+        let depth = contact.stiffness_force / ((1.0 - contact.stiffness_exponent) * contact.stiffness);
+        scene.second.gap += 1.5 * depth;
         scene.second.stiffness = contact.stiffness * logarithmic(rng, 0.1, 10.0);
         scene.effects.contact_law = ContactLawKind::Rough;
         scene.effects.resistance = ResistanceKind::Barber;

@@ -156,5 +156,7 @@ pub fn power(coefficient: f64, exponent: f64, damping: f64) -> Law {
         coefficient,
         exponent,
         damping,
+        traces: 0.0,
+        least: 0.0,
     })
 }

@@ -212,7 +212,8 @@ impl Integration<'_> {
             closes: closed,
             second: self.state.mirrored,
         });
-        self.state.force = 0.0;
+        let touch = self.model.law.power().filter(|_| closed);
+        self.state.force = touch.map_or(0.0, |law| law.force_at_touch(self.state.indentation_rate));
         self.state.last_step = 0.0;
         self.state.short_step = if closed {
             self.state.last_kink = self.state.time;

@@ -32,7 +32,8 @@ impl Integration<'_> {
     {
         let preload = self.model.preload;
         let model = self.model;
-        let start = self.state.force;
+        let traces = model.law.traces();
+        let start = self.state.force + traces;
         let collocation = self.collocation::<S>();
         let open = |d: f64, rate: f64| model.engagement(d, rate) <= 0.0;
         let node = collocation
@@ -43,7 +44,7 @@ impl Integration<'_> {
             .map(|(node, _)| *node);
         let sure = node.or_else(|| open(trial.indentation, trial.rate).then_some(1.0));
 
-        let forces = trial.forces.map(|force| preload.force + force);
+        let forces = trial.forces.map(|force| preload.force + traces + force);
         if sure.is_none() && (model.law.never_opens() || !Collocation::comes_near_zero(start, &forces)) {
             return None;
         }
