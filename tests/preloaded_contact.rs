@@ -10,8 +10,8 @@
 use std::f64::consts::TAU;
 
 use relay_contact::inputs::Inputs;
-use relay_contact::reference::{Generator, Law, Mode, Preload};
-use testing::rig::{Rig, compose, hertz};
+use relay_contact::reference::{Generator, Mode, Preload};
+use testing::rig::{Rig, compose, power};
 use testing::scenes::shaken;
 
 /// Preload of the specimen (N), its stiffness there (N/m) and a mass of the order of its rivet (kg).
@@ -26,20 +26,13 @@ fn units() -> (f64, f64) {
     ((MASS / STIFFNESS).sqrt(), FORCE / STIFFNESS)
 }
 
-/// A law whose force grows with a power of the indentation.
-struct Power {
-    exponent: f64,
-    law: fn(damping: f64) -> Law,
-}
-
-const HERTZ: Power = Power {
-    exponent: 1.5,
-    law: |damping| hertz(FORCE * (1.5 * FORCE / STIFFNESS).powf(-1.5), damping),
-};
+/// Exponents of the force: of spheres, and of a stiffness that grows with the force to the power 0.54.
+const HERTZ: f64 = 1.5;
+const ROUGH: f64 = 1.0 / (1.0 - 0.54);
 
 /// The mass at rest on the contact, with the damping ratios of the mass and of the contact, under a sine of this frequency,
 /// level and phase.
-fn rig(power: &Power, ratios: [f64; 2], [frequency, level, phase]: [f64; 3]) -> Rig {
+fn rig(exponent: f64, ratios: [f64; 2], [frequency, level, phase]: [f64; 3]) -> Rig {
     let (time, length) = units();
     let mut scene = shaken(level * FORCE / MASS, frequency / (TAU * time));
     scene.excitation.phase = phase;
@@ -50,11 +43,12 @@ fn rig(power: &Power, ratios: [f64; 2], [frequency, level, phase]: [f64; 3]) -> 
         participation: MASS.sqrt(),
         rotation: 0.0,
     };
-    let law = (power.law)(2.0 * ratios[1] * time);
+    let coefficient = FORCE * (exponent * length).powf(-exponent);
+    let law = power(coefficient, exponent, 2.0 * ratios[1] * time);
     Rig::new(compose(&[mode], law, 0.0, TOLERANCE, FORCE).with(|parts| {
         parts.preload = Preload {
             force: FORCE,
-            indentation: power.exponent * length,
+            indentation: exponent * length,
             contact_stiffness: STIFFNESS,
             deflection: 0.0,
             axial_force: 0.0,
@@ -87,13 +81,25 @@ const STEADY_HERTZ: [Steady; 8] = [
     Steady(0.02, 0.0, 1.8, 0.6, 2.0, [1.654_624_253, 1.804_486_397], [-0.437_262_1, 0.371_801_7, 0.338_962_1]),
 ];
 
+#[rustfmt::skip]
+const STEADY_ROUGH: [Steady; 8] = [
+    Steady(0.05, 0.0, 0.9, 0.05, 1.0, [0.495_713_388, 0.217_527_894], [-0.007_846_4, 0.240_875_3, 0.0]),
+    Steady(0.05, 0.0, 0.9, 0.3, 1.0, [2.801_450_859, 2.131_845_403], [-0.759_127_2, 2.218_791_0, 0.285_282_8]),
+    Steady(0.0, 0.05, 0.9, 0.3, 1.0, [2.947_091_797, 2.246_360_853], [-0.788_706_3, 2.260_196_3, 0.331_876_3]),
+    Steady(0.05, 0.0, 0.7, 0.4, 1.0, [2.881_713_298, 3.390_583_917], [-2.520_251_4, 4.177_449_6, 0.580_582_6]),
+    Steady(0.0, 0.05, 0.7, 0.4, 1.0, [3.263_390_667, 3.700_531_842], [-2.717_657_5, 4.396_721_4, 0.615_945_7]),
+    Steady(0.05, 0.0, 1.02, 0.45, 1.0, [3.042_959_968, 1.856_011_124], [-0.462_062_8, 1.768_933_1, 0.0]),
+    Steady(0.05, 0.0, 0.5, 0.7, 1.0, [0.608_949_920, 1.341_973_995], [-0.204_126_8, 0.847_301_5, 0.0]),
+    Steady(0.02, 0.0, 1.8, 0.6, 2.0, [1.908_092_071, 1.942_601_164], [-0.607_118_1, 0.410_999_6, 0.119_581_9]),
+];
+
 /// The balance is right to its last digit; with damping in the contact, whose force has a kink, only to 2e-6: half of the
 /// harmonics move it by 1.2e-6. The component's error is of the order of its tolerance over the damping ratio.
-fn steady(power: &Power, motions: &[Steady]) {
+fn steady(exponent: f64, motions: &[Steady]) {
     const SAMPLES: u32 = 512;
     let (time, length) = units();
     for Steady(z, z_c, frequency, level, periods, [phase, rate], expected) in motions {
-        let mut rig = rig(power, [*z, *z_c], [*frequency, *level, *phase]);
+        let mut rig = rig(exponent, [*z, *z_c], [*frequency, *level, *phase]);
         launch(&mut rig, *rate);
         let period = periods * TAU * time / frequency;
         // A motion that is not stable would have left by now.
@@ -126,7 +132,8 @@ fn steady(power: &Power, motions: &[Steady]) {
 
 #[test]
 fn steady_motions_are_those_of_the_harmonic_balance() {
-    steady(&HERTZ, &STEADY_HERTZ);
+    steady(HERTZ, &STEADY_HERTZ);
+    steady(ROUGH, &STEADY_ROUGH);
 }
 
 /// Frequency, the level up to which a motion that grew from a weak excitation keeps contact, and of the motion there phase of
@@ -141,10 +148,10 @@ const LEVELS_HERTZ: [[f64; 4]; 5] = [
 ];
 
 /// The balance is right to 2e-6 here, as it finds the lowest of 2048 samples of a period.
-fn contact_is_lost(power: &Power, levels: &[[f64; 4]]) {
+fn contact_is_lost(exponent: f64, levels: &[[f64; 4]]) {
     for &[frequency, level, phase, rate] in levels {
         for (factor, opens) in [(1.0 - 1e-5, false), (1.0 + 1e-5, true)] {
-            let mut rig = rig(power, [0.05, 0.0], [frequency, factor * level, phase]);
+            let mut rig = rig(exponent, [0.05, 0.0], [frequency, factor * level, phase]);
             launch(&mut rig, rate);
             let start = 60.0 * TAU * units().0 / frequency;
             rig.run_to(&Inputs::default(), start).unwrap();
@@ -156,7 +163,7 @@ fn contact_is_lost(power: &Power, levels: &[[f64; 4]]) {
 
 #[test]
 fn contact_is_lost_at_the_level_of_the_harmonic_balance() {
-    contact_is_lost(&HERTZ, &LEVELS_HERTZ);
+    contact_is_lost(HERTZ, &LEVELS_HERTZ);
 }
 
 /// Rate of the free motion as it passes the preload, and its period. In the third it just keeps contact.
@@ -168,12 +175,20 @@ const FREE_HERTZ: [[f64; 2]; 5] = [
     [4.242_640_687_1, 11.417_113_694],
 ];
 
+const FREE_ROUGH: [[f64; 2]; 5] = [
+    [0.172_567_756_9, 6.288_377_661],
+    [0.862_838_784_7, 6.422_177_627],
+    [1.725_677_568_5, 7.007_611_039],
+    [2.440_476_622_8, 8.032_996_108],
+    [5.457_071_626_1, 13.388_879_146],
+];
+
 /// After a hundred periods the deviation is zero again. The digits given leave 5e-8 of a time unit there; the integrator's
 /// error in the period is of the order of the tolerance, because energy is kept.
-fn free(power: &Power, motions: &[[f64; 2]]) {
+fn free(exponent: f64, motions: &[[f64; 2]]) {
     let (time, length) = units();
     for &[rate, period] in motions {
-        let mut rig = rig(power, [0.0, 0.0], [1.0, 0.0, 0.0]);
+        let mut rig = rig(exponent, [0.0, 0.0], [1.0, 0.0, 0.0]);
         launch(&mut rig, rate);
         rig.run_to(&Inputs::default(), 100.0 * period * time).unwrap();
         let late = rig.state.indentation / length / rate;
@@ -186,26 +201,32 @@ fn free(power: &Power, motions: &[[f64; 2]]) {
 
 #[test]
 fn the_period_of_the_free_motion_grows_with_its_energy() {
-    free(&HERTZ, &FREE_HERTZ);
+    free(HERTZ, &FREE_HERTZ);
+    free(ROUGH, &FREE_ROUGH);
 }
 
 /// Variance of the rate under white noise, and what follows from it: standard deviation of the force, share of the time in
 /// which the contact is open, and losses of contact per unit of time.
 const NOISE_HERTZ: [(f64, [f64; 3]); 2] = [
-    (0.3, [0.535_311, 0.010_722, 0.007_809]),
+    (0.5, [0.676_496, 0.045_261, 0.025_536]),
     (1.0, [0.909_326, 0.150_297, 0.059_960]),
+];
+
+const NOISE_ROUGH: [(f64, [f64; 3]); 2] = [
+    (0.5, [0.682_131, 0.013_880, 0.007_831]),
+    (1.0, [0.930_239, 0.083_385, 0.033_266]),
 ];
 
 /// White noise, held for a fortieth of a period, so that its density at the resonance is lower by 0.2 %. The means of a
 /// hundred stretches tell the standard error. The mean force is the preload, whatever the noise.
-fn noise(power: &Power, levels: &[(f64, [f64; 3])]) {
+fn noise(exponent: f64, levels: &[(f64, [f64; 3])]) {
     const STRETCHES: u32 = 100;
-    const STEPS: u32 = 12_000;
+    const STEPS: u32 = 6000;
     const RATIO: f64 = 0.1;
     let (time, _) = units();
     let step = TAU / 40.0;
     for (heat, expected) in levels {
-        let mut rig = rig(power, [RATIO, 0.0], [1.0, 0.0, 0.0]);
+        let mut rig = rig(exponent, [RATIO, 0.0], [1.0, 0.0, 0.0]);
         let mut random = fastrand::Rng::with_seed(8);
         let mut normal = || (-2.0 * (1.0 - random.f64()).ln()).sqrt() * (TAU * random.f64()).cos();
         let size = (4.0 * RATIO * heat / step).sqrt() * FORCE / MASS;
@@ -239,12 +260,13 @@ fn noise(power: &Power, levels: &[(f64, [f64; 3])]) {
                 deviation < 4.0 * error + 0.002 * exact,
                 "{heat} {k}: {mean} +- {error} against {exact}"
             );
-            assert!(error < 0.05 * exact, "{heat} {k}: {mean} +- {error}");
+            assert!(error < 0.08 * exact, "{heat} {k}: {mean} +- {error}");
         }
     }
 }
 
 #[test]
 fn under_white_noise_the_force_has_the_stationary_distribution() {
-    noise(&HERTZ, &NOISE_HERTZ);
+    noise(HERTZ, &NOISE_HERTZ);
+    noise(ROUGH, &NOISE_ROUGH);
 }
