@@ -13,6 +13,7 @@ from relay_contact.scene import Scene, run
 
 EXAMPLES = """examples:
   relay-contact list                                   what comes along
+  relay-contact list --relay paper                     is its contact smooth enough for Hertz's law?
   relay-contact list --variables excitation            variables by name, with unit and start value
   relay-contact run paper-1khz                         writes paper-1khz.csv and paper-1khz.png
   relay-contact run chatter-41g --set excitation.frequency=500 --output contact.voltage
@@ -35,7 +36,7 @@ or set a parameter of the component for this measurement: # chatter.minimumDurat
 
 
 def list_all(given: argparse.Namespace) -> None:
-    """Print what comes along, or variables."""
+    """Print what comes along and what the contact of a relay is like, or variables."""
     if given.variables is not None:
         list_variables(Component(given.fmu), given.variables)
         return
@@ -47,6 +48,13 @@ def list_all(given: argparse.Namespace) -> None:
         width = max(map(len, files), default=0)
         for name, path in files.items():
             print(f"  {name:{width}}  {read_toml(path).get('title', '')}")
+    if given.relay:
+        from relay_contact.qualification.relay import Relay
+        from relay_contact.qualification.roughness import told
+
+        component = Component(given.fmu)
+        relay = Relay.read(given.relay, component)
+        print(f"\n{relay.title}:", *told(component, relay), sep="\n  ")
 
 
 def list_variables(component: Component, text: str) -> None:
@@ -177,6 +185,11 @@ def line() -> argparse.ArgumentParser:
     one.set_defaults(act=list_all)
     add = one.add_argument
     add("--variables", nargs="?", const="", metavar="TEXT", help="variables with TEXT in their names, or all")
+    add(
+        "--relay",
+        metavar="FILE",
+        help="a relay: the size of its contact, and whether it is smooth enough for Hertz's law",
+    )
 
     about = "Run a scene; write its outputs as a table (CSV, SI units) and as a figure (PNG)."
     one = commands.add_parser("run", parents=[common], description=about, help="run a scene: table and figure")

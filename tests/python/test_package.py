@@ -98,6 +98,28 @@ def test_the_command_explains_what_is_wrong(capsys: pytest.CaptureFixture[str]) 
     assert "effects.contactLaw (parameter Hertz) [Hertz, Linearised, Bonded]" in capsys.readouterr().out
 
 
+def test_the_command_tells_whether_a_contact_is_smooth_enough_for_hertz(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """By hand: 1/E* = 0.8911 / 86 GPa + 0.8844 / 81.92 GPa, and a^3 = 3 F R / (4 E*) with 0.152 N and 21.77 mm."""
+    own = tmp_path / "own.toml"
+    for roughness, said in (
+        ("", "no roughness given: Hertz's law holds up to 3.2 nm rms"),
+        ("[contact]\nroughness = 0.5e-6", "number 7.76 for 0.5 um rms: Hertz's law does not hold"),
+        ("[contact]\nroughness = 3e-9", "number 0.0466 for 0.003 um rms: Hertz's law holds"),
+        ("[parameters]\ncontact.overtravel = -1e-4", "open at rest"),
+    ):
+        own.write_text(roughness)
+        assert main(["list", "--relay", str(own)]) == 0
+        printed = capsys.readouterr().out
+        assert said in printed
+        assert "relays:" in printed
+        assert ("15.2 cN" in printed) == ("radius 37.4 um, indented by 64.4 nm" in printed) == ("open" not in said)
+    own.write_text('[contact]\nroughness = "0.5 um"')
+    assert main(["list", "--relay", str(own)]) == 1
+    assert 'own.toml:2: contact.roughness = "0.5 um": not allowed' in capsys.readouterr().err
+
+
 def test_the_notebook_runs(capsys: pytest.CaptureFixture[str]) -> None:
     mpl.use("Agg")
     notebook = nbformat.read(ROOT / "examples/relay_contact.ipynb", as_version=4)

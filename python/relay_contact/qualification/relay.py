@@ -9,7 +9,20 @@ from pydantic import Field
 from relay_contact.component import Component, Values, nearest
 from relay_contact.files import RelayContactError, by_name, found, named
 from relay_contact.qualification.standards import Contacts, Monitor
-from relay_contact.schema import Nested, Place, Share, Table, at, dotted, exact, leaves, read, refused, variables
+from relay_contact.schema import (
+    Nested,
+    Place,
+    Positive,
+    Share,
+    Table,
+    at,
+    dotted,
+    exact,
+    leaves,
+    read,
+    refused,
+    variables,
+)
 from relay_contact.spring import PREFIX, known
 
 OF_THE_TEST = ("excitation.", "effects.excitation", "chatter.", "effects.chatter", "effects.extremes", "second.minimum")
@@ -33,6 +46,12 @@ class Rival(Table):
     uncertainty: Share = 0.0
 
 
+class Surfaces(Table):
+    """What is known of the surfaces of the contacts."""
+
+    roughness: Positive | None = None
+
+
 class Content(Table):
     """Contents of the file of a relay."""
 
@@ -42,6 +61,7 @@ class Content(Table):
     uncertainty: Nested
     model: Annotated[list[Rival], Field(min_length=1, default_factory=lambda: [Rival(parameters={})])]
     monitor: Monitor = Monitor()
+    contact: Surfaces = Surfaces()
 
 
 @dataclass(frozen=True)
@@ -67,6 +87,8 @@ class Relay:
     models: tuple[Model, ...]
     """The first is that of figures and tables; a relay passes only by all of them."""
     monitor: Monitor
+    roughness: float | None = None
+    """Root mean square of the heights of both surfaces together, m."""
 
     @classmethod
     def read(cls, relay: str | Path, component: Component) -> "Relay":
@@ -98,7 +120,8 @@ class Relay:
             with at(path, *place):
                 for values in positions.values():
                     blow(component, {**values, **changed})
-        return cls(content.title or path.stem, positions, uncertainty, tuple(models.values()), content.monitor)
+        title, roughness = content.title or path.stem, content.contact.roughness
+        return cls(title, positions, uncertainty, tuple(models.values()), content.monitor, roughness)
 
 
 def check_monitor(component: Component, relay: Relay, contacts: Contacts) -> None:

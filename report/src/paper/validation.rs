@@ -29,8 +29,9 @@ fn text() -> Result<String> {
     })?;
     Ok(format!(
         "<!-- Written by cargo xtask report --docs. -->\n# Validation\n\n    cargo xtask report --docs\n\nruns the \
-         model and writes this page: published values of the model's source compared with those of this component.\n\n{}",
-        markdown(&sections)
+         model and writes this page: published values of the model's source compared with those of this component.\n\n{}{}",
+        markdown(&sections),
+        include_str!("preloaded.md")
     ))
 }
 

@@ -1,0 +1,67 @@
+"""Whether the contact of a relay is smooth enough for Hertz's law.
+
+By the number of J. A. Greenwood, K. L. Johnson and E. Matsubara, Wear 100 (1984) 47: roughness times radius of
+curvature over the square of the radius of Hertz's circle, which is the roughness over the indentation.
+"""
+
+from dataclasses import dataclass
+
+from relay_contact.component import Component, Values
+from relay_contact.qualification.relay import Relay, value_of
+
+SMOOTH = 0.05
+"""The number below which Hertz's law is wrong by 7 % at most, 1."""
+PAGE = "docs/contact-law.md"
+
+
+@dataclass(frozen=True)
+class Spot:
+    """The circle in which smooth spheres touch."""
+
+    force: float
+    """Contact force at rest, N."""
+    radius: float
+    """Of the circle, m."""
+    indentation: float
+    """Of both bodies together, m."""
+
+
+def spot(component: Component, values: Values) -> Spot | None:
+    """Return the circle of Hertz at rest with these parameters; none if the contact is open."""
+    with component.started(values) as contact, contact.explained():
+        (force,) = contact.real("preload.force")
+    if force <= 0:
+        return None
+    compliance = sum(
+        (1 - value_of(component, values, f"contact.{side}.poissonRatio") ** 2)
+        / value_of(component, values, f"contact.{side}.youngsModulus")
+        for side in ("moving", "fixed")
+    )
+    curvature = value_of(component, values, "contact.curvatureRadius")
+    radius = (0.75 * force * curvature * compliance) ** (1 / 3)
+    return Spot(force, radius, radius**2 / curvature)
+
+
+def told(component: Component, relay: Relay) -> list[str]:
+    """Return lines about the contact in each position."""
+    lines = []
+    for name, values in relay.positions.items():
+        circle = spot(component, values)
+        if circle is None:
+            lines.append(f"{name}: open at rest")
+            continue
+        lines.append(
+            f"{name}: {100 * circle.force:.3g} cN; a smooth contact touches in a circle of radius "
+            f"{1e6 * circle.radius:.3g} um, indented by {1e9 * circle.indentation:.3g} nm"
+        )
+        if relay.roughness is None:
+            limit = f"{1e9 * SMOOTH * circle.indentation:.2g} nm"
+            lines.append(f"  no roughness given: Hertz's law holds up to {limit} rms, both surfaces together ({PAGE})")
+            continue
+        number = relay.roughness / circle.indentation
+        holds = "holds" if number <= SMOOTH else "does not hold"
+        lines.append(
+            f"  Greenwood-Johnson-Matsubara number {number:.3g} for {1e6 * relay.roughness:g} um rms: "
+            f"Hertz's law {holds}, as it does up to {SMOOTH:g} ({PAGE})"
+        )
+    return lines
