@@ -32,10 +32,6 @@ const BENT_FAR: f64 = 0.1;
 /// at 0.54, eight at 0.7.
 const RUBBING: Range<f64> = 0.1..0.6;
 
-/// Force that counts as none at a contact softer than that of Hertz, in tolerances, 1: far below the errors allowed, far above
-/// what the iteration for the forces leaves.
-const TRACES: f64 = 1e-3;
-
 /// Everything that is constant during a simulation.
 #[derive(Clone, Debug)]
 pub struct Model {
@@ -122,9 +118,7 @@ impl Model {
         let preload = Preload::new(scene, &spring, &power, support)?;
         let tolerance = scene.solver.effective_tolerance();
         let force_scale = preload.force.max(bending_force(scene, &section));
-        let [traces, rounding] = [TRACES * tolerance, 64.0 * f64::EPSILON].map(|share| share * force_scale);
-        let second = second.map(|second| second.with_traces(traces, rounding));
-        let law = law(scene, power.with_traces(traces, rounding), &preload)?;
+        let law = law(scene, power, &preload)?.parting(tolerance, force_scale);
         let count = |blow: &Blow| spring.count(blow, tolerance);
         let own = blow(scene, &section, &power);
         let blow = second
@@ -203,7 +197,7 @@ impl Model {
             simd: Simd::detect(),
         };
         Ok(match second {
-            Some(second) => model.with_second(Law::Power(second)),
+            Some(second) => model.with_second(Law::Power(second).parting(tolerance, force_scale)),
             None => model,
         })
     }
@@ -220,7 +214,9 @@ impl Model {
         };
         change(&mut parts);
         parts.modes.truncate(MAX_MODES);
-        (self.modes, self.law, self.preload) = (parts.modes, parts.law, parts.preload);
+        let tolerance = self.scene.solver.effective_tolerance();
+        self.law = parts.law.parting(tolerance, parts.force_scale);
+        (self.modes, self.preload) = (parts.modes, parts.preload);
         (self.generator, self.force_scale, self.closed_loop) = (parts.generator, parts.force_scale, None);
         self.compliance = self.modes.iter().map(Mode::compliance).sum();
         self.friction = self.friction.map(|friction| friction.on(&self.modes));

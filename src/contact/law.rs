@@ -94,6 +94,14 @@ impl Law {
         if force < 0.0 && !self.never_opens() { 0.0 } else { force }
     }
 
+    /// The same law, opening where its force is lost in what is allowed ([`Power::parting`]).
+    pub(crate) fn parting(self, tolerance: f64, scale: f64) -> Self {
+        match self {
+            Self::Power(power) => Self::Power(power.parting(tolerance, scale)),
+            Self::Linear(_) => self,
+        }
+    }
+
     /// Force that counts as none where the contact opens, N.
     pub(crate) fn traces(&self) -> f64 {
         self.power().map_or(0.0, |power| power.traces)

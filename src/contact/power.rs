@@ -19,6 +19,13 @@ use crate::variables::ContactLawKind;
 /// Exponent of the indentation in the law of Hertz, 1. Powers of it are square roots.
 const HERTZ: f64 = 1.5;
 
+/// Force that counts as none at a contact softer than that of Hertz, in tolerances, 1: far below the errors allowed, far above
+/// what the iteration for the forces leaves.
+const TRACES: f64 = 1e-3;
+
+/// The same that is mere rounding, in the force scale, 1.
+const ROUNDING: f64 = f64::EPSILON;
+
 /// Constants of the contact law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Power {
@@ -28,9 +35,9 @@ pub struct Power {
     pub exponent: f64,
     /// Damping time beta_c, s.
     pub damping: f64,
-    /// Force that counts as none where the contact opens, N: [`Power::with_traces`].
+    /// Force that counts as none where the contact opens, N: [`Power::parting`].
     pub traces: f64,
-    /// Indentation up to which the contact counts as open, m: [`Power::with_traces`].
+    /// Indentation up to which the contact counts as open, m: [`Power::parting`].
     pub least: f64,
 }
 
@@ -96,17 +103,17 @@ impl Power {
         })
     }
 
-    /// With a force (N) that counts as none where the contact opens, and one that is mere rounding (N). A contact softer than
-    /// that of Hertz parts so gradually that its force stays below the error allowed for long, where a computed force changes
-    /// its sign at random, and then below rounding, where nothing tells closed from open.
+    /// With what counts as none of a force at this scale (N), computed to a relative tolerance. A contact softer than that of
+    /// Hertz parts so gradually that its force stays below the error allowed for long, where a computed force changes its sign
+    /// at random, and then below rounding, where nothing tells closed from open.
     #[must_use]
-    pub(crate) fn with_traces(self, traces: f64, rounding: f64) -> Self {
+    pub(crate) fn parting(self, tolerance: f64, scale: f64) -> Self {
         if self.exponent <= HERTZ {
             return self;
         }
         Self {
-            traces,
-            least: self.indentation(rounding),
+            traces: TRACES * tolerance * scale,
+            least: self.indentation(ROUNDING * scale),
             ..self
         }
     }
