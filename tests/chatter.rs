@@ -196,6 +196,7 @@ fn without_a_threshold_that_can_be_crossed_there_is_no_interruption_or_one_witho
 fn extremes_are_those_of_the_course_inside_the_step() {
     for law in [
         ContactLawKind::Hertz,
+        ContactLawKind::Rough,
         ContactLawKind::Linearised,
         ContactLawKind::Bonded,
     ] {

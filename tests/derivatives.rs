@@ -60,6 +60,7 @@ fn a_sine_from_outside_converges_to_the_generators() {
 fn a_ramp_does_not_depend_on_where_it_is_cut() {
     for law in [
         ContactLawKind::Hertz,
+        ContactLawKind::Rough,
         ContactLawKind::Linearised,
         ContactLawKind::Bonded,
     ] {
@@ -203,6 +204,7 @@ fn derivatives_of_outputs_are_the_slopes_of_their_courses() {
     const NEAR: f64 = 1e-7;
     for law in [
         ContactLawKind::Hertz,
+        ContactLawKind::Rough,
         ContactLawKind::Linearised,
         ContactLawKind::Bonded,
     ] {

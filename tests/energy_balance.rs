@@ -87,6 +87,7 @@ fn cases() -> Vec<Case> {
         case("base linear", Scene::default(), base_linear),
         case("fixed contact moves", Scene::default(), support_moves),
         case("fixed contact moves, chatter", shaken(400.0), support_moves),
+        case("rough", law(ContactLawKind::Rough, 2e-5), held),
         case("linearised", law(ContactLawKind::Linearised, 2e-5), held),
         case("bonded", law(ContactLawKind::Bonded, 2e-5), held),
         case("bonded, exact steps", law(ContactLawKind::Bonded, 0.0), held),

@@ -14,6 +14,7 @@ fn energy_stays_without_damping() {
         for speed in [1e-5, 1e-3, 0.1] {
             for law in [
                 ContactLawKind::Hertz,
+                ContactLawKind::Rough,
                 ContactLawKind::Linearised,
                 ContactLawKind::Bonded,
             ] {

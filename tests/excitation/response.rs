@@ -89,6 +89,7 @@ fn the_communication_step_does_not_matter() {
         for strength in [1.0, 4.0] {
             for law in [
                 ContactLawKind::Hertz,
+                ContactLawKind::Rough,
                 ContactLawKind::Linearised,
                 ContactLawKind::Bonded,
             ] {

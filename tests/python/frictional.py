@@ -130,12 +130,12 @@ class Frictional(Reference):
         modulus = 1 / sum((2 - nu) * 2 * (1 + nu) / e for e, nu in sides)  # G*
         self.tangential: float = 8 * modulus * sqrt(known["contact.curvatureRadius"] * max(self.indentation, 0.0))
         normal = 1 / sum((1 - nu**2) / e for e, nu in sides)  # E*
-        self.friction = Law(self.hertz, self.contact_damping, 4 * modulus / normal, known["friction.coefficient"])
+        self.friction = Law(self.factor, self.contact_damping, 4 * modulus / normal, known["friction.coefficient"])
 
     def _unbalance(self, indentation: float) -> float:
         deflection = self.overtravel - indentation
         per_force, per_moment, per_acceleration = self.responses(0.0, self.axial_force_at(deflection))[0].real
-        pushed = (per_force + per_moment * self.height * self.share) * self.hertz * indentation**1.5
+        pushed = (per_force + per_moment * self.height * self.share) * self.elastic(indentation)
         return float(deflection - pushed - per_acceleration * self.gravity)
 
     def carrier(self) -> Carrier:

@@ -72,7 +72,13 @@ class Reference:
             (1 - get(f"contact.{side}.poissonRatio") ** 2) / get(f"contact.{side}.youngsModulus")
             for side in ("moving", "fixed")
         )
-        self.hertz: float = 4 / 3 / compliance * sqrt(get("contact.curvatureRadius"))  # k_H
+        # F = factor d^power: Hertz, or dF/dd = k_r (F / F_r)^n, with the depth F_r / ((1 - n) k_r) at F_r.
+        self.factor: float = 4 / 3 / compliance * sqrt(get("contact.curvatureRadius"))
+        self.power = 1.5
+        if get("effects.contactLaw") == "Rough":
+            reach: float = get("contact.stiffnessForce")
+            self.power = 1 / (1 - get("contact.stiffnessExponent"))
+            self.factor = reach * (self.power * reach / get("contact.stiffness")) ** -self.power
         self.contact_damping: float = get("contact.damping") if get("effects.contactDamping") else 0.0
         self.law, self.axial = get("effects.contactLaw"), get("effects.axialForce")
         self.gravity: float = get("environment.gravity")
@@ -84,8 +90,16 @@ class Reference:
         self.deflection: float = self.overtravel - self.indentation
         self.axial_force = self.axial_force_at(self.deflection)
         pressed = max(self.indentation, 0.0)
-        self.force: float = self.hertz * pressed**1.5
-        self.tangent: float = 1.5 * self.hertz * sqrt(pressed)
+        self.force: float = float(self.elastic(pressed))
+        self.tangent: float = float(self.stiffness_at(pressed))
+
+    def elastic(self, indentation: Array | float) -> Array:
+        """Elastic force of the contact before it is linearised, N."""
+        return self.factor * np.maximum(indentation, 0.0) ** self.power
+
+    def stiffness_at(self, indentation: Array | float) -> Array:
+        """Its tangent stiffness, N/m."""
+        return self.power * self.factor * np.maximum(indentation, 0.0) ** (self.power - 1)
 
     @property
     def tip_stiffness(self) -> float:
@@ -120,7 +134,7 @@ class Reference:
     def _unbalance(self, indentation: float) -> float:
         deflection = self.overtravel - indentation
         per_force, per_acceleration = self.compliances(0.0, self.axial_force_at(deflection)).real
-        pushed = per_force * self.hertz * indentation**1.5 + per_acceleration * self.gravity
+        pushed = per_force * self.elastic(indentation) + per_acceleration * self.gravity
         return float(deflection - pushed)
 
     def responses(self, omega: float, axial_force: float, damped: bool = True) -> Any:  # noqa: ANN401
@@ -224,13 +238,13 @@ class Reference:
 
     def law_force(self, indentation: float, rate: float) -> tuple[float, float, float]:
         """Contact force (N) with its derivatives by indentation and rate."""
-        if self.law == "Hertz":
+        if self.law in ("Hertz", "Rough"):
             if indentation <= 0:
                 return 0.0, 0.0, 0.0
-            root = self.hertz * sqrt(indentation)
-            force = root * (indentation + 1.5 * self.contact_damping * rate)
-            by_indentation = 1.5 * root + 0.75 * self.contact_damping * rate * root / indentation
-            by_rate = 1.5 * self.contact_damping * root
+            stiffness = self.power * self.factor * indentation ** (self.power - 1)
+            by_rate = self.contact_damping * stiffness
+            force = stiffness * indentation / self.power + by_rate * rate
+            by_indentation = stiffness + (self.power - 1) * by_rate * rate / indentation
         else:
             force = self.force + self.tangent * (indentation - self.indentation + self.contact_damping * rate)
             by_indentation, by_rate = self.tangent, self.contact_damping * self.tangent

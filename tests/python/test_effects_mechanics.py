@@ -11,7 +11,8 @@ from reference import Reference
 from relay_contact import Array, Values
 
 NO_AXIAL: Values = {"effects.axialForce": "None"}
-LAWS = ("Hertz", "Linearised", "Bonded")
+POWERS = ("Hertz", "Rough")
+LAWS = (*POWERS, "Linearised", "Bonded")
 FREQUENCY = 1000.0
 
 
@@ -47,8 +48,8 @@ def test_a_constant_acceleration_ends_in_the_equilibrium_of_the_law(law: str, ac
         return reference.tip_stiffness * (reference.overtravel - d) + inertia
 
     def elastic(d: float) -> float:
-        if law == "Hertz":
-            return reference.hertz * float(max(d, 0.0) ** 1.5)
+        if law in POWERS:
+            return float(reference.elastic(d))
         linear = reference.force + reference.tangent * (d - reference.indentation)
         return linear if law == "Bonded" else max(linear, 0.0)
 
@@ -61,7 +62,7 @@ def test_a_constant_acceleration_ends_in_the_equilibrium_of_the_law(law: str, ac
     if elastic(expected) == 0:
         stiffness = reference.tip_stiffness
     else:
-        stiffness = 1.5 * reference.hertz * sqrt(expected) if law == "Hertz" else reference.tangent
+        stiffness = float(reference.stiffness_at(expected)) if law in POWERS else reference.tangent
     assert indentation == pytest.approx(expected, rel=0, abs=allowed / stiffness)
 
 
@@ -94,13 +95,13 @@ def test_laws_and_damping_are_told_apart_by_more_than_the_tolerance() -> None:
 def test_contact_damping_adds_its_force_to_the_elastic_one() -> None:
     tolerance = 1e-8
     output = ["contact.force", "contact.indentation", "tip.velocity"]
-    for damping in (True, False):
-        values: Values = {**NO_AXIAL, "effects.contactDamping": damping}
+    for law, damping in [(law, damping) for law in POWERS for damping in (True, False)]:
+        values: Values = {**NO_AXIAL, "effects.contactLaw": law, "effects.contactDamping": damping}
         result = run(shaken(values, 200.0, tolerance), 3e-3, 1e-5, output)
         force, indentation, velocity = (result[name] for name in output)
         reference = Reference(values)
-        elastic = reference.hertz * indentation**1.5
-        tangent = 1.5 * reference.hertz * np.sqrt(indentation)
+        elastic = reference.elastic(indentation)
+        tangent = reference.stiffness_at(indentation)
         damped = -reference.values["contact.damping"] * tangent * velocity
         assert np.max(np.abs(damped)) > 1e-3
         # All three outputs have the error of the force.

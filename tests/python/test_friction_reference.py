@@ -23,7 +23,7 @@ def rigid(
     frequency (rad/s) and phase.
     """
     force, frequency, phase = cosine
-    law = Law(SPECIMEN.hertz, 0.0, SPECIMEN.friction.ratio, 0.2)
+    law = Law(SPECIMEN.factor, 0.0, SPECIMEN.friction.ratio, 0.2)
     lever = np.array([1 / sqrt(mass)])
     carrier = Carrier(np.array([omega**2]), np.zeros(1), np.zeros(1), lever, -lever)
     start = Start(DEFLECTED, PRESSED, 0.0, 0.0, np.array([omega * amplitude / lever[0], 0.0]))

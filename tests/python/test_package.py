@@ -54,7 +54,7 @@ def test_an_input_course_is_linear_between_its_points() -> None:
     [
         ({"excitation.amplitud": 1.0}, "no such variable; did you mean excitation.amplitude"),
         ({"contact.force": 1.0}, "an output, which cannot be set"),
-        ({"effects.contactLaw": "Bound"}, "allowed is Hertz, Linearised, Bonded; did you mean Bonded"),
+        ({"effects.contactLaw": "Bound"}, "allowed is Hertz, Linearised, Bonded, Rough; did you mean Bonded"),
         ({"beam.length": "long"}, "allowed is a finite number"),
         ({"solver.modes": 2.5}, "solver.modes = 2.5: not allowed, allowed is a whole number"),
         ({"effects.excitation": float("nan")}, "allowed is None, Sine"),
@@ -95,7 +95,7 @@ def test_the_command_explains_what_is_wrong(capsys: pytest.CaptureFixture[str]) 
     assert main(["run", "paper-1khz", "--set", "beam.lenght=1"]) == 1
     assert capsys.readouterr().err == "relay-contact: beam.lenght: no such variable; did you mean beam.length?\n"
     assert main(["list", "--variables", "contactLaw"]) == 0
-    assert "effects.contactLaw (parameter Hertz) [Hertz, Linearised, Bonded]" in capsys.readouterr().out
+    assert "effects.contactLaw (parameter Hertz) [Hertz, Linearised, Bonded, Rough]" in capsys.readouterr().out
 
 
 def test_the_command_tells_whether_a_contact_is_smooth_enough_for_hertz(
