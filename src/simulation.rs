@@ -19,7 +19,7 @@ pub use crate::integrator::motion::Motion;
 #[derive(Clone, Debug)]
 pub struct Simulation {
     model: Model,
-    motion: Motion,
+    motion: Box<Motion>,
     workspace: Workspace,
 }
 
@@ -39,11 +39,11 @@ impl Simulation {
                 least: model.preload.indentation.max(0.0),
             });
         }
-        let mut state = model.initial_state(start_time);
+        let mut motion = Motion::at_rest(&model, start_time);
         if model.second.is_some() {
-            state.second_support = displacement;
+            motion.start.second_support = displacement;
+            motion.end.second_support = displacement;
         }
-        let mut motion = Motion::new(state);
         motion.current = inputs.contact_current;
         let workspace = Workspace::new(&model);
         Ok(Self {
@@ -58,7 +58,7 @@ impl Simulation {
         let workspace = Workspace::new(&model);
         Self {
             model,
-            motion: Motion::new(*state),
+            motion: Box::new(Motion::new(*state)),
             workspace,
         }
     }
@@ -100,8 +100,8 @@ impl Simulation {
         let model = Model::new(scene, initial_support)?;
         let workspace = Workspace::new(&model);
         let mut simulation = Self {
+            motion: Motion::at_rest(&model, 0.0),
             model,
-            motion: *motion,
             workspace,
         };
         simulation.go_on_from(motion);
@@ -113,9 +113,14 @@ impl Simulation {
         &self.motion
     }
 
+    /// A copy of [`Simulation::motion`], made on the heap.
+    pub(crate) fn copied_motion(&self) -> Box<Motion> {
+        self.motion.clone()
+    }
+
     /// Continues from the state of a simulation of the same model.
     pub fn go_on_from(&mut self, motion: &Motion) {
-        self.motion = *motion;
+        *self.motion = *motion;
         self.workspace.events.forget_after(f64::NEG_INFINITY);
         if let Some(event) = motion.event_ahead() {
             self.workspace.events.record(event);

@@ -251,7 +251,7 @@ mod tests {
             let collocation = Collocation::<LONG>::new();
             let axial = model.axial.as_ref().unwrap();
             for _ in 0..100 {
-                let mut end = End::default();
+                let mut end: Box<End<LONG>> = bytemuck::zeroed_box();
                 let mut moved = |length| {
                     let prepared = cache.prepare(state.time, length, true, &model);
                     let drive = Drive::default();

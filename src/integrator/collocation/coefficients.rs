@@ -1,6 +1,8 @@
 //! The coefficients of a step, which depend on its length only, and a cache of them.
 
-use crate::beam::mode::{MAX_MODES, Modal, Mode};
+use bytemuck::{Zeroable, zeroed_box};
+
+use crate::beam::mode::{Modal, Mode};
 use crate::excitation::generator::Turns;
 use crate::excitation::random::Piece;
 use crate::excitation::waveform::Accelerations;
@@ -29,7 +31,7 @@ pub struct NodeRows<const S: usize> {
 }
 
 /// State of the modes at the end of the step; arrays over the modes, for vector arithmetic.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Zeroable)]
 pub struct EndRows<const S: usize> {
     /// q and v at the end per initial q and v, and per load at each node.
     pub q_from_q: Modal,
@@ -81,17 +83,6 @@ impl<const S: usize> EndRows<S> {
                 v_from_v: *v_from_v,
             })
     }
-
-    const ZERO: Self = Self {
-        q_from_q: [0.0; MAX_MODES],
-        q_from_v: [0.0; MAX_MODES],
-        v_from_q: [0.0; MAX_MODES],
-        v_from_v: [0.0; MAX_MODES],
-        q_from_load: [[0.0; MAX_MODES]; S],
-        v_from_load: [[0.0; MAX_MODES]; S],
-        tip: [0.0; MAX_MODES],
-        participation: [0.0; MAX_MODES],
-    };
 
     #[expect(clippy::indexing_slicing, reason = "no model has more modes than there is room for")]
     fn set(&mut self, i: usize, mode: &Mode, free: &FreeMotion, q_from_load: &Nodal<S>, v_from_load: &Nodal<S>) {
@@ -175,7 +166,7 @@ pub struct StepCoefficients<const S: usize> {
     /// For friction; else none.
     pub tangential: Option<Box<TangentialCoefficients<S>>>,
     /// The modes at the end.
-    pub end: EndRows<S>,
+    pub end: Box<EndRows<S>>,
     /// Tip motion per tip force.
     pub force: TipColumns<S>,
     /// Tip motion per base acceleration that loads the modes with `participation`.
@@ -229,7 +220,7 @@ impl<const S: usize> StepCoefficients<S> {
                 };
                 if model.axial().is_some() { model.modes.len() } else { 0 }
             ],
-            end: EndRows::ZERO,
+            end: zeroed_box(),
             force: TipColumns::ZERO,
             acceleration: TipColumns::ZERO,
             turns: Turns::room(&model.generator),
@@ -349,7 +340,7 @@ pub struct Cache<const S: usize> {
     /// For recurring lengths, each in the slot of its hash.
     slots: Vec<StepCoefficients<S>>,
     /// For the last other length.
-    other: StepCoefficients<S>,
+    other: Box<StepCoefficients<S>>,
     /// Piece of a random acceleration.
     piece: Piece,
 }
@@ -370,8 +361,8 @@ impl<const S: usize> Cache<S> {
     pub fn new(model: &Model, home: &'static Home<S>) -> Self {
         Self {
             collocation: Shared::of(home),
-            slots: vec![StepCoefficients::empty(model); SLOTS],
-            other: StepCoefficients::empty(model),
+            slots: (0..SLOTS).map(|_| StepCoefficients::empty(model)).collect(),
+            other: Box::new(StepCoefficients::empty(model)),
             piece: Piece::default(),
         }
     }

@@ -1,8 +1,10 @@
 //! A trial step: the nodal contact forces ([`crate::integrator::collocation::newton`]), the motion they cause, and its
 //! error ([`crate::integrator::collocation::error`]).
 
+use bytemuck::Zeroable;
+
 use crate::beam::axial::Feedback;
-use crate::beam::mode::{MAX_MODES, Modal, ModeState, ModeStates};
+use crate::beam::mode::{Modal, ModeStates};
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::axial_force::{self, NodalModes, Settled};
 use crate::integrator::collocation::coefficients::{EndRows, Prepared, StepCoefficients};
@@ -55,7 +57,7 @@ pub struct Trial<const S: usize> {
 }
 
 /// What a trial leaves for the step that is taken.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Zeroable)]
 pub struct End<const S: usize> {
     /// The modes at its end.
     pub modes: ModeStates,
@@ -63,16 +65,6 @@ pub struct End<const S: usize> {
     pub loads: NodalModes<S>,
     /// Friction at its nodes.
     pub tangential: TangentialNodes<S>,
-}
-
-impl<const S: usize> Default for End<S> {
-    fn default() -> Self {
-        Self {
-            modes: [ModeState::default(); MAX_MODES],
-            loads: [[0.0; S]; MAX_MODES],
-            tangential: TangentialNodes::ZERO,
-        }
-    }
 }
 
 impl<const S: usize> Trial<S> {
