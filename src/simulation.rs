@@ -18,7 +18,7 @@ pub use crate::integrator::motion::Motion;
 /// A simulation, which starts at rest in the preload.
 #[derive(Clone, Debug)]
 pub struct Simulation {
-    model: Model,
+    model: Box<Model>,
     motion: Box<Motion>,
     workspace: Workspace,
 }
@@ -29,7 +29,7 @@ impl Simulation {
     /// # Errors
     /// A [`SceneError`] if the scene cannot be simulated.
     pub fn new(scene: &Scene, inputs: &Inputs, start_time: f64) -> Result<Self, SceneError> {
-        let model = Model::new(scene, inputs.support_displacement)?;
+        let model = on_heap(scene, inputs.support_displacement)?;
         let displacement = inputs.second_displacement;
         let room = model.room(displacement);
         if room.min(room + model.preload.indentation) <= 0.0 {
@@ -57,7 +57,7 @@ impl Simulation {
     pub fn from_state(model: Model, state: &State) -> Self {
         let workspace = Workspace::new(&model);
         Self {
-            model,
+            model: Box::new(model),
             motion: Box::new(Motion::new(*state)),
             workspace,
         }
@@ -97,7 +97,7 @@ impl Simulation {
     /// # Errors
     /// A [`SceneError`] if the scene cannot be simulated.
     pub fn resume(scene: &Scene, initial_support: f64, motion: &Motion) -> Result<Self, SceneError> {
-        let model = Model::new(scene, initial_support)?;
+        let model = on_heap(scene, initial_support)?;
         let workspace = Workspace::new(&model);
         let mut simulation = Self {
             motion: Motion::at_rest(&model, 0.0),
@@ -364,4 +364,10 @@ impl Simulation {
         // At the instant of closing there is no force yet.
         force > 0.0 || state.closed && state.mirrored == second && !self.model.law.never_opens()
     }
+}
+
+/// The model of a scene, made out of line, as it is large.
+#[inline(never)]
+fn on_heap(scene: &Scene, support: f64) -> Result<Box<Model>, SceneError> {
+    Model::new(scene, support).map(Box::new)
 }
