@@ -1,6 +1,6 @@
 //! Preallocated memory of the integrator, so that no step allocates, and the limit of steps.
 
-use bytemuck::{write_zeroes, zeroed_box};
+use bytemuck::zeroed_box;
 
 use crate::beam::mode::ModeStates;
 use crate::closed_loop::dense::DensePropagator;
@@ -70,9 +70,8 @@ impl Workspace {
         (&mut self.dense_propagators, self.long.collocation())
     }
 
-    /// For the half steps of the energy balance: coefficient cache, and their end, which is cleared.
+    /// For the half steps of the energy balance: coefficient cache, and what is left at their ends.
     pub(crate) fn for_half_steps(&mut self) -> (&mut Cache<LONG>, &mut End<LONG>) {
-        write_zeroes(&mut *self.half_end);
         (&mut self.long, &mut self.half_end)
     }
 }

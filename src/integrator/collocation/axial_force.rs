@@ -14,6 +14,7 @@ use crate::beam::mode::{MAX_MODES, Modal};
 use crate::integrator::collocation::coefficients::{ErrorColumn, ModeColumns, StepCoefficients};
 use crate::integrator::collocation::newton::{FreeResponse, Solution, Source, closed_forces, first_forces};
 use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::collocation::step::End;
 use crate::integrator::constants::{FORCE_ROUNDING, ROUNDS};
 use crate::math::nodal::{Nodal, add, add_columns, dot};
 use crate::math::simd::{Arithmetic, LANES};
@@ -23,17 +24,8 @@ use crate::state::State;
 /// A value at each node for each mode.
 pub(crate) type NodalModes<const S: usize> = [Nodal<S>; MAX_MODES];
 
-/// Converged loads and contact forces.
-pub(crate) struct Settled<const S: usize> {
-    /// The contact forces.
-    pub(crate) solution: Solution<S>,
-    /// The loads on the modes at the nodes.
-    pub(crate) loads: NodalModes<S>,
-    /// Effect on the indentation of the defects of base acceleration and loads at the start.
-    pub(crate) error: ErrorColumn<S>,
-}
-
-/// Iterates loads and contact forces; `None` if they do not converge.
+/// Iterates contact forces and the loads of `end`: returns the former, and the effect on the indentation of the defects of base
+/// acceleration and loads at the start; `None` if they do not converge.
 #[inline(always)]
 pub(crate) fn settle<const S: usize, A: Arithmetic>(
     model: &Model,
@@ -42,38 +34,42 @@ pub(crate) fn settle<const S: usize, A: Arithmetic>(
     (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
     source: Source<S>,
     free: &FreeResponse<S>,
-) -> Option<Settled<S>> {
+    end: &mut End<S>,
+) -> Option<(Solution<S>, ErrorColumn<S>)> {
+    let End {
+        loads, motion, next, ..
+    } = end;
     let start = axial.loads(&model.modes, &state.modes);
     let tolerance = match source {
         Source::Law(newton) => newton,
         Source::Given(_) => 0.0,
     };
     let mut forces = first_forces::<S, A>(model, state, step, collocation, source);
-    let mut loads: NodalModes<S> = start.map(|load| [load; S]);
+    for (loads, start) in loads.iter_mut().zip(&start) {
+        *loads = [*start; S];
+    }
     let stiffness = model.law.stiffness(model.preload.indentation + state.indentation);
     let mut iterations = 0;
     let mut solved: Option<Solution<S>> = None;
-    let mut motion = [[0.0; S]; MAX_MODES];
-    let mut next = motion;
     for _ in 0..ROUNDS {
-        let acting = (&forces, &free.accelerations, &loads);
-        set_motion::<S, A>(model, state, step, acting, &mut motion);
-        set_loads::<S, A>(model, axial, &motion, &mut next);
-        let (change, size) = force_of_change(model, &loads, &next);
+        let acting = (&forces, &free.accelerations, &*loads);
+        set_motion::<S, A>(model, state, step, acting, motion);
+        set_loads::<S, A>(model, axial, motion, next);
+        let (change, size) = force_of_change(model, loads, next);
         let settled = change <= tolerance + FORCE_ROUNDING * size;
         if let Some(mut solution) = solved.take_if(|_| settled) {
             solution.iterations = iterations;
-            let error = load_error::<S, A>(model, free, &start, &loads, (step, collocation));
-            return Some(Settled { solution, loads, error });
+            let error = load_error::<S, A>(model, free, &start, loads, (step, collocation));
+            return Some((solution, error));
         }
-        loads = next;
+        *loads = *next;
         let solution = match source {
             Source::Law(newton) if state.closed => {
-                let error = load_error::<S, A>(model, free, &start, &loads, (step, collocation));
+                let error = load_error::<S, A>(model, free, &start, loads, (step, collocation));
                 let free = FreeResponse {
                     error: &error,
                     start_defect: 1.0,
-                    ..with_loads::<S, A>(model, free, step, &loads)
+                    ..with_loads::<S, A>(model, free, step, loads)
                 };
                 closed_forces::<S, A>(
                     model,
@@ -215,7 +211,6 @@ mod tests {
     use crate::excitation::drive::Drive;
     use crate::integrator::collocation::coefficients::Cache;
     use crate::integrator::collocation::polynomial::OF_LONG;
-    use crate::integrator::collocation::step::End;
     use crate::math::nodal::LONG;
     use crate::scene::Scene;
     use crate::variables::AxialForceKind;

@@ -6,7 +6,7 @@ use bytemuck::Zeroable;
 use crate::beam::axial::Feedback;
 use crate::beam::mode::{Modal, ModeStates};
 use crate::excitation::drive::Drive;
-use crate::integrator::collocation::axial_force::{self, NodalModes, Settled};
+use crate::integrator::collocation::axial_force::{self, NodalModes};
 use crate::integrator::collocation::coefficients::{EndRows, Prepared, StepCoefficients};
 use crate::integrator::collocation::error::{Estimate, errors};
 use crate::integrator::collocation::newton::{
@@ -63,6 +63,10 @@ pub struct End<const S: usize> {
     pub modes: ModeStates,
     /// Loads of an axial force that follows the deflection, at its nodes.
     pub loads: NodalModes<S>,
+    /// The modes at its nodes, while such loads are sought.
+    pub(super) motion: NodalModes<S>,
+    /// The loads of that motion.
+    pub(super) next: NodalModes<S>,
     /// Friction at its nodes.
     pub tangential: TangentialNodes<S>,
 }
@@ -143,16 +147,15 @@ pub(super) fn compute_with_axial_force<const S: usize, A: Arithmetic>(
 ) -> Option<Trial<S>> {
     let Prepared { step, collocation, .. } = prepared;
     let free = free_response::<S, A>(state, drive, &prepared);
-    let Settled { solution, loads, error } =
-        axial_force::settle::<S, A>(model, axial, state, (step, collocation), source, &free)?;
+    let (solution, error) =
+        axial_force::settle::<S, A>(model, axial, state, (step, collocation), source, &free, end)?;
     // One combined defect of all loads.
     let free = FreeResponse {
         error: &error,
         start_defect: 1.0,
-        ..axial_force::with_loads::<S, A>(model, &free, step, &loads)
+        ..axial_force::with_loads::<S, A>(model, &free, step, &end.loads)
     };
     let coefficients = (step, collocation);
-    end.loads = loads;
     Some(judged::<S, A>(
         model,
         state,
