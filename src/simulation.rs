@@ -369,5 +369,6 @@ impl Simulation {
 /// The model of a scene, made out of line, as it is large.
 #[inline(never)]
 fn on_heap(scene: &Scene, support: f64) -> Result<Box<Model>, SceneError> {
-    Model::new(scene, support).map(Box::new)
+    let model = Model::new(scene, support)?;
+    Ok(Box::new(model))
 }
