@@ -7,6 +7,7 @@ use crate::inputs::Inputs;
 use crate::integrator::communication_step;
 use crate::integrator::exact_step;
 use crate::integrator::workspace::Workspace;
+use crate::memory;
 use crate::model::Model;
 use crate::scene::Scene;
 use crate::state::State;
@@ -366,9 +367,14 @@ impl Simulation {
     }
 }
 
-/// The model of a scene, made out of line, as it is large.
+/// The model of a scene, made out of line, as it is large; refused where there is no memory to simulate it.
 #[inline(never)]
 fn on_heap(scene: &Scene, support: f64) -> Result<Box<Model>, SceneError> {
     let model = Model::new(scene, support)?;
-    Ok(Box::new(model))
+    let needed = Workspace::size(&model);
+    if memory::has(needed) {
+        Ok(Box::new(model))
+    } else {
+        Err(SceneError::Memory(needed))
+    }
 }

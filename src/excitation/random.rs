@@ -245,12 +245,7 @@ fn rounded(value: f64) -> f64 {
 /// Sines and cosines of the phases (turns) after `tau` seconds at the frequencies (Hz). Branch-free, so that the loop
 /// is vectorised.
 #[inline(always)]
-fn set_phasors<A: Arithmetic>(
-    [sines, cosines]: &mut [Each; 2],
-    [high, low]: &[Each; 2],
-    tau: f64,
-    phases: &Each,
-) {
+fn set_phasors<A: Arithmetic>([sines, cosines]: &mut [Each; 2], [high, low]: &[Each; 2], tau: f64, phases: &Each) {
     let [tau_high, tau_low] = split(tau);
     let phasors = sines.iter_mut().zip(cosines);
     for ((sine, cosine), ((high, low), phase)) in phasors.zip(high.iter().zip(low).zip(phases)) {

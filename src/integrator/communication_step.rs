@@ -193,7 +193,14 @@ fn go_on(
         return Ok(());
     }
     let news = News::default();
-    advance(model, state, workspace, drive, Steps::Exactly { time, size, news }, None)
+    advance(
+        model,
+        state,
+        workspace,
+        drive,
+        Steps::Exactly { time, size, news },
+        None,
+    )
 }
 
 /// Takes integration steps of the integrator's own choice until one reaches `time` (s) or beyond. `extremes` covers the

@@ -3,7 +3,7 @@
 use bytemuck::zeroed_box;
 
 use crate::beam::mode::ModeStates;
-use crate::closed_loop::dense::DensePropagator;
+use crate::closed_loop::dense::{DensePropagator, TipAtNodes};
 use crate::closed_loop::propagator::{ByLength, Propagator};
 use crate::error::{StepError, StepErrorCause};
 use crate::integrator::collocation::coefficients::Cache;
@@ -41,6 +41,14 @@ pub struct Workspace {
 }
 
 impl Workspace {
+    /// What it takes of memory for the model, bytes; the rest of a simulation takes far less.
+    pub fn size(model: &Model) -> usize {
+        let lengths = if model.closed_loop.is_some() { 2 * LENGTHS } else { 0 };
+        let propagators = lengths * (size_of::<Propagator>() + model.modes.len() * size_of::<[TipAtNodes; 2]>());
+        let ends = size_of::<End<SHORT>>() + 2 * size_of::<End<LONG>>();
+        Cache::<SHORT>::size(model) + Cache::<LONG>::size(model) + propagators + ends
+    }
+
     /// Allocates for the model.
     pub fn new(model: &Model) -> Self {
         let oscillators = model

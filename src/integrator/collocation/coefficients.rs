@@ -281,7 +281,14 @@ impl<const S: usize> StepCoefficients<S> {
                 add::<S, A>(&mut columns.q_from_q, mode.damping * h, q);
                 write_zeroes(&mut sums.alone);
                 sums.alone.add::<A>(1.0, &response);
-                set_columns(&sums.alone, model.simd, shapes, h, &mut columns.load, &mut columns.error);
+                set_columns(
+                    &sums.alone,
+                    model.simd,
+                    shapes,
+                    h,
+                    &mut columns.load,
+                    &mut columns.error,
+                );
             }
         }
     }
@@ -383,6 +390,16 @@ impl<const S: usize> Cache<S> {
             sums: zeroed_box(),
             piece: Piece::default(),
         }
+    }
+
+    /// What it takes of memory for the model, bytes.
+    pub fn size(model: &Model) -> usize {
+        let axial = model.axial().map_or(0, |_| size_of::<ModeColumns<S>>());
+        let along = model.friction().map_or(0, |_| size_of::<NodeRows<S>>());
+        let per_mode = size_of::<NodeRows<S>>() + axial + along;
+        let tangential = model.friction().map_or(0, |_| size_of::<TangentialCoefficients<S>>());
+        let fixed = size_of::<StepCoefficients<S>>() + size_of::<EndRows<S>>() + tangential;
+        size_of::<Sums<S>>() + (SLOTS + 1) * (fixed + model.modes.len() * per_mode)
     }
 
     /// The polynomials.

@@ -147,8 +147,7 @@ pub(super) fn compute_with_axial_force<const S: usize, A: Arithmetic>(
 ) -> Option<Trial<S>> {
     let Prepared { step, collocation, .. } = prepared;
     let free = free_response::<S, A>(state, drive, &prepared);
-    let (solution, error) =
-        axial_force::settle::<S, A>(model, axial, state, (step, collocation), source, &free, end)?;
+    let (solution, error) = axial_force::settle::<S, A>(model, axial, state, (step, collocation), source, &free, end)?;
     // One combined defect of all loads.
     let free = FreeResponse {
         error: &error,
