@@ -323,7 +323,7 @@ impl Simulation {
         let view = if second {
             self.model.second.as_deref()
         } else {
-            Some(&self.model)
+            Some(&*self.model)
         };
         let counted = view.and_then(|model| model.criterion);
         counted.map_or_else(Summary::default, |criterion| {

@@ -35,7 +35,7 @@ enum Beside {
 
 /// A scene by its choices.
 #[derive(Clone, Copy, Debug)]
-pub struct Choices {
+struct Choices {
     excitation: i32,
     law: i32,
     axial_force: i32,
@@ -47,7 +47,7 @@ pub struct Choices {
 }
 
 /// All that can be combined, with tolerances in turn.
-pub fn all() -> impl Iterator<Item = Choices> {
+fn all() -> impl Iterator<Item = Choices> {
     let excitations = ExcitationKind::CHOICES.iter();
     let laws = || ContactLawKind::CHOICES.iter();
     let axial_forces = || AxialForceKind::CHOICES.iter();
@@ -84,7 +84,7 @@ pub fn all() -> impl Iterator<Item = Choices> {
 }
 
 /// Sets parameters, and initialises.
-pub fn begin(contact: &Instance, choices: &Choices) {
+fn begin(contact: &Instance, choices: &Choices) {
     let set = |status| assert_eq!(status, fmi2OK, "{choices:?}: {:?}", contact.messages());
     set(contact.setup(Some(choices.tolerance), 0.0, Some(1.0)));
     for (name, value) in [
@@ -124,7 +124,7 @@ pub fn begin(contact: &Instance, choices: &Choices) {
 }
 
 /// Steps of all sizes with inputs that are held, jump, or change linearly; every output and its derivative is read.
-pub fn steps(contact: &Instance, choices: &Choices, mut time: f64, note: &mut dyn FnMut(f64)) {
+fn steps(contact: &Instance, choices: &Choices, mut time: f64, note: &mut dyn FnMut(f64)) {
     for n in 0..48 {
         let size = [1e-6, 1e-6, 1e-6, 2.5e-5, 1e-5, 1e-5][n % 6];
         if n % 12 < 6 {
@@ -136,7 +136,15 @@ pub fn steps(contact: &Instance, choices: &Choices, mut time: f64, note: &mut dy
         }
         if n % 12 == 9 {
             let (reference, order, rate) = (vr("base.acceleration"), 1, 1e6);
-            let status = unsafe { fmi2SetRealInputDerivatives(contact.component, &reference, 1, &order, &rate) };
+            let status = unsafe {
+                fmi2SetRealInputDerivatives(
+                    contact.component,
+                    &raw const reference,
+                    1,
+                    &raw const order,
+                    &raw const rate,
+                )
+            };
             assert_eq!(status, fmi2OK);
         }
         let status = contact.step(time, size);
@@ -170,7 +178,7 @@ pub fn steps(contact: &Instance, choices: &Choices, mut time: f64, note: &mut dy
 }
 
 /// Saves the instance to bytes, and sets it to the state restored from them.
-pub fn save_and_restore(contact: &Instance) {
+fn save_and_restore(contact: &Instance) {
     let (component, mut state, mut again, mut size) = (contact.component, ptr::null_mut(), ptr::null_mut(), 0);
     unsafe {
         assert_eq!(fmi2GetFMUstate(component, &raw mut state), fmi2OK);
@@ -192,7 +200,7 @@ pub fn save_and_restore(contact: &Instance) {
 
 /// The life of an instance that logs all: run, saved, restored, run on; reset, restored as it was, run on; failed, reset, run
 /// anew.
-pub fn live(choices: &Choices, note: &mut dyn FnMut(f64)) {
+fn live(choices: &Choices, note: &mut dyn FnMut(f64)) {
     let contact = Instance::with(&Arguments {
         logging_on: true,
         ..Arguments::default()
@@ -246,7 +254,7 @@ fn read_files() {
 }
 
 /// How much of its stack a thread has touched in all, bytes.
-pub fn touched(body: &mut (dyn FnMut() + Send)) -> usize {
+fn touched(body: &mut (dyn FnMut() + Send)) -> usize {
     extern "C" fn run(body: *mut c_void) -> *mut c_void {
         let body = unsafe { &mut *body.cast::<&mut (dyn FnMut() + Send)>() };
         let done = panic::catch_unwind(panic::AssertUnwindSafe(body)).is_ok();

@@ -109,11 +109,7 @@ fn step_by<const EXTREMES: bool>(
             motion.add_dense(extremes, model, since, time);
         }
         workspace.former.end = motion.end;
-        let end = &mut motion.end;
-        if let Err(error) = advance(model, end, workspace, motion.drive, steps, extremes.as_mut()) {
-            motion.end = workspace.former.end;
-            return Err(error);
-        }
+        advance_end(model, motion, workspace, motion.drive, steps, extremes.as_mut())?;
         motion.end.time = until;
         motion.start = motion.end;
     } else {
@@ -132,12 +128,9 @@ fn step_by<const EXTREMES: bool>(
             length: size != motion.size,
         };
         let steps = Steps::Exactly { time, size, news };
+        let done = advance_end(model, motion, workspace, drive, steps, extremes.as_mut());
+        done.inspect_err(|_| workspace.events.forget_after(since))?;
         let end = &mut motion.end;
-        if let Err(error) = advance(model, end, workspace, drive, steps, extremes.as_mut()) {
-            motion.end = workspace.former.end;
-            workspace.events.forget_after(since);
-            return Err(error);
-        }
         end.second_support = second;
         end.support = if end.mirrored { second - support } else { support };
         end.time = until;
@@ -152,6 +145,19 @@ fn step_by<const EXTREMES: bool>(
     motion.current = inputs.contact_current_after(size);
     motion.current_rate = inputs.contact_current_rate;
     Ok(())
+}
+
+/// [`advance`] for the end of a motion, which on an error is again that kept in the workspace.
+fn advance_end(
+    model: &Model,
+    motion: &mut Motion,
+    workspace: &mut Workspace,
+    drive: Drive,
+    steps: Steps,
+    extremes: Option<&mut Extremes>,
+) -> Result<(), StepError> {
+    let done = advance(model, &mut motion.end, workspace, drive, steps, extremes);
+    done.inspect_err(|_| motion.end = workspace.former.end)
 }
 
 /// Displacement of the second fixed contact after a communication step of `size` seconds from `time` (s), m.

@@ -7,9 +7,10 @@ use crate::closed_loop::dense::{DensePropagator, TipAtNodes};
 use crate::closed_loop::propagator::{ByLength, Propagator};
 use crate::error::{StepError, StepErrorCause};
 use crate::integrator::collocation::coefficients::Cache;
+use crate::integrator::collocation::part::Instant;
 use crate::integrator::collocation::polynomial::{Collocation, OF_LONG, OF_SHORT};
 use crate::integrator::collocation::step::End;
-use crate::integrator::constants::{LENGTHS, NEW_LENGTH, WORK};
+use crate::integrator::constants::{DEPTH, LENGTHS, NEW_LENGTH, WORK};
 use crate::integrator::events::log::Events;
 use crate::integrator::motion::Motion;
 use crate::math::nodal::{LONG, SHORT};
@@ -26,6 +27,8 @@ pub struct Workspace {
     long_end: Box<End<LONG>>,
     /// Of the half steps of the energy balance.
     half_end: Box<End<LONG>>,
+    /// Later halves of intervals in which a closing is sought: end, error of the cubic (m), depth.
+    pub(crate) halves: Vec<(Instant, f64, usize)>,
     /// Modes at an instant inside it (event location).
     inside: Box<ModeStates>,
     /// Caches of exact linear steps, without and with dense output.
@@ -62,6 +65,7 @@ impl Workspace {
             short_end: zeroed_box(),
             long_end: zeroed_box(),
             half_end: zeroed_box(),
+            halves: Vec::with_capacity(DEPTH + 1),
             inside: zeroed_box(),
             propagators: ByLength::new(lengths, zeroed_box),
             dense_propagators: ByLength::new(lengths, || DensePropagator::room(oscillators.unwrap_or_default())),

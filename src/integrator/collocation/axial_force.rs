@@ -98,14 +98,15 @@ fn set_motion<const S: usize, A: Arithmetic>(
     motion: &mut NodalModes<S>,
 ) {
     let modes = model.modes.iter().zip(&state.modes).zip(&step.columns).zip(loads);
-    for (q, (((mode, at), columns), load)) in motion.iter_mut().zip(modes) {
+    for (moved, (((mode, at), columns), load)) in motion.iter_mut().zip(modes) {
         let mut load = *load;
-        *q = [0.0; S];
+        let mut q = [0.0; S];
         add::<S, A>(&mut load, mode.tip, forces);
         add::<S, A>(&mut load, -mode.participation, accelerations);
-        add::<S, A>(q, at.q, &columns.q_from_q);
-        add::<S, A>(q, at.v, &columns.q_from_v);
-        add_columns::<S, A>(q, &columns.load.displacement, &load);
+        add::<S, A>(&mut q, at.q, &columns.q_from_q);
+        add::<S, A>(&mut q, at.v, &columns.q_from_v);
+        add_columns::<S, A>(&mut q, &columns.load.displacement, &load);
+        *moved = q;
     }
 }
 
@@ -136,9 +137,11 @@ fn set_loads<const S: usize, A: Arithmetic>(
             }
         }
         for ((load, sum), slope) in loads.iter_mut().zip(&sums).zip(slopes) {
-            for ((load, sum), change) in load.iter_mut().zip(sum).zip(&change) {
-                *load = change * (slope + sum);
+            let (mut values, slope) = (change, *slope);
+            for (value, sum) in values.iter_mut().zip(sum) {
+                *value *= slope + sum;
             }
+            *load = values;
         }
     }
 }

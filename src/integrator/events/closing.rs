@@ -144,15 +144,13 @@ impl Integration<'_> {
     where
         Workspace: Room<S>,
     {
-        let mut halves = [(b, error, 0); DEPTH + 1];
-        let mut waiting = 0_usize;
+        self.workspace.halves.clear();
         let (mut b, mut error, mut depth) = (b, error, 0);
         while !self.budget.is_exhausted(self.workspace) {
             if self.is_open(&b, unsure) {
                 if self.is_clear(&a, &b, error, unsure) || depth > DEPTH {
-                    waiting = waiting.checked_sub(1)?;
                     a = b;
-                    (b, error, depth) = *halves.get(waiting)?;
+                    (b, error, depth) = self.workspace.halves.pop()?;
                     continue;
                 }
             } else if a.rate >= 0.0 && highest(&a, &b) <= b.d && self.is_resolved(&a, &b) || depth > DEPTH {
@@ -168,8 +166,7 @@ impl Integration<'_> {
             let middle = self.inside(trial, length, f64::midpoint(a.at, b.at));
             error = (middle.d - cubic(&a, &b, middle.at)).abs();
             depth += 1;
-            *halves.get_mut(waiting)? = (b, error, depth);
-            waiting += 1;
+            self.workspace.halves.push((b, error, depth));
             b = middle;
         }
         None
