@@ -40,6 +40,12 @@ pub enum SceneError {
         /// The most similar names.
         nearest: String,
     },
+    /// Brackets inside each other that are more than a file may have.
+    #[error("brackets inside each other: not allowed, allowed are {0}")]
+    Nested(usize),
+    /// Less memory than a simulation takes.
+    #[error("out of memory: {0} bytes are needed, and the system does not give them")]
+    Memory(usize),
     /// A value of the wrong type.
     #[error("{name} = {value}: wrong type, allowed is {allowed}")]
     WrongType {

@@ -60,6 +60,7 @@ mod harmonic;
 pub mod inputs;
 mod integrator;
 mod math;
+mod memory;
 mod model;
 mod preload;
 pub mod reference;

@@ -53,7 +53,7 @@ pub struct Model {
     /// The modes, frequency ascending.
     pub(crate) modes: Vec<Mode>,
     /// The axial force, if it follows the deflection continuously.
-    pub(crate) axial: Option<Feedback>,
+    pub(crate) axial: Option<Box<Feedback>>,
     /// Friction between the contacts.
     pub(crate) friction: Option<Friction>,
     /// Modes and contact as one linear system, if the scene is linear, the generator harmonic, and nothing within a
@@ -138,7 +138,8 @@ impl Model {
             });
         };
         let axial = (scene.effects.axial_force == AxialForceKind::FromDeflection)
-            .then(|| Feedback::new(&section, &preload, scene.environment.gravity, &space, &modes, &shapes));
+            .then(|| Feedback::new(&section, &preload, scene.environment.gravity, &space, &modes, &shapes))
+            .map(Box::new);
         let frequency = spring.frequency(preload.axial_force, preload.contact_stiffness);
         let frequency = axial
             .as_ref()
@@ -326,7 +327,7 @@ impl Model {
 
     /// Axial force from the deflection, with `effects.axialForce` FromDeflection.
     pub fn axial(&self) -> Option<&Feedback> {
-        self.axial.as_ref()
+        self.axial.as_deref()
     }
 
     /// Friction, where there is any.

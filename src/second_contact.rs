@@ -28,7 +28,7 @@ impl Model {
     pub(crate) fn with_second(mut self, law: Law) -> Self {
         self.hardest = self.law.hardest(&law);
         self.second = None;
-        let mut second = self.clone();
+        let mut second = Box::new(self.clone());
         second.law = law;
         second.preload = Preload {
             force: -self.preload.force,
@@ -39,9 +39,9 @@ impl Model {
         };
         second.electrical = ElectricalContact::new(&self.scene, &law);
         second.criterion = (second.electrical.as_ref()).and_then(|contact| Criterion::new(&self.scene, contact));
-        second.axial = self.axial.as_ref().map(Feedback::mirrored);
+        second.axial = self.axial().map(Feedback::mirrored).map(Box::new);
         second.mirrored = true;
-        self.second = Some(Box::new(second));
+        self.second = Some(second);
         self
     }
 

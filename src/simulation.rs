@@ -7,6 +7,7 @@ use crate::inputs::Inputs;
 use crate::integrator::communication_step;
 use crate::integrator::exact_step;
 use crate::integrator::workspace::Workspace;
+use crate::memory;
 use crate::model::Model;
 use crate::scene::Scene;
 use crate::state::State;
@@ -18,8 +19,8 @@ pub use crate::integrator::motion::Motion;
 /// A simulation, which starts at rest in the preload.
 #[derive(Clone, Debug)]
 pub struct Simulation {
-    model: Model,
-    motion: Motion,
+    model: Box<Model>,
+    motion: Box<Motion>,
     workspace: Workspace,
 }
 
@@ -29,7 +30,7 @@ impl Simulation {
     /// # Errors
     /// A [`SceneError`] if the scene cannot be simulated.
     pub fn new(scene: &Scene, inputs: &Inputs, start_time: f64) -> Result<Self, SceneError> {
-        let model = Model::new(scene, inputs.support_displacement)?;
+        let model = on_heap(scene, inputs.support_displacement)?;
         let displacement = inputs.second_displacement;
         let room = model.room(displacement);
         if room.min(room + model.preload.indentation) <= 0.0 {
@@ -39,11 +40,11 @@ impl Simulation {
                 least: model.preload.indentation.max(0.0),
             });
         }
-        let mut state = model.initial_state(start_time);
+        let mut motion = Motion::at_rest(&model, start_time);
         if model.second.is_some() {
-            state.second_support = displacement;
+            motion.start.second_support = displacement;
+            motion.end.second_support = displacement;
         }
-        let mut motion = Motion::new(state);
         motion.current = inputs.contact_current;
         let workspace = Workspace::new(&model);
         Ok(Self {
@@ -57,8 +58,8 @@ impl Simulation {
     pub fn from_state(model: Model, state: &State) -> Self {
         let workspace = Workspace::new(&model);
         Self {
-            model,
-            motion: Motion::new(*state),
+            model: Box::new(model),
+            motion: Box::new(Motion::new(*state)),
             workspace,
         }
     }
@@ -97,11 +98,11 @@ impl Simulation {
     /// # Errors
     /// A [`SceneError`] if the scene cannot be simulated.
     pub fn resume(scene: &Scene, initial_support: f64, motion: &Motion) -> Result<Self, SceneError> {
-        let model = Model::new(scene, initial_support)?;
+        let model = on_heap(scene, initial_support)?;
         let workspace = Workspace::new(&model);
         let mut simulation = Self {
+            motion: Motion::at_rest(&model, 0.0),
             model,
-            motion: *motion,
             workspace,
         };
         simulation.go_on_from(motion);
@@ -113,9 +114,14 @@ impl Simulation {
         &self.motion
     }
 
+    /// A copy of [`Simulation::motion`], made on the heap.
+    pub(crate) fn copied_motion(&self) -> Box<Motion> {
+        self.motion.clone()
+    }
+
     /// Continues from the state of a simulation of the same model.
     pub fn go_on_from(&mut self, motion: &Motion) {
-        self.motion = *motion;
+        *self.motion = *motion;
         self.workspace.events.forget_after(f64::NEG_INFINITY);
         if let Some(event) = motion.event_ahead() {
             self.workspace.events.record(event);
@@ -317,7 +323,7 @@ impl Simulation {
         let view = if second {
             self.model.second.as_deref()
         } else {
-            Some(&self.model)
+            Some(&*self.model)
         };
         let counted = view.and_then(|model| model.criterion);
         counted.map_or_else(Summary::default, |criterion| {
@@ -358,5 +364,17 @@ impl Simulation {
         };
         // At the instant of closing there is no force yet.
         force > 0.0 || state.closed && state.mirrored == second && !self.model.law.never_opens()
+    }
+}
+
+/// The model of a scene, made out of line, as it is large; refused where there is no memory to simulate it.
+#[inline(never)]
+fn on_heap(scene: &Scene, support: f64) -> Result<Box<Model>, SceneError> {
+    let model = Model::new(scene, support)?;
+    let needed = Workspace::size(&model);
+    if memory::has(needed) {
+        Ok(Box::new(model))
+    } else {
+        Err(SceneError::Memory(needed))
     }
 }

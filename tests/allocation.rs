@@ -1,6 +1,12 @@
-//! A time step, and setting and reading around it, allocates nothing.
+//! A time step, and setting and reading around it, allocates nothing. Where there is too little memory a call fails, and the
+//! process goes on.
 
-use relay_contact::fmi2::fmi2OK;
+use std::{fs, ptr};
+
+use relay_contact::fmi2::{
+    fmi2DeSerializeFMUstate, fmi2Discard, fmi2Error, fmi2GetFMUstate, fmi2OK, fmi2SerializeFMUstate,
+    fmi2SerializedFMUstateSize,
+};
 use relay_contact::variables::ExcitationKind;
 use testing::allocator::Counting;
 use testing::instance::Instance;
@@ -56,4 +62,76 @@ fn an_exact_step_allocates_nothing() {
     }
     assert_eq!(Counting::calls(), before, "allocated in a step");
     assert!(contact.integer("solver.steps") < 500, "no step went ahead");
+}
+
+/// Memory of which a simulation takes more, and a call that sets or reads less, bytes.
+const LITTLE: usize = 1 << 16;
+
+/// The caches of a simulation take about a megabyte.
+#[test]
+fn an_initialisation_without_memory_is_an_error_that_a_reset_heals() {
+    let contact = Instance::new();
+    for _ in 0..2 {
+        assert_eq!(contact.enter_initialization_mode(), fmi2OK);
+        Counting::refuse_above(LITTLE);
+        let status = contact.exit_initialization_mode();
+        Counting::refuse_above(usize::MAX);
+        contact.answers(
+            status,
+            fmi2Error,
+            &["fmi2ExitInitializationMode: out of memory: ", "bytes are needed"],
+        );
+        assert_eq!(contact.reset(), fmi2OK);
+    }
+    contact.initialize();
+    assert_eq!(contact.step(0.0, 1e-4), fmi2OK);
+}
+
+#[test]
+#[allow(clippy::undocumented_unsafe_blocks)] // every block calls a C function with what it needs
+fn a_state_without_memory_is_an_error() {
+    let contact = Instance::initialized();
+    let (mut state, mut again, mut size) = (ptr::null_mut(), ptr::null_mut(), 0);
+    // A simulation's motion alone has some 4 kB: two states of 64 modes.
+    Counting::refuse_above(4000);
+    let status = unsafe { fmi2GetFMUstate(contact.component, &raw mut state) };
+    Counting::refuse_above(usize::MAX);
+    contact.answers(status, fmi2Error, &["fmi2GetFMUstate: out of memory: "]);
+    assert!(state.is_null());
+    assert_eq!(contact.reset(), fmi2OK);
+    contact.initialize();
+    assert_eq!(unsafe { fmi2GetFMUstate(contact.component, &raw mut state) }, fmi2OK);
+    assert_eq!(
+        unsafe { fmi2SerializedFMUstateSize(contact.component, state, &raw mut size) },
+        fmi2OK
+    );
+    // What begins like a state, and is longer than any.
+    let mut bytes = vec![0; 1 << 26];
+    assert_eq!(
+        unsafe { fmi2SerializeFMUstate(contact.component, state, bytes.as_mut_ptr(), size) },
+        fmi2OK
+    );
+    Counting::refuse_above(LITTLE);
+    let status = unsafe { fmi2DeSerializeFMUstate(contact.component, bytes.as_ptr(), bytes.len(), &raw mut again) };
+    Counting::refuse_above(usize::MAX);
+    contact.answers(
+        status,
+        fmi2Error,
+        &["is not a saved state: it has 67108864 bytes, allowed are 1048576"],
+    );
+}
+
+#[test]
+fn a_file_for_which_there_is_no_memory_is_discarded() {
+    let contact = Instance::new();
+    let file = concat!(env!("CARGO_TARGET_TMPDIR"), "/large-spring.toml");
+    fs::write(file, format!("# {}", "a".repeat(900_000))).expect("a file");
+    Counting::refuse_above(LITTLE);
+    let status = contact.set_string("beam.file", file);
+    Counting::refuse_above(usize::MAX);
+    contact.answers(
+        status,
+        fmi2Discard,
+        &["large-spring.toml: cannot be read: out of memory"],
+    );
 }

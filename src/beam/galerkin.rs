@@ -150,7 +150,7 @@ impl Space {
                 (mode, shape * normalisation)
             })
             .collect();
-        modes.sort_by(|(a, _), (b, _)| a.omega_squared.total_cmp(&b.omega_squared));
+        modes.sort_unstable_by(|(a, _), (b, _)| a.omega_squared.total_cmp(&b.omega_squared));
         Some(modes)
     }
 

@@ -1,5 +1,6 @@
 //! The damped modes of the cantilever without contact, and their motion.
 
+use bytemuck::Zeroable;
 use serde::{Deserialize, Serialize};
 
 /// Largest number of modes; a multiple of four, the width of the vectors in a step.
@@ -31,7 +32,7 @@ impl Mode {
 }
 
 /// Displacement and velocity of a mode, as deviation from the preload.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, Zeroable)]
 pub struct ModeState {
     /// Modal displacement, m sqrt(kg).
     pub q: f64,

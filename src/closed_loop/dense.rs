@@ -1,5 +1,7 @@
 //! The tip at the nodes of an exact step, for dense output.
 
+use bytemuck::zeroed_box;
+
 use crate::closed_loop::oscillator::Coordinates;
 use crate::closed_loop::propagator::Propagator;
 use crate::closed_loop::system::ClosedLoop;
@@ -14,7 +16,7 @@ pub type TipAtNodes = [Nodal<LONG>; 2];
 #[derive(Clone, Debug)]
 pub struct DensePropagator {
     /// The motion to the end of the step.
-    pub(crate) whole: Propagator,
+    pub(crate) whole: Box<Propagator>,
     /// The tip per displacement of each oscillator at the start, then per velocity.
     free: Vec<TipAtNodes>,
     /// The tip from rest under the generator with unit amplitude, per sine and per cosine of its phase at the start.
@@ -26,7 +28,7 @@ impl DensePropagator {
     pub(crate) fn room(oscillators: usize) -> Self {
         let none = [[0.0; LONG]; 2];
         Self {
-            whole: Propagator::ZERO,
+            whole: zeroed_box(),
             free: vec![none; 2 * oscillators],
             generated: [none; 2],
         }

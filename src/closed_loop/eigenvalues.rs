@@ -236,7 +236,7 @@ fn paired(problem: &Problem, zeros: Vec<Zero>) -> Option<Vec<Pair>> {
     if lower != pairs.len() || real.len() % 2 != 0 {
         return None;
     }
-    real.sort_by(|a, b| b.value.re.total_cmp(&a.value.re).then(b.beam.re.total_cmp(&a.beam.re)));
+    real.sort_unstable_by(|a, b| b.value.re.total_cmp(&a.value.re).then(b.beam.re.total_cmp(&a.beam.re)));
     let mut single: Vec<Root<f64>> = Vec::new();
     let mut rest = real.as_slice();
     while let [a, others @ ..] = rest {

@@ -8,6 +8,7 @@
 
 use std::f64::consts::TAU;
 
+use bytemuck::Zeroable;
 use nalgebra::Complex;
 
 use crate::beam::mode::MAX_MODES;
@@ -17,7 +18,7 @@ use crate::excitation::waveform::turned;
 use crate::math::free_motion::FreeMotion;
 
 /// The motion over a step.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Zeroable)]
 pub struct Propagator {
     /// Free motion of each oscillator: displacement and velocity at the end per displacement and velocity at the start.
     pub(crate) x_from_x: [f64; MAX_MODES],
@@ -30,16 +31,6 @@ pub struct Propagator {
 }
 
 impl Propagator {
-    /// Not computed yet.
-    pub(crate) const ZERO: Self = Self {
-        x_from_x: [0.0; MAX_MODES],
-        x_from_v: [0.0; MAX_MODES],
-        v_from_x: [0.0; MAX_MODES],
-        v_from_v: [0.0; MAX_MODES],
-        from_sine: [0.0; 2 * MAX_MODES],
-        from_cosine: [0.0; 2 * MAX_MODES],
-    };
-
     /// Computes the coefficients for a length (s) in place.
     pub(crate) fn fill(&mut self, length: f64, oscillators: &[Oscillator], generator: &Generator) {
         let count = oscillators.len();
@@ -72,11 +63,11 @@ pub struct ByLength<T> {
     oldest: usize,
 }
 
-impl<T: Clone> ByLength<T> {
+impl<T> ByLength<T> {
     /// Room for so many lengths.
-    pub(crate) fn new(room: usize, empty: T) -> Self {
+    pub(crate) fn new(room: usize, empty: impl Fn() -> T) -> Self {
         Self {
-            kept: vec![(0.0, empty); room],
+            kept: (0..room).map(|_| (0.0, empty())).collect(),
             oldest: 0,
         }
     }

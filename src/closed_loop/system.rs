@@ -9,6 +9,8 @@
 //! particular solution, which is bounded as every oscillator has a stiffness. The generator's sine is covered by the
 //! response from rest, which is valid even at a resonance without damping.
 
+use bytemuck::zeroed_box;
+
 use crate::beam::mode::{MAX_MODES, Mode};
 use crate::closed_loop::eigenvectors::EigenPair;
 use crate::closed_loop::oscillator::{Coordinates, Oscillator, set};
@@ -33,16 +35,16 @@ pub struct ClosedLoop {
     /// Transformation from modes (displacement and velocity of each) to oscillators.
     to_oscillators: Columns,
     /// Displacement and velocity of the tip per displacement, then per velocity, of each oscillator.
-    pub(crate) tip: [Coordinates; 2],
+    pub(crate) tip: Box<[Coordinates; 2]>,
     /// Particular solution at its start, under unit base acceleration and under one that grows linearly with time.
-    acceleration: Coordinates,
-    jerk: Coordinates,
+    acceleration: Box<Coordinates>,
+    jerk: Box<Coordinates>,
     /// The same under a tip force.
-    force: Coordinates,
-    growth: Coordinates,
+    force: Box<Coordinates>,
+    growth: Box<Coordinates>,
     /// Steady state under the generator with unit amplitude, per sine and per cosine of its phase; zero at a resonance
     /// without damping.
-    steady: [Coordinates; 2],
+    steady: Box<[Coordinates; 2]>,
     /// Contact force of these five motions; of the last its amplitude, infinite at a resonance without damping.
     forces: [f64; 5],
 }
@@ -139,12 +141,12 @@ impl ClosedLoop {
             to_modes: Columns::new(2 * count, right),
             to_oscillators: Columns::new(2 * count, left),
             oscillators,
-            tip: [[0.0; 2 * MAX_MODES]; 2],
-            acceleration: [0.0; 2 * MAX_MODES],
-            jerk: [0.0; 2 * MAX_MODES],
-            force: [0.0; 2 * MAX_MODES],
-            growth: [0.0; 2 * MAX_MODES],
-            steady: [[0.0; 2 * MAX_MODES]; 2],
+            tip: zeroed_box(),
+            acceleration: zeroed_box(),
+            jerk: zeroed_box(),
+            force: zeroed_box(),
+            growth: zeroed_box(),
+            steady: zeroed_box(),
             forces: [0.0; 5],
         };
         let mut resonant = false;
@@ -157,13 +159,13 @@ impl ClosedLoop {
             if let Some(frequency) = generator.frequency() {
                 let steady = oscillator.loaded(oscillator.steady(frequency));
                 resonant |= !steady.iter().all(|motion| motion.is_finite());
-                let [per_sine, per_cosine] = &mut closed_loop.steady;
+                let [per_sine, per_cosine] = &mut *closed_loop.steady;
                 set(per_sine, n, count, steady.map(|motion| motion.re));
                 set(per_cosine, n, count, steady.map(|motion| motion.im));
             }
         }
         let columns = closed_loop.to_modes.entries.chunks_exact(2 * count);
-        let [displacement, velocity] = &mut closed_loop.tip;
+        let [displacement, velocity] = &mut *closed_loop.tip;
         for ((displacement, velocity), column) in displacement.iter_mut().zip(velocity).zip(columns).take(2 * count) {
             for (mode, motion) in modes.iter().zip(column.chunks_exact(2)) {
                 if let [q, v] = motion {
@@ -173,7 +175,7 @@ impl ClosedLoop {
             }
         }
         if resonant {
-            closed_loop.steady = [[0.0; 2 * MAX_MODES]; 2];
+            closed_loop.steady = zeroed_box();
         }
         let force = |motion: &Coordinates| closed_loop.force_of(motion);
         let [per_sine, per_cosine] = closed_loop.steady.each_ref().map(force);
@@ -285,7 +287,7 @@ impl ClosedLoop {
 
     /// Displacement and velocity of the tip of a motion of the oscillators.
     pub(crate) fn tip_of(&self, motion: &Coordinates) -> (f64, f64) {
-        let [displacement, velocity] = &self.tip;
+        let [displacement, velocity] = &*self.tip;
         let rows = displacement.iter().zip(velocity).take(2 * self.oscillators.len());
         let motions = motion.iter().zip(rows);
         motions.fold(
@@ -304,8 +306,8 @@ impl ClosedLoop {
         let (a, j) = (sign * steady.acceleration, sign * steady.jerk);
         let (f, g) = (sign * steady.force, sign * steady.growth);
         let count = 2 * self.oscillators.len();
-        let by_base = self.acceleration.iter().zip(&self.jerk);
-        let by_tip = self.force.iter().zip(&self.growth);
+        let by_base = self.acceleration.iter().zip(&*self.jerk);
+        let by_tip = self.force.iter().zip(&*self.growth);
         let columns = by_base.zip(by_tip);
         for (motion, ((acceleration, jerk), (force, growth))) in motion.iter_mut().zip(columns).take(count) {
             *motion += a * acceleration + j * jerk + f * force + g * growth;

@@ -9,6 +9,8 @@
 
 use std::f64::consts::TAU;
 
+use bytemuck::zeroed_box;
+
 use crate::excitation::waveform::Accelerations;
 use crate::excitation::window::Window;
 use crate::math::nodal::{Nodal, add, add_products};
@@ -40,9 +42,9 @@ pub struct Random {
     /// a, m/s2.
     amplitude: f64,
     /// f_j, Hz, each as sum of two numbers of half the digits.
-    frequencies: [Each; 2],
+    frequencies: Box<[Each; 2]>,
     /// p_j, turns.
-    phases: Each,
+    phases: Box<Each>,
     /// For each term of the Chebyshev series, its factors of `sin phi_j` (even terms) or `cos phi_j` (odd ones), with
     /// the phases `phi_j` in the middle of a piece, m/s2.
     factors: Vec<Each>,
@@ -54,7 +56,7 @@ pub struct Random {
 
 /// The acceleration over a piece of time, as a Chebyshev series. Kept from step to step; a function of the number of
 /// the piece alone, so results do not depend on it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Piece {
     /// Its number; negative: none yet.
     number: f64,
@@ -62,6 +64,8 @@ pub struct Piece {
     middle: f64,
     /// The series, m/s2.
     series: [f64; TERMS],
+    /// Sines and cosines of the phases in the middle.
+    phasors: Box<[Each; 2]>,
 }
 
 impl Default for Piece {
@@ -71,6 +75,7 @@ impl Default for Piece {
             number: -1.0,
             middle: 0.0,
             series: [0.0; TERMS],
+            phasors: zeroed_box(),
         }
     }
 }
@@ -97,8 +102,9 @@ impl Random {
     pub fn new(excitation: &Excitation) -> Self {
         let width = excitation.end_frequency - excitation.frequency;
         let mut generator = SplitMix64(excitation.seed.unsigned_abs().into());
-        let (mut frequencies, mut phases) = ([0.0; SINES], [0.0; SINES]);
-        for (j, (frequency, phase)) in frequencies.iter_mut().zip(&mut phases).enumerate() {
+        let (mut frequencies, mut phases): (Box<[Each; 2]>, Box<Each>) = (zeroed_box(), zeroed_box());
+        let [highs, lows] = &mut *frequencies;
+        for (j, (frequency, phase)) in highs.iter_mut().zip(&mut *phases).enumerate() {
             let place = (j as f64 + generator.next_part()) / SINES as f64;
             *frequency = excitation.frequency + place * width;
             *phase = generator.next_part();
@@ -108,7 +114,7 @@ impl Random {
         // sin(phi + z x) by the expansion of Jacobi and Anger: J_0(z) sin(phi), then 2 J_k(z) T_k(x) times cos(phi),
         // -sin(phi), -cos(phi), sin(phi), ...
         let mut factors = vec![[0.0; SINES]; TERMS];
-        for (j, frequency) in frequencies.iter().enumerate() {
+        for (j, frequency) in highs.iter().enumerate() {
             let values = bessel(0.5 * TAU * PIECE * frequency / highest);
             for (k, (factors, value)) in factors.iter_mut().zip(values).enumerate() {
                 let sign = if k % 4 < 2 { amplitude } else { -amplitude };
@@ -120,11 +126,13 @@ impl Random {
                     .for_each(|entry| *entry = factor * value);
             }
         }
-        let halves = frequencies.map(split);
+        for (high, low) in highs.iter_mut().zip(lows) {
+            [*high, *low] = split(*high);
+        }
         Self {
             amplitude,
             factors,
-            frequencies: [halves.map(|[high, _]| high), halves.map(|[_, low]| low)],
+            frequencies,
             phases,
             highest,
             window: Window::from(excitation.start_time),
@@ -134,8 +142,10 @@ impl Random {
     /// Acceleration at `time` (s), m/s2.
     pub fn value(&self, time: f64) -> f64 {
         let tau = time - self.window.start;
-        let (sin, _) = phasors::<Separate>(&self.frequencies, tau, &self.phases);
-        self.amplitude * dot::<Separate>(&sin, &[1.0; SINES])
+        let mut phasors = [[0.0; SINES]; 2];
+        set_phasors::<Separate>(&mut phasors, &self.frequencies, tau, &self.phases);
+        let [sin, _] = &phasors;
+        self.amplitude * dot::<Separate>(sin, &[1.0; SINES])
     }
 
     /// Accelerations over a step that begins at `time` (s), at the nodes the given times (s) after it. `piece` is kept
@@ -162,7 +172,7 @@ impl Random {
         let stride = STRIDE / self.highest;
         let number = (tau / stride).floor();
         if piece.number != number {
-            *piece = self.piece::<A>(number, number * stride + 0.5 * PIECE / self.highest);
+            self.set_piece::<A>(piece, number, number * stride + 0.5 * PIECE / self.highest);
         }
         let per_half = 2.0 * self.highest / PIECE;
         let start = (tau - piece.middle) * per_half;
@@ -175,15 +185,15 @@ impl Random {
         }
     }
 
-    /// The piece with this number and its middle (s after the start).
+    /// Makes a piece the one with this number and its middle (s after the start).
     #[inline(always)]
-    fn piece<A: Arithmetic>(&self, number: f64, middle: f64) -> Piece {
-        let (sin, cos) = phasors::<A>(&self.frequencies, middle, &self.phases);
-        let mut series = [0.0; TERMS];
-        for (k, (coefficient, factors)) in series.iter_mut().zip(&self.factors).enumerate() {
-            *coefficient = dot::<A>(factors, if k.is_multiple_of(2) { &sin } else { &cos });
+    fn set_piece<A: Arithmetic>(&self, piece: &mut Piece, number: f64, middle: f64) {
+        set_phasors::<A>(&mut piece.phasors, &self.frequencies, middle, &self.phases);
+        let [sin, cos] = &*piece.phasors;
+        for (k, (coefficient, factors)) in piece.series.iter_mut().zip(&self.factors).enumerate() {
+            *coefficient = dot::<A>(factors, if k.is_multiple_of(2) { sin } else { cos });
         }
-        Piece { number, middle, series }
+        (piece.number, piece.middle) = (number, middle);
     }
 }
 
@@ -235,10 +245,9 @@ fn rounded(value: f64) -> f64 {
 /// Sines and cosines of the phases (turns) after `tau` seconds at the frequencies (Hz). Branch-free, so that the loop
 /// is vectorised.
 #[inline(always)]
-fn phasors<A: Arithmetic>([high, low]: &[Each; 2], tau: f64, phases: &Each) -> (Each, Each) {
+fn set_phasors<A: Arithmetic>([sines, cosines]: &mut [Each; 2], [high, low]: &[Each; 2], tau: f64, phases: &Each) {
     let [tau_high, tau_low] = split(tau);
-    let (mut sines, mut cosines) = ([0.0; SINES], [0.0; SINES]);
-    let phasors = sines.iter_mut().zip(&mut cosines);
+    let phasors = sines.iter_mut().zip(cosines);
     for ((sine, cosine), ((high, low), phase)) in phasors.zip(high.iter().zip(low).zip(phases)) {
         // Whole turns are removed before rounding, as in `waveform::turned`.
         let product = (high + low) * tau;
@@ -246,7 +255,6 @@ fn phasors<A: Arithmetic>([high, low]: &[Each; 2], tau: f64, phases: &Each) -> (
         let turns = (product - rounded(product)) + (lost + phase);
         (*sine, *cosine) = unit::<A>(turns);
     }
-    (sines, cosines)
 }
 
 /// Terms of the power series of sine and cosine in an eighth of a turn: the next one is below 3e-18.

@@ -104,6 +104,9 @@ pub(super) enum Failure {
     /// A buffer of the wrong size for the serialized state.
     #[error("size = {size}: not allowed, the saved state has {needed} bytes")]
     Size { size: usize, needed: usize },
+    /// Less memory than the call takes.
+    #[error("out of memory: {0} bytes are needed, and the system does not give them")]
+    Memory(usize),
     /// A capability that the description declares unsupported.
     #[error("not supported, see {0} in modelDescription.xml")]
     Unsupported(&'static str),
@@ -139,6 +142,7 @@ impl Failure {
             | Self::ForeignState(_)
             | Self::Serialized(_)
             | Self::Size { .. }
+            | Self::Memory(_)
             // Not fmi2Fatal: instances share nothing, and a reset rebuilds this one.
             | Self::Panic(_) => fmi2Error,
         }

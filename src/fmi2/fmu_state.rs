@@ -12,9 +12,19 @@ use super::entry::{array, array_mut, call, place};
 use super::failure::Failure;
 use super::instance::Instance;
 use super::instance::snapshot::Snapshot;
-use super::saved::saved;
+use super::saved::{Saved, saved};
 use super::types::{fmi2Byte, fmi2Component, fmi2FMUstate, fmi2Real, fmi2Status, fmi2ValueReference};
 use super::{serial, states};
+use crate::integrator::motion::Motion;
+use crate::memory;
+
+/// What a saved state with its motion takes of memory, and more, bytes.
+const ROOM: usize = size_of::<Saved>() + 2 * size_of::<Motion>();
+
+/// Refuses a snapshot for which there is no memory.
+fn check_memory() -> Result<(), Failure> {
+    memory::has(ROOM).then_some(()).ok_or(Failure::Memory(ROOM))
+}
 
 /// Stores a snapshot in the state that `FMUstate` points to or, if that is null, in a new one.
 ///
@@ -41,6 +51,7 @@ unsafe fn keep(instance: &mut Instance, FMUstate: *mut fmi2FMUstate, snapshot: S
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetFMUstate(c: fmi2Component, FMUstate: *mut fmi2FMUstate) -> fmi2Status {
     let body = |instance: &mut Instance| {
+        check_memory()?;
         let snapshot = instance.snapshot();
         // SAFETY: the contract of the module.
         unsafe { keep(instance, FMUstate, snapshot) }
@@ -130,8 +141,8 @@ pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
     let body = |instance: &mut Instance| {
         // SAFETY: the contract of the module.
         let bytes = unsafe { array(serializedState, size, "serializedState") }?;
-        let bytes: Vec<u8> = bytes.iter().flat_map(|byte| byte.to_ne_bytes()).collect();
-        let snapshot = serial::from_bytes(&bytes)?;
+        check_memory()?;
+        let snapshot = serial::from_bytes(bytemuck::cast_slice(bytes))?;
         // SAFETY: the contract of the module.
         unsafe { keep(instance, FMUstate, snapshot) }
     };

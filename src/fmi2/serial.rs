@@ -18,6 +18,9 @@ const MAGIC: &[u8] = b"relay\0st";
 /// Incremented whenever the contents change.
 const VERSION: u32 = 5;
 
+/// Largest number of bytes: no state of a spring with as many entries as it may have takes a quarter of it.
+const LARGEST: usize = 1 << 20;
+
 /// The bytes of a saved state.
 pub(super) fn to_bytes(snapshot: &Snapshot) -> Result<Vec<u8>, Failure> {
     let contents = postcard::to_allocvec(snapshot).map_err(|error| Failure::Panic(error.to_string()))?;
@@ -32,6 +35,9 @@ pub(super) fn to_bytes(snapshot: &Snapshot) -> Result<Vec<u8>, Failure> {
 pub(super) fn from_bytes(bytes: &[u8]) -> Result<Snapshot, Failure> {
     let wrong = |reason: String| Failure::Serialized(reason);
     let truncated = || wrong(format!("it ends after {} bytes, before it is complete", bytes.len()));
+    if bytes.len() > LARGEST {
+        return Err(wrong(format!("it has {} bytes, allowed are {LARGEST}", bytes.len())));
+    }
     let (magic, rest) = bytes.split_at_checked(MAGIC.len()).ok_or_else(truncated)?;
     if magic != MAGIC {
         return Err(wrong("it was not made by this component".to_owned()));

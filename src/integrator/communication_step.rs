@@ -1,8 +1,6 @@
 //! A communication step: integrated exactly to its end, or read from the dense output of a longer integration step
 //! ([`crate::integrator::motion`]).
 
-use std::mem::replace;
-
 use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
 use crate::inputs::Inputs;
@@ -94,14 +92,14 @@ fn step_by<const EXTREMES: bool>(
             motion.add_dense(extremes, model, since, until);
         }
     } else if steady && (switches || !many && (ahead || size < own_step || size != motion.size)) {
-        let (start, end, dense) = (motion.start, motion.end, motion.dense);
+        *workspace.former = *motion;
         if let Err(error) = go_ahead(model, motion, workspace, until, extremes.as_mut()) {
-            (motion.start, motion.end, motion.dense) = (start, end, dense);
+            *motion = *workspace.former;
             workspace.events.forget_after(motion.end.time);
             return Err(error);
         }
     } else if steady && ahead {
-        let (mut end, time) = (motion.end, motion.end.time);
+        let time = motion.end.time;
         let steps = Steps::Exactly {
             time,
             size: remaining,
@@ -110,15 +108,18 @@ fn step_by<const EXTREMES: bool>(
         if let Some(extremes) = &mut extremes {
             motion.add_dense(extremes, model, since, time);
         }
-        advance(model, &mut end, workspace, motion.drive, steps, extremes.as_mut())?;
-        end.time = until;
-        (motion.start, motion.end) = (end, end);
+        workspace.former.end = motion.end;
+        advance_end(model, motion, workspace, motion.drive, steps, extremes.as_mut())?;
+        motion.end.time = until;
+        motion.start = motion.end;
     } else {
-        // Elsewhere the start of the integration step is its end.
-        let mut former = None;
+        workspace.former.end = motion.end;
         if ahead {
-            let now = state(model, motion, workspace)?;
-            former = Some(replace(&mut motion.end, now));
+            motion.end = motion.start;
+            if let Err(error) = go_on(model, &mut motion.end, workspace, motion.drive, since) {
+                motion.end = workspace.former.end;
+                return Err(error);
+            }
             workspace.events.forget_after(since);
         }
         let news = News {
@@ -127,12 +128,9 @@ fn step_by<const EXTREMES: bool>(
             length: size != motion.size,
         };
         let steps = Steps::Exactly { time, size, news };
+        let done = advance_end(model, motion, workspace, drive, steps, extremes.as_mut());
+        done.inspect_err(|_| workspace.events.forget_after(since))?;
         let end = &mut motion.end;
-        if let Err(error) = advance(model, end, workspace, drive, steps, extremes.as_mut()) {
-            motion.end = former.unwrap_or(motion.start);
-            workspace.events.forget_after(since);
-            return Err(error);
-        }
         end.second_support = second;
         end.support = if end.mirrored { second - support } else { support };
         end.time = until;
@@ -147,6 +145,19 @@ fn step_by<const EXTREMES: bool>(
     motion.current = inputs.contact_current_after(size);
     motion.current_rate = inputs.contact_current_rate;
     Ok(())
+}
+
+/// [`advance`] for the end of a motion, which on an error is again that kept in the workspace.
+fn advance_end(
+    model: &Model,
+    motion: &mut Motion,
+    workspace: &mut Workspace,
+    drive: Drive,
+    steps: Steps,
+    extremes: Option<&mut Extremes>,
+) -> Result<(), StepError> {
+    let done = advance(model, &mut motion.end, workspace, drive, steps, extremes);
+    done.inspect_err(|_| motion.end = workspace.former.end)
 }
 
 /// Displacement of the second fixed contact after a communication step of `size` seconds from `time` (s), m.
@@ -168,13 +179,34 @@ fn second_support(model: &Model, inputs: &Inputs, time: f64, size: f64) -> Resul
 /// A [`StepError`] where that step fails.
 pub fn state(model: &Model, motion: &Motion, workspace: &mut Workspace) -> Result<State, StepError> {
     let mut state = *motion.state();
-    let (time, size) = (state.time, motion.time - state.time);
-    if size > 0.0 {
-        let news = News::default();
-        let steps = Steps::Exactly { time, size, news };
-        advance(model, &mut state, workspace, motion.drive, steps, None)?;
-    }
+    go_on(model, &mut state, workspace, motion.drive, motion.time)?;
     Ok(state)
+}
+
+/// Integrates on to the instant `until` (s), if that is later.
+///
+/// # Errors
+/// A [`StepError`]; the state is then undefined.
+fn go_on(
+    model: &Model,
+    state: &mut State,
+    workspace: &mut Workspace,
+    drive: Drive,
+    until: f64,
+) -> Result<(), StepError> {
+    let (time, size) = (state.time, until - state.time);
+    if size <= 0.0 {
+        return Ok(());
+    }
+    let news = News::default();
+    advance(
+        model,
+        state,
+        workspace,
+        drive,
+        Steps::Exactly { time, size, news },
+        None,
+    )
 }
 
 /// Takes integration steps of the integrator's own choice until one reaches `time` (s) or beyond. `extremes` covers the

@@ -177,7 +177,7 @@ pub const NEAR: f64 = 0.25;
 
 /// Halvings before an interval counts as an instant. A part of 1e-12 of the interval. Pinned: ÷ 40, hard case
 /// "Grazing spring".
-pub const DEPTH: u32 = 40;
+pub const DEPTH: usize = 40;
 
 /// Halvings of the cubic between two samples before the motion in their middle is computed. Cost.
 pub const HALVINGS: u32 = 3;

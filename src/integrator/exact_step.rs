@@ -24,6 +24,7 @@ use crate::state::State;
 /// Takes `size` seconds from the state's time in one exact step, or several where the generator starts or ends within
 /// them.
 /// `false`, with the state unchanged, if the motion is not linear or the contact may open.
+#[inline(never)]
 pub(crate) fn step_exactly(
     model: &Model,
     state: &mut State,
@@ -72,6 +73,7 @@ fn step(model: &Model, state: &mut State, workspace: &mut Workspace, drive: &Dri
 /// Takes an exact step with dense output, as long as its polynomials are accurate and from the state's time beyond
 /// `until` (s); else an exact step to there. Inputs are constant.
 /// `false`, with the modes unchanged, if the motion is not linear or the contact may open.
+#[inline(never)]
 pub(crate) fn step_ahead(
     model: &Model,
     state: &mut State,
@@ -287,16 +289,25 @@ pub(crate) fn modes(model: &Model, state: &State) -> ModeStates {
 /// Makes a state one of the modes of the cantilever.
 pub(crate) fn leave(model: &Model, state: &mut State) {
     if state.with_contact {
-        state.modes = modes(model, state);
-        state.with_contact = false;
+        transform_back(model, state);
     }
+}
+
+#[inline(never)]
+fn transform_back(model: &Model, state: &mut State) {
+    state.modes = modes(model, state);
+    state.with_contact = false;
 }
 
 /// [`leave`] where constant inputs leave so little motion that the contact may be at rest.
 pub(crate) fn leave_before_rest(model: &Model, state: &mut State, drive: &Drive, tolerance: f64) {
-    if !state.with_contact || !drive.is_constant() || model.generator.is_active(state.time) {
-        return;
+    if state.with_contact && drive.is_constant() && !model.generator.is_active(state.time) {
+        leave_if_still(model, state, drive, tolerance);
     }
+}
+
+#[inline(never)]
+fn leave_if_still(model: &Model, state: &mut State, drive: &Drive, tolerance: f64) {
     let mut free = [0.0; 2 * MAX_MODES];
     let least = UNREST * tolerance;
     if let Some(start) = Start::new(model, state, drive, 0.0, &mut free)

@@ -78,6 +78,12 @@ impl Motion {
         }
     }
 
+    /// At rest in the preload.
+    #[inline(never)]
+    pub(crate) fn at_rest(model: &Model, time: f64) -> Box<Self> {
+        Box::new(Self::new(model.initial_state(time)))
+    }
+
     /// The last integrated state at or before the communication point.
     pub fn state(&self) -> &State {
         if self.end.time <= self.time {

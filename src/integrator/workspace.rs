@@ -1,14 +1,18 @@
 //! Preallocated memory of the integrator, so that no step allocates, and the limit of steps.
 
-use crate::beam::mode::{MAX_MODES, ModeState, ModeStates};
-use crate::closed_loop::dense::DensePropagator;
+use bytemuck::zeroed_box;
+
+use crate::beam::mode::ModeStates;
+use crate::closed_loop::dense::{DensePropagator, TipAtNodes};
 use crate::closed_loop::propagator::{ByLength, Propagator};
 use crate::error::{StepError, StepErrorCause};
 use crate::integrator::collocation::coefficients::Cache;
+use crate::integrator::collocation::part::Instant;
 use crate::integrator::collocation::polynomial::{Collocation, OF_LONG, OF_SHORT};
 use crate::integrator::collocation::step::End;
-use crate::integrator::constants::{LENGTHS, NEW_LENGTH, WORK};
+use crate::integrator::constants::{DEPTH, LENGTHS, NEW_LENGTH, WORK};
 use crate::integrator::events::log::Events;
+use crate::integrator::motion::Motion;
 use crate::math::nodal::{LONG, SHORT};
 use crate::model::Model;
 
@@ -18,15 +22,21 @@ pub struct Workspace {
     short: Cache<SHORT>,
     long: Cache<LONG>,
     /// Of the current trial step.
-    short_end: End<SHORT>,
+    short_end: Box<End<SHORT>>,
     /// See `short_end`.
-    long_end: End<LONG>,
+    long_end: Box<End<LONG>>,
+    /// Of the half steps of the energy balance.
+    half_end: Box<End<LONG>>,
+    /// Later halves of intervals in which a closing is sought: end, error of the cubic (m), depth.
+    pub(crate) halves: Vec<(Instant, f64, usize)>,
     /// Modes at an instant inside it (event location).
-    inside: ModeStates,
+    inside: Box<ModeStates>,
     /// Caches of exact linear steps, without and with dense output.
-    pub(crate) propagators: ByLength<Propagator>,
+    pub(crate) propagators: ByLength<Box<Propagator>>,
     /// See [`Workspace::propagators`].
     dense_propagators: ByLength<DensePropagator>,
+    /// The motion before a communication step, to which a failed one returns.
+    pub(crate) former: Box<Motion>,
     /// Work so far, of rejected and probe steps too, in modes at nodes.
     pub(crate) work: u64,
     /// Openings and closings of the last communication step.
@@ -34,6 +44,14 @@ pub struct Workspace {
 }
 
 impl Workspace {
+    /// What it takes of memory for the model, bytes; the rest of a simulation takes far less.
+    pub fn size(model: &Model) -> usize {
+        let lengths = if model.closed_loop.is_some() { 2 * LENGTHS } else { 0 };
+        let propagators = lengths * (size_of::<Propagator>() + model.modes.len() * size_of::<[TipAtNodes; 2]>());
+        let ends = size_of::<End<SHORT>>() + 2 * size_of::<End<LONG>>();
+        Cache::<SHORT>::size(model) + Cache::<LONG>::size(model) + propagators + ends
+    }
+
     /// Allocates for the model.
     pub fn new(model: &Model) -> Self {
         let oscillators = model
@@ -44,11 +62,14 @@ impl Workspace {
         Self {
             short: Cache::new(model, &OF_SHORT),
             long: Cache::new(model, &OF_LONG),
-            short_end: End::default(),
-            long_end: End::default(),
-            inside: [ModeState::default(); MAX_MODES],
-            propagators: ByLength::new(lengths, Propagator::ZERO),
-            dense_propagators: ByLength::new(lengths, DensePropagator::room(oscillators.unwrap_or_default())),
+            short_end: zeroed_box(),
+            long_end: zeroed_box(),
+            half_end: zeroed_box(),
+            halves: Vec::with_capacity(DEPTH + 1),
+            inside: zeroed_box(),
+            propagators: ByLength::new(lengths, zeroed_box),
+            dense_propagators: ByLength::new(lengths, || DensePropagator::room(oscillators.unwrap_or_default())),
+            former: Motion::at_rest(model, 0.0),
             work: 0,
             events: Events::new(),
         }
@@ -59,6 +80,11 @@ impl Workspace {
     /// For exact steps with dense output.
     pub(crate) fn for_exact_steps(&mut self) -> (&mut ByLength<DensePropagator>, &Collocation<LONG>) {
         (&mut self.dense_propagators, self.long.collocation())
+    }
+
+    /// For the half steps of the energy balance: coefficient cache, and what is left at their ends.
+    pub(crate) fn for_half_steps(&mut self) -> (&mut Cache<LONG>, &mut End<LONG>) {
+        (&mut self.long, &mut self.half_end)
     }
 }
 

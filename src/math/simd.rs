@@ -65,7 +65,11 @@ macro_rules! compiled_for {
         match $simd {
             $crate::math::simd::Simd::Portable => {
                 type $arithmetic = $crate::math::simd::Separate;
-                $body
+                // A frame of its own, as the other compilation has: the stack holds one of them.
+                $crate::math::simd::apart(
+                    #[inline(always)]
+                    || $body,
+                )
             }
             #[cfg(target_arch = "x86_64")]
             $crate::math::simd::Simd::Avx2(token) => fearless_simd::Simd::vectorize(
@@ -78,6 +82,12 @@ macro_rules! compiled_for {
             ),
         }
     };
+}
+
+/// Calls a function out of line.
+#[inline(never)]
+pub(crate) fn apart<R>(function: impl FnOnce() -> R) -> R {
+    function()
 }
 
 pub(crate) use compiled_for;

@@ -37,6 +37,8 @@ use std::path::Path;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
+use toml_parser::Source;
+use toml_parser::lexer::TokenKind;
 
 use crate::error::SceneError;
 use crate::scene::names::located;
@@ -48,6 +50,10 @@ use crate::scene::spring::{
 
 /// Largest file, bytes.
 const LARGEST: u64 = 1 << 20;
+
+/// Brackets inside each other that a spring takes: a list of tables. The parser calls itself for each, on a stack that may be
+/// small.
+const DEEPEST: usize = 2;
 
 /// Likeness by Jaro and Winkler from which on a key may be meant: `thicknes` and `thickness` have 0.98, `segment` and `mode` 0.54.
 const NEAR: f64 = 0.8;
@@ -88,6 +94,7 @@ pub(crate) fn text(path: &Path) -> Result<String, String> {
 
 /// The spring of a text.
 fn shape(text: &str) -> Result<Shape, SceneError> {
+    check_nesting(text)?;
     let document = DeTable::parse(text).map_err(|error| {
         let error_there = SceneError::Toml(error.message().to_owned());
         match error.span() {
@@ -106,6 +113,23 @@ fn shape(text: &str) -> Result<Shape, SceneError> {
     } else {
         segments(&top).map(Shape::Segments)
     }
+}
+
+/// Refuses brackets inside each other that are more than [`DEEPEST`].
+fn check_nesting(text: &str) -> Result<(), SceneError> {
+    let mut depth = 0_usize;
+    for token in Source::new(text).lex() {
+        match token.kind() {
+            TokenKind::LeftSquareBracket | TokenKind::LeftCurlyBracket => depth += 1,
+            TokenKind::RightSquareBracket | TokenKind::RightCurlyBracket => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        if depth > DEEPEST {
+            let place = token.span().start()..token.span().end();
+            return Err(located(text, &place, SceneError::Nested(DEEPEST)));
+        }
+    }
+    Ok(())
 }
 
 fn segments(top: &Entry) -> Result<Segments, SceneError> {

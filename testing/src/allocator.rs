@@ -2,14 +2,16 @@
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
+use std::ptr;
 
-/// The system's allocator, which counts for each thread.
+/// The system's allocator, which counts for each thread, and may refuse what is large.
 #[derive(Debug)]
 pub struct Counting;
 
 thread_local! {
     static CALLS: Cell<usize> = const { Cell::new(0) };
     static HELD: Cell<isize> = const { Cell::new(0) };
+    static LARGEST: Cell<usize> = const { Cell::new(usize::MAX) };
 }
 
 impl Counting {
@@ -23,6 +25,11 @@ impl Counting {
         HELD.get()
     }
 
+    /// Refuses this thread more than so many bytes at a time from now on.
+    pub fn refuse_above(bytes: usize) {
+        LARGEST.set(bytes);
+    }
+
     fn count(change: isize) {
         CALLS.set(CALLS.get() + 1);
         HELD.set(HELD.get() + change);
@@ -32,6 +39,9 @@ impl Counting {
 // SAFETY: every call goes to the system's allocator as it came.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        if layout.size() > LARGEST.get() {
+            return ptr::null_mut();
+        }
         Self::count(1);
         // SAFETY: passed on to the caller.
         unsafe { System.alloc(layout) }

@@ -60,6 +60,7 @@ fn what_is_wrong_is_told_with_its_line_entry_and_range() {
         (with("[mass]\nposition = 0.02\nmass = 1e-6\n"), "5: mass = table: wrong type, allowed is tables, each under its name in double brackets"),
         (SEGMENT.replace("0.01", "1e-5"), "length of all segments = 1e-5 m: not allowed, allowed is 0.001 to 0.2"),
         (format!("{SEGMENT}length = 3\n"), "5: not TOML: duplicate key"),
+        (with("density = [[[1]]]\n"), "5: brackets inside each other: not allowed, allowed are 2"),
         ("compliance = 1e-3\n[[mode]]\nfrequency = 100\ncontact = 50\nparticipation = 0.01\n".to_owned(), "1: compliance = 0.001 m/N: not allowed, allowed is 0.006332573977646111 m/N or more, which the modes hold alone (sum of contact^2/omega^2); modes and compliance contradict each other"),
         ("compliance = 1\n[[mode]]\nfrequency = 100\nparticipation = 0.01\n".to_owned(), "2: mode 1: contact: missing; expected a number"),
         ("compliance = 1\n[[segment]]\nlength = 3\n".to_owned(), "2: segment: no such key, allowed are title, compliance, mode"),

@@ -28,7 +28,7 @@ pub(super) struct Instance {
     inputs: Inputs,
     experiment: Experiment,
     /// In Initialization Mode: created when an output is read, dropped when a value is set.
-    simulation: Option<Simulation>,
+    simulation: Option<Box<Simulation>>,
     /// The last successful time, s.
     time: f64,
     logger: Logger,
@@ -227,7 +227,7 @@ impl Instance {
             scene: self.scene.clone(),
             inputs: self.inputs,
             experiment: self.experiment,
-            simulation: simulation.map(|simulation| (*simulation.motion(), simulation.model().initial_support)),
+            simulation: simulation.map(|simulation| (simulation.copied_motion(), simulation.model().initial_support)),
             time: self.time,
         }
     }
@@ -251,7 +251,7 @@ impl Instance {
             }
             (present, Some((motion, initial_support))) => {
                 let resumed = Simulation::resume(&wanted, *initial_support, motion);
-                *present = Some(resumed.map_err(Failure::Initialisation)?);
+                *present = Some(Box::new(resumed.map_err(Failure::Initialisation)?));
             }
             (present, None) => *present = None,
         }
@@ -264,11 +264,11 @@ impl Instance {
     fn prepare(&mut self) -> Result<&Simulation, SceneError> {
         let simulation = match self.simulation.take() {
             Some(simulation) => simulation,
-            None => Simulation::new(
+            None => Box::new(Simulation::new(
                 &self.experiment.scene(&self.scene),
                 &self.inputs,
                 self.experiment.start_time,
-            )?,
+            )?),
         };
         Ok(self.simulation.insert(simulation))
     }

@@ -37,7 +37,7 @@ pub(in crate::fmi2) struct Snapshot {
     pub(super) inputs: Inputs,
     pub(super) experiment: Experiment,
     /// The state of the simulation, and the initial displacement of the fixed contact, m.
-    pub(super) simulation: Option<(Motion, f64)>,
+    pub(super) simulation: Option<(Box<Motion>, f64)>,
     pub(super) time: f64,
 }
 

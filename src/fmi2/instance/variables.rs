@@ -18,7 +18,7 @@ impl Instance {
         if self.state == State::InitializationMode {
             return self.prepare().map_err(Failure::Preview);
         }
-        self.simulation.as_ref().ok_or(Failure::NotComputed {
+        self.simulation.as_deref().ok_or(Failure::NotComputed {
             name: variable.name,
             state: self.state,
         })

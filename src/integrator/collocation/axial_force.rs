@@ -14,6 +14,7 @@ use crate::beam::mode::{MAX_MODES, Modal};
 use crate::integrator::collocation::coefficients::{ErrorColumn, ModeColumns, StepCoefficients};
 use crate::integrator::collocation::newton::{FreeResponse, Solution, Source, closed_forces, first_forces};
 use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::collocation::step::End;
 use crate::integrator::constants::{FORCE_ROUNDING, ROUNDS};
 use crate::math::nodal::{Nodal, add, add_columns, dot};
 use crate::math::simd::{Arithmetic, LANES};
@@ -23,17 +24,8 @@ use crate::state::State;
 /// A value at each node for each mode.
 pub(crate) type NodalModes<const S: usize> = [Nodal<S>; MAX_MODES];
 
-/// Converged loads and contact forces.
-pub(crate) struct Settled<const S: usize> {
-    /// The contact forces.
-    pub(crate) solution: Solution<S>,
-    /// The loads on the modes at the nodes.
-    pub(crate) loads: NodalModes<S>,
-    /// Effect on the indentation of the defects of base acceleration and loads at the start.
-    pub(crate) error: ErrorColumn<S>,
-}
-
-/// Iterates loads and contact forces; `None` if they do not converge.
+/// Iterates contact forces and the loads of `end`: returns the former, and the effect on the indentation of the defects of base
+/// acceleration and loads at the start; `None` if they do not converge.
 #[inline(always)]
 pub(crate) fn settle<const S: usize, A: Arithmetic>(
     model: &Model,
@@ -42,38 +34,42 @@ pub(crate) fn settle<const S: usize, A: Arithmetic>(
     (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
     source: Source<S>,
     free: &FreeResponse<S>,
-) -> Option<Settled<S>> {
+    end: &mut End<S>,
+) -> Option<(Solution<S>, ErrorColumn<S>)> {
+    let End {
+        loads, motion, next, ..
+    } = end;
     let start = axial.loads(&model.modes, &state.modes);
     let tolerance = match source {
         Source::Law(newton) => newton,
         Source::Given(_) => 0.0,
     };
     let mut forces = first_forces::<S, A>(model, state, step, collocation, source);
-    let mut loads: NodalModes<S> = start.map(|load| [load; S]);
+    for (loads, start) in loads.iter_mut().zip(&start) {
+        *loads = [*start; S];
+    }
     let stiffness = model.law.stiffness(model.preload.indentation + state.indentation);
     let mut iterations = 0;
     let mut solved: Option<Solution<S>> = None;
-    let mut motion = [[0.0; S]; MAX_MODES];
-    let mut next = motion;
     for _ in 0..ROUNDS {
-        let acting = (&forces, &free.accelerations, &loads);
-        set_motion::<S, A>(model, state, step, acting, &mut motion);
-        set_loads::<S, A>(model, axial, &motion, &mut next);
-        let (change, size) = force_of_change(model, &loads, &next);
+        let acting = (&forces, &free.accelerations, &*loads);
+        set_motion::<S, A>(model, state, step, acting, motion);
+        set_loads::<S, A>(model, axial, motion, next);
+        let (change, size) = force_of_change(model, loads, next);
         let settled = change <= tolerance + FORCE_ROUNDING * size;
         if let Some(mut solution) = solved.take_if(|_| settled) {
             solution.iterations = iterations;
-            let error = load_error::<S, A>(model, free, &start, &loads, (step, collocation));
-            return Some(Settled { solution, loads, error });
+            let error = load_error::<S, A>(model, free, &start, loads, (step, collocation));
+            return Some((solution, error));
         }
-        loads = next;
+        *loads = *next;
         let solution = match source {
             Source::Law(newton) if state.closed => {
-                let error = load_error::<S, A>(model, free, &start, &loads, (step, collocation));
+                let error = load_error::<S, A>(model, free, &start, loads, (step, collocation));
                 let free = FreeResponse {
                     error: &error,
                     start_defect: 1.0,
-                    ..with_loads::<S, A>(model, free, step, &loads)
+                    ..with_loads::<S, A>(model, free, step, loads)
                 };
                 closed_forces::<S, A>(
                     model,
@@ -102,14 +98,15 @@ fn set_motion<const S: usize, A: Arithmetic>(
     motion: &mut NodalModes<S>,
 ) {
     let modes = model.modes.iter().zip(&state.modes).zip(&step.columns).zip(loads);
-    for (q, (((mode, at), columns), load)) in motion.iter_mut().zip(modes) {
+    for (moved, (((mode, at), columns), load)) in motion.iter_mut().zip(modes) {
         let mut load = *load;
-        *q = [0.0; S];
+        let mut q = [0.0; S];
         add::<S, A>(&mut load, mode.tip, forces);
         add::<S, A>(&mut load, -mode.participation, accelerations);
-        add::<S, A>(q, at.q, &columns.q_from_q);
-        add::<S, A>(q, at.v, &columns.q_from_v);
-        add_columns::<S, A>(q, &columns.load.displacement, &load);
+        add::<S, A>(&mut q, at.q, &columns.q_from_q);
+        add::<S, A>(&mut q, at.v, &columns.q_from_v);
+        add_columns::<S, A>(&mut q, &columns.load.displacement, &load);
+        *moved = q;
     }
 }
 
@@ -140,9 +137,11 @@ fn set_loads<const S: usize, A: Arithmetic>(
             }
         }
         for ((load, sum), slope) in loads.iter_mut().zip(&sums).zip(slopes) {
-            for ((load, sum), change) in load.iter_mut().zip(sum).zip(&change) {
-                *load = change * (slope + sum);
+            let (mut values, slope) = (change, *slope);
+            for (value, sum) in values.iter_mut().zip(sum) {
+                *value *= slope + sum;
             }
+            *load = values;
         }
     }
 }
@@ -215,7 +214,6 @@ mod tests {
     use crate::excitation::drive::Drive;
     use crate::integrator::collocation::coefficients::Cache;
     use crate::integrator::collocation::polynomial::OF_LONG;
-    use crate::integrator::collocation::step::End;
     use crate::math::nodal::LONG;
     use crate::scene::Scene;
     use crate::variables::AxialForceKind;
@@ -251,7 +249,7 @@ mod tests {
             let collocation = Collocation::<LONG>::new();
             let axial = model.axial.as_ref().unwrap();
             for _ in 0..100 {
-                let mut end = End::default();
+                let mut end: Box<End<LONG>> = bytemuck::zeroed_box();
                 let mut moved = |length| {
                     let prepared = cache.prepare(state.time, length, true, &model);
                     let drive = Drive::default();

@@ -1,18 +1,20 @@
 //! The coefficients of a step, which depend on its length only, and a cache of them.
 
-use crate::beam::mode::{MAX_MODES, Modal, Mode};
+use bytemuck::{Zeroable, write_zeroes, zeroed_box};
+
+use crate::beam::mode::{Modal, Mode};
 use crate::excitation::generator::Turns;
 use crate::excitation::random::Piece;
 use crate::excitation::waveform::Accelerations;
 use crate::integrator::collocation::elimination::solve;
 use crate::integrator::collocation::modal_response::ModeOverStep;
 use crate::integrator::collocation::polynomial::{Collocation, Home, Shared};
-use crate::integrator::collocation::shapes::{Shapes, Table};
+use crate::integrator::collocation::shapes::Shapes;
 use crate::integrator::collocation::superposition::{Pair, Response, Sum};
 use crate::integrator::constants::SLOTS;
 use crate::math::free_motion::FreeMotion;
 use crate::math::nodal::{Nodal, add, scaled};
-use crate::math::simd::{Arithmetic, compiled_for};
+use crate::math::simd::{Arithmetic, Simd, compiled_for};
 use crate::model::Model;
 
 /// Free motion of the tip at the nodes due to one mode; includes the factor of the mode's tip displacement.
@@ -29,7 +31,7 @@ pub struct NodeRows<const S: usize> {
 }
 
 /// State of the modes at the end of the step; arrays over the modes, for vector arithmetic.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Zeroable)]
 pub struct EndRows<const S: usize> {
     /// q and v at the end per initial q and v, and per load at each node.
     pub q_from_q: Modal,
@@ -81,17 +83,6 @@ impl<const S: usize> EndRows<S> {
                 v_from_v: *v_from_v,
             })
     }
-
-    const ZERO: Self = Self {
-        q_from_q: [0.0; MAX_MODES],
-        q_from_v: [0.0; MAX_MODES],
-        v_from_q: [0.0; MAX_MODES],
-        v_from_v: [0.0; MAX_MODES],
-        q_from_load: [[0.0; MAX_MODES]; S],
-        v_from_load: [[0.0; MAX_MODES]; S],
-        tip: [0.0; MAX_MODES],
-        participation: [0.0; MAX_MODES],
-    };
 
     #[expect(clippy::indexing_slicing, reason = "no model has more modes than there is room for")]
     fn set(&mut self, i: usize, mode: &Mode, free: &FreeMotion, q_from_load: &Nodal<S>, v_from_load: &Nodal<S>) {
@@ -175,7 +166,7 @@ pub struct StepCoefficients<const S: usize> {
     /// For friction; else none.
     pub tangential: Option<Box<TangentialCoefficients<S>>>,
     /// The modes at the end.
-    pub end: EndRows<S>,
+    pub end: Box<EndRows<S>>,
     /// Tip motion per tip force.
     pub force: TipColumns<S>,
     /// Tip motion per base acceleration that loads the modes with `participation`.
@@ -229,7 +220,7 @@ impl<const S: usize> StepCoefficients<S> {
                 };
                 if model.axial().is_some() { model.modes.len() } else { 0 }
             ],
-            end: EndRows::ZERO,
+            end: zeroed_box(),
             force: TipColumns::ZERO,
             acceleration: TipColumns::ZERO,
             turns: Turns::room(&model.generator),
@@ -239,36 +230,43 @@ impl<const S: usize> StepCoefficients<S> {
     }
 
     /// Computes the coefficients for a length in place.
-    fn fill(&mut self, length: f64, model: &Model, collocation: &Collocation<S>) {
-        compiled_for!(model.simd, A => self.compute::<A>(length, model, collocation));
-    }
-
-    #[inline(always)]
-    fn compute<A: Arithmetic>(&mut self, length: f64, model: &Model, collocation: &Collocation<S>) {
-        let (h, shapes) = (length, &collocation.shapes);
+    fn fill(&mut self, length: f64, model: &Model, collocation: &Collocation<S>, sums: &mut Sums<S>) {
+        let (h, shapes, simd) = (length, &collocation.shapes, model.simd);
         self.length = length;
         self.turns.fill(&model.generator, length, &collocation.nodes);
-        let (mut force, mut acceleration) = (Sum::<S>::ZERO, Sum::<S>::ZERO);
-        let sums = [Sum::<S>::ZERO; 3];
-        let mut along = self
-            .tangential
-            .as_deref_mut()
-            .zip(model.friction())
-            .map(|both| (both, sums));
+        write_zeroes(sums);
+        compiled_for!(simd, A => self.add_modes::<A>(model, collocation, sums));
+        set_columns(&sums.force, simd, shapes, h, &mut self.force, &mut self.force_error);
+        let (columns, error) = (&mut self.acceleration, &mut self.acceleration_error);
+        set_columns(&sums.acceleration, simd, shapes, h, columns, error);
+        if let Some(along) = self.tangential.as_deref_mut() {
+            set_columns(&sums.cross, simd, shapes, h, &mut along.cross, &mut along.cross_error);
+            set_columns(&sums.own, simd, shapes, h, &mut along.own, &mut along.own_error);
+            let (columns, error) = (&mut along.acceleration, &mut along.acceleration_error);
+            set_columns(&sums.along, simd, shapes, h, columns, error);
+            along.following = compiled_for!(simd, A => following::<S, A>(model.law.damping(), h, shapes));
+        }
+    }
+
+    /// Sets what there is of each mode, and adds up the modes.
+    #[inline(always)]
+    fn add_modes<A: Arithmetic>(&mut self, model: &Model, collocation: &Collocation<S>, sums: &mut Sums<S>) {
+        let (h, shapes) = (self.length, &collocation.shapes);
+        let mut along = self.tangential.as_deref_mut().zip(model.friction());
         for (i, (mode, step)) in model.modes.iter().zip(&mut self.modes).enumerate() {
             let tip = mode.tip;
             let mode_over_step = ModeOverStep::new(mode.omega_squared, mode.damping, h);
             let response = mode_over_step.response::<S, A>(&collocation.nodes, shapes);
-            force.add::<A>(tip * tip, &response);
-            acceleration.add::<A>(tip * mode.participation, &response);
+            sums.force.add::<A>(tip * tip, &response);
+            sums.acceleration.add::<A>(tip * mode.participation, &response);
 
             step.set::<A>(tip, mode, &response, h);
-            if let Some(((tangential, friction), [cross, own, acceleration])) = &mut along
+            if let Some((tangential, friction)) = &mut along
                 && let (Some(rows), Some(lever)) = (tangential.modes.get_mut(i), friction.levers.get(i))
             {
-                cross.add::<A>(lever * tip, &response);
-                own.add::<A>(lever * lever, &response);
-                acceleration.add::<A>(lever * mode.participation, &response);
+                sums.cross.add::<A>(lever * tip, &response);
+                sums.own.add::<A>(lever * lever, &response);
+                sums.along.add::<A>(lever * mode.participation, &response);
                 rows.set::<A>(*lever, mode, &response, h);
             }
 
@@ -278,24 +276,36 @@ impl<const S: usize> StepCoefficients<S> {
                 .set(i, mode, &end, &scaled(&loads.q, h * h), &scaled(&loads.v, h));
             if let Some(columns) = self.columns.get_mut(i) {
                 let Pair { q, v } = &response.impulse;
-                let mut alone = Sum::ZERO;
-                alone.add::<A>(1.0, &response);
                 columns.q_from_v = scaled(q, h);
                 columns.q_from_q = *v;
                 add::<S, A>(&mut columns.q_from_q, mode.damping * h, q);
-                (columns.load, columns.error) = in_seconds(alone.at_nodes::<A>(shapes), h);
+                write_zeroes(&mut sums.alone);
+                sums.alone.add::<A>(1.0, &response);
+                set_columns(
+                    &sums.alone,
+                    model.simd,
+                    shapes,
+                    h,
+                    &mut columns.load,
+                    &mut columns.error,
+                );
             }
         }
-        (self.force, self.force_error) = in_seconds(force.at_nodes::<A>(shapes), h);
-        (self.acceleration, self.acceleration_error) = in_seconds(acceleration.at_nodes::<A>(shapes), h);
-        if let Some(((tangential, _), sums)) = along {
-            let [cross, own, acceleration] = sums.map(|sum| in_seconds(sum.at_nodes::<A>(shapes), h));
-            (tangential.cross, tangential.cross_error) = cross;
-            (tangential.own, tangential.own_error) = own;
-            (tangential.acceleration, tangential.acceleration_error) = acceleration;
-            tangential.following = following::<S, A>(model.law.damping(), h, shapes);
-        }
     }
+}
+
+/// Sums over the modes while the coefficients of a length are computed; too large for the stack.
+#[derive(Clone, Debug, Zeroable)]
+struct Sums<const S: usize> {
+    force: Sum<S>,
+    acceleration: Sum<S>,
+    /// For friction, as in [`TangentialCoefficients`].
+    cross: Sum<S>,
+    own: Sum<S>,
+    /// Of the base acceleration.
+    along: Sum<S>,
+    /// Of one mode.
+    alone: Sum<S>,
 }
 
 /// See [`TangentialCoefficients::following`]; `damping`: the damping time, s.
@@ -316,21 +326,24 @@ fn following<const S: usize, A: Arithmetic>(damping: f64, h: f64, shapes: &Shape
     solve::<S, S, A>(matrix, right).unwrap_or([[0.0; S]; S])
 }
 
-/// Scales tables in units of the step length `h` (s) to seconds.
-fn in_seconds<const S: usize>(tables: Pair<Table<S>>, h: f64) -> (TipColumns<S>, ErrorColumn<S>) {
-    let Pair { mut q, mut v } = tables;
-    for (q, v) in q.nodal.iter_mut().zip(&mut v.nodal) {
-        (*q, *v) = (scaled(q, h * h), scaled(v, h));
-    }
-    let columns = TipColumns {
-        displacement: q.nodal,
-        velocity: v.nodal,
-    };
-    let error = ErrorColumn {
-        displacement: scaled(&q.error, h * h),
-        velocity: scaled(&v.error, h),
-    };
-    (columns, error)
+/// Sets columns to a sum at the nodes, scaled from units of the step length `h` (s) to seconds.
+#[inline(never)]
+fn set_columns<const S: usize>(
+    sum: &Sum<S>,
+    simd: Simd,
+    shapes: &Shapes<S>,
+    h: f64,
+    columns: &mut TipColumns<S>,
+    error: &mut ErrorColumn<S>,
+) {
+    compiled_for!(simd, A => {
+        let Pair { q, v } = sum.at_nodes::<A>(shapes);
+        let nodal = columns.displacement.iter_mut().zip(&mut columns.velocity);
+        for ((displacement, velocity), (q, v)) in nodal.zip(q.nodal.iter().zip(&v.nodal)) {
+            (*displacement, *velocity) = (scaled(q, h * h), scaled(v, h));
+        }
+        (error.displacement, error.velocity) = (scaled(&q.error, h * h), scaled(&v.error, h));
+    });
 }
 
 /// The slot of a length: dyadic fractions of one, and one and a half times them, occupy neighbouring slots; those of another
@@ -349,7 +362,9 @@ pub struct Cache<const S: usize> {
     /// For recurring lengths, each in the slot of its hash.
     slots: Vec<StepCoefficients<S>>,
     /// For the last other length.
-    other: StepCoefficients<S>,
+    other: Box<StepCoefficients<S>>,
+    /// While coefficients are computed.
+    sums: Box<Sums<S>>,
     /// Piece of a random acceleration.
     piece: Piece,
 }
@@ -370,10 +385,21 @@ impl<const S: usize> Cache<S> {
     pub fn new(model: &Model, home: &'static Home<S>) -> Self {
         Self {
             collocation: Shared::of(home),
-            slots: vec![StepCoefficients::empty(model); SLOTS],
-            other: StepCoefficients::empty(model),
+            slots: (0..SLOTS).map(|_| StepCoefficients::empty(model)).collect(),
+            other: Box::new(StepCoefficients::empty(model)),
+            sums: zeroed_box(),
             piece: Piece::default(),
         }
+    }
+
+    /// What it takes of memory for the model, bytes.
+    pub fn size(model: &Model) -> usize {
+        let axial = model.axial().map_or(0, |_| size_of::<ModeColumns<S>>());
+        let along = model.friction().map_or(0, |_| size_of::<NodeRows<S>>());
+        let per_mode = size_of::<NodeRows<S>>() + axial + along;
+        let tangential = model.friction().map_or(0, |_| size_of::<TangentialCoefficients<S>>());
+        let fixed = size_of::<StepCoefficients<S>>() + size_of::<EndRows<S>>() + tangential;
+        size_of::<Sums<S>>() + (SLOTS + 1) * (fixed + model.modes.len() * per_mode)
     }
 
     /// The polynomials.
@@ -416,11 +442,12 @@ impl<const S: usize> Cache<S> {
             collocation,
             slots,
             other,
+            sums,
             piece,
         } = self;
         let entry = slots.get_mut(slot(length)).filter(|_| recurring).unwrap_or(other);
         if entry.length.to_bits() != length.to_bits() {
-            entry.fill(length, model, collocation);
+            entry.fill(length, model, collocation, sums);
         }
         (entry, collocation, piece)
     }

@@ -317,7 +317,7 @@ mod tests {
                 let (omega, h) = (1e4, omega_h / 1e4);
                 let (w, c) = (omega * omega, 2.0 * ratio * omega);
                 let response = ModeOverStep::new(w, c, h).response::<S, Separate>(&nodes, &collocation.shapes);
-                let mut sum = Sum::ZERO;
+                let mut sum: Sum<S> = bytemuck::Zeroable::zeroed();
                 sum.add::<Separate>(1.0, &response);
                 let columns = sum.at_nodes::<Separate>(&collocation.shapes);
                 let end = response.at_end::<Separate>(&collocation.shapes);

@@ -1,6 +1,8 @@
 //! Integrals and derivatives of the load shapes of a step: the Lagrange polynomials of its nodes, and for the error
 //! estimate the polynomial of one degree more that vanishes at the nodes and is 1 at the start.
 
+use bytemuck::Zeroable;
+
 use crate::integrator::constants::{POINTS, TERMS};
 use crate::math::legendre;
 use crate::math::nodal::{LONG, Nodal, add, dot, end};
@@ -10,7 +12,7 @@ use crate::math::simd::Arithmetic;
 pub const MAX_SHAPES: usize = LONG + 1;
 
 /// A value at every node for every load shape.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Zeroable)]
 pub struct Table<const S: usize> {
     /// Of the Lagrange polynomials, one after the other.
     pub nodal: [Nodal<S>; S],

@@ -1,10 +1,12 @@
 //! A trial step: the nodal contact forces ([`crate::integrator::collocation::newton`]), the motion they cause, and its
 //! error ([`crate::integrator::collocation::error`]).
 
+use bytemuck::Zeroable;
+
 use crate::beam::axial::Feedback;
-use crate::beam::mode::{MAX_MODES, Modal, ModeState, ModeStates};
+use crate::beam::mode::{Modal, ModeStates};
 use crate::excitation::drive::Drive;
-use crate::integrator::collocation::axial_force::{self, NodalModes, Settled};
+use crate::integrator::collocation::axial_force::{self, NodalModes};
 use crate::integrator::collocation::coefficients::{EndRows, Prepared, StepCoefficients};
 use crate::integrator::collocation::error::{Estimate, errors};
 use crate::integrator::collocation::newton::{
@@ -55,24 +57,18 @@ pub struct Trial<const S: usize> {
 }
 
 /// What a trial leaves for the step that is taken.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Zeroable)]
 pub struct End<const S: usize> {
     /// The modes at its end.
     pub modes: ModeStates,
     /// Loads of an axial force that follows the deflection, at its nodes.
     pub loads: NodalModes<S>,
+    /// The modes at its nodes, while such loads are sought.
+    pub(super) motion: NodalModes<S>,
+    /// The loads of that motion.
+    pub(super) next: NodalModes<S>,
     /// Friction at its nodes.
     pub tangential: TangentialNodes<S>,
-}
-
-impl<const S: usize> Default for End<S> {
-    fn default() -> Self {
-        Self {
-            modes: [ModeState::default(); MAX_MODES],
-            loads: [[0.0; S]; MAX_MODES],
-            tangential: TangentialNodes::ZERO,
-        }
-    }
 }
 
 impl<const S: usize> Trial<S> {
@@ -151,16 +147,14 @@ pub(super) fn compute_with_axial_force<const S: usize, A: Arithmetic>(
 ) -> Option<Trial<S>> {
     let Prepared { step, collocation, .. } = prepared;
     let free = free_response::<S, A>(state, drive, &prepared);
-    let Settled { solution, loads, error } =
-        axial_force::settle::<S, A>(model, axial, state, (step, collocation), source, &free)?;
+    let (solution, error) = axial_force::settle::<S, A>(model, axial, state, (step, collocation), source, &free, end)?;
     // One combined defect of all loads.
     let free = FreeResponse {
         error: &error,
         start_defect: 1.0,
-        ..axial_force::with_loads::<S, A>(model, &free, step, &loads)
+        ..axial_force::with_loads::<S, A>(model, &free, step, &end.loads)
     };
     let coefficients = (step, collocation);
-    end.loads = loads;
     Some(judged::<S, A>(
         model,
         state,

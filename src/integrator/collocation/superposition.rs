@@ -2,13 +2,15 @@
 //! free motions ([`crate::integrator::collocation::modal_response`]). The factors of many modes are summed before they
 //! are multiplied by the shapes.
 
+use bytemuck::Zeroable;
+
 use crate::integrator::collocation::shapes::{MAX_SHAPES, Row, Shapes, Table};
 use crate::integrator::constants::TERMS;
 use crate::math::nodal::{Nodal, add, end};
 use crate::math::simd::Arithmetic;
 
 /// Displacement and velocity, in units of the step length.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Zeroable)]
 pub struct Pair<T> {
     /// Displacement.
     pub q: T,
@@ -17,7 +19,7 @@ pub struct Pair<T> {
 }
 
 /// Combinations of the n-fold integrals (n = 1, 2, ...) and the m-th derivatives (m = 0, 1, ...) of the load shapes.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Zeroable)]
 pub(crate) struct Combination {
     /// Factors of the integrals.
     pub(crate) integrals: Pair<[f64; TERMS]>,
@@ -61,7 +63,7 @@ pub struct Response<const S: usize> {
 }
 
 /// Sum of the responses of many modes to the load shapes.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Zeroable)]
 pub struct Sum<const S: usize> {
     combination: Combination,
     /// Sum of the free motions at the nodes.
@@ -99,15 +101,6 @@ impl<const S: usize> Response<S> {
 }
 
 impl<const S: usize> Sum<S> {
-    /// Of no modes.
-    pub const ZERO: Self = Self {
-        combination: Combination::ZERO,
-        faded: Pair {
-            q: Table::ZERO,
-            v: Table::ZERO,
-        },
-    };
-
     /// Adds `weight` times a response.
     #[inline(always)]
     pub fn add<A: Arithmetic>(&mut self, weight: f64, response: &Response<S>) {

@@ -1,5 +1,7 @@
 //! Friction at the nodes of a step.
 
+use bytemuck::Zeroable;
+
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::math::nodal::Nodal;
 use crate::math::prediction::value_and_slope;
@@ -7,7 +9,7 @@ use crate::math::simd::Simd;
 use crate::state::State;
 
 /// Friction at the nodes of a step.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Zeroable)]
 pub struct TangentialNodes<const S: usize> {
     /// Friction force as deviation from that of the preload, N.
     pub forces: Nodal<S>,

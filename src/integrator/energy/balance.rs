@@ -41,7 +41,7 @@
 //! times the force scale times the path.
 
 use crate::integrator::collocation::newton::Source;
-use crate::integrator::collocation::step::{End, Trial};
+use crate::integrator::collocation::step::Trial;
 use crate::integrator::collocation::tangential::TangentialNodes;
 use crate::integrator::collocation::trial;
 use crate::integrator::grid::Target;
@@ -73,8 +73,7 @@ impl Integration<'_> {
         let Self {
             model, state, drive, ..
         } = self;
-        let (cache, ..) = Room::<LONG>::parts(self.workspace);
-        let mut end = End::default();
+        let (cache, end) = self.workspace.for_half_steps();
         let mut at: State = **state;
         let mut work = 0.0;
         for (half_step, forces) in halves.into_iter().enumerate() {
@@ -82,7 +81,7 @@ impl Integration<'_> {
                 end.tangential.forces = *loads;
             }
             let prepared = cache.prepare(at.time, half, target.recurring, model);
-            let motion = trial::trial(model, &at, drive, prepared, Source::Given(forces), &mut end)?;
+            let motion = trial::trial(model, &at, drive, prepared, Source::Given(forces), end)?;
             let mut powers = forces;
             for ((power, d), rate) in powers.iter_mut().zip(&motion.indentations).zip(&motion.rates) {
                 let d = model.preload.indentation + d;

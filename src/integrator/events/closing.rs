@@ -34,7 +34,7 @@ impl Integration<'_> {
             }
         }
         let touch = samples.windows(2).zip(errors).find_map(|(pair, error)| match pair {
-            [a, b] => self.touch_between((trial, length), a, b, (error, unsure), 0),
+            [a, b] => self.touch_between((trial, length), (*a, *b), (error, unsure)),
             _ => None,
         })?;
         Some(self.cut(touch, true))
@@ -133,39 +133,43 @@ impl Integration<'_> {
         (displacement, velocity)
     }
 
-    /// The first instant of closing between two samples; `error` (m) is the error of their cubic.
+    /// The first instant of closing between two samples; `error` (m) is the error of their cubic. Where that cannot tell, the
+    /// interval is bisected, and the second half waits.
     fn touch_between<const S: usize>(
         &mut self,
         (trial, length): (&Trial<S>, f64),
-        a: &Instant,
-        b: &Instant,
+        (mut a, b): (Instant, Instant),
         (error, unsure): (f64, f64),
-        depth: u32,
     ) -> Option<Instant>
     where
         Workspace: Room<S>,
     {
-        if self.budget.is_exhausted(self.workspace) {
-            return None;
-        }
-        if self.is_open(b, unsure) {
-            if self.is_clear(a, b, error, unsure) || depth > DEPTH {
-                return None;
+        self.workspace.halves.clear();
+        let (mut b, mut error, mut depth) = (b, error, 0);
+        while !self.budget.is_exhausted(self.workspace) {
+            if self.is_open(&b, unsure) {
+                if self.is_clear(&a, &b, error, unsure) || depth > DEPTH {
+                    a = b;
+                    (b, error, depth) = self.workspace.halves.pop()?;
+                    continue;
+                }
+            } else if a.rate >= 0.0 && highest(&a, &b) <= b.d && self.is_resolved(&a, &b) || depth > DEPTH {
+                let touch = self.crossing((trial, length), &a, &b);
+                // A contact that closes at the instant of opening still gets a short flight, so that time advances.
+                let shortest = SHORTEST_FLIGHT * b.at;
+                return Some(if self.released() && touch.at < shortest {
+                    self.inside(trial, length, shortest)
+                } else {
+                    touch
+                });
             }
-        } else if a.rate >= 0.0 && highest(a, b) <= b.d && self.is_resolved(a, b) || depth > DEPTH {
-            let touch = self.crossing((trial, length), a, b);
-            // A contact that closes at the instant of opening still gets a short flight, so that time advances.
-            let shortest = SHORTEST_FLIGHT * b.at;
-            return Some(if self.released() && touch.at < shortest {
-                self.inside(trial, length, shortest)
-            } else {
-                touch
-            });
+            let middle = self.inside(trial, length, f64::midpoint(a.at, b.at));
+            error = (middle.d - cubic(&a, &b, middle.at)).abs();
+            depth += 1;
+            self.workspace.halves.push((b, error, depth));
+            b = middle;
         }
-        let middle = self.inside(trial, length, f64::midpoint(a.at, b.at));
-        let error = (middle.d - cubic(a, b, middle.at)).abs();
-        self.touch_between((trial, length), a, &middle, (error, unsure), depth + 1)
-            .or_else(|| self.touch_between((trial, length), &middle, b, (error, unsure), depth + 1))
+        None
     }
 
     /// The instant of closing between an open and a closed sample.

@@ -1,0 +1,291 @@
+//! Hosts run components on threads with small stacks: whole lives of instances, with every effect, take less than [`BAR`].
+//!
+//! What a thread takes is measured: its stack is filled with a pattern before it begins, and what of that is left is looked
+//! for afterwards. What the C library itself takes of it, some 4.6 kB, is included. The profile of the tests takes more than
+//! that of the component.
+#![cfg(target_os = "linux")]
+#![allow(clippy::undocumented_unsafe_blocks)] // every block calls a C function with what it needs
+
+use std::ffi::{CString, c_void};
+use std::{fs, panic, ptr, slice};
+
+use relay_contact::fmi2::*;
+use relay_contact::variables::{AxialForceKind, ContactLawKind, ExcitationKind, GUID, guid_carrying};
+use testing::instance::{Arguments, Instance, vr};
+
+/// Stack of a thread that makes all calls, bytes.
+const BAR: usize = 32 * 1024;
+
+/// Stack that the test gives it, so that it can tell by how much the bar is missed, bytes.
+const ROOM: usize = 1 << 20;
+
+/// What the untouched stack is filled with.
+const PAINT: u8 = 0xa5;
+
+/// The spring file that holds modes.
+const MODES: &str = "tapered-cube-modes.toml";
+
+/// What touches the spring beside the first contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Beside {
+    Nothing,
+    Friction,
+    SecondContact,
+}
+
+/// A scene by its choices.
+#[derive(Clone, Copy, Debug)]
+struct Choices {
+    excitation: i32,
+    law: i32,
+    axial_force: i32,
+    beside: Beside,
+    spring: &'static str,
+    /// Energy, extremes and interruptions.
+    watched: bool,
+    tolerance: f64,
+}
+
+/// All that can be combined, with tolerances in turn.
+fn all() -> impl Iterator<Item = Choices> {
+    let excitations = ExcitationKind::CHOICES.iter();
+    let laws = || ContactLawKind::CHOICES.iter();
+    let axial_forces = || AxialForceKind::CHOICES.iter();
+    let beside = [Beside::Nothing, Beside::Friction, Beside::SecondContact];
+    let springs = ["", "tapered-cube.toml", MODES];
+    let rest = move || {
+        let springs = move |beside| springs.into_iter().map(move |spring| (beside, spring));
+        let pairs = beside.into_iter().flat_map(springs);
+        pairs.flat_map(|(beside, spring)| [false, true].map(|watched| (beside, spring, watched)))
+    };
+    let forces = move |law| axial_forces().flat_map(move |force| rest().map(move |rest| (law, force, rest)));
+    let all = excitations.flat_map(move |&(_, excitation)| {
+        laws()
+            .flat_map(forces)
+            .filter_map(move |(law, axial_force, (beside, spring, watched))| {
+                let linear = matches!(law.0, "Linearised" | "Bonded");
+                let refused = linear && beside != Beside::Nothing
+                    || axial_force.0 == "FromDeflection" && beside == Beside::Friction
+                    || spring == MODES && (axial_force.0 != "None" || beside == Beside::Friction);
+                (!refused).then_some(Choices {
+                    excitation,
+                    law: law.1,
+                    axial_force: axial_force.1,
+                    beside,
+                    spring,
+                    watched,
+                    tolerance: 0.0,
+                })
+            })
+    });
+    let tolerances = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10].into_iter().cycle();
+    all.zip(tolerances)
+        .map(|(choices, tolerance)| Choices { tolerance, ..choices })
+}
+
+/// Sets parameters, and initialises.
+fn begin(contact: &Instance, choices: &Choices) {
+    let set = |status| assert_eq!(status, fmi2OK, "{choices:?}: {:?}", contact.messages());
+    set(contact.setup(Some(choices.tolerance), 0.0, Some(1.0)));
+    for (name, value) in [
+        ("effects.excitation", choices.excitation),
+        ("effects.contactLaw", choices.law),
+        ("effects.axialForce", choices.axial_force),
+        (
+            "effects.friction",
+            if choices.beside == Beside::Friction { 2 } else { 1 },
+        ),
+    ] {
+        set(contact.set_integer(name, value));
+    }
+    for name in ["effects.energy", "effects.extremes", "effects.chatter"] {
+        set(contact.set_boolean(name, choices.watched));
+    }
+    set(contact.set_boolean("effects.secondContact", choices.beside == Beside::SecondContact));
+    let names = [
+        "excitation.amplitude",
+        "excitation.frequency",
+        "excitation.endFrequency",
+        "excitation.duration",
+        "excitation.spectralDensity",
+        "second.gap",
+        "tip.contactHeight",
+        "contact.overtravel",
+        "beam.stiffnessDamping",
+    ];
+    set(contact.set_reals(names, [800.0, 300.0, 3000.0, 1e-3, 40.0, 5e-5, 1e-3, 1e-4, 2e-6]));
+    if !choices.spring.is_empty() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/springs/");
+        set(contact.set_string("beam.file", &format!("{folder}{}", choices.spring)));
+    }
+    set(contact.enter_initialization_mode());
+    assert!(contact.real("preload.force").is_finite());
+    set(contact.exit_initialization_mode());
+}
+
+/// Steps of all sizes with inputs that are held, jump, or change linearly; every output and its derivative is read.
+fn steps(contact: &Instance, choices: &Choices, mut time: f64, note: &mut dyn FnMut(f64)) {
+    for n in 0..48 {
+        let size = [1e-6, 1e-6, 1e-6, 2.5e-5, 1e-5, 1e-5][n % 6];
+        if n % 12 < 6 {
+            let acceleration = if n % 24 < 6 { 300.0 } else { -300.0 };
+            assert_eq!(
+                contact.set_reals(["base.acceleration", "contact.current"], [acceleration, 0.1]),
+                fmi2OK
+            );
+        }
+        if n % 12 == 9 {
+            let (reference, order, rate) = (vr("base.acceleration"), 1, 1e6);
+            let status = unsafe {
+                fmi2SetRealInputDerivatives(
+                    contact.component,
+                    &raw const reference,
+                    1,
+                    &raw const order,
+                    &raw const rate,
+                )
+            };
+            assert_eq!(status, fmi2OK);
+        }
+        let status = contact.step(time, size);
+        assert_eq!(status, fmi2OK, "{choices:?} at {time}: {:?}", contact.messages());
+        time += size;
+        let outputs = [
+            "contact.force",
+            "contact.resistance",
+            "contact.slip",
+            "second.force",
+            "energy.balance",
+            "tip.velocity",
+        ];
+        let (references, mut rates) = (outputs.map(vr), [0.0; 6]);
+        let count = references.len();
+        unsafe {
+            fmi2GetRealOutputDerivatives(
+                contact.component,
+                references.as_ptr(),
+                count,
+                [1; 6].as_ptr(),
+                rates.as_mut_ptr(),
+            )
+        };
+        contact
+            .reals_of(references)
+            .into_iter()
+            .chain(rates)
+            .for_each(&mut *note);
+    }
+}
+
+/// Saves the instance to bytes, and sets it to the state restored from them.
+fn save_and_restore(contact: &Instance) {
+    let (component, mut state, mut again, mut size) = (contact.component, ptr::null_mut(), ptr::null_mut(), 0);
+    unsafe {
+        assert_eq!(fmi2GetFMUstate(component, &raw mut state), fmi2OK);
+        assert_eq!(fmi2SerializedFMUstateSize(component, state, &raw mut size), fmi2OK);
+        let mut bytes = vec![0; size];
+        assert_eq!(
+            fmi2SerializeFMUstate(component, state, bytes.as_mut_ptr(), size),
+            fmi2OK
+        );
+        assert_eq!(
+            fmi2DeSerializeFMUstate(component, bytes.as_ptr(), size, &raw mut again),
+            fmi2OK
+        );
+        assert_eq!(fmi2SetFMUstate(component, again), fmi2OK);
+        assert_eq!(fmi2FreeFMUstate(component, &raw mut state), fmi2OK);
+        assert_eq!(fmi2FreeFMUstate(component, &raw mut again), fmi2OK);
+    }
+}
+
+/// The life of an instance that logs all: run, saved, restored, run on; reset, restored as it was, run on; failed, reset, run
+/// anew.
+fn live(choices: &Choices, note: &mut dyn FnMut(f64)) {
+    let contact = Instance::with(&Arguments {
+        logging_on: true,
+        ..Arguments::default()
+    });
+    let component = contact.component;
+    assert_eq!(
+        unsafe { fmi2SetDebugLogging(component, fmi2True, 0, ptr::null()) },
+        fmi2OK
+    );
+    begin(&contact, choices);
+    steps(&contact, choices, 0.0, note);
+    save_and_restore(&contact);
+    let mut state = ptr::null_mut();
+    assert_eq!(unsafe { fmi2GetFMUstate(component, &raw mut state) }, fmi2OK);
+    let time = contact.last_successful_time().1;
+    steps(&contact, choices, time, note);
+    assert_eq!(contact.reset(), fmi2OK);
+    assert_eq!(unsafe { fmi2SetFMUstate(component, state) }, fmi2OK);
+    steps(&contact, choices, time, note);
+    assert_eq!(contact.step(0.0, -1.0), fmi2Error);
+    assert_eq!(contact.reset(), fmi2OK);
+    begin(&contact, choices);
+}
+
+/// Instances that carry a spring file, and files that are no springs, among them one that the parser would follow deep.
+fn read_files() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/springs");
+    let resources = CString::new(folder).unwrap();
+    let text = fs::read_to_string(format!("{folder}/{MODES}")).unwrap();
+    let contact = Instance::with(&Arguments {
+        guid: Some(&guid_carrying(GUID, MODES, &text)),
+        resources: Some(&resources),
+        ..Arguments::default()
+    });
+    contact.initialize();
+    let (no_table, nested) = ("segment = 1\n", "{a = ".repeat(60) + "1" + &"}".repeat(60));
+    let (list, keys) = ("segment = [{length = [1, 2]}]\n", vec!["a"; 70].join("."));
+    let file = concat!(env!("CARGO_TARGET_TMPDIR"), "/no-spring.toml");
+    for text in [
+        no_table,
+        list,
+        "[[segment]]\nlength = \"",
+        &format!("a = {nested}"),
+        &format!("{keys} = 1"),
+    ] {
+        fs::write(file, text).unwrap();
+        let contact = Instance::new();
+        assert_eq!(contact.set_string("beam.file", file), fmi2Discard, "{text}");
+        assert_eq!(contact.set_real("contact.overtravel", 1.0), fmi2Discard);
+    }
+}
+
+/// How much of its stack a thread has touched in all, bytes.
+fn touched(body: &mut (dyn FnMut() + Send)) -> usize {
+    extern "C" fn run(body: *mut c_void) -> *mut c_void {
+        let body = unsafe { &mut *body.cast::<&mut (dyn FnMut() + Send)>() };
+        let done = panic::catch_unwind(panic::AssertUnwindSafe(body)).is_ok();
+        ptr::without_provenance_mut(usize::from(done))
+    }
+    unsafe {
+        let protection = libc::PROT_READ | libc::PROT_WRITE;
+        let kind = libc::MAP_PRIVATE | libc::MAP_ANONYMOUS;
+        let stack = libc::mmap(ptr::null_mut(), ROOM, protection, kind, -1, 0);
+        assert_ne!(stack, libc::MAP_FAILED);
+        stack.write_bytes(PAINT, ROOM);
+        let (mut attributes, mut thread, mut done) = (std::mem::zeroed(), 0, ptr::null_mut());
+        assert_eq!(libc::pthread_attr_init(&raw mut attributes), 0);
+        assert_eq!(libc::pthread_attr_setstack(&raw mut attributes, stack, ROOM), 0);
+        let mut body = body;
+        let created = libc::pthread_create(&raw mut thread, &raw const attributes, run, (&raw mut body).cast());
+        assert_eq!(created, 0);
+        assert_eq!(libc::pthread_join(thread, &raw mut done), 0);
+        let bytes = slice::from_raw_parts(stack.cast::<u8>(), ROOM);
+        let untouched = bytes.iter().take_while(|byte| **byte == PAINT).count();
+        libc::munmap(stack, ROOM);
+        assert!(!done.is_null(), "the thread has failed");
+        ROOM - untouched
+    }
+}
+
+#[test]
+fn whole_lives_take_less_than_the_bar() {
+    let lives = all().map(|choices| (touched(&mut || live(&choices, &mut |_| ())), format!("{choices:?}")));
+    let files = (touched(&mut read_files), "files".to_owned());
+    let (most, choices) = lives.chain([files]).max().unwrap();
+    println!("{most} bytes at most, by {choices}");
+    assert!(most < BAR, "{most} bytes by {choices}");
+}
