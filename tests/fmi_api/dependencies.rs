@@ -24,7 +24,7 @@ const ALWAYS: Values = &[
 
 /// Scenes in which every known that matters at all matters somewhere: the start values with these changes. A threshold of
 /// [`CRITICAL`] is the resistance at rest, an overtravel of it closes the contact without force.
-const SCENES: [Values; 27] = [
+const SCENES: [Values; 29] = [
     &[],
     &[("effects.axialForce", 2.0)],
     &[("effects.axialForce", 3.0)],
@@ -33,6 +33,12 @@ const SCENES: [Values; 27] = [
     &[("solver.tolerance", 1e-9), ("beam.stiffnessDamping", 3e-6)],
     &[("effects.contactLaw", 2.0), ("solver.tolerance", 1e-3)],
     &[("effects.contactLaw", 3.0), ("effects.contactDamping", 0.0)],
+    &[("effects.contactLaw", 4.0)],
+    &[
+        ("effects.contactLaw", 4.0),
+        ("effects.secondContact", 1.0),
+        ("second.stiffness", 1e7),
+    ],
     &[("environment.gravity", 9.81), ("effects.axialForce", 3.0)],
     &[PULLED, ("contact.overtravel", CRITICAL)],
     &[
