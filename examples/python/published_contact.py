@@ -346,7 +346,7 @@ def main() -> None:
     bench, asked = Bench(Component(given.fmu)), published()
     found = {each.law.name: each.law.values(bench.component, each.free) for each in fits}
     paths = write(given.out, fits, asked, np.array([bench.numbers(each, asked) for each in found.values()]))
-    paths += figures.draw(given.out, bench, found, fits, given.quick)
+    paths += figures.draw(given.out, bench, found, fits, asked, given.quick)
     print(*paths, sep="\n")
 
 

@@ -14,22 +14,19 @@ from relay_contact import Array, Values
 from relay_contact.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY
 
 if TYPE_CHECKING:
-    from published_contact import Bench, Fit
+    from published_contact import Bench, Fit, Number
 
 LENGTHS = (7.5, 11.5, 15.5)  # mm
 ROUGHNESS = 12.84e-6  # m, published (section 3.3)
 FORCES = np.geomspace(0.02, 3, 50)  # N
 STYLES = {"Hertz": "--", "support": ":", "Rough": "-"}
 LABELS = {"Hertz": "smooth spheres (Hertz)", "support": "support that yields", "Rough": "rough contact"}
-# Frequencies (Hz), their colours, and the published force amplitudes there: ratio, cN (Figs. 6 and 7).
-FORCE = {250: (GREEN, 30, 3.1), 750: (ORANGE, 20, 3.3), 1000: (BLUE, 10, 4.812), 1250: (PURPLE, 10, 5.2)}
-# Displacement amplitudes over those of the base: Table 4 (um) at 1000 Hz, the text at 1250 Hz; measured (um).
-TABLE = {0.1: 6.485, 1: 4.547, 5: 3.773, 10: 3.115, 20: 2.632, 30: 2.524}
-OVER_BASE = {10: 1.655, 30: 1.114}
-MEASURED = 2.9
+COLOURS = {250: GREEN, 750: ORANGE, 1000: BLUE, 1250: PURPLE}  # by frequency, Hz
 
 Contacts = Mapping[str, Values]
 """Values of the component by the name of the contact."""
+Points = dict[int, list[tuple[float, float]]]
+"""Damping ratio and value, by frequency (Hz)."""
 
 
 def panels(count: int, title: str) -> tuple[Figure, list[Axes]]:
@@ -45,7 +42,7 @@ def finish(axes: Axes) -> None:
     axes.legend(fontsize="small", frameon=False)
 
 
-def frequencies(bench: "Bench", contacts: Contacts, quick: bool) -> Figure:
+def frequencies(bench: "Bench", contacts: Contacts, numbers: "list[Number]", quick: bool) -> Figure:
     """Draw the first frequency over overtravel for three lengths."""
     figure, (axes,) = panels(1, "First natural frequency of three springs")
     overtravels = np.linspace(0.05, 0.5, 4 if quick else 30)
@@ -66,64 +63,79 @@ def frequencies(bench: "Bench", contacts: Contacts, quick: bool) -> Figure:
                 axes.annotate(
                     f"{length:g} mm", at, (-4, 0), textcoords="offset points", ha="right", va="center", fontsize="small"
                 )
-    axes.plot([0.2, 0.45, 0.5, 0.25], [1354.5, 2777.2, 2652.3, 4426.0], "o", color=RED, label="published, prestressed")
-    axes.plot(0.2, 1397.6, "o", color=RED, fillstyle="none", label="published, not prestressed")
+    for kind, fill, label in (
+        ("natural", "full", "published, prestressed"),
+        ("stiff", "none", "published, not prestressed"),
+    ):
+        own = [each for each in numbers if each.kind == kind]
+        places, values = [each.place["overtravel"] for each in own], [each.published for each in own]
+        axes.plot(places, values, "o", color=RED, fillstyle=fill, label=label)
     axes.set(xlabel="overtravel [mm]", ylabel="first natural frequency [Hz]", xlim=(-0.03, 0.52), ylim=(0, 7800))
     finish(axes)
     axes.legend(fontsize="small", frameon=False, ncols=2, loc="upper left")
     return figure
 
 
-def force_panel(axes: Axes, responses: Mapping[tuple[str, int], tuple[Array, Array]], ratios: Array) -> None:
-    """Draw the force amplitude over the damping ratio at four frequencies."""
-    for frequency, (colour, ratio, published) in FORCE.items():
+def curves(axes: Axes, responses: Mapping[tuple[str, int], Array], ratios: Array, row: int, points: Points) -> None:
+    """Draw a row of the responses over the damping ratio, and published points, by frequency."""
+    for frequency, own in points.items():
         for name in ("Hertz", "Rough"):
             label = f"{frequency} Hz" if name == "Rough" else None
-            axes.plot(ratios, responses[name, frequency][0], STYLES[name], color=colour, label=label)
-        axes.plot(ratio, published, "o", color=colour, markeredgecolor=BLACK)
-    axes.set(xscale="log", xlabel="damping ratio", ylabel="amplitude of the elastic force [cN]", ylim=(0, 12))
+            axes.plot(ratios, responses[name, frequency][row], STYLES[name], color=COLOURS[frequency], label=label)
+        axes.plot(*zip(*own, strict=True), "o", color=COLOURS[frequency], markeredgecolor=BLACK)
+    axes.set_xscale("log")
     axes.xaxis.set_major_formatter("{x:g}")
+
+
+def force_panel(axes: Axes, responses: Mapping[tuple[str, int], Array], ratios: Array, numbers: "list[Number]") -> None:
+    """Draw the force amplitude over the damping ratio at four frequencies."""
+    points: Points = {frequency: [] for frequency in COLOURS}
+    for each in numbers:
+        if each.kind == "force":
+            points[int(each.place["frequency"])].append((each.place["ratio"], each.published))
+    curves(axes, responses, ratios, 0, points)
+    axes.set(xlabel="damping ratio", ylabel="amplitude of the elastic force [cN]", ylim=(0, 12))
     finish(axes)
 
 
-def travel_panel(axes: Axes, responses: Mapping[tuple[str, int], tuple[Array, Array]], ratios: Array) -> None:
+def travel_panel(
+    axes: Axes, responses: Mapping[tuple[str, int], Array], ratios: Array, numbers: "list[Number]"
+) -> None:
     """Draw the displacement amplitude over that of the base."""
     base = 1e6 * 98 / (2 * np.pi * 1000) ** 2
-    for frequency, points in ((1000, {ratio: value / base for ratio, value in TABLE.items()}), (1250, OVER_BASE)):
-        colour = FORCE[frequency][0]
-        for name in ("Hertz", "Rough"):
-            label = f"{frequency} Hz" if name == "Rough" else None
-            axes.plot(ratios, responses[name, frequency][1], STYLES[name], color=colour, label=label)
-        axes.plot(list(points), list(points.values()), "o", color=colour, markeredgecolor=BLACK)
-    axes.axhline(MEASURED / base, color=GREY, linestyle="-.", linewidth=1, label="measured, 1000 Hz")
+    points: Points = {1000: [], 1250: []}
+    for each in numbers:
+        if each.kind == "displacement" and "measured" not in each.quantity:
+            value = each.published / (base if each.unit else 1)
+            points[int(each.place["frequency"])].append((each.place["ratio"], value))
+    curves(axes, responses, ratios, 1, points)
+    measured = next(each.published for each in numbers if each.kind == "displacement" and "measured" in each.quantity)
+    axes.axhline(measured / base, color=GREY, linestyle="-.", linewidth=1, label="measured, 1000 Hz")
     axes.plot([], [], "o", color="white", markeredgecolor=BLACK, label="published")
     axes.plot([], [], "-", color=BLACK, label=LABELS["Rough"])
     axes.plot([], [], "--", color=BLACK, label=LABELS["Hertz"])
-    axes.set(
-        xscale="log", xlabel="damping ratio", ylabel="amplitude of the contact's displacement\nover that of the base"
-    )
+    axes.set(xlabel="damping ratio", ylabel="amplitude of the contact's displacement\nover that of the base")
     axes.set_ylim(0.9, 2.8)
-    axes.xaxis.set_major_formatter("{x:g}")
     finish(axes)
     axes.legend(fontsize="small", frameon=False, loc="upper center", bbox_to_anchor=(0.4, 1.0))
 
 
-def amplitudes(bench: "Bench", contacts: Contacts, quick: bool) -> Figure:
+def amplitudes(bench: "Bench", contacts: Contacts, numbers: "list[Number]", quick: bool) -> Figure:
     """Draw amplitudes over the damping ratio; what opens is left out."""
     figure, (left, right) = panels(2, "98 m/s², steady")
     ratios = np.geomspace(0.1, 40, 4 if quick else 25)
     responses = {}
     for name in ("Hertz", "Rough"):
-        for frequency in FORCE:
+        for frequency in COLOURS:
             curve = np.full((2, len(ratios)), np.nan)
             for at in range(len(ratios))[::-1]:
                 period = bench.steady(contacts[name], float(ratios[at]), float(frequency))
                 if period.force.min() <= 0:
                     break
                 curve[:, at] = 100 * period.amplitude, period.travel
-            responses[name, frequency] = curve[0], curve[1]
-    force_panel(left, responses, ratios)
-    travel_panel(right, responses, ratios)
+            responses[name, frequency] = curve
+    force_panel(left, responses, ratios, numbers)
+    travel_panel(right, responses, ratios, numbers)
     return figure
 
 
@@ -165,12 +177,14 @@ def stiffness(bench: "Bench", contacts: Contacts, rough: "Fit") -> Figure:
     return figure
 
 
-def draw(folder: Path, bench: "Bench", contacts: Contacts, fits: "list[Fit]", quick: bool) -> list[Path]:
+def draw(
+    folder: Path, bench: "Bench", contacts: Contacts, fits: "list[Fit]", numbers: "list[Number]", quick: bool
+) -> list[Path]:
     """Draw all figures; return their files."""
     rough = next(each for each in fits if each.law.name == "Rough")
     drawn = {
-        "frequency": frequencies(bench, contacts, quick),
-        "amplitude": amplitudes(bench, contacts, quick),
+        "frequency": frequencies(bench, contacts, numbers, quick),
+        "amplitude": amplitudes(bench, contacts, numbers, quick),
         "stiffness": stiffness(bench, contacts, rough),
     }
     paths = []
