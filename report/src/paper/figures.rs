@@ -104,7 +104,7 @@ pub fn courses(results: &Results) -> Result<[Figure; 2]> {
         y: Axis::linear("displacement", "µm"),
         curves,
         caption: "Base included. The contact of this model moves with the base within nanometres, so both are one curve. Which \
-                  point has the published amplitude is not published: see *Not reproduced*."
+                  point has the published amplitude is not published: see *What the published contact is*."
             .to_owned(),
     };
     Ok([force, displacement])

@@ -1,14 +1,14 @@
 //! The publication compared with this model.
 //!
 //! [`published`]: its numbers;   [`runs`], [`results`]: those of this model;   the crate `identify`: the identification.
-//! Sections, of blocks by [`comparison`], [`coverage`], [`resistance`], [`figures`], [`responses`]; [`not_reproduced`] with [`displacement`],
-//! [`elastic`]; [`findings`]; [`identification`].   [`table`], [`curves`]: what these are made with;   [`spring`]: the motion
+//! Sections, of blocks by [`comparison`], [`coverage`], [`resistance`], [`figures`], [`responses`]; [`contact`]: the
+//! contact that the numbers belong to;   [`not_reproduced`] with [`elastic`]; [`findings`]; [`identification`].   [`table`], [`curves`]: what these are made with;   [`spring`]: the motion
 //! between clamp and contact;   [`validation`]: the same as `docs/validation.md`.
 
 mod comparison;
+mod contact;
 mod coverage;
 mod curves;
-mod displacement;
 mod elastic;
 mod figures;
 mod findings;
@@ -48,10 +48,16 @@ pub fn sections(arguments: Arguments) -> Result<Vec<Section>> {
             paper(&results, arguments.quick)?,
         ),
         section(
+            "published-contact",
+            "What the published contact is",
+            contact::lead()?,
+            contact::blocks(arguments)?,
+        ),
+        section(
             "not-reproduced",
             "Not reproduced",
-            "the shift of the first frequency by prestress, short springs, displacements of the contact, and damping \
-             far from that of the specimen, with the reasons."
+            "the shift of the first frequency by prestress, the phase between force and displacement, and weak damping, \
+             with the reasons."
                 .to_owned(),
             not_reproduced::blocks(&results)?,
         ),

@@ -55,6 +55,8 @@ pub const ALPHA_PER_BETA: f64 = 1_610_065.0;
 
 /// Resistance over force: mOhm at 1 N, and the exponent (eq. 29).
 pub const RESISTANCE: (f64, f64) = (7.4118, 0.9515);
+/// Height of the roughness, m (section 3.3).
+pub const ROUGHNESS: f64 = 12.84e-6;
 /// Measured resistance at 1000 Hz, mOhm (section 4.2, Fig. 16).
 pub const MEASURED_RESISTANCE: (f64, f64) = (25.0, 63.0);
 /// Deviations of the least and greatest resistance from the measured ones: ratio, %, % (Table 6).

@@ -59,7 +59,7 @@ pub fn displacement(results: &Results) -> Result<Figure> {
         curves,
         caption: format!(
             "Published values: at 1000 Hz from Table 4, at 1250 Hz from the text. This model differs from the base by \
-             less than {} %, with larger ratios by less still: see *Not reproduced*.",
+             less than {} %, with larger ratios by less still: see *What the published contact is*.",
             number(most.ceil(), 0)
         ),
     })

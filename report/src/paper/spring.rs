@@ -12,13 +12,8 @@ use relay_contact::reference::Model;
 
 use super::published::ACCELERATION;
 
-/// Amplitude of the displacement including the base at a fraction of the spring's length, under the published
-/// vibration at a frequency (Hz), m.
-pub fn displacement(model: &Model, frequency: f64, part: f64) -> Result<f64> {
-    Ok(motion(model, frequency, part)?.norm())
-}
-
-/// That displacement with its phase, that of the base acceleration being 0.
+/// Displacement including the base at a fraction of the spring's length, under the published vibration at a frequency (Hz),
+/// m; the phase of the base acceleration is 0.
 pub fn motion(model: &Model, frequency: f64, part: f64) -> Result<Complex<f64>> {
     let section = model.section();
     let omega = TAU * frequency;
@@ -61,10 +56,10 @@ mod tests {
     fn it_moves_with_the_base_at_the_clamp_and_with_the_contact_at_the_tip() {
         let model = runs::model(&runs::specimen(10.0)).unwrap();
         let base = runs::excitation(1000.0);
-        assert!((displacement(&model, 1000.0, 0.0).unwrap() / base - 1.0).abs() < 1e-12);
+        assert!((motion(&model, 1000.0, 0.0).unwrap().norm() / base - 1.0).abs() < 1e-12);
         // The library has the tip from its modes, with the axial force of eq. 9, which is 3e-4 of the buckling load.
         let relative = ACCELERATION * reference::response(&model, TAU * 1000.0).displacement;
         let tip = (relative - base).norm();
-        assert!((displacement(&model, 1000.0, 1.0).unwrap() / tip - 1.0).abs() < 1e-6);
+        assert!((motion(&model, 1000.0, 1.0).unwrap().norm() / tip - 1.0).abs() < 1e-6);
     }
 }

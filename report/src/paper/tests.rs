@@ -7,7 +7,7 @@ use relay_contact::scene::Scene;
 use relay_contact::variables::AxialForceKind;
 
 use super::runs::{self, Periodic};
-use super::{elastic, published as paper};
+use super::{contact, elastic, published as paper};
 use crate::content::{Arguments, Block};
 use identify::{PARAMETERS, Published, Specimen};
 
@@ -202,4 +202,46 @@ fn every_figure_has_curves_of_finite_points() {
 fn a_force_that_opens_the_contact_is_told() {
     let run: Periodic = runs::periodic(&runs::specimen(0.1), 1250.0).unwrap();
     assert!(run.opens);
+}
+
+#[test]
+fn the_fitted_numbers_are_those_published() {
+    let numbers = contact::compared().unwrap();
+    let has = |quantity: &str, value: f64| {
+        let all: Vec<_> = numbers
+            .iter()
+            .filter(|each| each.quantity.starts_with(quantity))
+            .collect();
+        assert!(!all.is_empty(), "{quantity}");
+        assert!(
+            all.iter().all(|each| (each.published - value).abs() < 1e-9),
+            "{quantity}: {value}"
+        );
+    };
+    has("first frequency, L = 15.5 mm", paper::WITH_PRESTRESS);
+    for (length, overtravel, frequency) in paper::SHORT {
+        has(
+            &format!("first frequency, L = {length} mm, s = {overtravel} mm"),
+            frequency,
+        );
+    }
+    has("force amplitude, 1000 Hz, ratio 10", paper::FORCE_AMPLITUDE);
+    for (ratio, frequency, force) in paper::PEAKS {
+        has(&format!("force amplitude, {frequency} Hz, ratio {ratio}"), force);
+    }
+    for (alpha, _, force) in paper::FREQUENCY_DOMAIN_PEAKS {
+        has(&format!("maximum force amplitude, alpha = {alpha} 1/s"), force);
+    }
+    for (ratio, displacement) in paper::RATIOS.into_iter().zip(paper::DISPLACEMENTS) {
+        let quantity = format!("displacement amplitude, 1000 Hz, ratio {ratio}");
+        let own = numbers.iter().find(|each| each.quantity == quantity).unwrap();
+        close(own.published, displacement, 1e-6);
+    }
+    for (ratio, percent) in paper::DISPLACEMENT_DEVIATIONS {
+        has(
+            &format!("displacement amplitude over the base's, 1250 Hz, ratio {ratio}"),
+            1.0 + 0.01 * percent,
+        );
+    }
+    assert_eq!(numbers.iter().filter(|each| each.fitted == 1).count(), 17);
 }

@@ -25,6 +25,7 @@ pub fn write() -> Result<PathBuf> {
 fn text() -> Result<String> {
     let sections = sections(Arguments {
         quick: true,
+        docs: true,
         ..Arguments::default()
     })?;
     Ok(format!(
