@@ -24,7 +24,7 @@ const ALWAYS: Values = &[
 
 /// Scenes in which every known that matters at all matters somewhere: the start values with these changes. A threshold of
 /// [`CRITICAL`] is the resistance at rest, an overtravel of it closes the contact without force.
-const SCENES: [Values; 29] = [
+const SCENES: [Values; 31] = [
     &[],
     &[("effects.axialForce", 2.0)],
     &[("effects.axialForce", 3.0)],
@@ -34,6 +34,17 @@ const SCENES: [Values; 29] = [
     &[("effects.contactLaw", 2.0), ("solver.tolerance", 1e-3)],
     &[("effects.contactLaw", 3.0), ("effects.contactDamping", 0.0)],
     &[("effects.contactLaw", 4.0)],
+    &[
+        ("effects.contactLaw", 4.0),
+        ("effects.friction", 2.0),
+        ("friction.initial", 0.5),
+    ],
+    &[
+        PULLED,
+        ALL_COUNT,
+        ("effects.contactLaw", 4.0),
+        ("chatter.resistanceThreshold", CRITICAL),
+    ],
     &[
         ("effects.contactLaw", 4.0),
         ("effects.secondContact", 1.0),

@@ -194,7 +194,7 @@ def test_the_smallest_gap_of_each_step(name: str) -> None:
     assert np.any(closed)
     # The gap is as wrong as the force over the stiffness, of the second contact or, where it is open, of the spring.
     stiffness = np.full(len(places), between.first.tip_stiffness)
-    stiffness[closed] = 1.5 * between.laws[1].hertz * np.sqrt(-expected[closed])
+    stiffness[closed] = between.laws[1].stiffness_at(-expected[closed])
     # Between the places it is smaller by an eighth of their second difference at most.
     between_places = np.max(np.diff(gaps, 2, axis=0), axis=0).clip(0) / 8
     assert (np.abs(found["step.minimumGap"][1:] - expected) <= allowed / stiffness + between_places).all()
