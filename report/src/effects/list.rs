@@ -73,6 +73,14 @@ pub const EFFECTS: &[Effect] = &[
         ..NOTHING
     },
     Effect {
+        name: "rough contact",
+        setting: &[("effects.contactLaw", "Rough")],
+        off: &[("effects.contactLaw", "Hertz")],
+        matters: "for every real surface: roughness makes the contact softer than spheres, a hundred times in the specimen, and softer \
+                  still at small forces (docs/contact-law.md).",
+        ..NOTHING
+    },
+    Effect {
         name: "linearised contact",
         setting: &[("effects.contactLaw", "Linearised")],
         off: &[("effects.contactLaw", "Hertz")],
@@ -115,6 +123,14 @@ pub const EFFECTS: &[Effect] = &[
         setting: &[("effects.resistance", "PowerLaw")],
         reads: "contact.force,contact.resistance",
         matters: "for every question about resistance; it is evaluated only where the resistance is read.",
+        ..NOTHING
+    },
+    Effect {
+        name: "resistance by Barber",
+        setting: &[("effects.resistance", "Barber")],
+        reads: "contact.force,contact.resistance",
+        off: &[("effects.resistance", "PowerLaw")],
+        matters: "to hold the stiffness of the contact against its measured resistance, and where no resistance was measured.",
         ..NOTHING
     },
     Effect {
