@@ -23,6 +23,9 @@ cases! { CASES:
         => shaken(with_damping(1.0));
     "Linearised and bonded contact, damped and undamped", "constant stiffness, and the bonded contact also carries tension"
         => linear_laws();
+    "Rough contacts from a linear spring to a nearly exponential law, damped and undamped",
+        "a force that jumps at first touch, and one that is lost in rounding long before the contact opens"
+        => rough_laws();
     "Neither gap nor overtravel", "the contact opens and closes from a preload of zero"
         => Ride::shaken(with_overtravel(0.0)).checks();
     "Impact at 10 m/s, damped contact and spring", "the impact excites every mode"
@@ -68,6 +71,19 @@ fn shaken(scene: Scene) -> Result<Vec<Check>> {
     let mut checks = Ride::shaken(scene.clone()).checks()?;
     checks.extend(balances(scene, 1.5e-3, square)?);
     Ok(checks)
+}
+
+fn rough_laws() -> Result<Vec<Check>> {
+    let exponents = [0.0, 0.1, 0.54, 0.75, 0.9];
+    let rides = exponents
+        .iter()
+        .flat_map(|exponent| [0.0, 8.063e-5].map(|damping| (*exponent, damping)));
+    closest(rides.map(|(exponent, damping)| {
+        let mut scene = with_damping(damping);
+        scene.effects.contact_law = ContactLawKind::Rough;
+        scene.contact.stiffness_exponent = exponent;
+        shaken(scene)
+    }))
 }
 
 fn linear_laws() -> Result<Vec<Check>> {

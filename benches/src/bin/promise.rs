@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use benches::page;
-use clap::Parser;
+use clap::{Parser, ValueEnum};
 use testing::promise::{Judged, Outcome, judge_all};
 use testing::relays::Relay;
 
@@ -28,22 +28,40 @@ struct Arguments {
     /// Number of relays
     #[arg(long, default_value_t = 2_000)]
     count: u64,
-    /// Relays with friction instead
+    /// Which relays; those of one kind only are printed, and written to no file
     #[arg(long)]
-    friction: bool,
+    kind: Option<Kind>,
+}
+
+/// A kind of relay.
+#[derive(Clone, Copy, ValueEnum)]
+enum Kind {
+    Changeover,
+    Friction,
+    Held,
+    Rough,
+    Segments,
 }
 
 fn main() -> Result<()> {
     let arguments = Arguments::parse();
-    let draw = if arguments.friction {
-        Relay::friction
-    } else {
-        Relay::draw
+    let draw = match arguments.kind {
+        None => Relay::draw,
+        Some(Kind::Changeover) => Relay::changeover,
+        Some(Kind::Friction) => Relay::friction,
+        Some(Kind::Held) => Relay::held,
+        Some(Kind::Rough) => Relay::rough,
+        Some(Kind::Segments) => Relay::with_segments,
     };
     let judged = judge_all(arguments.first, arguments.count, draw);
-    page::write(&arguments.folder.join("promise.csv"), &csv(&judged))?;
     let text = report(&judged);
     println!("{text}");
+    if arguments.kind.is_some() {
+        let above = judged.iter().filter(|judged| judged.error > judged.tolerance);
+        above.for_each(|judged| println!("{judged:?}"));
+        return Ok(());
+    }
+    page::write(&arguments.folder.join("promise.csv"), &csv(&judged))?;
     page::update(&arguments.folder.join("accuracy.md"), [BEGIN, END], &text)
 }
 
