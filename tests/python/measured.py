@@ -139,17 +139,7 @@ def rough(overtravel: float) -> tuple[Reference, float]:
     The frequency is that of a uniform cantilever with a mass and a spring at its tip: a root of
     `E I d3w/dx3 = (k - m omega^2) w` at the tip, where the bending moment vanishes.
     """
-    relay = Reference(ROUGH)
-    exponent, spring = ROUGH["contact.stiffnessExponent"], relay.tip_stiffness
-
-    def tangent(force: float) -> float:
-        return ROUGH["contact.stiffness"] * float((force / relay.values["contact.stiffnessForce"]) ** exponent)
-
-    def beyond(force: float) -> float:
-        return force / spring + force / ((1 - exponent) * tangent(force)) - overtravel
-
-    relay.force = brentq(beyond, 1e-9 * spring * overtravel, spring * overtravel, rtol=1e-14)
-    relay.tangent = tangent(relay.force)
+    relay = Reference({**ROUGH, "effects.contactLaw": "Rough", "contact.overtravel": overtravel})
 
     def at_tip(x: float) -> float:
         load = relay.tangent - relay.mass * relay.stiffness * (x / relay.length) ** 4 / relay.density
