@@ -67,8 +67,8 @@ def test_the_response_is_that_of_the_exact_beam(specimen: Reference) -> None:
         # What the steps of 10 us fold back from around 100, 200, 300 kHz, relative to the spectrum of the pulse here.
         aliases = [number * 1e5 + sign * frequency for number in (1, 2, 3) for sign in (-1, 1)]
         folded = sum(abs(specimen.force_response(f)) * np.sinc(f * 1e-5) ** 2 for f in aliases)
-        # The pulse takes up to a thousandth of the preload, by which the contact is not linear.
-        assert abs(found.transfer[at] - exact) < 1.1 * folded + 1e-5 * abs(exact), frequency
+        # The pulse changes the force by up to 3e-4 of the preload, in which the contact is linear to 1e-5 at resonance.
+        assert abs(found.transfer[at] - exact) < 1.1 * folded + 1e-5 * abs(specimen.force_response(1250.0)), frequency
 
 
 def test_sine_like_the_exact_beam(paper: tuple[dict[str, Part], Path]) -> None:
@@ -220,6 +220,7 @@ class Elements:
 
 def test_margins_of_a_spring_of_segments_by_finite_elements(tmp_path: Path) -> None:
     relay = Relay.read("cube-changeover", COMPONENT)
+    relay = replace(relay, models=relay.models[:1])
     parts = assessment.assess(COMPONENT, relay, assessment.chosen(MILITARY, ["213 C"]), tmp_path, FEW)
     assert [part["position"] for part in parts] == list(relay.positions) == ["coil without current", "coil energised"]
     sine = next(test for test in MILITARY.tests if isinstance(test, Sine))
@@ -310,9 +311,10 @@ def test_a_cluster_gives_the_same_bytes(whole: Path, tmp_path: Path) -> None:
     with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster:
         address: Any = cluster.scheduler_address
         relay, standard = Relay.read("paper", COMPONENT), assessment.chosen(MILITARY, SHOCKS)
+        relay = replace(relay, models=relay.models[:2])
         assessment.assess(COMPONENT, relay, standard, tmp_path, FEW, cluster=address)
     parts = list((tmp_path / "parts").glob("*"))
-    assert len(parts) == 8
+    assert len(parts) == 4
     for path in parts:
         assert path.read_bytes() == (whole / "parts" / path.name).read_bytes()
 

@@ -22,9 +22,9 @@ STEP = 1e-5
 WATCHED, LONGEST = 1000, 200_000  # steps: an answer ends after some of at most
 CALM = 1e-6  # part of its largest force
 POINTS = 2**18  # of the transform at least, every 0.38 Hz
-WEAK = 1e-5
+WEAK = 3e-6
 """Velocity that a pulse brings, of that of a vibration by the overtravel at the frequency of the closed contact: the
-force changes by about a thousandth of the preload, and the response is linear to 1e-5 of its largest value."""
+force changes by some 3e-4 of the preload, and the response is linear to 1e-5 of its largest value."""
 EXACT = 1e-11
 """solver.tolerance of motions that are so small a part of the preload."""
 FREE: Values = {
