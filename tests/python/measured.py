@@ -133,13 +133,16 @@ def record(length: float, rate: float, noise: float, seed: int) -> list[Measurem
     ]
 
 
-def rough(overtravel: float) -> tuple[Reference, float]:
+def rough(overtravel: float, **changes: float) -> tuple[Reference, float]:
     """Return ROUGH as the second solution, linear about its preload at an overtravel (m), with its frequency (Hz).
+
+    With other values of parameters, underscores in place of dots.
 
     The frequency is that of a uniform cantilever with a mass and a spring at its tip: a root of
     `E I d3w/dx3 = (k - m omega^2) w` at the tip, where the bending moment vanishes.
     """
-    relay = Reference({**ROUGH, "effects.contactLaw": "Rough", "contact.overtravel": overtravel})
+    other = {name.replace("_", "."): value for name, value in changes.items()}
+    relay = Reference({**ROUGH, **other, "effects.contactLaw": "Rough", "contact.overtravel": overtravel})
 
     def at_tip(x: float) -> float:
         load = relay.tangent - relay.mass * relay.stiffness * (x / relay.length) ** 4 / relay.density

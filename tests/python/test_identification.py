@@ -23,6 +23,7 @@ from measured import (
     exact,
     files,
     record,
+    rough,
     rough_frequencies,
     rough_frequency_record,
     scattered,
@@ -121,6 +122,17 @@ def test_frequencies_over_the_overtravel_tell_the_law_of_a_rough_contact(tmp_pat
     assert {"beam.stiffnessDamping", "contact.damping"} <= set(result.missing)
     labels = {each.unknown.label for each in result.found}
     assert {"contact.stiffness", "contact.stiffnessExponent"} <= labels | set(result.missing)
+
+
+def test_a_search_stays_within_what_is_allowed(tmp_path: Path) -> None:
+    """The frequencies of a contact with a larger exponent than the component allows; and a start at the end."""
+    steep = np.array([rough(each, contact_stiffnessExponent=0.94)[1] for each in OVERTRAVELS])
+    for start in (0.5, 0.9):
+        data, relay = rough_files(tmp_path, steep)
+        relay.write_text(relay.read_text().replace("stiffnessExponent = 0.5", f"stiffnessExponent = {start}"))
+        result = found(data, relay=relay, parameters=["contact.stiffness", "contact.stiffnessExponent"])
+        # The search ends a thousandth before the end.
+        assert result["contact.stiffnessExponent"].value == pytest.approx(0.9, rel=2e-3)
 
 
 def test_one_overtravel_does_not_tell_the_exponent(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from relay_contact.component import Array, Component, nearest
 from relay_contact.files import RelayContactError, read_toml
-from relay_contact.identification.fit import Fit, Set, Unknown
+from relay_contact.identification.fit import STEP, Fit, Set, Unknown
 from relay_contact.identification.measurement import (
     BOUNCE,
     CHATTER,
@@ -132,9 +132,11 @@ def unknowns(
                 least, most = float(variable.min or 0.0), float(variable.max or np.inf)
             if start <= 0:
                 raise RelayContactError(f"{name} = {start:g} in the relay's file: not allowed, a search starts above 0")
-            low = max(-REACH, np.log(least / start) if least > 0 else -REACH)
+            # So far within what is allowed that derivatives are too.
+            low = max(-REACH, np.log(least / start) + STEP if least > 0 else -REACH)
+            high = min(REACH, float(np.log(most / start)) - STEP)
             label = f"{name}, {group[0]}" if len(groups) > 1 else name
-            found.append(Unknown(name, group, start, label, low, min(REACH, float(np.log(most / start)))))
+            found.append(Unknown(name, group, start, label, low, high))
     return found
 
 
