@@ -19,7 +19,19 @@ import numpy as np
 from tqdm import tqdm
 
 from component import COMPONENT
-from measured import GUESSED, RINGING, TRUTH, exact, files, record, scattered
+from measured import (
+    GUESSED,
+    RINGING,
+    ROUGH,
+    ROUGH_GUESSED,
+    TRUTH,
+    exact,
+    files,
+    record,
+    rough_curve_records,
+    rough_frequency_record,
+    scattered,
+)
 from relay_contact import Array, Values
 from relay_contact.identification.measurement import Measurement, read
 from relay_contact.identification.prediction import Laboratory
@@ -62,6 +74,16 @@ def of_all(seed: int) -> Array:
         return errors([read(each, COMPONENT, ["contact closed"]) for each in paths.values()], TRUTH)
 
 
+def of_rough_frequencies(seed: int) -> Array:
+    """Return the errors by frequencies of a rough contact over the overtravel."""
+    return errors(rough_frequency_record(seed), ROUGH, ROUGH_GUESSED)
+
+
+def of_rough_curves(seed: int) -> Array:
+    """Return the errors by response curves of a rough contact at several overtravels."""
+    return errors(rough_curve_records(seed), ROUGH, ROUGH_GUESSED)
+
+
 def shares(rows: Array) -> list[str]:
     """Return for each parameter in how many of the sets the interval holds the true value, in %.
 
@@ -86,7 +108,11 @@ def main() -> None:
             told = " | ".join(shares(np.array(list(work))))
             print(f"| {1e3 * length:g} ms | {rate:g} | {100 * noise:g} % | {told} |", flush=True)
         all_kinds = np.array(list(tqdm(pool.map(of_all, range(given.sets)), total=given.sets)))
-    print(f"| all kinds | | | {' | '.join(shares(all_kinds))} |")
+        print(f"| all kinds | | | {' | '.join(shares(all_kinds))} |")
+        print(f"\n| rough contact | {' | '.join(ROUGH)} |\n|---|---|---|---|")
+        for of_rough, name in ((of_rough_frequencies, "frequencies"), (of_rough_curves, "response curves")):
+            work = pool.map(of_rough, range(given.sets), chunksize=10)
+            print(f"| {name} | {' | '.join(shares(np.array(list(tqdm(work, total=given.sets)))))} |", flush=True)
 
 
 if __name__ == "__main__":

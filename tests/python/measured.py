@@ -1,13 +1,15 @@
 """What a laboratory would measure on the published relay, by the second solution of the model, with scatter."""
 
 from functools import cache
+from math import cos, cosh, pi, sin, sinh, sqrt
 from pathlib import Path
 
 import numpy as np
+from scipy.optimize import brentq
 
 from reference import Reference
 from relay_contact import Array, Values
-from relay_contact.identification.measurement import FORCE, RINGDOWN, Measurement
+from relay_contact.identification.measurement import FORCE, RESPONSE, RINGDOWN, Measurement
 
 TRUTH: dict[str, float] = {
     "contact.overtravel": 2.06e-4, "beam.youngsModulus": 1.2e11, "tip.mass": 2.4e-5, "beam.stiffnessDamping": 7.5e-5,
@@ -28,6 +30,19 @@ PRESSED = np.linspace(-1e-4, 2e-4, 13)
 CALIBRATION = 0.005
 SINCE = 0.02
 """Time (s) after a pluck at which its record begins: of the second vibration, 1 % of the first, exp(-7.6) is left."""
+
+
+ROUGH: dict[str, float] = {
+    "contact.stiffness": 5.2e4, "contact.stiffnessExponent": 0.62, "beam.youngsModulus": 1.2e11,
+}  # fmt: skip
+"""A relay with a rough contact."""
+ROUGH_GUESSED: Values = {
+    "effects.contactLaw": "Rough", "effects.axialForce": "None", "contact.stiffness": 4e4,
+    "contact.stiffnessExponent": 0.5, "beam.youngsModulus": 1.24e11,
+}  # fmt: skip
+OVERTRAVELS = np.linspace(0.04e-3, 0.5e-3, 12)
+CURVES = (0.08e-3, 0.2e-3, 0.5e-3)
+"""Overtravels (m) of its response curves."""
 
 
 def deflection(values: Values, time: Array) -> Array:
@@ -116,3 +131,71 @@ def record(length: float, rate: float, noise: float, seed: int) -> list[Measurem
         Measurement(Path("force.csv"), FORCE, PRESSED, "force", "N", force, none, place, False, CALIBRATION),
         Measurement(Path("ring.csv"), RINGDOWN, time, "displacement", "m", motion, none, place, True, 0.0),
     ]
+
+
+def rough(overtravel: float, **changes: float) -> tuple[Reference, float]:
+    """Return ROUGH as the second solution, linear about its preload at an overtravel (m), with its frequency (Hz).
+
+    With other values of parameters, underscores in place of dots.
+
+    The frequency is that of a uniform cantilever with a mass and a spring at its tip: a root of
+    `E I d3w/dx3 = (k - m omega^2) w` at the tip, where the bending moment vanishes.
+    """
+    other = {name.replace("_", "."): value for name, value in changes.items()}
+    relay = Reference({**ROUGH, **other, "effects.contactLaw": "Rough", "contact.overtravel": overtravel})
+
+    def at_tip(x: float) -> float:
+        load = relay.tangent - relay.mass * relay.stiffness * (x / relay.length) ** 4 / relay.density
+        first, second = sin(x) + sinh(x), -cos(x) - cosh(x)
+        value = first * (cos(x) - cosh(x)) + second * (sin(x) - sinh(x))
+        third = first * (sin(x) - sinh(x)) + second * second
+        return third - load * value * (relay.length / x) ** 3 / relay.stiffness
+
+    # From below the free cantilever, 1.87 without a rivet, to above the pinned one, 3.93.
+    x = brentq(at_tip, 1.2, 4.0, rtol=1e-14)
+    return relay, (x / relay.length) ** 2 * sqrt(relay.stiffness / relay.density) / (2 * pi)
+
+
+@cache
+def rough_frequencies() -> Array:
+    """Return the frequencies (Hz) of ROUGH over OVERTRAVELS without scatter."""
+    return np.array([rough(each)[1] for each in OVERTRAVELS])
+
+
+@cache
+def rough_curves() -> Array:
+    """Return the amplitudes (N) of ROUGH at 1 m/s2 over FREQUENCY without scatter, in rows for CURVES."""
+    return np.array([[abs(rough(each)[0].force_response(f)) for f in FREQUENCY] for each in CURVES])
+
+
+def rough_frequency_record(seed: int, noise: float = 0.001) -> list[Measurement]:
+    """Return frequencies over the overtravel with noise, as a part of the value."""
+    chance, none = np.random.default_rng(seed), np.array([])
+    values = rough_frequencies() * np.exp(noise * chance.standard_normal(len(OVERTRAVELS)))
+    return [
+        Measurement(
+            Path("frequency.csv"),
+            "frequency",
+            OVERTRAVELS,
+            "frequency",
+            "Hz",
+            values,
+            none,
+            "contact closed",
+            False,
+            0.0,
+        )
+    ]
+
+
+def rough_curve_records(seed: int) -> list[Measurement]:
+    """Return response curves at several overtravels with SCATTER."""
+    chance, one = np.random.default_rng(seed), np.ones(len(FREQUENCY))
+    return [
+        Measurement(
+            Path("response.csv"), RESPONSE, FREQUENCY, "force", "N",
+            curve * np.exp(SCATTER["response"] * chance.standard_normal(len(FREQUENCY))), one, "contact closed", False,
+            0.0, {"contact.overtravel": overtravel},
+        )
+        for overtravel, curve in zip(CURVES, rough_curves(), strict=True)
+    ]  # fmt: skip

@@ -1,6 +1,7 @@
 """`identify` on measurements made by the second solution of the model: what the data tell, and what they do not."""
 
 import re
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -11,8 +12,22 @@ from scipy.stats import binom
 
 import measured
 from component import COMPONENT, ROOT
-from identification_coverage import of_all, of_record
-from measured import GUESSED, RINGING, TRUTH, exact, files, record, scattered
+from identification_coverage import of_all, of_record, of_rough_curves, of_rough_frequencies
+from measured import (
+    GUESSED,
+    OVERTRAVELS,
+    RINGING,
+    ROUGH,
+    ROUGH_GUESSED,
+    TRUTH,
+    exact,
+    files,
+    record,
+    rough,
+    rough_frequencies,
+    rough_frequency_record,
+    scattered,
+)
 from reference import Reference, crossings
 from relay_contact import Array, RelayContactError, Values, identification
 from relay_contact.command import main
@@ -74,6 +89,72 @@ def test_intervals_by_a_force_and_a_record_hold_the_true_values(cell: tuple[floa
     inside = (~(np.abs([of_record(cell, seed) for seed in range(sets)]) > 1)).sum(axis=0)
     # Of the four parameters in three cells one has fewer once in a thousand times, if intervals are right.
     assert (inside >= binom.ppf(1e-3 / 12, sets, 0.95)).all(), inside
+
+
+def rough_files(folder: Path, values: Array) -> tuple[Path, Path]:
+    """Write frequencies over the overtravel, and the file of a relay with a rough contact; give their paths."""
+    data, relay = folder / "frequency.csv", folder / "relay.toml"
+    rows = [f"{1e3 * over:.9g},{value:.9g}" for over, value in zip(OVERTRAVELS, values, strict=True)]
+    data.write_text("overtravel [mm],frequency [Hz]\n" + "\n".join(rows) + "\n")
+    relay.write_text("\n".join(f"parameters.{name} = {value!r}" for name, value in ROUGH_GUESSED.items()))
+    return data, relay
+
+
+def test_the_frequency_of_a_rough_contact_is_that_of_the_closed_form() -> None:
+    (record_,) = rough_frequency_record(SEED)
+    predicted = Laboratory(COMPONENT).predict(record_, {**ROUGH_GUESSED, **ROUGH})
+    # Both solve the same equations; roots to 1e-14, the force by the small difference of two deflections.
+    assert predicted == pytest.approx(rough_frequencies(), rel=1e-10)
+
+
+def test_frequencies_over_the_overtravel_tell_the_law_of_a_rough_contact(tmp_path: Path) -> None:
+    (record_,) = rough_frequency_record(SEED)
+    data, relay = rough_files(tmp_path, record_.values)
+    result = found(data, relay=relay, parameters=list(ROUGH), out=tmp_path / "found")
+    assert not result.missing
+    written = Relay.read(tmp_path / "found/relay.toml", COMPONENT)
+    (values,) = written.positions.values()
+    for name, true in ROUGH.items():
+        assert holds(result, name, true)
+        assert values[name] == pytest.approx(true, rel=written.uncertainty[name])
+    # Without names the law is sought too, as the file has a rough contact; what frequencies do not tell is said.
+    result = found(data, relay=relay)
+    assert {"beam.stiffnessDamping", "contact.damping"} <= set(result.missing)
+    labels = {each.unknown.label for each in result.found}
+    assert {"contact.stiffness", "contact.stiffnessExponent"} <= labels | set(result.missing)
+
+
+def test_a_search_stays_within_what_is_allowed(tmp_path: Path) -> None:
+    """The frequencies of a contact with a larger exponent than the component allows; and a start at the end."""
+    steep = np.array([rough(each, contact_stiffnessExponent=0.94)[1] for each in OVERTRAVELS])
+    for start in (0.5, 0.9):
+        data, relay = rough_files(tmp_path, steep)
+        relay.write_text(relay.read_text().replace("stiffnessExponent = 0.5", f"stiffnessExponent = {start}"))
+        result = found(data, relay=relay, parameters=["contact.stiffness", "contact.stiffnessExponent"])
+        # The search ends a thousandth before the end.
+        assert result["contact.stiffnessExponent"].value == pytest.approx(0.9, rel=2e-3)
+
+
+def test_one_overtravel_does_not_tell_the_exponent(tmp_path: Path) -> None:
+    (record_,) = rough_frequency_record(SEED)
+    data, relay = rough_files(tmp_path, record_.values[:1] * np.linspace(0.999, 1.001, len(OVERTRAVELS)))
+    lines = data.read_text().splitlines()
+    head, rows = lines[0], [f"0.04,{line.split(',')[1]}" for line in lines[1:]]
+    data.write_text("\n".join([head, *rows]) + "\n")
+    result = found(data, relay=relay, parameters=["contact.stiffness", "contact.stiffnessExponent"])
+    (reason,) = result.missing.values()
+    assert "the data tell it only together with contact.stiffness" in reason
+    data.write_text(head.replace("mm", "m") + "\n" + "\n".join(rows) + "\n")
+    with pytest.raises(RelayContactError, match=r"column overtravel: 0.04 m: not allowed, allowed is up to 0.01 m"):
+        found(data, relay=relay)
+
+
+@pytest.mark.parametrize(("cell", "sets"), [(of_rough_frequencies, 30), (of_rough_curves, 4)])
+def test_intervals_of_a_rough_contact_hold_the_true_values(cell: Callable[[int], Array], sets: int) -> None:
+    """A small form of `identification_coverage.py`."""
+    inside = (~(np.abs([cell(seed) for seed in range(sets)]) > 1)).sum(axis=0)
+    # Of the three parameters in two cells one has fewer once in a thousand times, if intervals are right.
+    assert (inside >= binom.ppf(1e-3 / 6, sets, 0.95)).all(), inside
 
 
 def asked(tmp_path: Path, measurements: list[Measurement]) -> Identification:

@@ -10,7 +10,7 @@ import pytest
 from scipy.stats import binom
 
 from component import COMPONENT
-from relay_contact import RelayContactError, RelayContactWarning, Values, run
+from relay_contact import RelayContactWarning, Values, run
 from relay_contact.figures import three
 from relay_contact.qualification import FEW, Part, Relay, Standard, assessment, qualify
 from relay_contact.qualification.page import failures, passes_text, write
@@ -226,11 +226,6 @@ def test_each_model_is_judged_and_all_have_to_pass(tmp_path: Path, monkeypatch: 
     page = (tmp_path / "qualification.html").read_text(encoding="utf-8")
     assert "- heavier" in page
     assert f"{three(whole['models'][1]['margin'])} to {three(whole['models'][0]['margin'])}" in page
-
-
-def test_friction_is_refused_by_its_own_name() -> None:
-    with pytest.raises(RelayContactError, match=r"effects.friction = Coulomb: not allowed.*friction.coefficient"):
-        respond(COMPONENT, {"effects.friction": "Coulomb"}, 600.0)
 
 
 def test_pages_have_all_inputs_and_the_date_if_asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -176,12 +176,12 @@ class Fit:
             return last[1]
 
         free = len(self.logarithms) - len(self.unknowns)
-        bounds = [[getattr(each, end) for each in self.unknowns] + [sign] * free for end, sign in ENDS.items()]
+        low, high = ([getattr(each, end) for each in self.unknowns] + [sign] * free for end, sign in ENDS.items())
         found = least_squares(
             self.residuals,
-            self.logarithms,
+            np.clip(self.logarithms, low, high),
             jacobian,
-            bounds=tuple(bounds),
+            bounds=(low, high),
             ftol=ENOUGH,
             xtol=100 * ENOUGH,
             gtol=None,

@@ -30,31 +30,33 @@ from relay_contact.tables import (
 from relay_contact.tables import read as read_table
 
 FORCE, RINGDOWN, RESPONSE, CHATTER = "static force", "ring-down", "frequency response", "chatter level"
-BOUNCE = "bounce"
+BOUNCE, FREQUENCY = "bounce", "frequency"
 ANY = {"V": 1.0}
 """Unit of a sensor without calibration: the size of a ring-down is free."""
 COLUMNS: Units = {
-    "travel": LENGTHS, "time": TIMES, "frequency": FREQUENCIES, "acceleration": ACCELERATIONS, "speed": VELOCITIES,
+    "travel": LENGTHS, "overtravel": LENGTHS, "time": TIMES, "frequency": FREQUENCIES, "speed": VELOCITIES,
+    "acceleration": ACCELERATIONS,
     "displacement": LENGTHS | ANY, "velocity": VELOCITIES | ANY, "force": FORCES | ANY, "level": ACCELERATIONS,
     "bounce": TIMES,
 }  # fmt: skip
 MOTIONS = ("displacement", "velocity", "force")
 KINDS = {
     FORCE: (("travel",), ("force",)),
+    FREQUENCY: (("overtravel",), ("frequency",)),
     RESPONSE: (("frequency", "acceleration"), MOTIONS),
     CHATTER: (("frequency",), ("level",)),
     BOUNCE: (("speed",), ("bounce",)),
     RINGDOWN: (("time",), MOTIONS),
 }
 """What is measured: over which columns, and one of which. The first kind that a file has all columns of."""
-RELATIVE = (RESPONSE, CHATTER, BOUNCE)
+RELATIVE = (FREQUENCY, RESPONSE, CHATTER, BOUNCE)
 """Kinds whose scatter is in proportion to the value."""
 SIGNED = ("travel", "time", "force", "displacement", "velocity")
-MOST = {"travel": 0.02, "displacement": 0.02, "force": 100.0, "velocity": 100.0, "acceleration": 1e5, "level": 1e5,
-        "speed": 10.0, "bounce": 0.1, "frequency": 1e6}  # fmt: skip
+MOST = {"travel": 0.02, "overtravel": 0.01, "displacement": 0.02, "force": 100.0, "velocity": 100.0,
+        "acceleration": 1e5, "level": 1e5, "speed": 10.0, "bounce": 0.1, "frequency": 1e6}  # fmt: skip
 """Sizes (SI) beyond those of any relay: a column has another unit than it says."""
 OPPOSITE = -0.8  # correlation of travel and force below which one of them is reversed
-FEWEST = {FORCE: 5, RINGDOWN: 20, RESPONSE: 5, CHATTER: 5, BOUNCE: 5}
+FEWEST = {FORCE: 5, FREQUENCY: 5, RINGDOWN: 20, RESPONSE: 5, CHATTER: 5, BOUNCE: 5}
 
 
 @dataclass(frozen=True)
@@ -64,7 +66,7 @@ class Measurement:
     path: Path
     kind: str
     over: Array
-    """Travel (m) from the working position, time (s), frequency (Hz) or speed of closing (m/s)."""
+    """Travel (m) from the working position, overtravel (m), time (s), frequency (Hz) or speed of closing (m/s)."""
     quantity: str
     unit: str
     """Of the quantity as it was measured."""
@@ -110,7 +112,7 @@ def read(path: Path, component: Component, positions: list[str]) -> Measurement:
     if kind == FORCE:
         signs(table)
     told = interpreted(table, component, positions)
-    is_open = told.pop("contact", "closed" if quantity in ("force", "level") else "open") == "open"
+    is_open = told.pop("contact", "closed" if quantity in ("force", "level", "frequency") else "open") == "open"
     position, calibration = str(told.pop("position", positions[0])), float(told.pop("calibration", 0.0))
     if len(positions) > 1 and not is_open and "position" not in table.settings:
         raise table.wrong(f"which position of the coil? A line before says so: # position = {' or '.join(positions)}")

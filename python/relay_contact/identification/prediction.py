@@ -1,7 +1,7 @@
 """What the component predicts for each kind of measurement.
 
-The contact is linear about its preload, as below the level at which it opens; a spring taken off its contact is open by
-the largest gap that the component allows.
+A closed contact of any law moves so little that it is linear about its preload; a spring taken off its contact is open
+by the largest gap that the component allows.
 """
 
 from collections.abc import Callable
@@ -12,17 +12,21 @@ from scipy.linalg import hankel
 
 from relay_contact.component import Array, Component, Contact, Values
 from relay_contact.files import RelayContactError
-from relay_contact.identification.measurement import BOUNCE, CHATTER, FORCE, RESPONSE, RINGDOWN, Measurement
-from relay_contact.qualification.response import interrupting_force, respond
+from relay_contact.identification.measurement import (
+    BOUNCE,
+    CHATTER,
+    FORCE,
+    FREQUENCY,
+    RESPONSE,
+    RINGDOWN,
+    Measurement,
+)
+from relay_contact.qualification.response import EXACT, FREE, interrupting_force, respond
 from relay_contact.qualification.standards import Contacts
 from relay_contact.qualification.trials import Specimen, steady, threshold
 
-ALONE: Values = {
-    "effects.secondContact": False, "effects.chatter": False, "effects.extremes": False, "effects.excitation": "None",
-    "base.acceleration": 0.0,
-}  # fmt: skip
-AWAY: Values = {"contact.overtravel": -1e-2, "effects.contactLaw": "Hertz"}
-BONDED: Values = {"effects.contactLaw": "Bonded"}
+ALONE: Values = {**FREE, "effects.excitation": "None", "base.acceleration": 0.0}
+AWAY: Values = {"contact.overtravel": -1e-2}
 MODES = 16
 """Of the spring, where nothing hits it: responses below its third resonance are right to 1e-5, and come faster."""
 STATIC: Values = {
@@ -30,12 +34,14 @@ STATIC: Values = {
 }  # fmt: skip
 """What a static force does not depend on is the same, so that it is not computed again."""
 OUTPUTS = {"displacement": "tip.displacement", "velocity": "tip.velocity", "force": "contact.force"}
-KNOCK = 1e-4  # m, by about which a knock moves the spring, 1 % of its distance from the contact
+KNOCK_OPEN, KNOCK_CLOSED, WEAK = 1e-2, 1e-4, 1e-6
+"""How far a knock, and a steady vibration of a closed contact, would move the tip if it were free, as parts of its
+distance from the contact, or of the overtravel: poles and amplitudes are those of the linear contact to 1e-5."""
 SAMPLES, DENSITY, MODEL_ORDER = 64, 8, 24
 """Of a motion after a knock: points, points per period, and decaying exponentials at most; pole of the exact beam to
 1e-6 of its size (tests/python/test_identification.py)."""
-WITHIN, EXACT = 1e-9, 1e-10
-"""Singular values, as a part of the largest, that are rounding; solver.tolerance of such a motion."""
+WITHIN = 1e-9
+"""Singular values, as a part of the largest, that are rounding."""
 SETTLED, PERIODS, MOST = 1e-7, 64, 2**13
 """Change of an amplitude between two times, of which the second is twice the first, twice in a row; periods before the
 first of them, and at most."""
@@ -61,13 +67,14 @@ class Laboratory:
 
     def conditions(self, measurement: Measurement, values: Values) -> Values:
         """Return the parameters of the component under which something was measured."""
-        law = AWAY if measurement.is_open else BONDED
-        modes: Values = {"solver.modes": MODES} if measurement.kind in (RINGDOWN, RESPONSE, CHATTER) else {}
-        if measurement.kind == FORCE:
-            law = STATIC
-        found = {**values, **ALONE, **law, **modes, **measurement.settings}
-        overtravel = float(found.get("contact.overtravel", self.component.start("contact.overtravel")))
-        if law is BONDED and overtravel <= 0:
+        kind, own = measurement.kind, AWAY if measurement.is_open else {}
+        if kind in (FORCE, FREQUENCY):
+            own = STATIC
+        elif kind != BOUNCE:
+            own = {**own, "solver.modes": MODES}
+        found = {**values, **ALONE, **own, **measurement.settings}
+        if kind in (RINGDOWN, RESPONSE, CHATTER) and not measurement.is_open and self.overtravel(found) <= 0:
+            overtravel = self.overtravel(found)
             text = f"in the position {measurement.position} the contact is open (contact.overtravel = {overtravel:g} m)"
             allowed = "a closed one, or the line `# contact = open` before the columns"
             raise RelayContactError(
@@ -83,22 +90,29 @@ class Laboratory:
             if len(self.known) >= KEPT:
                 self.known.pop(next(iter(self.known)))
             how: dict[str, Callable[[Measurement, Values], Array]] = {
-                FORCE: self.force, RINGDOWN: self.ringing, RESPONSE: self.amplitude, CHATTER: self.level,
-                BOUNCE: self.bounces,
+                FORCE: self.force, FREQUENCY: self.frequency, RINGDOWN: self.ringing, RESPONSE: self.amplitude,
+                CHATTER: self.level, BOUNCE: self.bounces,
             }  # fmt: skip
             self.told()
             with self.contact.explained():
                 self.known[key] = how[measurement.kind](measurement, asked)
         return self.known[key]
 
+    def overtravel(self, values: Values) -> float:
+        """Return the overtravel (m)."""
+        return float(values.get("contact.overtravel", self.component.start("contact.overtravel")))
+
     def force(self, measurement: Measurement, values: Values) -> Array:
         """Return the static contact force (N) over travel from the working position."""
-        overtravel = float(values.get("contact.overtravel", self.component.start("contact.overtravel")))
-        forces = []
-        for travel in measurement.over:
-            self.contact.begin_anew({**values, "contact.overtravel": overtravel + float(travel)})
-            forces += self.contact.real("preload.force")
-        return np.array(forces)
+        return self.at_rest("preload.force", self.overtravel(values) + measurement.over, values)
+
+    def frequency(self, measurement: Measurement, values: Values) -> Array:
+        """Return the lowest natural frequency (Hz) of the closed contact over the overtravel."""
+        return self.at_rest("preload.frequency", measurement.over, values)
+
+    def at_rest(self, name: str, overtravel: Array, values: Values) -> Array:
+        """Return an output at rest over the overtravel (m)."""
+        return np.array([self.rest(name, {**values, "contact.overtravel": each}) for each in overtravel.tolist()])
 
     def ringing(self, measurement: Measurement, values: Values) -> Array:
         """Return rate of decay (1/s) and angular frequency (rad/s) of the strongest vibration after a knock.
@@ -106,14 +120,14 @@ class Laboratory:
         The motion after a knock is a sum of decaying exponentials; their poles are the eigenvalues of the least system
         that has it (J.-N. Juang, R. S. Pappa, J. Guid. Control Dyn. 8 (1985) 620-627).
         """
-        name = "tip.displacement" if measurement.is_open else "contact.force"
+        name, part = ("tip.displacement", KNOCK_OPEN) if measurement.is_open else ("contact.force", KNOCK_CLOSED)
         values = {**values, "solver.tolerance": EXACT}
         self.contact.begin_anew(values)
         (frequency,) = self.contact.real("preload.frequency")
         rest = self.contact.real(name)[0]
         knock: Values = {
             "effects.excitation": "HalfSine",
-            "excitation.amplitude": KNOCK * (2 * np.pi * frequency) ** 2,
+            "excitation.amplitude": part * abs(self.overtravel(values)) * (2 * np.pi * frequency) ** 2,
             "excitation.duration": 0.5 / frequency,
         }
         self.contact.begin_anew({**values, **knock})
@@ -143,17 +157,21 @@ class Laboratory:
 
     def gains(self, name: str, frequencies: Array, values: Values) -> tuple[Array, list[float]]:
         """Return the amplitudes of an output per base acceleration, and force (N) and power law of the resistance."""
+        values = {**values, "solver.tolerance": EXACT}
+        self.contact.begin_anew(values)
+        natural, *rest = self.contact.real(
+            "preload.frequency", "preload.force", "resistance.coefficient", "resistance.exponent"
+        )
+        amplitude = WEAK * abs(self.overtravel(values)) * (2 * np.pi * natural) ** 2
         found = []
-        rest: list[float] = []
         for frequency in map(float, frequencies):
             sine: Values = {
                 "effects.excitation": "Sine",
                 "excitation.frequency": frequency,
-                "excitation.amplitude": 1.0,
+                "excitation.amplitude": amplitude,
             }
             self.contact.begin_anew({**values, **sine})
-            rest = self.contact.real("preload.force", "resistance.coefficient", "resistance.exponent")
-            found.append(self.steady(name, frequency))
+            found.append(self.steady(name, frequency) / amplitude)
         return np.array(found), rest
 
     def steady(self, name: str, frequency: float) -> float:
@@ -215,7 +233,7 @@ class Laboratory:
         linear = self.predict(measurement, values)
         asked = self.conditions(measurement, values)
         monitor = self.monitor(asked)
-        alone = {**asked, "effects.contactLaw": "Hertz", "effects.chatter": True, "effects.extremes": True}
+        alone = {**asked, "effects.chatter": True, "effects.extremes": True}
         response = respond(self.component, asked, monitor.threshold)
         specimen = Specimen(self.component, alone, monitor, response)
         levels = [

@@ -16,7 +16,7 @@ from relay_contact.figures import BLACK, BLUE, GREY, RED
 from relay_contact.html import STYLE, document, svg, table
 from relay_contact.identification import relay_file
 from relay_contact.identification.fit import Set
-from relay_contact.identification.measurement import BOUNCE, COLUMNS, FORCE, RELATIVE, RINGDOWN
+from relay_contact.identification.measurement import BOUNCE, COLUMNS, FORCE, FREQUENCY, RELATIVE, RINGDOWN
 from relay_contact.identification.result import Found, Identification
 from relay_contact.spring import PREFIX
 
@@ -24,10 +24,11 @@ FILES = ("identification.html", "identification.png", "identification.csv")
 HEAD = ("parameter", "in the file", "identified", "95 % interval", "±")
 OVER = {
     FORCE: ("travel from the working position [mm]", 1e3),
+    FREQUENCY: ("overtravel [mm]", 1e3),
     RINGDOWN: ("time [ms]", 1e3),
     BOUNCE: ("speed of closing [mm/s]", 1e3),
 }
-FREQUENCY = ("frequency [Hz]", 1.0)
+OVER_FREQUENCY = ("frequency [Hz]", 1.0)
 DECADE = 6.0  # ratio of largest to least value from which on there is no room for labels between powers of ten
 DENSE = 300  # values from which on points are drawn smaller
 NOTES = """Fitted by least squares, with the component as the model. The scatter of each measurement is that of its
@@ -93,7 +94,7 @@ def matrix(result: Identification) -> str:
 def panels(axes: Axes, below: Axes, each: Set, model: Array, curve: tuple[Array, Array]) -> None:
     """Draw a measurement with the fitted curve, and the residuals below it."""
     measurement = each.measurement
-    label, factor = OVER.get(measurement.kind, FREQUENCY)
+    label, factor = OVER.get(measurement.kind, OVER_FREQUENCY)
     first = measurement.over[0] if measurement.kind == RINGDOWN else 0.0
     over = factor * (measurement.over - first)
     scale = COLUMNS[measurement.quantity][measurement.unit]

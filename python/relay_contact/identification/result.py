@@ -9,8 +9,16 @@ import numpy as np
 
 from relay_contact.component import Array, Component, nearest
 from relay_contact.files import RelayContactError, read_toml
-from relay_contact.identification.fit import Fit, Set, Unknown
-from relay_contact.identification.measurement import BOUNCE, CHATTER, FORCE, RESPONSE, RINGDOWN, Measurement
+from relay_contact.identification.fit import STEP, Fit, Set, Unknown
+from relay_contact.identification.measurement import (
+    BOUNCE,
+    CHATTER,
+    FORCE,
+    FREQUENCY,
+    RESPONSE,
+    RINGDOWN,
+    Measurement,
+)
 from relay_contact.identification.prediction import Laboratory
 from relay_contact.qualification.relay import Relay
 from relay_contact.spring import PREFIX, STIFFNESS, known
@@ -28,7 +36,7 @@ SAMPLED = 3.0
 """Rows per period of a ring-down, at least, by the record and by the relay's file: what seems slower than it is would
 have to be twice as fast as the file says."""
 PERIODS = 1.5  # of a ring-down in a record, at least
-BEYOND = {FORCE: 10.0, RESPONSE: 30.0, CHATTER: 30.0, RINGDOWN: 5.0}
+BEYOND = {FORCE: 10.0, RESPONSE: 30.0, CHATTER: 30.0, RINGDOWN: 5.0, FREQUENCY: 5.0}
 """Measured over predicted by the relay's file, or the reverse, from which on a unit is wrong: of the stiffness, of the
 median amplitude or level, of the frequency."""
 OPENS = 0.98  # part of the preload from which on a force amplitude opens the contact
@@ -88,7 +96,10 @@ def usual(relay: Relay, measurements: list[Measurement]) -> list[str]:
     if f"{PREFIX}frequency" not in entries:
         # Modes have the rivet in them.
         names.append("tip.mass")
-    if any(not each.is_open for each in measurements):
+    closed = [each for each in measurements if not each.is_open]
+    if closed and any(values.get("effects.contactLaw") == "Rough" for values in relay.positions.values()):
+        names += ["contact.stiffness", "contact.stiffnessExponent"]
+    if any(each.kind != FREQUENCY for each in closed):
         names.insert(0, "contact.overtravel")
     return names
 
@@ -121,9 +132,11 @@ def unknowns(
                 least, most = float(variable.min or 0.0), float(variable.max or np.inf)
             if start <= 0:
                 raise RelayContactError(f"{name} = {start:g} in the relay's file: not allowed, a search starts above 0")
-            low = max(-REACH, np.log(least / start) if least > 0 else -REACH)
+            # So far within what is allowed that derivatives are too.
+            low = max(-REACH, np.log(least / start) + STEP if least > 0 else -REACH)
+            high = min(REACH, float(np.log(most / start)) - STEP)
             label = f"{name}, {group[0]}" if len(groups) > 1 else name
-            found.append(Unknown(name, group, start, label, low, min(REACH, float(np.log(most / start)))))
+            found.append(Unknown(name, group, start, label, low, high))
     return found
 
 
@@ -178,9 +191,10 @@ def check(each: Set, predicted: Array) -> None:
         measured, expected = (float(np.polyfit(own.over, values, 1)[0]) for values in (own.values, predicted))
         ratio = measured / max(expected, 1e-300)
         words = f"columns travel, force: stiffness {measured:.3g} N/m, by the relay's file {expected:.3g} N/m"
-    elif own.kind in (RESPONSE, CHATTER):
+    elif own.kind in (FREQUENCY, RESPONSE, CHATTER):
         ratio = float(np.median(own.values / np.maximum(predicted, 1e-300)))
-        words = f"columns {own.quantity}, frequency: {ratio:.3g} times what the relay's file gives (median)"
+        other = "overtravel" if own.kind == FREQUENCY else "frequency"
+        words = f"columns {own.quantity}, {other}: {ratio:.3g} times what the relay's file gives (median)"
     elif each.ring:
         frequency, expected = (float(pole[1]) / (2 * np.pi) for pole in (each.ring.pole, predicted))
         length, rate = float(np.ptp(own.over)), 1 / float(np.median(np.diff(own.over)))

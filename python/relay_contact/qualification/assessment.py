@@ -37,6 +37,7 @@ from relay_contact.qualification.trials import (
     middle_dip,
     shock,
     shock_threshold,
+    sine_least,
     sine_threshold,
     sweep,
     threshold,
@@ -190,9 +191,7 @@ def ratio(specimen: Specimen, test: Test) -> float:
     """Return the level that fails in the component by that of linear theory."""
     match test:
         case Sine():
-            frequency, factors = specimen.response.sine(test, specimen.lasting)
-            at = int(factors.argmin())
-            return sine_threshold(specimen, test, float(frequency[at]), float(factors[at]))[0] / float(factors[at])
+            return sine_least(specimen, test)[1] / float(specimen.response.sine(test, specimen.lasting)[1].min())
         case Random():
             return middle_dip(specimen, test)[0]
         case Shock():
@@ -236,15 +235,14 @@ def vibration(position: Position, test: Sine, points: int) -> Part:
     """Vibrate steadily at frequencies of the sweep, and seek the level that fails where it is least."""
     specimen = position.specimen
     response = specimen.response
-    frequency, factors = response.sine(test, specimen.lasting)
+    _, factors = response.sine(test, specimen.lasting)
     at = int(factors.argmin())
-    weakest = float(frequency[at])
+    weakest, factor, decides = sine_least(specimen, test)
     low, high = test.frequencies
     near = weakest * np.linspace(0.9, 1.1, points // 4)
     near = near[(near > low) & (near < high)]
     chosen = np.unique(np.concatenate((np.geomspace(low, high, points), near, [weakest])))
     rows = sweep(specimen, test, chosen)
-    factor, decides = sine_threshold(specimen, test, weakest, float(factors[at]))
     lengths = {name: [length.get(name, 0.0) for length, _ in rows] for name in specimen.monitors}
     worst = int(np.argmax([max(length.values(), default=0.0) for length, _ in rows]))
     elsewhere = factor > 1 and bool(rows[worst][0])

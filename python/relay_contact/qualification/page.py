@@ -53,7 +53,14 @@ JUDGED = """The contact springs are judged as in a rigid relay: base vibration m
 fixed contacts alike. Armature, actuator, coil and case are not in the model: what they do to the contact is not in
 any verdict here."""
 ALONE = """An interval is that of the uncertain parameters alone, and of the allowance that the relay's file makes for
-what the model leaves out. How far another form of the model would move a margin it does not say"""
+what the model leaves out. How far another form of the model would move a margin"""
+LAWS = {
+    "Hertz": "Hertzian contact of smooth bodies",
+    "Rough": "contact of rough surfaces, its stiffness the power {:g} of the force,",
+    "Linearised": "contact of smooth bodies, linear about the preload,",
+    "Bonded": "contact of smooth bodies, linear and unable to open,",
+}
+"""By effects.contactLaw."""
 NOTES = """Margin: the level that interrupts the closed contact, or closes the open one, for the time that the
 standard allows, relative to that of the test. Its interval has 95 % confidence: the component answers a pulse with
 each of {draws} draws of the uncertain parameters, the margins follow from the answers, and at both ends of the
@@ -79,6 +86,7 @@ UNUSED = {
     "beam.file": ("beam.length", "beam.width", "beam.thickness"),
     "effects.secondContact": ("second.",),
     "effects.friction": ("friction.", "effects.friction"),
+    "effects.contactLaw": ("contact.stiffness",),
 }
 """Parameters without effect where this one has a value, or where it has its start value."""
 
@@ -339,15 +347,16 @@ def position_figures(parts: list[Part], contacts: Contacts) -> list[Figure]:
 def form(component: Component, values: Values) -> str:
     """Return the form of the model in words."""
 
-    def has(name: str) -> object:
-        return values.get(f"effects.{name}", component.start(f"effects.{name}"))
+    def has(name: str, group: str = "effects") -> Any:  # noqa: ANN401
+        return values.get(f"{group}.{name}", component.start(f"{group}.{name}"))
 
+    law = LAWS[has("contactLaw")].format(has("stiffnessExponent", "contact"))
     axial = {"None": "no axial force", "Prescribed": "a given axial force"}
     parts = [
         "slender spring with Rayleigh damping",
-        f"Hertzian contact of smooth bodies {'with' if has('contactDamping') else 'without'} viscoelastic damping",
+        f"{law} {'with' if has('contactDamping') else 'without'} viscoelastic damping",
         axial.get(str(has("axialForce")), "the axial force of the preload"),
-        "no friction",
+        "no friction" if has("friction") == "None" else f"friction of {has('coefficient', 'friction'):g}",
     ]
     return ", ".join(parts)
 
@@ -433,8 +442,9 @@ def html(relay: Relay, standard: Standard, parts: list[Part], component: Compone
         if known:
             body.append(f"<p>At rest: {at_rest(known)}; first resonance {three(known['natural'])} Hz.</p>")
         forms = {form(component, {**values, **model.parameters}): None for model in relay.models}
-        count = f"; {len(relay.models)} models are judged" if len(relay.models) > 1 else "; one model is judged"
-        body.append(f'<p class="judged">{escape(ALONE)}{count}. Form of the model: {escape("; ".join(forms))}.</p>')
+        count = len(relay.models)
+        told = f", the margins of {count} models show" if count > 1 else " it does not say; one model is judged"
+        body.append(f'<p class="judged">{escape(ALONE + told)}. Form of the model: {escape("; ".join(forms))}.</p>')
         head = "".join(f"<th>{name}</th>" for name in HEAD)
         lines = "".join(line for part in mine for line in verdict_rows(part))
         body.append(f'<div class="wide"><table><tr>{head}</tr>{lines}</table></div>')

@@ -1,10 +1,10 @@
 """The contact as a linear system: the force of a closed contact, or the gap of an open one, under base acceleration.
 
-The component answers a short pulse of the base acceleration with the closed contact bonded, that is, linear about its
-preload, or with the open one pushed so weakly that it stays open. The Fourier transform of the answer over that of the
-pulse is the response to any vibration below the level at which the contact opens, or closes; the margins of the tests
-follow from it. At that level a closed contact has just not opened, so that only the stiffness of the contact, which
-changes with the force, is missing: the spring feels little of it.
+The component answers a short pulse of the base acceleration, so weak that a closed contact of any law stays closed and
+is linear about its preload, and an open one stays open. The Fourier transform of the answer over that of the pulse is
+the response to any vibration below the level at which the contact opens, or closes; the margins of the tests follow
+from it. At that level a closed contact has just not opened, so that only the stiffness of the contact, which changes
+with the force, is missing. A contact with friction has the response of one that slips freely.
 """
 
 from dataclasses import dataclass
@@ -22,6 +22,15 @@ STEP = 1e-5
 WATCHED, LONGEST = 1000, 200_000  # steps: an answer ends after some of at most
 CALM = 1e-6  # part of its largest force
 POINTS = 2**18  # of the transform at least, every 0.38 Hz
+WEAK = 3e-6
+"""Velocity that a pulse brings, of that of a vibration by the overtravel at the frequency of the closed contact: the
+force changes by some 3e-4 of the preload, and the response is linear to 1e-5 of its largest value."""
+EXACT = 1e-11
+"""solver.tolerance of motions that are so small a part of the preload."""
+FREE: Values = {
+    "effects.secondContact": False, "effects.chatter": False, "effects.extremes": False, "effects.friction": "None",
+}  # fmt: skip
+"""Effects that a linear response is without."""
 
 
 @dataclass(frozen=True)
@@ -110,17 +119,8 @@ def respond(component: Component, values: Values, threshold: float, calm: float 
 
     `threshold` is the resistance (Ohm) above which the contact is interrupted.
     """
-    friction = values.get("effects.friction", component.start("effects.friction"))
-    if friction != "None":
-        raise RelayContactError(
-            f"effects.friction = {friction}: not allowed where margins are sought, allowed is None: they start from "
-            "the linear response, which friction.coefficient changes; with friction, levels can be run one by one as "
-            "scenes (relay-contact run)"
-        )
-    alone: Values = {"effects.secondContact": False, "effects.chatter": False, "effects.extremes": False}
     is_open = open_at_rest(component, values)
-    law: Values = {"effects.contactLaw": "Hertz" if is_open else "Bonded"}
-    with component.started({**values, **alone, **law}) as contact, contact.explained():
+    with component.started({**values, **FREE, "solver.tolerance": EXACT}) as contact, contact.explained():
         read = contact.references("tip.displacement" if is_open else "contact.force")
         input_ = contact.references("base.acceleration")
         rest = contact.fmu.getReal(read)[0]
@@ -131,8 +131,8 @@ def respond(component: Component, values: Values, threshold: float, calm: float 
             size = 10 * reserve
         else:
             lost = interrupting_force(contact.real("resistance.coefficient", "resistance.exponent"), threshold)
-            # Of any size, as the contact is bonded.
-            reserve, size = rest - lost, 1.0
+            overtravel = float(values.get("contact.overtravel", component.start("contact.overtravel")))
+            reserve, size = rest - lost, WEAK * overtravel * 2 * np.pi * natural
         # Up within a step and down within the next.
         peak = size / STEP
         answer: list[float] = []

@@ -18,6 +18,10 @@ PIECES = 16  # of a period of a rise, over each of which base.acceleration is li
 SUDDEN = 3.0  # factor of its level from which on a vibration may start suddenly: the contact does not fail
 SHOWN = 400  # points of a course of force or gap
 
+APART, BESIDE, TRIED = 0.01, 0.05, 9
+"""Part by which a level that fails differs from linear theory, from which on the weakest frequency is sought with the
+component; step of the search, as a part of the frequency, at most; frequencies tried before its last."""
+
 # Random vibration is simulated around the largest dips of force or gap in a record of it.
 RECORD = 60.0  # s
 SAMPLE = 2e-5  # s
@@ -171,6 +175,41 @@ def sine_threshold(
     """Return the factor of the level that fails in steady vibration at a frequency (Hz), and which contacts."""
     amplitude = float(test.amplitude(np.array(frequency)))
     return threshold(lambda factor: steady(specimen, frequency, factor * amplitude, True)[0], guess, failing)
+
+
+def sine_least(specimen: Specimen, test: Sine) -> tuple[float, float, list[str]]:
+    """Return the frequency (Hz) of a sweep that fails at the least level, its factor of the level, and which contacts.
+
+    That of linear theory, if the component fails there as expected. Else steps from there to lower levels, then the
+    vertex of a parabola: the resonance of a contact that is far from linear, or rubs, is elsewhere.
+    """
+    known, factors = specimen.response.sine(test, specimen.lasting)
+    at = int(factors.argmin())
+    first, guess = float(known[at]), float(factors[at])
+    step = 1 + min(BESIDE, specimen.response.bandwidth(first) / first / 2)
+
+    def tried(place: float) -> tuple[float, float, list[str]]:
+        frequency = first * step**place
+        if not test.frequencies[0] <= frequency <= test.frequencies[1]:
+            return frequency, np.inf, []
+        return frequency, *sine_threshold(specimen, test, frequency, found[0.0][1] if found else guess)
+
+    found: dict[float, tuple[float, float, list[str]]] = {}
+    found[0.0] = tried(0.0)
+    if abs(found[0.0][1] / guess - 1) > APART:
+        best = 0.0
+        while beside := {best - 1, best + 1} - found.keys():
+            found |= {place: tried(place) for place in beside}
+            best = min(found, key=lambda place: found[place][1])
+            if len(found) > TRIED:
+                break
+        else:
+            low, middle, high = (found[best + each][1] for each in (-1, 0, 1))
+            bent = low - 2 * middle + high
+            if np.isfinite(bent) and bent > 0:
+                vertex = best + (low - high) / (2 * bent)
+                found[vertex] = tried(vertex)
+    return min(found.values(), key=lambda each: each[1])
 
 
 def shock(specimen: Specimen, test: Shock, factor: float, points: int = 1) -> tuple[Lengths, Array]:
