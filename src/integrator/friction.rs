@@ -223,7 +223,7 @@ impl Integration<'_> {
 impl Model {
     /// Sets friction force and phase as they follow from the motion: after a jump, a closing, or in another phase than
     /// before.
-    pub(crate) fn settle_friction(&self, state: &mut State) {
+    pub fn settle_friction(&self, state: &mut State) {
         let (Some(friction), Some(law)) = (self.friction(), self.law.power()) else {
             return;
         };

@@ -45,14 +45,17 @@ impl Rig {
     /// Sets the initial modal velocities, in the order of the modes, and the dependent values.
     pub fn launch(&mut self, velocities: &[f64]) {
         let (model, mut state) = (&self.model, self.state);
-        state.indentation_rate = 0.0;
+        let height = model.scene().tip.contact_height;
+        (state.indentation_rate, state.tangential.rate) = (0.0, 0.0);
         for ((mode, v), constants) in state.modes.iter_mut().zip(velocities).zip(model.modes()) {
             mode.v = *v;
             state.indentation_rate -= constants.tip * v;
+            state.tangential.rate += height * constants.rotation * v;
         }
         let d = model.preload().indentation + state.indentation;
         state.force = model.law().force(d, state.indentation_rate);
         state.closed = model.engagement(state.indentation, state.indentation_rate) > 0.0;
+        model.settle_friction(&mut state);
         *self = Self::at(model.clone(), &state);
     }
 

@@ -1,6 +1,10 @@
 //! What contact the published numbers belong to: the tables that `examples/python/published_contact.py` writes.
 
+use std::fs;
+
 use anyhow::{Context, Result};
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD as STANDARD;
 use commands::root;
 use serde::Deserialize;
 
@@ -105,14 +109,24 @@ pub fn blocks(arguments: Arguments) -> Result<Vec<Block>> {
         comparison("Numbers that were not fitted", &others, None)?,
         fits(&parameters),
     ];
-    // Pictures of the page, which a figure of the report is not.
-    if arguments.docs {
-        blocks.extend(FIGURES.map(|[name, title, caption]| {
-            Block::Text(format!("![{title}](published-contact-{name}.png)\n\n{caption}"))
-        }));
+    for figure in FIGURES {
+        blocks.push(Block::Text(picture(figure, arguments)?));
     }
     blocks.push(Block::Text(verdict(&fitted, &parameters)?));
     Ok(blocks)
+}
+
+/// A picture of the program: by name beside the pages of `docs/`, inside the report.
+fn picture([name, title, caption]: [&str; 3], arguments: Arguments) -> Result<String> {
+    let file = format!("published-contact-{name}.png");
+    let source = if arguments.docs {
+        file
+    } else {
+        let path = root().join("docs").join(file);
+        let bytes = fs::read(&path).with_context(|| path.display().to_string())?;
+        format!("data:image/png;base64,{}", STANDARD.encode(bytes))
+    };
+    Ok(format!("![{title}]({source})\n\n{caption}"))
 }
 
 /// What the section says, in a sentence.
