@@ -287,6 +287,28 @@ pub enum Remark {
         /// Those for which the tolerance is promised.
         range: Range<f64>,
     },
+    /// Friction with which slip is unstable.
+    #[error(
+        "effects.friction = Coulomb: slip {} the clamp is unstable with friction.coefficient = {} and tip.contactHeight = {} m: at \
+         a contact force of {force:.2e} N its small motions grow by {growth:.2e} 1/s {}, until the contact sticks or opens. Where \
+         they grow far, forces are not predictable, solver.tolerance is not promised, nor does solver.forceError tell; less \
+         friction or height makes slip stable, more damping may",
+        if *away { "away from" } else { "towards" }, number(*coefficient), number(*height), sounding(*frequency)
+    )]
+    UnstableSlip {
+        /// Whether it slips away from the clamp, or towards it.
+        away: bool,
+        /// Contact force, N: that of the preload or twice it, the one at which it grows faster.
+        force: f64,
+        /// Growth rate, 1/s.
+        growth: f64,
+        /// Frequency, Hz; 0: it moves away without vibrating.
+        frequency: f64,
+        /// `friction.coefficient`.
+        coefficient: f64,
+        /// `tip.contactHeight`, m.
+        height: f64,
+    },
     /// Modes that end below what a blow excites.
     #[error(
         "beam.file = {file}: its modes end at {highest:.0} Hz, a blow of the contact excites the spring up to {reached:.0} Hz; \
@@ -320,6 +342,15 @@ pub(crate) fn number(value: f64) -> String {
         text.truncate(text.len() - 2);
     }
     text
+}
+
+/// How a growing motion sounds, at this frequency (Hz).
+fn sounding(frequency: f64) -> String {
+    if frequency > 0.0 {
+        format!("at {frequency:.2e} Hz")
+    } else {
+        "without vibration".to_owned()
+    }
 }
 
 fn meant(nearest: Option<&str>) -> String {

@@ -9,6 +9,7 @@
 //! contact     indentation -> contact force (Hertz, with dissipation)
 //! preload     static equilibrium of beam and contact
 //! model       Scene -> Model (never changes);   state  all that moves
+//! slip_stability  whether the contact slips without vibrating by itself
 //! second_contact  the other fixed contact of a changeover relay: the mirror image of the first
 //! integrator  Model, State, inputs -> State after a communication step: "The method" at its head
 //! closed_loop the same where spring and contact are linear: exact steps
@@ -67,6 +68,7 @@ pub mod reference;
 pub mod scene;
 mod second_contact;
 pub mod simulation;
+mod slip_stability;
 mod state;
 pub mod variables;
 

@@ -22,6 +22,7 @@ use crate::math::simd::Simd;
 use crate::preload::Preload;
 use crate::scene::Scene;
 use crate::scene::spring::SpringFile;
+use crate::slip_stability;
 use crate::state::{Record, State};
 use crate::variables::{AxialForceKind, ContactLawKind, RealParameter};
 
@@ -231,6 +232,7 @@ impl Model {
     /// What a user should know of the scene.
     pub fn remarks(&self) -> Vec<Remark> {
         let mut remarks: Vec<_> = self.bent_far().into_iter().chain(self.friction_at_touch()).collect();
+        remarks.extend(slip_stability::remarks(self));
         if let Some(spring) = &self.scene.spring {
             remarks.extend(self.remarks_on_file(spring));
         }

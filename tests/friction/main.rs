@@ -4,6 +4,7 @@
 
 mod closed_forms;
 mod refused;
+mod unstable_slip;
 
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::{Contact, Scene};

@@ -163,6 +163,20 @@ class Frictional(Reference):
         near = self.sticking_by_modes()
         return float(brentq(determinant, (1 - 1e-6) * near, (1 + 1e-6) * near, xtol=1e-12, rtol=1e-14))
 
+    def growth(self, force: float, sign: float) -> complex:
+        """Give the eigenvalue (1/s) that grows fastest of small motions about slip, at a contact force (N)."""
+        modes = self.carrier()
+        # Hertz: the stiffness is as the cube root of the force.
+        stiffness = self.tangent * (force / self.force) ** (1 / 3)
+        pushed = np.outer(modes.tip + sign * self.friction.coefficient * modes.lever, stiffness * modes.tip)
+        matrix = np.block(
+            [
+                [np.zeros_like(pushed), np.eye(len(modes.tip))],
+                [-np.diag(modes.omega_squared) - pushed, -np.diag(modes.damping) - self.contact_damping * pushed],
+            ]
+        )
+        return complex(max(np.linalg.eigvals(matrix), key=lambda value: value.real))
+
     def moves(self, acceleration: Acceleration, stop: float, tolerance: float) -> "FrictionalMotion":
         """Give the motion from rest at 0."""
         carrier = self.carrier()

@@ -1,11 +1,13 @@
 """Friction between the contacts, by motions solved by other means (frictional.py)."""
 
+import re
 from functools import cache
 from math import pi, sin
 
 import numpy as np
 import pytest
 
+from component import Instance
 from frictional import Frictional, FrictionalMotion, Phase
 from relay_contact import Array, Values
 from relay_contact.scene import Scene, run
@@ -159,3 +161,76 @@ def test_friction_decides_whether_the_contact_opens() -> None:
     # Far from opening, a quarter of the preload.
     assert least[1:].min() > 0.25 * Frictional(scene.values).force
     assert run(scene, outputs=outputs, friction_coefficient=0.0)["chatter.count"][-1] > 10
+
+
+# Random relays that are above their tolerance, by the numbers of docs/friction.md.
+UNSTABLE: dict[int, Values] = {
+    40070: {
+        "beam.length": 8.383e-3,
+        "beam.width": 1.3575e-3,
+        "beam.thickness": 1.214e-4,
+        "beam.youngsModulus": 1.3904e11,
+        "beam.density": 7314.3,
+        "beam.stiffnessDamping": 1.92855e-6,
+        "tip.mass": 3.0442e-7,
+        "tip.contactHeight": 7.1475e-4,
+        "contact.overtravel": 2.3432e-5,
+        "contact.curvatureRadius": 8.2912e-4,
+        "contact.damping": 1.16634e-5,
+        "friction.coefficient": 0.80547,
+    },
+    40345: {
+        "effects.axialForce": "Prescribed",
+        "beam.axialForce": 4.47786,
+        "beam.massDamping": 15.3542,
+        "beam.stiffnessDamping": 1.801806e-5,
+        "tip.mass": 4.024318e-4,
+        "tip.contactHeight": 2.67712e-3,
+        "contact.overtravel": 6.57304e-5,
+        "contact.curvatureRadius": 3.380915e-4,
+        "contact.damping": 1.605229e-5,
+        "friction.coefficient": 0.607796,
+    },
+    40418: {
+        "effects.axialForce": "FromPreload",
+        "environment.gravity": 9.81,
+        "beam.length": 3.0417e-2,
+        "beam.width": 2.07767e-3,
+        "beam.thickness": 2.68444e-4,
+        "beam.youngsModulus": 1.54939e11,
+        "beam.density": 8601.4,
+        "beam.stiffnessDamping": 3.0424e-5,
+        "tip.mass": 2.4157e-5,
+        "tip.contactHeight": 3.73403e-3,
+        "contact.overtravel": 2.25786e-4,
+        "contact.curvatureRadius": 3.4036e-3,
+        "contact.damping": 5.42652e-5,
+        "friction.coefficient": 0.68562,
+    },
+}
+
+
+def warnings(values: Values) -> list[str]:
+    """Give what the component warns of as it is initialised."""
+    with Instance() as contact:
+        contact.begin(values)
+        return contact.warnings
+
+
+@pytest.mark.parametrize("number", UNSTABLE)
+def test_unstable_slip_is_told(number: int) -> None:
+    values = {"effects.axialForce": "None", **UNSTABLE[number], "effects.friction": "Coulomb", "solver.modes": 24}
+    relay, calmer = Frictional(values), {**values, "friction.coefficient": 0.02}
+    forces = relay.force, 2 * relay.force
+    force, growing = max(((force, relay.growth(force, -1.0)) for force in forces), key=lambda pair: pair[1].real)
+    assert growing.real > 1000
+    (told,) = warnings(values)
+    assert "slip away from the clamp is unstable" in told
+    found = [float(each) for each in re.findall(r"(\S+) (?:N|1/s|Hz)\b", told)]
+    # Three digits.
+    assert found == pytest.approx([force, growing.real, abs(growing.imag) / (2 * pi)], rel=5e-3)
+    # Not towards the clamp, nor with little friction.
+    stable = Frictional(calmer)
+    assert all(relay.growth(force, 1.0).real < 0 for force in forces)
+    assert all(stable.growth(share * stable.force, sign).real < 0 for share in (1, 2) for sign in (-1.0, 1.0))
+    assert warnings(calmer) == []

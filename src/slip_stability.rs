@@ -1,0 +1,100 @@
+//! Whether slip is stable.
+//!
+//! While the contact slips, the friction force is `sigma mu F` (`sigma`: its sign), so that small motions about slip under a
+//! constant contact force are those of
+//!
+//! ```text
+//! q_i'' + c_i q_i' + omega_i^2 q_i + u_i k sum T_j (q_j + beta_c q_j') = 0,  u_i = T_i + sigma mu h T_i'
+//! ```
+//!
+//! with the tangent stiffness `k` of the contact. It couples the modes by a matrix that is not symmetric: two of them can feed
+//! each other from the slip (flutter, heard as squeal), or one alone moves away (divergence). The tangential spring follows
+//! and does not act back.
+
+use nalgebra::linalg::Schur;
+use nalgebra::{Complex, DMatrix, DVector};
+
+use crate::beam::mode::Mode;
+use crate::contact::power::Power;
+use crate::error::Remark;
+use crate::friction::{Friction, Phase};
+use crate::model::Model;
+
+/// Contact forces looked at, in the preload force, 1: at rest, and the largest of a contact shaken until it nearly opens.
+const FORCES: [f64; 2] = [1.0, 2.0];
+
+/// Growth that is mere rounding, in the norm of the matrix, 1.
+const ROUNDING: f64 = 1e-12;
+
+/// Iterations for the eigenvalues, per eigenvalue; two or three are usual. nalgebra's own default has no limit, and matrices
+/// are known with which it never ends (its issues 611 and 764).
+const ITERATIONS: usize = 30;
+
+/// Unstable slip, in each direction in which it is: where it grows fastest.
+pub(crate) fn remarks(model: &Model) -> Vec<Remark> {
+    let (Some(friction), Some(law)) = (model.friction(), model.law.power()) else {
+        return Vec::new();
+    };
+    // Of a contact open at rest the force scale.
+    let usual = if model.preload.force > 0.0 {
+        model.preload.force
+    } else {
+        model.force_scale
+    };
+    let worst = |slip: Phase| {
+        let loads = loads(&model.modes, friction, slip)?;
+        let at = |force: f64| Some((force, fastest(&model.modes, &loads, law, force)?));
+        let found = FORCES.iter().filter_map(|share| at(share * usual));
+        let (force, growing) = found.max_by(|(_, a), (_, b)| a.re.total_cmp(&b.re))?;
+        Some(Remark::UnstableSlip {
+            away: slip == Phase::SlipForth,
+            force,
+            growth: growing.re,
+            frequency: growing.im.abs() / std::f64::consts::TAU,
+            coefficient: friction.coefficient,
+            height: friction.height,
+        })
+    };
+    [Phase::SlipBack, Phase::SlipForth]
+        .into_iter()
+        .filter_map(worst)
+        .collect()
+}
+
+/// The load `u_i` on each mode per contact force, 1/sqrt(kg); `None` if none is against the displacement of its tip. Then slip is
+/// stable: scaled by `sqrt(u_i / T_i)`, all matrices are symmetric and none is negative.
+fn loads(modes: &[Mode], friction: &Friction, slip: Phase) -> Option<DVector<f64>> {
+    let share = slip.sign()? * friction.coefficient;
+    let pairs = modes.iter().zip(&friction.levers);
+    let loads = DVector::from_iterator(modes.len(), pairs.map(|(mode, lever)| mode.tip + share * lever));
+    let against = modes.iter().zip(&loads).any(|(mode, load)| mode.tip * load < 0.0);
+    against.then_some(loads)
+}
+
+/// The eigenvalue (1/s) with which a motion grows fastest at a contact force (N), if one grows.
+fn fastest(modes: &[Mode], loads: &DVector<f64>, law: &Power, force: f64) -> Option<Complex<f64>> {
+    let count = modes.len();
+    let stiffness = law.tangent_stiffness(law.indentation(force));
+    let per_mode = |value: fn(&Mode) -> f64| DVector::from_iterator(count, modes.iter().map(value));
+    let (omega, tip) = (per_mode(|mode| mode.omega_squared.sqrt()), per_mode(|mode| mode.tip));
+    // Of omega_i q_i and q_i', whose squares are energies.
+    let mut matrix = DMatrix::zeros(2 * count, 2 * count);
+    let square = (count, count);
+    matrix.view_mut((0, count), square).set_diagonal(&omega);
+    matrix.view_mut((count, 0), square).set_diagonal(&-&omega);
+    matrix
+        .view_mut(square, square)
+        .set_diagonal(&-per_mode(|mode| mode.damping));
+    let mut held = matrix.view_mut((count, 0), square);
+    held.ger(-stiffness, loads, &tip.component_div(&omega), 1.0);
+    let mut damped = matrix.view_mut(square, square);
+    damped.ger(-stiffness * law.damping, loads, &tip, 1.0);
+    let least = ROUNDING * matrix.norm();
+    if !least.is_finite() {
+        return None;
+    }
+    let schur = Schur::try_new(matrix, f64::EPSILON, ITERATIONS * 2 * count)?;
+    let values = schur.complex_eigenvalues();
+    let growing = values.iter().filter(|value| value.re > least);
+    growing.copied().max_by(|a, b| a.re.total_cmp(&b.re))
+}
