@@ -232,7 +232,12 @@ impl Model {
     /// What a user should know of the scene.
     pub fn remarks(&self) -> Vec<Remark> {
         let mut remarks: Vec<_> = self.bent_far().into_iter().chain(self.friction_at_touch()).collect();
-        remarks.extend(slip_stability::remarks(self));
+        if let (Some(friction), Some(law)) = (self.friction(), self.law.power()) {
+            // Of a contact open at rest the force scale.
+            let at_rest = self.preload.force;
+            let usual = if at_rest > 0.0 { at_rest } else { self.force_scale };
+            remarks.extend(slip_stability::remarks(&self.modes, friction, law, usual));
+        }
         if let Some(spring) = &self.scene.spring {
             remarks.extend(self.remarks_on_file(spring));
         }

@@ -18,7 +18,6 @@ use crate::beam::mode::Mode;
 use crate::contact::power::Power;
 use crate::error::Remark;
 use crate::friction::{Friction, Phase};
-use crate::model::Model;
 
 /// Contact forces looked at, in the preload force, 1: at rest, and the largest of a contact shaken until it nearly opens.
 const FORCES: [f64; 2] = [1.0, 2.0];
@@ -30,20 +29,11 @@ const ROUNDING: f64 = 1e-12;
 /// are known with which it never ends (its issues 611 and 764).
 const ITERATIONS: usize = 30;
 
-/// Unstable slip, in each direction in which it is: where it grows fastest.
-pub(crate) fn remarks(model: &Model) -> Vec<Remark> {
-    let (Some(friction), Some(law)) = (model.friction(), model.law.power()) else {
-        return Vec::new();
-    };
-    // Of a contact open at rest the force scale.
-    let usual = if model.preload.force > 0.0 {
-        model.preload.force
-    } else {
-        model.force_scale
-    };
+/// Unstable slip, in each direction in which it is: where it grows fastest, about the usual contact force (N).
+pub(crate) fn remarks(modes: &[Mode], friction: &Friction, law: &Power, usual: f64) -> Vec<Remark> {
     let worst = |slip: Phase| {
-        let loads = loads(&model.modes, friction, slip)?;
-        let at = |force: f64| Some((force, fastest(&model.modes, &loads, law, force)?));
+        let loads = loads(modes, friction, slip)?;
+        let at = |force: f64| Some((force, fastest(modes, &loads, law, force)?));
         let found = FORCES.iter().filter_map(|share| at(share * usual));
         let (force, growing) = found.max_by(|(_, a), (_, b)| a.re.total_cmp(&b.re))?;
         Some(Remark::UnstableSlip {
