@@ -5,7 +5,7 @@ use crate::electrical::ElectricalContact;
 use crate::error::{SceneError, StepError};
 use crate::inputs::Inputs;
 use crate::integrator::communication_step;
-use crate::integrator::exact_step;
+use crate::integrator::with_contact;
 use crate::integrator::workspace::Workspace;
 use crate::memory;
 use crate::model::Model;
@@ -70,7 +70,7 @@ impl Simulation {
     /// A [`StepError`] if it cannot be computed.
     pub fn state_now(&mut self) -> Result<State, StepError> {
         let mut state = communication_step::state(&self.model, &self.motion, &mut self.workspace)?;
-        exact_step::leave(&self.model, &mut state);
+        with_contact::leave(&self.model, &mut state);
         Ok(state)
     }
 

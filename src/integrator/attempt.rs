@@ -8,7 +8,7 @@ use crate::integrator::collocation::step::Trial;
 use crate::integrator::collocation::trial::trial;
 use crate::integrator::constants::{
     AFTER_BLOW, AFTER_REJECTION, AT_EVENT, DRIVEN, FORCE_ROUNDING, INHERITED, INSIDE, INSIDE_DRIVEN, ITERATIONS,
-    LEAST_SHRINK, MOST_GROWTH, MOST_SHRINK, NEAR_BLOW, NEWTON, NEXT_LENGTH, ROUNDED, SAFETY,
+    LEAST_SHRINK, NEAR_BLOW, NEWTON, NEXT_LENGTH, ROUNDED,
 };
 use crate::integrator::course::{Places, turning_points};
 use crate::integrator::grid::Target;
@@ -288,27 +288,4 @@ impl Integration<'_> {
         self.balance(expected_energy);
         Ok(())
     }
-}
-
-/// Factor on the length after a step of the relative error `ratio`.
-pub(crate) fn growth<const S: usize>(ratio: f64) -> f64 {
-    if ratio < 1e-7 {
-        MOST_GROWTH
-    } else {
-        (SAFETY * step_factor::<S>(ratio)).clamp(MOST_SHRINK, MOST_GROWTH)
-    }
-}
-
-/// Factor on the length after a rejection for the relative error `ratio`; the smallest without an error estimate.
-pub(crate) fn shrinkage<const S: usize>(ratio: f64) -> f64 {
-    if ratio.is_finite() {
-        (AFTER_REJECTION * step_factor::<S>(ratio)).clamp(LEAST_SHRINK, MOST_SHRINK)
-    } else {
-        LEAST_SHRINK
-    }
-}
-
-/// Factor to the step size at which the relative error `ratio` becomes 1: the error estimate is of order `S + 1`.
-fn step_factor<const S: usize>(ratio: f64) -> f64 {
-    ratio.powf(-1.0 / (S as f64 + 1.0))
 }

@@ -5,7 +5,6 @@
 //! are polynomials through the nodes; between the places where they turn they are monotone, so that nothing is missed.
 
 use crate::friction::{Friction, Phase};
-use crate::integrator::attempt::growth;
 use crate::integrator::collocation::error::sum_rounding;
 use crate::integrator::collocation::part::Instant;
 use crate::integrator::collocation::polynomial::Collocation;
@@ -15,6 +14,7 @@ use crate::integrator::course::turning_points;
 use crate::integrator::events::{Cut, motion_rounding};
 use crate::integrator::grid::Target;
 use crate::integrator::integration::Integration;
+use crate::integrator::step_length::growth;
 use crate::integrator::workspace::{Room, Workspace};
 use crate::math::nodal::{Nodal, add_columns, dot, end, scaled};
 use crate::math::prediction::value_and_slope;

@@ -1,7 +1,7 @@
 //! Friction at a communication point, and its time derivatives.
 
 use crate::friction::Phase;
-use crate::integrator::integration::DenseFriction;
+use crate::integrator::dense_output::DenseFriction;
 use crate::integrator::motion::Motion;
 use crate::math::prediction::value_and_slope;
 use crate::model::Model;

@@ -4,14 +4,12 @@ use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::constants::STEP_GROWTH;
-use crate::integrator::course::Places;
+use crate::integrator::dense_output::DenseOutput;
 use crate::integrator::extremes::Extremes;
 use crate::integrator::grid::{Grid, Target};
 use crate::integrator::workspace::{Budget, Room, Workspace};
-use crate::math::prediction::Prediction;
 use crate::model::Model;
 use crate::state::State;
-use serde::{Deserialize, Serialize};
 
 /// An integration in progress.
 pub(crate) struct Integration<'a> {
@@ -42,32 +40,6 @@ pub(crate) struct Integration<'a> {
     pub(crate) driven: bool,
     /// Whether the energy changes only by the work of the drive ([`crate::integrator::energy::conservation`]).
     pub(crate) conserves: bool,
-}
-
-/// Dense output of a step: polynomials of the tip. Deviations from the preload.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct DenseOutput {
-    /// Contact force, N.
-    pub force: Prediction,
-    /// Indentation, m.
-    pub indentation: Prediction,
-    /// Its velocity, m/s.
-    pub rate: Prediction,
-    /// Where the contact force turns, for its extremes.
-    pub turns: Places,
-    /// Where it passes that of an interruption.
-    pub passages: Places,
-    /// Friction.
-    pub friction: DenseFriction,
-}
-
-/// Dense output of friction.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct DenseFriction {
-    /// Slip, m.
-    pub slip: Prediction,
-    /// Energy dissipated so far, J.
-    pub dissipated: Prediction,
 }
 
 /// How far to advance.

@@ -10,10 +10,10 @@ use crate::beam::mode::{MAX_MODES, Modal};
 use crate::chatter::Interruptions;
 use crate::excitation::drive::Drive;
 use crate::integrator::course::turning_points_between;
+use crate::integrator::dense_output::{DenseFriction, DenseOutput};
 use crate::integrator::events::log::Event;
-use crate::integrator::exact_step;
 use crate::integrator::extremes::Extremes;
-use crate::integrator::integration::{DenseFriction, DenseOutput};
+use crate::integrator::with_contact;
 use crate::math::prediction::value_and_slope;
 use crate::model::Model;
 use crate::state::State;
@@ -221,7 +221,7 @@ impl Motion {
         let base = self.drive.acceleration(self.time) + model.generator.acceleration_before(self.time);
         let base = if state.mirrored { -base } else { base };
         let force = state.force - model.preload.force;
-        let modes = exact_step::modes(model, state);
+        let modes = with_contact::modes(model, state);
         let axial = match (model.axial(), model.friction()) {
             (Some(axial), _) => axial.loads(&model.modes, &modes),
             (None, Some(friction)) => {

@@ -3,7 +3,6 @@
 use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
 use crate::friction::Phase;
-use crate::integrator::attempt::{growth, shrinkage};
 use crate::integrator::collocation::step::Trial;
 use crate::integrator::constants::{
     AFTER_REJECTION, AGAIN, COARSEST, GROWING, LEAST_SHRINK, LONGER, LOOSEST, MOST_SHRINK, REFUSALS, SAFETY, SHARE,
@@ -16,6 +15,8 @@ use crate::integrator::extremes::Extremes;
 use crate::integrator::grid::{Grid, Target};
 use crate::integrator::integration::{Integration, StepOutcome, Steps};
 use crate::integrator::rest::rests_until;
+use crate::integrator::step_length::{growth, shrinkage};
+use crate::integrator::with_contact;
 use crate::integrator::workspace::{Budget, Room, Workspace};
 use crate::math::nodal::{LONG, SHORT};
 use crate::model::Model;
@@ -63,7 +64,7 @@ pub(crate) fn advance(
             (Grid::free(state.time, size), Some((until, dense)), false)
         }
     };
-    exact_step::leave(model, state);
+    with_contact::leave(model, state);
     let conserves = conserves(model, &drive);
     Integration {
         model,

@@ -10,19 +10,16 @@
 //! shorter steps.
 
 use crate::beam::axial::Feedback;
-use crate::beam::mode::{MAX_MODES, Modal};
+use crate::beam::mode::Modal;
 use crate::integrator::collocation::coefficients::{ErrorColumn, ModeColumns, StepCoefficients};
+use crate::integrator::collocation::end::{End, NodalModes};
 use crate::integrator::collocation::newton::{FreeResponse, Solution, Source, closed_forces, first_forces};
 use crate::integrator::collocation::polynomial::Collocation;
-use crate::integrator::collocation::step::End;
 use crate::integrator::constants::{FORCE_ROUNDING, ROUNDS};
 use crate::math::nodal::{Nodal, add, add_columns, dot};
 use crate::math::simd::{Arithmetic, LANES};
 use crate::model::Model;
 use crate::state::State;
-
-/// A value at each node for each mode.
-pub(crate) type NodalModes<const S: usize> = [Nodal<S>; MAX_MODES];
 
 /// Iterates contact forces and the loads of `end`: returns the former, and the effect on the indentation of the defects of base
 /// acceleration and loads at the start; `None` if they do not converge.

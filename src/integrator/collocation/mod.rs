@@ -3,6 +3,7 @@
 pub mod axial_force;
 pub mod coefficients;
 pub(crate) mod elimination;
+pub mod end;
 pub mod error;
 pub mod friction;
 pub mod modal_response;

@@ -5,11 +5,11 @@ use std::array;
 
 use crate::beam::mode::{Mode, ModeState, ModeStates};
 use crate::excitation::drive::Drive;
-use crate::integrator::collocation::axial_force::NodalModes;
+use crate::integrator::collocation::end::{End, NodalModes};
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::{Load, Shapes};
 use crate::integrator::collocation::side_by_side::Loads;
-use crate::integrator::collocation::step::{End, Trial};
+use crate::integrator::collocation::step::Trial;
 use crate::integrator::collocation::tangential::TangentialNodes;
 use crate::math::nodal::{Nodal, dot};
 use crate::math::prediction::value_and_slope;

@@ -1,19 +1,17 @@
 //! A trial step: the nodal contact forces ([`crate::integrator::collocation::newton`]), the motion they cause, and its
 //! error ([`crate::integrator::collocation::error`]).
 
-use bytemuck::Zeroable;
-
 use crate::beam::axial::Feedback;
 use crate::beam::mode::{Modal, ModeStates};
 use crate::excitation::drive::Drive;
-use crate::integrator::collocation::axial_force::{self, NodalModes};
+use crate::integrator::collocation::axial_force;
 use crate::integrator::collocation::coefficients::{EndRows, Prepared, StepCoefficients};
+use crate::integrator::collocation::end::End;
 use crate::integrator::collocation::error::{Estimate, errors};
 use crate::integrator::collocation::newton::{
     FreeResponse, Solution, Source, Tangent, at_nodes, closed_forces, first_forces,
 };
 use crate::integrator::collocation::polynomial::Collocation;
-use crate::integrator::collocation::tangential::TangentialNodes;
 use crate::integrator::constants::{FORCE_ROUNDING, QUADRATURE_LONG, QUADRATURE_SHORT};
 use crate::math::nodal::{Nodal, SHORT, add, add_columns, add_products, dot, end};
 use crate::math::simd::{Arithmetic, LANES};
@@ -54,21 +52,6 @@ pub struct Trial<const S: usize> {
     pub iterations: u64,
     /// Tangent of the contact law.
     pub tangent: Tangent,
-}
-
-/// What a trial leaves for the step that is taken.
-#[derive(Clone, Debug, Zeroable)]
-pub struct End<const S: usize> {
-    /// The modes at its end.
-    pub modes: ModeStates,
-    /// Loads of an axial force that follows the deflection, at its nodes.
-    pub loads: NodalModes<S>,
-    /// The modes at its nodes, while such loads are sought.
-    pub(super) motion: NodalModes<S>,
-    /// The loads of that motion.
-    pub(super) next: NodalModes<S>,
-    /// Friction at its nodes.
-    pub tangential: TangentialNodes<S>,
 }
 
 impl<const S: usize> Trial<S> {

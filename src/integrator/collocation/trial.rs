@@ -2,9 +2,10 @@
 
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::coefficients::Prepared;
+use crate::integrator::collocation::end::End;
 use crate::integrator::collocation::friction;
 use crate::integrator::collocation::newton::Source;
-use crate::integrator::collocation::step::{self, End, Trial};
+use crate::integrator::collocation::step::{self, Trial};
 use crate::math::simd::compiled_for;
 use crate::model::Model;
 use crate::state::State;
