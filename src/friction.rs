@@ -114,8 +114,8 @@ pub struct Tangential {
     /// Length of the first step after slip has begun, and after it has ended, s: as long as the last of them that was taken;
     /// 0: none was.
     pub first_steps: [f64; 2],
-    /// Time of the last change between stick and slip, s; -1: none.
-    pub last_change: f64,
+    /// Time of the last change between stick and slip, s; `None`: none.
+    pub last_change: Option<f64>,
 }
 
 impl Tangential {
@@ -142,9 +142,9 @@ impl Tangential {
             distance,
             dissipated,
             first_steps,
-            last_change,
+            last_change: _,
         } = self;
-        [displacement, rate, slip, force, distance, dissipated, last_change]
+        [displacement, rate, slip, force, distance, dissipated]
             .into_iter()
             .chain(course)
             .all(|number| number.is_finite())

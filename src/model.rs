@@ -371,8 +371,8 @@ impl Model {
             force: self.preload.force,
             tangential: self.initial_friction(),
             closed: self.preload.force > 0.0,
-            last_opening: -1.0,
-            last_closing: -1.0,
+            last_opening: None,
+            last_closing: None,
             last_kink: time,
             short_step: self.first_step(time),
             long_step: self.first_step(time),
@@ -383,8 +383,8 @@ impl Model {
             energy_balance: 0.0,
             interruptions,
             other: Record {
-                last_opening: -1.0,
-                last_closing: -1.0,
+                last_opening: None,
+                last_closing: None,
                 interruptions: of_second,
             },
             force_error: ForceError::default(),
@@ -403,7 +403,6 @@ impl Model {
         Tangential {
             force,
             slip: if stiffness > 0.0 { force / stiffness } else { 0.0 },
-            last_change: -1.0,
             ..Tangential::default()
         }
     }

@@ -187,8 +187,8 @@ impl Simulation {
             RealOutput::SecondForce => tip().forces[1],
             RealOutput::SecondConductance => second_conductance().unwrap_or_default(),
             RealOutput::SecondResistance => second_conductance().map_or(0.0, |conductance| 1.0 / conductance),
-            RealOutput::SecondLastOpening => state.record(true).last_opening,
-            RealOutput::SecondLastClosing => state.record(true).last_closing,
+            RealOutput::SecondLastOpening => or_not_yet(state.record(true).last_opening),
+            RealOutput::SecondLastClosing => or_not_yet(state.record(true).last_closing),
             RealOutput::SecondMinimumForce => of_second().map_or(0.0, |extremes| extremes.second.least),
             RealOutput::SecondMaximumForce => of_second().map_or(0.0, |extremes| extremes.second.greatest),
             RealOutput::ChatterLongestFalseMake => self.makes(false).longest,
@@ -202,8 +202,8 @@ impl Simulation {
             RealOutput::ContactIndentation => model.preload.indentation + tip().indentation,
             RealOutput::TipDisplacement => model.preload.deflection + motion.support().0 - tip().indentation,
             RealOutput::TipVelocity => motion.support().1 - tip().rate,
-            RealOutput::ContactLastOpening => state.record(false).last_opening,
-            RealOutput::ContactLastClosing => state.record(false).last_closing,
+            RealOutput::ContactLastOpening => or_not_yet(state.record(false).last_opening),
+            RealOutput::ContactLastClosing => or_not_yet(state.record(false).last_closing),
             RealOutput::ContactTangentialForce => motion.friction().force,
             RealOutput::ContactSlip => motion.friction().slip,
             RealOutput::ContactSlipDistance => motion.friction().distance,
@@ -220,7 +220,7 @@ impl Simulation {
     pub fn force_error(&self) -> f64 {
         let Self { model, motion, .. } = self;
         let state = motion.state();
-        let by_modes = if state.last_closing >= 0.0 {
+        let by_modes = if state.last_closing.is_some() {
             model.missed_by_modes
         } else {
             0.0
@@ -377,4 +377,8 @@ fn on_heap(scene: &Scene, support: f64) -> Result<Box<Model>, SceneError> {
     } else {
         Err(SceneError::Memory(needed))
     }
+}
+/// The instant of an event (s) as outputs have it: -1 for one that has not been yet.
+fn or_not_yet(event: Option<f64>) -> f64 {
+    event.unwrap_or(-1.0)
 }

@@ -40,10 +40,10 @@ pub struct State {
     pub tangential: Tangential,
     /// Whether the contact force is positive.
     pub closed: bool,
-    /// Time at which the force last reached zero, s; -1: not yet.
-    pub last_opening: f64,
-    /// Time at which the force last left zero, s; -1: not yet.
-    pub last_closing: f64,
+    /// Time at which the force last reached zero, s; `None`: not yet.
+    pub last_opening: Option<f64>,
+    /// Time at which the force last left zero, s; `None`: not yet.
+    pub last_closing: Option<f64>,
     /// Time at which the force last left zero or jumped, s: just after it, it varies as a root of time.
     pub last_kink: f64,
     /// Longest step with few nodes that the error estimate allows, s.
@@ -78,9 +78,9 @@ pub struct State {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Record {
     /// As [`State::last_opening`].
-    pub last_opening: f64,
+    pub last_opening: Option<f64>,
     /// As [`State::last_closing`].
-    pub last_closing: f64,
+    pub last_closing: Option<f64>,
     /// As [`State::interruptions`].
     pub interruptions: Interruptions,
 }
@@ -155,10 +155,6 @@ impl State {
             indentation,
             indentation_rate,
             force,
-            last_opening,
-            last_closing,
-            &other.last_opening,
-            &other.last_closing,
             last_kink,
             short_step,
             long_step,
@@ -182,9 +178,21 @@ impl State {
                 last_closing,
                 &other.last_opening,
                 &other.last_closing,
-                last_kink,
+                &tangential.last_change,
+                &Some(*last_kink),
             ]
-            .iter()
-            .all(|event| **event <= time.max(-1.0))
+            .into_iter()
+            .flatten()
+            .all(|event| event.is_finite() && event <= time)
+    }
+
+    /// Whether the contact has opened or closed.
+    pub(crate) fn has_switched(&self) -> bool {
+        self.last_opening.is_some() || self.last_closing.is_some()
+    }
+
+    /// Whether the last kink of the force is the last closing.
+    pub(crate) fn bent_by_closing(&self) -> bool {
+        self.last_closing == Some(self.last_kink)
     }
 }

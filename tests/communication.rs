@@ -6,8 +6,8 @@ use relay_contact::error::StepErrorCause;
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::{Event, Simulation};
-use relay_contact::variables::{BooleanOutput, IntegerOutput, RealOutput};
-use testing::scenes::{self, at_rest};
+use relay_contact::variables::{BooleanOutput, ContactLawKind, IntegerOutput, RealOutput};
+use testing::scenes::{self, at_rest, force_scale, largest_difference};
 
 fn shaken(amplitude: f64, tolerance: f64) -> Scene {
     let mut scene = scenes::shaken(amplitude, 1000.0);
@@ -126,6 +126,62 @@ fn a_time_too_coarse_for_the_motion_is_refused() {
         } else {
             assert_eq!(stepped, Ok(()), "{start} s");
         }
+    }
+}
+
+/// Exact steps too, which need no steps in between.
+#[test]
+fn a_linear_motion_whose_time_is_too_coarse_is_refused_and_stays_as_it_was() {
+    let mut scene = scenes::shaken(9.8, 1000.0);
+    scene.effects.contact_law = ContactLawKind::Linearised;
+    scene.effects.extremes = false;
+    scene.effects.chatter = false;
+    for (start, size) in [(1e12, 1e-3), (1e13, 1e-2), (1e15, 1e-3), (1e15, 1.0)] {
+        let mut simulation = Simulation::new(&scene, &Inputs::default(), start).unwrap();
+        let before = *simulation.motion();
+        let stepped = simulation
+            .step(&Inputs::default(), start, size)
+            .map_err(|error| error.cause);
+        assert!(
+            matches!(stepped, Err(StepErrorCause::Resolution { .. })),
+            "{start} s: {stepped:?}"
+        );
+        assert_eq!(*simulation.motion(), before);
+    }
+}
+
+/// Steps that are sums of powers of two, so that times are exact.
+#[test]
+fn a_simulation_may_start_before_one_second_before_zero() {
+    let size = (-14.0_f64).exp2();
+    let run = |start: f64| {
+        let scene = Scene::default();
+        let mut simulation = Simulation::new(&scene, &Inputs::default(), start).unwrap();
+        let mut forces = Vec::new();
+        for k in 0..64 {
+            let inputs = Inputs {
+                base_acceleration: if k % 16 < 8 { -600.0 } else { 200.0 },
+                ..Inputs::default()
+            };
+            simulation.step(&inputs, start + f64::from(k) * size, size).unwrap();
+            forces.push(simulation.real(RealOutput::ContactForce));
+        }
+        assert!(simulation.motion().is_sound());
+        let events = [RealOutput::ContactLastOpening, RealOutput::ContactLastClosing];
+        (forces, events.map(|event| simulation.real(event) - start))
+    };
+    let (expected, expected_events) = run(0.0);
+    assert!(
+        expected_events.iter().all(|event| *event > 0.0),
+        "it does not open and close"
+    );
+    // Both are within the tolerance, which is relative to the largest force too.
+    let largest = expected.iter().copied().fold(force_scale(&Scene::default()), f64::max);
+    let allowed = 2.0 * Scene::default().solver.effective_tolerance() * largest;
+    for start in [-1.0, -2.0, -4.0] {
+        let (forces, events) = run(start);
+        assert!(largest_difference(&forces, &expected) < allowed, "{start} s");
+        assert!(largest_difference(&events, &expected_events) < 1e-9, "{start} s");
     }
 }
 

@@ -169,7 +169,7 @@ fn accumulating() -> Result<Vec<Check>> {
         ..Inputs::default()
     };
     coarse.run_to(&inputs, 0.05)?;
-    let (mut closings, mut last) = (0, -1.0);
+    let (mut closings, mut last) = (0, None);
     for point in 1..=50_000 {
         fine.run_to(&inputs, 1e-6 * f64::from(point))?;
         ensure!(fine.state.force >= 0.0 && fine.state.indentation.is_finite());

@@ -65,7 +65,7 @@ fn contact_cycles(cycles: u32, tolerance: f64, step: f64) -> Result<Vec<Check>> 
     let mut rig = Rig::new(Model::new(&scene, 0.0)?);
     throw(&mut rig, 0.1);
     let start = rig.energy();
-    let (mut closings, mut last, mut off, mut point) = (0, -1.0, 0.0, 0_u32);
+    let (mut closings, mut last, mut off, mut point) = (0, None, 0.0, 0_u32);
     while closings < cycles {
         point += 1;
         rig.run_to(&Inputs::default(), f64::from(point) * step)?;

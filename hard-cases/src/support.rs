@@ -1,6 +1,6 @@
 //! A fixed contact that moves.
 
-use anyhow::{Result, ensure};
+use anyhow::{Context as _, Result, ensure};
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
@@ -32,8 +32,7 @@ cases! { CASES:
 
 fn touch_at_the_start() -> Result<Vec<Check>> {
     let ride = Ride::new(with_overtravel(0.0), [Segment::moved(1e-3, 1e-4)]);
-    let closing = ride.run(1)?.rig.state.last_closing;
-    ensure!(closing >= 0.0, "no closing reported");
+    let closing = ride.run(1)?.rig.state.last_closing.context("no closing reported")?;
     let mut checks = ride.checks()?;
     let reason = "accuracy guaranteed for event times";
     checks.push(Check::new(

@@ -61,10 +61,9 @@ impl Integration<'_> {
             time,
             closed,
             last_kink,
-            last_closing,
             ..
         } = *self.state;
-        let near = closed && last_kink == last_closing && time - last_kink < NEAR_BLOW * target.length;
+        let near = closed && self.state.bent_by_closing() && time - last_kink < NEAR_BLOW * target.length;
         if near { AFTER_BLOW } else { 1.0 }
     }
 

@@ -77,13 +77,7 @@ fn step_by<const EXTREMES: bool>(
     let mut extremes = EXTREMES.then(|| motion.extremes_now(model));
     let own_step = motion.end.short_step.max(motion.end.long_step);
     // Where the contact opens and closes, or slips and sticks, step ends would not lie on the grid of an exact step.
-    let State {
-        last_opening,
-        last_closing,
-        tangential,
-        ..
-    } = &motion.end;
-    let switches = last_opening.max(*last_closing).max(tangential.last_change) >= 0.0;
+    let switches = motion.end.has_switched() || motion.end.tangential.last_change.is_some();
     // One length decides which way to go: two that differ by rounding could choose none of the ways that fit.
     let remaining = until - motion.end.time;
     let many = remaining >= MANY_STEPS * own_step;

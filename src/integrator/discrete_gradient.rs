@@ -118,7 +118,7 @@ mod tests {
     /// Takes steps with a constant force alone; energies after each, and how often the contact closed.
     fn energies(model: &Model, state: &mut State, step: f64, count: u32) -> (Vec<f64>, u32) {
         let mut workspace = Workspace::new(model);
-        let (mut closings, mut last) = (0, -1.0);
+        let (mut closings, mut last) = (0, None);
         let energies = (0..count).map(|k| {
             let mut integration = Integration {
                 model,

@@ -194,7 +194,7 @@ impl Integration<'_> {
         state.tangential.phase = phase;
         state.tangential.force = model.friction_force(state);
         state.last_kink = state.time;
-        state.tangential.last_change = state.time;
+        state.tangential.last_change = Some(state.time);
         let first = *state.tangential.first_step();
         let length = if first > 0.0 {
             first
@@ -207,7 +207,7 @@ impl Integration<'_> {
 
     /// Whether the contact begins or ceases to slip at the start of the next step.
     pub(crate) fn changes_now(&self) -> bool {
-        self.model.friction().is_some() && self.state.tangential.last_change == self.state.time
+        self.model.friction().is_some() && self.state.tangential.last_change == Some(self.state.time)
     }
 
     /// Keeps the length (s) of a step about to be taken, if it is the first one after a change, with the factor that its error

@@ -102,6 +102,11 @@ impl StepOutcome {
     }
 }
 
+/// Rounding of time from `start` over `size` (s): spacing of floating-point numbers, s.
+pub(crate) fn resolution(start: f64, size: f64) -> f64 {
+    f64::EPSILON * (start.abs() + size)
+}
+
 impl Integration<'_> {
     pub(crate) fn error(&self, cause: StepErrorCause) -> StepError {
         StepError {
@@ -120,9 +125,9 @@ impl Integration<'_> {
         8.0 * self.resolution()
     }
 
-    /// Rounding of time: spacing of floating-point numbers, s.
+    /// Rounding of time in the communication step, s.
     pub(crate) fn resolution(&self) -> f64 {
-        f64::EPSILON * (self.grid.start.abs() + self.grid.size)
+        resolution(self.grid.start, self.grid.size)
     }
 
     /// The polynomials of the steps.

@@ -13,7 +13,7 @@ use crate::integrator::events::Cut;
 use crate::integrator::exact_step;
 use crate::integrator::extremes::Extremes;
 use crate::integrator::grid::{Grid, Target};
-use crate::integrator::integration::{Integration, StepOutcome, Steps};
+use crate::integrator::integration::{Integration, StepOutcome, Steps, resolution};
 use crate::integrator::rest::rests_until;
 use crate::integrator::step_length::{growth, shrinkage};
 use crate::integrator::with_contact;
@@ -45,7 +45,11 @@ pub(crate) fn advance(
             exact_step::leave_before_rest(model, state, &drive, tolerance);
             state.time = rests_until(model, state, &drive, tolerance, time + size).unwrap_or(time);
             let remaining = size - (state.time - time);
-            if remaining <= 0.0 || exact_step::step_exactly(model, state, workspace, &drive, remaining) {
+            if remaining <= 0.0 {
+                return Ok(());
+            }
+            check_spacing(model, state.time, remaining)?;
+            if exact_step::step_exactly(model, state, workspace, &drive, remaining) {
                 return Ok(());
             }
             let grid = Grid {
@@ -53,14 +57,15 @@ pub(crate) fn advance(
                 ..Grid::over(state.time, remaining)
             };
             // A blow would make more of an error than it is here.
-            let never_opened = state.closed && state.last_opening.max(state.last_closing) < 0.0;
+            let never_opened = state.closed && !state.has_switched();
             (grid, None, news.inputs && never_opened)
         }
         Steps::Own { until, dense } => {
+            let size = state.short_step.max(state.long_step);
+            check_spacing(model, state.time, size)?;
             if exact_step::step_ahead(model, state, workspace, &drive, (until, &mut *dense)) {
                 return Ok(());
             }
-            let size = state.short_step.max(state.long_step);
             (Grid::free(state.time, size), Some((until, dense)), false)
         }
     };
@@ -88,13 +93,20 @@ pub(crate) fn advance(
     .run()
 }
 
+/// Checks that floating-point numbers of time lie close enough for the motion from `time` (s) over `size` (s).
+///
+/// # Errors
+/// [`StepErrorCause::Resolution`] if they do not.
+fn check_spacing(model: &Model, time: f64, size: f64) -> Result<(), StepError> {
+    let allowed = COARSEST * model.first_step(time);
+    let spacing = resolution(time, size);
+    let cause = StepErrorCause::Resolution { spacing, allowed };
+    let fits = spacing <= allowed;
+    fits.then_some(()).ok_or(StepError { time, cause })
+}
+
 impl Integration<'_> {
     fn run(&mut self) -> Result<(), StepError> {
-        let allowed = COARSEST * self.model.first_step(self.state.time);
-        let spacing = self.resolution();
-        if spacing > allowed {
-            return Err(self.error(StepErrorCause::Resolution { spacing, allowed }));
-        }
         if self.drive.support_rate.abs() > SPEED_OF_LIGHT {
             return Err(self.error(StepErrorCause::Speed(self.drive.support_rate)));
         }
@@ -137,12 +149,10 @@ impl Integration<'_> {
         // Just after an impact the force is not smooth enough for polynomials of high degree; in flight it is known.
         let long_step = if !closed {
             self.state.flight_step
-        } else if self.state.last_closing < 0.0 {
-            self.state.long_step
+        } else if let Some(closing) = self.state.last_closing {
+            self.state.long_step.min(SMOOTH * (self.state.time - closing))
         } else {
-            self.state
-                .long_step
-                .min(SMOOTH * (self.state.time - self.state.last_closing))
+            self.state.long_step
         };
         if remaining <= short_step || closed && long_step < WORTH * short_step {
             let outcome = self.advance_with::<SHORT>(short_step)?;
@@ -156,7 +166,7 @@ impl Integration<'_> {
             let outcome = self.advance_with::<LONG>(long_step)?;
             if closed {
                 self.state.long_step = outcome.length;
-                if !outcome.taken && self.state.last_closing >= 0.0 {
+                if !outcome.taken && self.state.last_closing.is_some() {
                     // Nor would a short one reach as far.
                     self.state.short_step = short_step.min(outcome.length / WORTH);
                 }
@@ -213,7 +223,9 @@ impl Integration<'_> {
             growth::<S>(ratio) * self.leaving_kink(target.length)
         };
         // Within rounding of time after a closing, rounding alone opens it again or makes it slip.
-        let has_just_closed = (0.0..=self.shortest()).contains(&(target.time - self.state.last_closing));
+        let just = 0.0..=self.shortest();
+        let closing = self.state.last_closing;
+        let has_just_closed = closing.is_some_and(|closing| just.contains(&(target.time - closing)));
         let (change, opens) = if self.state.closed && !has_just_closed {
             (self.slip_change(&trial, target.length), self.first_open(&trial))
         } else {
@@ -285,14 +297,9 @@ impl Integration<'_> {
     /// Factor by which the next step may be longer for its distance from the last closing, or from where slip last began or
     /// ended, alone: the force there is smooth in the logarithm of the time since.
     fn leaving_kink(&self, length: f64) -> f64 {
-        let State {
-            time,
-            last_kink,
-            last_closing,
-            ..
-        } = *self.state;
+        let State { time, last_kink, .. } = *self.state;
         let elapsed = time - last_kink;
-        let bends = last_kink == last_closing || last_kink == self.state.tangential.last_change;
+        let bends = self.state.bent_by_closing() || self.state.tangential.last_change == Some(last_kink);
         if self.changes_now() {
             STEP_GROWTH
         } else if bends && elapsed > 0.0 {

@@ -28,9 +28,9 @@ fn greatest_force_and_duration() {
             rig.run_to(&rest, touch + 2.0 * duration).unwrap();
             let shift = 0.5 * allowed * duration * duration / (mass * speed);
             let rounding = 1e-10 * duration + 1e-14 * touch;
-            digits(rig.state.last_closing, touch, 0.0, rounding);
+            digits(rig.state.last_closing.unwrap(), touch, 0.0, rounding);
             digits(
-                rig.state.last_opening - rig.state.last_closing,
+                rig.state.last_opening.unwrap() - rig.state.last_closing.unwrap(),
                 duration,
                 0.0,
                 shift + rounding,
@@ -48,5 +48,10 @@ fn digits_of_the_unit_problem() {
     rig.run_to(&Inputs::default(), 1.0 + 0.5 * 3.218_065_5).unwrap();
     digits(rig.state.force, 1.143_262_6, 1e-7, 1e-10);
     rig.run_to(&Inputs::default(), 5.0).unwrap();
-    digits(rig.state.last_opening - rig.state.last_closing, 3.218_065_5, 1e-7, 0.0);
+    digits(
+        rig.state.last_opening.unwrap() - rig.state.last_closing.unwrap(),
+        3.218_065_5,
+        1e-7,
+        0.0,
+    );
 }

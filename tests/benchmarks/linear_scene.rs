@@ -384,7 +384,7 @@ fn linearised_that_opens_is_left_to_the_collocation() {
         assert!(difference <= allowed, "step {k}: {difference:e}");
         assert!(mixed.state.force >= 0.0);
     }
-    assert!(mixed.state.last_opening > 0.0, "the contact never opened");
+    assert!(mixed.state.last_opening > Some(0.0), "the contact never opened");
 }
 
 /// A generator that starts inside a communication step: one exact step from there on, as the contact rests before.

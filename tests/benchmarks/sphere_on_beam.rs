@@ -46,5 +46,10 @@ fn greatest_force_its_instant_and_the_duration() {
     digits(greatest, 4.9777, 1e-4, 1e-9 * 5.0);
     // Sampled every 50 ns.
     digits(instant, 72.55e-6, 1e-8, 2.5e-8);
-    digits(rig.state.last_opening - rig.state.last_closing, 156.39e-6, 1e-8, 0.0);
+    digits(
+        rig.state.last_opening.unwrap() - rig.state.last_closing.unwrap(),
+        156.39e-6,
+        1e-8,
+        0.0,
+    );
 }

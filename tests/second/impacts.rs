@@ -225,7 +225,7 @@ fn energy_is_kept_over(impacts: u32) {
         beam + stored(first, scene.contact.overtravel - tip) + stored(second, tip - scene.second.gap)
     };
     let start = energy(&rig);
-    let (mut closings, mut last, mut point, mut off) = ([0, 0], [-1.0; 2], 0_u32, 0.0_f64);
+    let (mut closings, mut last, mut point, mut off) = ([0, 0], [None; 2], 0_u32, 0.0_f64);
     while closings[0] + closings[1] < impacts {
         point += 1;
         rig.run_to(&Inputs::default(), 1e-5 * f64::from(point)).unwrap();

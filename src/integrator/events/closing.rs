@@ -104,7 +104,7 @@ impl Integration<'_> {
 
     /// Whether the flight begins here.
     fn released(&self) -> bool {
-        self.state.last_opening == self.state.time
+        self.state.last_opening == Some(self.state.time)
     }
 
     /// Whether oscillations faster than the interval between two samples are negligible.

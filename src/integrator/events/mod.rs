@@ -217,10 +217,10 @@ impl Integration<'_> {
         self.state.last_step = 0.0;
         self.state.short_step = if closed {
             self.state.last_kink = self.state.time;
-            self.state.last_closing = self.state.time;
+            self.state.last_closing = Some(self.state.time);
             self.first_closed_step()
         } else {
-            self.state.last_opening = self.state.time;
+            self.state.last_opening = Some(self.state.time);
             self.step_after_jump()
         };
         self.model.settle_friction(self.state);

@@ -121,7 +121,7 @@ fn predicted_loads<const S: usize, A: Arithmetic>(
     length: f64,
     collocation: &Collocation<S>,
 ) -> Nodal<S> {
-    if state.last_step > 0.0 && state.tangential.last_change != state.time {
+    if state.last_step > 0.0 && state.tangential.last_change != Some(state.time) {
         collocation.guess::<A>(&state.tangential.course, length / state.last_step)
     } else {
         [state.tangential.force; S]
