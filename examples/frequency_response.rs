@@ -82,7 +82,7 @@ fn settle(acceleration: f64, frequency: f64, from: Option<&State>) -> Result<Per
         let changed = (least - last.0).abs().max((most - last.1).abs());
         if changed < PERIODIC * preload {
             let end = contact.state_now()?;
-            let opens = end.last_opening > Some(end.time - 1.0 / frequency);
+            let opens = end.contact().last_opening > Some(end.time - 1.0 / frequency);
             return Ok(Period {
                 least,
                 most,

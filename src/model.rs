@@ -3,12 +3,13 @@
 use std::ops::Range;
 
 use crate::beam::axial::Feedback;
-use crate::beam::mode::{MAX_MODES, Mode, ModeState, ModeStates};
+use crate::beam::mode::{MAX_MODES, Modal, Mode, ModeState, ModeStates};
 use crate::beam::mode_count::Blow;
 use crate::beam::section::Section;
 use crate::beam::spring::{Basis, Spring};
-use crate::chatter::{Criterion, Interruptions};
+use crate::chatter::Criterion;
 use crate::closed_loop::system::ClosedLoop;
+use crate::contact::friction::{self, Friction, Slip};
 use crate::contact::law::Law;
 use crate::contact::linear::Linear;
 use crate::contact::power::Power;
@@ -16,14 +17,15 @@ use crate::electrical::ElectricalContact;
 use crate::error::{Remark, SceneError};
 use crate::excitation::generator::Generator;
 use crate::force_error::ForceError;
-use crate::friction::{self, Friction, Tangential, rubs};
-use crate::math::prediction::Prediction;
+use crate::integrator::step_length::StepLengths;
+use crate::integrator::tolerance::Tolerance;
+use crate::link::{CONTACT, INPUTS, Link, LinkLaw, MAX_LINKS, Port};
 use crate::math::simd::Simd;
 use crate::preload::Preload;
 use crate::scene::Scene;
 use crate::scene::spring::SpringFile;
 use crate::slip_stability;
-use crate::state::{Record, State};
+use crate::state::{LinkState, State};
 use crate::variables::{AxialForceKind, ContactLawKind, RealParameter};
 
 /// Deflection at the preload, in lengths of the spring, above which the user is told what a linear beam misses, 1.
@@ -40,23 +42,20 @@ pub struct Model {
     pub(crate) scene: Scene,
     /// The uniform section of the spring, or that of a spring as stiff at its contact.
     pub(crate) section: Section,
-    /// The contact.
-    pub(crate) law: Law,
-    /// As hard and as damped as the harder and the more damped of two contacts; else the same.
-    pub(crate) hardest: Law,
-    /// The same scene in the view of the second contact, where there is one: its mirror image
-    /// ([`State::mirror`]).
-    pub(crate) second: Option<Box<Self>>,
-    /// Whether this is that view.
-    pub(crate) mirrored: bool,
+    /// The law of the first contact.
+    law: Law,
+    /// Where forces act on the modes.
+    pub(crate) ports: Vec<Port>,
+    /// The laws of these forces: the contact, then the second contact and friction, where there are such.
+    pub(crate) links: Vec<Link>,
+    /// Load on each mode per base acceleration, with opposite sign.
+    pub(crate) participations: Modal,
     /// The static equilibrium, the reference of the motion.
     pub(crate) preload: Preload,
     /// The modes, frequency ascending.
     pub(crate) modes: Vec<Mode>,
     /// The axial force, if it follows the deflection continuously.
     pub(crate) axial: Option<Box<Feedback>>,
-    /// Friction between the contacts.
-    pub(crate) friction: Option<Friction>,
     /// Modes and contact as one linear system, if the scene is linear, the generator harmonic, and nothing within a
     /// step is requested.
     pub(crate) closed_loop: Option<Box<ClosedLoop>>,
@@ -81,10 +80,8 @@ pub struct Model {
     missed: Option<(f64, f64)>,
     /// Length of the spring, if it is known, m.
     spring_length: Option<f64>,
-    /// Electrical model of the contact.
-    pub(crate) electrical: Option<ElectricalContact>,
-    /// Criterion for interruptions, if they are counted.
-    pub(crate) criterion: Option<Criterion>,
+    /// The errors allowed.
+    pub(crate) tolerance: Tolerance,
     /// Instruction set used for the steps.
     pub(crate) simd: Simd,
 }
@@ -148,13 +145,9 @@ impl Model {
             .or(frequency)
             .map_or(0.0, |omega| omega / std::f64::consts::TAU);
         let generator = Generator::new(scene)?;
-        let electrical = ElectricalContact::new(scene, &law);
-        if scene.effects.chatter && electrical.is_none() {
+        if scene.effects.chatter && ElectricalContact::new(scene, &law).is_none() {
             return Err(SceneError::NoResistance);
         }
-        let criterion = electrical
-            .as_ref()
-            .and_then(|electrical| Criterion::new(scene, electrical));
         let closed_loop = match law {
             Law::Linear(contact)
                 if generator.is_harmonic()
@@ -172,67 +165,113 @@ impl Model {
         } else {
             0.0
         };
-        let model = Self {
-            hardest: law,
-            second: None,
-            mirrored: false,
+        let mut model = Self {
+            law,
+            ports: Vec::new(),
+            links: Vec::new(),
+            participations: [0.0; MAX_MODES],
             missed_by_modes,
             inertia: inertia(&modes),
             memory,
             compliance: modes.iter().map(Mode::compliance).sum(),
             scene: scene.clone(),
             section,
-            law,
             preload,
-            friction: Friction::new(scene, preload.force).map(|friction| friction.on(&modes)),
             modes,
             axial,
             closed_loop,
             generator,
             initial_support: support,
             force_scale,
+            tolerance: Tolerance::new(tolerance, force_scale),
             frequency,
             missed: spring.missed(&blow),
             spring_length: spring.length(),
-            electrical,
-            criterion,
             simd: Simd::detect(),
         };
-        Ok(match second {
-            Some(second) => model.with_second(Law::Power(second).parting(tolerance, force_scale)),
-            None => model,
-        })
+        let second = second.map(|second| Law::Power(second).parting(tolerance, force_scale));
+        model.link(law, second);
+        Ok(model)
+    }
+
+    /// Sets ports and links: a contact with the first law, one with the second law on the other side of the spring, and friction.
+    fn link(&mut self, law: Law, second: Option<Law>) {
+        for (participation, mode) in self.participations.iter_mut().zip(&self.modes) {
+            *participation = mode.participation;
+        }
+        self.law = law;
+        self.ports = vec![Port::new(&self.modes, |mode| mode.tip)];
+        let contact = |law: Law| {
+            let electrical = ElectricalContact::new(&self.scene, &law);
+            let criterion = electrical.as_ref();
+            Link {
+                law: LinkLaw::Contact(law),
+                port: 0,
+                sense: 1.0,
+                driven: [1.0, 0.0],
+                force: self.preload.force,
+                approach: self.preload.indentation,
+                electrical,
+                criterion: criterion.and_then(|electrical| Criterion::new(&self.scene, electrical)),
+            }
+        };
+        let mut links = vec![contact(law)];
+        // At the distance of the gap; the second input moves its fixed contact relative to the first.
+        links.extend(second.map(|law| Link {
+            sense: -1.0,
+            driven: [-1.0, 1.0],
+            force: 0.0,
+            approach: -self.scene.second.gap,
+            ..contact(law)
+        }));
+        if let (Some(friction), Some(share)) = (
+            Friction::new(&self.scene, &self.modes),
+            friction::tangential_share(&self.scene),
+        ) {
+            self.ports
+                .push(Port::new(&self.modes, |mode| friction.height * mode.rotation));
+            links.push(Link {
+                law: LinkLaw::Friction(friction),
+                port: 1,
+                sense: 1.0,
+                driven: [0.0; INPUTS],
+                force: share * self.preload.force,
+                approach: 0.0,
+                electrical: None,
+                criterion: None,
+            });
+        }
+        self.links = links;
     }
 
     /// The same model with other parts, for test problems without a spring. It takes no exact steps.
     #[must_use]
     pub fn with(mut self, change: impl FnOnce(&mut Parts)) -> Self {
         let mut parts = Parts {
+            law: *self.law(),
             modes: self.modes,
-            law: self.law,
             preload: self.preload,
             generator: self.generator,
             force_scale: self.force_scale,
         };
+        let second = self.links.get(1).and_then(Link::contact).copied();
         change(&mut parts);
         parts.modes.truncate(MAX_MODES);
         let tolerance = self.scene.solver.effective_tolerance();
-        self.law = parts.law.parting(tolerance, parts.force_scale);
         (self.modes, self.preload) = (parts.modes, parts.preload);
         (self.generator, self.force_scale, self.closed_loop) = (parts.generator, parts.force_scale, None);
         self.compliance = self.modes.iter().map(Mode::compliance).sum();
-        self.friction = self.friction.map(|friction| friction.on(&self.modes));
-        self.hardest = self.law;
-        match self.second.take() {
-            Some(second) => self.with_second(second.law),
-            None => self,
-        }
+        self.tolerance = Tolerance::new(tolerance, self.force_scale);
+        let law = parts.law.parting(tolerance, self.force_scale);
+        // Friction keeps its share of the force that the scene has.
+        self.link(law, second);
+        self
     }
 
     /// What a user should know of the scene.
     pub fn remarks(&self) -> Vec<Remark> {
         let mut remarks: Vec<_> = self.bent_far().into_iter().chain(self.friction_at_touch()).collect();
-        if let (Some(friction), Some(law)) = (self.friction(), self.law.power()) {
+        if let (Some((_, friction)), Some(law)) = (self.friction(), self.law().power()) {
             // Of a contact open at rest the force scale.
             let at_rest = self.preload.force;
             let usual = if at_rest > 0.0 { at_rest } else { self.force_scale };
@@ -263,7 +302,7 @@ impl Model {
     fn friction_at_touch(&self) -> Option<Remark> {
         let exponent = self.scene.contact.stiffness_exponent;
         let other = self.scene.effects.contact_law == ContactLawKind::Rough && !RUBBING.contains(&exponent);
-        (other && self.friction.is_some()).then_some(Remark::FrictionAtTouch {
+        (other && self.friction().is_some()).then_some(Remark::FrictionAtTouch {
             exponent,
             range: RUBBING,
         })
@@ -302,9 +341,31 @@ impl Model {
         self.section
     }
 
-    /// The contact law.
-    pub fn law(&self) -> Law {
-        self.law
+    /// The law of the first contact.
+    #[inline(always)]
+    pub fn law(&self) -> &Law {
+        &self.law
+    }
+
+    /// The index of the second contact, where there is one.
+    #[inline(always)]
+    pub(crate) fn second(&self) -> Option<usize> {
+        let second = self.links.get(CONTACT + 1).and_then(Link::contact);
+        second.map(|_| CONTACT + 1)
+    }
+
+    /// Distance of both fixed contacts with the second displaced by so much (m); infinite where there is one.
+    pub(crate) fn room(&self, displacement: f64) -> f64 {
+        if self.second().is_some() {
+            self.scene.second.gap - displacement - self.preload.indentation
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// Whether interruptions of a contact are counted.
+    pub(crate) fn counts_interruptions(&self) -> bool {
+        self.links.iter().any(|link| link.criterion.is_some())
     }
 
     /// The static equilibrium.
@@ -322,11 +383,6 @@ impl Model {
         self.force_scale
     }
 
-    /// Error allowed in the contact force, N.
-    pub(crate) fn tolerance(&self) -> f64 {
-        self.scene.solver.effective_tolerance() * self.force_scale
-    }
-
     /// Lowest natural frequency with the contact as a spring, Hz.
     pub fn frequency(&self) -> f64 {
         self.frequency
@@ -337,56 +393,38 @@ impl Model {
         self.axial.as_deref()
     }
 
-    /// Friction, where there is any.
+    /// The index of friction among the links, where there is any.
     #[inline(always)]
-    pub(crate) fn friction(&self) -> Option<&Friction> {
-        self.friction.as_ref()
-    }
-
-    /// The engagement of the contact law, m, positive while the contact is closed; the indentation is given as
-    /// deviation from the preload (m), `rate` is its rate (m/s).
-    pub fn engagement(&self, indentation: f64, rate: f64) -> f64 {
-        self.law.engagement(self.preload.indentation + indentation, rate)
+    pub(crate) fn friction(&self) -> Option<(usize, &Friction)> {
+        match self.links.last().map(|link| &link.law) {
+            Some(LinkLaw::Friction(friction)) => Some((self.links.len() - 1, friction)),
+            _ => None,
+        }
     }
 
     /// At rest in the preload.
     pub fn initial_state(&self, time: f64) -> State {
-        let [mut interruptions, mut of_second] = [Interruptions::default(); 2];
-        if let Some(criterion) = self.criterion.filter(|criterion| self.preload.force < criterion.force) {
-            interruptions.turn(&criterion, time);
-        }
-        if let Some(criterion) = self.second.as_ref().and_then(|second| second.criterion) {
-            of_second.turn(&criterion, time);
+        let mut links = [LinkState::default(); MAX_LINKS];
+        for (link, at) in self.links.iter().zip(&mut links) {
+            at.force = link.force;
+            at.closed = link.contact().is_some() && link.force > 0.0;
+            if let Some(criterion) = link.criterion.filter(|criterion| link.force < criterion.force) {
+                at.interruptions.turn(&criterion, time);
+            }
         }
         State {
             time,
             modes: [ModeState::default(); MAX_MODES],
-            mirrored: false,
             with_contact: false,
-            support: 0.0,
-            support_rate: 0.0,
-            second_support: 0.0,
-            indentation: 0.0,
-            indentation_rate: 0.0,
-            force: self.preload.force,
-            tangential: self.initial_friction(),
-            closed: self.preload.force > 0.0,
-            last_opening: None,
-            last_closing: None,
+            displacements: [0.0; INPUTS],
+            velocities: [0.0; INPUTS],
+            links,
+            slip: self.initial_slip(),
             last_kink: time,
-            short_step: self.first_step(time),
-            long_step: self.first_step(time),
-            course: Prediction::default(),
-            last_step: 0.0,
-            flight_step: self.first_step(time),
+            kink_is_closing: false,
+            lengths: StepLengths::new(self.first_step(time)),
             energy_surplus: 0.0,
             energy_balance: 0.0,
-            interruptions,
-            other: Record {
-                last_opening: None,
-                last_closing: None,
-                interruptions: of_second,
-            },
             force_error: ForceError::default(),
             steps: 0,
             rejected_steps: 0,
@@ -394,38 +432,44 @@ impl Model {
         }
     }
 
-    /// Friction at the preload.
-    fn initial_friction(&self) -> Tangential {
-        let force = self.friction.map_or(0.0, |friction| friction.preload);
-        let stiffness = self
-            .friction
-            .map_or(0.0, |friction| friction.ratio * self.preload.contact_stiffness);
-        Tangential {
-            force,
-            slip: if stiffness > 0.0 { force / stiffness } else { 0.0 },
-            ..Tangential::default()
+    /// Slip at the preload.
+    fn initial_slip(&self) -> Slip {
+        let sprung = self.friction().and_then(|(index, friction)| {
+            let stiffness = friction.ratio * self.preload.contact_stiffness;
+            let force = self.links.get(index)?.force;
+            (stiffness > 0.0).then(|| force / stiffness)
+        });
+        Slip {
+            slip: sprung.unwrap_or_default(),
+            ..Slip::default()
         }
     }
 
-    /// Energy relative to the preload, J: kinetic and strain energy of the modes and elastic energy of the contact, at
-    /// an indentation given as deviation from the preload (m).
-    pub fn energy(&self, modes: &ModeStates, indentation: f64) -> f64 {
+    /// Energy of a state relative to the preload, J.
+    pub fn energy(&self, state: &State) -> f64 {
+        self.energy_at(&state.modes, |index| {
+            state.links.get(index).map_or(0.0, |link| link.approach)
+        })
+    }
+
+    /// Kinetic and strain energy of the modes, and elastic energy of the contacts at approaches given as deviations from the
+    /// preload (m); relative to the preload, J.
+    pub(crate) fn energy_at(&self, modes: &ModeStates, approach: impl Fn(usize) -> f64) -> f64 {
         let pairs = self.modes.iter().zip(modes);
         let beam: f64 = pairs
             .map(|(mode, at)| at.v * at.v + mode.omega_squared * at.q * at.q)
             .sum();
-        let own = 0.5 * beam + self.law.energy_above_tangent(self.preload.indentation, indentation);
-        // The preload force is that of the first contact.
-        if self.mirrored {
-            own - self.preload.force * indentation
-        } else {
-            own
-        }
+        let contacts = self.links.iter().enumerate().filter_map(|(index, link)| {
+            let law = link.contact()?;
+            Some(law.energy_above_tangent(link.approach, approach(index)))
+        });
+        0.5 * beam + contacts.sum::<f64>()
     }
 
-    /// Velocity of the tip per impulse on it, 1/kg.
-    pub fn mobility(&self) -> f64 {
-        self.modes.iter().map(|mode| mode.tip * mode.tip).sum()
+    /// Velocity of a port per impulse on it, 1/kg.
+    pub(crate) fn mobility_of(&self, port: usize) -> f64 {
+        let shape = self.ports.get(port).into_iter().flat_map(|port| &port.shape);
+        shape.map(|b| b * b).sum()
     }
 
     /// Longest step allowed from `time` (s) on by scene and generator, s.
@@ -482,7 +526,7 @@ fn blow(scene: &Scene, section: &Section, power: &Power) -> Blow {
         stiffness_damping: scene.beam.stiffness_damping,
         contact_stiffness: power.tangent_stiffness(power.indentation(force)),
         contact_damping: power.damping,
-        steep: rubs(scene) || power.exponent < 1.4,
+        steep: scene.rubs() || power.exponent < 1.4,
     }
 }
 

@@ -9,9 +9,10 @@
 
 use crate::beam::spring::Spring;
 use crate::beam::statics::Statics;
+use crate::contact::friction::tangential_share;
 use crate::contact::power::Power;
 use crate::error::SceneError;
-use crate::friction::tangential_share;
+
 use crate::math::roots;
 use crate::scene::Scene;
 use crate::variables::{AxialForceKind, RealOutput, RealParameter};

@@ -5,12 +5,14 @@ use crate::electrical::ElectricalContact;
 use crate::error::{SceneError, StepError};
 use crate::inputs::Inputs;
 use crate::integrator::communication_step;
+use crate::integrator::extremes::Range;
 use crate::integrator::with_contact;
 use crate::integrator::workspace::Workspace;
+use crate::link::CONTACT;
 use crate::memory;
 use crate::model::Model;
 use crate::scene::Scene;
-use crate::state::State;
+use crate::state::{LinkState, State};
 use crate::variables::{BooleanOutput, Group, IntegerOutput, RealOutput, Variable};
 
 pub use crate::integrator::events::log::Event;
@@ -41,9 +43,13 @@ impl Simulation {
             });
         }
         let mut motion = Motion::at_rest(&model, start_time);
-        if model.second.is_some() {
-            motion.start.second_support = displacement;
-            motion.end.second_support = displacement;
+        if model.second().is_some() {
+            for state in [&mut motion.start, &mut motion.end] {
+                state.displacements = [0.0, displacement];
+                for (link, at) in model.links.iter().zip(&mut state.links) {
+                    at.approach = link.offset(&state.displacements);
+                }
+            }
         }
         motion.current = inputs.contact_current;
         let workspace = Workspace::new(&model);
@@ -154,16 +160,21 @@ impl Simulation {
     /// A real output or calculated parameter, in its SI unit.
     pub fn real(&self, output: RealOutput) -> f64 {
         let Self { model, motion, .. } = self;
-        let (state, tip) = (motion.state(), || motion.tip(model));
-        let force = || tip().forces[0];
-        let conductance = || model.electrical.map(|electrical| electrical.conductance(force()));
-        let second = model.second.is_some();
+        let (state, contact) = (motion.state(), || motion.link(model, CONTACT));
+        let force = || contact().force;
+        let second = model.second();
+        let second_force = || second.map_or(0.0, |index| motion.link(model, index).force);
+        let electrical = |index: usize| model.links.get(index).and_then(|link| link.electrical);
+        let conductance = || electrical(CONTACT).map(|electrical| electrical.conductance(force()));
         let second_conductance = || {
-            let electrical = model.second.as_ref().and_then(|second| second.electrical);
-            electrical.map(|electrical| electrical.conductance(tip().forces[1]))
+            let electrical = second.and_then(electrical);
+            electrical.map(|electrical| electrical.conductance(second_force()))
         };
         let extremes = || model.scene.effects.extremes.then(|| motion.extremes(model));
-        let of_second = || extremes().filter(|_| second);
+        let range = |index: usize| extremes().map_or_else(Range::default, |mut extremes| *extremes.of(index));
+        let of_second = || second.map_or_else(Range::default, range);
+        let second_event =
+            |event: fn(&LinkState) -> Option<f64>| or_not_yet(second.and_then(|index| event(state.links.get(index)?)));
         match output {
             RealOutput::ContactForce => force(),
             RealOutput::ContactElasticForce => motion.elastic_force(model).0,
@@ -173,41 +184,43 @@ impl Simulation {
                 let highest = model.scene.contact.open_voltage;
                 (motion.current / conductance).clamp(-highest, highest)
             }),
-            RealOutput::ContactTemperature => match model.electrical.filter(|_| model.scene.effects.heating) {
+            RealOutput::ContactTemperature => match electrical(CONTACT).filter(|_| model.scene.effects.heating) {
                 Some(electrical) => electrical.temperature(&model.scene, force(), motion.current),
                 None => model.scene.environment.temperature,
             },
-            RealOutput::StepMinimumForce => extremes().map_or(0.0, |extremes| extremes.first.least),
-            RealOutput::StepMaximumForce => extremes().map_or(0.0, |extremes| extremes.first.greatest),
-            RealOutput::StepMaximumResistance => match (extremes(), &model.electrical) {
-                (Some(extremes), Some(electrical)) => 1.0 / electrical.conductance(extremes.first.least),
-                _ => 0.0,
+            RealOutput::StepMinimumForce => range(CONTACT).least,
+            RealOutput::StepMaximumForce => range(CONTACT).greatest,
+            RealOutput::StepMaximumResistance => match electrical(CONTACT).filter(|_| model.scene.effects.extremes) {
+                Some(electrical) => 1.0 / electrical.conductance(range(CONTACT).least),
+                None => 0.0,
             },
-            RealOutput::StepMinimumGap => of_second().map_or(0.0, |extremes| -extremes.nearest),
-            RealOutput::SecondForce => tip().forces[1],
+            RealOutput::StepMinimumGap => extremes()
+                .filter(|_| second.is_some())
+                .map_or(0.0, |extremes| -extremes.nearest),
+            RealOutput::SecondForce => second_force(),
             RealOutput::SecondConductance => second_conductance().unwrap_or_default(),
             RealOutput::SecondResistance => second_conductance().map_or(0.0, |conductance| 1.0 / conductance),
-            RealOutput::SecondLastOpening => or_not_yet(state.record(true).last_opening),
-            RealOutput::SecondLastClosing => or_not_yet(state.record(true).last_closing),
-            RealOutput::SecondMinimumForce => of_second().map_or(0.0, |extremes| extremes.second.least),
-            RealOutput::SecondMaximumForce => of_second().map_or(0.0, |extremes| extremes.second.greatest),
-            RealOutput::ChatterLongestFalseMake => self.makes(false).longest,
-            RealOutput::ChatterTotalFalseMake => self.makes(false).total,
-            RealOutput::SecondLongestFalseMake => self.makes(true).longest,
-            RealOutput::SecondTotalFalseMake => self.makes(true).total,
+            RealOutput::SecondLastOpening => second_event(|link| link.last_opening),
+            RealOutput::SecondLastClosing => second_event(|link| link.last_closing),
+            RealOutput::SecondMinimumForce => of_second().least,
+            RealOutput::SecondMaximumForce => of_second().greatest,
+            RealOutput::ChatterLongestFalseMake => self.makes(CONTACT).longest,
+            RealOutput::ChatterTotalFalseMake => self.makes(CONTACT).total,
+            RealOutput::SecondLongestFalseMake => self.makes_of_second().longest,
+            RealOutput::SecondTotalFalseMake => self.makes_of_second().total,
             RealOutput::ChatterLongestInterruption => self.interruptions().longest,
             RealOutput::ChatterTotalInterruption => self.interruptions().total,
             RealOutput::EnergyBalance => state.energy_balance,
             RealOutput::SolverForceError => self.force_error(),
-            RealOutput::ContactIndentation => model.preload.indentation + tip().indentation,
-            RealOutput::TipDisplacement => model.preload.deflection + motion.support().0 - tip().indentation,
-            RealOutput::TipVelocity => motion.support().1 - tip().rate,
-            RealOutput::ContactLastOpening => or_not_yet(state.record(false).last_opening),
-            RealOutput::ContactLastClosing => or_not_yet(state.record(false).last_closing),
-            RealOutput::ContactTangentialForce => motion.friction().force,
-            RealOutput::ContactSlip => motion.friction().slip,
-            RealOutput::ContactSlipDistance => motion.friction().distance,
-            RealOutput::FrictionEnergy => motion.friction().dissipated,
+            RealOutput::ContactIndentation => model.preload.indentation + contact().approach,
+            RealOutput::TipDisplacement => model.preload.deflection + motion.support().0 - contact().approach,
+            RealOutput::TipVelocity => motion.support().1 - contact().rate,
+            RealOutput::ContactLastOpening => or_not_yet(state.links[CONTACT].last_opening),
+            RealOutput::ContactLastClosing => or_not_yet(state.links[CONTACT].last_closing),
+            RealOutput::ContactTangentialForce => motion.friction(model).0,
+            RealOutput::ContactSlip => motion.friction(model).1.slip,
+            RealOutput::ContactSlipDistance => motion.friction(model).1.distance,
+            RealOutput::FrictionEnergy => motion.friction(model).1.dissipated,
             RealOutput::PreloadForce => model.preload.force,
             RealOutput::PreloadIndentation => model.preload.indentation,
             RealOutput::PreloadContactStiffness => model.preload.contact_stiffness,
@@ -220,7 +233,7 @@ impl Simulation {
     pub fn force_error(&self) -> f64 {
         let Self { model, motion, .. } = self;
         let state = motion.state();
-        let by_modes = if state.last_closing.is_some() {
+        let by_modes = if state.last_closing().is_some() {
             model.missed_by_modes
         } else {
             0.0
@@ -232,8 +245,9 @@ impl Simulation {
     /// for outputs that are not continuous; 0 at the start.
     pub fn rate(&self, output: RealOutput) -> Option<f64> {
         let Self { model, motion, .. } = self;
-        let rates = || motion.tip_rates(model);
+        let rates = || motion.link_rates(model, CONTACT);
         let along = || motion.friction_rates(model);
+        let electrical = |index: usize| model.links.get(index).and_then(|link| link.electrical);
         // Conductance and its rate.
         let conducting_at = |electrical: Option<ElectricalContact>, force, rate| {
             electrical.map(|electrical| {
@@ -243,19 +257,20 @@ impl Simulation {
                 )
             })
         };
-        let force = || motion.tip(model).forces[0];
-        let conducting = || conducting_at(model.electrical, force(), rates().forces[0]);
+        let force = || motion.link(model, CONTACT).force;
+        let conducting = || conducting_at(electrical(CONTACT), force(), rates().0);
+        let second_rate = |index| motion.link_rates(model, index).0;
         let second_conducting = || {
-            let second = model.second.as_ref();
-            second.and_then(|view| conducting_at(view.electrical, motion.tip(model).forces[1], rates().forces[1]))
+            let index = model.second()?;
+            conducting_at(electrical(index), motion.link(model, index).force, second_rate(index))
         };
         Some(match output {
-            RealOutput::SecondForce => rates().forces[1],
+            RealOutput::SecondForce => model.second().map_or(0.0, second_rate),
             RealOutput::SecondConductance => second_conducting().map_or(0.0, |(_, rate)| rate),
             RealOutput::SecondResistance => {
                 second_conducting().map_or(0.0, |(conductance, rate)| -rate / conductance.powi(2))
             }
-            RealOutput::ContactForce => rates().forces[0],
+            RealOutput::ContactForce => rates().0,
             RealOutput::ContactElasticForce => motion.elastic_force(model).1,
             RealOutput::ContactConductance => conducting().map_or(0.0, |(_, rate)| rate),
             RealOutput::ContactResistance => {
@@ -268,21 +283,21 @@ impl Simulation {
                 }
                 (motion.current_rate - voltage * rate) / conductance
             }),
-            RealOutput::ContactTemperature => match model.electrical.filter(|_| model.scene.effects.heating) {
+            RealOutput::ContactTemperature => match electrical(CONTACT).filter(|_| model.scene.effects.heating) {
                 Some(electrical) => {
                     let force = force();
                     let (by_force, by_current) = electrical.temperature_slopes(&model.scene, force, motion.current);
-                    by_force * rates().forces[0] + by_current * motion.current.signum() * motion.current_rate
+                    by_force * rates().0 + by_current * motion.current.signum() * motion.current_rate
                 }
                 None => 0.0,
             },
-            RealOutput::ContactIndentation => motion.tip(model).rate,
+            RealOutput::ContactIndentation => motion.link(model, CONTACT).rate,
             RealOutput::TipDisplacement => self.real(RealOutput::TipVelocity),
-            RealOutput::TipVelocity => -rates().acceleration,
-            RealOutput::ContactTangentialForce => along().force,
-            RealOutput::ContactSlip => along().slip,
-            RealOutput::ContactSlipDistance => along().distance,
-            RealOutput::FrictionEnergy => along().dissipated,
+            RealOutput::TipVelocity => -rates().1,
+            RealOutput::ContactTangentialForce => along().0,
+            RealOutput::ContactSlip => along().1.slip,
+            RealOutput::ContactSlipDistance => along().1.distance,
+            RealOutput::FrictionEnergy => along().1.dissipated,
             RealOutput::ContactLastOpening
             | RealOutput::ContactLastClosing
             | RealOutput::StepMinimumForce
@@ -309,25 +324,27 @@ impl Simulation {
         })
     }
 
-    /// Interruptions up to the communication point; none if they are not counted.
+    /// Interruptions of the first contact up to the communication point; none if they are not counted.
     pub fn interruptions(&self) -> Summary {
-        self.monitored(false, Interruptions::summary)
+        self.monitored(CONTACT, Interruptions::summary)
     }
 
-    /// False makes of the second contact, or of the first, up to the communication point; none if they are not counted.
-    pub fn makes(&self, second: bool) -> Summary {
-        self.monitored(second, Interruptions::makes)
+    /// False makes of the second contact up to the communication point; none if they are not counted.
+    fn makes_of_second(&self) -> Summary {
+        self.model
+            .second()
+            .map_or_else(Summary::default, |index| self.makes(index))
     }
 
-    fn monitored(&self, second: bool, summary: fn(&Interruptions, &Criterion, f64) -> Summary) -> Summary {
-        let view = if second {
-            self.model.second.as_deref()
-        } else {
-            Some(&*self.model)
-        };
-        let counted = view.and_then(|model| model.criterion);
+    /// False makes of a contact.
+    fn makes(&self, index: usize) -> Summary {
+        self.monitored(index, Interruptions::makes)
+    }
+
+    fn monitored(&self, index: usize, summary: fn(&Interruptions, &Criterion, f64) -> Summary) -> Summary {
+        let counted = self.model.links.get(index).and_then(|link| link.criterion);
         counted.map_or_else(Summary::default, |criterion| {
-            summary(&self.motion.interruptions(&self.model, second), &criterion, self.time())
+            summary(&self.motion.interruptions(&self.model, index), &criterion, self.time())
         })
     }
 
@@ -339,8 +356,8 @@ impl Simulation {
             IntegerOutput::SolverRejectedSteps => count(self.state().rejected_steps),
             IntegerOutput::SolverIterations => count(self.state().iterations),
             IntegerOutput::ChatterCount => count(self.interruptions().count),
-            IntegerOutput::ChatterFalseMakes => count(self.makes(false).count),
-            IntegerOutput::SecondFalseMakes => count(self.makes(true).count),
+            IntegerOutput::ChatterFalseMakes => count(self.makes(CONTACT).count),
+            IntegerOutput::SecondFalseMakes => count(self.makes_of_second().count),
             IntegerOutput::SolverModesUsed => count(self.model.modes.len() as u64),
         }
     }
@@ -357,13 +374,15 @@ impl Simulation {
 
     /// A Boolean output.
     pub fn boolean(&self, output: BooleanOutput) -> bool {
-        let (state, [first, other]) = (self.motion.state(), self.motion.tip(&self.model).forces);
-        let (second, force) = match output {
-            BooleanOutput::ContactClosed => (false, first),
-            BooleanOutput::SecondClosed => (true, other),
+        let index = match output {
+            BooleanOutput::ContactClosed => Some(CONTACT),
+            BooleanOutput::SecondClosed => self.model.second(),
         };
-        // At the instant of closing there is no force yet.
-        force > 0.0 || state.closed && state.mirrored == second && !self.model.law.never_opens()
+        index.is_some_and(|index| {
+            let closed = self.motion.state().links.get(index).is_some_and(|link| link.closed);
+            // At the instant of closing there is no force yet.
+            self.motion.link(&self.model, index).force > 0.0 || closed && !self.model.law().never_opens()
+        })
     }
 }
 

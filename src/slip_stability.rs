@@ -15,9 +15,9 @@ use nalgebra::linalg::Schur;
 use nalgebra::{Complex, DMatrix, DVector};
 
 use crate::beam::mode::Mode;
+use crate::contact::friction::{Friction, Phase};
 use crate::contact::power::Power;
 use crate::error::Remark;
-use crate::friction::{Friction, Phase};
 
 /// Contact forces looked at, in the preload force, 1: at rest, and the largest of a contact shaken until it nearly opens.
 const FORCES: [f64; 2] = [1.0, 2.0];
@@ -55,8 +55,8 @@ pub(crate) fn remarks(modes: &[Mode], friction: &Friction, law: &Power, usual: f
 /// stable: scaled by `sqrt(u_i / T_i)`, all matrices are symmetric and none is negative.
 fn loads(modes: &[Mode], friction: &Friction, slip: Phase) -> Option<DVector<f64>> {
     let share = slip.sign()? * friction.coefficient;
-    let pairs = modes.iter().zip(&friction.levers);
-    let loads = DVector::from_iterator(modes.len(), pairs.map(|(mode, lever)| mode.tip + share * lever));
+    let along = share * friction.height;
+    let loads = DVector::from_iterator(modes.len(), modes.iter().map(|mode| mode.tip + along * mode.rotation));
     let against = modes.iter().zip(&loads).any(|(mode, load)| mode.tip * load < 0.0);
     against.then_some(loads)
 }

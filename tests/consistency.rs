@@ -123,7 +123,7 @@ fn ride(case: &str, scene: &Scene, rng: &mut Rng, duration: f64, inputs: impl Fn
     let mut size = 0.0;
     while simulation.time() < duration {
         let time = simulation.time();
-        let own_step = simulation.state().short_step.max(simulation.state().long_step);
+        let own_step = simulation.state().lengths.short.max(simulation.state().lengths.long);
         let period = 1.0 / scene.excitation.frequency;
         size = match rng.u8(..6) {
             0 if size > 0.0 => size,

@@ -131,11 +131,11 @@ fn powers(rig: &Rig, inputs: &Inputs, since: f64) -> [f64; 2] {
     let modes = || model.modes().iter().zip(&state.modes);
     let by_base: f64 = modes().map(|(mode, at)| -base * mode.participation * at.v).sum();
     let in_beam: f64 = modes().map(|(mode, at)| mode.damping * at.v * at.v).sum();
-    let d = model.preload().indentation + state.indentation;
-    let rate = state.indentation_rate;
+    let d = model.preload().indentation + state.contact().approach;
+    let rate = state.contact().rate;
     let in_contact = (model.law().force(d, rate) - model.law().force(d, 0.0)) * rate;
     [
-        by_base + model.law().force(d, rate) * state.support_rate,
+        by_base + model.law().force(d, rate) * state.velocities[0],
         in_beam + in_contact,
     ]
 }
@@ -158,7 +158,7 @@ fn run(case: &Case, tolerance: f64, size: f64) -> (Sum, f64, f64) {
         rig.launch(&velocities);
     }
     // The static force does work on the displaced tip.
-    let stored = |rig: &Rig| rig.energy() + rig.model.preload().force * rig.state.support;
+    let stored = |rig: &Rig| rig.energy() + rig.model.preload().force * rig.state.displacements[0];
     let start = stored(&rig);
     let mut sum = Sum {
         force_scale: rig.model.force_scale(),
@@ -170,11 +170,11 @@ fn run(case: &Case, tolerance: f64, size: f64) -> (Sum, f64, f64) {
         let time = rig.state.time;
         let inputs = (case.drive)(time, size);
         // A new velocity of the fixed contact holds from the start of the step.
-        let jump = inputs.support_displacement_rate - rig.state.support_rate;
-        rig.state.support_rate += jump;
-        rig.state.indentation_rate += jump;
+        let jump = inputs.support_displacement_rate - rig.state.velocities[0];
+        rig.state.velocities[0] += jump;
+        rig.state.links[0].rate += jump;
         let before = powers(&rig, &inputs, time);
-        let from = rig.state.indentation;
+        let from = rig.state.contact().approach;
         rig.run_to(&inputs, f64::from(k + 1) * size).unwrap();
         let after = powers(&rig, &inputs, time);
         let [put_in, dissipated] = [0, 1].map(|i| 0.5 * size * (before[i] + after[i]));
@@ -183,7 +183,7 @@ fn run(case: &Case, tolerance: f64, size: f64) -> (Sum, f64, f64) {
         sum.turnover += put_in.abs() + dissipated.abs();
         let changes = after.iter().zip(&before).map(|(after, before)| (after - before).abs());
         sum.uncertainty += 0.5 * size * changes.sum::<f64>();
-        sum.way += (rig.state.indentation - from).abs();
+        sum.way += (rig.state.contact().approach - from).abs();
     }
     sum.turnover += start;
     (sum, stored(&rig) - start, rig.state.energy_balance)

@@ -109,11 +109,11 @@ fn steady(exponent: f64, motions: &[Steady]) {
         for k in 1..=SAMPLES {
             let part = f64::from(k) / f64::from(SAMPLES);
             rig.run_to(&Inputs::default(), start + part * period).unwrap();
-            let y = rig.state.indentation / length / f64::from(SAMPLES);
+            let y = rig.state.contact().approach / length / f64::from(SAMPLES);
             let (s, c) = (periods * TAU * part).sin_cos();
             (mean, cosine, sine) = (mean + y, cosine + 2.0 * y * c, sine + 2.0 * y * s);
         }
-        let last = rig.state.last_closing.zip(rig.state.last_opening);
+        let last = rig.state.contact().last_closing.zip(rig.state.contact().last_opening);
         let open = if let Some((closing, opening)) = last.filter(|(_, opening)| *opening > start) {
             ((closing - opening) / period).rem_euclid(1.0)
         } else {
@@ -156,7 +156,11 @@ fn contact_is_lost(exponent: f64, levels: &[[f64; 4]]) {
             let start = 60.0 * TAU * units().0 / frequency;
             rig.run_to(&Inputs::default(), start).unwrap();
             rig.run_to(&Inputs::default(), 1.1 * start).unwrap();
-            assert_eq!(rig.state.last_opening > Some(start), opens, "{frequency} {factor}");
+            assert_eq!(
+                rig.state.contact().last_opening > Some(start),
+                opens,
+                "{frequency} {factor}"
+            );
         }
     }
 }
@@ -191,7 +195,7 @@ fn free(exponent: f64, motions: &[[f64; 2]]) {
         let mut rig = rig(exponent, [0.0, 0.0], [1.0, 0.0, 0.0]);
         launch(&mut rig, rate);
         rig.run_to(&Inputs::default(), 100.0 * period * time).unwrap();
-        let late = rig.state.indentation / length / rate;
+        let late = rig.state.contact().approach / length / rate;
         assert!(
             late.abs() < 1e-6 * rate.max(1.0),
             "{rate}: {late:e} after a hundred periods"
@@ -234,18 +238,18 @@ fn noise(exponent: f64, levels: &[(f64, [f64; 3])]) {
         for _ in 0..STRETCHES {
             let [mut mean, mut square, mut open, mut losses] = [0.0; 4];
             for _ in 0..STEPS {
-                let before = rig.state.last_opening;
+                let before = rig.state.contact().last_opening;
                 now += step * time;
                 let inputs = Inputs {
                     base_acceleration: size * normal(),
                     ..Inputs::default()
                 };
                 rig.run_to(&inputs, now).unwrap();
-                let force = rig.state.force / FORCE;
+                let force = rig.state.contact().force / FORCE;
                 mean += force;
                 square += (force - 1.0).powi(2);
                 open += f64::from(u8::from(force == 0.0));
-                losses += f64::from(u8::from(rig.state.last_opening > before)) / step;
+                losses += f64::from(u8::from(rig.state.contact().last_opening > before)) / step;
             }
             found.push([mean, square, open, losses].map(|sum| sum / f64::from(STEPS)));
         }

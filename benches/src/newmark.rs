@@ -108,7 +108,10 @@ impl<'a> Motion<'a> {
             modes,
             compliance,
             force: preload.force,
-            engagement: problem.model.engagement(0.0, problem.support_rate),
+            engagement: problem
+                .model
+                .law()
+                .engagement(preload.indentation, problem.support_rate),
         }
     }
 

@@ -118,9 +118,9 @@ fn undamped_impact() -> Result<Vec<Check>> {
     let start = rig.energy();
     let (mut off, mut path) = (0.0, 0.0);
     for point in 1..=300_u32 {
-        let before = rig.state.indentation;
+        let before = rig.state.contact().approach;
         rig.run_to(&Inputs::default(), f64::from(point) * 1e-6)?;
-        path += (rig.state.indentation - before).abs();
+        path += (rig.state.contact().approach - before).abs();
         off = worst(off, (rig.energy() - start).abs());
     }
     // Rounding: the last of thirteen digits.
@@ -143,7 +143,7 @@ fn restitution(damping: f64, exact: f64) -> Result<Vec<Check>> {
     ));
     rig.launch(&[-1.0]);
     rig.run_to(&Inputs::default(), 20.0)?;
-    let off = (-rig.state.indentation_rate - exact).abs();
+    let off = (-rig.state.contact().rate - exact).abs();
     Ok(vec![Check::new(
         "coefficient of restitution as in the literature, or 1 (tolerance 1e-8)",
         (off, 4.0 * tolerance + 1e-10),
@@ -172,13 +172,13 @@ fn accumulating() -> Result<Vec<Check>> {
     let (mut closings, mut last) = (0, None);
     for point in 1..=50_000 {
         fine.run_to(&inputs, 1e-6 * f64::from(point))?;
-        ensure!(fine.state.force >= 0.0 && fine.state.indentation.is_finite());
-        closings += u32::from(fine.state.last_closing > last);
-        last = fine.state.last_closing;
+        ensure!(fine.state.contact().force >= 0.0 && fine.state.contact().approach.is_finite());
+        closings += u32::from(fine.state.contact().last_closing > last);
+        last = fine.state.contact().last_closing;
     }
     ensure!(closings > 5, "only {closings} impacts");
     closest([&coarse, &fine].map(|rig| {
-        let off = (rig.state.force - mass * weight).abs();
+        let off = (rig.state.contact().force - mass * weight).abs();
         Ok(vec![
             Check::tolerance("the final force is the weight", off, 1e-6 * mass * weight, "N"),
             Check::steps(rig.state.steps, 99_999),

@@ -70,8 +70,8 @@ fn contact_cycles(cycles: u32, tolerance: f64, step: f64) -> Result<Vec<Check>> 
         point += 1;
         rig.run_to(&Inputs::default(), f64::from(point) * step)?;
         off = worst(off, (rig.energy() / start - 1.0).abs());
-        if rig.state.last_closing > last {
-            last = rig.state.last_closing;
+        if rig.state.contact().last_closing > last {
+            last = rig.state.contact().last_closing;
             closings += 1;
         }
     }

@@ -111,7 +111,7 @@ fn grazing_mass() -> Result<Vec<Check>> {
         rig.launch(&[-gap * omega * (1.0 + excess)]);
         // Three quarters of a period: once there.
         rig.run_to(&Inputs::default(), 1.5 * PI / omega)?;
-        Ok(rig.state.last_closing > Some(0.0))
+        Ok(rig.state.contact().last_closing > Some(0.0))
     };
     grazes(touches, [1e-2, 1e-6, 1e-9, -1e-9, -1e-6, -1e-2])
 }
@@ -140,23 +140,23 @@ fn grazing_spring() -> Result<Vec<Check>> {
     let (mut nearest, mut highest) = (0.0, 0.0);
     for time in (1..1700).map(|microsecond| 1e-6 * f64::from(microsecond)) {
         rig.run_to(&Inputs::default(), time)?;
-        if rig.state.indentation > highest {
-            (nearest, highest) = (time, rig.state.indentation);
+        if rig.state.contact().approach > highest {
+            (nearest, highest) = (time, rig.state.contact().approach);
         }
     }
     let (mut before, mut after) = (nearest - 2e-6, nearest + 2e-6);
     for _ in 0..40 {
         let middle = f64::midpoint(before, after);
-        if thrown_until(&far, 1.0, middle)?.indentation_rate > 0.0 {
+        if thrown_until(&far, 1.0, middle)?.contact().rate > 0.0 {
             before = middle;
         } else {
             after = middle;
         }
     }
-    let highest = thrown_until(&far, 1.0, before)?.indentation;
+    let highest = thrown_until(&far, 1.0, before)?.contact().approach;
     let touches = |excess: f64| {
         let state = thrown_until(&scene, gap / highest * (1.0 + excess), duration)?;
-        Ok(state.last_closing > Some(0.0))
+        Ok(state.contact().last_closing > Some(0.0))
     };
     grazes(touches, [1e-2, 1e-4, 1e-6, -1e-12, -1e-6, -1e-2])
 }
@@ -180,7 +180,7 @@ fn stiff_contact() -> Result<Vec<Check>> {
     let mut rig = Rig::new(model);
     rig.launch(&[-speed * mass.sqrt()]);
     rig.run_to(&Inputs::default(), 1e-3)?;
-    let events = rig.state.last_opening.zip(rig.state.last_closing);
+    let events = rig.state.contact().last_opening.zip(rig.state.contact().last_closing);
     let lasted = events.map_or(0.0, |(opening, closing)| opening - closing);
     let exact = PI * (mass / stiffness).sqrt();
     let duration = (

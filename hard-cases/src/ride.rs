@@ -143,13 +143,15 @@ impl Ride {
                 rig.run_to(&inputs, time + size * f64::from(part))
                     .with_context(|| format!("after {} integration steps", before.steps))?;
                 self.inspect(rig)?;
-                outcome.largest = outcome.largest.max(rig.state.force);
+                outcome.largest = outcome.largest.max(rig.state.contact().force);
                 let base = segment.acceleration * (base_work(rig) - base_before);
                 let held = rate * (meter(rig) - meter_before);
                 work += base + held;
                 outcome.throughput += base.abs() + held.abs();
-                let fastest = before.indentation_rate.abs().max(rig.state.indentation_rate.abs());
-                let way = (rig.state.indentation - before.indentation).abs().max(fastest * size);
+                let fastest = before.contact().rate.abs().max(rig.state.contact().rate.abs());
+                let way = (rig.state.contact().approach - before.contact().approach)
+                    .abs()
+                    .max(fastest * size);
                 outcome.path += way + (rate * size).abs();
                 let balance = rig.energy() - work;
                 outcome.made = outcome.made.max(balance - lowest);
@@ -157,7 +159,7 @@ impl Ride {
             }
             time += segment.duration;
             support = segment.support;
-            outcome.forces.push(outcome.rig.state.force);
+            outcome.forces.push(outcome.rig.state.contact().force);
         }
         Ok(outcome)
     }
@@ -166,17 +168,21 @@ impl Ride {
     fn inspect(&self, Rig { model, state, .. }: &Rig) -> Result<()> {
         let numbers = [
             state.time,
-            state.indentation,
-            state.indentation_rate,
-            state.force,
-            state.support,
+            state.contact().approach,
+            state.contact().rate,
+            state.contact().force,
+            state.displacements[0],
         ];
         let modal = state.modes.iter().flat_map(|mode| [mode.q, mode.v]);
         if numbers.into_iter().chain(modal).any(|x| !x.is_finite()) {
             bail!("not finite at {} s: {numbers:?}", state.time);
         }
-        if state.force < 0.0 && !model.law().never_opens() {
-            bail!("tensile contact force at {} s: {:e} N", state.time, state.force);
+        if state.contact().force < 0.0 && !model.law().never_opens() {
+            bail!(
+                "tensile contact force at {} s: {:e} N",
+                state.time,
+                state.contact().force
+            );
         }
         if state.steps + state.rejected_steps > self.steps {
             bail!("more than {} integration steps until {} s", self.steps, state.time);

@@ -127,7 +127,7 @@ fn nanoseconds() -> Result<Vec<Check>> {
     let ride = Ride::new(Scene::default(), segments);
     let nanoseconds = ride.run(25_000)?;
     ensure!(
-        nanoseconds.rig.state.last_closing > Some(0.0),
+        nanoseconds.rig.state.contact().last_closing > Some(0.0),
         "the contact does not close again"
     );
     let compared = [1, 64].map(|parts| Ok(vec![nanoseconds.same_force(&ride.run(parts)?)]));

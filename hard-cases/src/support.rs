@@ -32,7 +32,13 @@ cases! { CASES:
 
 fn touch_at_the_start() -> Result<Vec<Check>> {
     let ride = Ride::new(with_overtravel(0.0), [Segment::moved(1e-3, 1e-4)]);
-    let closing = ride.run(1)?.rig.state.last_closing.context("no closing reported")?;
+    let closing = ride
+        .run(1)?
+        .rig
+        .state
+        .contact()
+        .last_closing
+        .context("no closing reported")?;
     let mut checks = ride.checks()?;
     let reason = "accuracy guaranteed for event times";
     checks.push(Check::new(

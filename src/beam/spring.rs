@@ -12,7 +12,6 @@ use crate::beam::ritz;
 use crate::beam::section::Section;
 use crate::beam::statics::{Statics, axial_force_from_deflection};
 use crate::error::SceneError;
-use crate::friction::rubs;
 use crate::math::simd::LANES;
 use crate::scene::spring::{Shape, SpringFile};
 use crate::scene::{Scene, choices};
@@ -157,7 +156,7 @@ impl Spring {
         let (alpha, beta) = (scene.beam.mass_damping, scene.beam.stiffness_damping);
         let space = match &self.form {
             Form::Uniform => Space::new(count),
-            Form::Segments(pieces) => ritz::dynamic_space(pieces, &self.section, count, axial_force, rubs(scene))?,
+            Form::Segments(pieces) => ritz::dynamic_space(pieces, &self.section, count, axial_force, scene.rubs())?,
             Form::Modes(given) => {
                 let modes = given.modes(count, (alpha, beta));
                 return Some(Basis {

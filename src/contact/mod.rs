@@ -1,5 +1,6 @@
 //! The law between indentation and contact force.
 
+pub mod friction;
 pub mod law;
 pub mod linear;
 pub mod power;

@@ -1,10 +1,10 @@
 //! Base acceleration and motion of the fixed contacts over a communication step, from the inputs.
 
 use crate::inputs::Inputs;
-use crate::state::State;
+use crate::link::Ways;
 use serde::{Deserialize, Serialize};
 
-/// A base acceleration that is constant or grows with time, and a fixed contact that moves with constant velocity.
+/// A base acceleration that is constant or grows with time, and fixed contacts that move with constant velocities.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Drive {
     /// Base acceleration at the start of the communication step, m/s2.
@@ -13,22 +13,18 @@ pub struct Drive {
     pub jerk: f64,
     /// The start of the communication step, s.
     since: f64,
-    /// Velocity of the fixed contact, m/s.
-    pub support_rate: f64,
-    /// Velocity of the second fixed contact relative to the first, m/s.
-    pub second_rate: f64,
+    /// Velocities of the inputs that move bodies, m/s.
+    pub velocities: Ways,
 }
 
 impl Drive {
-    /// Over `size` seconds from `time` (s), in which the fixed contacts move by these ways (m), the second relative to
-    /// the first.
-    pub fn new(inputs: &Inputs, time: f64, size: f64, [way, second_way]: [f64; 2]) -> Self {
+    /// Over `size` seconds from `time` (s), in which the inputs move by these ways (m).
+    pub fn new(inputs: &Inputs, time: f64, size: f64, ways: Ways) -> Self {
         Self {
             acceleration: inputs.base_acceleration,
             jerk: inputs.base_acceleration_rate,
             since: time,
-            support_rate: way / size,
-            second_rate: second_way / size,
+            velocities: ways.map(|way| way / size),
         }
     }
 
@@ -38,26 +34,9 @@ impl Drive {
         self.acceleration + self.jerk * (time - self.since)
     }
 
-    /// In the view of the contact that the state is of.
-    #[must_use]
-    pub(crate) fn seen(&self, state: &State) -> Self {
-        if state.mirrored { self.mirrored() } else { *self }
-    }
-
-    /// As the second contact sees it ([`State::mirror`]), and back.
-    #[must_use]
-    pub fn mirrored(&self) -> Self {
-        Self {
-            acceleration: -self.acceleration,
-            jerk: -self.jerk,
-            support_rate: self.second_rate - self.support_rate,
-            ..*self
-        }
-    }
-
     /// Whether the base acceleration is constant and the fixed contacts at rest.
     pub fn is_constant(&self) -> bool {
-        self.jerk == 0.0 && self.support_rate == 0.0 && self.second_rate == 0.0
+        self.jerk == 0.0 && self.velocities.iter().all(|velocity| *velocity == 0.0)
     }
 
     /// Whether both are constant and equal to those of the last communication step.

@@ -14,17 +14,6 @@ pub struct Accelerations<const S: usize> {
     pub nodes: Nodal<S>,
 }
 
-impl<const S: usize> Accelerations<S> {
-    /// In the other direction.
-    #[inline(always)]
-    pub(crate) fn mirrored(&self) -> Self {
-        Self {
-            start: -self.start,
-            nodes: self.nodes.map(|node| -node),
-        }
-    }
-}
-
 /// Sines and cosines of the phase advance from the start of a step to its nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotation<const S: usize> {

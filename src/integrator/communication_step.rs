@@ -4,15 +4,128 @@
 use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
 use crate::inputs::Inputs;
-use crate::integrator::constants::MANY_STEPS;
+use crate::integrator::constants::{COARSEST, MANY_STEPS};
+use crate::integrator::dense_output::DenseOutput;
+use crate::integrator::energy::conservation::conserves;
+use crate::integrator::exact_step;
 use crate::integrator::extremes::Extremes;
-use crate::integrator::integration::{News, Steps};
+use crate::integrator::grid::Grid;
 use crate::integrator::motion::Motion;
+use crate::integrator::recorder::Recorder;
 use crate::integrator::rest::rests_until;
-use crate::integrator::step_control::advance;
+use crate::integrator::stepper::{Progress, Stepper, resolution};
+use crate::integrator::with_contact;
 use crate::integrator::workspace::{Budget, Workspace};
 use crate::model::Model;
 use crate::state::State;
+
+/// How far to advance.
+#[derive(Debug)]
+pub(crate) enum Steps<'a> {
+    /// From `time` exactly to `time + size`.
+    Exactly {
+        /// s.
+        time: f64,
+        /// s.
+        size: f64,
+        /// What is new in it.
+        news: News,
+    },
+    /// By one step as long as the error allows, with dense output.
+    Own {
+        /// Dense output is read from here on where the step goes beyond it, within the tolerance, s.
+        until: f64,
+        /// The links during the step.
+        dense: &'a mut DenseOutput,
+    },
+}
+
+/// What a communication step has that the one before it had not, as if that were to go on.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct News {
+    /// An input that has changed.
+    pub(crate) inputs: bool,
+    /// Another length.
+    pub(crate) length: bool,
+}
+
+/// Advances the state.
+///
+/// # Errors
+/// A [`StepError`]; the state is then undefined.
+pub(crate) fn advance(
+    model: &Model,
+    state: &mut State,
+    workspace: &mut Workspace,
+    drive: Drive,
+    steps: Steps,
+    extremes: Option<&mut Extremes>,
+) -> Result<(), StepError> {
+    let mut recorder = Recorder {
+        extremes,
+        ..Recorder::default()
+    };
+    let (grid, driven) = match steps {
+        Steps::Exactly { time, size, news } => {
+            exact_step::leave_before_rest(model, state, &drive);
+            state.time = rests_until(model, state, &drive, time + size).unwrap_or(time);
+            let remaining = size - (state.time - time);
+            if remaining <= 0.0 {
+                return Ok(());
+            }
+            check_spacing(model, state.time, remaining)?;
+            if exact_step::step_exactly(model, state, workspace, &drive, remaining) {
+                return Ok(());
+            }
+            let grid = Grid {
+                recurs: !(news.inputs && news.length),
+                ..Grid::over(state.time, remaining)
+            };
+            // A blow would make more of an error than it is here.
+            let never_opened = state.is_closed() && !state.has_switched();
+            (grid, news.inputs && never_opened)
+        }
+        Steps::Own { until, dense } => {
+            let size = state.lengths.own();
+            check_spacing(model, state.time, size)?;
+            if exact_step::step_ahead(model, state, workspace, &drive, (until, &mut *dense)) {
+                return Ok(());
+            }
+            (recorder.read, recorder.dense) = (Some(until), Some(dense));
+            (Grid::free(state.time, size), false)
+        }
+    };
+    with_contact::leave(model, state);
+    let conserves = conserves(model, &drive);
+    Stepper {
+        model,
+        state,
+        budget: Budget::new(workspace),
+        workspace,
+        drive,
+        grid,
+        recorder,
+        progress: Progress {
+            // Without any damping errors add up over the more steps that this takes.
+            driven: driven && !conserves,
+            conserves,
+            ..Progress::default()
+        },
+    }
+    .run()
+}
+
+/// Checks that floating-point numbers of time lie close enough for the motion from `time` (s) over `size` (s).
+///
+/// # Errors
+/// [`StepErrorCause::Resolution`] if they do not.
+fn check_spacing(model: &Model, time: f64, size: f64) -> Result<(), StepError> {
+    let allowed = COARSEST * model.first_step(time);
+    let spacing = resolution(time, size);
+    let cause = StepErrorCause::Resolution { spacing, allowed };
+    let fits = spacing <= allowed;
+    fits.then_some(()).ok_or(StepError { time, cause })
+}
 
 /// Advances over the communication step from `time` to `time + size` (s) with inputs that are held or change linearly.
 ///
@@ -64,20 +177,20 @@ fn step_by<const EXTREMES: bool>(
     let since = motion.time;
     workspace.events.forget_until(since);
     // The fixed contacts move at constant velocity to their positions at the end of the step.
-    let support = inputs.support_displacement_after(size) - model.initial_support;
-    let second = match model.second {
+    let second = match model.second() {
         Some(_) => second_support(model, inputs, time, size)?,
         None => 0.0,
     };
-    let drive = Drive::new(inputs, time, size, motion.ways(support, second));
+    let displacements = [inputs.support_displacement_after(size) - model.initial_support, second];
+    let drive = Drive::new(inputs, time, size, motion.ways(displacements));
     let steady = drive.continues(&motion.drive);
     let ahead = motion.time < motion.end.time;
     // The end lies inside the current integration step: nothing to integrate, outputs come from its dense output.
     let inside = steady && until < motion.end.time;
     let mut extremes = EXTREMES.then(|| motion.extremes_now(model));
-    let own_step = motion.end.short_step.max(motion.end.long_step);
+    let own_step = motion.end.lengths.own();
     // Where the contact opens and closes, or slips and sticks, step ends would not lie on the grid of an exact step.
-    let switches = motion.end.has_switched() || motion.end.tangential.last_change.is_some();
+    let switches = motion.end.has_switched() || motion.end.slip.last_change.is_some();
     // One length decides which way to go: two that differ by rounding could choose none of the ways that fit.
     let remaining = until - motion.end.time;
     let many = remaining >= MANY_STEPS * own_step;
@@ -124,10 +237,7 @@ fn step_by<const EXTREMES: bool>(
         let steps = Steps::Exactly { time, size, news };
         let done = advance_end(model, motion, workspace, drive, steps, extremes.as_mut());
         done.inspect_err(|_| workspace.events.forget_after(since))?;
-        let end = &mut motion.end;
-        end.second_support = second;
-        end.support = if end.mirrored { second - support } else { support };
-        end.time = until;
+        (motion.end.displacements, motion.end.time) = (displacements, until);
         motion.start = motion.end;
         motion.drive = drive;
     }
@@ -220,7 +330,9 @@ fn go_ahead(
         if let Some(extremes) = &mut extremes {
             motion.add_dense(extremes, model, since, time.min(motion.end.time));
             if motion.end.time <= time {
-                extremes.of(motion.end.mirrored).add(motion.end.force);
+                for (index, link) in motion.end.links.iter().enumerate() {
+                    extremes.of(index).add(link.force);
+                }
             }
         }
     };
@@ -229,12 +341,9 @@ fn go_ahead(
     }
     let budget = Budget::new(workspace);
     while motion.end.time < time {
-        budget.check(workspace, motion.end.time)?;
-        let own_step = motion.end.short_step.max(motion.end.long_step);
-        let (seen, _) = model.views(&motion.end);
-        let drive = motion.drive.seen(&motion.end);
-        if time - motion.end.time >= MANY_STEPS * own_step
-            && let Some(until) = rests_until(seen, &motion.end, &drive, model.tolerance(), time)
+        budget.check(&workspace.search, motion.end.time)?;
+        if time - motion.end.time >= MANY_STEPS * motion.end.lengths.own()
+            && let Some(until) = rests_until(model, &motion.end, &motion.drive, time)
         {
             motion.end.time = until;
             motion.start = motion.end;
@@ -251,6 +360,7 @@ fn go_ahead(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::link::CONTACT;
     use crate::math::simd::Simd;
     use crate::scene::Scene;
     use crate::variables::ExcitationKind;
@@ -265,7 +375,7 @@ mod tests {
             .map(|k| {
                 let time = f64::from(k) * size;
                 step(&model, &mut motion, &mut workspace, &Inputs::default(), time, size).unwrap();
-                motion.tip(&model).forces[0]
+                motion.link(&model, CONTACT).force
             })
             .collect()
     }

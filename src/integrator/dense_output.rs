@@ -3,30 +3,59 @@
 use serde::{Deserialize, Serialize};
 
 use crate::integrator::course::Places;
+use crate::link::MAX_LINKS;
 use crate::math::prediction::Prediction;
 
-/// Dense output of a step: polynomials of the tip. Deviations from the preload.
+/// Dense output of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct DenseOutput {
-    /// Contact force, N.
+    /// The links.
+    pub links: [DenseLink; MAX_LINKS],
+    /// Slip of the first contact.
+    pub slip: DenseSlip,
+}
+
+/// Polynomials of a link, as deviations from the preload.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct DenseLink {
+    /// Force, N.
     pub force: Prediction,
-    /// Indentation, m.
-    pub indentation: Prediction,
+    /// Approach, m; of contacts.
+    pub approach: Prediction,
     /// Its velocity, m/s.
     pub rate: Prediction,
-    /// Where the contact force turns, for its extremes.
+    /// Where the force turns, for its extremes.
     pub turns: Places,
     /// Where it passes that of an interruption.
     pub passages: Places,
-    /// Friction.
-    pub friction: DenseFriction,
 }
 
-/// Dense output of friction.
+/// Polynomials of slip.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct DenseFriction {
+pub(crate) struct DenseSlip {
     /// Slip, m.
     pub slip: Prediction,
     /// Energy dissipated so far, J.
     pub dissipated: Prediction,
+}
+
+impl DenseOutput {
+    /// Whether a simulation can reach these numbers.
+    pub(crate) fn is_sound(&self) -> bool {
+        let Self { links, slip } = self;
+        let DenseSlip { slip, dissipated } = slip;
+        let finite = |polynomial: &Prediction| polynomial.iter().all(|number| number.is_finite());
+        finite(slip)
+            && finite(dissipated)
+            && links.iter().all(|link| {
+                let DenseLink {
+                    force,
+                    approach,
+                    rate,
+                    turns,
+                    passages,
+                } = link;
+                [force, approach, rate].into_iter().all(finite) && turns.is_sound() && passages.is_sound()
+            })
+    }
 }

@@ -5,7 +5,7 @@
 //! the contact linearised about the motion and its force linear in time over each step (trapezoidal rule). Only the
 //! growth of its size is used, the root of its energy.
 
-use crate::beam::mode::{Mode, ModeState};
+use crate::beam::mode::{Modal, Mode, ModeState};
 use crate::force_error::{ForceError, MODES};
 use crate::integrator::collocation::newton::Tangent;
 use crate::math::free_motion::FreeMotion;
@@ -21,33 +21,35 @@ impl ForceError {
         }
     }
 
-    /// Over a step with the given free motion of the modes and tangent of the contact.
+    /// Over a step with the given free motion of the modes, and of a closed contact the displacement per mode and the tangent.
     pub(crate) fn advance(
         &mut self,
         modes: &[Mode],
         free: impl Iterator<Item = FreeMotion>,
-        tangent: Tangent,
-        closed: bool,
+        closed: Option<(&Modal, Tangent)>,
     ) {
+        let shape = |i: usize| closed.and_then(|(shape, _)| shape.get(i)).copied().unwrap_or_default();
         let (mut tip, mut tip_rate) = (0.0, 0.0);
         let mut by_force = [ModeState::default(); MODES];
-        for (((at, free), mode), by_force) in self.deviation.iter_mut().zip(free).zip(modes).zip(&mut by_force) {
+        let all = self.deviation.iter_mut().zip(free).zip(modes).zip(&mut by_force);
+        for (i, (((at, free), mode), by_force)) in all.enumerate() {
             let ModeState { q, v } = *at;
+            let b = shape(i);
             at.q = free.q_from_q * q + free.q_from_v * v;
             at.v = free.v_from_q * q + free.v_from_v * v;
             // Of a constant force.
             by_force.q = if mode.omega_squared > 0.0 {
-                mode.tip * (1.0 - free.q_from_q) / mode.omega_squared
+                b * (1.0 - free.q_from_q) / mode.omega_squared
             } else {
-                mode.tip * 0.5 * free.q_from_v * free.q_from_v
+                b * 0.5 * free.q_from_v * free.q_from_v
             };
-            by_force.v = mode.tip * free.q_from_v;
-            tip += mode.tip * at.q;
-            tip_rate += mode.tip * at.v;
+            by_force.v = b * free.q_from_v;
+            tip += b * at.q;
+            tip_rate += b * at.v;
         }
         let before = self.force;
         self.force = 0.0;
-        if closed {
+        if let Some((_, tangent)) = closed {
             // The force at the end is that of the law at the motion that the mean force causes.
             let Tangent {
                 stiffness,
@@ -63,7 +65,7 @@ impl ForceError {
         }
         let size = self.normalise(modes);
         self.growth += size.ln();
-        if !closed {
+        if closed.is_none() {
             self.largest_growth = self.largest_growth.max(self.growth);
         }
     }

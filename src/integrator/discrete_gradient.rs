@@ -7,98 +7,79 @@
 //! and the law's mean force increases with the indentation: one monotone scalar equation, solved by a bracketing
 //! method.
 
-use crate::error::{StepError, StepErrorCause};
-use crate::integrator::collocation::newton::Source;
-use crate::integrator::collocation::step::Trial;
-use crate::integrator::collocation::trial::trial;
+use crate::excitation::drive::Drive;
+use crate::integrator::collocation::step::compute;
+use crate::integrator::collocation::trial::{Source, Trial};
 use crate::integrator::grid::Target;
-use crate::integrator::integration::{Integration, StepOutcome};
-use crate::integrator::workspace::{Room, work};
-use crate::math::nodal::{SHORT, end};
+use crate::integrator::workspace::{Room, Rooms, Workspace, work};
+use crate::math::nodal::SHORT;
 use crate::math::roots;
+use crate::model::Model;
+use crate::state::State;
 
-impl Integration<'_> {
-    /// Takes a discrete-gradient step to the target.
-    pub(crate) fn take_with_constant_force(&mut self, target: &Target) -> Result<StepOutcome, StepError> {
-        let trial = self
-            .constant_step(target)
-            .ok_or_else(|| self.error(StepErrorCause::NotFinite))?;
-        let mean = self.model.preload.force + end(&trial.forces);
-        let passages = self.passages(&trial, target.length, true).unwrap_or_default();
-        self.take(&trial, target, passages)?;
-        let d = self.model.preload.indentation + trial.indentation;
-        let closed = self.model.engagement(trial.indentation, trial.rate) > 0.0;
-        let switched = closed != self.state.closed;
-        if switched {
-            self.switch(closed);
-        }
-        if closed {
-            // The velocity at the end belongs to a constant force: if the contact is nearly a rigid dashpot, the law
-            // would overestimate the force.
-            let law = self.model.law.closed_branch(d, trial.rate);
-            let rigid = law.damping * self.model.mobility() * target.length > 1.0;
-            self.state.force = if rigid { mean } else { law.force };
-        }
-        self.model.settle_friction(self.state);
-        // No polynomial to predict the next step with.
-        self.state.last_step = 0.0;
-        Ok(StepOutcome {
-            taken: true,
-            switched,
-            growth: 2.0,
-            length: target.length,
-        })
-    }
+/// Rounds over the contacts until each force is that of its law under those of the others. One round is enough for one contact.
+const ROUNDS: u32 = 20;
 
-    /// Solves for the constant force of the step to the target.
-    fn constant_step(&mut self, target: &Target) -> Option<Trial<SHORT>> {
-        let Self {
-            model,
-            state,
-            workspace,
-            drive,
-            ..
-        } = self;
-        let mut trials = 0;
-        let (cache, end, _) = Room::<SHORT>::parts(*workspace);
-        let prepared = cache.prepare(state.time, target.length, target.recurring, model);
-        if let Some(friction) = model.friction() {
-            // It is constant too.
-            end.tangential.forces = [state.tangential.force - friction.preload; SHORT];
-        }
-        let preload = model.preload;
-        let from = preload.indentation + state.indentation;
-        let mut under = |force: f64| {
-            trials += 1;
-            let source = Source::Given([force - preload.force; SHORT]);
-            trial(model, state, drive, prepared, source, end)
-        };
-        let law_force = |trial: &Trial<SHORT>| {
-            let speed = (trial.indentation - state.indentation) / target.length;
-            model
-                .law
-                .mean_force(from, preload.indentation + trial.indentation, speed)
-        };
-        // Bracket: zero force gives the largest indentation and so the largest force of the law.
-        let most = Some(law_force(&under(0.0)?)).filter(|most| most.is_finite())?;
-        let mut excess = |force: f64| under(force).map_or(f64::NAN, |trial| force - law_force(&trial));
-        let bracket = ((0.0, -most), (most, excess(most)));
-        let force = roots::between(excess, bracket.0, bracket.1, 0.0).unwrap_or(most);
-        let trial = under(force);
-        workspace.work += trials * work::<SHORT>(model, true);
-        trial
+/// Solves for the constant forces of the step to the target; friction keeps the force it has.
+pub(crate) fn solve(
+    model: &Model,
+    state: &State,
+    drive: &Drive,
+    workspace: &mut Workspace,
+    trial: &mut Trial<SHORT>,
+    target: &Target,
+) -> Option<()> {
+    let (room, search) = Rooms::<SHORT>::parts(workspace);
+    search.looked = None;
+    let Room { cache, scratch, .. } = room;
+    let prepared = cache.prepare(state.time, target.length, target.recurring, model);
+    let contacts = |index: &usize| model.links.get(*index).is_some_and(|link| link.contact().is_some());
+    let contacts = || (0..model.links.len()).filter(contacts);
+    for ((nodes, link), at) in trial.links.iter_mut().zip(&model.links).zip(&state.links) {
+        nodes.forces = [at.force - link.force; SHORT];
     }
+    let mut trials = 0;
+    let mut under = |trial: &mut Trial<SHORT>, index: usize, force: f64| {
+        trials += 1;
+        let (link, nodes) = model.links.get(index).zip(trial.links.get_mut(index))?;
+        nodes.forces = [force - link.force; SHORT];
+        compute(model, state, drive, prepared, Source::Given, trial, scratch)?;
+        // What its law gives between both ends.
+        let (nodes, at) = trial.links.get(index).zip(state.links.get(index))?;
+        let speed = (nodes.end.approach - at.approach) / target.length;
+        let [from, to] = [at.approach, nodes.end.approach].map(|deviation| link.approach + deviation);
+        Some(link.contact()?.mean_force(from, to, speed))
+    };
+    let rounds = if contacts().count() > 1 { ROUNDS } else { 1 };
+    for _ in 0..rounds {
+        let mut changed = false;
+        for index in contacts() {
+            let before = trial.links.get(index)?.forces;
+            // Bracket: zero force gives the largest approach and so the largest force of the law.
+            let most = Some(under(trial, index, 0.0)?).filter(|most| most.is_finite())?;
+            let mut excess = |force: f64| under(trial, index, force).map_or(f64::NAN, |law| force - law);
+            let bracket = ((0.0, -most), (most, excess(most)));
+            let force = roots::between(excess, bracket.0, bracket.1, 0.0).unwrap_or(most);
+            under(trial, index, force)?;
+            changed |= trial.links.get(index)?.forces != before;
+        }
+        if !changed {
+            break;
+        }
+    }
+    search.work += trials * work::<SHORT>(model, true);
+    Some(())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::excitation::drive::Drive;
     use crate::integrator::grid::Grid;
-    use crate::integrator::workspace::{Budget, Workspace};
-    use crate::model::Model;
+    use crate::integrator::recorder::Recorder;
+    use crate::integrator::stepper::{Progress, Stepper};
+    use crate::integrator::workspace::Budget;
+    use crate::link::CONTACT;
     use crate::scene::Scene;
-    use crate::state::State;
 
     /// The specimen with a gap and without beam damping, thrown at the contact.
     fn thrown(contact_damping: f64) -> (Model, State) {
@@ -110,8 +91,8 @@ mod tests {
         let mut state = model.initial_state(0.0);
         for (at, mode) in state.modes.iter_mut().zip(&model.modes) {
             at.v = -0.1 * mode.participation;
-            state.indentation_rate -= mode.tip * at.v;
         }
+        model.settle(&mut state);
         (model, state)
     }
 
@@ -120,29 +101,22 @@ mod tests {
         let mut workspace = Workspace::new(model);
         let (mut closings, mut last) = (0, None);
         let energies = (0..count).map(|k| {
-            let mut integration = Integration {
+            let mut stepper = Stepper {
                 model,
-                other: None,
                 state,
                 budget: Budget::new(&workspace),
                 workspace: &mut workspace,
                 drive: Drive::default(),
                 grid: Grid::over(step * f64::from(k), step),
-                dense: None,
-                extremes: None,
-                tolerance: 1e-6,
-                allowed: 1e-8,
-                refusals: 0,
-                before_event: false,
-                changes: 0,
-                driven: false,
-                conserves: false,
+                recorder: Recorder::default(),
+                progress: Progress::default(),
             };
-            let target = integration.grid.target(step, integration.state.time, None);
-            integration.take_with_constant_force(&target).unwrap();
-            closings += u32::from(state.last_closing > last);
-            last = state.last_closing;
-            model.energy(&state.modes, state.indentation)
+            let target = stepper.grid.target(step, stepper.state.time, None);
+            stepper.take_with_constant_force(&target).unwrap();
+            let closing = state.links[CONTACT].last_closing;
+            closings += u32::from(closing > last);
+            last = closing;
+            model.energy(state)
         });
         let energies = energies.collect();
         (energies, closings)
@@ -154,7 +128,7 @@ mod tests {
         for step in [1e-8, 1e-6, 1e-5, 1e-4] {
             for damping in [0.0, 1e-7, 8e-5, 1.0] {
                 let (model, mut state) = thrown(damping);
-                let start = model.energy(&state.modes, state.indentation);
+                let start = model.energy(&state);
                 let (energies, closings) = energies(&model, &mut state, step, 20_000);
                 assert!(closings > 0, "{step} s, {damping} s");
                 let mut before = start;

@@ -10,14 +10,13 @@ use crate::closed_loop::system::{ClosedLoop, Steady};
 use crate::contact::law::Law;
 use crate::contact::linear::Linear;
 use crate::excitation::drive::Drive;
-use crate::integrator::constants::{FORCE_ROUNDING, INSIDE, SHARE, UNREST};
-use crate::integrator::course::Places;
-use crate::integrator::dense_output::{DenseFriction, DenseOutput};
+use crate::integrator::constants::{FORCE_ROUNDING, INSIDE, UNREST};
+use crate::integrator::dense_output::{DenseLink, DenseOutput};
 use crate::integrator::grid::round_down;
-use crate::integrator::integration::StepOutcome;
-use crate::integrator::step_length::{growth, shrinkage};
+use crate::integrator::step_length::{StepOutcome, growth, shrinkage};
 use crate::integrator::with_contact::{leave, oscillators};
 use crate::integrator::workspace::Workspace;
+use crate::link::CONTACT;
 use crate::math::nodal::{LONG, Nodal, dot};
 use crate::math::simd::Separate;
 use crate::model::Model;
@@ -86,14 +85,13 @@ pub(crate) fn step_ahead(
     if model.closed_loop.is_none() {
         return false;
     }
-    let tolerance = model.tolerance();
-    let allowed = (SHARE * tolerance).max(FORCE_ROUNDING * model.force_scale);
+    let allowed = model.tolerance.step.max(FORCE_ROUNDING * model.force_scale);
     let longest = match model.scene.solver.maximum_step {
         0.0 => f64::INFINITY,
         longest => longest,
     };
     let remaining = until - state.time;
-    let mut requested = state.long_step;
+    let mut requested = state.lengths.long;
     let mut free = [0.0; 2 * MAX_MODES];
     let Some(start) = Start::new(model, state, drive, requested, &mut free) else {
         return false;
@@ -106,7 +104,7 @@ pub(crate) fn step_ahead(
         }
         if length < remaining {
             // The next step tries again, as what is not smooth may decay.
-            state.long_step = requested.max(2.0 * remaining);
+            state.lengths.long = requested.max(2.0 * remaining);
             if !step_exactly(model, state, workspace, drive, remaining) {
                 return false;
             }
@@ -123,12 +121,13 @@ pub(crate) fn step_ahead(
         let [indentations, rates] = start.at_nodes(state, propagator.tip_at_nodes(model.simd, &free, start.phasor));
         let defect = |start: f64, values: &Nodal<LONG>| start - dot::<LONG, Separate>(values, &collocation.at_start);
         let stiffness = start.law.stiffness;
-        let elastic = stiffness * defect(state.indentation, &indentations);
-        let force = elastic + stiffness * start.law.damping * defect(state.indentation_rate, &rates);
+        let contact = state.links[CONTACT];
+        let elastic = stiffness * defect(contact.approach, &indentations);
+        let force = elastic + stiffness * start.law.damping * defect(contact.rate, &rates);
         let ratio = INSIDE * elastic.abs().max(force.abs()) / allowed;
         if ratio <= 1.0 {
-            let indentation = collocation.through(model.simd, state.indentation, &indentations);
-            let rate = collocation.through(model.simd, state.indentation_rate, &rates);
+            let indentation = collocation.through(model.simd, contact.approach, &indentations);
+            let rate = collocation.through(model.simd, contact.rate, &rates);
             if !start.end(model, state, &free, drive, length, &propagator.whole) {
                 return false;
             }
@@ -137,17 +136,16 @@ pub(crate) fn step_ahead(
             for (force, rate) in force.iter_mut().zip(&rate) {
                 *force = stiffness * *force + damping * rate;
             }
-            *dense = DenseOutput {
+            *dense = DenseOutput::default();
+            dense.links[CONTACT] = DenseLink {
                 force,
-                indentation,
+                approach: indentation,
                 rate,
-                turns: Places::default(),
-                passages: Places::default(),
-                friction: DenseFriction::default(),
+                ..DenseLink::default()
             };
             state.time = time;
             state.force_error.add(ratio * allowed);
-            state.long_step = StepOutcome::after(length, requested, growth::<LONG>(ratio)).length;
+            state.lengths.long = StepOutcome::accepted(length, requested, growth::<LONG>(ratio)).length;
             return true;
         }
         requested = length * shrinkage::<LONG>(ratio);
@@ -169,23 +167,24 @@ impl<'a> Start<'a> {
     /// `None` if the motion in it is not linear, as the contact may open or be interrupted.
     fn new(model: &'a Model, state: &State, drive: &Drive, length: f64, free: &mut Coordinates) -> Option<Self> {
         let closed_loop = model.closed_loop.as_deref()?;
-        let Law::Linear(law) = model.law else {
+        let Law::Linear(law) = *model.law() else {
             return None;
         };
-        if !(state.closed || law.bonded) || state.interruptions.in_progress() {
+        let contact = &state.links[CONTACT];
+        if !(contact.closed || law.bonded) || contact.interruptions.in_progress() {
             return None;
         }
-        let growth = law.stiffness * drive.support_rate;
+        let growth = law.stiffness * drive.velocities[0];
         let steady = Steady {
             acceleration: drive.acceleration(state.time),
             jerk: drive.jerk,
-            force: law.stiffness * state.support + law.damping * growth,
+            force: law.stiffness * state.displacements[0] + law.damping * growth,
             growth,
         };
         let phasor = model.generator.phasor(state.time);
         // The force must stay above zero, or above the threshold of an interruption.
-        let least = model.criterion.map_or(0.0, |criterion| criterion.force);
-        let watched = !model.law.never_opens() || least > 0.0;
+        let least = model.links[CONTACT].criterion.map_or(0.0, |criterion| criterion.force);
+        let watched = !model.law().never_opens() || least > 0.0;
         let margin = if watched {
             let steady = closed_loop.least_steady_force(model.preload.force, &steady, phasor, length);
             steady - least
@@ -216,7 +215,7 @@ impl<'a> Start<'a> {
         let (displacement, velocity) = self.closed_loop.tip_of(&particular);
         let [displacements, velocities] = tip;
         [
-            displacements.map(|tip| state.support - (tip + displacement)),
+            displacements.map(|tip| state.displacements[0] - (tip + displacement)),
             velocities.map(|tip| -(tip + velocity)),
         ]
     }
@@ -235,8 +234,8 @@ impl<'a> Start<'a> {
         let Self { closed_loop, .. } = self;
         let motion = closed_loop.moved(propagator, free, &self.steady.after(length), self.phasor);
         let (tip, tip_rate) = closed_loop.tip_of(&motion);
-        let support = state.support + drive.support_rate * length;
-        let (indentation, rate) = (support - tip, drive.support_rate - tip_rate);
+        let support = state.displacements[0] + drive.velocities[0] * length;
+        let (indentation, rate) = (support - tip, drive.velocities[0] - tip_rate);
         if !(indentation.is_finite() && rate.is_finite()) {
             return false;
         }
@@ -245,28 +244,28 @@ impl<'a> Start<'a> {
             (mode.q, mode.v) = (*x, *v);
         }
         state.with_contact = true;
-        state.support = support;
-        state.support_rate = drive.support_rate;
-        state.indentation = indentation;
-        state.indentation_rate = rate;
-        state.force = model.law.force(model.preload.indentation + indentation, rate);
-        state.last_step = 0.0;
+        state.displacements[0] = support;
+        state.velocities = drive.velocities;
+        let contact = &mut state.links[CONTACT];
+        (contact.approach, contact.rate) = (indentation, rate);
+        contact.force = model.law().force(model.preload.indentation + indentation, rate);
+        state.lengths.last = 0.0;
         state.steps += 1;
         true
     }
 }
 
 /// [`leave`] where constant inputs leave so little motion that the contact may be at rest.
-pub(crate) fn leave_before_rest(model: &Model, state: &mut State, drive: &Drive, tolerance: f64) {
+pub(crate) fn leave_before_rest(model: &Model, state: &mut State, drive: &Drive) {
     if state.with_contact && drive.is_constant() && !model.generator.is_active(state.time) {
-        leave_if_still(model, state, drive, tolerance);
+        leave_if_still(model, state, drive);
     }
 }
 
 #[inline(never)]
-fn leave_if_still(model: &Model, state: &mut State, drive: &Drive, tolerance: f64) {
+fn leave_if_still(model: &Model, state: &mut State, drive: &Drive) {
     let mut free = [0.0; 2 * MAX_MODES];
-    let least = UNREST * tolerance;
+    let least = UNREST * model.tolerance.force;
     if let Some(start) = Start::new(model, state, drive, 0.0, &mut free)
         && start.closed_loop.swing(&free, start.phasor, least) <= least
     {

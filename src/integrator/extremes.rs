@@ -1,8 +1,8 @@
 //! Extremes of the contact force inside steps, from the polynomials of the steps.
 
 use crate::integrator::course::Places;
+use crate::link::{Link, MAX_LINKS};
 use crate::math::prediction::{Prediction, value_and_slope};
-use crate::model::Model;
 use serde::{Deserialize, Serialize};
 
 /// Least and greatest force of a contact, N.
@@ -37,48 +37,47 @@ impl Range {
 /// Extremes over an interval of time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Extremes {
-    /// Of the force of the first contact.
-    pub first: Range,
-    /// Of the force of the second contact.
-    pub second: Range,
+    /// Of the forces of the links.
+    forces: [Range; MAX_LINKS],
     /// Greatest indentation of the second contact, m.
     pub nearest: f64,
 }
 
 impl Extremes {
-    /// Of the forces (N) of both contacts and the indentation of the second (m).
-    pub fn at([first, second]: [f64; 2], nearest: f64) -> Self {
+    /// Of the present forces (N), and the indentation of the second contact (m).
+    pub fn at(forces: [f64; MAX_LINKS], nearest: f64) -> Self {
         Self {
-            first: Range::at(first),
-            second: Range::at(second),
+            forces: forces.map(Range::at),
             nearest,
         }
     }
 
-    /// Those of the force of the second contact, or of the first.
-    pub fn of(&mut self, second: bool) -> &mut Range {
-        if second { &mut self.second } else { &mut self.first }
+    /// Those of the force of a link.
+    #[expect(clippy::indexing_slicing, reason = "the remainder is in range")]
+    pub fn of(&mut self, index: usize) -> &mut Range {
+        &mut self.forces[index % MAX_LINKS]
     }
 
     /// All of them.
-    pub(crate) fn numbers(&self) -> [f64; 5] {
-        let Self { first, second, nearest } = self;
-        [first.least, first.greatest, second.least, second.greatest, *nearest]
+    pub(crate) fn numbers(&self) -> impl Iterator<Item = f64> {
+        let ranges = self.forces.iter().flat_map(|range| [range.least, range.greatest]);
+        ranges.chain([self.nearest])
     }
 
-    /// Includes the force of a step of the closed contact from `from`, where it is included already, to `to` (relative to
-    /// its end, in step lengths): of its polynomial, which turns at these places.
+    /// Includes the force of a link over a step in which it is closed, from `from`, where it is included already, to `to`
+    /// (relative to its end, in step lengths): of its polynomial, which turns at these places.
     pub(crate) fn add_course(
         &mut self,
-        model: &Model,
+        link: &Link,
+        index: usize,
         (polynomial, turns): (&Prediction, &Places),
         from: f64,
         to: f64,
     ) {
-        let range = self.of(model.mirrored);
+        let range = self.of(index);
         for y in turns.between(from, to).chain([to]) {
-            let force = model.preload.force + value_and_slope(polynomial, y).0;
-            range.add(model.law.without_pull(force));
+            let force = link.force + value_and_slope(polynomial, y).0;
+            range.add(link.contact().map_or(force, |law| law.without_pull(force)));
         }
     }
 

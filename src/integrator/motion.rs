@@ -8,15 +8,17 @@
 
 use crate::beam::mode::{MAX_MODES, Modal};
 use crate::chatter::Interruptions;
+use crate::contact::friction::{Phase, Slip};
 use crate::excitation::drive::Drive;
 use crate::integrator::course::turning_points_between;
-use crate::integrator::dense_output::{DenseFriction, DenseOutput};
+use crate::integrator::dense_output::{DenseLink, DenseOutput};
 use crate::integrator::events::log::Event;
 use crate::integrator::extremes::Extremes;
 use crate::integrator::with_contact;
+use crate::link::{CONTACT, Link, MAX_LINKS, Ways};
 use crate::math::prediction::value_and_slope;
 use crate::model::Model;
-use crate::state::State;
+use crate::state::{LinkState, State};
 use serde::{Deserialize, Serialize};
 
 /// All that changes in a simulation: the motion around a communication point. Plain numbers, so saving it is a copy.
@@ -32,34 +34,25 @@ pub struct Motion {
     pub(crate) size: f64,
     /// Extremes of the contact force in it, N; `None` before it, or if none are requested.
     pub(crate) extremes: Option<Extremes>,
-    /// Base acceleration and velocity of the fixed contact during it.
+    /// Base acceleration and velocities of the fixed contacts during it.
     pub(crate) drive: Drive,
     /// State at the start of the current integration step: at the communication point, or before it.
     pub(crate) start: State,
     /// State at the end of the current integration step: at the communication point, or ahead of it.
     pub(crate) end: State,
-    /// The tip between `start` and `end`.
+    /// The links between `start` and `end`.
     pub(crate) dense: DenseOutput,
 }
 
-/// The tip at a communication point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tip {
-    /// Forces of both contacts, N.
-    pub forces: [f64; 2],
-    /// Indentation minus preload indentation, m.
-    pub indentation: f64,
+/// A link at a communication point.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LinkNow {
+    /// Force, N.
+    pub force: f64,
+    /// Approach minus that of the preload, m.
+    pub approach: f64,
     /// Its velocity, m/s.
     pub rate: f64,
-}
-
-/// Time derivatives of the tip at a communication point.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct TipRates {
-    /// Rates of the forces of both contacts, N/s.
-    pub forces: [f64; 2],
-    /// Second derivative of the indentation, m/s2.
-    pub acceleration: f64,
 }
 
 impl Motion {
@@ -106,37 +99,22 @@ impl Motion {
             end,
             dense,
         } = self;
-        let DenseOutput {
-            force,
-            indentation,
-            rate,
-            turns,
-            passages,
-            friction,
-        } = dense;
-        let DenseFriction { slip, dissipated } = friction;
-        let polynomials = [force, indentation, rate, slip, dissipated].into_iter().flatten();
         let numbers = [
             *time,
             *current,
             *current_rate,
             *size,
             drive.jerk,
-            drive.support_rate,
-            drive.second_rate,
+            drive.acceleration(start.time),
         ];
         let extremes = extremes.iter().flat_map(Extremes::numbers);
-        let driven = drive.acceleration(start.time);
         numbers
-            .iter()
-            .copied()
+            .into_iter()
+            .chain(drive.velocities)
             .chain(extremes)
-            .chain(polynomials.copied())
             .all(f64::is_finite)
-            && driven.is_finite()
             && *size >= 0.0
-            && turns.is_sound()
-            && passages.is_sound()
+            && dense.is_sound()
             && start.is_sound()
             && end.is_sound()
             && start.time <= *time
@@ -145,11 +123,13 @@ impl Motion {
 
     /// The opening or closing that the integrator has located beyond the communication point.
     pub fn event_ahead(&self) -> Option<Event> {
-        let ahead = self.end.time > self.time && self.end.closed != self.start.closed;
-        ahead.then_some(Event {
+        let mut links = self.start.links.iter().zip(&self.end.links).enumerate();
+        let switched = links.find(|(_, (start, end))| start.closed != end.closed);
+        let ahead = switched.filter(|_| self.end.time > self.time);
+        ahead.map(|(index, (_, end))| Event {
             time: self.end.time,
-            closes: self.end.closed,
-            second: self.end.mirrored,
+            closes: end.closed,
+            second: index > 0,
         })
     }
 
@@ -164,109 +144,220 @@ impl Motion {
         self.end.time - self.start.time
     }
 
-    /// The tip at the communication point.
-    pub fn tip(&self, model: &Model) -> Tip {
-        let state = self.state();
-        if state.mirrored {
-            return self.mirrored_tip(model, state);
-        }
-        let (force, indentation, rate) = self.seen(model, state);
-        Tip {
-            forces: [force, 0.0],
-            indentation,
-            rate,
+    /// A link at the communication point, with its state at the start of the step around it.
+    fn seen<'a>(
+        &'a self,
+        model: &'a Model,
+        index: usize,
+    ) -> Option<(&'a Link, &'a LinkState, Option<(&'a DenseLink, f64)>)> {
+        let link = model.links.get(index)?;
+        let state = self.state().links.get(index)?;
+        let dense = self.inside().and_then(|y| Some((self.dense.links.get(index)?, y)));
+        Some((link, state, dense))
+    }
+
+    /// A contact at the communication point; nothing of a model that has no such link.
+    pub fn link(&self, model: &Model, index: usize) -> LinkNow {
+        let Some((link, state, dense)) = self.seen(model, index) else {
+            return LinkNow::default();
+        };
+        let Some((dense, y)) = dense else {
+            return LinkNow {
+                force: state.force,
+                approach: state.approach,
+                rate: state.rate,
+            };
+        };
+        let at = |values| value_and_slope(values, y).0;
+        let force = link.force + at(&dense.force);
+        let force = match link.contact() {
+            _ if !state.closed => 0.0,
+            Some(law) if !law.never_opens() => force.max(f64::MIN_POSITIVE),
+            _ => force,
+        };
+        LinkNow {
+            force,
+            approach: at(&dense.approach),
+            rate: at(&dense.rate),
         }
     }
 
-    /// [`Motion::tip`] from the view of the second contact.
-    #[cold]
-    fn mirrored_tip(&self, model: &Model, state: &State) -> Tip {
-        let (force, indentation, rate) = self.seen(model.views(state).0, state);
-        Tip {
-            forces: [0.0, force],
-            indentation: state.second_support - indentation,
-            rate: self.drive.second_rate - rate,
+    /// Rates of force (N/s) and velocity (m/s2) of a contact at the communication point; at a discontinuity, the limit from the
+    /// left.
+    pub fn link_rates(&self, model: &Model, index: usize) -> (f64, f64) {
+        let Some((link, state, dense)) = self.seen(model, index).filter(|_| self.size > 0.0) else {
+            return (0.0, 0.0);
+        };
+        if let Some((dense, y)) = dense {
+            let slope = |values| value_and_slope(values, y).1 / self.length();
+            let force = if state.closed { slope(&dense.force) } else { 0.0 };
+            return (force, slope(&dense.rate));
         }
+        let acceleration = self.acceleration(model, link);
+        let Some(law) = link.contact().filter(|_| state.closed) else {
+            return (0.0, acceleration);
+        };
+        let branch = law.closed_branch(link.approach + state.approach, state.rate);
+        (
+            branch.stiffness * state.rate + branch.damping * acceleration,
+            acceleration,
+        )
+    }
+
+    /// Second derivative of the approach of a link at the end of a step, m/s2.
+    fn acceleration(&self, model: &Model, link: &Link) -> f64 {
+        let accelerations = self.accelerations(model, self.state());
+        let Some(port) = model.ports.get(link.port) else {
+            return 0.0;
+        };
+        let pairs = port.shape.iter().zip(&accelerations);
+        -link.sense * pairs.map(|(b, acceleration)| b * acceleration).sum::<f64>()
     }
 
     /// Force of the first contact without what its damping adds (N), and the rate of that (N/s).
     pub fn elastic_force(&self, model: &Model) -> (f64, f64) {
-        let (tip, law) = (self.tip(model), &model.law);
-        if tip.forces[0] <= 0.0 && !law.never_opens() {
+        let (contact, law) = (self.link(model, CONTACT), model.law());
+        if contact.force <= 0.0 && !law.never_opens() {
             return (0.0, 0.0);
         }
-        let indentation = model.preload.indentation + tip.indentation;
+        let indentation = model.preload.indentation + contact.approach;
         let stiffness = law.stiffness(indentation);
-        (law.closed_branch(indentation, 0.0).force, stiffness * tip.rate)
+        (law.closed_branch(indentation, 0.0).force, stiffness * contact.rate)
     }
 
-    /// Force, indentation and its velocity in the view of this state.
-    #[inline(always)]
-    fn seen(&self, model: &Model, state: &State) -> (f64, f64, f64) {
-        let Some(y) = self.inside() else {
-            return (state.force, state.indentation, state.indentation_rate);
+    /// Friction force (N) and slip at the communication point.
+    pub fn friction(&self, model: &Model) -> (f64, Slip) {
+        let state = self.state();
+        let mut slip = state.slip;
+        let Some((link, along, dense)) = model.friction().and_then(|(index, _)| self.seen(model, index)) else {
+            return (0.0, slip);
         };
+        let Some((dense, y)) = dense else {
+            return (along.force, slip);
+        };
+        let (closed, slips) = (state.links[CONTACT].closed, slip.phase != Phase::Stick);
         let at = |values| value_and_slope(values, y).0;
-        let force = model.preload.force + at(&self.dense.force);
-        let force = match state.closed {
-            true if model.law.never_opens() => force,
-            true => force.max(f64::MIN_POSITIVE),
-            false => 0.0,
+        if !closed || slips {
+            let start = slip.slip;
+            slip.slip = at(&self.dense.slip.slip);
+            slip.distance += if closed { (slip.slip - start).abs() } else { 0.0 };
+        }
+        if closed && slips {
+            slip.dissipated = at(&self.dense.slip.dissipated).max(slip.dissipated);
+        }
+        (if closed { link.force + at(&dense.force) } else { 0.0 }, slip)
+    }
+
+    /// Their time derivatives at the communication point; at a discontinuity, the limit from the left.
+    pub(crate) fn friction_rates(&self, model: &Model) -> (f64, Slip) {
+        let state = self.state();
+        let none = (0.0, Slip::default());
+        let (Some((index, friction)), Some(law)) = (model.friction(), model.law().power()) else {
+            return none;
         };
-        (force, at(&self.dense.indentation), at(&self.dense.rate))
+        let Some((link, along, dense)) = self.seen(model, index).filter(|_| self.size > 0.0) else {
+            return none;
+        };
+        let contact = &state.links[CONTACT];
+        let of_slip = |y: f64| value_and_slope(&self.dense.slip.slip, y).1 / self.length();
+        if !contact.closed {
+            let slip = dense.map_or(-along.rate, |(_, y)| of_slip(y));
+            return (
+                0.0,
+                Slip {
+                    slip,
+                    ..Slip::default()
+                },
+            );
+        }
+        let (force, rate, slip);
+        if let Some((dense, y)) = dense {
+            let (value, slope) = value_and_slope(&dense.force, y);
+            (force, rate) = (link.force + value, slope / self.length());
+            slip = if state.slip.phase == Phase::Stick {
+                0.0
+            } else {
+                of_slip(y)
+            };
+        } else {
+            force = along.force;
+            let d = model.preload.indentation + contact.approach;
+            let stick = friction.trial(law, d, -along.approach - state.slip.slip, -along.rate);
+            if let Some(sign) = state.slip.phase.sign() {
+                rate = sign * friction.coefficient * self.link_rates(model, CONTACT).0;
+                slip = if law.damping > 0.0 {
+                    (force - stick.force) / (law.damping * stick.stiffness)
+                } else {
+                    -along.rate + sign * friction.coefficient / friction.ratio / law.exponent * contact.rate
+                };
+            } else {
+                let acceleration = -self.acceleration(model, link);
+                rate =
+                    stick.by_indentation * contact.rate - stick.stiffness * (-along.rate + law.damping * acceleration);
+                slip = 0.0;
+            }
+        }
+        let slip = Slip {
+            slip,
+            distance: slip.abs(),
+            dissipated: (force * slip).abs(),
+            ..Slip::default()
+        };
+        (rate, slip)
     }
 
     /// Accelerations of the modes under all loads at the end of a step.
     pub(crate) fn accelerations(&self, model: &Model, state: &State) -> Modal {
         let base = self.drive.acceleration(self.time) + model.generator.acceleration_before(self.time);
-        let base = if state.mirrored { -base } else { base };
-        let force = state.force - model.preload.force;
         let modes = with_contact::modes(model, state);
-        let axial = match (model.axial(), model.friction()) {
-            (Some(axial), _) => axial.loads(&model.modes, &modes),
-            (None, Some(friction)) => {
-                let along = state.tangential.force - friction.preload;
-                friction.levers.map(|lever| lever * along)
-            }
-            (None, None) => [0.0; MAX_MODES],
+        let mut accelerations = match model.axial() {
+            Some(axial) => axial.loads(&model.modes, &modes),
+            None => [0.0; MAX_MODES],
         };
-        let mut accelerations = axial;
+        for (link, at) in model.links.iter().zip(&state.links) {
+            let force = link.sense * (at.force - link.force);
+            for (acceleration, b) in accelerations
+                .iter_mut()
+                .zip(model.ports.get(link.port).iter().flat_map(|port| &port.shape))
+            {
+                *acceleration += b * force;
+            }
+        }
         for ((acceleration, mode), at) in accelerations.iter_mut().zip(&model.modes).zip(&modes) {
-            let load = mode.tip * force - mode.participation * base + *acceleration;
-            *acceleration = load - mode.omega_squared * at.q - mode.damping * at.v;
+            *acceleration -= mode.participation * base + mode.omega_squared * at.q + mode.damping * at.v;
         }
         accelerations
     }
 
     /// Extremes at the communication point alone.
     pub(crate) fn extremes_now(&self, model: &Model) -> Extremes {
-        let tip = self.tip(model);
-        let second = self.state().second_support - tip.indentation - model.scene.second.gap;
-        Extremes::at(tip.forces, second)
+        let mut forces = [0.0; MAX_LINKS];
+        for (index, force) in forces.iter_mut().enumerate().take(model.links.len()) {
+            *force = self.link(model, index).force;
+        }
+        let second = model.second().and_then(|index| {
+            let link = model.links.get(index)?;
+            Some(link.approach + self.link(model, index).approach)
+        });
+        Extremes::at(forces, second.unwrap_or_default())
     }
 
-    /// Ways (m) of the fixed contacts to these displacements (m): of the first, and of the second relative to it.
-    pub(crate) fn ways(&self, support: f64, second: f64) -> [f64; 2] {
-        let state = self.state();
-        let second_way = second - state.second_support;
-        // None where nothing moves, also by rounding.
-        let way = if state.mirrored {
-            second_way - (second - support - state.support)
-        } else {
-            support - state.support
-        };
-        [way, second_way]
+    /// Ways (m) of the inputs to these displacements (m). None where nothing moves, also by rounding.
+    pub(crate) fn ways(&self, mut displacements: Ways) -> Ways {
+        for (displacement, before) in displacements.iter_mut().zip(&self.state().displacements) {
+            *displacement -= before;
+        }
+        displacements
     }
 
     /// Displacement (m) and velocity (m/s) of the fixed contact.
     pub fn support(&self) -> (f64, f64) {
-        let state = self.state();
-        if state.mirrored {
-            let (displacement, rate) = (state.second_support, self.drive.second_rate);
-            (displacement - state.support, rate - state.support_rate)
-        } else {
-            (state.support, state.support_rate)
-        }
+        let State {
+            displacements: [displacement, _],
+            velocities: [velocity, _],
+            ..
+        } = self.state();
+        (*displacement, *velocity)
     }
 
     /// Extremes of the forces within the last communication step; for scenes with `effects.extremes`.
@@ -278,81 +369,37 @@ impl Motion {
     /// already.
     pub(crate) fn add_dense(&self, extremes: &mut Extremes, model: &Model, from: f64, to: f64) {
         let at = |time: f64| ((time - self.end.time) / self.length()).clamp(-1.0, 0.0);
-        let (view, other) = model.views(&self.start);
         let (from, to) = (at(from), at(to));
-        if self.start.closed {
-            extremes.add_course(view, (&self.dense.force, &self.dense.turns), from, to);
-        } else {
-            extremes.of(view.mirrored).add(0.0);
-        }
-        if other.is_some() {
-            let (second, gap) = (self.start.second_support, model.scene.second.gap);
-            let polynomial = &self.dense.indentation;
-            let turns = turning_points_between(polynomial, from, to);
-            for y in turns.iter().chain([from, to]) {
-                let indentation = value_and_slope(polynomial, y).0;
-                let seen = if self.start.mirrored {
-                    indentation
-                } else {
-                    second - indentation
-                };
-                extremes.approach(seen - gap);
+        let links = model.links.iter().zip(&self.start.links).zip(&self.dense.links);
+        for (index, ((link, start), dense)) in links.enumerate() {
+            if link.contact().is_none() {
+                continue;
+            }
+            if start.closed {
+                extremes.add_course(link, index, (&dense.force, &dense.turns), from, to);
+            } else {
+                extremes.of(index).add(0.0);
+            }
+            if model.second() == Some(index) {
+                let turns = turning_points_between(&dense.approach, from, to);
+                for y in turns.iter().chain([from, to]) {
+                    extremes.approach(link.approach + value_and_slope(&dense.approach, y).0);
+                }
             }
         }
     }
 
-    /// Interruptions of the second contact, or of the first, up to the communication point; none if they are not counted.
-    pub fn interruptions(&self, model: &Model, second: bool) -> Interruptions {
-        let state = self.state();
-        let mut interruptions = state.record(second).interruptions;
-        if let Some(now) = self.inside()
-            && let Some(criterion) = &model.views(state).0.criterion
-            && second == state.mirrored
-        {
-            for place in self.dense.passages.until(now) {
+    /// Interruptions of a contact up to the communication point; none if they are not counted.
+    pub fn interruptions(&self, model: &Model, index: usize) -> Interruptions {
+        let Some((link, state, dense)) = self.seen(model, index) else {
+            return Interruptions::default();
+        };
+        let mut interruptions = state.interruptions;
+        if let (Some((dense, now)), Some(criterion)) = (dense, &link.criterion) {
+            for place in dense.passages.until(now) {
                 interruptions.turn(criterion, self.end.time + place * self.length());
             }
         }
         interruptions
-    }
-
-    /// Time derivatives of the tip at the communication point; at a discontinuity, the limit from the left.
-    pub fn tip_rates(&self, model: &Model) -> TipRates {
-        let state = self.state();
-        if self.size == 0.0 {
-            return TipRates::default();
-        }
-        let (model, _) = model.views(state);
-        let of_both = |force: f64, acceleration: f64| {
-            if state.mirrored {
-                TipRates {
-                    forces: [0.0, force],
-                    acceleration: -acceleration,
-                }
-            } else {
-                TipRates {
-                    forces: [force, 0.0],
-                    acceleration,
-                }
-            }
-        };
-        if let Some(y) = self.inside() {
-            let slope = |values| value_and_slope(values, y).1 / self.length();
-            let force = if state.closed { slope(&self.dense.force) } else { 0.0 };
-            return of_both(force, slope(&self.dense.rate));
-        }
-        let accelerations = self.accelerations(model, state);
-        let modes = model.modes.iter().zip(&accelerations);
-        let acceleration = modes.fold(0.0, |sum, (mode, acceleration)| sum - mode.tip * acceleration);
-        let rate = state.indentation_rate;
-        let law = model
-            .law
-            .closed_branch(model.preload.indentation + state.indentation, rate);
-        let force = if state.closed {
-            law.stiffness * rate + law.damping * acceleration
-        } else {
-            0.0
-        };
-        of_both(force, acceleration)
     }
 }

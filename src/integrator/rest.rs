@@ -1,12 +1,13 @@
 //! A contact at rest needs no integration until its loads change.
 
+use crate::contact::friction::Phase;
 use crate::excitation::drive::Drive;
-use crate::friction::Phase;
 use crate::integrator::constants::{REST_ROUNDING, UNREST, WEAK};
+use crate::link::MAX_LINKS;
 use crate::model::Model;
 use crate::state::State;
 
-/// The instant (s), at most `end`, until which the contact force stays within a hundredth of `tolerance` (N) of its
+/// The instant (s), at most `end`, until which the contact force stays within a hundredth of the tolerance of its
 /// present value; `None` if the contact is not at rest. Requires constant base acceleration and a fixed contact that
 /// does not move.
 ///
@@ -21,38 +22,47 @@ use crate::state::State;
 /// An axial force that follows the deflection adds its loads. It has no potential; but if it changes the modal
 /// stiffness little and there is damping, the bound holds up to a factor near one, for which the hundredth leaves room.
 /// Otherwise only the equilibrium to rounding counts as rest.
-pub(crate) fn rests_until(model: &Model, state: &State, drive: &Drive, tolerance: f64, end: f64) -> Option<f64> {
-    if state.tangential.phase != Phase::Stick
+pub(crate) fn rests_until(model: &Model, state: &State, drive: &Drive, end: f64) -> Option<f64> {
+    if state.slip.phase != Phase::Stick
         || state.with_contact
         || !drive.is_constant()
         || model.generator.is_active(state.time)
     {
         return None;
     }
-    let d = model.preload.indentation + state.indentation;
-    let force = model.law.force(d, 0.0);
-    let change = UNREST * tolerance;
-    let mut least = change * change / (2.0 * model.law.tangent_stiffness(force + change));
+    let mut forces = [0.0; MAX_LINKS];
+    let change = UNREST * model.tolerance.force;
+    let (mut least, mut at_equilibrium) = (f64::INFINITY, f64::INFINITY);
+    for ((link, at), load) in model.links.iter().zip(&state.links).zip(&mut forces) {
+        if let Some(law) = link.contact() {
+            let force = link.force_at(at.approach, 0.0);
+            *load = link.sense * (force - link.force);
+            let worth = |change: f64, stiffness: f64| change * change / (2.0 * stiffness);
+            least = least.min(worth(change, law.tangent_stiffness(force + change)));
+            let rounding = REST_ROUNDING * force.max(link.force);
+            at_equilibrium = at_equilibrium.min(worth(rounding, law.tangent_stiffness(force)));
+        } else {
+            *load = link.sense * (at.force - link.force);
+        }
+    }
     let acceleration = drive.acceleration(state.time);
     let mut axial = None;
     if let Some(feedback) = model.axial() {
-        let damped = model.law.damping() > 0.0 || model.modes.iter().all(|mode| mode.damping > 0.0);
+        let damped = model.law().damping() > 0.0 || model.modes.iter().all(|mode| mode.damping > 0.0);
         if !damped || feedback.strength(&model.modes, &state.modes) > WEAK {
-            let rounding = REST_ROUNDING * force.max(model.preload.force);
-            least = rounding * rounding / (2.0 * model.law.tangent_stiffness(force));
+            least = at_equilibrium;
         }
         axial = Some(feedback.loads(&model.modes, &state.modes));
     }
     let mut axial = axial.iter().flatten();
-    let friction = model.friction();
-    let mut levers = friction.iter().flat_map(|friction| &friction.levers);
-    let along = friction.map_or(0.0, |friction| state.tangential.force - friction.preload);
     let mut energy = 0.0;
-    for (mode, at) in model.modes.iter().zip(&state.modes) {
-        let load =
-            mode.tip * (force - model.preload.force) - mode.participation * acceleration - mode.omega_squared * at.q
-                + axial.next().copied().unwrap_or_default()
-                + levers.next().map_or(0.0, |lever| lever * along);
+    for (i, (mode, at)) in model.modes.iter().zip(&state.modes).enumerate() {
+        let by_links = model.links.iter().zip(&forces).fold(0.0, |sum, (link, force)| {
+            let port = model.ports.get(link.port);
+            sum + force * port.and_then(|port| port.shape.get(i)).copied().unwrap_or_default()
+        });
+        let load = by_links - mode.participation * acceleration - mode.omega_squared * at.q
+            + axial.next().copied().unwrap_or_default();
         let strain = if load == 0.0 {
             0.0
         } else {

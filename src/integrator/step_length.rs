@@ -1,10 +1,167 @@
-//! The length of the next step by the error of this one.
+//! Step lengths: the length of the next step by the error of this one, and with how many nodes.
 
-use crate::integrator::constants::{AFTER_REJECTION, LEAST_SHRINK, MOST_GROWTH, MOST_SHRINK, SAFETY};
+use serde::{Deserialize, Serialize};
+
+use crate::contact::friction::Phase;
+use crate::integrator::constants::{
+    AFTER_REJECTION, AGAIN, GROWING, LEAST_SHRINK, LONGER, MOST_GROWTH, MOST_SHRINK, ROUNDED, SAFETY, SMOOTH,
+    STEP_GROWTH, WORTH,
+};
+
+/// The step lengths that the error estimate allows, s.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StepLengths {
+    /// Longest step with few nodes.
+    pub short: f64,
+    /// Longest step with many nodes while a contact is closed.
+    pub long: f64,
+    /// Longest step in flight.
+    pub flight: f64,
+    /// Length of the last step; 0: none from which the next one could be guessed.
+    pub last: f64,
+    /// Length of the first step after slip has begun, and after it has ended: as long as the last of them that was taken;
+    /// 0: none was.
+    pub after_change: [f64; 2],
+}
+
+/// The next step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Proposal {
+    /// With few nodes, of this length (s).
+    Short(f64),
+    /// With many nodes, of this length (s).
+    Long(f64),
+}
+
+/// Outcome of a step: accepted or rejected, and the size of the next one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StepOutcome {
+    /// Whether it was accepted.
+    pub(crate) accepted: bool,
+    /// Whether a contact opened or closed with it, or began or ceased to slip: short steps begin anew.
+    pub(crate) switched: bool,
+    /// Factor to its length that its error would have allowed.
+    pub(crate) growth: f64,
+    /// Proposed length of the next step, s.
+    pub(crate) length: f64,
+}
+
+impl StepOutcome {
+    /// After an accepted step of `length` seconds where `requested` seconds were proposed.
+    pub(crate) fn accepted(length: f64, requested: f64, growth: f64) -> Self {
+        let next = growth.min(STEP_GROWTH) * length;
+        Self {
+            accepted: true,
+            switched: false,
+            growth,
+            // A step shortened by the grid keeps the size proposed before.
+            length: if length < 0.9 * requested {
+                requested.max(next)
+            } else {
+                next
+            },
+        }
+    }
+}
+
+impl StepLengths {
+    /// All of this length (s), at the start.
+    pub fn new(length: f64) -> Self {
+        Self {
+            short: length,
+            long: length,
+            flight: length,
+            last: 0.0,
+            after_change: [0.0; 2],
+        }
+    }
+
+    /// Whether a simulation can reach these numbers.
+    pub(crate) fn is_sound(&self) -> bool {
+        let Self {
+            short,
+            long,
+            flight,
+            last,
+            after_change,
+        } = self;
+        [short, flight]
+            .into_iter()
+            .all(|length| *length > 0.0 && length.is_finite())
+            && [long, last]
+                .into_iter()
+                .chain(after_change)
+                .all(|length| (0.0..f64::INFINITY).contains(length))
+    }
+
+    /// The longest step that is possible now, s.
+    pub(crate) fn own(&self) -> f64 {
+        self.short.max(self.long)
+    }
+
+    /// The next step: with few nodes where they suffice, else with many. `smooth`: time since a contact last closed, s.
+    pub(crate) fn propose(&self, closed: bool, smooth: Option<f64>, remaining: f64) -> Proposal {
+        // Just after an impact the force is not smooth enough for polynomials of high degree; in flight it is known.
+        let long = match smooth {
+            _ if !closed => self.flight,
+            Some(elapsed) => self.long.min(SMOOTH * elapsed),
+            None => self.long,
+        };
+        if remaining <= self.short || closed && long < WORTH * self.short {
+            Proposal::Short(self.short)
+        } else {
+            Proposal::Long(long)
+        }
+    }
+
+    /// Keeps what a step has shown. `remaining`: what was left to integrate (s) before it; `driven`: inputs change in each
+    /// communication step; `blows`: a contact has closed before.
+    pub(crate) fn keep(
+        &mut self,
+        proposal: Proposal,
+        outcome: &StepOutcome,
+        closed: bool,
+        remaining: f64,
+        (driven, blows): (bool, bool),
+    ) {
+        match proposal {
+            Proposal::Short(_) if outcome.switched => {}
+            Proposal::Short(_) => {
+                self.short = outcome.length;
+                if outcome.accepted && outcome.growth < GROWING {
+                    self.long = self.long.max(2.0 * WORTH * outcome.length);
+                }
+            }
+            Proposal::Long(long) => {
+                let short = self.short;
+                if closed {
+                    self.long = outcome.length;
+                    if !outcome.accepted && blows {
+                        // Nor would a short one reach as far.
+                        self.short = short.min(outcome.length / WORTH);
+                    }
+                } else {
+                    self.flight = outcome.length;
+                }
+                // A long step cut far below its possible size: a short one will do next time.
+                if outcome.accepted && !outcome.switched {
+                    let again = if driven { AGAIN } else { 1.0 };
+                    self.short = (again * short).max(outcome.growth * remaining.min(long) / LONGER);
+                }
+            }
+        }
+    }
+
+    /// The length of the first step in this phase of friction.
+    pub(crate) fn after_change(&mut self, phase: Phase) -> &mut f64 {
+        let [of_slip, of_stick] = &mut self.after_change;
+        if phase == Phase::Stick { of_stick } else { of_slip }
+    }
+}
 
 /// Factor on the length after a step of the relative error `ratio`.
 pub(crate) fn growth<const S: usize>(ratio: f64) -> f64 {
-    if ratio < 1e-7 {
+    if ratio < ROUNDED {
         MOST_GROWTH
     } else {
         (SAFETY * step_factor::<S>(ratio)).clamp(MOST_SHRINK, MOST_GROWTH)

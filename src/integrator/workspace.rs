@@ -7,9 +7,9 @@ use crate::closed_loop::dense::{DensePropagator, TipAtNodes};
 use crate::closed_loop::propagator::{ByLength, Propagator};
 use crate::error::{StepError, StepErrorCause};
 use crate::integrator::collocation::coefficients::Cache;
-use crate::integrator::collocation::end::End;
 use crate::integrator::collocation::part::Instant;
-use crate::integrator::collocation::polynomial::{Collocation, OF_LONG, OF_SHORT};
+use crate::integrator::collocation::polynomial::{Collocation, Home, OF_LONG, OF_SHORT};
+use crate::integrator::collocation::trial::{Scratch, Trial};
 use crate::integrator::constants::{DEPTH, LENGTHS, NEW_LENGTH, WORK};
 use crate::integrator::events::log::Events;
 use crate::integrator::motion::Motion;
@@ -19,28 +19,51 @@ use crate::model::Model;
 /// Caches and scratch memory. Its content never affects results, only the time they take.
 #[derive(Clone, Debug)]
 pub struct Workspace {
-    short: Cache<SHORT>,
-    long: Cache<LONG>,
-    /// Of the current trial step.
-    short_end: Box<End<SHORT>>,
-    /// See `short_end`.
-    long_end: Box<End<LONG>>,
-    /// Of the half steps of the energy balance.
-    half_end: Box<End<LONG>>,
-    /// Later halves of intervals in which a closing is sought: end, error of the cubic (m), depth.
-    pub(crate) halves: Vec<(Instant, f64, usize)>,
-    /// Modes at an instant inside it (event location).
-    inside: Box<ModeStates>,
+    short: Room<SHORT>,
+    long: Room<LONG>,
+    /// The half steps of the energy balance.
+    pub(crate) half: Box<Trial<LONG>>,
+    pub(crate) search: Search,
     /// Caches of exact linear steps, without and with dense output.
     pub(crate) propagators: ByLength<Box<Propagator>>,
     /// See [`Workspace::propagators`].
     dense_propagators: ByLength<DensePropagator>,
     /// The motion before a communication step, to which a failed one returns.
     pub(crate) former: Box<Motion>,
-    /// Work so far, of rejected and probe steps too, in modes at nodes.
-    pub(crate) work: u64,
     /// Openings and closings of the last communication step.
     pub events: Events,
+}
+
+/// For steps with `S` nodes.
+#[derive(Clone, Debug)]
+pub(crate) struct Room<const S: usize> {
+    pub(crate) cache: Cache<S>,
+    pub(crate) scratch: Box<Scratch<S>>,
+    /// The trial step; none while it is looked at.
+    pub(crate) trial: Option<Box<Trial<S>>>,
+}
+
+/// For searches inside a step.
+#[derive(Clone, Debug)]
+pub(crate) struct Search {
+    /// The modes at the instant looked at last.
+    pub(crate) modes: Box<ModeStates>,
+    /// That instant, s after the start of the trial; `None`: of another trial.
+    pub(crate) looked: Option<f64>,
+    /// Later halves of intervals in which a closing is sought: end, error of the cubic (m), depth.
+    pub(crate) halves: Vec<(Instant, f64, usize)>,
+    /// Work so far, of rejected and probe steps too, in modes at nodes.
+    pub(crate) work: u64,
+}
+
+impl<const S: usize> Room<S> {
+    fn new(model: &Model, home: &'static Home<S>) -> Self {
+        Self {
+            cache: Cache::new(model, home),
+            scratch: zeroed_box(),
+            trial: Some(zeroed_box()),
+        }
+    }
 }
 
 impl Workspace {
@@ -48,8 +71,9 @@ impl Workspace {
     pub fn size(model: &Model) -> usize {
         let lengths = if model.closed_loop.is_some() { 2 * LENGTHS } else { 0 };
         let propagators = lengths * (size_of::<Propagator>() + model.modes.len() * size_of::<[TipAtNodes; 2]>());
-        let ends = size_of::<End<SHORT>>() + 2 * size_of::<End<LONG>>();
-        Cache::<SHORT>::size(model) + Cache::<LONG>::size(model) + propagators + ends
+        let trials = size_of::<Trial<SHORT>>() + 2 * size_of::<Trial<LONG>>();
+        let scratch = size_of::<Scratch<SHORT>>() + size_of::<Scratch<LONG>>();
+        Cache::<SHORT>::size(model) + Cache::<LONG>::size(model) + propagators + trials + scratch
     }
 
     /// Allocates for the model.
@@ -60,60 +84,59 @@ impl Workspace {
             .map(|closed_loop| closed_loop.oscillators.len());
         let lengths = if oscillators.is_some() { LENGTHS } else { 0 };
         Self {
-            short: Cache::new(model, &OF_SHORT),
-            long: Cache::new(model, &OF_LONG),
-            short_end: zeroed_box(),
-            long_end: zeroed_box(),
-            half_end: zeroed_box(),
-            halves: Vec::with_capacity(DEPTH + 1),
-            inside: zeroed_box(),
+            short: Room::new(model, &OF_SHORT),
+            long: Room::new(model, &OF_LONG),
+            half: zeroed_box(),
+            search: Search {
+                modes: zeroed_box(),
+                looked: None,
+                halves: Vec::with_capacity(DEPTH + 1),
+                work: 0,
+            },
             propagators: ByLength::new(lengths, zeroed_box),
             dense_propagators: ByLength::new(lengths, || DensePropagator::room(oscillators.unwrap_or_default())),
             former: Motion::at_rest(model, 0.0),
-            work: 0,
             events: Events::new(),
         }
     }
-}
 
-impl Workspace {
     /// For exact steps with dense output.
     pub(crate) fn for_exact_steps(&mut self) -> (&mut ByLength<DensePropagator>, &Collocation<LONG>) {
-        (&mut self.dense_propagators, self.long.collocation())
+        (&mut self.dense_propagators, self.long.cache.collocation())
     }
 
-    /// For the half steps of the energy balance: coefficient cache, and what is left at their ends.
-    pub(crate) fn for_half_steps(&mut self) -> (&mut Cache<LONG>, &mut End<LONG>) {
-        (&mut self.long, &mut self.half_end)
+    /// For the half steps of the energy balance.
+    pub(crate) fn for_half_steps(&mut self) -> (&mut Room<LONG>, &mut Trial<LONG>) {
+        (&mut self.long, &mut self.half)
     }
 }
 
 /// The parts of the workspace for steps with `S` nodes.
-pub(crate) trait Room<const S: usize> {
-    /// The polynomials of the steps.
-    fn collocation(&self) -> &Collocation<S>;
+pub(crate) trait Rooms<const S: usize> {
+    /// For the steps.
+    fn room(&self) -> &Room<S>;
 
-    /// Coefficient cache, end of the trial step, modes at an instant inside it.
-    fn parts(&mut self) -> (&mut Cache<S>, &mut End<S>, &mut ModeStates);
+    /// For the steps, and for searches inside them.
+    fn parts(&mut self) -> (&mut Room<S>, &mut Search);
 }
 
-impl Room<SHORT> for Workspace {
-    fn collocation(&self) -> &Collocation<SHORT> {
-        self.short.collocation()
+impl Rooms<SHORT> for Workspace {
+    fn room(&self) -> &Room<SHORT> {
+        &self.short
     }
 
-    fn parts(&mut self) -> (&mut Cache<SHORT>, &mut End<SHORT>, &mut ModeStates) {
-        (&mut self.short, &mut self.short_end, &mut self.inside)
+    fn parts(&mut self) -> (&mut Room<SHORT>, &mut Search) {
+        (&mut self.short, &mut self.search)
     }
 }
 
-impl Room<LONG> for Workspace {
-    fn collocation(&self) -> &Collocation<LONG> {
-        self.long.collocation()
+impl Rooms<LONG> for Workspace {
+    fn room(&self) -> &Room<LONG> {
+        &self.long
     }
 
-    fn parts(&mut self) -> (&mut Cache<LONG>, &mut End<LONG>, &mut ModeStates) {
-        (&mut self.long, &mut self.long_end, &mut self.inside)
+    fn parts(&mut self) -> (&mut Room<LONG>, &mut Search) {
+        (&mut self.long, &mut self.search)
     }
 }
 
@@ -126,14 +149,14 @@ pub(crate) fn work<const S: usize>(model: &Model, recurring: bool) -> u64 {
 /// Limit of the work of a communication step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Budget {
-    /// Value of [`Workspace::work`] at which it is exhausted.
+    /// Value of [`Search::work`] at which it is exhausted.
     limit: u64,
 }
 
 impl Budget {
     /// For a communication step that begins now.
     pub(crate) fn new(workspace: &Workspace) -> Self {
-        let limit = workspace.work.saturating_add(WORK);
+        let limit = workspace.search.work.saturating_add(WORK);
         Self { limit }
     }
 
@@ -141,14 +164,14 @@ impl Budget {
     ///
     /// # Errors
     /// [`StepErrorCause::Budget`] if it is exhausted.
-    pub(crate) fn check(self, workspace: &Workspace, time: f64) -> Result<(), StepError> {
+    pub(crate) fn check(self, search: &Search, time: f64) -> Result<(), StepError> {
         let cause = StepErrorCause::Budget;
-        let exhausted = self.is_exhausted(workspace);
+        let exhausted = self.is_exhausted(search);
         (!exhausted).then_some(()).ok_or(StepError { time, cause })
     }
 
     /// Whether it is: a search inside a step then gives up, and the step counts for nothing.
-    pub(crate) fn is_exhausted(self, workspace: &Workspace) -> bool {
-        workspace.work >= self.limit
+    pub(crate) fn is_exhausted(self, search: &Search) -> bool {
+        search.work >= self.limit
     }
 }

@@ -12,6 +12,11 @@ use crate::variables::{
 };
 
 impl Scene {
+    /// Whether the contact rubs.
+    pub(crate) fn rubs(&self) -> bool {
+        self.effects.friction != FrictionKind::None
+    }
+
     /// Value of a real parameter, in its SI unit.
     pub fn real(&self, parameter: RealParameter) -> f64 {
         let mut scene = self.clone();

@@ -45,17 +45,10 @@ impl Rig {
     /// Sets the initial modal velocities, in the order of the modes, and the dependent values.
     pub fn launch(&mut self, velocities: &[f64]) {
         let (model, mut state) = (&self.model, self.state);
-        let height = model.scene().tip.contact_height;
-        (state.indentation_rate, state.tangential.rate) = (0.0, 0.0);
-        for ((mode, v), constants) in state.modes.iter_mut().zip(velocities).zip(model.modes()) {
+        for (mode, v) in state.modes.iter_mut().zip(velocities) {
             mode.v = *v;
-            state.indentation_rate -= constants.tip * v;
-            state.tangential.rate += height * constants.rotation * v;
         }
-        let d = model.preload().indentation + state.indentation;
-        state.force = model.law().force(d, state.indentation_rate);
-        state.closed = model.engagement(state.indentation, state.indentation_rate) > 0.0;
-        model.settle_friction(&mut state);
+        model.settle(&mut state);
         *self = Self::at(model.clone(), &state);
     }
 
@@ -90,7 +83,7 @@ impl Rig {
             .zip(&state.modes)
             .map(|(mode, at)| 0.5 * (at.v * at.v + mode.omega_squared * at.q * at.q))
             .sum();
-        let contact = |d: f64| match model.law() {
+        let contact = |d: f64| match *model.law() {
             Law::Power(power) => power.elastic_force(d) * d.max(0.0) / (power.exponent + 1.0),
             Law::Linear(Linear {
                 stiffness,
@@ -103,7 +96,8 @@ impl Rig {
             }
         };
         let Preload { indentation, force, .. } = model.preload();
-        modes + contact(indentation + state.indentation) - contact(indentation) - force * state.indentation
+        let deviation = state.contact().approach;
+        modes + contact(indentation + deviation) - contact(indentation) - force * deviation
     }
 }
 

@@ -33,9 +33,9 @@ fn energy_stays_without_damping() {
                 let start = rig.energy();
                 let (mut worst, mut path) = (0.0_f64, 0.0);
                 for k in 1..=5000 {
-                    let before = rig.state.indentation;
+                    let before = rig.state.contact().approach;
                     rig.run_to(&Inputs::default(), f64::from(k) * 2e-6).unwrap();
-                    path += (rig.state.indentation - before).abs();
+                    path += (rig.state.contact().approach - before).abs();
                     let excess =
                         (rig.energy() - start).abs() / (tolerance * rig.model.force_scale() * path + 1e-13 * start);
                     worst = worst.max(excess);

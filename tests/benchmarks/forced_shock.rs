@@ -24,7 +24,7 @@ fn touch_and_release() {
         let mut found: Vec<(f64, f64)> = Vec::new();
         for k in 1..=2100 {
             rig.run_to(&Inputs::default(), f64::from(k) * 1e-4).unwrap();
-            let Some((touch, release)) = rig.state.last_closing.zip(rig.state.last_opening) else {
+            let Some((touch, release)) = rig.state.contact().last_closing.zip(rig.state.contact().last_opening) else {
                 continue;
             };
             if release > touch && found.last().is_none_or(|(last, _)| *last != touch) {

@@ -24,18 +24,18 @@ fn greatest_force_and_duration() {
             rig.launch(&[-speed * mass.sqrt()]);
             // The force is stationary at half the duration.
             rig.run_to(&rest, touch + 0.5 * duration).unwrap();
-            digits(rig.state.force, force, 0.0, allowed);
+            digits(rig.state.contact().force, force, 0.0, allowed);
             rig.run_to(&rest, touch + 2.0 * duration).unwrap();
             let shift = 0.5 * allowed * duration * duration / (mass * speed);
             let rounding = 1e-10 * duration + 1e-14 * touch;
-            digits(rig.state.last_closing.unwrap(), touch, 0.0, rounding);
+            digits(rig.state.contact().last_closing.unwrap(), touch, 0.0, rounding);
             digits(
-                rig.state.last_opening.unwrap() - rig.state.last_closing.unwrap(),
+                rig.state.contact().last_opening.unwrap() - rig.state.contact().last_closing.unwrap(),
                 duration,
                 0.0,
                 shift + rounding,
             );
-            digits(rig.state.indentation_rate, -speed, 0.0, allowed * duration / mass);
+            digits(rig.state.contact().rate, -speed, 0.0, allowed * duration / mass);
         }
     }
 }
@@ -46,10 +46,10 @@ fn digits_of_the_unit_problem() {
     let mut rig = Rig::new(model);
     rig.launch(&[-1.0]);
     rig.run_to(&Inputs::default(), 1.0 + 0.5 * 3.218_065_5).unwrap();
-    digits(rig.state.force, 1.143_262_6, 1e-7, 1e-10);
+    digits(rig.state.contact().force, 1.143_262_6, 1e-7, 1e-10);
     rig.run_to(&Inputs::default(), 5.0).unwrap();
     digits(
-        rig.state.last_opening.unwrap() - rig.state.last_closing.unwrap(),
+        rig.state.contact().last_opening.unwrap() - rig.state.contact().last_closing.unwrap(),
         3.218_065_5,
         1e-7,
         0.0,

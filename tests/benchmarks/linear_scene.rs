@@ -77,7 +77,7 @@ fn within_the_tolerance_of_the_closed_form() {
             for k in 1..=1000 {
                 rig.run_to(&Inputs::default(), f64::from(k) * 1.3e-5).unwrap();
                 let exact = rig.model.preload().force + force(&rig.model, rig.state.time);
-                worst = worst.max((rig.state.force - exact).abs() / rig.model.force_scale());
+                worst = worst.max((rig.state.contact().force - exact).abs() / rig.model.force_scale());
             }
             println!(
                 "{law:?}: asked {tolerance:e}, delivered {worst:.1e}, {} steps",
@@ -101,7 +101,7 @@ fn machine_precision_in_single_steps() {
             for k in 1..=50 {
                 rig.run_to(&Inputs::default(), f64::from(k) * size).unwrap();
                 let exact = rig.model.preload().force + force(&rig.model, rig.state.time);
-                let error = (rig.state.force - exact).abs() / rig.model.force_scale();
+                let error = (rig.state.contact().force - exact).abs() / rig.model.force_scale();
                 assert!(error < 1e-12, "{size} s, step {k}: {error:e}");
             }
             let fewer = !single && size < 1e-3;
@@ -254,7 +254,7 @@ fn error_against_the_exponential(scene: &Scene) -> f64 {
             let parts = [motion[i] / w, beta_c * motion[n + i]].map(|part| k * mode.tip * part);
             force -= parts[0] + parts[1];
         }
-        worst = worst.max((rig.state.force - model.preload().force - force).abs());
+        worst = worst.max((rig.state.contact().force - model.preload().force - force).abs());
     }
     assert_eq!(rig.state.steps, 40);
     worst / model.force_scale()
@@ -332,7 +332,8 @@ fn one_step_or_many() {
                     many.run_to(&inputs, (f64::from(count) + f64::from(part) / f64::from(parts)) * size)
                         .unwrap();
                 }
-                worst = worst.max((one.state.force - many.state.force).abs() / one.model.force_scale());
+                worst =
+                    worst.max((one.state.contact().force - many.state.contact().force).abs() / one.model.force_scale());
             }
             println!("{damping:?}, {modes} modes: {worst:.1e}");
             assert_eq!(
@@ -358,7 +359,7 @@ fn linearised_out_of_reach_of_the_cut_is_bonded() {
                 rig.run_to(&Inputs::default(), f64::from(k) * 1.3e-4).unwrap();
             }
             assert_eq!(rig.state.steps, 30, "{law:?}, {damping:?}");
-            rig.state.force
+            rig.state.contact().force
         };
         assert_eq!(
             run(ContactLawKind::Bonded),
@@ -380,11 +381,14 @@ fn linearised_that_opens_is_left_to_the_collocation() {
         for rig in [&mut mixed, &mut plain] {
             rig.run_to(&Inputs::default(), f64::from(k) * 2e-5).unwrap();
         }
-        let difference = (mixed.state.force - plain.state.force).abs();
+        let difference = (mixed.state.contact().force - plain.state.contact().force).abs();
         assert!(difference <= allowed, "step {k}: {difference:e}");
-        assert!(mixed.state.force >= 0.0);
+        assert!(mixed.state.contact().force >= 0.0);
     }
-    assert!(mixed.state.last_opening > Some(0.0), "the contact never opened");
+    assert!(
+        mixed.state.contact().last_opening > Some(0.0),
+        "the contact never opened"
+    );
 }
 
 /// A generator that starts inside a communication step: one exact step from there on, as the contact rests before.
@@ -396,5 +400,5 @@ fn the_generator_starts_inside_a_step() {
     rig.run_to(&Inputs::default(), 2.5e-4).unwrap();
     let exact = rig.model.preload().force + force(&rig.model, 1.5e-4);
     assert_eq!(rig.state.steps, 1);
-    assert!((rig.state.force - exact).abs() < 1e-12 * rig.model.force_scale());
+    assert!((rig.state.contact().force - exact).abs() < 1e-12 * rig.model.force_scale());
 }

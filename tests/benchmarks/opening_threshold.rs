@@ -35,7 +35,7 @@ fn least_force(rig: &mut Rig, frequency: f64) -> f64 {
         .map(|k| {
             rig.run_to(&Inputs::default(), start + f64::from(k) / (400.0 * frequency))
                 .unwrap();
-            rig.state.force
+            rig.state.contact().force
         })
         .collect();
     let parabola = |x: &[f64]| match x {
@@ -57,14 +57,18 @@ fn the_linearised_contact_opens_at_the_analytic_threshold() {
             // Up to here the contact is held; now it may open.
             rig.unbond();
             let (mut at, start) = (rig.state.time, rig.state.time);
-            while rig.state.force <= rig.model.preload().force {
+            while rig.state.contact().force <= rig.model.preload().force {
                 at += 1e-5;
                 rig.run_to(&Inputs::default(), at).unwrap();
                 assert!(at < start + 2.0 / frequency);
             }
-            rig.state.last_opening = None;
+            rig.state.links[0].last_opening = None;
             rig.run_to(&Inputs::default(), at + 3.0 / frequency).unwrap();
-            assert_eq!(rig.state.last_opening > Some(0.0), opens, "{frequency} Hz, {factor}");
+            assert_eq!(
+                rig.state.contact().last_opening > Some(0.0),
+                opens,
+                "{frequency} Hz, {factor}"
+            );
         }
     }
 }

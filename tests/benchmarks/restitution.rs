@@ -22,9 +22,9 @@ fn restitution_at_release_without_tension() {
             let mut rig = Rig::new(model);
             rig.launch(&[-1.0]);
             rig.run_to(&Inputs::default(), 20.0).unwrap();
-            assert!(!rig.state.closed);
+            assert!(!rig.state.contact().closed);
             // The contact lasts less than 4 s.
-            digits(-rig.state.indentation_rate, published, 1e-10, 4.0 * tolerance);
+            digits(-rig.state.contact().rate, published, 1e-10, 4.0 * tolerance);
         }
     }
 }

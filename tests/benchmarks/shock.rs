@@ -28,8 +28,8 @@ fn duration_force_and_impulse_of_the_shock() {
         let mut rig = thrown(gap, tolerance);
         rig.run_to(&rest, 0.1).unwrap();
         let (touch, duration) = (
-            rig.state.last_closing.unwrap(),
-            rig.state.last_opening.unwrap() - rig.state.last_closing.unwrap(),
+            rig.state.contact().last_closing.unwrap(),
+            rig.state.contact().last_opening.unwrap() - rig.state.contact().last_closing.unwrap(),
         );
         digits(touch, gap, 1e-12, 0.0);
         digits(duration, 31.2600e-3, 1e-7, 0.5 * allowed * 0.0313 * 0.0313 / 100.0);
@@ -42,10 +42,10 @@ fn duration_force_and_impulse_of_the_shock() {
             rig.run_to(&rest, touch + duration * f64::from(k) / f64::from(parts))
                 .unwrap();
             let weight = if k % 2 == 1 { 4.0 } else { 2.0 } / 3.0;
-            impulse += weight * duration / f64::from(parts) * rig.state.force;
+            impulse += weight * duration / f64::from(parts) * rig.state.contact().force;
             if 2 * k == parts {
                 // The middle, where the force is greatest.
-                digits(rig.state.force, 9950.3719, 1e-4, allowed);
+                digits(rig.state.contact().force, 9950.3719, 1e-4, allowed);
             }
         }
         digits(impulse, 198.0198, 1e-4, allowed * duration);
@@ -57,6 +57,6 @@ fn duration_force_and_impulse_of_the_shock() {
 fn a_touch_at_the_start() {
     let mut rig = thrown(0.0, 1e-6);
     rig.run_to(&Inputs::default(), 0.1).unwrap();
-    digits(rig.state.last_closing.unwrap(), 0.0, 1e-12, 0.0);
-    digits(rig.state.last_opening.unwrap(), 31.2600e-3, 1e-7, 0.0);
+    digits(rig.state.contact().last_closing.unwrap(), 0.0, 1e-12, 0.0);
+    digits(rig.state.contact().last_opening.unwrap(), 31.2600e-3, 1e-7, 0.0);
 }

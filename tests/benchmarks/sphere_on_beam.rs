@@ -39,15 +39,15 @@ fn greatest_force_its_instant_and_the_duration() {
     for k in 0..4000 {
         let time = f64::from(k) * 5e-8;
         rig.run_to(&Inputs::default(), touch + time + 1e-9).unwrap();
-        if rig.state.force > greatest {
-            (greatest, instant) = (rig.state.force, rig.state.time - touch);
+        if rig.state.contact().force > greatest {
+            (greatest, instant) = (rig.state.contact().force, rig.state.time - touch);
         }
     }
     digits(greatest, 4.9777, 1e-4, 1e-9 * 5.0);
     // Sampled every 50 ns.
     digits(instant, 72.55e-6, 1e-8, 2.5e-8);
     digits(
-        rig.state.last_opening.unwrap() - rig.state.last_closing.unwrap(),
+        rig.state.contact().last_opening.unwrap() - rig.state.contact().last_closing.unwrap(),
         156.39e-6,
         1e-8,
         0.0,

@@ -231,10 +231,7 @@ fn what_sticks_is_a_rotational_spring() {
         for (at, part) in state.modes.iter_mut().zip(shape.iter()) {
             at.q = factor * part;
         }
-        state.indentation = -factor * tips.dot(&shape);
-        state.force = model.law().force(model.preload().indentation + state.indentation, 0.0);
-        state.tangential.displacement = factor * levers.dot(&shape);
-        state.tangential.force = -tangential * state.tangential.displacement;
+        model.settle(&mut state);
         let force = model.preload().force;
         let mut simulation = Simulation::from_state(model, &state);
         let period = TAU / omega;

@@ -139,8 +139,7 @@ fn a_small_motion_of_a_contact_that_slides_grows_as_told() {
     slide.v = speed;
     // A part of 2e-6 of the indentation, in the time of a radian.
     first.v = 2e-6 * model.preload().indentation * TAU * MODES[0].0 / MODES[0].1;
-    state.indentation_rate = -first.v * MODES[0].1;
-    state.tangential.rate = speed + first.v * scene.tip.contact_height * model.modes()[1].rotation;
+    model.settle(&mut state);
     let mut simulation = Simulation::from_state(model, &state);
     let step = 0.25 / MODES[0].0;
     let mut course = Vec::new();

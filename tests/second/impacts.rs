@@ -220,7 +220,6 @@ fn energy_is_kept_over(impacts: u32) {
             .zip(&rig.state.modes)
             .map(|(mode, at)| mode.tip * at.q)
             .sum();
-        let tip = if rig.state.mirrored { -tip } else { tip };
         let stored = |(coefficient, _): (f64, f64), d: f64| 0.4 * coefficient * d.max(0.0).powf(2.5);
         beam + stored(first, scene.contact.overtravel - tip) + stored(second, tip - scene.second.gap)
     };
@@ -229,8 +228,8 @@ fn energy_is_kept_over(impacts: u32) {
     while closings[0] + closings[1] < impacts {
         point += 1;
         rig.run_to(&Inputs::default(), 1e-5 * f64::from(point)).unwrap();
-        let own = usize::from(rig.state.mirrored);
-        for (n, now) in [(own, rig.state.last_closing), (1 - own, rig.state.other.last_closing)] {
+        for (n, link) in rig.state.links.iter().take(2).enumerate() {
+            let now = link.last_closing;
             if now > last[n] {
                 (closings[n], last[n]) = (closings[n] + 1, now);
             }

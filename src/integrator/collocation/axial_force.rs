@@ -9,100 +9,124 @@
 //! position until the sine in the law of the axial force turns to tension. Such motion is integrated like any other, in
 //! shorter steps.
 
+use bytemuck::Zeroable;
+
 use crate::beam::axial::Feedback;
 use crate::beam::mode::Modal;
 use crate::integrator::collocation::coefficients::{ErrorColumn, ModeColumns, StepCoefficients};
-use crate::integrator::collocation::end::{End, NodalModes};
-use crate::integrator::collocation::newton::{FreeResponse, Solution, Source, closed_forces, first_forces};
 use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::collocation::trial::{AxialLoads, FreeResponse, NodalModes, Source, Trial};
 use crate::integrator::constants::{FORCE_ROUNDING, ROUNDS};
 use crate::math::nodal::{Nodal, add, add_columns, dot};
 use crate::math::simd::{Arithmetic, LANES};
 use crate::model::Model;
 use crate::state::State;
 
-/// Iterates contact forces and the loads of `end`: returns the former, and the effect on the indentation of the defects of base
-/// acceleration and loads at the start; `None` if they do not converge.
-#[inline(always)]
-pub(crate) fn settle<const S: usize, A: Arithmetic>(
-    model: &Model,
-    axial: &Feedback,
-    state: &State,
-    (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
-    source: Source<S>,
-    free: &FreeResponse<S>,
-    end: &mut End<S>,
-) -> Option<(Solution<S>, ErrorColumn<S>)> {
-    let End {
-        loads, motion, next, ..
-    } = end;
-    let start = axial.loads(&model.modes, &state.modes);
-    let tolerance = match source {
-        Source::Law(newton) => newton,
-        Source::Given(_) => 0.0,
-    };
-    let mut forces = first_forces::<S, A>(model, state, step, collocation, source);
-    for (loads, start) in loads.iter_mut().zip(&start) {
-        *loads = [*start; S];
-    }
-    let stiffness = model.law.stiffness(model.preload.indentation + state.indentation);
-    let mut iterations = 0;
-    let mut solved: Option<Solution<S>> = None;
-    for _ in 0..ROUNDS {
-        let acting = (&forces, &free.accelerations, &*loads);
-        set_motion::<S, A>(model, state, step, acting, motion);
-        set_loads::<S, A>(model, axial, motion, next);
-        let (change, size) = force_of_change(model, loads, next);
-        let settled = change <= tolerance + FORCE_ROUNDING * size;
-        if let Some(mut solution) = solved.take_if(|_| settled) {
-            solution.iterations = iterations;
-            let error = load_error::<S, A>(model, free, &start, loads, (step, collocation));
-            return Some((solution, error));
-        }
-        *loads = *next;
-        let solution = match source {
-            Source::Law(newton) if state.closed => {
-                let error = load_error::<S, A>(model, free, &start, loads, (step, collocation));
-                let free = FreeResponse {
-                    error: &error,
-                    start_defect: 1.0,
-                    ..with_loads::<S, A>(model, free, step, loads)
-                };
-                closed_forces::<S, A>(
-                    model,
-                    (&step.force, &step.force_error),
-                    &free,
-                    forces,
-                    (newton, stiffness),
-                )?
-            }
-            _ => Solution::given(forces),
-        };
-        iterations += solution.iterations;
-        forces = solution.forces;
-        solved = Some(solution);
-    }
-    None
+/// The iteration of forces and loads in a step.
+pub(super) struct Rounds<'a, const S: usize> {
+    model: &'a Model,
+    axial: &'a Feedback,
+    state: &'a State,
+    step: &'a StepCoefficients<S>,
+    collocation: &'a Collocation<S>,
+    /// Loads at the start.
+    start: Modal,
+    room: &'a mut AxialLoads<S>,
+    count: u32,
+    /// Whether the loads are those of the motion.
+    pub(super) settled: bool,
 }
 
-/// Computes the modal displacements at the nodes under contact forces, base acceleration and loads.
+impl<'a, const S: usize> Rounds<'a, S> {
+    /// Begins with the loads at the start of the step.
+    #[inline(always)]
+    pub(super) fn new(
+        (model, axial, state): (&'a Model, &'a Feedback, &'a State),
+        (step, collocation): (&'a StepCoefficients<S>, &'a Collocation<S>),
+        room: &'a mut AxialLoads<S>,
+    ) -> Self {
+        let start = axial.loads(&model.modes, &state.modes);
+        for (loads, start) in room.loads.iter_mut().zip(&start) {
+            *loads = [*start; S];
+        }
+        Self {
+            model,
+            axial,
+            state,
+            step,
+            collocation,
+            start,
+            room,
+            count: 0,
+            settled: false,
+        }
+    }
+
+    /// The free response with the loads of the motion under the forces of a trial; once that changes the loads no more, with the
+    /// loads under which the forces were found. `None` after too many rounds.
+    #[inline(always)]
+    pub(super) fn next<A: Arithmetic>(
+        &mut self,
+        source: Source,
+        free: &FreeResponse<S>,
+        trial: &Trial<S>,
+    ) -> Option<FreeResponse<S>> {
+        let AxialLoads { loads, motion, next } = &mut *self.room;
+        set_motion::<S, A>((self.model, self.state), self.step, trial, loads, motion);
+        set_loads::<S, A>(self.model, self.axial, motion, next);
+        let (change, size) = force_of_change(self.model, loads, next);
+        let tolerance = match source {
+            Source::Laws(newton) => newton,
+            Source::Given => 0.0,
+        };
+        self.settled = self.count > 0 && change <= tolerance + FORCE_ROUNDING * size;
+        if !self.settled {
+            self.count += 1;
+            *loads = *next;
+        }
+        let mut with_loads = with_loads::<S, A>(self.model, free, self.step, loads);
+        with_loads.axial = Some(self.error::<A>(free));
+        (self.count <= ROUNDS).then_some(with_loads)
+    }
+
+    /// Effect on the approach of the contact of the defects of base acceleration and loads at the start.
+    #[inline(always)]
+    fn error<A: Arithmetic>(&self, free: &FreeResponse<S>) -> ErrorColumn<S> {
+        let mut error = ErrorColumn::zeroed();
+        for port in self.step.ports.iter().take(1) {
+            error.add::<A>(free.start_defect, &port.acceleration.defect);
+        }
+        let modes = self.model.modes.iter().zip(&self.step.columns);
+        for (((mode, columns), start), load) in modes.zip(&self.start).zip(&self.room.loads) {
+            let ModeColumns { load: response, .. } = columns;
+            let start_defect = -mode.tip * (start - dot::<S, A>(load, &self.collocation.at_start));
+            error.add::<A>(start_defect, &response.defect);
+        }
+        error
+    }
+}
+
+/// Computes the modal displacements at the nodes under the forces of a trial, base acceleration and loads.
 #[inline(always)]
 fn set_motion<const S: usize, A: Arithmetic>(
-    model: &Model,
-    state: &State,
+    (model, state): (&Model, &State),
     step: &StepCoefficients<S>,
-    (forces, accelerations, loads): (&Nodal<S>, &Nodal<S>, &NodalModes<S>),
+    trial: &Trial<S>,
+    loads: &NodalModes<S>,
     motion: &mut NodalModes<S>,
 ) {
-    let modes = model.modes.iter().zip(&state.modes).zip(&step.columns).zip(loads);
-    for (moved, (((mode, at), columns), load)) in motion.iter_mut().zip(modes) {
+    let modes = model.modes.iter().zip(&state.modes).zip(&step.columns);
+    for (i, ((moved, ((mode, at), columns)), load)) in motion.iter_mut().zip(modes).zip(loads).enumerate() {
         let mut load = *load;
         let mut q = [0.0; S];
-        add::<S, A>(&mut load, mode.tip, forces);
-        add::<S, A>(&mut load, -mode.participation, accelerations);
+        for (link, nodes) in model.links.iter().zip(&trial.links) {
+            let b = model.ports.get(link.port).and_then(|port| port.shape.get(i));
+            add::<S, A>(&mut load, link.sense * b.copied().unwrap_or_default(), &nodes.forces);
+        }
+        add::<S, A>(&mut load, -mode.participation, &trial.accelerations);
         add::<S, A>(&mut q, at.q, &columns.q_from_q);
         add::<S, A>(&mut q, at.v, &columns.q_from_v);
-        add_columns::<S, A>(&mut q, &columns.load.displacement, &load);
+        add_columns::<S, A>(&mut q, &columns.load.columns.displacement, &load);
         *moved = q;
     }
 }
@@ -165,44 +189,21 @@ fn force_of_change<const S: usize>(model: &Model, loads: &NodalModes<S>, next: &
     ((root(change) / unit).sqrt(), (root(size) / unit).sqrt())
 }
 
-/// Adds the effect of the loads to the free response.
+/// The free response with the effect of the loads.
 #[inline(always)]
-pub(crate) fn with_loads<'a, const S: usize, A: Arithmetic>(
-    model: &Model,
-    free: &FreeResponse<'a, S>,
-    step: &StepCoefficients<S>,
-    loads: &NodalModes<S>,
-) -> FreeResponse<'a, S> {
-    let mut with = free.clone();
-    for ((mode, columns), load) in model.modes.iter().zip(&step.columns).zip(loads) {
-        let ModeColumns { load: columns, .. } = columns;
-        let load = load.map(|load| -mode.tip * load);
-        add_columns::<S, A>(&mut with.free, &columns.displacement, &load);
-        add_columns::<S, A>(&mut with.free_rate, &columns.velocity, &load);
-    }
-    with
-}
-
-/// Effect on the indentation of the defects of base acceleration and loads at the start.
-#[inline(always)]
-fn load_error<const S: usize, A: Arithmetic>(
+fn with_loads<const S: usize, A: Arithmetic>(
     model: &Model,
     free: &FreeResponse<S>,
-    start: &Modal,
+    step: &StepCoefficients<S>,
     loads: &NodalModes<S>,
-    (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
-) -> ErrorColumn<S> {
-    let mut error = ErrorColumn {
-        displacement: free.error.displacement.map(|d| free.start_defect * d),
-        velocity: free.error.velocity.map(|r| free.start_defect * r),
-    };
-    let modes = model.modes.iter().zip(&step.columns).zip(start).zip(loads);
-    for (((mode, columns), start), load) in modes {
-        let start_defect = -mode.tip * (start - dot::<S, A>(load, &collocation.at_start));
-        add::<S, A>(&mut error.displacement, start_defect, &columns.error.displacement);
-        add::<S, A>(&mut error.velocity, start_defect, &columns.error.velocity);
+) -> FreeResponse<S> {
+    let mut with = free.clone();
+    for (port, motion) in model.ports.iter().zip(&mut with.ports) {
+        for ((b, columns), load) in port.shape.iter().zip(&step.columns).zip(loads) {
+            motion.respond::<A>(&columns.load.columns, &load.map(|load| b * load));
+        }
     }
-    error
+    with
 }
 
 #[cfg(test)]
@@ -210,9 +211,13 @@ mod tests {
     use super::*;
     use crate::excitation::drive::Drive;
     use crate::integrator::collocation::coefficients::Cache;
-    use crate::integrator::collocation::polynomial::OF_LONG;
+    use crate::integrator::collocation::polynomial::{Collocation, OF_LONG};
+    use crate::integrator::collocation::step::compute;
+    use crate::integrator::collocation::trial::Scratch;
+    use crate::link::CONTACT;
     use crate::math::nodal::LONG;
     use crate::scene::Scene;
+    use crate::state::State;
     use crate::variables::AxialForceKind;
 
     /// A spring bent by half its length against a soft contact, without damping, pushed at the tip.
@@ -230,59 +235,51 @@ mod tests {
         let mut state = model.initial_state(0.0);
         for (at, mode) in state.modes.iter_mut().zip(&model.modes) {
             at.v = 0.5 * mode.participation;
-            state.indentation_rate -= mode.tip * at.v;
         }
+        model.settle(&mut state);
         (model, state)
     }
 
     #[test]
     fn energy_changes_by_the_work_of_the_axial_force() {
-        for source in [Source::Law(1e-12), Source::Given([0.3; LONG])] {
+        for (source, given) in [(Source::Laws(1e-12), 0.0), (Source::Given, 0.3)] {
             let (model, mut state) = pushed();
             let mut cache = Cache::new(&model, &OF_LONG);
             let (mut most, mut wrong) = (0.0_f64, 0.0_f64);
-            let start = model.energy(&state.modes, 0.0);
+            let start = model.energy(&state);
             let length = 1e-5;
             let collocation = Collocation::<LONG>::new();
             let axial = model.axial.as_ref().unwrap();
+            let mut scratch: Box<Scratch<LONG>> = bytemuck::zeroed_box();
             for _ in 0..100 {
-                let mut end: Box<End<LONG>> = bytemuck::zeroed_box();
                 let mut moved = |length| {
+                    let mut trial: Box<Trial<LONG>> = bytemuck::zeroed_box();
+                    trial.links[CONTACT].forces = [given; LONG];
                     let prepared = cache.prepare(state.time, length, true, &model);
                     let drive = Drive::default();
-                    let trial = crate::integrator::collocation::trial::trial(
-                        &model, &state, &drive, prepared, source, &mut end,
-                    );
-                    (trial.unwrap(), end.modes)
+                    compute(&model, &state, &drive, prepared, source, &mut trial, &mut scratch).unwrap();
+                    trial
                 };
                 // Radau quadrature of the power, from steps to the nodes.
                 let powers = collocation.nodes.map(|node| {
-                    let (_, modes) = moved(node * length);
+                    let modes = moved(node * length).modes;
                     let loads = axial.loads(&model.modes, &modes);
                     loads.iter().zip(&modes).map(|(load, at)| load * at.v).sum()
                 });
                 let work = length * collocation.mean(&powers);
-                let (trial, end) = moved(length);
-                let (mut before, after) = (
-                    model.energy(&state.modes, state.indentation),
-                    model.energy(&end, trial.indentation),
-                );
-                if let Source::Given([force, ..]) = source {
+                let trial = moved(length);
+                let mut before = model.energy(&state);
+                let from = state.contact().approach;
+                state.modes = trial.modes;
+                model.settle(&mut state);
+                let (after, to) = (model.energy(&state), state.contact().approach);
+                if let Source::Given = source {
                     // The given force does the work on the tip in place of the contact.
-                    let contact = |d| model.law.energy_above_tangent(model.preload.indentation, d);
-                    before += contact(trial.indentation) - contact(state.indentation);
-                    before -= force * (trial.indentation - state.indentation);
+                    let contact = |d| model.law().energy_above_tangent(model.preload.indentation, d);
+                    before += contact(to) - contact(from) - given * (to - from);
                 }
                 wrong = wrong.max((after - before - work).abs());
                 most = most.max(work.abs());
-                state.modes = end;
-                state.indentation = trial.indentation;
-                state.indentation_rate = trial.rate;
-                if let Source::Law(_) = source {
-                    state.force = model
-                        .law
-                        .force(model.preload.indentation + trial.indentation, trial.rate);
-                }
             }
             assert!(most > 1e-3 * start, "{most:e} of {start:e} J");
             // The phase of the fastest mode advances by x = 1.3 rad per step: polynomials of degree 8 have an error of

@@ -10,21 +10,21 @@ use crate::integrator::collocation::elimination::solve;
 use crate::integrator::collocation::modal_response::ModeOverStep;
 use crate::integrator::collocation::polynomial::{Collocation, Home, Shared};
 use crate::integrator::collocation::shapes::Shapes;
-use crate::integrator::collocation::superposition::{Pair, Response, Sum};
+use crate::integrator::collocation::superposition::{self, Pair, Sum};
 use crate::integrator::constants::SLOTS;
 use crate::math::free_motion::FreeMotion;
-use crate::math::nodal::{Nodal, add, scaled};
+use crate::math::nodal::{Nodal, add, end, scaled};
 use crate::math::simd::{Arithmetic, Simd, compiled_for};
 use crate::model::Model;
 
-/// Free motion of the tip at the nodes due to one mode; includes the factor of the mode's tip displacement.
+/// Free motion of a port at the nodes due to one mode; includes the displacement of the port per coordinate of the mode.
 #[derive(Clone, Copy, Debug)]
 pub struct NodeRows<const S: usize> {
-    /// Tip displacement per initial q, and per initial v.
-    pub tip_from_q: Nodal<S>,
-    /// See [`NodeRows::tip_from_q`].
-    pub tip_from_v: Nodal<S>,
-    /// Tip velocity per initial q, and per initial v.
+    /// Displacement per initial q, and per initial v.
+    pub from_q: Nodal<S>,
+    /// See [`NodeRows::from_q`].
+    pub from_v: Nodal<S>,
+    /// Velocity per initial q, and per initial v.
     pub rate_from_q: Nodal<S>,
     /// See [`NodeRows::rate_from_q`].
     pub rate_from_v: Nodal<S>,
@@ -45,28 +45,24 @@ pub struct EndRows<const S: usize> {
     pub q_from_load: [Modal; S],
     /// See [`EndRows::q_from_q`].
     pub v_from_load: [Modal; S],
-    /// Modal load per tip force, and tip displacement per q.
-    pub tip: Modal,
-    /// Modal load per base acceleration, with opposite sign.
-    pub participation: Modal,
 }
 
 impl<const S: usize> NodeRows<S> {
     const ZERO: Self = Self {
-        tip_from_q: [0.0; S],
-        tip_from_v: [0.0; S],
+        from_q: [0.0; S],
+        from_v: [0.0; S],
         rate_from_q: [0.0; S],
         rate_from_v: [0.0; S],
     };
 
     /// Sets them to a multiple of the free motion of a mode over a step of `h` seconds.
     #[inline(always)]
-    fn set<A: Arithmetic>(&mut self, factor: f64, mode: &Mode, response: &Response<S>, h: f64) {
+    fn set<A: Arithmetic>(&mut self, factor: f64, mode: &Mode, response: &superposition::Response<S>, h: f64) {
         let Pair { q, v } = &response.impulse;
-        self.tip_from_v = scaled(q, factor * h);
+        self.from_v = scaled(q, factor * h);
         self.rate_from_v = scaled(v, factor);
-        self.tip_from_q = scaled(v, factor);
-        add::<S, A>(&mut self.tip_from_q, factor * mode.damping * h, q);
+        self.from_q = scaled(v, factor);
+        add::<S, A>(&mut self.from_q, factor * mode.damping * h, q);
         self.rate_from_q = scaled(q, -factor * mode.omega_squared * h);
     }
 }
@@ -85,7 +81,7 @@ impl<const S: usize> EndRows<S> {
     }
 
     #[expect(clippy::indexing_slicing, reason = "no model has more modes than there is room for")]
-    fn set(&mut self, i: usize, mode: &Mode, free: &FreeMotion, q_from_load: &Nodal<S>, v_from_load: &Nodal<S>) {
+    fn set(&mut self, i: usize, free: &FreeMotion, q_from_load: &Nodal<S>, v_from_load: &Nodal<S>) {
         self.q_from_q[i] = free.q_from_q;
         self.q_from_v[i] = free.q_from_v;
         self.v_from_q[i] = free.v_from_q;
@@ -96,22 +92,20 @@ impl<const S: usize> EndRows<S> {
         for (row, load) in self.v_from_load.iter_mut().zip(v_from_load) {
             row[i] = *load;
         }
-        self.tip[i] = mode.tip;
-        self.participation[i] = mode.participation;
     }
 }
 
-/// Tip displacement and velocity at the nodes per unit load at each node.
-#[derive(Clone, Copy, Debug)]
-pub struct TipColumns<const S: usize> {
+/// Displacement and velocity at the nodes per unit load at each node.
+#[derive(Clone, Copy, Debug, Zeroable)]
+pub struct Columns<const S: usize> {
     /// Displacement.
     pub displacement: [Nodal<S>; S],
     /// Velocity.
     pub velocity: [Nodal<S>; S],
 }
 
-/// Tip displacement and velocity at the nodes per unit defect at the start: under the shape of the error estimate.
-#[derive(Clone, Copy, Debug)]
+/// Displacement and velocity at the nodes per unit defect at the start: under the shape of the error estimate.
+#[derive(Clone, Copy, Debug, Zeroable)]
 pub struct ErrorColumn<const S: usize> {
     /// Displacement.
     pub displacement: Nodal<S>,
@@ -127,31 +121,48 @@ pub struct ModeColumns<const S: usize> {
     /// See [`ModeColumns::q_from_q`].
     pub q_from_v: Nodal<S>,
     /// Displacement and velocity per load on the mode.
-    pub load: TipColumns<S>,
-    /// Displacement and velocity per defect of the load on the mode.
-    pub error: ErrorColumn<S>,
+    pub load: Response<S>,
 }
 
-/// The coefficients for friction: of the displacement of the contact point along the spring.
+/// The coefficients of a port.
 #[derive(Clone, Debug)]
-pub struct TangentialCoefficients<const S: usize> {
-    /// Free motion, mode by mode.
+pub struct PortCoefficients<const S: usize> {
+    /// Free motion, mode by mode, of the modes that it has a part in.
     pub modes: Vec<NodeRows<S>>,
-    /// Motion along the spring per tip force, and with opposite sign indentation per friction force.
-    pub cross: TipColumns<S>,
-    /// Motion along the spring per friction force.
-    pub own: TipColumns<S>,
-    /// Motion along the spring per base acceleration, with opposite sign.
-    pub acceleration: TipColumns<S>,
-    /// As `cross`, per defect of the force.
-    pub cross_error: ErrorColumn<S>,
-    /// As `own`, per defect of the force.
-    pub own_error: ErrorColumn<S>,
-    /// As `acceleration`, per defect of the base acceleration.
-    pub acceleration_error: ErrorColumn<S>,
-    /// Velocity of a deflection z that follows another with the contact's damping time, `beta_c z' + z = z_1`, per
-    /// difference of the two from the start, 1/s.
-    pub following: [Nodal<S>; S],
+    /// Motion per base acceleration that loads the modes with `participation`, and per defect of it.
+    pub acceleration: Response<S>,
+    /// Motion per force at each port up to this one, and per defect of it.
+    pub forces: Vec<Response<S>>,
+}
+
+impl<const S: usize> ErrorColumn<S> {
+    /// Adds a multiple of another.
+    #[inline(always)]
+    pub(super) fn add<A: Arithmetic>(&mut self, factor: f64, other: &Self) {
+        add::<S, A>(&mut self.displacement, factor, &other.displacement);
+        add::<S, A>(&mut self.velocity, factor, &other.velocity);
+    }
+}
+
+impl<const S: usize> Columns<S> {
+    /// Displacement and velocity at the end under nodal values of the load.
+    #[inline(always)]
+    pub(crate) fn at_end(&self, load: &Nodal<S>) -> (f64, f64) {
+        let last = |columns: &[Nodal<S>; S]| {
+            let entries = columns.iter().zip(load);
+            entries.map(|(column, load)| end(column) * load).sum()
+        };
+        (last(&self.displacement), last(&self.velocity))
+    }
+}
+
+/// Motion of a port per nodal values of a load, and per defect of the load at the start.
+#[derive(Clone, Copy, Debug, Zeroable)]
+pub struct Response<const S: usize> {
+    /// Per nodal values.
+    pub columns: Columns<S>,
+    /// Per defect.
+    pub defect: ErrorColumn<S>,
 }
 
 /// The coefficients of a step of one length.
@@ -159,156 +170,128 @@ pub struct TangentialCoefficients<const S: usize> {
 pub struct StepCoefficients<const S: usize> {
     /// The length, s.
     pub length: f64,
-    /// Free motion of the tip, mode by mode.
-    pub modes: Vec<NodeRows<S>>,
+    /// Port by port.
+    pub ports: Vec<PortCoefficients<S>>,
     /// Motion of each mode, for an axial force that follows the deflection; else empty.
     pub columns: Vec<ModeColumns<S>>,
-    /// For friction; else none.
-    pub tangential: Option<Box<TangentialCoefficients<S>>>,
+    /// With friction: velocity of a deflection z that follows another with the contact's damping time, `beta_c z' + z = z_1`,
+    /// per difference of the two from the start, 1/s; else empty.
+    pub following: Vec<Nodal<S>>,
     /// The modes at the end.
     pub end: Box<EndRows<S>>,
-    /// Tip motion per tip force.
-    pub force: TipColumns<S>,
-    /// Tip motion per base acceleration that loads the modes with `participation`.
-    pub acceleration: TipColumns<S>,
     /// Phase advance of the generator.
     pub turns: Turns<S>,
-    /// Tip motion per defect of the contact force.
-    pub force_error: ErrorColumn<S>,
-    /// Tip motion per defect of the base acceleration.
-    pub acceleration_error: ErrorColumn<S>,
-}
-
-impl<const S: usize> TipColumns<S> {
-    const ZERO: Self = Self {
-        displacement: [[0.0; S]; S],
-        velocity: [[0.0; S]; S],
-    };
-}
-
-impl<const S: usize> ErrorColumn<S> {
-    const ZERO: Self = Self {
-        displacement: [0.0; S],
-        velocity: [0.0; S],
-    };
 }
 
 impl<const S: usize> StepCoefficients<S> {
     /// Allocates for the model; no length yet.
     fn empty(model: &Model) -> Self {
+        let ports = model.ports.iter().enumerate();
+        let following = if model.friction().is_some() { S } else { 0 };
+        let axial = if model.axial().is_some() { model.modes.len() } else { 0 };
         Self {
             length: 0.0,
-            modes: vec![NodeRows::ZERO; model.modes.len()],
-            tangential: model.friction().map(|_| {
-                Box::new(TangentialCoefficients {
-                    modes: vec![NodeRows::ZERO; model.modes.len()],
-                    cross: TipColumns::ZERO,
-                    own: TipColumns::ZERO,
-                    acceleration: TipColumns::ZERO,
-                    cross_error: ErrorColumn::ZERO,
-                    own_error: ErrorColumn::ZERO,
-                    acceleration_error: ErrorColumn::ZERO,
-                    following: [[0.0; S]; S],
+            ports: ports
+                .map(|(p, port)| PortCoefficients {
+                    modes: vec![NodeRows::ZERO; port.modes.len()],
+                    acceleration: Response::zeroed(),
+                    forces: vec![Response::zeroed(); p + 1],
                 })
-            }),
+                .collect(),
             columns: vec![
                 ModeColumns {
                     q_from_q: [0.0; S],
                     q_from_v: [0.0; S],
-                    load: TipColumns::ZERO,
-                    error: ErrorColumn::ZERO,
+                    load: Response::zeroed(),
                 };
-                if model.axial().is_some() { model.modes.len() } else { 0 }
+                axial
             ],
+            following: vec![[0.0; S]; following],
             end: zeroed_box(),
-            force: TipColumns::ZERO,
-            acceleration: TipColumns::ZERO,
             turns: Turns::room(&model.generator),
-            force_error: ErrorColumn::ZERO,
-            acceleration_error: ErrorColumn::ZERO,
         }
+    }
+
+    /// The response of one port to forces at another, or at itself.
+    #[inline(always)]
+    #[expect(
+        clippy::indexing_slicing,
+        reason = "there are coefficients for every port of the model"
+    )]
+    pub fn response(&self, a: usize, b: usize) -> &Response<S> {
+        &self.ports[a.max(b)].forces[a.min(b)]
     }
 
     /// Computes the coefficients for a length in place.
-    fn fill(&mut self, length: f64, model: &Model, collocation: &Collocation<S>, sums: &mut Sums<S>) {
+    fn fill(&mut self, length: f64, model: &Model, collocation: &Collocation<S>, sums: &mut [Sum<S>]) {
         let (h, shapes, simd) = (length, &collocation.shapes, model.simd);
         self.length = length;
         self.turns.fill(&model.generator, length, &collocation.nodes);
-        write_zeroes(sums);
+        sums.iter_mut().for_each(write_zeroes);
         compiled_for!(simd, A => self.add_modes::<A>(model, collocation, sums));
-        set_columns(&sums.force, simd, shapes, h, &mut self.force, &mut self.force_error);
-        let (columns, error) = (&mut self.acceleration, &mut self.acceleration_error);
-        set_columns(&sums.acceleration, simd, shapes, h, columns, error);
-        if let Some(along) = self.tangential.as_deref_mut() {
-            set_columns(&sums.cross, simd, shapes, h, &mut along.cross, &mut along.cross_error);
-            set_columns(&sums.own, simd, shapes, h, &mut along.own, &mut along.own_error);
-            let (columns, error) = (&mut along.acceleration, &mut along.acceleration_error);
-            set_columns(&sums.along, simd, shapes, h, columns, error);
-            along.following = compiled_for!(simd, A => following::<S, A>(model.law.damping(), h, shapes));
+        let mut sums = sums.iter();
+        for port in &mut self.ports {
+            for (response, sum) in [&mut port.acceleration]
+                .into_iter()
+                .chain(&mut port.forces)
+                .zip(&mut sums)
+            {
+                response.set(sum, simd, shapes, h);
+            }
+        }
+        if !self.following.is_empty() {
+            let following = compiled_for!(simd, A => following::<S, A>(model.law().damping(), h, shapes));
+            self.following.copy_from_slice(&following);
         }
     }
 
-    /// Sets what there is of each mode, and adds up the modes.
+    /// Sets what there is of each mode, and adds up the modes: `sums` has for each port that of the base acceleration, then
+    /// those of the ports up to it, and at the end room for one mode.
     #[inline(always)]
-    fn add_modes<A: Arithmetic>(&mut self, model: &Model, collocation: &Collocation<S>, sums: &mut Sums<S>) {
+    fn add_modes<A: Arithmetic>(&mut self, model: &Model, collocation: &Collocation<S>, sums: &mut [Sum<S>]) {
         let (h, shapes) = (self.length, &collocation.shapes);
-        let mut along = self.tangential.as_deref_mut().zip(model.friction());
-        for (i, (mode, step)) in model.modes.iter().zip(&mut self.modes).enumerate() {
-            let tip = mode.tip;
+        for (i, mode) in model.modes.iter().enumerate() {
             let mode_over_step = ModeOverStep::new(mode.omega_squared, mode.damping, h);
             let response = mode_over_step.response::<S, A>(&collocation.nodes, shapes);
-            sums.force.add::<A>(tip * tip, &response);
-            sums.acceleration.add::<A>(tip * mode.participation, &response);
-
-            step.set::<A>(tip, mode, &response, h);
-            if let Some((tangential, friction)) = &mut along
-                && let (Some(rows), Some(lever)) = (tangential.modes.get_mut(i), friction.levers.get(i))
-            {
-                sums.cross.add::<A>(lever * tip, &response);
-                sums.own.add::<A>(lever * lever, &response);
-                sums.along.add::<A>(lever * mode.participation, &response);
-                rows.set::<A>(*lever, mode, &response, h);
+            let displacement = |p: usize| {
+                let port = model.ports.get(p);
+                port.and_then(|port| port.shape.get(i)).copied().unwrap_or_default()
+            };
+            let mut of_port = sums.iter_mut();
+            for (p, (port, step)) in model.ports.iter().zip(&mut self.ports).enumerate() {
+                let b = displacement(p);
+                for (q, sum) in of_port.by_ref().take(p + 2).enumerate() {
+                    let weight = b * if q == 0 {
+                        mode.participation
+                    } else {
+                        displacement(q - 1)
+                    };
+                    if weight != 0.0 {
+                        sum.add::<A>(weight, &response);
+                    }
+                }
+                let own = i.checked_sub(port.modes.start).and_then(|own| step.modes.get_mut(own));
+                if let Some(rows) = own {
+                    rows.set::<A>(b, mode, &response, h);
+                }
             }
-
             let end = FreeMotion::new(mode.omega_squared, mode.damping, h);
             let loads = response.at_end::<A>(shapes);
-            self.end
-                .set(i, mode, &end, &scaled(&loads.q, h * h), &scaled(&loads.v, h));
-            if let Some(columns) = self.columns.get_mut(i) {
+            self.end.set(i, &end, &scaled(&loads.q, h * h), &scaled(&loads.v, h));
+            if let (Some(columns), Some(alone)) = (self.columns.get_mut(i), of_port.next()) {
                 let Pair { q, v } = &response.impulse;
                 columns.q_from_v = scaled(q, h);
                 columns.q_from_q = *v;
                 add::<S, A>(&mut columns.q_from_q, mode.damping * h, q);
-                write_zeroes(&mut sums.alone);
-                sums.alone.add::<A>(1.0, &response);
-                set_columns(
-                    &sums.alone,
-                    model.simd,
-                    shapes,
-                    h,
-                    &mut columns.load,
-                    &mut columns.error,
-                );
+                write_zeroes(alone);
+                alone.add::<A>(1.0, &response);
+                columns.load.set(alone, model.simd, shapes, h);
             }
         }
     }
 }
 
-/// Sums over the modes while the coefficients of a length are computed; too large for the stack.
-#[derive(Clone, Debug, Zeroable)]
-struct Sums<const S: usize> {
-    force: Sum<S>,
-    acceleration: Sum<S>,
-    /// For friction, as in [`TangentialCoefficients`].
-    cross: Sum<S>,
-    own: Sum<S>,
-    /// Of the base acceleration.
-    along: Sum<S>,
-    /// Of one mode.
-    alone: Sum<S>,
-}
-
-/// See [`TangentialCoefficients::following`]; `damping`: the damping time, s.
+/// See [`StepCoefficients::following`]; `damping`: the damping time, s.
 #[inline(always)]
 fn following<const S: usize, A: Arithmetic>(damping: f64, h: f64, shapes: &Shapes<S>) -> [Nodal<S>; S] {
     let mut matrix = shapes.integrals.first().map_or([[0.0; S]; S], |table| table.nodal);
@@ -326,24 +309,45 @@ fn following<const S: usize, A: Arithmetic>(damping: f64, h: f64, shapes: &Shape
     solve::<S, S, A>(matrix, right).unwrap_or([[0.0; S]; S])
 }
 
-/// Sets columns to a sum at the nodes, scaled from units of the step length `h` (s) to seconds.
-#[inline(never)]
-fn set_columns<const S: usize>(
-    sum: &Sum<S>,
-    simd: Simd,
-    shapes: &Shapes<S>,
-    h: f64,
-    columns: &mut TipColumns<S>,
-    error: &mut ErrorColumn<S>,
-) {
-    compiled_for!(simd, A => {
-        let Pair { q, v } = sum.at_nodes::<A>(shapes);
-        let nodal = columns.displacement.iter_mut().zip(&mut columns.velocity);
-        for ((displacement, velocity), (q, v)) in nodal.zip(q.nodal.iter().zip(&v.nodal)) {
-            (*displacement, *velocity) = (scaled(q, h * h), scaled(v, h));
+impl<const S: usize> Response<S> {
+    /// All nodal values, one after the other.
+    #[inline(always)]
+    fn values_mut(&mut self) -> impl Iterator<Item = &mut Nodal<S>> {
+        let Self { columns, defect } = self;
+        let columns = columns.displacement.iter_mut().chain(&mut columns.velocity);
+        columns.chain([&mut defect.displacement, &mut defect.velocity])
+    }
+
+    /// Multiplies it.
+    #[inline(always)]
+    pub(super) fn scale(&mut self, factor: f64) {
+        for values in self.values_mut() {
+            *values = scaled(values, factor);
         }
-        (error.displacement, error.velocity) = (scaled(&q.error, h * h), scaled(&v.error, h));
-    });
+    }
+
+    /// Adds a multiple of another.
+    #[inline(always)]
+    pub(super) fn add<A: Arithmetic>(&mut self, factor: f64, other: &Self) {
+        let mut other = *other;
+        for (sum, values) in self.values_mut().zip(other.values_mut()) {
+            add::<S, A>(sum, factor, values);
+        }
+    }
+
+    /// Sets it to a sum at the nodes, scaled from units of the step length `h` (s) to seconds.
+    #[inline(never)]
+    fn set(&mut self, sum: &Sum<S>, simd: Simd, shapes: &Shapes<S>, h: f64) {
+        let Self { columns, defect } = self;
+        compiled_for!(simd, A => {
+            let Pair { q, v } = sum.at_nodes::<A>(shapes);
+            let nodal = columns.displacement.iter_mut().zip(&mut columns.velocity);
+            for ((displacement, velocity), (q, v)) in nodal.zip(q.nodal.iter().zip(&v.nodal)) {
+                (*displacement, *velocity) = (scaled(q, h * h), scaled(v, h));
+            }
+            (defect.displacement, defect.velocity) = (scaled(&q.error, h * h), scaled(&v.error, h));
+        });
+    }
 }
 
 /// The slot of a length: dyadic fractions of one, and one and a half times them, occupy neighbouring slots; those of another
@@ -355,6 +359,12 @@ fn slot(length: f64) -> usize {
     usize::try_from(octave + elsewhere).unwrap_or_default() % SLOTS
 }
 
+/// Sums over the modes that a step needs: of each port under the base acceleration and under forces at the ports up to it, and
+/// room for one mode.
+fn sums(model: &Model) -> usize {
+    (1..=model.ports.len()).map(|p| p + 1).sum::<usize>() + 1
+}
+
 /// Cache of coefficients by step length. Its content never affects results, only the time they take.
 #[derive(Clone, Debug)]
 pub struct Cache<const S: usize> {
@@ -364,7 +374,7 @@ pub struct Cache<const S: usize> {
     /// For the last other length.
     other: Box<StepCoefficients<S>>,
     /// While coefficients are computed.
-    sums: Box<Sums<S>>,
+    sums: Vec<Sum<S>>,
     /// Piece of a random acceleration.
     piece: Piece,
 }
@@ -387,19 +397,25 @@ impl<const S: usize> Cache<S> {
             collocation: Shared::of(home),
             slots: (0..SLOTS).map(|_| StepCoefficients::empty(model)).collect(),
             other: Box::new(StepCoefficients::empty(model)),
-            sums: zeroed_box(),
+            sums: vec![Sum::zeroed(); sums(model)],
             piece: Piece::default(),
         }
     }
 
     /// What it takes of memory for the model, bytes.
     pub fn size(model: &Model) -> usize {
-        let axial = model.axial().map_or(0, |_| size_of::<ModeColumns<S>>());
-        let along = model.friction().map_or(0, |_| size_of::<NodeRows<S>>());
-        let per_mode = size_of::<NodeRows<S>>() + axial + along;
-        let tangential = model.friction().map_or(0, |_| size_of::<TangentialCoefficients<S>>());
-        let fixed = size_of::<StepCoefficients<S>>() + size_of::<EndRows<S>>() + tangential;
-        size_of::<Sums<S>>() + (SLOTS + 1) * (fixed + model.modes.len() * per_mode)
+        let axial = model
+            .axial()
+            .map_or(0, |_| model.modes.len() * size_of::<ModeColumns<S>>());
+        let following = model.friction().map_or(0, |_| S * size_of::<Nodal<S>>());
+        let rows: usize = model
+            .ports
+            .iter()
+            .map(|port| port.modes.len() * size_of::<NodeRows<S>>())
+            .sum();
+        let fixed = size_of::<StepCoefficients<S>>() + size_of::<EndRows<S>>() + axial + following + rows;
+        let sums = sums(model);
+        sums * size_of::<Sum<S>>() + (SLOTS + 1) * (fixed + sums * size_of::<Response<S>>())
     }
 
     /// The polynomials.
@@ -410,14 +426,10 @@ impl<const S: usize> Cache<S> {
     /// The coefficients for a length, with the base acceleration of a step from `time` (s) on.
     pub fn prepare(&mut self, time: f64, length: f64, recurring: bool, model: &Model) -> Prepared<'_, S> {
         let (step, collocation, piece) = self.entry(length, recurring, model);
-        let mut generated = model.generator.over_step(model.simd, time, &step.turns, piece);
-        if model.mirrored {
-            generated = generated.mirrored();
-        }
         Prepared {
             step,
             collocation,
-            generated,
+            generated: model.generator.over_step(model.simd, time, &step.turns, piece),
         }
     }
 

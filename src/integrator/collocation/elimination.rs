@@ -1,83 +1,139 @@
-//! Gauss-Jordan elimination of the few equations of a step.
+//! Gauss-Jordan elimination of the few equations of a step: a block of unknowns for each link, a value at each node.
 
 use crate::integrator::constants::SMALL_PIVOT;
 use crate::math::nodal::Nodal;
 use crate::math::simd::Arithmetic;
 
-/// Solves `A x = b` for several `b`, `A` by columns. `None` if the matrix is singular.
-#[inline(always)]
-pub(super) fn solve<const N: usize, const R: usize, A: Arithmetic>(
-    mut a: [Nodal<N>; N],
-    mut right: [Nodal<N>; R],
-) -> Option<[Nodal<N>; R]> {
-    factorise::<N, R, A>(&mut a, &mut right)?;
-    right.iter().flatten().all(|x| x.is_finite()).then_some(right)
+/// A value at the nodes for each unknown link.
+pub(super) type Stacked<const S: usize, const L: usize> = [Nodal<S>; L];
+
+/// A square matrix by columns, of which the first `count` blocks are in use; once factorised, what [`Equations::solve`] needs
+/// of it.
+#[derive(Clone, Debug)]
+pub(super) struct Equations<const S: usize, const L: usize> {
+    pub(super) columns: [[Stacked<S, L>; S]; L],
+    /// Rows exchanged with each other, block by block.
+    exchanges: [[usize; S]; L],
+    count: usize,
 }
 
-/// Solves equations for several right-hand sides by Gauss-Jordan elimination by columns, whose inner loops run down columns.
-/// What [`substitute`] needs for others remains in place, with the inverse of each pivot; returned are the rows exchanged, only
-/// for a small pivot, which occurs in violent steps only.
-#[expect(
-    clippy::indexing_slicing,
-    reason = "every index runs over the fixed size of the arrays"
-)]
+/// How many of `L` blocks are in use; of one or two it is known beforehand.
 #[inline(always)]
-pub(super) fn factorise<const N: usize, const R: usize, A: Arithmetic>(
-    a: &mut [Nodal<N>; N],
-    right: &mut [Nodal<N>; R],
-) -> Option<[usize; N]> {
-    let mut exchanges: [usize; N] = std::array::from_fn(|p| p);
-    for p in 0..N {
-        if a[p][p].abs() < SMALL_PIVOT {
-            let largest = (p..N).max_by(|i, j| a[p][*i].abs().total_cmp(&a[p][*j].abs()))?;
-            exchanges[p] = largest;
-            for column in a[p..].iter_mut().chain(&mut *right) {
-                column.swap(p, largest);
+pub(super) fn in_use<const L: usize>(count: usize) -> usize {
+    if L <= 2 { L } else { count.min(L) }
+}
+
+impl<const S: usize, const L: usize> Equations<S, L> {
+    /// Of `count` blocks, all zero.
+    #[inline(always)]
+    pub(super) fn new(count: usize) -> Self {
+        Self {
+            columns: [[[[0.0; S]; L]; S]; L],
+            exchanges: [[0; S]; L],
+            count,
+        }
+    }
+
+    /// Factorises by columns, so that inner loops run down columns; the solution for `right` takes its place. Rows are
+    /// exchanged within a block only, and only for a small pivot, which occurs in violent steps. `None` if that is zero.
+    #[expect(
+        clippy::indexing_slicing,
+        reason = "every index runs over the fixed size of the arrays"
+    )]
+    #[inline(always)]
+    pub(super) fn factorise<A: Arithmetic>(&mut self, right: &mut Stacked<S, L>) -> Option<()> {
+        let Self {
+            columns,
+            exchanges,
+            count,
+        } = self;
+        for b in 0..in_use::<L>(*count) {
+            for p in 0..S {
+                exchanges[b][p] = p;
+                if columns[b][p][b][p].abs() < SMALL_PIVOT {
+                    let pivot = |i: &usize| columns[b][p][b][*i].abs();
+                    let largest = (p..S).max_by(|i, j| pivot(i).total_cmp(&pivot(j)))?;
+                    exchanges[b][p] = largest;
+                    for column in columns[b][p..].iter_mut() {
+                        column[b].swap(p, largest);
+                    }
+                    for column in columns[b + 1..].as_flattened_mut() {
+                        column[b].swap(p, largest);
+                    }
+                    right[b].swap(p, largest);
+                }
+                let pivot = columns[b][p];
+                let inverse = 1.0 / pivot[b][p];
+                // Loops, as a chained iterator may not be inlined and would then be compiled for the generic processor.
+                for column in &mut columns[b][p + 1..] {
+                    eliminate::<S, L, A>(column, (b, p), &pivot, inverse, *count);
+                }
+                for block in &mut columns[b + 1..] {
+                    for column in block {
+                        eliminate::<S, L, A>(column, (b, p), &pivot, inverse, *count);
+                    }
+                }
+                eliminate::<S, L, A>(right, (b, p), &pivot, inverse, *count);
+                columns[b][p][b][p] = inverse;
             }
         }
-        let pivot = a[p];
-        let inverse = 1.0 / pivot[p];
-        // Two loops, as a chained iterator may not be inlined and would then be compiled for the generic processor.
-        for column in &mut a[p + 1..] {
-            eliminate::<N, A>(column, p, &pivot, inverse);
-        }
-        for column in &mut *right {
-            eliminate::<N, A>(column, p, &pivot, inverse);
-        }
-        a[p][p] = inverse;
+        Some(())
     }
-    Some(exchanges)
+
+    /// Solves the equations that have been factorised.
+    #[expect(
+        clippy::indexing_slicing,
+        reason = "every index runs over the fixed size of the arrays"
+    )]
+    #[inline(always)]
+    pub(super) fn solve<A: Arithmetic>(&self, right: &mut Stacked<S, L>) {
+        for b in 0..in_use::<L>(self.count) {
+            for p in 0..S {
+                right[b].swap(p, self.exchanges[b][p]);
+                let pivot = &self.columns[b][p];
+                eliminate::<S, L, A>(right, (b, p), pivot, pivot[b][p], self.count);
+            }
+        }
+    }
 }
 
-/// Solves the equations that have been factorised.
+/// Eliminates row `p` of block `b` of a column from all other rows, and divides it by the pivot.
 #[expect(
     clippy::indexing_slicing,
     reason = "every index runs over the fixed size of the arrays"
 )]
 #[inline(always)]
-pub(super) fn substitute<const N: usize, A: Arithmetic>(
-    a: &[Nodal<N>; N],
-    exchanges: &[usize; N],
-    right: &mut Nodal<N>,
+fn eliminate<const S: usize, const L: usize, A: Arithmetic>(
+    column: &mut Stacked<S, L>,
+    (b, p): (usize, usize),
+    pivot: &Stacked<S, L>,
+    inverse: f64,
+    count: usize,
 ) {
-    for p in 0..N {
-        right.swap(p, exchanges[p]);
-        eliminate::<N, A>(right, p, &a[p], a[p][p]);
+    let share = column[b][p] * inverse;
+    for c in 0..in_use::<L>(count) {
+        for k in 0..S {
+            column[c][k] = A::mul_add(-pivot[c][k], share, column[c][k]);
+        }
     }
+    column[b][p] = share;
 }
 
-/// Eliminates row `p` of a column from all other rows, and divides it by the pivot.
-#[expect(
-    clippy::indexing_slicing,
-    reason = "every index runs over the fixed size of the arrays"
-)]
+/// Solves `A x = b` for several `b`, `A` by columns. `None` if the matrix is singular.
 #[inline(always)]
-fn eliminate<const N: usize, A: Arithmetic>(column: &mut Nodal<N>, p: usize, pivot: &Nodal<N>, inverse: f64) {
-    let share = column[p] * inverse;
-    for k in 0..N {
-        column[k] = A::mul_add(-pivot[k], share, column[k]);
+pub(super) fn solve<const S: usize, const R: usize, A: Arithmetic>(
+    columns: [Nodal<S>; S],
+    mut right: [Nodal<S>; R],
+) -> Option<[Nodal<S>; R]> {
+    let mut equations = Equations::<S, 1>::new(1);
+    equations.columns = [columns.map(|column| [column])];
+    equations.factorise::<A>(&mut [[0.0; S]])?;
+    for values in &mut right {
+        let mut stacked = [*values];
+        equations.solve::<A>(&mut stacked);
+        [*values] = stacked;
     }
-    column[p] = share;
+    right.iter().flatten().all(|x| x.is_finite()).then_some(right)
 }
 
 #[cfg(test)]
@@ -94,5 +150,39 @@ mod tests {
         // Without exchange the elimination multiplies rounding by 1e10.
         assert!((x - exact).abs() < 4.0 * f64::EPSILON, "{x} {exact}");
         assert!((y - (2.0 - exact)).abs() < 4.0 * f64::EPSILON, "{y}");
+    }
+
+    #[test]
+    fn blocks_are_one_system() {
+        // Three blocks of two, with couplings of both signs: the solution times the matrix is the right-hand side.
+        let mut equations = Equations::<2, 3>::new(3);
+        let mut seed = 1.0_f64;
+        let mut next = || {
+            seed = (seed * 1.7 + 0.31) % 1.0;
+            seed - 0.5
+        };
+        for (b, block) in equations.columns.iter_mut().enumerate() {
+            for (p, column) in block.iter_mut().enumerate() {
+                column.iter_mut().flatten().for_each(|entry| *entry = next());
+                column[b][p] += 2.0;
+            }
+        }
+        let matrix = equations.columns;
+        let right = [[1.0, -2.0], [0.5, 3.0], [-1.0, 0.25]];
+        let (mut first, mut again) = (right, right);
+        equations.factorise::<Separate>(&mut first).unwrap();
+        equations.solve::<Separate>(&mut again);
+        for (b, block) in right.iter().enumerate() {
+            for (p, value) in block.iter().enumerate() {
+                let product = |x: &[[f64; 2]; 3]| -> f64 {
+                    let columns = matrix.as_flattened().iter().zip(x.as_flattened());
+                    columns.map(|(column, x)| column[b][p] * x).sum()
+                };
+                for x in [&first, &again] {
+                    // Each of six products rounds, and the pivots are near 2.
+                    assert!((product(x) - value).abs() < 1e-14, "{b} {p}");
+                }
+            }
+        }
     }
 }

@@ -1,108 +1,248 @@
 //! The error estimate of a trial step.
 
 use crate::integrator::collocation::coefficients::StepCoefficients;
-use crate::integrator::collocation::newton::{FreeResponse, Solution, Tangent};
+use crate::integrator::collocation::elimination::in_use;
+use crate::integrator::collocation::newton::{Linked, NodalMotion, Solution, Tangent, Unknown};
 use crate::integrator::collocation::polynomial::Collocation;
-use crate::integrator::constants::{FAR, KINKED, SUM_ROUNDINGS};
-use crate::math::nodal::{Nodal, greatest};
+use crate::integrator::collocation::trial::{Estimate, FreeResponse, Trial};
+use crate::integrator::constants::{FAR, FORCE_ROUNDING, KINKED, SUM_ROUNDINGS};
+use crate::link::{LinkLaw, MAX_LINKS, Port};
+use crate::math::nodal::{Nodal, dot, end, greatest};
+use crate::math::simd::Arithmetic;
 use crate::model::Model;
 use crate::state::State;
 
-/// Estimate of an error, N.
+/// What the polynomials of the forces miss at the start of a step, link by link, N.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Estimate {
-    /// All of it.
-    pub total: f64,
-    /// Without what the contact's damper takes back.
-    pub lasting: f64,
+struct Defects([f64; MAX_LINKS]);
+
+/// What a step is estimated from: its links, its coefficients, and what moves it beside the unknown forces.
+pub(super) struct Judged<'a, const S: usize, const L: usize> {
+    pub(super) linked: &'a Linked<'a, S, L>,
+    pub(super) step: &'a StepCoefficients<S>,
+    pub(super) collocation: &'a Collocation<S>,
+    pub(super) free: &'a FreeResponse<S>,
 }
 
-impl Estimate {
-    /// Of which nothing is known to die out sooner.
-    pub fn lasting(total: f64) -> Self {
-        Self { total, lasting: total }
-    }
+impl<const S: usize, const L: usize> Judged<'_, S, L> {
+    /// Estimates the error that a step adds to the contact force: if it is taken to its end, and if it ends inside.
+    ///
+    /// The polynomials are exact at the nodes; their defect at the start gives the amplitude of the next term, the shape
+    /// that vanishes at the nodes. Its effect on the nodal forces is known to first order ([`Linked::wrong`]). At the end of
+    /// the step, modes slow compared with the step are hardly affected by it (the shape is orthogonal to polynomials of low
+    /// degree); their error is of twice the order, about three times the square of the defect (calibrated with a free mass
+    /// impacting a Hertz contact). Just after first touch or a jump the force is not smooth, and their error is larger.
+    /// Inside the step the shape is not orthogonal to anything: slow modes get its impulse up to there.
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "links of the model, and unknowns in use")]
+    pub(super) fn estimate<A: Arithmetic>(&self, solution: &Solution<S, L>, trial: &mut Trial<S>) {
+        let Self {
+            linked,
+            step,
+            collocation,
+            free,
+        } = *self;
+        let Linked { model, state, .. } = *linked;
+        let defects = self.defects::<A>(trial);
+        let mut own = [NodalMotion::ZERO; L];
+        for a in 0..in_use::<L>(linked.unknowns.count) {
+            let unknown = linked.unknowns.get(a);
+            own[a] = self.under_defects::<A>(unknown.link, &defects);
+        }
+        let wrong = linked.wrong::<A>(solution, &own);
 
-    /// With this share of what the contact's damper takes back.
-    pub fn with(&self, share: f64) -> f64 {
-        self.lasting + share * (self.total - self.lasting)
-    }
-}
-
-/// Estimates of the error that a step adds to the contact force, N: if it is taken to its end, and if it ends inside.
-///
-/// The polynomials are exact at the nodes; their defect at the start gives the amplitude of the next term, the shape
-/// that vanishes at the nodes. Its effect on the nodal forces is known to first order ([`Solution`]). At the end of the
-/// step, modes slow compared with the step are hardly affected by it (the shape is orthogonal to polynomials of low
-/// degree); their error is of twice the order, about three times the square of the defect (calibrated with a free mass
-/// impacting a Hertz contact). Just after first touch or a jump the force is not smooth, and their error is larger.
-/// Inside the step the shape is not orthogonal to anything: slow modes get its impulse up to there.
-///
-/// `start_defect` (N) is the defect of the force polynomial, `largest` (N) the largest nodal force.
-#[inline(always)]
-pub(crate) fn errors<const S: usize>(
-    model: &Model,
-    state: &State,
-    (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
-    solution: &Solution<S>,
-    start_defect: f64,
-    free: &FreeResponse<S>,
-    largest: f64,
-) -> [Estimate; 2] {
-    if state.closed {
-        let (by_force, by_load) = (solution.by_force, solution.by_load);
-        let wrong_d = by_load.0 * free.start_defect - by_force.0 * start_defect;
-        let wrong_r = by_load.1 * free.start_defect - by_force.1 * start_defect;
-        let of_way = (solution.tangent.stiffness * wrong_d).abs();
-        let fast = of_way + (solution.tangent.damping * wrong_r).abs();
-        let kinked = kinked::<S>(state, step.length, start_defect.abs());
-        let reaction = solution.tangent.gain / (1.0 + solution.tangent.gain);
+        // What a wrong way does, what a wrong velocity does until a damper takes it back, and where there is no damper.
+        let (mut of_way, mut passing, mut kept) = (0.0, 0.0, 0.0);
+        let (mut squares, mut sum, mut largest) = (0.0, 0.0, f64::MIN_POSITIVE);
+        let (mut inside, mut reaction, mut rounding) = (0.0, 0.0_f64, 0.0_f64);
+        for a in 0..in_use::<L>(linked.unknowns.count) {
+            let unknown = linked.unknowns.get(a);
+            let (link, (d, rate)) = (&model.links[unknown.link], wrong.ends[a]);
+            let nodes = &mut trial.links[unknown.link];
+            let tangent = linked.tangent(solution, a);
+            nodes.tangent = tangent;
+            of_way += (tangent.stiffness * d).abs();
+            passing += (tangent.damping * rate).abs();
+            reaction = reaction.max(tangent.gain / (1.0 + tangent.gain));
+            let force = |most: f64, force: &f64| most.max((link.force + force).abs());
+            largest = nodes.forces.iter().fold(largest, force);
+            rounding = rounding.max(FORCE_ROUNDING * largest.max(link.force));
+            let mut missed = defects.0[unknown.link].abs();
+            squares += missed * missed;
+            inside += greatest(&wrong.forces[a]);
+            if let Some((follower, share)) = unknown.follower {
+                let along = defects.0[follower].abs();
+                squares += along * along;
+                missed += along;
+                inside += share.abs() * greatest(&wrong.forces[a]);
+                if let LinkLaw::Friction(friction) = &model.links[follower].law {
+                    // What slips has no force that answers, but when it turns depends on its motion: that counts as what bends
+                    // the spring.
+                    let (v, rate) =
+                        self.at_end_of_follower::<A>(&defects, unknown, (follower, share), &wrong.forces[a]);
+                    of_way += friction.stiffness * v.abs();
+                    kept += friction.stiffness * model.memory * rate.abs();
+                }
+            }
+            sum += missed;
+        }
+        let base = free.start_defect.abs();
         let missed = model.inertia * free.missed_mean;
-        let slow = 3.0 * start_defect * start_defect / largest + kinked + missed;
-        let inside = greatest(&solution.nodal_by_force) * start_defect.abs()
-            + greatest(&solution.nodal_by_load) * free.start_defect.abs();
+        let along = model.friction().map_or(0.0, |(_, friction)| friction.inertia);
+        let slow = 3.0 * squares / largest + kinked::<S>(state, step.length, sum) + missed;
+        let lasting = of_way + along * free.missed_mean + kept + slow * reaction;
+        trial.error = Estimate {
+            total: passing + lasting,
+            lasting,
+        };
         // With an axial force the other defects are in `inside` alone.
-        let base = if model.axial().is_some() {
+        let of_base = if free.axial.is_some() {
             0.0
         } else {
-            model.inertia * free.start_defect.abs()
+            model.inertia * base
         };
-        let impulse = collocation.impulse * (start_defect.abs() + base) + missed;
-        // The contact's damper takes back what a wrong velocity makes, not a wrong way.
-        let kept = of_way / fast.max(f64::MIN_POSITIVE);
-        [(fast, slow), (inside, impulse)].map(|(fast, slow)| Estimate {
-            total: fast + slow * reaction,
-            lasting: kept * fast + slow * reaction,
-        })
-    } else {
-        // Of the indentation that is read, searched for a contact, or left at an instant inside.
-        let most = |values: &Nodal<S>| greatest(values) * free.start_defect.abs();
-        let rows = free.error;
-        let missed_velocity = free.missed_mean * step.length;
-        let law = &model.hardest;
+        let impulse = collocation.impulse * (sum + of_base) + missed;
+        let slow = impulse * reaction + along * (collocation.impulse * base + free.missed_mean);
+        // The contacts' dampers take back what a wrong velocity makes, not a wrong way.
+        let share = (of_way + kept) / (of_way + kept + passing).max(f64::MIN_POSITIVE);
+        trial.inner_error = Estimate {
+            total: inside + slow,
+            lasting: share * inside + slow,
+        };
+        trial.rounding = rounding;
+    }
+
+    /// The defects of the unknown forces, and of those that follow them.
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "links of the model")]
+    fn defects<A: Arithmetic>(&self, trial: &mut Trial<S>) -> Defects {
+        let Linked { model, state, .. } = *self.linked;
+        let mut defects = Defects::default();
+        (trial.start_defect, trial.next_terms) = (0.0, 0.0);
+        let mut add = |index: usize| {
+            let start = state.links[index].force - model.links[index].force;
+            let forces = &trial.links[index].forces;
+            let defect = start - dot::<S, A>(forces, &self.collocation.at_start);
+            defects.0[index] = defect;
+            trial.start_defect = trial.start_defect.max(defect.abs());
+            trial.next_terms = trial.next_terms.max(self.collocation.next_terms::<A>(start, forces));
+        };
+        for a in 0..in_use::<L>(self.linked.unknowns.count) {
+            let unknown = self.linked.unknowns.get(a);
+            add(unknown.link);
+            if let Some((follower, _)) = unknown.follower {
+                add(follower);
+            }
+        }
+        defects
+    }
+
+    /// Motion of a link at the nodes that the defects make, with nodal forces as they are.
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "links of the model")]
+    fn under_defects<A: Arithmetic>(&self, index: usize, defects: &Defects) -> NodalMotion<S> {
+        let Self { linked, step, free, .. } = *self;
+        let links = &linked.model.links;
+        let link = &links[index];
+        let mut motion = NodalMotion::ZERO;
+        if let Some(of_loads) = &free.axial {
+            motion.add_defect::<A>(of_loads, link.sense);
+        } else {
+            let of_base = &step.ports[link.port].acceleration.defect;
+            motion.add_defect::<A>(of_base, link.sense * free.start_defect);
+        }
+        for (other, defect) in links.iter().zip(&defects.0) {
+            if *defect != 0.0 {
+                let column = &step.response(link.port, other.port).defect;
+                motion.add_defect::<A>(column, -link.sense * other.sense * defect);
+            }
+        }
+        motion
+    }
+
+    /// What the defects do to approach (m) and velocity (m/s) of friction that slips, where they do this to the contact forces.
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "links of the model")]
+    fn at_end_of_follower<A: Arithmetic>(
+        &self,
+        defects: &Defects,
+        unknown: &Unknown,
+        (follower, share): (usize, f64),
+        wrong: &Nodal<S>,
+    ) -> (f64, f64) {
+        let links = &self.linked.model.links;
+        let own = self.under_defects::<A>(follower, defects);
+        let at_end = |of: usize| {
+            let response = self.step.response(links[follower].port, links[of].port);
+            let (d, rate) = response.columns.at_end(wrong);
+            let sign = links[follower].sense * links[of].sense;
+            (sign * d, sign * rate)
+        };
+        let (by_contact, by_own) = (at_end(unknown.link), at_end(follower));
+        (
+            end(&own.d) - by_contact.0 - share * by_own.0,
+            end(&own.rate) - by_contact.1 - share * by_own.1,
+        )
+    }
+}
+
+/// The same of a step in which no force is unknown: of the approach that is read, searched for a contact, or left at an instant
+/// inside, as the force that the hardest contact would make of it.
+#[inline(always)]
+pub(super) fn estimate_in_flight<const S: usize>(
+    model: &Model,
+    step: &StepCoefficients<S>,
+    free: &FreeResponse<S>,
+    trial: &mut Trial<S>,
+) {
+    let missed_velocity = free.missed_mean * step.length;
+    let (mut at_end, mut inside) = (0.0_f64, 0.0_f64);
+    for link in &model.links {
+        let (Some(law), Some(port)) = (link.contact(), step.ports.get(link.port)) else {
+            continue;
+        };
+        let rows = free.axial.as_ref().unwrap_or(&port.acceleration.defect);
+        let defect = if free.axial.is_some() {
+            1.0
+        } else {
+            free.start_defect.abs()
+        };
+        let most = |values: &Nodal<S>| greatest(values) * defect;
         let wrong = most(&rows.displacement)
             + law.damping() * most(&rows.velocity)
             + missed_velocity * (model.memory + law.damping());
         let stiffness = law.tangent_stiffness(model.force_scale);
+        at_end = at_end.max(stiffness * wrong);
         // At the end the velocity is that of the quadrature.
-        [wrong, wrong + model.memory * most(&rows.velocity)].map(|wrong| Estimate::lasting(stiffness * wrong))
+        inside = inside.max(stiffness * (wrong + model.memory * most(&rows.velocity)));
     }
+    trial.error = Estimate::lasting(at_end);
+    trial.inner_error = Estimate::lasting(inside);
+    trial.rounding = FORCE_ROUNDING * model.preload.force;
+    (trial.start_defect, trial.next_terms) = (0.0, 0.0);
 }
 
-/// Whether the error (N) of a step from `state` is explained by rounding of the sums over the modes: after an impact the
-/// modal velocities are large and their sum at the tip is small.
-pub(crate) fn is_rounding<const S: usize>(model: &Model, state: &State, tangent: &Tangent, error: f64) -> bool {
-    let (displacement, velocity) = sum_rounding(model.modes.iter().map(|mode| mode.tip), state);
-    // The force at the first node feeds back only over the time up to it, some 1 / S^2 of the step.
-    let reaction = 1.0 + tangent.gain / (S * S) as f64;
-    let Tangent { stiffness, damping, .. } = *tangent;
-    error <= (stiffness * displacement + damping * velocity) / reaction
+/// Whether the error (N) of a trial is explained by rounding of the sums over the modes: after an impact the modal velocities
+/// are large and their sum at the tip is small.
+pub(crate) fn is_rounding<const S: usize>(model: &Model, state: &State, trial: &Trial<S>, error: f64) -> bool {
+    let of_links = model.links.iter().zip(&trial.links).filter_map(|(link, nodes)| {
+        let (displacement, velocity) = sum_rounding(model.ports.get(link.port)?, state);
+        let Tangent {
+            stiffness,
+            damping,
+            gain,
+        } = nodes.tangent;
+        // The force at the first node feeds back only over the time up to it, some 1 / S^2 of the step.
+        let reaction = 1.0 + gain / (S * S) as f64;
+        Some((stiffness * displacement + damping * velocity) / reaction)
+    });
+    error <= of_links.sum()
 }
 
-/// Rounding of a displacement (m) and its velocity (m/s) as sums over the modes with these factors.
-pub(crate) fn sum_rounding(factors: impl Iterator<Item = f64>, state: &State) -> (f64, f64) {
+/// Rounding of the displacement (m) and velocity (m/s) of a port, as sums over the modes.
+pub(crate) fn sum_rounding(port: &Port, state: &State) -> (f64, f64) {
     let (mut displacement, mut velocity) = (0.0, 0.0);
-    for (factor, at) in factors.zip(&state.modes) {
+    for (factor, at) in port.shape.iter().zip(&state.modes).take(port.modes.end) {
         displacement += (factor * at.q).abs();
         velocity += (factor * at.v).abs();
     }
@@ -113,7 +253,7 @@ pub(crate) fn sum_rounding(factors: impl Iterator<Item = f64>, state: &State) ->
 /// Error of slow modes, N, that a defect (N) of the force at the start of a step of `length` seconds makes near a kink, where
 /// the force is not smooth.
 #[inline(always)]
-pub(super) fn kinked<const S: usize>(state: &State, length: f64, defect: f64) -> f64 {
+fn kinked<const S: usize>(state: &State, length: f64, defect: f64) -> f64 {
     let elapsed = state.time - state.last_kink;
     if elapsed < FAR * length {
         KINKED * defect * analytic::<S>(elapsed / length)

@@ -1,18 +1,16 @@
-//! One step, in which the contact force is a polynomial through Radau nodes.
+//! One step, in which the forces of the links are polynomials through Radau nodes.
 
 pub mod axial_force;
 pub mod coefficients;
 pub(crate) mod elimination;
-pub mod end;
 pub mod error;
-pub mod friction;
 pub mod modal_response;
 pub mod newton;
 pub mod part;
 pub mod polynomial;
 pub mod shapes;
 pub(crate) mod side_by_side;
+pub mod slip;
 pub mod step;
 pub mod superposition;
-pub mod tangential;
 pub mod trial;

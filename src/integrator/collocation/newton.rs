@@ -1,281 +1,414 @@
-//! Newton's method for the nodal forces on the closed branch: each is that of the law at the motion that they cause.
+//! Newton's method for the nodal forces of the links whose laws are at work: each is that of its law at the motion that all of
+//! them cause.
+//!
+//! The approach of link `a` at node `k` is linear in the nodal forces of all links `b`,
+//!
+//! ```text
+//! d_ak = d_ak(free) - sum_bj D_abkj F_bj,   D_ab = s_a s_b sum_i b_ia b_ib (response of mode i at x_k to l_j)
+//! ```
+//!
+//! and so is its velocity. While a contact slips its friction force is a share of the contact force: each contact force then
+//! moves the modes with its friction force, and the friction forces are no unknowns. While it sticks they are.
 
-use crate::integrator::collocation::coefficients::{ErrorColumn, StepCoefficients, TipColumns};
-use crate::integrator::collocation::elimination::solve;
-use crate::integrator::collocation::polynomial::Collocation;
-use crate::integrator::constants::{ITERATIONS, MOTION_ROUNDING};
-use crate::math::nodal::{Nodal, add_columns, end, greatest, scaled};
+use bytemuck::Zeroable;
+
+use crate::contact::law::Law;
+use crate::integrator::collocation::coefficients::{Columns, ErrorColumn, Response, StepCoefficients};
+use crate::integrator::collocation::elimination::{Equations, Stacked, in_use};
+use crate::integrator::constants::{ITERATIONS, MOTION_ROUNDING, STALE};
+use crate::link::{CONTACT, LinkLaw, MAX_UNKNOWNS};
+use crate::math::nodal::{Nodal, add, add_columns, add_products, end, greatest, scaled};
 use crate::math::simd::Arithmetic;
 use crate::model::Model;
 use crate::state::State;
 
-/// Where the contact force of a step comes from.
-#[derive(Clone, Copy, Debug)]
-pub enum Source<const S: usize> {
-    /// The contact law at the nodes, with this Newton tolerance, N; no force while the contact is open.
-    Law(f64),
-    /// Given nodal forces, as deviation from the preload force, N.
-    Given(Nodal<S>),
-}
-
-/// Response to everything but the contact force.
-#[derive(Clone)]
-pub(crate) struct FreeResponse<'a, const S: usize> {
-    /// Base acceleration at the nodes, m/s2.
-    pub(crate) accelerations: Nodal<S>,
-    /// Indentation at the nodes without contact force, as deviation from the preload, m.
-    pub(crate) free: Nodal<S>,
-    /// Its velocity, m/s.
-    pub(crate) free_rate: Nodal<S>,
-    /// Defect of the load polynomial at the start, m/s2 for the base acceleration.
-    pub(crate) start_defect: f64,
-    /// Mean over the step of what the polynomial misses of the base acceleration, m/s2.
-    pub(crate) missed_mean: f64,
-    /// Indentation and its velocity at the nodes per unit of that defect.
-    pub(crate) error: &'a ErrorColumn<S>,
-}
-
-/// Tangent of the contact law within a step; zero if the force does not depend on the motion.
+/// A link whose force is unknown, and what follows it.
 #[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Unknown {
+    pub(crate) link: usize,
+    /// Friction that slips: its link, and its force per contact force.
+    pub(crate) follower: Option<(usize, f64)>,
+}
+
+/// The links whose forces are unknown in a step.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Unknowns {
+    list: [Unknown; MAX_UNKNOWNS],
+    pub(crate) count: usize,
+}
+
+impl Unknowns {
+    /// Contacts that are closed, and friction that sticks.
+    #[inline(always)]
+    pub(crate) fn of(model: &Model, state: &State) -> Self {
+        let mut unknowns = Self::default();
+        let friction = model.friction();
+        for (index, (link, at)) in model.links.iter().zip(&state.links).enumerate() {
+            let Some((rubbing, friction)) = friction.filter(|_| index == CONTACT) else {
+                if at.closed && link.contact().is_some() {
+                    unknowns.push(index, None);
+                }
+                continue;
+            };
+            if !at.closed {
+                continue;
+            }
+            let slips = state.slip.phase.sign();
+            unknowns.push(index, slips.map(|sign| (rubbing, sign * friction.coefficient)));
+            if slips.is_none() {
+                unknowns.push(rubbing, None);
+            }
+        }
+        unknowns
+    }
+
+    fn push(&mut self, link: usize, follower: Option<(usize, f64)>) {
+        if let Some(entry) = self.list.get_mut(self.count) {
+            *entry = Unknown { link, follower };
+            self.count += 1;
+        }
+    }
+
+    /// One after the other.
+    #[inline(always)]
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &Unknown> {
+        self.list.iter().take(self.count)
+    }
+
+    /// An unknown that is in use.
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "unknowns in use")]
+    pub(crate) fn get(&self, a: usize) -> &Unknown {
+        &self.list[a]
+    }
+}
+
+/// Motion of a link or port at the nodes: displacement and velocity.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct NodalMotion<const S: usize> {
+    pub(crate) d: Nodal<S>,
+    pub(crate) rate: Nodal<S>,
+}
+
+impl<const S: usize> NodalMotion<S> {
+    pub(crate) const ZERO: Self = Self {
+        d: [0.0; S],
+        rate: [0.0; S],
+    };
+
+    /// Adds the response to nodal values of a load.
+    #[inline(always)]
+    pub(crate) fn respond<A: Arithmetic>(&mut self, columns: &Columns<S>, load: &Nodal<S>) {
+        // Copies, which stay in registers.
+        let Self { mut d, mut rate } = *self;
+        add_columns::<S, A>(&mut d, &columns.displacement, load);
+        add_columns::<S, A>(&mut rate, &columns.velocity, load);
+        *self = Self { d, rate };
+    }
+
+    /// Adds a multiple of the motion that a defect makes.
+    #[inline(always)]
+    pub(crate) fn add_defect<A: Arithmetic>(&mut self, defect: &ErrorColumn<S>, factor: f64) {
+        add::<S, A>(&mut self.d, factor, &defect.displacement);
+        add::<S, A>(&mut self.rate, factor, &defect.velocity);
+    }
+}
+
+/// Responses between unknown links, where they are not simply that of a port to itself.
+#[derive(Clone, Debug, Zeroable)]
+pub(crate) struct Joined<const S: usize>([[Response<S>; MAX_UNKNOWNS]; MAX_UNKNOWNS]);
+
+/// Tangent of the law of a link within a step; zero if its force does not depend on the motion.
+#[derive(Clone, Copy, Debug, Default, Zeroable)]
 pub struct Tangent {
-    /// Greatest stiffness at the nodes, N/m.
+    /// Greatest stiffness at start and nodes, N/m.
     pub stiffness: f64,
-    /// Greatest damping at the nodes, N s/m.
+    /// Greatest damping there, N s/m.
     pub damping: f64,
-    /// Loop gain: change of the law's force at the end, at this tangent, per constant tip force over the step.
+    /// Loop gain: change of the force at the end, at this tangent, per constant force of the link over the step.
     pub gain: f64,
 }
 
-/// The nodal forces of a step.
-pub(crate) struct Solution<const S: usize> {
-    /// Deviation from the preload force, N.
-    pub(crate) forces: Nodal<S>,
-    /// Newton iterations.
+/// The nodal forces of the unknown links, and the linearised laws with which an error estimate is made of them.
+pub(crate) struct Solution<const S: usize, const L: usize> {
+    /// Forces as deviations from those of the preload, N.
+    pub(crate) forces: Stacked<S, L>,
+    /// Motion under them.
+    pub(crate) motions: [NodalMotion<S>; L],
     pub(crate) iterations: u64,
-    /// Displacement and velocity of the tip at the end per defect of the contact force at the start.
-    pub(crate) by_force: (f64, f64),
-    /// The same per defect of the other loads.
-    pub(crate) by_load: (f64, f64),
-    /// Nodal forces per defect of the contact force at the start.
-    pub(crate) nodal_by_force: Nodal<S>,
-    /// The same per defect of the other loads.
-    pub(crate) nodal_by_load: Nodal<S>,
-    /// Tangent of the contact law.
-    pub(crate) tangent: Tangent,
+    laws: Laws<S, L>,
+    factors: Equations<S, L>,
 }
 
-impl<const S: usize> Solution<S> {
-    /// Forces that do not depend on the motion.
-    pub(crate) fn given(forces: Nodal<S>) -> Self {
-        Self {
-            forces,
-            iterations: 0,
-            by_force: (0.0, 0.0),
-            by_load: (0.0, 0.0),
-            nodal_by_force: [0.0; S],
-            nodal_by_load: [0.0; S],
-            tangent: Tangent::default(),
-        }
-    }
+/// The laws at the nodes: derivatives by the own approach, its velocity, and the approach of the contact that rubs.
+#[derive(Clone, Copy)]
+struct Laws<const S: usize, const L: usize> {
+    stiffness: Stacked<S, L>,
+    damping: Stacked<S, L>,
+    coupling: Stacked<S, L>,
+}
 
-    /// Of the last iterate, with the greatest stiffness and damping at its start and nodes. `force_error`: nodal forces per
-    /// defect of the contact force; `load_error`: free response per defect of the other loads, and the nodal forces it
-    /// causes. From these the effects at the end are formed.
+impl<const S: usize, const L: usize> Laws<S, L> {
+    /// Change of the forces of link `a` with the motions of all links.
     #[inline(always)]
-    fn new(
-        (columns, defect): (&TipColumns<S>, &ErrorColumn<S>),
-        forces: Nodal<S>,
-        iterations: u64,
-        (stiffness, damping): (f64, f64),
-        force_error: &Nodal<S>,
-        load_error: (&ErrorColumn<S>, &Nodal<S>),
+    #[expect(clippy::indexing_slicing, reason = "friction comes after its contact")]
+    fn change<A: Arithmetic>(&self, a: usize, motion: impl Fn(usize) -> NodalMotion<S>) -> Nodal<S> {
+        let own = motion(a);
+        let mut forces = [0.0; S];
+        add_products::<S, A>(&mut forces, &self.stiffness[a], &own.d);
+        add_products::<S, A>(&mut forces, &self.damping[a], &own.rate);
+        if L > 1 && a > 0 {
+            add_products::<S, A>(&mut forces, &self.coupling[a], &motion(a - 1).d);
+        }
+        forces
+    }
+}
+
+/// The links of a step and the responses between them.
+pub(crate) struct Linked<'a, const S: usize, const L: usize> {
+    pub(crate) model: &'a Model,
+    pub(crate) state: &'a State,
+    pub(crate) unknowns: &'a Unknowns,
+    responses: [[&'a Response<S>; L]; L],
+}
+
+impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
+    /// Joins the responses of ports to those of links.
+    #[inline(always)]
+    #[expect(
+        clippy::indexing_slicing,
+        reason = "links and ports of the model, and unknowns in use"
+    )]
+    pub(crate) fn new<A: Arithmetic>(
+        (model, state): (&'a Model, &'a State),
+        step: &'a StepCoefficients<S>,
+        unknowns: &'a Unknowns,
+        joined: &'a mut Joined<S>,
     ) -> Self {
-        let last = |columns: &[Nodal<S>; S], loads: &Nodal<S>| {
-            let entries = columns.iter().filter_map(|column| column.last());
-            entries.zip(loads).map(|(entry, load)| entry * load).sum::<f64>()
+        let first = unknowns.list[0];
+        let plain = unknowns.count == 1 && first.follower.is_none();
+        let port = model.links[first.link].port;
+        let mut linked = Self {
+            model,
+            state,
+            unknowns,
+            responses: [[step.response(port, port); L]; L],
         };
-        let tip = |error: &ErrorColumn<S>, loads: &Nodal<S>| {
-            (
-                end(&error.displacement) - last(&columns.displacement, loads),
-                end(&error.velocity) - last(&columns.velocity, loads),
-            )
+        if plain {
+            return linked;
+        }
+        // As it is, or with the sign and what follows.
+        let of = |a: &Unknown, link: usize| {
+            let (own, other) = (&model.links[a.link], &model.links[link]);
+            (step.response(own.port, other.port), own.sense * other.sense)
         };
-        let steady = [1.0; S];
-        let gain = stiffness * last(&columns.displacement, &steady) + damping * last(&columns.velocity, &steady);
-        Self {
-            forces,
-            iterations,
-            by_force: tip(defect, force_error),
-            by_load: tip(load_error.0, load_error.1),
-            nodal_by_force: *force_error,
-            nodal_by_load: *load_error.1,
-            tangent: Tangent {
-                stiffness,
-                damping,
-                gain: gain.max(0.0),
-            },
-        }
-    }
-}
-
-/// Nodal forces extrapolated from the last step.
-#[inline(always)]
-fn predicted_forces<const S: usize, A: Arithmetic>(
-    model: &Model,
-    state: &State,
-    step: &StepCoefficients<S>,
-    collocation: &Collocation<S>,
-) -> Nodal<S> {
-    if state.last_step > 0.0 {
-        collocation.guess::<A>(&state.course, step.length / state.last_step)
-    } else {
-        [state.force - model.preload.force; S]
-    }
-}
-
-/// Initial guess of the nodal forces: given by the source, or extrapolated from the last step.
-#[inline(always)]
-pub(crate) fn first_forces<const S: usize, A: Arithmetic>(
-    model: &Model,
-    state: &State,
-    step: &StepCoefficients<S>,
-    collocation: &Collocation<S>,
-    source: Source<S>,
-) -> Nodal<S> {
-    match source {
-        Source::Law(_) if state.closed => predicted_forces::<S, A>(model, state, step, collocation),
-        Source::Law(_) => [-model.preload.force; S],
-        Source::Given(forces) => forces,
-    }
-}
-
-/// Solves for the nodal forces from an initial guess, to residuals of at most `newton` (N) or rounding; `None` if the
-/// iteration does not converge. `tip`: its motion per nodal force and per defect of the force at the start; `start`: the
-/// stiffness at the start, N/m. Velocities are computed only for a contact with damping.
-#[inline(always)]
-pub(crate) fn closed_forces<const S: usize, A: Arithmetic>(
-    model: &Model,
-    tip: (&TipColumns<S>, &ErrorColumn<S>),
-    free: &FreeResponse<S>,
-    guess: Nodal<S>,
-    (newton, start): (f64, f64),
-) -> Option<Solution<S>> {
-    if model.law.damping() > 0.0 {
-        iterated::<S, A, true>(model, tip, free, guess, (newton, start))
-    } else {
-        iterated::<S, A, false>(model, tip, free, guess, (newton, start))
-    }
-}
-
-/// [`closed_forces`], compiled with and without contact damping.
-#[inline(always)]
-fn iterated<const S: usize, A: Arithmetic, const DAMPED: bool>(
-    model: &Model,
-    (columns, defect): (&TipColumns<S>, &ErrorColumn<S>),
-    free: &FreeResponse<S>,
-    guess: Nodal<S>,
-    (newton, start): (f64, f64),
-) -> Option<Solution<S>> {
-    let FreeResponse {
-        free, free_rate, error, ..
-    } = free;
-    let mut forces = guess;
-    let d0 = model.preload.indentation;
-    let (farthest, fastest) = (greatest(free), greatest(free_rate));
-    let mut by_errors = None;
-    for iterations in 0..=ITERATIONS {
-        let (indentations, rates) = if DAMPED {
-            at_nodes::<S, A>(columns, free, free_rate, &forces)
-        } else {
-            (displaced::<S, A>(free, &columns.displacement, &forces), [0.0; S])
+        let direct = |a: &Unknown, b: &Unknown| {
+            let (response, sign) = of(a, b.link);
+            (sign > 0.0 && b.follower.is_none()).then_some(response)
         };
-        let mut residual = forces;
-        let (mut stiffness, mut damping) = ([0.0; S], [0.0; S]);
-        for ((((residual, stiffness), damping), d), rate) in residual
-            .iter_mut()
-            .zip(&mut stiffness)
-            .zip(&mut damping)
-            .zip(&indentations)
-            .zip(&rates)
-        {
-            let law = model.law.closed_branch(d0 + d, *rate);
-            *residual -= law.force - model.preload.force;
-            (*stiffness, *damping) = (law.stiffness, law.damping);
-        }
-        // Convergence is judged by the residual of the law, not by the change of the nodal forces, which on a stiff
-        // contact hardly depend on the law. Rounding of the motion limits the residual.
-        let rounding = MOTION_ROUNDING * (greatest(&stiffness) * farthest + greatest(&damping) * fastest);
-        if let Some((by_force, by_load)) = by_errors.filter(|_| greatest(&residual) <= newton.max(rounding)) {
-            return Some(Solution::new(
-                (columns, defect),
-                forces,
-                iterations,
-                (
-                    greatest(&stiffness).max(start),
-                    greatest(&damping).max(model.law.damping() * start),
-                ),
-                &by_force,
-                (error, &by_load),
-            ));
-        }
-        // Derivatives of the residuals with respect to each nodal force.
-        let mut jacobian = columns.displacement;
-        for (k, (column, velocity)) in jacobian.iter_mut().zip(&columns.velocity).enumerate() {
-            *column = react::<S, A, DAMPED>(column, velocity, &stiffness, &damping);
-            if let Some(entry) = column.get_mut(k) {
-                *entry += 1.0;
+        for (a, row) in unknowns.iter().zip(&mut joined.0) {
+            for (b, joined) in unknowns.iter().zip(row) {
+                if direct(a, b).is_none() {
+                    let (response, sign) = of(a, b.link);
+                    *joined = *response;
+                    if sign < 0.0 {
+                        joined.scale(-1.0);
+                    }
+                    if let Some((follower, share)) = b.follower {
+                        let (response, sign) = of(a, follower);
+                        joined.add::<A>(sign * share, response);
+                    }
+                }
             }
         }
-        let answer =
-            |error: &ErrorColumn<S>| react::<S, A, DAMPED>(&error.displacement, &error.velocity, &stiffness, &damping);
-        let by_force = answer(defect);
-        let by_load = answer(error);
-        let [correction, by_force, by_load] = solve::<S, 3, A>(jacobian, [residual, by_force, by_load])?;
-        for (force, correction) in forces.iter_mut().zip(&correction) {
-            *force -= correction;
+        let joined = &*joined;
+        for (a, (row, joined)) in unknowns.iter().zip(linked.responses.iter_mut().zip(&joined.0)) {
+            for (b, (response, joined)) in unknowns.iter().zip(row.iter_mut().zip(joined)) {
+                *response = direct(a, b).unwrap_or(joined);
+            }
         }
-        by_errors = Some((by_force, by_load));
+        linked
     }
-    None
-}
 
-/// Linearised law: nodal forces for displacements and velocities of the tip.
-#[inline(always)]
-fn react<const S: usize, A: Arithmetic, const DAMPED: bool>(
-    displacement: &Nodal<S>,
-    velocity: &Nodal<S>,
-    stiffness: &Nodal<S>,
-    damping: &Nodal<S>,
-) -> Nodal<S> {
-    let mut forces = *displacement;
-    for (((force, velocity), stiffness), damping) in forces.iter_mut().zip(velocity).zip(stiffness).zip(damping) {
-        *force = if DAMPED {
-            A::mul_add(*stiffness, *force, damping * velocity)
-        } else {
-            stiffness * *force
+    /// Motion of the unknown links under forces, from that without a change of them.
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "unknowns in use")]
+    fn under<A: Arithmetic>(&self, free: &[NodalMotion<S>; L], forces: &Stacked<S, L>) -> [NodalMotion<S>; L] {
+        let mut motions = *free;
+        for b in 0..in_use::<L>(self.unknowns.count) {
+            let less = scaled(&forces[b], -1.0);
+            for a in 0..in_use::<L>(self.unknowns.count) {
+                motions[a].respond::<A>(&self.responses[a][b].columns, &less);
+            }
+        }
+        motions
+    }
+
+    /// What the forces differ from those of the laws, and the laws there.
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "unknowns in use")]
+    fn residuals(&self, forces: &Stacked<S, L>, motions: &[NodalMotion<S>; L]) -> (Stacked<S, L>, Laws<S, L>) {
+        let mut residuals = *forces;
+        let mut laws = Laws {
+            stiffness: [[0.0; S]; L],
+            damping: [[0.0; S]; L],
+            coupling: [[0.0; S]; L],
         };
+        let [contact, ..] = self.model.links.as_slice() else {
+            return (residuals, laws);
+        };
+        for a in 0..in_use::<L>(self.unknowns.count) {
+            let link = &self.model.links[self.unknowns.get(a).link];
+            let motion = &motions[a];
+            match &link.law {
+                LinkLaw::Contact(law) => {
+                    for k in 0..S {
+                        let branch = law.closed_branch(link.approach + motion.d[k], motion.rate[k]);
+                        residuals[a][k] -= branch.force - link.force;
+                        (laws.stiffness[a][k], laws.damping[a][k]) = (branch.stiffness, branch.damping);
+                    }
+                }
+                // It comes after its contact.
+                LinkLaw::Friction(friction) if L > 1 && a > 0 => {
+                    let Some(law) = contact.contact().and_then(Law::power) else {
+                        continue;
+                    };
+                    for k in 0..S {
+                        let z = -motion.d[k] - self.state.slip.slip;
+                        let d = contact.approach + motions[a - 1].d[k];
+                        let stick = friction.trial(law, d, z, -motion.rate[k]);
+                        residuals[a][k] -= stick.force - link.force;
+                        laws.stiffness[a][k] = stick.stiffness;
+                        laws.damping[a][k] = stick.stiffness * law.damping;
+                        laws.coupling[a][k] = stick.by_indentation;
+                    }
+                }
+                LinkLaw::Friction(_) => {}
+            }
+        }
+        (residuals, laws)
     }
-    forces
+
+    /// Solves for the nodal forces from a guess, given the motion without a change of them, to residuals of at most `newton` (N)
+    /// or rounding; `None` if the iteration does not converge.
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "unknowns in use")]
+    pub(crate) fn solve<A: Arithmetic>(
+        &self,
+        free: &[NodalMotion<S>; L],
+        mut forces: Stacked<S, L>,
+        newton: f64,
+    ) -> Option<Solution<S, L>> {
+        let mut factors: Option<Equations<S, L>> = None;
+        let mut before = 0.0;
+        for iterations in 0..=ITERATIONS {
+            let motions = self.under::<A>(free, &forces);
+            let (mut residuals, laws) = self.residuals(&forces, &motions);
+            // Convergence is judged by the residual of the law, not by the change of the nodal forces, which on a stiff
+            // contact hardly depend on the law. Rounding of the motion limits the residual.
+            let (mut wrong, mut rounding) = (0.0_f64, 0.0);
+            for a in 0..in_use::<L>(self.unknowns.count) {
+                wrong = wrong.max(greatest(&residuals[a]));
+                rounding += greatest(&laws.stiffness[a]) * greatest(&free[a].d)
+                    + greatest(&laws.damping[a]) * greatest(&free[a].rate);
+            }
+            if let Some(factors) = factors.take_if(|_| wrong <= newton.max(MOTION_ROUNDING * rounding)) {
+                return Some(Solution {
+                    forces,
+                    motions,
+                    iterations,
+                    laws,
+                    factors,
+                });
+            }
+            let stale = factors.as_ref().filter(|_| L > 1 && wrong <= STALE * before);
+            if let Some(factors) = stale {
+                factors.solve::<A>(&mut residuals);
+            } else {
+                let equations = factors.insert(self.equations::<A>(&laws));
+                equations.factorise::<A>(&mut residuals)?;
+            }
+            before = wrong;
+            for a in 0..in_use::<L>(self.unknowns.count) {
+                if !residuals[a].iter().all(|force| force.is_finite()) {
+                    return None;
+                }
+                add::<S, A>(&mut forces[a], -1.0, &residuals[a]);
+            }
+        }
+        None
+    }
+
+    /// Derivatives of the residuals by each nodal force.
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "unknowns in use")]
+    fn equations<A: Arithmetic>(&self, laws: &Laws<S, L>) -> Equations<S, L> {
+        let mut equations = Equations::new(self.unknowns.count);
+        for b in 0..in_use::<L>(self.unknowns.count) {
+            for j in 0..S {
+                for a in 0..in_use::<L>(self.unknowns.count) {
+                    equations.columns[b][j][a] = laws.change::<A>(a, |of| {
+                        let Columns { displacement, velocity } = &self.responses[of][b].columns;
+                        NodalMotion {
+                            d: displacement[j],
+                            rate: velocity[j],
+                        }
+                    });
+                }
+                equations.columns[b][j][b][j] += 1.0;
+            }
+        }
+        equations
+    }
+
+    /// What defects of the loads at the start do to the forces at the nodes, and to the motion at the end, from the motion that
+    /// they make with forces as they are.
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "unknowns in use")]
+    pub(crate) fn wrong<A: Arithmetic>(&self, solution: &Solution<S, L>, own: &[NodalMotion<S>; L]) -> Wrong<S, L> {
+        let mut forces = [[0.0; S]; L];
+        for a in 0..in_use::<L>(self.unknowns.count) {
+            forces[a] = solution.laws.change::<A>(a, |of| own[of]);
+        }
+        solution.factors.solve::<A>(&mut forces);
+        let mut ends = [(0.0, 0.0); L];
+        for a in 0..in_use::<L>(self.unknowns.count) {
+            ends[a] = (end(&own[a].d), end(&own[a].rate));
+            for b in 0..in_use::<L>(self.unknowns.count) {
+                let (d, rate) = self.responses[a][b].columns.at_end(&forces[b]);
+                ends[a] = (ends[a].0 - d, ends[a].1 - rate);
+            }
+        }
+        Wrong { forces, ends }
+    }
+
+    /// Tangent of an unknown link, with that at the start.
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "unknowns in use")]
+    pub(crate) fn tangent(&self, solution: &Solution<S, L>, a: usize) -> Tangent {
+        let index = self.unknowns.get(a).link;
+        let link = &self.model.links[index];
+        let (mut stiffness, mut damping) = (
+            greatest(&solution.laws.stiffness[a]),
+            greatest(&solution.laws.damping[a]),
+        );
+        if let Some(law) = link.contact() {
+            let start = law.stiffness(link.approach + self.state.links[index].approach);
+            (stiffness, damping) = (stiffness.max(start), damping.max(law.damping() * start));
+        }
+        let (d, rate) = self.responses[a][a].columns.at_end(&[1.0; S]);
+        Tangent {
+            stiffness,
+            damping,
+            gain: (stiffness * d + damping * rate).max(0.0),
+        }
+    }
 }
 
-/// Indentation and its velocity at the nodes under the nodal forces.
-#[inline(always)]
-pub(crate) fn at_nodes<const S: usize, A: Arithmetic>(
-    columns: &TipColumns<S>,
-    free: &Nodal<S>,
-    free_rate: &Nodal<S>,
-    forces: &Nodal<S>,
-) -> (Nodal<S>, Nodal<S>) {
-    (
-        displaced::<S, A>(free, &columns.displacement, forces),
-        displaced::<S, A>(free_rate, &columns.velocity, forces),
-    )
-}
-
-/// The free response less the response to the nodal forces.
-#[inline(always)]
-fn displaced<const S: usize, A: Arithmetic>(free: &Nodal<S>, columns: &[Nodal<S>; S], forces: &Nodal<S>) -> Nodal<S> {
-    let mut left = *free;
-    add_columns::<S, A>(&mut left, columns, &scaled(forces, -1.0));
-    left
+/// What defects of the loads at the start do.
+pub(crate) struct Wrong<const S: usize, const L: usize> {
+    /// To the nodal forces, N.
+    pub(crate) forces: Stacked<S, L>,
+    /// To approach (m) and velocity (m/s) at the end.
+    pub(crate) ends: [(f64, f64); L],
 }

@@ -5,85 +5,106 @@ use std::array;
 
 use crate::beam::mode::{Mode, ModeState, ModeStates};
 use crate::excitation::drive::Drive;
-use crate::integrator::collocation::end::{End, NodalModes};
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::{Load, Shapes};
 use crate::integrator::collocation::side_by_side::Loads;
-use crate::integrator::collocation::step::Trial;
-use crate::integrator::collocation::tangential::TangentialNodes;
-use crate::math::nodal::{Nodal, dot};
+use crate::integrator::collocation::trial::{LinkEnd, NodalModes, Trial};
+use crate::link::MAX_PORTS;
+use crate::math::nodal::{Nodal, add, dot, end, scaled};
 use crate::math::prediction::value_and_slope;
 use crate::math::simd::{Arithmetic, Separate, compiled_for};
 use crate::model::Model;
 use crate::state::State;
 
-/// The motion of the tip at an instant inside a step.
-#[derive(Clone, Copy, Debug)]
+/// A link at an instant inside a step.
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Instant {
     /// From the start of the step, s.
     pub(crate) at: f64,
-    /// Indentation as deviation from the preload, m.
+    /// Approach as deviation from the preload, m.
     pub(crate) d: f64,
     /// Its velocity, m/s.
     pub(crate) rate: f64,
 }
 
-/// The motion `at` seconds after the start of a trial of `length` seconds, with the modes in `ends`. `whole`: what the trial
-/// has left.
-pub(crate) fn motion<const S: usize>(
-    model: &Model,
-    state: &State,
-    drive: &Drive,
-    collocation: &Collocation<S>,
-    (trial, length, whole): (&Trial<S>, f64, &End<S>),
-    at: f64,
-    ends: &mut ModeStates,
-) -> Instant {
-    compiled_for!(model.simd, A =>
-        compute::<S, A>(model, state, drive, collocation, (trial, length, whole), at, ends))
+/// A trial that may end inside.
+#[derive(Clone, Copy)]
+pub(crate) struct Whole<'a, const S: usize> {
+    pub(crate) model: &'a Model,
+    pub(crate) state: &'a State,
+    pub(crate) drive: &'a Drive,
+    pub(crate) collocation: &'a Collocation<S>,
+    pub(crate) trial: &'a Trial<S>,
+    /// Loads of an axial force on the modes.
+    pub(crate) axial: &'a NodalModes<S>,
+    /// Length of the trial, s.
+    pub(crate) length: f64,
 }
 
-#[inline(always)]
-fn compute<const S: usize, A: Arithmetic>(
-    model: &Model,
-    state: &State,
-    drive: &Drive,
-    collocation: &Collocation<S>,
-    (trial, length, whole): (&Trial<S>, f64, &End<S>),
-    at: f64,
-    ends: &mut ModeStates,
-) -> Instant {
-    let shapes = &collocation.shapes;
-    let rows = collocation.nodes.map(|node| collocation.lagrange(node * (at / length)));
-    let force = load_on::<S, A>(shapes, &rows, &trial.forces);
-    let base = load_on::<S, A>(shapes, &rows, &trial.accelerations);
-    if let Some(friction) = model.friction() {
-        let along = load_on::<S, A>(shapes, &rows, &whole.tangential.forces);
-        let loads = Loads {
-            shapes,
-            length: at,
-            polynomials: [&force, &base, &along],
-        };
-        let factors = |i: usize, mode: &Mode| {
-            let lever = friction.levers.get(i).copied().unwrap_or_default();
-            [mode.tip, -mode.participation, lever]
-        };
-        loads.move_all::<A>(&model.modes, factors, &state.modes, ends);
-    } else {
-        let loads = Loads {
-            shapes,
-            length: at,
-            polynomials: [&force, &base],
-        };
-        let factors = |_, mode: &Mode| [mode.tip, -mode.participation];
-        loads.move_all::<A>(&model.modes, factors, &state.modes, ends);
+impl<const S: usize> Whole<'_, S> {
+    /// The modes `at` seconds after the start.
+    pub(crate) fn modes(&self, at: f64, ends: &mut ModeStates) {
+        compiled_for!(self.model.simd, A => self.compute::<A>(at, ends));
     }
-    if model.axial().is_some() {
-        for ((mode, own), end) in model.modes.iter().zip(&whole.loads).zip(ends.iter_mut()) {
+
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "ports of the model")]
+    fn compute<A: Arithmetic>(&self, at: f64, ends: &mut ModeStates) {
+        let Self {
+            model,
+            state,
+            collocation,
+            trial,
+            ..
+        } = *self;
+        let shapes = &collocation.shapes;
+        let rows = collocation
+            .nodes
+            .map(|node| collocation.lagrange(node * (at / self.length)));
+        let base = load_on::<S, A>(shapes, &rows, &trial.accelerations);
+        if let ([link], [port]) = (&*model.links, &*model.ports) {
+            let force = load_on::<S, A>(shapes, &rows, &scaled(&trial.links[0].forces, link.sense));
             let loads = Loads {
                 shapes,
                 length: at,
-                polynomials: [&load_on::<S, A>(shapes, &rows, own)],
+                polynomials: [&base, &force],
+            };
+            let factors = |i: usize, mode: &Mode| [-mode.participation, port.shape[i]];
+            loads.move_all::<A>(&model.modes, factors, &state.modes, ends);
+        } else {
+            let mut at_ports = [[0.0; S]; MAX_PORTS];
+            for (link, nodes) in model.links.iter().zip(&trial.links) {
+                add::<S, A>(&mut at_ports[link.port], link.sense, &nodes.forces);
+            }
+            let at_ports = at_ports.map(|forces| load_on::<S, A>(shapes, &rows, &forces));
+            let polynomials: [&Load; MAX_PORTS + 1] = array::from_fn(|p| if p == 0 { &base } else { &at_ports[p - 1] });
+            let loads = Loads {
+                shapes,
+                length: at,
+                polynomials,
+            };
+            let factors = |i: usize, mode: &Mode| -> [f64; MAX_PORTS + 1] {
+                array::from_fn(|p| match p {
+                    0 => -mode.participation,
+                    _ => model.ports.get(p - 1).map_or(0.0, |port| port.shape[i]),
+                })
+            };
+            loads.move_all::<A>(&model.modes, factors, &state.modes, ends);
+        }
+        if model.axial().is_some() {
+            self.add_axial::<A>(&rows, at, ends);
+        }
+    }
+
+    /// Adds the motion under an axial force, which loads each mode in its own way.
+    #[inline(always)]
+    fn add_axial<A: Arithmetic>(&self, rows: &[Nodal<S>; S], at: f64, ends: &mut ModeStates) {
+        let shapes = &self.collocation.shapes;
+        for ((mode, own), end) in self.model.modes.iter().zip(self.axial).zip(ends.iter_mut()) {
+            let loads = Loads {
+                shapes,
+                length: at,
+                polynomials: [&load_on::<S, A>(shapes, rows, own)],
             };
             let mut by_axial = [ModeState::default()];
             loads.moved::<A, 1>(array::from_ref(mode), &[[1.0]], &[ModeState::default()], &mut by_axial);
@@ -91,15 +112,24 @@ fn compute<const S: usize, A: Arithmetic>(
             (end.q, end.v) = (end.q + q, end.v + v);
         }
     }
-    let (mut tip, mut tip_rate) = (0.0, 0.0);
-    for (mode, end) in model.modes.iter().zip(ends) {
-        tip = A::mul_add(mode.tip, end.q, tip);
-        tip_rate = A::mul_add(mode.tip, end.v, tip_rate);
-    }
-    Instant {
-        at,
-        d: state.support + drive.support_rate * at - tip,
-        rate: drive.support_rate - tip_rate,
+
+    /// A link `at` seconds after the start, where the modes are these.
+    pub(crate) fn link(&self, index: usize, at: f64, modes: &ModeStates) -> Instant {
+        let (model, state) = (self.model, self.state);
+        let Some((link, port)) = model
+            .links
+            .get(index)
+            .and_then(|link| Some((link, model.ports.get(link.port)?)))
+        else {
+            return Instant::default();
+        };
+        let speed = link.offset(&self.drive.velocities);
+        let (y, rate) = compiled_for!(model.simd, A => port.motion::<A>(modes));
+        Instant {
+            at,
+            d: link.offset(&state.displacements) + speed * at - link.sense * y,
+            rate: speed - link.sense * rate,
+        }
     }
 }
 
@@ -114,44 +144,65 @@ fn load_on<const S: usize, A: Arithmetic>(shapes: &Shapes<S>, rows: &[Nodal<S>; 
     shapes.load::<A>(&nodal)
 }
 
-/// The trial of `length` seconds up to an instant inside it, and what it leaves beside the modes.
-pub(crate) fn first_part<const S: usize>(
-    model: &Model,
-    state: &State,
-    drive: &Drive,
+/// Shortens a trial from `state` of `length` seconds to its first part, which ends `at` seconds after the start with these
+/// modes.
+pub(crate) fn shorten<const S: usize>(
+    (model, state, drive): (&Model, &State, &Drive),
     collocation: &Collocation<S>,
-    (trial, length, loads, tangential): (&Trial<S>, f64, &mut NodalModes<S>, &mut TangentialNodes<S>),
-    end: &Instant,
-) -> Trial<S> {
-    let nodes = collocation.nodes.map(|node| node * (end.at / length));
+    (trial, axial): (&mut Trial<S>, &mut NodalModes<S>),
+    (length, at): (f64, f64),
+    modes: &ModeStates,
+) {
+    let nodes = collocation.nodes.map(|node| node * (at / length));
     let rows = nodes.map(|x| collocation.lagrange(x));
     let nodal = |values: &Nodal<S>| rows.map(|row| dot::<S, Separate>(&row, values));
     let with_start = |start: f64, values: &Nodal<S>| {
         let polynomial = collocation.through(model.simd, start, values);
         nodes.map(|x| value_and_slope(&polynomial, x - 1.0).0)
     };
+    for index in 0..model.links.len() {
+        let whole = Whole {
+            model,
+            state,
+            drive,
+            collocation,
+            trial,
+            axial,
+            length,
+        };
+        let Instant { d, rate, .. } = whole.link(index, at, modes);
+        let (Some(link), Some(nodes), Some(start)) = (
+            model.links.get(index),
+            trial.links.get_mut(index),
+            state.links.get(index),
+        ) else {
+            continue;
+        };
+        nodes.forces = nodal(&nodes.forces);
+        nodes.approaches = with_start(start.approach, &nodes.approaches);
+        nodes.rates = with_start(start.rate, &nodes.rates);
+        nodes.end = LinkEnd {
+            force: match link.contact().filter(|_| start.closed) {
+                Some(law) => law.closed_branch(link.approach + d, rate).force - link.force,
+                None => end(&nodes.forces),
+            },
+            approach: d,
+            rate,
+        };
+    }
+    trial.accelerations = nodal(&trial.accelerations);
     if model.axial().is_some() {
-        for load in loads.iter_mut() {
+        for load in axial.iter_mut() {
             *load = nodal(load);
         }
     }
-    if model.friction().is_some() {
-        *tangential = tangential.first_part((collocation, model.simd), state, end.at / length);
+    if let Some((rubbing, _)) = model.friction() {
+        let start = state
+            .links
+            .get(rubbing)
+            .map_or(0.0, |along| -along.approach - state.slip.slip);
+        trial.slip.deflections = with_start(start, &trial.slip.deflections);
+        trial.slip.rates = nodal(&trial.slip.rates);
     }
-    Trial {
-        forces: nodal(&trial.forces),
-        accelerations: nodal(&trial.accelerations),
-        indentations: with_start(state.indentation, &trial.indentations),
-        rates: with_start(state.indentation_rate, &trial.rates),
-        support: state.support + drive.support_rate * end.at,
-        indentation: end.d,
-        rate: end.rate,
-        force: if state.closed {
-            let law = model.law.closed_branch(model.preload.indentation + end.d, end.rate);
-            law.force - model.preload.force
-        } else {
-            trial.force
-        },
-        ..*trial
-    }
+    trial.modes = *modes;
 }

@@ -1,336 +1,399 @@
-//! A trial step: the nodal contact forces ([`crate::integrator::collocation::newton`]), the motion they cause, and its
-//! error ([`crate::integrator::collocation::error`]).
+//! A trial step: the nodal forces of the links ([`newton`](crate::integrator::collocation::newton)), the motion they cause, and
+//! its error ([`error`](crate::integrator::collocation::error)).
 
-use crate::beam::axial::Feedback;
-use crate::beam::mode::{Modal, ModeStates};
+use crate::beam::mode::Modal;
 use crate::excitation::drive::Drive;
-use crate::integrator::collocation::axial_force;
-use crate::integrator::collocation::coefficients::{EndRows, Prepared, StepCoefficients};
-use crate::integrator::collocation::end::End;
-use crate::integrator::collocation::error::{Estimate, errors};
-use crate::integrator::collocation::newton::{
-    FreeResponse, Solution, Source, Tangent, at_nodes, closed_forces, first_forces,
-};
-use crate::integrator::collocation::polynomial::Collocation;
-use crate::integrator::constants::{FORCE_ROUNDING, QUADRATURE_LONG, QUADRATURE_SHORT};
-use crate::math::nodal::{Nodal, SHORT, add, add_columns, add_products, dot, end};
-use crate::math::simd::{Arithmetic, LANES};
+use crate::integrator::collocation::axial_force::Rounds;
+use crate::integrator::collocation::coefficients::{Prepared, StepCoefficients};
+use crate::integrator::collocation::elimination::{Stacked, in_use};
+use crate::integrator::collocation::error::{Judged, estimate_in_flight};
+use crate::integrator::collocation::newton::{Linked, NodalMotion, Solution, Tangent, Unknowns};
+use crate::integrator::collocation::slip::follow;
+use crate::integrator::collocation::trial::{Estimate, FreeResponse, LinkEnd, Scratch, Source, Trial};
+use crate::integrator::constants::{QUADRATURE_LONG, QUADRATURE_SHORT};
+use crate::link::{MAX_PORTS, MAX_UNKNOWNS};
+use crate::math::nodal::{Nodal, SHORT, add, add_products, dot, end, scaled};
+use crate::math::simd::{Arithmetic, LANES, compiled_for};
 use crate::model::Model;
 use crate::state::State;
 
-/// A step computed but not yet accepted.
-#[derive(Clone, Copy, Debug)]
-pub struct Trial<const S: usize> {
-    /// Nodal forces as deviation from the preload force, N.
-    pub forces: Nodal<S>,
-    /// Indentation at the nodes as deviation from the preload, m.
-    pub indentations: Nodal<S>,
-    /// Its velocity at the nodes, m/s.
-    pub rates: Nodal<S>,
-    /// Base acceleration at the nodes, m/s2.
-    pub accelerations: Nodal<S>,
-    /// Displacement of the fixed contact at the end, m.
-    pub support: f64,
-    /// Indentation at the end as deviation from the preload, m.
-    pub indentation: f64,
-    /// Its velocity at the end, m/s.
-    pub rate: f64,
-    /// Contact force at the end as deviation from the preload force, N: the last of the nodal forces, unless it ends
-    /// inside the step that was computed.
-    pub force: f64,
-    /// Estimate of the error this step adds to the contact force, N.
-    pub error: Estimate,
-    /// Estimate of the same at instants inside the step, N.
-    pub inner_error: Estimate,
-    /// Rounding of the contact force, N: an error estimate below it is meaningless.
-    pub rounding: f64,
-    /// Defect of the force polynomial at the start: difference from the contact force there, N.
-    pub start_defect: f64,
-    /// Estimate of the terms beyond it, N.
-    pub next_terms: f64,
-    /// Newton iterations.
-    pub iterations: u64,
-    /// Tangent of the contact law.
-    pub tangent: Tangent,
-}
-
-impl<const S: usize> Trial<S> {
-    /// In the view of the other contact ([`State::mirror`]), with the second fixed contact at these places (m) at the
-    /// nodes, moving at this velocity (m/s).
-    pub(crate) fn mirrored(&self, second: &Nodal<S>, second_rate: f64) -> Self {
-        let mut indentations = *second;
-        for (image, own) in indentations.iter_mut().zip(&self.indentations) {
-            *image -= own;
-        }
-        Self {
-            forces: self.forces.map(|force| -force),
-            force: -self.force,
-            accelerations: self.accelerations.map(|acceleration| -acceleration),
-            indentations,
-            rates: self.rates.map(|rate| second_rate - rate),
-            support: end(second) - self.support,
-            indentation: end(second) - self.indentation,
-            rate: second_rate - self.rate,
-            ..*self
-        }
-    }
-}
-
-/// The loads on [`LANES`] modes at the nodes.
+/// Loads on [`LANES`] modes at the nodes.
 pub(super) type LaneLoads<const S: usize> = [[f64; LANES]; S];
 
-/// [`trial`](super::trial::trial) with constant axial force, which is part of the modes.
-#[inline(always)]
-pub(super) fn compute<const S: usize, A: Arithmetic>(
+/// Computes the prepared step from `state`, contacts closed or open as in `state`. `None` if the iteration for the forces does
+/// not converge.
+pub fn compute<const S: usize>(
     model: &Model,
     state: &State,
     drive: &Drive,
     prepared: Prepared<S>,
-    source: Source<S>,
-    end: &mut End<S>,
-) -> Option<Trial<S>> {
-    let Prepared { step, collocation, .. } = prepared;
-    let free = free_response::<S, A>(state, drive, &prepared);
-    let guess = first_forces::<S, A>(model, state, step, collocation, source);
-    let solution = match source {
-        Source::Law(newton) if state.closed => {
-            let stiffness = model.law.stiffness(model.preload.indentation + state.indentation);
-            closed_forces::<S, A>(
-                model,
-                (&step.force, &step.force_error),
-                &free,
-                guess,
-                (newton, stiffness),
-            )?
-        }
-        _ => Solution::given(guess),
+    source: Source,
+    trial: &mut Trial<S>,
+    scratch: &mut Scratch<S>,
+) -> Option<()> {
+    let unknowns = match source {
+        Source::Laws(_) => Unknowns::of(model, state),
+        Source::Given => Unknowns::default(),
     };
-    let coefficients = (step, collocation);
-    Some(judged::<S, A>(
+    let step = Step {
         model,
         state,
         drive,
-        coefficients,
-        (&solution, &[]),
-        &free,
-        &mut end.modes,
-    ))
-}
-
-/// [`trial`](super::trial::trial) with an axial force that follows the deflection, as loads on the modes.
-#[inline(always)]
-pub(super) fn compute_with_axial_force<const S: usize, A: Arithmetic>(
-    model: &Model,
-    axial: &Feedback,
-    state: &State,
-    drive: &Drive,
-    prepared: Prepared<S>,
-    source: Source<S>,
-    end: &mut End<S>,
-) -> Option<Trial<S>> {
-    let Prepared { step, collocation, .. } = prepared;
-    let free = free_response::<S, A>(state, drive, &prepared);
-    let (solution, error) = axial_force::settle::<S, A>(model, axial, state, (step, collocation), source, &free, end)?;
-    // One combined defect of all loads.
-    let free = FreeResponse {
-        error: &error,
-        start_defect: 1.0,
-        ..axial_force::with_loads::<S, A>(model, &free, step, &end.loads)
+        prepared,
+        source,
+        unknowns,
     };
-    let coefficients = (step, collocation);
-    Some(judged::<S, A>(
-        model,
-        state,
-        drive,
-        coefficients,
-        (&solution, &end.loads),
-        &free,
-        &mut end.modes,
-    ))
-}
-
-/// Response of the tip to everything but the contact force.
-#[inline(always)]
-pub(super) fn free_response<'a, const S: usize, A: Arithmetic>(
-    state: &State,
-    drive: &Drive,
-    prepared: &Prepared<'a, S>,
-) -> FreeResponse<'a, S> {
-    let Prepared {
-        step,
-        collocation,
-        generated,
-    } = prepared;
-    let h = step.length;
-    let driven = drive.acceleration(state.time);
-    let mut accelerations = generated.nodes;
-    add::<S, A>(&mut accelerations, drive.jerk * h, &collocation.nodes);
-    for acceleration in &mut accelerations {
-        *acceleration += driven;
-    }
-
-    let mut free = [state.support; S];
-    add::<S, A>(&mut free, drive.support_rate * h, &collocation.nodes);
-    let mut free_rate = [drive.support_rate; S];
-    // Separate sums for q and v, which the processor computes in parallel.
-    let [mut from_q, mut from_v, mut rate_from_q, mut rate_from_v] = [[0.0; S]; 4];
-    for (mode, row) in state.modes.iter().zip(&step.modes) {
-        add::<S, A>(&mut from_q, mode.q, &row.tip_from_q);
-        add::<S, A>(&mut from_v, mode.v, &row.tip_from_v);
-        add::<S, A>(&mut rate_from_q, mode.q, &row.rate_from_q);
-        add::<S, A>(&mut rate_from_v, mode.v, &row.rate_from_v);
-    }
-    subtract(&mut free, &from_q, &from_v);
-    subtract(&mut free_rate, &rate_from_q, &rate_from_v);
-    add_columns::<S, A>(&mut free, &step.acceleration.displacement, &accelerations);
-    add_columns::<S, A>(&mut free_rate, &step.acceleration.velocity, &accelerations);
-    let start_defect = driven + generated.start - dot::<S, A>(&accelerations, &collocation.at_start);
-    let largest = accelerations
-        .iter()
-        .fold(f64::MIN_POSITIVE, |largest, a| largest.max(a.abs()));
-    let quadrature = if S == SHORT { QUADRATURE_SHORT } else { QUADRATURE_LONG };
-    FreeResponse {
-        start_defect,
-        missed_mean: quadrature * start_defect * start_defect / largest,
-        error: &step.acceleration_error,
-        accelerations,
-        free,
-        free_rate,
+    match unknowns.count {
+        0 | 1 => compiled_for!(model.simd, A => step.compute::<1, A>(trial, scratch)),
+        _ => compiled_for!(model.simd, A => step.compute::<MAX_UNKNOWNS, A>(trial, scratch)),
     }
 }
 
-/// The trial with its error estimate, from the nodal forces and the loads on the modes, where there are such; the modes at
-/// its end go to `end_modes`.
-#[inline(always)]
-fn judged<const S: usize, A: Arithmetic>(
-    model: &Model,
-    state: &State,
-    drive: &Drive,
-    (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
-    (solution, mode_loads): (&Solution<S>, &[Nodal<S>]),
-    free: &FreeResponse<S>,
-    end_modes: &mut ModeStates,
-) -> Trial<S> {
-    let (tip, tip_rate) = end_of_modes::<S, A>(
-        state,
-        step,
-        model.modes.len(),
-        #[inline(always)]
-        |first, lanes| {
-            loads_on_modes::<S, A>(&step.end, first, &solution.forces, &free.accelerations, lanes);
-            for (i, load) in mode_loads.iter().skip(first).take(LANES).enumerate() {
-                for (lanes, load) in lanes.iter_mut().zip(load) {
-                    lanes.iter_mut().skip(i).take(1).for_each(|lane| *lane += load);
+/// What a step is computed from.
+pub(super) struct Step<'a, const S: usize> {
+    pub(super) model: &'a Model,
+    pub(super) state: &'a State,
+    pub(super) drive: &'a Drive,
+    pub(super) prepared: Prepared<'a, S>,
+    pub(super) source: Source,
+    pub(super) unknowns: Unknowns,
+}
+
+impl<const S: usize> Step<'_, S> {
+    #[inline(always)]
+    fn compute<const L: usize, A: Arithmetic>(&self, trial: &mut Trial<S>, scratch: &mut Scratch<S>) -> Option<()> {
+        let Self { model, state, .. } = *self;
+        let Prepared { step, collocation, .. } = self.prepared;
+        let mut free = self.free_response::<A>(trial);
+        self.guess::<A>(trial);
+        let Scratch { joined, axial } = scratch;
+        let linked = Linked::<S, L>::new::<A>((model, state), step, &self.unknowns, joined);
+        let mut loads = None;
+        if let Some(feedback) = model.axial() {
+            let without = free.clone();
+            let mut rounds = Rounds::new((model, feedback, state), (step, collocation), axial);
+            loop {
+                free = rounds.next::<A>(self.source, &without, trial)?;
+                if rounds.settled {
+                    break;
+                }
+                if self.unknowns.count > 0 {
+                    self.solve::<L, A>(&linked, &free, trial)?;
                 }
             }
-        },
-        end_modes,
-    );
-    let Solution { forces, iterations, .. } = *solution;
-    let (indentations, rates) = at_nodes::<S, A>(&step.force, &free.free, &free.free_rate, &forces);
-    let support = state.support + drive.support_rate * step.length;
-    let (indentation, rate) = (support - tip, drive.support_rate - tip_rate);
-
-    let largest = forces.iter().fold(f64::MIN_POSITIVE, |largest, force| {
-        largest.max((model.preload.force + force).abs())
-    });
-    let (start_defect, next_terms) = if state.closed {
-        let start = state.force - model.preload.force;
-        let defect = start - dot::<S, A>(&forces, &collocation.at_start);
-        (defect, collocation.next_terms::<A>(start, &forces))
-    } else {
-        (0.0, 0.0)
-    };
-    let [error, inner_error] = errors(model, state, (step, collocation), solution, start_defect, free, largest);
-    Trial {
-        forces,
-        indentations,
-        rates,
-        accelerations: free.accelerations,
-        support,
-        indentation,
-        rate,
-        force: end(&forces),
-        error,
-        inner_error,
-        rounding: FORCE_ROUNDING * largest.max(model.preload.force),
-        start_defect: start_defect.abs(),
-        next_terms,
-        iterations,
-        tangent: solution.tangent,
+            loads = Some(axial.loads.as_slice());
+        }
+        if self.unknowns.count > 0 {
+            let solution = self.solve::<L, A>(&linked, &free, trial)?;
+            let judged = Judged {
+                linked: &linked,
+                step,
+                collocation,
+                free: &free,
+            };
+            judged.estimate::<A>(&solution, trial);
+            self.set_motion::<A>(&free.ports, &solution.motions, trial);
+        } else {
+            trial.iterations = 0;
+            estimate_in_flight(model, step, &free, trial);
+            if let Source::Given = self.source {
+                (trial.error, trial.inner_error) = (Estimate::default(), Estimate::default());
+            }
+            self.set_motion::<A>(&free.ports, &[NodalMotion::ZERO; L], trial);
+        }
+        self.set_end::<A>(trial, loads);
+        if let Some((rubbing, friction)) = model.friction() {
+            follow::<S, A>(model, state, (step, collocation), (rubbing, friction), trial);
+        }
+        Some(())
     }
-}
 
-/// Loads of contact force and base acceleration on [`LANES`] modes from `first` on.
-#[inline(always)]
-#[expect(
-    clippy::indexing_slicing,
-    reason = "the room for the modes is a whole number of lanes"
-)]
-pub(super) fn loads_on_modes<const S: usize, A: Arithmetic>(
-    rows: &EndRows<S>,
-    first: usize,
-    forces: &Nodal<S>,
-    accelerations: &Nodal<S>,
-    loads: &mut LaneLoads<S>,
-) {
-    let tips = &rows.tip[first..first + LANES];
-    let participations = &rows.participation[first..first + LANES];
-    for ((load, force), acceleration) in loads.iter_mut().zip(forces).zip(accelerations) {
-        for ((load, tip), participation) in load.iter_mut().zip(tips).zip(participations) {
-            *load = A::mul_add(*tip, *force, -participation * acceleration);
+    /// Motion of the ports under what is known: the state of the modes, the base acceleration, and forces that do not depend on
+    /// the motion, which are set.
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "ports and links of the model")]
+    fn free_response<A: Arithmetic>(&self, trial: &mut Trial<S>) -> FreeResponse<S> {
+        let Self { model, state, .. } = *self;
+        let Prepared {
+            step,
+            collocation,
+            generated,
+        } = self.prepared;
+        let driven = self.drive.acceleration(state.time);
+        let accelerations = &mut trial.accelerations;
+        *accelerations = generated.nodes;
+        add::<S, A>(accelerations, self.drive.jerk * step.length, &collocation.nodes);
+        for acceleration in accelerations.iter_mut() {
+            *acceleration += driven;
+        }
+        let start_defect = driven + generated.start - dot::<S, A>(accelerations, &collocation.at_start);
+        let largest = accelerations
+            .iter()
+            .fold(f64::MIN_POSITIVE, |largest, a| largest.max(a.abs()));
+        let quadrature = if S == SHORT { QUADRATURE_SHORT } else { QUADRATURE_LONG };
+
+        let pushed = scaled(accelerations, -1.0);
+        let mut ports = [NodalMotion::ZERO; MAX_PORTS];
+        for ((port, coefficients), motion) in model.ports.iter().zip(&step.ports).zip(&mut ports) {
+            // Separate sums for q and v, which the processor computes in parallel.
+            let [mut d, mut rate, mut from_v, mut rate_from_v] = [[0.0; S]; 4];
+            let states = &state.modes[port.modes.clone()];
+            for (mode, row) in states.iter().zip(&coefficients.modes) {
+                add::<S, A>(&mut d, mode.q, &row.from_q);
+                add::<S, A>(&mut from_v, mode.v, &row.from_v);
+                add::<S, A>(&mut rate, mode.q, &row.rate_from_q);
+                add::<S, A>(&mut rate_from_v, mode.v, &row.rate_from_v);
+            }
+            for (sum, from_v) in d.iter_mut().zip(&from_v) {
+                *sum += from_v;
+            }
+            for (sum, from_v) in rate.iter_mut().zip(&rate_from_v) {
+                *sum += from_v;
+            }
+            *motion = NodalMotion { d, rate };
+            motion.respond::<A>(&coefficients.acceleration.columns, &pushed);
+        }
+        self.set_known::<A>(trial, &mut ports);
+        FreeResponse {
+            ports,
+            start_defect,
+            missed_mean: quadrature * start_defect * start_defect / largest,
+            axial: None,
+        }
+    }
+
+    /// Sets the forces that do not depend on the motion, and adds the motion that they cause.
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "links of the model")]
+    fn set_known<A: Arithmetic>(&self, trial: &mut Trial<S>, ports: &mut [NodalMotion<S>; MAX_PORTS]) {
+        for (index, link) in self.model.links.iter().enumerate() {
+            let nodes = &mut trial.links[index];
+            if self.unknowns.iter().any(|unknown| unknown.link == index) {
+                continue;
+            }
+            nodes.tangent = Tangent::default();
+            let followed = self.unknowns.iter().find_map(|unknown| {
+                let (follower, share) = unknown.follower?;
+                (follower == index).then(|| share * self.model.links[unknown.link].force)
+            });
+            match (followed, self.source) {
+                // The share of the contact's preload; that of its deviation is unknown.
+                (Some(force), _) => nodes.forces = [force - link.force; S],
+                (None, Source::Laws(_)) => nodes.forces = [-link.force; S],
+                (None, Source::Given) => {}
+            }
+            if nodes.forces != [0.0; S] {
+                self.push::<A>(link.port, &scaled(&nodes.forces, link.sense), ports);
+            }
+        }
+    }
+
+    /// Adds the motion of the ports under a force at one of them.
+    #[inline(always)]
+    fn push<A: Arithmetic>(&self, port: usize, force: &Nodal<S>, ports: &mut [NodalMotion<S>; MAX_PORTS]) {
+        let Prepared { step, .. } = self.prepared;
+        for (p, motion) in ports.iter_mut().take(self.model.ports.len()).enumerate() {
+            motion.respond::<A>(&step.response(p, port).columns, force);
+        }
+    }
+
+    /// First guesses of the unknown forces, as they went on in the last step.
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "links of the model")]
+    fn guess<A: Arithmetic>(&self, trial: &mut Trial<S>) {
+        let Self { model, state, .. } = *self;
+        let Prepared { step, collocation, .. } = self.prepared;
+        for unknown in self.unknowns.iter() {
+            let (link, at) = (&model.links[unknown.link], &state.links[unknown.link]);
+            let bent = link.contact().is_none() && state.slip.last_change == Some(state.time);
+            trial.links[unknown.link].forces = if state.lengths.last > 0.0 && !bent {
+                collocation.guess::<A>(&at.course, step.length / state.lengths.last)
+            } else {
+                [at.force - link.force; S]
+            };
+        }
+    }
+
+    /// Solves for the unknown forces from the guesses in the trial.
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "links of the model, and unknowns in use")]
+    pub(super) fn solve<const L: usize, A: Arithmetic>(
+        &self,
+        linked: &Linked<S, L>,
+        free: &FreeResponse<S>,
+        trial: &mut Trial<S>,
+    ) -> Option<Solution<S, L>> {
+        let Source::Laws(newton) = self.source else {
+            return None;
+        };
+        let mut motions = [NodalMotion::ZERO; L];
+        let mut forces: Stacked<S, L> = [[0.0; S]; L];
+        for a in 0..in_use::<L>(self.unknowns.count) {
+            let unknown = self.unknowns.get(a);
+            motions[a] = self.approach::<A>(unknown.link, &free.ports[self.model.links[unknown.link].port]);
+            forces[a] = trial.links[unknown.link].forces;
+        }
+        let solution = linked.solve::<A>(&motions, forces, newton)?;
+        trial.iterations = solution.iterations;
+        for a in 0..in_use::<L>(self.unknowns.count) {
+            let unknown = self.unknowns.get(a);
+            trial.links[unknown.link].forces = solution.forces[a];
+            if let Some((follower, share)) = unknown.follower {
+                add::<S, A>(&mut trial.links[follower].forces, share, &solution.forces[a]);
+            }
+        }
+        Some(solution)
+    }
+
+    /// Approach of a link from the motion of its port.
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "links of the model")]
+    fn approach<A: Arithmetic>(&self, index: usize, port: &NodalMotion<S>) -> NodalMotion<S> {
+        let Prepared { step, collocation, .. } = self.prepared;
+        let link = &self.model.links[index];
+        let speed = link.offset(&self.drive.velocities);
+        let mut motion = NodalMotion {
+            d: [link.offset(&self.state.displacements); S],
+            rate: [speed; S],
+        };
+        add::<S, A>(&mut motion.d, speed * step.length, &collocation.nodes);
+        add::<S, A>(&mut motion.d, -link.sense, &port.d);
+        add::<S, A>(&mut motion.rate, -link.sense, &port.rate);
+        motion
+    }
+
+    /// Sets the approaches of all links at the nodes, from the motion of the ports without the forces that were unknown, and
+    /// that of the links whose forces were.
+    #[inline(always)]
+    #[expect(
+        clippy::indexing_slicing,
+        reason = "links and ports of the model, and unknowns in use"
+    )]
+    fn set_motion<A: Arithmetic>(
+        &self,
+        free: &[NodalMotion<S>; MAX_PORTS],
+        motions: &[NodalMotion<S>],
+        trial: &mut Trial<S>,
+    ) {
+        for (index, link) in self.model.links.iter().enumerate() {
+            let unknown = self.unknowns.iter().position(|unknown| unknown.link == index);
+            let NodalMotion { d, rate } = if let Some(a) = unknown {
+                motions[a]
+            } else {
+                let mut motion = free[link.port];
+                for unknown in self.unknowns.iter() {
+                    let forces = trial.links[unknown.link].forces;
+                    self.respond::<A>(link.port, (unknown.link, 1.0), &forces, &mut motion);
+                    if let Some(follower) = unknown.follower {
+                        self.respond::<A>(link.port, follower, &forces, &mut motion);
+                    }
+                }
+                self.approach::<A>(index, &motion)
+            };
+            let nodes = &mut trial.links[index];
+            (nodes.approaches, nodes.rates) = (d, rate);
+        }
+    }
+
+    /// Adds the motion of a port under a share of forces, that acts at a link.
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "links of the model")]
+    fn respond<A: Arithmetic>(
+        &self,
+        port: usize,
+        (index, share): (usize, f64),
+        forces: &Nodal<S>,
+        motion: &mut NodalMotion<S>,
+    ) {
+        let link = &self.model.links[index];
+        let response = self.prepared.step.response(port, link.port);
+        motion.respond::<A>(&response.columns, &scaled(forces, link.sense * share));
+    }
+
+    /// Moves the modes to the end of the step, with the loads of an axial force on each where there are such; and sets the links
+    /// there.
+    #[inline(always)]
+    #[expect(
+        clippy::indexing_slicing,
+        reason = "links and ports of the model, and whole numbers of lanes"
+    )]
+    fn set_end<A: Arithmetic>(&self, trial: &mut Trial<S>, on_modes: Option<&[Nodal<S>]>) {
+        let Self { model, state, .. } = *self;
+        let Prepared { step, .. } = self.prepared;
+        let mut loads = [[0.0; S]; MAX_PORTS];
+        for (link, nodes) in model.links.iter().zip(&trial.links) {
+            add::<S, A>(&mut loads[link.port], link.sense, &nodes.forces);
+        }
+        let mut ends = [([0.0; LANES], [0.0; LANES]); MAX_PORTS];
+        let lanes = |values: &Modal, first: usize| -> [f64; LANES] { std::array::from_fn(|i| values[first + i]) };
+        for first in (0..model.modes.len()).step_by(LANES) {
+            let mut on_lanes: LaneLoads<S> = [[0.0; LANES]; S];
+            let participations = lanes(&model.participations, first);
+            for (load, acceleration) in on_lanes.iter_mut().zip(&trial.accelerations) {
+                add::<LANES, A>(load, -acceleration, &participations);
+            }
+            for (port, forces) in model.ports.iter().zip(&loads) {
+                let shape = lanes(&port.shape, first);
+                for (load, force) in on_lanes.iter_mut().zip(forces) {
+                    add::<LANES, A>(load, *force, &shape);
+                }
+            }
+            if let Some(on_modes) = on_modes {
+                for (i, of_mode) in on_modes[first..first + LANES].iter().enumerate() {
+                    for (load, value) in on_lanes.iter_mut().zip(of_mode) {
+                        load[i] += value;
+                    }
+                }
+            }
+            let (q, v) = end_of_lanes::<S, A>(state, step, first, &on_lanes);
+            for (port, (y, rate)) in model.ports.iter().zip(&mut ends) {
+                let shape = lanes(&port.shape, first);
+                add_products::<LANES, A>(y, &shape, &q);
+                add_products::<LANES, A>(rate, &shape, &v);
+            }
+            for (mode, (q, v)) in trial.modes[first..first + LANES].iter_mut().zip(q.iter().zip(&v)) {
+                (mode.q, mode.v) = (*q, *v);
+            }
+        }
+        for (index, link) in model.links.iter().enumerate() {
+            let (y, rate) = &ends[link.port];
+            let speed = link.offset(&self.drive.velocities);
+            let offset = link.offset(&state.displacements) + speed * step.length;
+            let nodes = &mut trial.links[index];
+            nodes.end = LinkEnd {
+                force: end(&nodes.forces),
+                approach: offset - link.sense * y.iter().sum::<f64>(),
+                rate: speed - link.sense * rate.iter().sum::<f64>(),
+            };
         }
     }
 }
 
-/// Writes the modes at the end of a step to `ends`; `loads_from` computes the loads on [`LANES`] modes from a given one
-/// on. Returns displacement and velocity of the tip.
+/// Displacements and velocities of [`LANES`] modes at the end of a step, under loads at the nodes.
 #[inline(always)]
 #[expect(
     clippy::indexing_slicing,
     reason = "the room for the modes is a whole number of lanes"
 )]
-pub(super) fn end_of_modes<const S: usize, A: Arithmetic>(
+fn end_of_lanes<const S: usize, A: Arithmetic>(
     state: &State,
     step: &StepCoefficients<S>,
-    modes: usize,
-    loads_from: impl Fn(usize, &mut LaneLoads<S>),
-    ends: &mut ModeStates,
-) -> (f64, f64) {
+    first: usize,
+    loads: &LaneLoads<S>,
+) -> ([f64; LANES], [f64; LANES]) {
     let rows = &step.end;
-    let (mut tip, mut tip_rate) = ([0.0; LANES], [0.0; LANES]);
-    let lanes = |values: &Modal, first: usize| -> [f64; LANES] { std::array::from_fn(|i| values[first + i]) };
-    for first in (0..modes).step_by(LANES) {
-        let starts = &state.modes[first..first + LANES];
-        let (start_q, start_v): ([f64; LANES], [f64; LANES]) = (
-            std::array::from_fn(|i| starts[i].q),
-            std::array::from_fn(|i| starts[i].v),
-        );
-        let tips = lanes(&rows.tip, first);
-        let mut loads = [[0.0; LANES]; S];
-        loads_from(first, &mut loads);
-        let (mut q, mut v) = ([0.0; LANES], [0.0; LANES]);
-        add_products::<LANES, A>(&mut q, &lanes(&rows.q_from_q, first), &start_q);
-        add_products::<LANES, A>(&mut q, &lanes(&rows.q_from_v, first), &start_v);
-        add_products::<LANES, A>(&mut v, &lanes(&rows.v_from_q, first), &start_q);
-        add_products::<LANES, A>(&mut v, &lanes(&rows.v_from_v, first), &start_v);
-        for (node, load) in loads.iter().enumerate() {
-            add_products::<LANES, A>(&mut q, &lanes(&rows.q_from_load[node], first), load);
-            add_products::<LANES, A>(&mut v, &lanes(&rows.v_from_load[node], first), load);
-        }
-        add_products::<LANES, A>(&mut tip, &tips, &q);
-        add_products::<LANES, A>(&mut tip_rate, &tips, &v);
-        for (end, (q, v)) in ends[first..first + LANES].iter_mut().zip(q.iter().zip(&v)) {
-            (end.q, end.v) = (*q, *v);
-        }
+    let lanes = |values: &Modal| -> [f64; LANES] { std::array::from_fn(|i| values[first + i]) };
+    let starts = &state.modes[first..first + LANES];
+    let start_q: [f64; LANES] = std::array::from_fn(|i| starts[i].q);
+    let start_v: [f64; LANES] = std::array::from_fn(|i| starts[i].v);
+    let (mut q, mut v) = ([0.0; LANES], [0.0; LANES]);
+    add_products::<LANES, A>(&mut q, &lanes(&rows.q_from_q), &start_q);
+    add_products::<LANES, A>(&mut q, &lanes(&rows.q_from_v), &start_v);
+    add_products::<LANES, A>(&mut v, &lanes(&rows.v_from_q), &start_q);
+    add_products::<LANES, A>(&mut v, &lanes(&rows.v_from_v), &start_v);
+    for (node, load) in loads.iter().enumerate() {
+        add_products::<LANES, A>(&mut q, &lanes(&rows.q_from_load[node]), load);
+        add_products::<LANES, A>(&mut v, &lanes(&rows.v_from_load[node]), load);
     }
-    (tip.iter().sum(), tip_rate.iter().sum())
-}
-
-/// Subtracts `a` and `b`.
-#[inline(always)]
-fn subtract<const S: usize>(values: &mut Nodal<S>, a: &Nodal<S>, b: &Nodal<S>) {
-    for ((value, a), b) in values.iter_mut().zip(a).zip(b) {
-        *value -= a + b;
-    }
+    (q, v)
 }

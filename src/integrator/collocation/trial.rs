@@ -1,32 +1,133 @@
-//! A trial step, computed as the scene asks: with constant axial force, with one that follows the deflection, or with friction.
+//! What a step is computed from, and a step computed but not yet accepted.
 
-use crate::excitation::drive::Drive;
-use crate::integrator::collocation::coefficients::Prepared;
-use crate::integrator::collocation::end::End;
-use crate::integrator::collocation::friction;
-use crate::integrator::collocation::newton::Source;
-use crate::integrator::collocation::step::{self, Trial};
-use crate::math::simd::compiled_for;
-use crate::model::Model;
-use crate::state::State;
+use bytemuck::Zeroable;
 
-/// Computes the prepared step from `state`, contact closed or open as in `state`. `None` if the iteration for contact or
-/// axial force does not converge.
-pub fn trial<const S: usize>(
-    model: &Model,
-    state: &State,
-    drive: &Drive,
-    prepared: Prepared<S>,
-    source: Source<S>,
-    end: &mut End<S>,
-) -> Option<Trial<S>> {
-    match (model.axial(), model.friction()) {
-        (None, None) => {
-            compiled_for!(model.simd, A => step::compute::<S, A>(model, state, drive, prepared, source, end))
-        }
-        (Some(axial), _) => compiled_for!(model.simd, A =>
-            step::compute_with_axial_force::<S, A>(model, axial, state, drive, prepared, source, end)),
-        (None, Some(friction)) => compiled_for!(model.simd, A =>
-            friction::compute::<S, A>(model, friction, state, drive, prepared, source, end)),
+use crate::beam::mode::{MAX_MODES, ModeStates};
+use crate::integrator::collocation::coefficients::ErrorColumn;
+use crate::integrator::collocation::newton::{Joined, NodalMotion, Tangent};
+use crate::link::{MAX_LINKS, MAX_PORTS};
+use crate::math::nodal::Nodal;
+
+/// A step computed but not yet accepted.
+#[derive(Clone, Debug, Zeroable)]
+pub struct Trial<const S: usize> {
+    /// The links, in the order of the model.
+    pub links: [LinkNodes<S>; MAX_LINKS],
+    /// Base acceleration at the nodes, m/s2.
+    pub accelerations: Nodal<S>,
+    /// Slip of the first contact at the nodes.
+    pub slip: SlipNodes<S>,
+    /// The modes at the end.
+    pub modes: ModeStates,
+    /// Estimate of the error this step adds to the contact force, N.
+    pub error: Estimate,
+    /// Estimate of the same at instants inside the step, N.
+    pub inner_error: Estimate,
+    /// Rounding of the forces, N: an error estimate below it is meaningless.
+    pub rounding: f64,
+    /// Greatest defect of the force polynomials at the start: difference from the force there, N.
+    pub start_defect: f64,
+    /// Estimate of the terms beyond it, N.
+    pub next_terms: f64,
+    /// Newton iterations.
+    pub iterations: u64,
+}
+
+/// A link in a trial step; all as deviations from the preload.
+#[derive(Clone, Copy, Debug, Zeroable)]
+pub struct LinkNodes<const S: usize> {
+    /// Nodal forces, N.
+    pub forces: Nodal<S>,
+    /// Approach at the nodes, m.
+    pub approaches: Nodal<S>,
+    /// Its velocity at the nodes, m/s.
+    pub rates: Nodal<S>,
+    /// At the end.
+    pub end: LinkEnd,
+    /// Tangent of its law.
+    pub tangent: Tangent,
+}
+
+/// A link at the end of a step; deviations from the preload.
+#[derive(Clone, Copy, Debug, Default, Zeroable)]
+pub struct LinkEnd {
+    /// Force, N: the last of the nodal forces, unless the step ends inside the one that was computed.
+    pub force: f64,
+    /// Approach, m.
+    pub approach: f64,
+    /// Its velocity, m/s.
+    pub rate: f64,
+}
+
+/// Where the forces of a step come from.
+#[derive(Clone, Copy, Debug)]
+pub enum Source {
+    /// The laws at the nodes, with this Newton tolerance, N; no force of open contacts.
+    Laws(f64),
+    /// The nodal forces that stand in the trial.
+    Given,
+}
+
+/// Room for a trial while it is computed.
+#[derive(Clone, Debug, Zeroable)]
+pub struct Scratch<const S: usize> {
+    pub(super) joined: Joined<S>,
+    pub(crate) axial: AxialLoads<S>,
+}
+
+/// Response to all that is known beforehand.
+#[derive(Clone)]
+pub(crate) struct FreeResponse<const S: usize> {
+    /// Motion of the ports.
+    pub(crate) ports: [NodalMotion<S>; MAX_PORTS],
+    /// Defect of the polynomial of the base acceleration at the start, m/s2.
+    pub(crate) start_defect: f64,
+    /// Mean over the step of what that polynomial misses, m/s2.
+    pub(crate) missed_mean: f64,
+    /// Approach of the contact that the defects of base acceleration and axial loads make, where there are such loads.
+    pub(crate) axial: Option<ErrorColumn<S>>,
+}
+
+/// Slip at the nodes of a step.
+#[derive(Clone, Copy, Debug, Zeroable)]
+pub struct SlipNodes<const S: usize> {
+    /// Deflection of the tangential spring, m.
+    pub deflections: Nodal<S>,
+    /// Slip velocity, m/s.
+    pub rates: Nodal<S>,
+}
+
+/// A value at each node for each mode.
+pub(crate) type NodalModes<const S: usize> = [Nodal<S>; MAX_MODES];
+
+/// Loads of an axial force that follows the deflection.
+#[derive(Clone, Debug, Zeroable)]
+pub struct AxialLoads<const S: usize> {
+    /// On the modes at the nodes of a trial.
+    pub(crate) loads: NodalModes<S>,
+    /// The modes at the nodes, while the loads are sought.
+    pub(super) motion: NodalModes<S>,
+    /// The loads of that motion.
+    pub(super) next: NodalModes<S>,
+}
+
+/// Estimate of an error, N.
+#[derive(Clone, Copy, Debug, Default, Zeroable)]
+pub struct Estimate {
+    /// All of it.
+    pub total: f64,
+    /// Without what the dampers of the contacts take back.
+    pub lasting: f64,
+}
+
+impl Estimate {
+    /// Of which nothing is known to die out sooner.
+    pub fn lasting(total: f64) -> Self {
+        Self { total, lasting: total }
+    }
+
+    /// With this share of what the contacts' dampers take back.
+    pub fn with(&self, share: f64) -> f64 {
+        self.lasting + share * (self.total - self.lasting)
     }
 }

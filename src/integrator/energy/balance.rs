@@ -40,98 +40,100 @@
 //! A force error `e` over a tip path `s` changes the energy by at most `e s`. So compare the balance with the tolerance
 //! times the force scale times the path.
 
-use crate::integrator::collocation::newton::Source;
-use crate::integrator::collocation::step::Trial;
-use crate::integrator::collocation::tangential::TangentialNodes;
-use crate::integrator::collocation::trial;
+use crate::excitation::drive::Drive;
+use crate::integrator::collocation::step::compute;
+use crate::integrator::collocation::trial::{Source, Trial};
 use crate::integrator::grid::Target;
-use crate::integrator::integration::Integration;
-use crate::integrator::workspace::{Room, Workspace};
+use crate::integrator::workspace::{Room, Rooms, Workspace};
+use crate::link::{CONTACT, LinkLaw, MAX_LINKS};
 use crate::math::nodal::{LONG, Nodal};
 use crate::model::Model;
 use crate::state::State;
 
-impl Integration<'_> {
-    /// Energy relative to the preload at the end of a step about to be accepted, if the step were free of error, J;
-    /// `None` without `effects.energy`.
-    pub(crate) fn expected_energy<const S: usize>(&mut self, trial: &Trial<S>, target: &Target) -> Option<f64>
-    where
-        Workspace: Room<S>,
-    {
-        if !self.model.scene.effects.energy {
-            return None;
-        }
-        let half = 0.5 * target.length;
-        let nodes = self.collocation::<LONG>().nodes;
-        let friction = self.model.friction();
-        let loads = friction.map(|_| Room::<S>::parts(self.workspace).1.tangential.forces);
-        let polynomial = self.collocation::<S>();
-        let in_halves = |values: &Nodal<S>| {
-            [0.0, 0.5].map(|start| nodes.map(|node| polynomial.interpolate(values, start + 0.5 * node)))
-        };
-        let (halves, loads) = (in_halves(&trial.forces), loads.as_ref().map(in_halves));
-        let Self {
-            model, state, drive, ..
-        } = self;
-        let (cache, end) = self.workspace.for_half_steps();
-        let mut at: State = **state;
-        let mut work = 0.0;
-        for (half_step, forces) in halves.into_iter().enumerate() {
-            if let Some(loads) = loads.as_ref().and_then(|loads| loads.get(half_step)) {
-                end.tangential.forces = *loads;
-            }
-            let prepared = cache.prepare(at.time, half, target.recurring, model);
-            let motion = trial::trial(model, &at, drive, prepared, Source::Given(forces), end)?;
-            let mut powers = forces;
-            for ((power, d), rate) in powers.iter_mut().zip(&motion.indentations).zip(&motion.rates) {
-                let d = model.preload.indentation + d;
-                *power = (*power - (model.law.force(d, *rate) - model.law.force(d, 0.0))) * rate;
-            }
-            subtract_friction(&mut powers, model, state, &motion, &end.tangential);
-            work += half * prepared.collocation.mean(&powers);
-            at.time += half;
-            at.modes = end.modes;
-            at.support = motion.support;
-            at.indentation = motion.indentation;
-        }
-        Some(if state.closed {
-            model.energy(&at.modes, state.indentation) + work
-        } else {
-            // Without contact force, all elastic energy that leaves the contact is dissipated.
-            model.energy(&at.modes, at.indentation)
-        })
-    }
-
-    /// Adds a step just accepted, at whose end the energy should be `expected` (J).
-    pub(crate) fn balance(&mut self, expected: Option<f64>) {
-        if let Some(expected) = expected {
-            let Self { model, state, .. } = self;
-            state.energy_balance += expected - model.energy(&state.modes, state.indentation);
-        }
-    }
-}
-
-/// Subtracts the power of what the friction forces of a motion miss of the law at its nodes, W.
-fn subtract_friction(
-    powers: &mut Nodal<LONG>,
+/// Energy relative to the preload at the end of a step about to be accepted, if the step were free of error, J; `None` where
+/// that cannot be computed.
+pub(crate) fn expected_energy<const S: usize>(
     model: &Model,
     state: &State,
-    motion: &Trial<LONG>,
-    along: &TangentialNodes<LONG>,
-) {
-    let (Some(friction), Some(law), true) = (model.friction(), model.law.power(), state.closed) else {
-        return;
+    drive: &Drive,
+    workspace: &mut Workspace,
+    trial: &Trial<S>,
+    target: &Target,
+) -> Option<f64>
+where
+    Workspace: Rooms<S>,
+{
+    let half = 0.5 * target.length;
+    let polynomial = Rooms::<S>::room(workspace).cache.collocation();
+    let nodes = Rooms::<LONG>::room(workspace).cache.collocation().nodes;
+    let in_halves = |values: &Nodal<S>| {
+        [0.0, 0.5].map(|start| nodes.map(|node| polynomial.interpolate(values, start + 0.5 * node)))
     };
-    let tip = motion.indentations.iter().zip(&motion.rates);
-    let moved = along.displacements.iter().zip(&along.rates).zip(&along.forces);
-    for ((power, (d, d_rate)), ((v, rate), load)) in powers.iter_mut().zip(tip).zip(moved) {
-        let d = model.preload.indentation + d;
-        let force = match state.tangential.phase.sign() {
-            Some(sign) => sign * friction.coefficient * model.law.force(d, *d_rate),
-            None => friction.trial(law, d, v - state.tangential.slip, *rate).force,
-        };
-        *power -= (friction.preload + load - force) * rate;
+    let halves: [[Nodal<LONG>; 2]; MAX_LINKS] = trial.links.map(|nodes| in_halves(&nodes.forces));
+    let (Room { cache, scratch, .. }, motion) = workspace.for_half_steps();
+    let mut at: State = *state;
+    let mut work = 0.0;
+    for half_step in 0..2 {
+        for (nodes, halves) in motion.links.iter_mut().zip(&halves) {
+            nodes.forces = *halves.get(half_step)?;
+        }
+        let prepared = cache.prepare(at.time, half, target.recurring, model);
+        compute(model, &at, drive, prepared, Source::Given, motion, scratch)?;
+        work += half * prepared.collocation.mean(&powers(model, state, motion));
+        at.time += half;
+        at.modes = motion.modes;
+        for (displacement, velocity) in at.displacements.iter_mut().zip(&drive.velocities) {
+            *displacement += velocity * half;
+        }
+        for (at, nodes) in at.links.iter_mut().zip(&motion.links) {
+            (at.approach, at.rate) = (nodes.end.approach, nodes.end.rate);
+        }
     }
+    // Of a closed contact the work; without contact force, all elastic energy that leaves the contact is dissipated.
+    let stored = |index: usize| {
+        let links = [state, &at].map(|state| state.links.get(index).copied().unwrap_or_default());
+        if links[0].closed {
+            links[0].approach
+        } else {
+            links[1].approach
+        }
+    };
+    Some(model.energy_at(&at.modes, stored) + work)
+}
+
+/// Power of what the forces of a motion miss of the dissipative parts of their laws, W.
+fn powers(model: &Model, state: &State, motion: &Trial<LONG>) -> Nodal<LONG> {
+    let mut powers = [0.0; LONG];
+    for ((link, at), nodes) in model.links.iter().zip(&state.links).zip(&motion.links) {
+        let moved = nodes.approaches.iter().zip(&nodes.rates).zip(&nodes.forces);
+        for (k, (power, ((d, rate), force))) in powers.iter_mut().zip(moved).enumerate() {
+            *power += match &link.law {
+                LinkLaw::Contact(_) if at.closed => {
+                    (force - (link.force_at(*d, *rate) - link.force_at(*d, 0.0))) * rate
+                }
+                LinkLaw::Friction(friction) => {
+                    let contact = model.links.get(CONTACT).zip(motion.links.get(CONTACT));
+                    let law = model.law().power();
+                    let (Some((contact, across)), Some(law), true) = (contact, law, state.is_closed()) else {
+                        continue;
+                    };
+                    let (Some(across), Some(across_rate)) = (across.approaches.get(k), across.rates.get(k)) else {
+                        continue;
+                    };
+                    let expected = match state.slip.phase.sign() {
+                        Some(sign) => sign * friction.coefficient * contact.force_at(*across, *across_rate),
+                        None => {
+                            let across = contact.approach + across;
+                            friction.trial(law, across, -d - state.slip.slip, -rate).force
+                        }
+                    };
+                    (link.force + force - expected) * rate
+                }
+                LinkLaw::Contact(_) => 0.0,
+            };
+        }
+    }
+    powers
 }
 
 #[cfg(test)]
@@ -139,13 +141,13 @@ mod tests {
     use nalgebra::SVector;
 
     use super::*;
-    use crate::beam::mode::ModeStates;
-    use crate::excitation::drive::Drive;
     use crate::inputs::Inputs;
     use crate::integrator::collocation::polynomial::Collocation;
-    use crate::integrator::course::Places;
+    use crate::integrator::communication_step::{News, Steps, advance};
+    use crate::integrator::events::interruption::Passages;
     use crate::integrator::grid::Grid;
-    use crate::integrator::integration::{News, Steps};
+    use crate::integrator::recorder::Recorder;
+    use crate::integrator::stepper::{Progress, Stepper};
     use crate::integrator::workspace::Budget;
     use crate::math::nodal::SHORT;
     use crate::scene::Scene;
@@ -176,7 +178,7 @@ mod tests {
             news: News::default(),
         };
         let mut workspace = Workspace::new(&model);
-        crate::integrator::step_control::advance(&model, &mut state, &mut workspace, drive, steps, None).unwrap();
+        advance(&model, &mut state, &mut workspace, drive, steps, None).unwrap();
         state.energy_balance = 0.0;
         (model, state, drive)
     }
@@ -187,35 +189,28 @@ mod tests {
         state: &mut State,
         drive: Drive,
         length: f64,
-        change: impl FnOnce(&mut Trial<S>, &mut ModeStates),
+        change: impl FnOnce(&mut Trial<S>),
     ) -> (f64, Trial<S>)
     where
-        Workspace: Room<S>,
+        Workspace: Rooms<S>,
     {
         let mut workspace = Workspace::new(model);
-        let mut integration = Integration {
+        let mut stepper = Stepper {
             model,
-            other: None,
             grid: Grid::over(state.time, length),
             state,
             budget: Budget::new(&workspace),
             workspace: &mut workspace,
             drive,
-            dense: None,
-            extremes: None,
-            tolerance: 1e-6,
-            allowed: 1e-9,
-            refusals: 0,
-            before_event: false,
-            changes: 0,
-            driven: false,
-            conserves: false,
+            recorder: Recorder::default(),
+            progress: Progress::default(),
         };
-        let target = integration.grid.target(length, integration.state.time, None);
-        let mut trial = integration.attempt::<S>(&target).unwrap();
-        change(&mut trial, &mut Room::<S>::parts(integration.workspace).1.modes);
-        integration.take(&trial, &target, Places::default()).unwrap();
-        (state.energy_balance, trial)
+        let target = stepper.grid.target(length, stepper.state.time, None);
+        let mut trial: Box<Trial<S>> = bytemuck::zeroed_box();
+        stepper.compute(&mut trial, &target).unwrap();
+        change(&mut trial);
+        stepper.commit(&trial, &target, &Passages::default()).unwrap();
+        (state.energy_balance, *trial)
     }
 
     /// The same from all works, energies and losses, integrated along the motion under the force of the step by the
@@ -233,9 +228,9 @@ mod tests {
         let collocation = Collocation::<S>::new();
         // Displacement and velocity of each mode, energy supplied, energy dissipated.
         let rates = |t: f64, y: &Along| {
-            let force = collocation.interpolate(&trial.forces, t / length);
+            let force = collocation.interpolate(&trial.links[CONTACT].forces, t / length);
             let base = drive.acceleration(start.time + t) + model.generator.phasor(start.time + t).0;
-            let (mut d, mut rate) = (start.support + drive.support_rate * t, drive.support_rate);
+            let (mut d, mut rate) = (start.displacements[0] + drive.velocities[0] * t, drive.velocities[0]);
             let mut slope = Along::zeros();
             for (i, mode) in model.modes.iter().enumerate() {
                 let (q, v) = (y[2 * i], y[2 * i + 1]);
@@ -248,8 +243,8 @@ mod tests {
                 slope[2 * MODES + 1] += mode.damping * v * v;
             }
             let d = model.preload.indentation + d;
-            slope[2 * MODES] += (model.preload.force + force) * drive.support_rate;
-            slope[2 * MODES + 1] += (model.law.force(d, rate) - model.law.force(d, 0.0)) * rate;
+            slope[2 * MODES] += (model.preload.force + force) * drive.velocities[0];
+            slope[2 * MODES + 1] += (model.law().force(d, rate) - model.law().force(d, 0.0)) * rate;
             slope
         };
         let mut y = Along::zeros();
@@ -265,8 +260,7 @@ mod tests {
             let d = rates(t + h, &(y + c * h));
             y += (a + (b + c) * 2.0 + d) * (h / 6.0);
         }
-        let stored =
-            |state: &State| model.energy(&state.modes, state.indentation) + model.preload.force * state.support;
+        let stored = |state: &State| model.energy(state) + model.preload.force * state.displacements[0];
         y[2 * MODES] - y[2 * MODES + 1] - (stored(end) - stored(start))
     }
 
@@ -276,7 +270,7 @@ mod tests {
         for length in [6e-5, 1.2e-4, 2.4e-4] {
             let (model, start, drive) = moving();
             let mut end = start;
-            let (entered, trial) = balance::<SHORT>(&model, &mut end, drive, length, |_, _| ());
+            let (entered, trial) = balance::<SHORT>(&model, &mut end, drive, length, |_| ());
             let sum = summed(&model, &start, &end, drive, length, &trial);
             // The defect at the start excites oscillations of about a microsecond, which the nodes of the half steps do
             // not resolve.
@@ -292,8 +286,8 @@ mod tests {
         let (model, start, drive) = moving();
         let mut end = start;
         let wrong = 1e-6;
-        let (entered, trial) = balance::<LONG>(&model, &mut end, drive, 6e-5, |trial, _| {
-            trial.forces = trial.forces.map(|force| force + wrong);
+        let (entered, trial) = balance::<LONG>(&model, &mut end, drive, 6e-5, |trial| {
+            trial.links[CONTACT].forces = trial.links[CONTACT].forces.map(|force| force + wrong);
         });
         let sum = summed(&model, &start, &end, drive, 6e-5, &trial);
         assert!(
@@ -301,7 +295,7 @@ mod tests {
             "entered {entered:e} J, summed {sum:e} J"
         );
         // More than the work of the wrong force itself: the changed motion meets other forces of the law.
-        let worth = wrong * (end.indentation - start.indentation).abs();
+        let worth = wrong * (end.links[CONTACT].approach - start.links[CONTACT].approach).abs();
         assert!(entered.abs() > worth, "entered {entered:e} J, worth {worth:e} J");
     }
 
@@ -310,8 +304,8 @@ mod tests {
         let (model, start, drive) = moving();
         let mut end = start;
         let mut made = 0.0;
-        let (entered, _) = balance::<LONG>(&model, &mut end, drive, 6e-5, |_, modes| {
-            let first = modes.first_mut().unwrap();
+        let (entered, _) = balance::<LONG>(&model, &mut end, drive, 6e-5, |trial| {
+            let first = trial.modes.first_mut().unwrap();
             let expected = first.v;
             first.v *= 1.0 + 1e-6;
             made = 0.5 * (first.v * first.v - expected * expected);

@@ -10,7 +10,8 @@
 //! q_i'' + c_i q_i' + omega_i^2 q_i = T_i (F - F_0) - g_i a + h T_i' (T - T_0)
 //! ```
 //!
-//! with `T_i'` the rotation of mode i at the contact ([`Mode::rotation`]). Under the contact force `F` (a power `p` of the
+//! with `T_i'` the rotation of mode i at the contact ([`Mode::rotation`]): a link ([`crate::link`]) at the port `v`, with the
+//! approach `-v`. Under the contact force `F` (a power `p` of the
 //! indentation, damped) the contact sticks on the tangential stiffness of R. D. Mindlin (J. Appl. Mech. 16 (1949) 259) with the damping
 //! time of the contact, up to Coulomb's limit:
 //!
@@ -36,13 +37,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::beam::mode::{MAX_MODES, Modal, Mode, ModeStates};
+use crate::beam::mode::Mode;
 use crate::contact::power::Power;
 use crate::error::SceneError;
-use crate::math::prediction::Prediction;
 use crate::scene::spring::Shape;
 use crate::scene::{Contact, Scene, choices};
-use crate::variables::{AxialForceKind, ContactLawKind, EnumerationParameter, FrictionKind};
+use crate::variables::{AxialForceKind, ContactLawKind, EnumerationParameter};
 
 /// Constants of friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,10 +53,6 @@ pub struct Friction {
     pub ratio: f64,
     /// Height of the contact point h, m.
     pub height: f64,
-    /// Friction force at the preload T_0, N.
-    pub preload: f64,
-    /// Displacement of the contact point along the spring per displacement of each mode, `h T_i'`, 1/sqrt(kg).
-    pub levers: Modal,
     /// Stiffness of the spring against a displacement along it of the contact point, N/m; 0 at no height.
     pub(crate) stiffness: f64,
     /// Friction force that holds the contact point per base acceleration that varies slowly, kg.
@@ -92,64 +88,36 @@ impl Phase {
     }
 }
 
-/// What changes of it.
+/// Slip of a contact: what changes of it beside the friction force and the displacement.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Tangential {
-    /// Displacement v of the contact point along the spring since the preload, m.
-    pub displacement: f64,
-    /// Its velocity v', m/s.
-    pub rate: f64,
-    /// Slip s = v - z, m; z: deflection of the tangential spring.
+pub struct Slip {
+    /// Slip s = v - z since the preload, m; z: deflection of the tangential spring.
     pub slip: f64,
-    /// Friction force T, N.
-    pub force: f64,
-    /// Friction force over the last step, N.
-    pub course: Prediction,
     /// Whether it slips.
     pub phase: Phase,
     /// Distance slipped so far, m.
     pub distance: f64,
     /// Energy dissipated by slip so far, J.
     pub dissipated: f64,
-    /// Length of the first step after slip has begun, and after it has ended, s: as long as the last of them that was taken;
-    /// 0: none was.
-    pub first_steps: [f64; 2],
     /// Time of the last change between stick and slip, s; `None`: none.
     pub last_change: Option<f64>,
 }
 
-impl Tangential {
-    /// Deflection z of the tangential spring, m.
-    pub fn deflection(&self) -> f64 {
-        self.displacement - self.slip
-    }
-
-    /// The length of the first step in this phase.
-    pub(crate) fn first_step(&mut self) -> &mut f64 {
-        let [of_slip, of_stick] = &mut self.first_steps;
-        if self.phase == Phase::Stick { of_stick } else { of_slip }
-    }
-
-    /// Whether a simulation can reach these numbers.
-    pub fn is_sound(&self) -> bool {
+impl Slip {
+    /// Whether a simulation can reach these numbers by a time (s).
+    pub fn is_sound(&self, time: f64) -> bool {
         let Self {
-            displacement,
-            rate,
             slip,
-            force,
-            course,
             phase: _,
             distance,
             dissipated,
-            first_steps,
-            last_change: _,
+            last_change,
         } = self;
-        [displacement, rate, slip, force, distance, dissipated]
+        [slip, distance, dissipated]
             .into_iter()
-            .chain(course)
             .all(|number| number.is_finite())
             && *distance >= 0.0
-            && first_steps.iter().all(|step| (0.0..f64::INFINITY).contains(step))
+            && last_change.is_none_or(|change| change.is_finite() && change <= time)
     }
 }
 
@@ -165,46 +133,32 @@ pub(crate) struct Stick {
 }
 
 impl Friction {
-    /// Of a scene, if it has friction, with the contact force at the preload (N).
-    pub(crate) fn new(scene: &Scene, preload: f64) -> Option<Self> {
-        let share = tangential_share(scene)?;
-        Some(Self {
-            coefficient: scene.friction.coefficient,
-            ratio: stiffness_ratio(&scene.contact),
-            height: scene.tip.contact_height,
-            preload: share * preload,
-            levers: [0.0; MAX_MODES],
-            stiffness: 0.0,
-            inertia: 0.0,
+    /// Of a scene, if it has friction, on these modes.
+    pub(crate) fn new(scene: &Scene, modes: &[Mode]) -> Option<Self> {
+        scene.rubs().then(|| {
+            Self {
+                coefficient: scene.friction.coefficient,
+                ratio: stiffness_ratio(&scene.contact),
+                height: scene.tip.contact_height,
+                stiffness: 0.0,
+                inertia: 0.0,
+            }
+            .on(modes)
         })
     }
 
-    /// With the levers of these modes.
+    /// On these modes.
+    #[must_use]
     pub(crate) fn on(mut self, modes: &[Mode]) -> Self {
-        self.levers = [0.0; MAX_MODES];
-        for (lever, mode) in self.levers.iter_mut().zip(modes) {
-            *lever = self.height * mode.rotation;
-        }
-        let sum = |load: &dyn Fn(&Mode, f64) -> f64| -> f64 {
-            let pairs = modes.iter().zip(&self.levers);
-            pairs
-                .map(|(mode, lever)| lever * load(mode, *lever) / mode.omega_squared)
-                .sum()
+        let sum = |load: &dyn Fn(&Mode) -> f64| -> f64 {
+            let parts = modes.iter().map(|mode| mode.rotation * load(mode) / mode.omega_squared);
+            self.height * parts.sum::<f64>()
         };
-        let stiffness = 1.0 / sum(&|_, lever| lever);
-        let inertia = stiffness * sum(&|mode, _| mode.participation).abs();
+        let stiffness = 1.0 / sum(&|mode| self.height * mode.rotation);
+        let inertia = stiffness * sum(&|mode| mode.participation).abs();
         let held = stiffness.is_finite() && inertia.is_finite();
         (self.stiffness, self.inertia) = if held { (stiffness, inertia) } else { (0.0, 0.0) };
         self
-    }
-
-    /// Displacement (m) and velocity (m/s) of the contact point along the spring.
-    #[inline(always)]
-    pub(crate) fn motion(&self, modes: &ModeStates, count: usize) -> (f64, f64) {
-        let pairs = self.levers.iter().zip(modes).take(count);
-        pairs.fold((0.0, 0.0), |(v, rate), (lever, mode)| {
-            (v + lever * mode.q, rate + lever * mode.v)
-        })
     }
 
     /// Trial force of stick at the indentation `d` (m), where the tangential spring is deflected by `z` (m) and goes on at
@@ -234,14 +188,11 @@ impl Friction {
     }
 }
 
-/// Whether a scene has friction.
-pub(crate) fn rubs(scene: &Scene) -> bool {
-    scene.effects.friction != FrictionKind::None
-}
-
 /// Friction force at the preload per contact force, if the scene has friction.
 pub(crate) fn tangential_share(scene: &Scene) -> Option<f64> {
-    rubs(scene).then_some(scene.friction.initial * scene.friction.coefficient)
+    scene
+        .rubs()
+        .then_some(scene.friction.initial * scene.friction.coefficient)
 }
 
 /// `k_t / k = 4 G* / E*`.
@@ -263,7 +214,7 @@ fn stiffness_ratio(contact: &Contact) -> f64 {
 /// # Errors
 /// [`SceneError::NoFriction`] or [`SceneError::NoRotation`].
 pub(crate) fn check(scene: &Scene) -> Result<(), SceneError> {
-    if !rubs(scene) {
+    if !scene.rubs() {
         return Ok(());
     }
     let named = |parameter: EnumerationParameter| {

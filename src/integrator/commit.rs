@@ -1,0 +1,104 @@
+//! An accepted step as the new state.
+
+use crate::contact::friction::Slip;
+use crate::excitation::drive::Drive;
+use crate::integrator::collocation::coefficients::Cache;
+use crate::integrator::collocation::trial::Trial;
+use crate::integrator::grid::Target;
+use crate::link::CONTACT;
+use crate::math::free_motion::FreeMotion;
+use crate::math::nodal::{Nodal, add_columns, end};
+use crate::math::prediction::Prediction;
+use crate::math::simd::Separate;
+use crate::model::Model;
+use crate::state::State;
+
+/// Moves a state, of which the recorder has taken what it needs, to the end of an accepted step.
+pub(crate) fn commit<const S: usize>(
+    model: &Model,
+    state: &mut State,
+    drive: &Drive,
+    cache: &Cache<S>,
+    trial: &Trial<S>,
+    target: &Target,
+) {
+    advance_deviation(model, state, cache, trial, target);
+    for ((mode, end), _) in state.modes.iter_mut().zip(&trial.modes).zip(&model.modes) {
+        *mode = *end;
+    }
+    state.time = target.time;
+    for (displacement, velocity) in state.displacements.iter_mut().zip(&drive.velocities) {
+        *displacement += velocity * target.length;
+    }
+    for ((link, at), nodes) in model.links.iter().zip(&mut state.links).zip(&trial.links) {
+        (at.approach, at.rate) = (nodes.end.approach, nodes.end.rate);
+        if let Some(law) = link.contact().filter(|_| at.closed) {
+            at.force = law.without_pull(link.force + nodes.end.force);
+        }
+    }
+    state.lengths.last = target.length;
+    state.steps += 1;
+    state.iterations += trial.iterations;
+}
+
+/// Carries the deviation along that tells how errors grow.
+fn advance_deviation<const S: usize>(
+    model: &Model,
+    state: &mut State,
+    cache: &Cache<S>,
+    trial: &Trial<S>,
+    target: &Target,
+) {
+    if !state.force_error.deviates() {
+        return;
+    }
+    let mut links = model.links.iter().zip(&state.links).zip(&trial.links);
+    let closed = links.find(|((_, at), _)| at.closed);
+    let tangent = closed.and_then(|((link, _), nodes)| Some((&model.ports.get(link.port)?.shape, nodes.tangent)));
+    if let Some(step) = cache.known(target.length, target.recurring) {
+        state.force_error.advance(&model.modes, step.end.free(), tangent);
+    } else {
+        let modes = model.modes.iter();
+        let free = modes.map(|mode| FreeMotion::new(mode.omega_squared, mode.damping, target.length));
+        state.force_error.advance(&model.modes, free, tangent);
+    }
+}
+
+/// Slip at the end of an accepted step of `length` seconds, which began with a `start`: distance and energy; and the courses of slip
+/// and energy over the step.
+pub(crate) fn follow_slip<const S: usize>(
+    model: &Model,
+    (start, state): (Slip, &mut State),
+    cache: &Cache<S>,
+    trial: &Trial<S>,
+    length: f64,
+) -> Option<[Prediction; 2]> {
+    let (index, _) = model.friction()?;
+    let collocation = cache.collocation();
+    let (link, nodes) = model.links.get(index).zip(trial.links.get(index))?;
+    let mut slips = nodes.approaches;
+    for (slip, deflection) in slips.iter_mut().zip(&trial.slip.deflections) {
+        *slip = -*slip - deflection;
+    }
+    let mut dissipated: Nodal<S> = [start.dissipated; S];
+    if let Some(integrals) = collocation.shapes.integrals.first() {
+        let mut powers = trial.slip.rates;
+        for (power, force) in powers.iter_mut().zip(&nodes.forces) {
+            *power *= -length * (link.force + force);
+        }
+        add_columns::<S, Separate>(&mut dissipated, &integrals.nodal, &powers);
+    }
+    let displacement = -state.links.get(index)?.approach;
+    if !state.links.get(CONTACT)?.closed {
+        state.slip.slip = displacement;
+    } else if start.phase.sign().is_some() {
+        state.slip.slip = displacement - end(&trial.slip.deflections);
+        state.slip.distance += (state.slip.slip - start.slip).abs();
+        state.slip.dissipated = start.dissipated.max(end(&dissipated));
+    }
+    model.set_friction_force(state);
+    Some([
+        collocation.through(model.simd, start.slip, &slips),
+        collocation.through(model.simd, start.dissipated, &dissipated),
+    ])
+}

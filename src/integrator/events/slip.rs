@@ -1,0 +1,219 @@
+//! Event location of slip: where the contact begins or ceases to slip. A step ends there.
+//!
+//! While the contact sticks, the friction force of the step is the trial force, and slip begins where it exceeds the limit,
+//! `mu` times the contact force, by either sign. While it slips, it sticks again where the slip velocity would turn. Both
+//! are polynomials through the nodes; between the places where they turn they are monotone, so that nothing is missed.
+
+use crate::contact::friction::{Friction, Phase};
+use crate::contact::law::Law;
+use crate::contact::power::Power;
+use crate::integrator::collocation::error::sum_rounding;
+use crate::integrator::collocation::part::{Instant, Whole};
+use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::constants::SUM_ROUNDINGS;
+use crate::integrator::course::turning_points;
+use crate::integrator::events::{Cut, Event, Locator, motion_rounding};
+use crate::link::{CONTACT, Link};
+use crate::math::nodal::{dot, scaled};
+use crate::math::prediction::value_and_slope;
+use crate::math::roots;
+use crate::math::simd::{Separate, Simd};
+use crate::state::LinkState;
+
+/// Where in a step the contact begins or ceases to slip.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Change {
+    /// After its start, s.
+    pub(crate) at: f64,
+    /// From then on.
+    phase: Phase,
+    /// Slope there of what [`Locator::beyond`] gives, N/s.
+    slope: f64,
+}
+
+/// A contact that rubs.
+struct Rubbing<'a> {
+    contact: (&'a Link, &'a LinkState),
+    along: (&'a Link, &'a LinkState),
+    index: usize,
+    friction: &'a Friction,
+    law: &'a Power,
+}
+
+impl<'a, const S: usize> Locator<'a, S> {
+    fn rubbing(&self) -> Option<Rubbing<'a>> {
+        let (index, friction) = self.whole.model.friction()?;
+        let contact = self.link(CONTACT)?;
+        Some(Rubbing {
+            contact,
+            along: self.link(index)?,
+            index,
+            friction,
+            law: contact.0.contact().and_then(Law::power)?,
+        })
+    }
+
+    /// Where in the trial the contact first begins or ceases to slip.
+    pub(crate) fn slip_change(&self) -> Option<Change> {
+        let Rubbing {
+            contact: (contact, contact_at),
+            along: (along, along_at),
+            index,
+            friction,
+            law,
+        } = self.rubbing()?;
+        let Whole {
+            model,
+            state,
+            collocation,
+            trial,
+            length,
+            ..
+        } = self.whole;
+        let (normal, nodes) = trial.links.get(CONTACT).zip(trial.links.get(index))?;
+        let z = -along_at.approach - state.slip.slip;
+        let first = |start: f64, values: &[f64; S]| {
+            let unsure = || self.tolerance.located.max(self.slip_rounding());
+            passage((collocation, model.simd), start, values, unsure)
+        };
+        let ((y, slope), phase) = if let Some(sign) = state.slip.phase.sign() {
+            // The friction force that is missing for the slip velocity.
+            let damping = law.damping;
+            let stiffness = friction.ratio * law.tangent_stiffness(law.indentation(model.force_scale));
+            let wrong = scaled(&trial.slip.rates, sign * stiffness * (damping + length));
+            let before = if damping > 0.0 {
+                // As a jump of the contact force has left it.
+                let across = (contact.approach + contact_at.approach, contact_at.rate);
+                let turned = friction.turned(law, sign, across, (z, -along_at.rate));
+                stiffness * (1.0 + length / damping) * turned
+            } else {
+                dot::<S, Separate>(&wrong, &collocation.at_start)
+            };
+            let (y, slope) = first(before.min(0.0), &wrong)?;
+            ((y, slope * damping / (damping + length)), Phase::Stick)
+        } else {
+            let [back, forth] = [1.0, -1.0].map(|sign| {
+                let excess = |along: f64, force: f64| sign * along - friction.coefficient * force;
+                let mut values = nodes.forces;
+                for (value, force) in values.iter_mut().zip(&normal.forces) {
+                    *value = excess(along.force + *value, contact.force + force);
+                }
+                first(excess(along_at.force, contact_at.force), &values).map(|found| (found, Phase::slip(sign)))
+            });
+            match (back, forth) {
+                (Some(back), Some(forth)) if forth.0.0 < back.0.0 => forth,
+                (Some(back), _) => back,
+                (None, forth) => forth?,
+            }
+        };
+        let at = (1.0 + y) * length;
+        Some(Change {
+            at: if at <= self.resolution { 0.0 } else { at },
+            phase,
+            slope: slope / length,
+        })
+    }
+
+    /// The end of the trial at a change: on the polynomials, then on the exact motion under them, as what is missing there would
+    /// stay in the tangential spring.
+    pub(crate) fn cut_at_change(&mut self, change: &Change) -> Cut {
+        // Without a damper there is no such force for the slip velocity, nor a slope.
+        let at = if change.at > 0.0 && change.slope > 0.0 {
+            let beyond = |this: &Self, now: &Instant| this.beyond(now, change.phase);
+            let (before, guess) = ((0.0, -f64::MIN_POSITIVE), (change.at, change.slope));
+            let latest = self.whole.length;
+            self.refined(CONTACT, beyond, before, guess, latest, self.tolerance.step)
+                .at
+        } else {
+            change.at
+        };
+        Cut {
+            at,
+            time: self.whole.state.time + at,
+            event: Event::Slides(change.phase),
+        }
+    }
+
+    /// How far the contact is beyond the change to a phase, at the instant looked at last, N: the trial force beyond the limit, or
+    /// the friction force that the slip velocity takes.
+    fn beyond(&self, end: &Instant, phase: Phase) -> f64 {
+        let Some(rubbing) = self.rubbing() else {
+            return 0.0;
+        };
+        let Rubbing {
+            contact: (contact, _),
+            along: (_, along_at),
+            index,
+            friction,
+            law,
+        } = rubbing;
+        let Whole {
+            model,
+            state,
+            collocation,
+            trial,
+            length,
+            ..
+        } = self.whole;
+        let along = self.whole.link(index, end.at, &self.search.modes);
+        let d = contact.approach + end.d;
+        if let Some(sign) = state.slip.phase.sign() {
+            let start = -along_at.approach - state.slip.slip;
+            let course = collocation.through(model.simd, start, &trial.slip.deflections);
+            let z = value_and_slope(&course, end.at / length - 1.0).0;
+            friction.ratio * law.tangent_stiffness(d) * friction.turned(law, sign, (d, end.rate), (z, -along.rate))
+        } else {
+            let stick = friction.trial(law, d, -along.d - state.slip.slip, -along.rate);
+            let limit = friction.coefficient * law.closed_branch(d, end.rate).force;
+            phase.sign().unwrap_or_default() * stick.force - limit
+        }
+    }
+
+    /// Rounding of the trial force and of the limit by the sums over the modes, N.
+    fn slip_rounding(&self) -> f64 {
+        let Whole { model, state, .. } = self.whole;
+        let Some(Rubbing {
+            contact: (contact, contact_at),
+            along: (along, _),
+            friction,
+            law,
+            ..
+        }) = self.rubbing()
+        else {
+            return 0.0;
+        };
+        let (displacement, velocity) = match model.ports.get(along.port) {
+            Some(port) => sum_rounding(port, state),
+            None => (0.0, 0.0),
+        };
+        let slip = SUM_ROUNDINGS * f64::EPSILON * state.slip.slip.abs();
+        let moved = slip + displacement + law.damping * velocity;
+        let stiffness = law.tangent_stiffness(contact.approach + contact_at.approach);
+        stiffness * (friction.ratio * moved + friction.coefficient * motion_rounding(model, contact, state))
+    }
+}
+
+/// Where the polynomial through `start` and the nodal values first exceeds zero by more than `unsure`: where it passes zero
+/// before, relative to the end of the step in step lengths, and the slope there.
+fn passage<const S: usize>(
+    (collocation, simd): (&Collocation<S>, Simd),
+    start: f64,
+    values: &[f64; S],
+    unsure: impl Fn() -> f64,
+) -> Option<(f64, f64)> {
+    if !Collocation::comes_near_zero(-start, &scaled(values, -1.0)) {
+        return None;
+    }
+    let polynomial = collocation.through(simd, start, values);
+    let value = |y: f64| value_and_slope(&polynomial, y).0;
+    let mut before = (-1.0, start);
+    for y in turning_points(&polynomial).iter().chain([0.0]) {
+        let now = (y, value(y));
+        if now.1 > 0.0 && now.1 > unsure() {
+            let y = roots::between(value, before, now, 1e-12).unwrap_or(before.0);
+            return Some((y, value_and_slope(&polynomial, y).1));
+        }
+        before = now;
+    }
+    None
+}

@@ -1,0 +1,101 @@
+//! What is kept of each step for those who read: dense output, extremes, interruptions.
+
+use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::collocation::trial::Trial;
+use crate::integrator::course::{Places, turning_points};
+use crate::integrator::dense_output::DenseOutput;
+use crate::integrator::events::interruption::Passages;
+use crate::integrator::extremes::Extremes;
+use crate::integrator::grid::Target;
+use crate::math::prediction::value_and_slope;
+use crate::model::Model;
+use crate::state::State;
+
+/// Who reads.
+#[derive(Debug, Default)]
+pub(crate) struct Recorder<'a> {
+    /// The instant from which on the dense output of a free step is read, s.
+    pub(crate) read: Option<f64>,
+    pub(crate) dense: Option<&'a mut DenseOutput>,
+    /// Extremes of the contact forces, if requested.
+    pub(crate) extremes: Option<&'a mut Extremes>,
+}
+
+impl Recorder<'_> {
+    /// Whether a step that ends at an instant (s) is read inside.
+    pub(crate) fn reads_before(&self, end: f64) -> bool {
+        self.read.is_some_and(|read| read < end)
+    }
+
+    /// Records the present contact forces in the extremes, and interruptions that begin or end with them.
+    pub(crate) fn note_forces(&mut self, model: &Model, state: &mut State) {
+        let time = state.time;
+        for (index, (link, at)) in model.links.iter().zip(&mut state.links).enumerate() {
+            if link.contact().is_none() {
+                continue;
+            }
+            if let Some(extremes) = &mut self.extremes {
+                extremes.of(index).add(at.force);
+            }
+            if let Some(criterion) = &link.criterion
+                && (at.force < criterion.force) != at.interruptions.in_progress()
+            {
+                at.interruptions.turn(criterion, time);
+            }
+        }
+    }
+
+    /// Records an accepted step from `state`, and what its forces do to the next: their courses, interruptions that begin or end
+    /// inside it.
+    pub(crate) fn note_step<const S: usize>(
+        &mut self,
+        (model, state): (&Model, &mut State),
+        collocation: &Collocation<S>,
+        trial: &Trial<S>,
+        target: &Target,
+        passages: &Passages,
+    ) {
+        let second = model.second();
+        let read = self.reads_before(target.time) || self.dense.is_some() && second.is_some();
+        for (index, (link, at)) in model.links.iter().zip(&mut state.links).enumerate() {
+            let (Some(nodes), Some(passages)) = (trial.links.get(index), passages.get(index)) else {
+                continue;
+            };
+            at.course = collocation.through(model.simd, at.force - link.force, &nodes.forces);
+            let turns = if model.scene.effects.extremes && at.closed {
+                turning_points(&at.course)
+            } else {
+                Places::default()
+            };
+            let through = |start: f64, values| collocation.through(model.simd, start, values);
+            if let Some(dense) = self.dense.as_mut().and_then(|dense| dense.links.get_mut(index)) {
+                (dense.force, dense.turns, dense.passages) = (at.course, turns, *passages);
+                if read && link.contact().is_some() {
+                    dense.approach = through(at.approach, &nodes.approaches);
+                    dense.rate = through(at.rate, &nodes.rates);
+                }
+            }
+            if let Some(extremes) = &mut self.extremes {
+                if at.closed {
+                    extremes.add_course(link, index, (&at.course, &turns), -1.0, 0.0);
+                }
+                if second == Some(index) {
+                    let mut highest = nodes.approaches.iter().copied().fold(at.approach, f64::max);
+                    let before = [at.rate].into_iter().chain(nodes.rates);
+                    if before.zip(nodes.rates).any(|(before, now)| before > 0.0 && now <= 0.0) {
+                        let polynomial = through(at.approach, &nodes.approaches);
+                        for y in turning_points(&polynomial).iter() {
+                            highest = highest.max(value_and_slope(&polynomial, y).0);
+                        }
+                    }
+                    extremes.approach(link.approach + highest);
+                }
+            }
+            if let Some(criterion) = &link.criterion {
+                for place in passages.iter() {
+                    at.interruptions.turn(criterion, target.time + place * target.length);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! Ports and links: where forces act on the modes, and the laws of these forces.
+//!
+//! A **port** is a linear functional of the modal coordinates, `y = sum b_i q_i`: the deflection of the spring at its contact, or
+//! its displacement along the contact as it turns. A force at a port loads each mode with `b_i` times the force.
+//!
+//! A **link** is one scalar law at a port. Its approach `d` is the displacement by which the two bodies come together, and the
+//! law gives the force `F` between them:
+//!
+//! ```text
+//! d = d_0 + sum of the inputs that move its other body - s y        s = 1 or -1: whether the port opens or closes it
+//! F = law(d, d')
+//! q_i'' + c_i q_i' + omega_i^2 q_i = sum over the links of s b_i (F - F_0) - g_i a
+//! ```
+//!
+//! with approach `d_0` and force `F_0` of the static equilibrium, of which `q_i` are the deviations. The integrator knows modes,
+//! ports and links, and not what they stand for: the contact, the second contact on the other side of the spring, whose
+//! approach grows where that of the first one shrinks, and friction are links.
+
+use std::ops::Range;
+
+use crate::beam::mode::{MAX_MODES, Modal, Mode, ModeStates};
+use crate::chatter::Criterion;
+use crate::contact::friction::Friction;
+use crate::contact::law::Law;
+use crate::electrical::ElectricalContact;
+use crate::math::simd::Arithmetic;
+
+/// Most ports of a model.
+pub const MAX_PORTS: usize = 2;
+
+/// Most links of a model.
+pub const MAX_LINKS: usize = 3;
+
+/// Most links whose forces are unknown at the same time: of two contacts on either side of a spring one is open.
+pub const MAX_UNKNOWNS: usize = 2;
+
+/// Inputs that move bodies: the fixed contact, and the second one relative to it.
+pub const INPUTS: usize = 2;
+
+/// A displacement (m) or velocity (m/s) for each of [`INPUTS`].
+pub type Ways = [f64; INPUTS];
+
+/// The first contact, which every model has.
+pub const CONTACT: usize = 0;
+
+/// A linear functional of the modal coordinates.
+#[derive(Clone, Debug)]
+pub struct Port {
+    /// Displacement per modal coordinate and load on the mode per force, b_i, 1/sqrt(kg).
+    pub shape: Modal,
+    /// The modes that it has a part in.
+    pub modes: Range<usize>,
+}
+
+impl Port {
+    /// From the displacement per coordinate of each mode.
+    pub fn new(modes: &[Mode], displacement: impl Fn(&Mode) -> f64) -> Self {
+        let mut shape = [0.0; MAX_MODES];
+        for (entry, mode) in shape.iter_mut().zip(modes) {
+            *entry = displacement(mode);
+        }
+        let moves = |entry: &f64| *entry != 0.0;
+        let first = shape.iter().position(moves).unwrap_or(0);
+        let last = shape.iter().rposition(moves).map_or(first, |last| last + 1);
+        Self {
+            shape,
+            modes: first..last,
+        }
+    }
+
+    /// Displacement (m) and velocity (m/s).
+    #[inline(always)]
+    pub fn motion<A: Arithmetic>(&self, modes: &ModeStates) -> (f64, f64) {
+        let (mut y, mut rate) = (0.0, 0.0);
+        for (b, mode) in self.shape.iter().zip(modes).take(self.modes.end) {
+            y = A::mul_add(*b, mode.q, y);
+            rate = A::mul_add(*b, mode.v, rate);
+        }
+        (y, rate)
+    }
+}
+
+/// The law of a link.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LinkLaw {
+    /// A contact, which opens.
+    Contact(Law),
+    /// Friction at the first contact.
+    Friction(Friction),
+}
+
+/// A law at a port.
+#[derive(Clone, Copy, Debug)]
+pub struct Link {
+    /// The law.
+    pub law: LinkLaw,
+    /// The index of its port.
+    pub port: usize,
+    /// 1: a displacement of the port opens it; -1: closes it.
+    pub sense: f64,
+    /// Approach per displacement of each input, 1.
+    pub driven: Ways,
+    /// Force at the equilibrium F_0, N.
+    pub force: f64,
+    /// Approach at the equilibrium d_0, m; of a contact the indentation, negative: a gap.
+    pub approach: f64,
+    /// Electrical model, of a contact.
+    pub electrical: Option<ElectricalContact>,
+    /// Criterion for its interruptions, if they are counted.
+    pub criterion: Option<Criterion>,
+}
+
+impl Link {
+    /// The contact law, if it is a contact.
+    #[inline(always)]
+    pub fn contact(&self) -> Option<&Law> {
+        match &self.law {
+            LinkLaw::Contact(law) => Some(law),
+            LinkLaw::Friction(_) => None,
+        }
+    }
+
+    /// Approach or its velocity that inputs displaced so far, or moving so fast, give it.
+    #[inline(always)]
+    pub fn offset(&self, inputs: &Ways) -> f64 {
+        self.driven
+            .iter()
+            .zip(inputs)
+            .fold(0.0, |sum, (driven, input)| sum + driven * input)
+    }
+
+    /// A length with the sign of the contact force, m: [`Law::engagement`] at an approach given as deviation (m); negative
+    /// without a contact law.
+    #[inline(always)]
+    pub fn engagement(&self, deviation: f64, rate: f64) -> f64 {
+        self.contact()
+            .map_or(-1.0, |law| law.engagement(self.approach + deviation, rate))
+    }
+
+    /// Force of the contact law at an approach given as deviation (m), N; 0 without one.
+    pub fn force_at(&self, deviation: f64, rate: f64) -> f64 {
+        self.contact()
+            .map_or(0.0, |law| law.force(self.approach + deviation, rate))
+    }
+}

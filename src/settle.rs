@@ -1,0 +1,108 @@
+//! What follows from the motion of the modes: the links of a state.
+
+use crate::contact::friction::Phase;
+use crate::link::CONTACT;
+use crate::math::simd::Separate;
+use crate::model::Model;
+use crate::state::State;
+
+impl Model {
+    /// Sets approaches, forces, and whether contacts are closed, stick or slip, as they follow from the motion of the modes.
+    pub fn settle(&self, state: &mut State) {
+        for (link, at) in self.links.iter().zip(&mut state.links) {
+            let Some(port) = self.ports.get(link.port) else {
+                continue;
+            };
+            let (y, rate) = port.motion::<Separate>(&state.modes);
+            at.approach = link.offset(&state.displacements) - link.sense * y;
+            at.rate = link.offset(&state.velocities) - link.sense * rate;
+            if link.contact().is_some() {
+                at.force = link.force_at(at.approach, at.rate);
+                at.closed = link.engagement(at.approach, at.rate) > 0.0;
+            }
+        }
+        self.settle_friction(state);
+    }
+
+    /// Sets friction force and phase as they follow from the motion: after a jump, a closing, or in another phase than
+    /// before.
+    pub(crate) fn settle_friction(&self, state: &mut State) {
+        let (Some((index, friction)), Some(law)) = (self.friction(), self.law().power()) else {
+            return;
+        };
+        let Some(contact) = state.links.get(CONTACT).copied() else {
+            return;
+        };
+        let Some(along) = state.links.get_mut(index) else {
+            return;
+        };
+        let slip = &mut state.slip;
+        let (displacement, rate) = (-along.approach, -along.rate);
+        if !contact.closed {
+            (along.force, slip.slip, slip.phase) = (0.0, displacement, Phase::Stick);
+            return;
+        }
+        let d = self.preload.indentation + contact.approach;
+        let trial = friction.trial(law, d, displacement - slip.slip, rate).force;
+        let limit = friction.coefficient * contact.force;
+        // As it closes both are zero: what they begin with decides.
+        let closes = contact.force <= 0.0;
+        let slips = if closes {
+            let slide = if law.damping > 0.0 { 1.0 } else { law.exponent };
+            slide * friction.ratio * rate.abs() > friction.coefficient * contact.rate.abs()
+        } else {
+            trial.abs() > limit
+        };
+        if slips {
+            let against = if closes { -rate } else { trial };
+            slip.phase = Phase::slip(against);
+            along.force = limit.copysign(against);
+            if law.damping == 0.0 {
+                slip.slip = displacement - friction.limit_deflection(law, against.signum(), d, 0.0);
+            }
+        } else {
+            slip.phase = Phase::Stick;
+            along.force = trial;
+        }
+    }
+
+    /// Begins or ends slip. The trial force is then the limit, to the last digit.
+    pub(crate) fn change_phase(&self, state: &mut State, phase: Phase) {
+        let before = state.slip.phase.sign();
+        if let (Some((index, friction)), Some(law), Some(sign)) =
+            (self.friction(), self.law().power(), phase.sign().or(before))
+            && let (Some(contact), Some(along)) = (state.links.get(CONTACT), state.links.get(index))
+        {
+            let d = self.preload.indentation + contact.approach;
+            let limit = friction.limit_deflection(law, sign, d, contact.rate);
+            let lag = law.damping * -along.rate;
+            state.slip.slip = -along.approach - (limit - lag);
+        }
+        state.slip.phase = phase;
+        self.set_friction_force(state);
+        state.last_kink = state.time;
+        state.kink_is_closing = false;
+        state.slip.last_change = Some(state.time);
+    }
+
+    /// Sets the friction force of the phase of a state at its motion.
+    pub(crate) fn set_friction_force(&self, state: &mut State) {
+        let (Some((index, friction)), Some(law)) = (self.friction(), self.law().power()) else {
+            return;
+        };
+        let (Some(contact), slip) = (state.links.get(CONTACT).copied(), state.slip) else {
+            return;
+        };
+        let Some(along) = state.links.get_mut(index) else {
+            return;
+        };
+        along.force = match slip.phase.sign() {
+            _ if !contact.closed => 0.0,
+            Some(sign) => sign * friction.coefficient * contact.force,
+            None => {
+                let d = self.preload.indentation + contact.approach;
+                friction.trial(law, d, -along.approach - slip.slip, -along.rate).force
+            }
+        };
+    }
+}
