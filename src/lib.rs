@@ -10,7 +10,7 @@
 //! preload     static equilibrium of beam and contact
 //! model       Scene -> Model (never changes);   state  all that moves
 //! slip_stability  whether the contact slips without vibrating by itself
-//! second_contact  the other fixed contact of a changeover relay: the mirror image of the first
+//! link        ports and links: where forces act on the modes, and by which laws;   settle  the links that a motion makes
 //! integrator  Model, State, inputs -> State after a communication step: "The method" at its head
 //! closed_loop the same where spring and contact are linear: exact steps
 //! chatter     interruptions of the current;   force_error  the error of the contact force so far

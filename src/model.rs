@@ -440,7 +440,7 @@ impl Model {
             (stiffness > 0.0).then(|| force / stiffness)
         });
         Slip {
-            slip: sprung.unwrap_or_default(),
+            way: sprung.unwrap_or_default(),
             ..Slip::default()
         }
     }

@@ -39,11 +39,11 @@ impl Model {
         let slip = &mut state.slip;
         let (displacement, rate) = (-along.approach, -along.rate);
         if !contact.closed {
-            (along.force, slip.slip, slip.phase) = (0.0, displacement, Phase::Stick);
+            (along.force, slip.way, slip.phase) = (0.0, displacement, Phase::Stick);
             return;
         }
         let d = self.preload.indentation + contact.approach;
-        let trial = friction.trial(law, d, displacement - slip.slip, rate).force;
+        let trial = friction.trial(law, d, displacement - slip.way, rate).force;
         let limit = friction.coefficient * contact.force;
         // As it closes both are zero: what they begin with decides.
         let closes = contact.force <= 0.0;
@@ -58,7 +58,7 @@ impl Model {
             slip.phase = Phase::slip(against);
             along.force = limit.copysign(against);
             if law.damping == 0.0 {
-                slip.slip = displacement - friction.limit_deflection(law, against.signum(), d, 0.0);
+                slip.way = displacement - friction.limit_deflection(law, against.signum(), d, 0.0);
             }
         } else {
             slip.phase = Phase::Stick;
@@ -76,7 +76,7 @@ impl Model {
             let d = self.preload.indentation + contact.approach;
             let limit = friction.limit_deflection(law, sign, d, contact.rate);
             let lag = law.damping * -along.rate;
-            state.slip.slip = -along.approach - (limit - lag);
+            state.slip.way = -along.approach - (limit - lag);
         }
         state.slip.phase = phase;
         self.set_friction_force(state);
@@ -101,7 +101,7 @@ impl Model {
             Some(sign) => sign * friction.coefficient * contact.force,
             None => {
                 let d = self.preload.indentation + contact.approach;
-                friction.trial(law, d, -along.approach - slip.slip, -along.rate).force
+                friction.trial(law, d, -along.approach - slip.way, -along.rate).force
             }
         };
     }

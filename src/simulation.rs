@@ -218,7 +218,7 @@ impl Simulation {
             RealOutput::ContactLastOpening => or_not_yet(state.links[CONTACT].last_opening),
             RealOutput::ContactLastClosing => or_not_yet(state.links[CONTACT].last_closing),
             RealOutput::ContactTangentialForce => motion.friction(model).0,
-            RealOutput::ContactSlip => motion.friction(model).1.slip,
+            RealOutput::ContactSlip => motion.friction(model).1.way,
             RealOutput::ContactSlipDistance => motion.friction(model).1.distance,
             RealOutput::FrictionEnergy => motion.friction(model).1.dissipated,
             RealOutput::PreloadForce => model.preload.force,
@@ -295,7 +295,7 @@ impl Simulation {
             RealOutput::TipDisplacement => self.real(RealOutput::TipVelocity),
             RealOutput::TipVelocity => -rates().1,
             RealOutput::ContactTangentialForce => along().0,
-            RealOutput::ContactSlip => along().1.slip,
+            RealOutput::ContactSlip => along().1.way,
             RealOutput::ContactSlipDistance => along().1.distance,
             RealOutput::FrictionEnergy => along().1.dissipated,
             RealOutput::ContactLastOpening

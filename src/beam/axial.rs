@@ -69,16 +69,6 @@ impl Feedback {
         }
     }
 
-    /// As the second contact sees it ([`State::mirror`](crate::state::State::mirror)).
-    pub fn mirrored(&self) -> Self {
-        Self {
-            section: self.section,
-            deflection: -self.deflection,
-            geometric: self.geometric.clone(),
-            slopes: self.slopes.map(|slope| -slope),
-        }
-    }
-
     /// Axial force above that of the preload, N, at a deflection of the tip given as deviation from it (m).
     #[inline(always)]
     pub fn change(&self, y: f64) -> f64 {

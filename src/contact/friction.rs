@@ -92,7 +92,7 @@ impl Phase {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Slip {
     /// Slip s = v - z since the preload, m; z: deflection of the tangential spring.
-    pub slip: f64,
+    pub way: f64,
     /// Whether it slips.
     pub phase: Phase,
     /// Distance slipped so far, m.
@@ -107,15 +107,13 @@ impl Slip {
     /// Whether a simulation can reach these numbers by a time (s).
     pub fn is_sound(&self, time: f64) -> bool {
         let Self {
-            slip,
+            way,
             phase: _,
             distance,
             dissipated,
             last_change,
         } = self;
-        [slip, distance, dissipated]
-            .into_iter()
-            .all(|number| number.is_finite())
+        [way, distance, dissipated].into_iter().all(|number| number.is_finite())
             && *distance >= 0.0
             && last_change.is_none_or(|change| change.is_finite() && change <= time)
     }

@@ -90,15 +90,15 @@ pub(crate) fn follow_slip<const S: usize>(
     }
     let displacement = -state.links.get(index)?.approach;
     if !state.links.get(CONTACT)?.closed {
-        state.slip.slip = displacement;
+        state.slip.way = displacement;
     } else if start.phase.sign().is_some() {
-        state.slip.slip = displacement - end(&trial.slip.deflections);
-        state.slip.distance += (state.slip.slip - start.slip).abs();
+        state.slip.way = displacement - end(&trial.slip.deflections);
+        state.slip.distance += (state.slip.way - start.way).abs();
         state.slip.dissipated = start.dissipated.max(end(&dissipated));
     }
     model.set_friction_force(state);
     Some([
-        collocation.through(model.simd, start.slip, &slips),
+        collocation.through(model.simd, start.way, &slips),
         collocation.through(model.simd, start.dissipated, &dissipated),
     ])
 }

@@ -137,7 +137,8 @@ pub(crate) fn step_ahead(
                 *force = stiffness * *force + damping * rate;
             }
             *dense = DenseOutput::default();
-            dense.links[CONTACT] = DenseLink {
+            let [contact, ..] = &mut dense.links;
+            *contact = DenseLink {
                 force,
                 approach: indentation,
                 rate,
@@ -183,7 +184,8 @@ impl<'a> Start<'a> {
         };
         let phasor = model.generator.phasor(state.time);
         // The force must stay above zero, or above the threshold of an interruption.
-        let least = model.links[CONTACT].criterion.map_or(0.0, |criterion| criterion.force);
+        let criterion = model.links.first().and_then(|link| link.criterion);
+        let least = criterion.map_or(0.0, |criterion| criterion.force);
         let watched = !model.law().never_opens() || least > 0.0;
         let margin = if watched {
             let steady = closed_loop.least_steady_force(model.preload.force, &steady, phasor, length);

@@ -55,6 +55,10 @@ pub struct LinkNow {
     pub rate: f64,
 }
 
+/// A link, its state at the start of the step around a communication point, and its dense output with the place of that point,
+/// where it lies inside.
+type Seen<'a> = (&'a Link, &'a LinkState, Option<(&'a DenseLink, f64)>);
+
 impl Motion {
     /// Starts from a state.
     pub fn new(state: State) -> Self {
@@ -145,11 +149,7 @@ impl Motion {
     }
 
     /// A link at the communication point, with its state at the start of the step around it.
-    fn seen<'a>(
-        &'a self,
-        model: &'a Model,
-        index: usize,
-    ) -> Option<(&'a Link, &'a LinkState, Option<(&'a DenseLink, f64)>)> {
+    fn seen<'a>(&'a self, model: &'a Model, index: usize) -> Option<Seen<'a>> {
         let link = model.links.get(index)?;
         let state = self.state().links.get(index)?;
         let dense = self.inside().and_then(|y| Some((self.dense.links.get(index)?, y)));
@@ -238,9 +238,9 @@ impl Motion {
         let (closed, slips) = (state.links[CONTACT].closed, slip.phase != Phase::Stick);
         let at = |values| value_and_slope(values, y).0;
         if !closed || slips {
-            let start = slip.slip;
-            slip.slip = at(&self.dense.slip.slip);
-            slip.distance += if closed { (slip.slip - start).abs() } else { 0.0 };
+            let start = slip.way;
+            slip.way = at(&self.dense.slip.slip);
+            slip.distance += if closed { (slip.way - start).abs() } else { 0.0 };
         }
         if closed && slips {
             slip.dissipated = at(&self.dense.slip.dissipated).max(slip.dissipated);
@@ -265,7 +265,7 @@ impl Motion {
             return (
                 0.0,
                 Slip {
-                    slip,
+                    way: slip,
                     ..Slip::default()
                 },
             );
@@ -282,7 +282,7 @@ impl Motion {
         } else {
             force = along.force;
             let d = model.preload.indentation + contact.approach;
-            let stick = friction.trial(law, d, -along.approach - state.slip.slip, -along.rate);
+            let stick = friction.trial(law, d, -along.approach - state.slip.way, -along.rate);
             if let Some(sign) = state.slip.phase.sign() {
                 rate = sign * friction.coefficient * self.link_rates(model, CONTACT).0;
                 slip = if law.damping > 0.0 {
@@ -298,7 +298,7 @@ impl Motion {
             }
         }
         let slip = Slip {
-            slip,
+            way: slip,
             distance: slip.abs(),
             dissipated: (force * slip).abs(),
             ..Slip::default()

@@ -66,7 +66,7 @@ pub(crate) fn resolution(start: f64, size: f64) -> f64 {
     f64::EPSILON * (start.abs() + size)
 }
 
-impl<'a> Stepper<'a> {
+impl Stepper<'_> {
     /// Takes steps to the end of the grid.
     ///
     /// # Errors
@@ -315,10 +315,13 @@ impl<'a> Stepper<'a> {
         let sticks = change.is_some() && state.slip.phase.sign().is_none();
         let mut suspects = [None; MAX_LINKS];
         let mut closes: Option<Cut> = None;
-        for (index, (_, at)) in links().filter(|(_, (link, _))| link.contact().is_some()) {
+        for ((index, (link, at)), suspect) in links().zip(&mut suspects) {
+            if link.contact().is_none() {
+                continue;
+            }
             if at.closed {
-                let opens = !just_closed(at.last_closing) && !(sticks && index == CONTACT);
-                suspects[index] = opens.then(|| locator.first_open(index)).flatten();
+                let held = just_closed(at.last_closing) || sticks && index == CONTACT;
+                *suspect = if held { None } else { locator.first_open(index) };
             } else if let Some(cut) = locator.closing(index) {
                 closes = earlier(closes, Some(cut));
             }

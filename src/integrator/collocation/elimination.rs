@@ -54,7 +54,7 @@ impl<const S: usize, const L: usize> Equations<S, L> {
                     let pivot = |i: &usize| columns[b][p][b][*i].abs();
                     let largest = (p..S).max_by(|i, j| pivot(i).total_cmp(&pivot(j)))?;
                     exchanges[b][p] = largest;
-                    for column in columns[b][p..].iter_mut() {
+                    for column in &mut columns[b][p..] {
                         column[b].swap(p, largest);
                     }
                     for column in columns[b + 1..].as_flattened_mut() {
@@ -153,6 +153,10 @@ mod tests {
     }
 
     #[test]
+    #[expect(
+        clippy::indexing_slicing,
+        reason = "every index runs over the fixed size of the arrays"
+    )]
     fn blocks_are_one_system() {
         // Three blocks of two, with couplings of both signs: the solution times the matrix is the right-hand side.
         let mut equations = Equations::<2, 3>::new(3);

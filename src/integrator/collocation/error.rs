@@ -1,5 +1,10 @@
 //! The error estimate of a trial step.
 
+#![expect(
+    clippy::needless_range_loop,
+    reason = "several arrays have a value for each unknown or node"
+)]
+
 use crate::integrator::collocation::coefficients::StepCoefficients;
 use crate::integrator::collocation::elimination::in_use;
 use crate::integrator::collocation::newton::{Linked, NodalMotion, Solution, Tangent, Unknown};

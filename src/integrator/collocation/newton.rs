@@ -10,6 +10,11 @@
 //! and so is its velocity. While a contact slips its friction force is a share of the contact force: each contact force then
 //! moves the modes with its friction force, and the friction forces are no unknowns. While it sticks they are.
 
+#![expect(
+    clippy::needless_range_loop,
+    reason = "several arrays have a value for each unknown or node"
+)]
+
 use bytemuck::Zeroable;
 
 use crate::contact::law::Law;
@@ -274,7 +279,7 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
                         continue;
                     };
                     for k in 0..S {
-                        let z = -motion.d[k] - self.state.slip.slip;
+                        let z = -motion.d[k] - self.state.slip.way;
                         let d = contact.approach + motions[a - 1].d[k];
                         let stick = friction.trial(law, d, z, -motion.rate[k]);
                         residuals[a][k] -= stick.force - link.force;

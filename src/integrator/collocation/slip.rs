@@ -27,12 +27,12 @@ pub(super) fn follow<const S: usize, A: Arithmetic>(
         deflections: [0.0; S],
         rates: [0.0; S],
     };
-    let start = -state.links[rubbing].approach - state.slip.slip;
+    let start = -state.links[rubbing].approach - state.slip.way;
     let (true, Some(law)) = (state.links[CONTACT].closed, model.law().power()) else {
         return;
     };
     let Some(sign) = state.slip.phase.sign() else {
-        slip.deflections = along.approaches.map(|approach| -approach - state.slip.slip);
+        slip.deflections = along.approaches.map(|approach| -approach - state.slip.way);
         return;
     };
     // z = z_0 + integral of z', beta_c z' + z = -T / k_t at the nodes.

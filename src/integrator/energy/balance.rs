@@ -120,12 +120,11 @@ fn powers(model: &Model, state: &State, motion: &Trial<LONG>) -> Nodal<LONG> {
                     let (Some(across), Some(across_rate)) = (across.approaches.get(k), across.rates.get(k)) else {
                         continue;
                     };
-                    let expected = match state.slip.phase.sign() {
-                        Some(sign) => sign * friction.coefficient * contact.force_at(*across, *across_rate),
-                        None => {
-                            let across = contact.approach + across;
-                            friction.trial(law, across, -d - state.slip.slip, -rate).force
-                        }
+                    let expected = if let Some(sign) = state.slip.phase.sign() {
+                        sign * friction.coefficient * contact.force_at(*across, *across_rate)
+                    } else {
+                        let across = contact.approach + across;
+                        friction.trial(law, across, -d - state.slip.way, -rate).force
                     };
                     (link.force + force - expected) * rate
                 }

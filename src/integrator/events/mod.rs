@@ -9,6 +9,7 @@ pub mod opening;
 pub mod slip;
 
 use crate::contact::friction::Phase;
+use crate::contact::law::Law;
 use crate::integrator::collocation::error::sum_rounding;
 use crate::integrator::collocation::part::{Instant, Whole};
 use crate::integrator::constants::GUESSES;
@@ -198,5 +199,5 @@ pub(crate) fn motion_rounding(model: &Model, link: &Link, state: &State) -> f64 
         Some(port) => sum_rounding(port, state),
         None => (0.0, 0.0),
     };
-    displacement + link.contact().map_or(0.0, |law| law.damping()) * velocity
+    displacement + link.contact().map_or(0.0, Law::damping) * velocity
 }

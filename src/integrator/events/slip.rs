@@ -71,7 +71,7 @@ impl<'a, const S: usize> Locator<'a, S> {
             ..
         } = self.whole;
         let (normal, nodes) = trial.links.get(CONTACT).zip(trial.links.get(index))?;
-        let z = -along_at.approach - state.slip.slip;
+        let z = -along_at.approach - state.slip.way;
         let first = |start: f64, values: &[f64; S]| {
             let unsure = || self.tolerance.located.max(self.slip_rounding());
             passage((collocation, model.simd), start, values, unsure)
@@ -158,12 +158,12 @@ impl<'a, const S: usize> Locator<'a, S> {
         let along = self.whole.link(index, end.at, &self.search.modes);
         let d = contact.approach + end.d;
         if let Some(sign) = state.slip.phase.sign() {
-            let start = -along_at.approach - state.slip.slip;
+            let start = -along_at.approach - state.slip.way;
             let course = collocation.through(model.simd, start, &trial.slip.deflections);
             let z = value_and_slope(&course, end.at / length - 1.0).0;
             friction.ratio * law.tangent_stiffness(d) * friction.turned(law, sign, (d, end.rate), (z, -along.rate))
         } else {
-            let stick = friction.trial(law, d, -along.d - state.slip.slip, -along.rate);
+            let stick = friction.trial(law, d, -along.d - state.slip.way, -along.rate);
             let limit = friction.coefficient * law.closed_branch(d, end.rate).force;
             phase.sign().unwrap_or_default() * stick.force - limit
         }
@@ -186,7 +186,7 @@ impl<'a, const S: usize> Locator<'a, S> {
             Some(port) => sum_rounding(port, state),
             None => (0.0, 0.0),
         };
-        let slip = SUM_ROUNDINGS * f64::EPSILON * state.slip.slip.abs();
+        let slip = SUM_ROUNDINGS * f64::EPSILON * state.slip.way.abs();
         let moved = slip + displacement + law.damping * velocity;
         let stiffness = law.tangent_stiffness(contact.approach + contact_at.approach);
         stiffness * (friction.ratio * moved + friction.coefficient * motion_rounding(model, contact, state))
