@@ -61,7 +61,10 @@ impl Recorder<'_> {
             let (Some(nodes), Some(passages)) = (trial.links.get(index), passages.get(index)) else {
                 continue;
             };
-            at.course = collocation.through(model.simd, at.force - link.force, &nodes.forces);
+            // Of an open contact nobody reads the force.
+            if at.closed || link.contact().is_none() {
+                at.course = collocation.through(model.simd, at.force - link.force, &nodes.forces);
+            }
             let turns = if model.scene.effects.extremes && at.closed {
                 turning_points(&at.course)
             } else {
