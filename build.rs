@@ -6,6 +6,8 @@
 mod fingerprint;
 #[path = "build/plain.rs"]
 mod plain;
+#[path = "build/scene.rs"]
+mod scene;
 
 use std::error::Error;
 use std::fmt::Write as _;
@@ -26,6 +28,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let plain_guid = identified(&plain::description(&xml)?, &out.join("plain.xml"))?;
     let document = Document::parse(&xml)?;
     fs::write(out.join("variables.rs"), variables(&document, &guid, &plain_guid)?)?;
+    let list = element(&document, "ModelVariables")?;
+    fs::write(out.join("scene.rs"), scene::scene(&document, &list)?)?;
     header(&out, &constants(&document, &guid)?)
 }
 
@@ -63,29 +67,23 @@ fn group(causality: &str, kind: &str) -> String {
 }
 
 fn variables(document: &Document, guid: &str, plain_guid: &str) -> Result<String, Box<dyn Error>> {
-    let element = |name: &str| {
-        document
-            .descendants()
-            .find(|node| node.has_tag_name(name))
-            .ok_or(format!("modelDescription.xml has no {name}"))
-    };
     let mut code = format!(
         "/// Identifies the variables of this library: a hash of `modelDescription.xml`.\npub const GUID: &str = \"{guid}\";\n\
          /// The same of the plain description.\npub const PLAIN_GUID: &str = \"{plain_guid}\";\n"
     );
 
-    let types = element("TypeDefinitions")?;
+    let types = element(document, "TypeDefinitions")?;
     for definition in types.children().filter(Node::is_element) {
         if let Some(list) = definition.children().find(|node| node.has_tag_name("Enumeration")) {
             enumeration(&mut code, definition, list)?;
         }
     }
 
-    let (mut table, mut starts) = (String::new(), String::new());
+    let mut table = String::new();
     let mut members = GROUPS.map(|_| String::new());
     let mut arms = GROUPS.map(|_| String::new());
     let mut all = GROUPS.map(|_| String::new());
-    let list = element("ModelVariables")?;
+    let list = element(document, "ModelVariables")?;
     let mut count = 0;
     for (index, variable) in list.children().filter(Node::is_element).enumerate() {
         count = index + 1;
@@ -94,10 +92,6 @@ fn variables(document: &Document, guid: &str, plain_guid: &str) -> Result<String
         let kind = value.tag_name().name();
         let unit = unit(document, value);
         let causality = attribute(variable, "causality")?;
-        if causality == "parameter" && kind != "String" {
-            let (kind, start) = start(document, value)?;
-            writeln!(starts, "    pub const {}: {kind} = {start};", upper(name))?;
-        }
         let group = group(causality, kind);
         let position = GROUPS
             .iter()
@@ -138,10 +132,6 @@ fn variables(document: &Document, guid: &str, plain_guid: &str) -> Result<String
         code,
         "/// Every variable of the component, in the order of `modelDescription.xml`.\n#[allow(clippy::unreadable_literal)]\npub static VARIABLES: [Variable; {count}] = [\n{table}];"
     )?;
-    writeln!(
-        code,
-        "/// The start value of every parameter but strings, which are empty.\n#[allow(clippy::unreadable_literal)]\npub(crate) mod start {{\n{starts}}}"
-    )?;
     writeln!(code, "{}", by_reference(&list)?)?;
     writeln!(
         code,
@@ -163,6 +153,11 @@ fn variables(document: &Document, guid: &str, plain_guid: &str) -> Result<String
     Ok(code)
 }
 
+fn element<'a, 'input>(document: &'a Document<'input>, name: &str) -> Result<Node<'a, 'input>, String> {
+    let found = document.descendants().find(|node| node.has_tag_name(name));
+    found.ok_or(format!("modelDescription.xml has no {name}"))
+}
+
 /// The Rust type of a parameter, and its start value.
 fn start(document: &Document, value: Node) -> Result<(String, String), Box<dyn Error>> {
     let start = attribute(value, "start")?;
@@ -177,10 +172,7 @@ fn start(document: &Document, value: Node) -> Result<(String, String), Box<dyn E
                 .flat_map(|definition| definition.descendants())
                 .find(|item| item.attribute("value") == Some(start))
                 .ok_or(format!("{kind} has no choice {start}"))?;
-            (
-                format!("super::{kind}"),
-                format!("super::{kind}::{}", attribute(choice, "name")?),
-            )
+            (kind.to_owned(), format!("{kind}::{}", attribute(choice, "name")?))
         }
     })
 }
@@ -263,6 +255,11 @@ fn camel(name: &str) -> String {
                 .chain(word.chars().skip(1))
         })
         .collect()
+}
+
+/// `youngsModulus` becomes `youngs_modulus`.
+fn snake(name: &str) -> String {
+    upper(name).to_ascii_lowercase()
 }
 
 /// `contact.moving.youngsModulus` becomes `CONTACT_MOVING_YOUNGS_MODULUS`.

@@ -13,4 +13,3 @@ mod values;
 
 pub use parameters::*;
 pub(crate) use values::check_range;
-pub use values::choices;

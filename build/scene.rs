@@ -1,0 +1,174 @@
+//! The parameters of the description as Rust structs, one for each group of names, with the start values and access by variable.
+
+use std::collections::BTreeMap;
+use std::error::Error;
+use std::fmt::Write as _;
+
+use roxmltree::{Document, Node};
+
+use crate::{attribute, camel, snake, start, unit};
+
+/// What the groups of parameters describe.
+const GROUPS: [(&str, &str); 11] = [
+    ("beam", "Cantilever spring, as an equivalent uniform section."),
+    ("tip", "Rivet at the tip."),
+    ("contact", "Contact geometry and law."),
+    ("second", "Second contact: of the materials of the first."),
+    ("friction", "Friction between the contacts."),
+    (
+        "resistance",
+        "Contact resistance, in series with a film, both in parallel with the open resistance.",
+    ),
+    ("excitation", "Generated base acceleration."),
+    ("environment", "Surroundings."),
+    ("chatter", "Criterion for interruptions."),
+    ("solver", "Accuracy."),
+    ("effects", "Effects."),
+];
+
+/// Of groups within groups, which are all of this kind.
+const INNER: (&str, &str) = ("Material", "Elastic material of a contact.");
+
+/// The parameters that a match over one of the groups of variables has an arm for.
+#[derive(Default)]
+struct Arms {
+    read: String,
+    write: String,
+}
+
+/// The code of the structs and of the access to their fields.
+pub fn scene(document: &Document, list: &Node) -> Result<String, Box<dyn Error>> {
+    let mut groups: BTreeMap<&str, String> = BTreeMap::new();
+    let mut inner: BTreeMap<(&str, &str), String> = BTreeMap::new();
+    let (mut starts, mut inner_starts) = (groups.clone(), inner.clone());
+    let mut arms: BTreeMap<&str, Arms> = BTreeMap::new();
+    let mut choices = String::new();
+    for variable in list.children().filter(Node::is_element) {
+        let value = variable.first_element_child().ok_or("a variable without a type")?;
+        let (name, kind) = (attribute(variable, "name")?, value.tag_name().name());
+        if attribute(variable, "causality")? != "parameter" || kind == "String" {
+            continue;
+        }
+        let (rust, start) = start(document, value)?;
+        let note = match unit(document, value) {
+            "" => String::new(),
+            unit => format!(" \\[{unit}\\]"),
+        };
+        let doc = format!("    /// `{name}`: {}{note}.\n", attribute(variable, "description")?);
+        let parts: Vec<_> = name.split('.').collect();
+        let path = match parts[..] {
+            [group, field] => {
+                let field = snake(field);
+                writeln!(groups.entry(group).or_default(), "{doc}    pub {field}: {rust},")?;
+                write!(starts.entry(group).or_default(), "{field}: {start}, ")?;
+                format!("{group}.{field}")
+            }
+            [group, of, field] => {
+                let (field, key) = (snake(field), (group, of));
+                writeln!(inner.entry(key).or_default(), "{doc}    pub {field}: {rust},")?;
+                write!(inner_starts.entry(key).or_default(), "{field}: {start}, ")?;
+                format!("{group}.{of}.{field}")
+            }
+            _ => return Err(format!("{name}: build/scene.rs knows groups within groups only").into()),
+        };
+        let variant = camel(name);
+        let Arms { read, write } = arms.entry(kind).or_default();
+        if kind == "Enumeration" {
+            writeln!(
+                read,
+                "            EnumerationParameter::{variant} => self.{path} as i32,"
+            )?;
+            writeln!(
+                write,
+                "            EnumerationParameter::{variant} => self.{path} = {rust}::from_value(value)?,"
+            )?;
+            writeln!(choices, "        EnumerationParameter::{variant} => {rust}::CHOICES,")?;
+        } else {
+            writeln!(read, "            {kind}Parameter::{variant} => self.{path},")?;
+            writeln!(write, "            {kind}Parameter::{variant} => &mut self.{path},")?;
+        }
+    }
+    let mut code = structs(&groups, &starts, &inner, &inner_starts)?;
+    access(&mut code, &arms)?;
+    writeln!(
+        code,
+        "/// Names and numbers of the choices of an enumeration parameter.\npub fn choices(parameter: EnumerationParameter) -> \
+         &'static [(&'static str, i32)] {{\n    match parameter {{\n{choices}    }}\n}}"
+    )?;
+    Ok(code)
+}
+
+/// The structs with their start values.
+fn structs(
+    groups: &BTreeMap<&str, String>,
+    starts: &BTreeMap<&str, String>,
+    inner: &BTreeMap<(&str, &str), String>,
+    inner_starts: &BTreeMap<(&str, &str), String>,
+) -> Result<String, Box<dyn Error>> {
+    const DERIVE: &str = "#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]\n";
+    let (kind, doc) = INNER;
+    let (mut code, mut fields, mut all) = (String::new(), String::new(), String::new());
+    for (group, doc) in GROUPS {
+        let own = groups.get(group).ok_or(format!("no parameters {group}"))?;
+        let of = || inner.keys().filter(|(outer, _)| *outer == group);
+        let (mut inside, mut inside_starts) = (String::new(), String::new());
+        for key in of() {
+            let (_, of) = key;
+            writeln!(inside, "    /// `{group}.{of}`.\n    pub {of}: {kind},")?;
+            write!(inside_starts, "{of}: {kind} {{ {} }}, ", inner_starts[key])?;
+        }
+        let name = camel(group);
+        writeln!(code, "/// {doc}\n{DERIVE}pub struct {name} {{\n{own}{inside}}}")?;
+        writeln!(fields, "    /// {doc}\n    pub {group}: {name},")?;
+        writeln!(
+            all,
+            "            {group}: {name} {{ {}{inside_starts}}},",
+            starts[group]
+        )?;
+    }
+    if let Some(group) = groups
+        .keys()
+        .find(|group| GROUPS.iter().all(|(known, _)| known != *group))
+    {
+        return Err(format!("build/scene.rs says nothing of the parameters {group}").into());
+    }
+    if let Some(first) = inner.values().next() {
+        writeln!(code, "/// {doc}\n{DERIVE}pub struct {kind} {{\n{first}}}")?;
+    }
+    writeln!(
+        code,
+        "/// Parameters and effects of a simulation. SI units.\n#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]\n\
+         pub struct Scene {{\n{fields}    /// The spring of `beam.file`, in place of the length, width and thickness of the beam.\n    \
+         pub spring: Option<Arc<SpringFile>>,\n}}\n\
+         impl Default for Scene {{\n    /// The start values of `modelDescription.xml`.\n    fn default() -> Self {{\n        Self {{\n{all}            \
+         spring: None,\n        }}\n    }}\n}}"
+    )?;
+    Ok(code)
+}
+
+/// Reading and writing by variable.
+fn access(code: &mut String, arms: &BTreeMap<&str, Arms>) -> Result<(), Box<dyn Error>> {
+    writeln!(code, "impl Scene {{")?;
+    for (kind, rust, name) in [
+        ("Real", "f64", "real"),
+        ("Integer", "i32", "integer"),
+        ("Boolean", "bool", "boolean"),
+    ] {
+        let Arms { read, write } = arms.get(kind).ok_or(format!("no {kind} parameters"))?;
+        writeln!(
+            code,
+            "    /// Value of a parameter, in its SI unit.\n    pub fn {name}(&self, parameter: {kind}Parameter) -> {rust} {{\n        match \
+             parameter {{\n{read}        }}\n    }}\n    pub(crate) fn {name}_mut(&mut self, parameter: {kind}Parameter) -> &mut {rust} {{\n        \
+             match parameter {{\n{write}        }}\n    }}"
+        )?;
+    }
+    let Arms { read, write } = arms.get("Enumeration").ok_or("no enumeration parameters")?;
+    writeln!(
+        code,
+        "    /// Number of the choice of a parameter.\n    pub fn enumeration(&self, parameter: EnumerationParameter) -> i32 {{\n        \
+         match parameter {{\n{read}        }}\n    }}\n    /// Sets a choice by its number; `None` if there is no such choice.\n    \
+         pub(crate) fn choose(&mut self, parameter: EnumerationParameter, value: i32) -> Option<()> {{\n        match parameter {{\n{write}        \
+         }}\n        Some(())\n    }}\n}}"
+    )?;
+    Ok(())
+}
