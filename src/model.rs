@@ -124,10 +124,8 @@ impl Model {
             .filter(|second| count(second) > count(&own))
             .unwrap_or(own);
         let wanted = count(&blow);
-        let count = match usize::try_from(scene.solver.modes) {
-            Ok(count) if count > 0 => count.min(MAX_MODES),
-            _ => wanted.min(MAX_MODES),
-        };
+        let asked = usize::try_from(scene.solver.modes).ok().filter(|count| *count > 0);
+        let count = asked.unwrap_or(wanted).min(MAX_MODES);
         let Some(Basis { modes, shapes, space }) = spring.modes(scene, count, preload.axial_force) else {
             return Err(SceneError::Buckled {
                 name: RealParameter::BeamAxialForce.variable().name,
@@ -138,11 +136,10 @@ impl Model {
         let axial = (scene.effects.axial_force == AxialForceKind::FromDeflection)
             .then(|| Feedback::new(&section, &preload, scene.environment.gravity, &space, &modes, &shapes))
             .map(Box::new);
-        let frequency = spring.frequency(preload.axial_force, preload.contact_stiffness);
-        let frequency = axial
-            .as_ref()
+        let feedback = axial.as_ref();
+        let frequency = feedback
             .and_then(|axial| axial.frequency(&modes, preload.contact_stiffness))
-            .or(frequency)
+            .or_else(|| spring.frequency(preload.axial_force, preload.contact_stiffness))
             .map_or(0.0, |omega| omega / std::f64::consts::TAU);
         let generator = Generator::new(scene)?;
         if scene.effects.chatter && ElectricalContact::new(scene, &law).is_none() {
@@ -160,17 +157,13 @@ impl Model {
             _ => None,
         };
         let memory = modes.first().map_or(0.0, |mode| 1.0 / mode.omega_squared.sqrt());
-        let missed_by_modes = if count < wanted {
-            spring.error(&blow, count)
-        } else {
-            0.0
-        };
+        let missed = (count < wanted).then(|| spring.error(&blow, count));
         let mut model = Self {
             law,
             ports: Vec::new(),
             links: Vec::new(),
             participations: [0.0; MAX_MODES],
-            missed_by_modes,
+            missed_by_modes: missed.unwrap_or_default(),
             inertia: inertia(&modes),
             memory,
             compliance: modes.iter().map(Mode::compliance).sum(),

@@ -149,34 +149,8 @@ impl ClosedLoop {
             steady: zeroed_box(),
             forces: [0.0; 5],
         };
-        let mut resonant = false;
-        for (n, oscillator) in closed_loop.oscillators.iter().enumerate() {
-            let Oscillator { load, push, .. } = *oscillator;
-            set(&mut closed_loop.acceleration, n, count, oscillator.at_rest(load));
-            set(&mut closed_loop.jerk, n, count, oscillator.at_ramp(load));
-            set(&mut closed_loop.force, n, count, oscillator.at_rest(push));
-            set(&mut closed_loop.growth, n, count, oscillator.at_ramp(push));
-            if let Some(frequency) = generator.frequency() {
-                let steady = oscillator.loaded(oscillator.steady(frequency));
-                resonant |= !steady.iter().all(|motion| motion.is_finite());
-                let [per_sine, per_cosine] = &mut *closed_loop.steady;
-                set(per_sine, n, count, steady.map(|motion| motion.re));
-                set(per_cosine, n, count, steady.map(|motion| motion.im));
-            }
-        }
-        let columns = closed_loop.to_modes.entries.chunks_exact(2 * count);
-        let [displacement, velocity] = &mut *closed_loop.tip;
-        for ((displacement, velocity), column) in displacement.iter_mut().zip(velocity).zip(columns).take(2 * count) {
-            for (mode, motion) in modes.iter().zip(column.chunks_exact(2)) {
-                if let [q, v] = motion {
-                    *displacement += mode.tip * q;
-                    *velocity += mode.tip * v;
-                }
-            }
-        }
-        if resonant {
-            closed_loop.steady = zeroed_box();
-        }
+        let resonant = closed_loop.set_particular(generator);
+        closed_loop.set_tip(modes);
         let force = |motion: &Coordinates| closed_loop.force_of(motion);
         let [per_sine, per_cosine] = closed_loop.steady.each_ref().map(force);
         closed_loop.forces = [
@@ -191,6 +165,44 @@ impl ClosedLoop {
             },
         ];
         closed_loop.is_exact(modes).then_some(closed_loop)
+    }
+
+    /// Sets the particular solutions; whether there is a resonance without damping.
+    fn set_particular(&mut self, generator: &Generator) -> bool {
+        let (mut resonant, count) = (false, self.oscillators.len());
+        for (n, oscillator) in self.oscillators.iter().enumerate() {
+            let Oscillator { load, push, .. } = *oscillator;
+            set(&mut self.acceleration, n, count, oscillator.at_rest(load));
+            set(&mut self.jerk, n, count, oscillator.at_ramp(load));
+            set(&mut self.force, n, count, oscillator.at_rest(push));
+            set(&mut self.growth, n, count, oscillator.at_ramp(push));
+            if let Some(frequency) = generator.frequency() {
+                let steady = oscillator.loaded(oscillator.steady(frequency));
+                resonant |= !steady.iter().all(|motion| motion.is_finite());
+                let [per_sine, per_cosine] = &mut *self.steady;
+                set(per_sine, n, count, steady.map(|motion| motion.re));
+                set(per_cosine, n, count, steady.map(|motion| motion.im));
+            }
+        }
+        if resonant {
+            self.steady = zeroed_box();
+        }
+        resonant
+    }
+
+    /// Sets the motion of the tip per oscillator.
+    fn set_tip(&mut self, modes: &[Mode]) {
+        let size = 2 * self.oscillators.len();
+        let columns = self.to_modes.entries.chunks_exact(size);
+        let [displacement, velocity] = &mut *self.tip;
+        for ((displacement, velocity), column) in displacement.iter_mut().zip(velocity).zip(columns).take(size) {
+            for (mode, motion) in modes.iter().zip(column.chunks_exact(2)) {
+                if let [q, v] = motion {
+                    *displacement += mode.tip * q;
+                    *velocity += mode.tip * v;
+                }
+            }
+        }
     }
 
     /// Contact force of a motion of the oscillators without loads.

@@ -154,18 +154,8 @@ fn step_by<const EXTREMES: bool>(
     inputs: &Inputs,
     (time, size): (f64, f64),
 ) -> Result<(), StepError> {
+    check_size(time, size)?;
     let until = time + size;
-    if !(size > 0.0 && size.is_finite() && until.is_finite()) {
-        return Err(StepError {
-            time,
-            cause: StepErrorCause::StepSize,
-        });
-    }
-    if until == time {
-        let (spacing, allowed) = (f64::EPSILON * time.abs(), size);
-        let cause = StepErrorCause::Resolution { spacing, allowed };
-        return Err(StepError { time, cause });
-    }
     // An importer's rounded time may put the end before the point already reached: no time passes then.
     let until = until.max(motion.time);
     // Step sizes that differ by the rounding of time count as equal, except for exact linear steps.
@@ -199,19 +189,11 @@ fn step_by<const EXTREMES: bool>(
             motion.add_dense(extremes, model, since, until);
         }
     } else if steady && (switches || !many && (ahead || size < own_step || size != motion.size)) {
-        *workspace.former = *motion;
-        if let Err(error) = go_ahead(model, motion, workspace, until, extremes.as_mut()) {
-            *motion = *workspace.former;
-            workspace.events.forget_after(motion.end.time);
-            return Err(error);
-        }
+        go_ahead(model, motion, workspace, until, extremes.as_mut())?;
     } else if steady && ahead {
-        let time = motion.end.time;
-        let steps = Steps::Exactly {
-            time,
-            size: remaining,
-            news: News::default(),
-        };
+        let (time, news) = (motion.end.time, News::default());
+        let size = remaining;
+        let steps = Steps::Exactly { time, size, news };
         if let Some(extremes) = &mut extremes {
             motion.add_dense(extremes, model, since, time);
         }
@@ -222,12 +204,7 @@ fn step_by<const EXTREMES: bool>(
     } else {
         workspace.former.end = motion.end;
         if ahead {
-            motion.end = motion.start;
-            if let Err(error) = go_on(model, &mut motion.end, workspace, motion.drive, since) {
-                motion.end = workspace.former.end;
-                return Err(error);
-            }
-            workspace.events.forget_after(since);
+            go_back(model, motion, workspace)?;
         }
         let news = News {
             // One after a time without changes is none that recurs.
@@ -248,6 +225,37 @@ fn step_by<const EXTREMES: bool>(
     motion.time = until;
     motion.current = inputs.contact_current_after(size);
     motion.current_rate = inputs.contact_current_rate;
+    Ok(())
+}
+
+/// Checks that a communication step from `time` over `size` (s) can be taken.
+///
+/// # Errors
+/// [`StepErrorCause::StepSize`] or [`StepErrorCause::Resolution`] where it cannot.
+fn check_size(time: f64, size: f64) -> Result<(), StepError> {
+    let until = time + size;
+    let cause = if !(size > 0.0 && size.is_finite() && until.is_finite()) {
+        StepErrorCause::StepSize
+    } else if until == time {
+        let (spacing, allowed) = (f64::EPSILON * time.abs(), size);
+        StepErrorCause::Resolution { spacing, allowed }
+    } else {
+        return Ok(());
+    };
+    Err(StepError { time, cause })
+}
+
+/// Takes the motion back from the end of a step beyond the communication point to that point: integrated again, under the former
+/// inputs.
+///
+/// # Errors
+/// A [`StepError`] where that fails; the motion is then unchanged.
+fn go_back(model: &Model, motion: &mut Motion, workspace: &mut Workspace) -> Result<(), StepError> {
+    motion.end = motion.start;
+    let until = motion.time;
+    let done = go_on(model, &mut motion.end, workspace, motion.drive, until);
+    done.inspect_err(|_| motion.end = workspace.former.end)?;
+    workspace.events.forget_after(until);
     Ok(())
 }
 
@@ -317,8 +325,26 @@ fn go_on(
 /// communication step.
 ///
 /// # Errors
-/// A [`StepError`]; the motion is then undefined.
+/// A [`StepError`]; the motion is then unchanged.
 fn go_ahead(
+    model: &Model,
+    motion: &mut Motion,
+    workspace: &mut Workspace,
+    time: f64,
+    extremes: Option<&mut Extremes>,
+) -> Result<(), StepError> {
+    *workspace.former = *motion;
+    take_steps(model, motion, workspace, time, extremes).inspect_err(|_| {
+        *motion = *workspace.former;
+        workspace.events.forget_after(motion.end.time);
+    })
+}
+
+/// See [`go_ahead`].
+///
+/// # Errors
+/// A [`StepError`]; the motion is then undefined.
+fn take_steps(
     model: &Model,
     motion: &mut Motion,
     workspace: &mut Workspace,

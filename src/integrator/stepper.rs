@@ -306,11 +306,8 @@ impl Stepper<'_> {
         let just_closed =
             |closing: Option<f64>| closing.is_some_and(|closing| (0.0..=shortest).contains(&(target.time - closing)));
         let rubs = state.links[CONTACT].closed && !just_closed(state.links[CONTACT].last_closing);
-        let change = if rubs && changes <= MOST_CHANGES {
-            locator.slip_change()
-        } else {
-            None
-        };
+        let may_change = rubs && changes <= MOST_CHANGES;
+        let change = may_change.then(|| locator.slip_change()).flatten();
         // What sticks slips before it opens.
         let sticks = change.is_some() && state.slip.phase.sign().is_none();
         let mut suspects = [None; MAX_LINKS];

@@ -245,19 +245,16 @@ impl<const N: usize> Together<N> {
                         *sum = next;
                     }
                 }
-                let mut response = Pair {
-                    q: [0.0; N],
-                    v: [0.0; N],
-                };
+                let (mut q, mut v) = ([0.0; N], [0.0; N]);
                 for i in 0..N {
                     let share = 1.0 / (slow[i] - fast[i]);
                     // What the fast root follows, less what fades of it.
                     let decay = free[i].v_from_v - slow[i] * free[i].q_from_v / loads.length;
                     let followed = end[i] - decay * start[i];
-                    response.q[i] = share * (by_slow[i] + inverse[i] * followed);
-                    response.v[i] = share * (slow[i] * by_slow[i] + followed);
+                    q[i] = share * (by_slow[i] + inverse[i] * followed);
+                    v[i] = share * (slow[i] * by_slow[i] + followed);
                 }
-                response
+                Pair { q, v }
             }
         }
     }
