@@ -37,6 +37,8 @@ pub(crate) enum Steps<'a> {
         until: f64,
         /// The links during the step.
         dense: &'a mut DenseOutput,
+        /// The state at its start, to which events are added that happen there.
+        start: &'a mut State,
     },
 }
 
@@ -85,13 +87,13 @@ pub(crate) fn advance(
             let never_opened = state.is_closed() && !state.has_switched();
             (grid, news.inputs && never_opened)
         }
-        Steps::Own { until, dense } => {
+        Steps::Own { until, dense, start } => {
             let size = state.lengths.own();
             check_spacing(model, state.time, size)?;
             if exact_step::step_ahead(model, state, workspace, &drive, (until, &mut *dense)) {
                 return Ok(());
             }
-            (recorder.read, recorder.dense) = (Some(until), Some(dense));
+            (recorder.read, recorder.dense, recorder.start) = (Some(until), Some(dense), Some(start));
             (Grid::free(state.time, size), false)
         }
     };
@@ -376,8 +378,16 @@ fn take_steps(
             continue;
         }
         motion.start = motion.end;
-        let Motion { end, dense, drive, .. } = motion;
-        advance(model, end, workspace, *drive, Steps::Own { until: time, dense }, None)?;
+        let Motion {
+            start,
+            end,
+            dense,
+            drive,
+            ..
+        } = motion;
+        let until = time;
+        let steps = Steps::Own { until, dense, start };
+        advance(model, end, workspace, *drive, steps, None)?;
         note(motion);
     }
     Ok(())

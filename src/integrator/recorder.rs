@@ -17,6 +17,8 @@ pub(crate) struct Recorder<'a> {
     /// The instant from which on the dense output of a free step is read, s.
     pub(crate) read: Option<f64>,
     pub(crate) dense: Option<&'a mut DenseOutput>,
+    /// The state at the start of that step.
+    pub(crate) start: Option<&'a mut State>,
     /// Extremes of the contact forces, if requested.
     pub(crate) extremes: Option<&'a mut Extremes>,
 }

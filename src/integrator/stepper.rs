@@ -425,6 +425,9 @@ impl Stepper<'_> {
     /// An event at the start of a step of `requested` seconds: no time passes.
     fn happen_at_start(&mut self, cut: &Cut, requested: f64) -> StepOutcome {
         self.happen(cut.event);
+        if let Some(start) = &mut self.recorder.start {
+            **start = *self.state;
+        }
         let length = if let Event::Slides(_) = cut.event {
             self.progress.changes += 1;
             // Rounding must not let it change to and fro for ever.
