@@ -2,7 +2,7 @@
 
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::trial::Trial;
-use crate::integrator::constants::{FORCE_ROUNDING, INSIDE};
+use crate::integrator::constants::FORCE_ROUNDING;
 use crate::link::CONTACT;
 use crate::math::nodal::greatest;
 use crate::math::prediction::value_and_slope;
@@ -23,7 +23,7 @@ pub(crate) fn inaccuracy<const S: usize>(
         // Only rejects: a length chosen by it would be too short by a twentieth.
         trial.next_terms / tolerance
     } else {
-        INSIDE * trial.start_defect / tolerance
+        trial.start_defect / tolerance
     }
 }
 

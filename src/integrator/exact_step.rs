@@ -10,7 +10,7 @@ use crate::closed_loop::system::{ClosedLoop, Steady};
 use crate::contact::law::Law;
 use crate::contact::linear::Linear;
 use crate::excitation::drive::Drive;
-use crate::integrator::constants::{FORCE_ROUNDING, INSIDE, UNREST};
+use crate::integrator::constants::{FORCE_ROUNDING, UNREST};
 use crate::integrator::dense_output::{DenseLink, DenseOutput};
 use crate::integrator::grid::round_down;
 use crate::integrator::step_length::{StepOutcome, growth, shrinkage};
@@ -124,7 +124,7 @@ pub(crate) fn step_ahead(
         let contact = state.links[CONTACT];
         let elastic = stiffness * defect(contact.approach, &indentations);
         let force = elastic + stiffness * start.law.damping * defect(contact.rate, &rates);
-        let ratio = INSIDE * elastic.abs().max(force.abs()) / allowed;
+        let ratio = elastic.abs().max(force.abs()) / allowed;
         if ratio <= 1.0 {
             let indentation = collocation.through(model.simd, contact.approach, &indentations);
             let rate = collocation.through(model.simd, contact.rate, &rates);

@@ -1,6 +1,9 @@
 //! The grid of a communication step. Integration steps are dyadic fractions of it, or free steps of a few rounded
 //! lengths, of which the last may be cut; either way step lengths recur, so that their coefficients can be cached.
 
+/// Part of a cell of the grid below which a step to its end is not worth its price: it goes half a cell further.
+const NEAREST: f64 = 0.3;
+
 /// Progress within a communication step.
 #[derive(Clone, Copy, Debug)]
 pub struct Grid {
@@ -156,7 +159,7 @@ impl Grid {
         }
         // Off the grid, after an event: back to it.
         let point = ((self.done / cell).floor() + 1.0) * cell;
-        let point = if point - self.done < 0.3 * cell {
+        let point = if point - self.done < NEAREST * cell {
             point + 0.5 * cell
         } else {
             point

@@ -45,7 +45,7 @@
 //! *Response of one mode* ([`collocation::modal_response`]). Integrated by parts, the response to `l_j` is either a series of the
 //! repeated integrals of `l_j` (power series of the impulse response), or a finite sum of its derivatives (the motion that follows
 //! the load) and a free motion that cancels its start. The first keeps its digits where the roots of the mode times `h` are below
-//! [`constants::SLOW`], the second where they are above [`constants::FAST`]; an overdamped mode with one root of each kind splits into
+//! [`SLOW`](collocation::modal_response::SLOW), the second where they are above [`FAST`](collocation::modal_response::FAST); an overdamped mode with one root of each kind splits into
 //! both. The sums over the modes are formed on these coefficients, before they meet the tables of the shapes
 //! ([`collocation::superposition`], [`collocation::shapes`]).
 //!
@@ -74,7 +74,7 @@
 //! - stiffness and damping of each law times these errors: the part of modes that are fast against the step;
 //! - the part of slow modes, which hardly feel the shape, as it is orthogonal to polynomials of low degree: three times `m^2` over the
 //!   largest force (fitted to the impact of a free mass on a Hertz contact), and for the base acceleration the error of the
-//!   quadrature, [`constants::QUADRATURE_SHORT`] `m_a^2` over the largest acceleration;
+//!   quadrature, `S / 2 (S - 1)!^2 / (2 S - 1)!` times `m_a^2` over the largest acceleration;
 //! - after a closing or a jump, where the force moves like the root of time: a share [`constants::KINKED`] of `m`, which falls with
 //!   the distance from the kink as the convergence of a polynomial near a branch point does (Trefethen, Approximation Theory and
 //!   Approximation Practice, 2013, chapters 8 and 19).
@@ -97,7 +97,7 @@
 //! logarithm of the time since: the next step may be longer in the ratio in which that time grows. A step is never longer than a
 //! quarter of the generator's shortest period, nor than `solver.maximumStep`.
 //!
-//! Work is counted and bounded per communication step ([`constants::WORK`]; [`workspace`]): beyond it the step ends with an error that
+//! Work is counted and bounded per communication step ([`workspace::WORK`]): beyond it the step ends with an error that
 //! names the time.
 //!
 //! # Events

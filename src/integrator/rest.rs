@@ -2,7 +2,7 @@
 
 use crate::contact::friction::Phase;
 use crate::excitation::drive::Drive;
-use crate::integrator::constants::{REST_ROUNDING, UNREST, WEAK};
+use crate::integrator::constants::{FORCE_ROUNDING, UNREST, WEAK};
 use crate::link::MAX_LINKS;
 use crate::model::Model;
 use crate::state::State;
@@ -39,7 +39,7 @@ pub(crate) fn rests_until(model: &Model, state: &State, drive: &Drive, end: f64)
             *load = link.sense * (force - link.force);
             let worth = |change: f64, stiffness: f64| change * change / (2.0 * stiffness);
             least = least.min(worth(change, law.tangent_stiffness(force + change)));
-            let rounding = REST_ROUNDING * force.max(link.force);
+            let rounding = FORCE_ROUNDING * force.max(link.force);
             at_equilibrium = at_equilibrium.min(worth(rounding, law.tangent_stiffness(force)));
         } else {
             *load = link.sense * (at.force - link.force);

@@ -3,10 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::contact::friction::Phase;
-use crate::integrator::constants::{
-    AFTER_REJECTION, AGAIN, GROWING, LEAST_SHRINK, LONGER, MOST_GROWTH, MOST_SHRINK, ROUNDED, SAFETY, SMOOTH,
-    STEP_GROWTH, WORTH,
-};
+use crate::integrator::constants::{GROWING, LEAST_SHRINK, LONGER, MOST_SHRINK, ROUNDED, SAFETY, STEP_GROWTH, WORTH};
 
 /// The step lengths that the error estimate allows, s.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -55,7 +52,7 @@ impl StepOutcome {
             switched: false,
             growth,
             // A step shortened by the grid keeps the size proposed before.
-            length: if length < 0.9 * requested {
+            length: if length < SAFETY * requested {
                 requested.max(next)
             } else {
                 next
@@ -104,7 +101,7 @@ impl StepLengths {
         // Just after an impact the force is not smooth enough for polynomials of high degree; in flight it is known.
         let long = match smooth {
             _ if !closed => self.flight,
-            Some(elapsed) => self.long.min(SMOOTH * elapsed),
+            Some(elapsed) => self.long.min(WORTH * elapsed),
             None => self.long,
         };
         if remaining <= self.short || closed && long < WORTH * self.short {
@@ -145,8 +142,9 @@ impl StepLengths {
                 }
                 // A long step cut far below its possible size: a short one will do next time.
                 if outcome.accepted && !outcome.switched {
-                    let again = if driven { AGAIN } else { 1.0 };
-                    self.short = (again * short).max(outcome.growth * remaining.min(long) / LONGER);
+                    // Where inputs change, whether a little more would do shows when it is tried.
+                    let again = if driven { short / SAFETY } else { short };
+                    self.short = again.max(outcome.growth * remaining.min(long) / LONGER);
                 }
             }
         }
@@ -161,17 +159,20 @@ impl StepLengths {
 
 /// Factor on the length after a step of the relative error `ratio`.
 pub(crate) fn growth<const S: usize>(ratio: f64) -> f64 {
+    // More than that no proposal makes use of.
+    let most = LONGER * STEP_GROWTH;
     if ratio < ROUNDED {
-        MOST_GROWTH
+        most
     } else {
-        (SAFETY * step_factor::<S>(ratio)).clamp(MOST_SHRINK, MOST_GROWTH)
+        (SAFETY * step_factor::<S>(ratio)).clamp(MOST_SHRINK, most)
     }
 }
 
-/// Factor on the length after a rejection for the relative error `ratio`; the smallest without an error estimate.
+/// Factor on the length after a rejection for the relative error `ratio`, with the safety factor applied twice; the smallest without
+/// an error estimate.
 pub(crate) fn shrinkage<const S: usize>(ratio: f64) -> f64 {
     if ratio.is_finite() {
-        (AFTER_REJECTION * step_factor::<S>(ratio)).clamp(LEAST_SHRINK, MOST_SHRINK)
+        (SAFETY * SAFETY * step_factor::<S>(ratio)).clamp(LEAST_SHRINK, MOST_SHRINK)
     } else {
         LEAST_SHRINK
     }

@@ -11,8 +11,8 @@ use crate::integrator::collocation::step::compute;
 use crate::integrator::collocation::trial::{LinkNodes, Source, Trial};
 use crate::integrator::commit::{commit, follow_slip};
 use crate::integrator::constants::{
-    AFTER_BLOW, AFTER_REJECTION, DRIVEN, INHERITED, INSIDE_DRIVEN, ITERATIONS, LEAST_SHRINK, MOST_CHANGES, MOST_SHRINK,
-    NEAR_BLOW, NEXT_LENGTH, REFUSALS, ROUNDED, SAFETY, STEP_GROWTH,
+    AFTER_BLOW, DRIVEN, HALVINGS, INHERITED, INSIDE_DRIVEN, ITERATIONS, LEAST_SHRINK, MOST_CHANGES, MOST_SHRINK,
+    NEAR_BLOW, ROUNDED, SAFETY, STEP_GROWTH,
 };
 use crate::integrator::dense_output::DenseSlip;
 use crate::integrator::discrete_gradient;
@@ -118,9 +118,8 @@ impl Stepper<'_> {
             Proposal::Long(length) => self.advance_with::<LONG>(length)?,
         };
         let situation = (self.progress.driven, self.state.last_closing().is_some());
-        self.state
-            .lengths
-            .keep(proposal, &outcome, closed, remaining, situation);
+        let lengths = &mut self.state.lengths;
+        lengths.keep(proposal, &outcome, closed, remaining, situation);
         Ok(())
     }
 
@@ -159,7 +158,7 @@ impl Stepper<'_> {
         // One of the shortest length is accepted with any finite error.
         if !(own <= 1.0 || self.is_shortest(target) && own.is_finite()) {
             // The collocation failed; use the discrete-gradient step.
-            if self.state.is_closed() && (self.is_shortest(target) || self.progress.refusals >= REFUSALS) {
+            if self.state.is_closed() && (self.is_shortest(target) || self.progress.refusals >= HALVINGS) {
                 return self.take_with_constant_force(target);
             }
             if self.is_shortest(target) {
@@ -167,7 +166,7 @@ impl Stepper<'_> {
             }
             let shrink = if self.changes_now() {
                 // Where the force bends the error is of order one.
-                (AFTER_REJECTION / ratio).clamp(LEAST_SHRINK, MOST_SHRINK)
+                (SAFETY / ratio).clamp(LEAST_SHRINK, MOST_SHRINK)
             } else {
                 shrinkage::<S>(ratio)
             };
@@ -192,8 +191,8 @@ impl Stepper<'_> {
                     self.state.lengths.long = self.state.lengths.long.max(target.length);
                 }
                 let Shorter { error, allowed, .. } = shorter;
-                let shrink = AFTER_REJECTION * (allowed / error).powf(1.0 / S as f64);
-                return Ok(self.reject(target.length * shrink.clamp(LEAST_SHRINK, NEXT_LENGTH)));
+                let shrink = SAFETY * (allowed / error).powf(1.0 / S as f64);
+                return Ok(self.reject(target.length * shrink.clamp(LEAST_SHRINK, MOST_SHRINK)));
             }
         };
         if let Some(cut) = cut {

@@ -10,11 +10,21 @@ use crate::integrator::collocation::coefficients::Cache;
 use crate::integrator::collocation::part::Instant;
 use crate::integrator::collocation::polynomial::{Collocation, Home, OF_LONG, OF_SHORT};
 use crate::integrator::collocation::trial::{Scratch, Trial};
-use crate::integrator::constants::{DEPTH, LENGTHS, NEW_LENGTH, WORK};
+use crate::integrator::constants::HALVINGS;
 use crate::integrator::events::log::Events;
 use crate::integrator::motion::Motion;
 use crate::math::nodal::{LONG, SHORT};
 use crate::model::Model;
+
+/// Work that a communication step may take, however long it is, in modes at nodes: each takes some forty instructions, all
+/// together one to three seconds on processors of 2026. Pinned: ÷ 1e5 and × 100, `tests/fmi_api`.
+pub const WORK: u64 = 500_000_000;
+
+/// Work of a step of a new length, in that of one of a known length. Instructions of both. Cost.
+pub const NEW_LENGTH: u64 = 10;
+
+/// Step lengths for which the coefficients of exact linear steps are kept. Chosen. Cost.
+pub const LENGTHS: usize = 8;
 
 /// Caches and scratch memory. Its content never affects results, only the time they take.
 #[derive(Clone, Debug)]
@@ -51,7 +61,7 @@ pub(crate) struct Search {
     /// That instant, s after the start of the trial; `None`: of another trial.
     pub(crate) looked: Option<f64>,
     /// Later halves of intervals in which a closing is sought: end, error of the cubic (m), depth.
-    pub(crate) halves: Vec<(Instant, f64, usize)>,
+    pub(crate) halves: Vec<(Instant, f64, u32)>,
     /// Work so far, of rejected and probe steps too, in modes at nodes.
     pub(crate) work: u64,
 }
@@ -90,7 +100,7 @@ impl Workspace {
             search: Search {
                 modes: zeroed_box(),
                 looked: None,
-                halves: Vec::with_capacity(DEPTH + 1),
+                halves: Vec::with_capacity(HALVINGS as usize + 1),
                 work: 0,
             },
             propagators: ByLength::new(lengths, zeroed_box),

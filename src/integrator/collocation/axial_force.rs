@@ -16,7 +16,7 @@ use crate::beam::mode::Modal;
 use crate::integrator::collocation::coefficients::{ErrorColumn, ModeColumns, StepCoefficients};
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::trial::{AxialLoads, FreeResponse, NodalModes, Source, Trial};
-use crate::integrator::constants::{FORCE_ROUNDING, ROUNDS};
+use crate::integrator::constants::{FORCE_ROUNDING, ITERATIONS};
 use crate::math::nodal::{Nodal, add, add_columns, dot};
 use crate::math::simd::{Arithmetic, LANES};
 use crate::model::Model;
@@ -32,7 +32,7 @@ pub(super) struct Rounds<'a, const S: usize> {
     /// Loads at the start.
     start: Modal,
     room: &'a mut AxialLoads<S>,
-    count: u32,
+    count: u64,
     /// Whether the loads are those of the motion.
     pub(super) settled: bool,
 }
@@ -86,7 +86,7 @@ impl<'a, const S: usize> Rounds<'a, S> {
         }
         let mut with_loads = with_loads::<S, A>(self.model, free, self.step, loads);
         with_loads.axial = Some(self.error::<A>(free));
-        (self.count <= ROUNDS).then_some(with_loads)
+        (self.count <= ITERATIONS).then_some(with_loads)
     }
 
     /// Effect on the approach of the contact of the defects of base acceleration and loads at the start.

@@ -11,11 +11,14 @@ use crate::integrator::collocation::modal_response::ModeOverStep;
 use crate::integrator::collocation::polynomial::{Collocation, Home, Shared};
 use crate::integrator::collocation::shapes::Shapes;
 use crate::integrator::collocation::superposition::{self, Pair, Sum};
-use crate::integrator::constants::SLOTS;
 use crate::math::free_motion::FreeMotion;
 use crate::math::nodal::{Nodal, add, end, scaled};
 use crate::math::simd::{Arithmetic, Simd, compiled_for};
 use crate::model::Model;
+
+/// Step lengths whose coefficients are kept, a power of two: those of 32 octaves with and without half of their own, as
+/// free steps have them, from nanoseconds after a blow to seconds. Cost.
+pub const SLOTS: usize = 64;
 
 /// Free motion of a port at the nodes due to one mode; includes the displacement of the port per coordinate of the mode.
 #[derive(Clone, Copy, Debug)]

@@ -10,7 +10,7 @@ use crate::integrator::collocation::elimination::in_use;
 use crate::integrator::collocation::newton::{Linked, NodalMotion, Solution, Tangent, Unknown};
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::trial::{Estimate, FreeResponse, Trial};
-use crate::integrator::constants::{FAR, FORCE_ROUNDING, KINKED, SUM_ROUNDINGS};
+use crate::integrator::constants::{FORCE_ROUNDING, KINKED, SUM_ROUNDINGS};
 use crate::link::{LinkLaw, MAX_LINKS, Port};
 use crate::math::nodal::{Nodal, dot, end, greatest};
 use crate::math::simd::Arithmetic;
@@ -259,12 +259,7 @@ pub(crate) fn sum_rounding(port: &Port, state: &State) -> (f64, f64) {
 /// the force is not smooth.
 #[inline(always)]
 fn kinked<const S: usize>(state: &State, length: f64, defect: f64) -> f64 {
-    let elapsed = state.time - state.last_kink;
-    if elapsed < FAR * length {
-        KINKED * defect * analytic::<S>(elapsed / length)
-    } else {
-        0.0
-    }
+    KINKED * defect * analytic::<S>((state.time - state.last_kink) / length)
 }
 
 /// Ratio of the quadrature error to the interpolation error with `S` nodes for a square root of time whose branch point

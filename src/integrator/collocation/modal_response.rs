@@ -6,12 +6,27 @@
 //! integrated by parts). For a fast mode: derivatives of the shape (the quasi-static particular solution) and a free
 //! motion that cancels its initial value. A strongly overdamped mode with one fast and one slow root uses one of each.
 
-use crate::integrator::collocation::shapes::{MAX_SHAPES, Row, Shapes};
+use crate::integrator::collocation::shapes::{MAX_SHAPES, Row, Shapes, TERMS};
 use crate::integrator::collocation::superposition::{Combination, Fading, Pair, Response};
-use crate::integrator::constants::{FAST, FREE, NEGLIGIBLE, SLOW, TERMS};
 use crate::math::free_motion::FreeMotion;
 use crate::math::nodal::{Nodal, add, scaled};
 use crate::math::simd::Arithmetic;
+
+/// Root times step length up to which the power series keeps its digits, 1: its terms grow to about `7^6 / 7!`. Pinned:
+/// × 4.5, the library's unit tests do not end.
+pub const SLOW: f64 = 6.7;
+
+/// Root times step length from which the derivatives of a shape fall fast enough against its powers, 1. Pinned: ÷ 10,
+/// `responses_agree_with_quadrature_in_every_regime`.
+pub const FAST: f64 = 5.0;
+
+/// Root times step length up to which the power series of the free motion keeps its digits, 1: `2^2 / 2!`. Pinned: ×
+/// 10, `responses_agree_with_quadrature_in_every_regime`.
+pub const FREE: f64 = 2.0;
+
+/// Terms of a power series below this are left out, 1. A thousandth of rounding. Pinned: × 1e10,
+/// `responses_agree_with_quadrature_in_every_regime`.
+pub const NEGLIGIBLE: f64 = 1e-19;
 
 /// Which characteristic roots of a mode are slow compared with the step.
 #[derive(Clone, Copy, Debug)]

@@ -8,14 +8,12 @@ use std::ops::Deref;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::integrator::collocation::shapes::{MAX_SHAPES, Shapes};
-use crate::integrator::constants::{FAR_AHEAD, LOOKS, NEAR, SLOWEST_DECAY};
+use crate::integrator::constants::{FAR_AHEAD, NEAR, SLOWEST_DECAY};
+use crate::integrator::course::turning_points;
 use crate::math::legendre;
 use crate::math::nodal::{LONG, Nodal, SHORT, add, dot, scaled};
 use crate::math::prediction::{Prediction, centred, parabola_at_end, value_and_slope};
 use crate::math::simd::{Arithmetic, Separate, Simd, compiled_for};
-
-/// Golden ratio, of the golden-section search.
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// Where polynomials are found that somebody uses.
 pub type Home<const S: usize> = Mutex<Option<Arc<Collocation<S>>>>;
@@ -81,6 +79,11 @@ pub struct Collocation<const S: usize> {
     weights: Nodal<S>,
     /// Highest coefficients of the Lagrange polynomials.
     leading: Nodal<S>,
+    /// Mean over a step of what the nodal polynomial misses of a sine, times its amplitude, over the square of what it misses at the
+    /// start, 1, where the phase passes 1 rad: error of the Radau quadrature, `S 2^(2 S - 1) (S - 1)!^4 / (2 S - 1)!^3 (h / 2)^(2 S) /
+    /// h` per derivative of order `2 S - 1`, and the product of the nodes over `S!` (P. J. Davis, P. Rabinowitz, Methods of Numerical
+    /// Integration, 1984, section 2.7): `S / 2 (S - 1)!^2 / (2 S - 1)!`.
+    pub quadrature: f64,
     /// Greatest impulse up to a node that the shape of the error estimate makes, per step length.
     pub impulse: f64,
     /// Lagrange polynomials of the start and the nodes, by powers of [`centred`] time; the first row is that of the
@@ -144,6 +147,7 @@ impl<const S: usize> Collocation<S> {
             at_start_of_fewer: [without(1), without(2)],
             weights,
             leading,
+            quadrature: 0.5 * S as f64 * factorial(S - 1).powi(2) / factorial(2 * S - 1),
             impulse: impulses.iter().fold(0.0, |most, impulse| most.max(impulse.abs())),
             with_start,
             nodal,
@@ -179,32 +183,18 @@ impl<const S: usize> Collocation<S> {
         lowest <= NEAR * highest
     }
 
-    /// First place in the step (0 to 1) before `until` where the nodal polynomial through `values` is found below zero:
-    /// at a node, at a sample point before it, or at the minimum near the lowest of them. It is not searched before the first
-    /// node, where the polynomial extrapolates.
+    /// First place in the step (0 to 1) before `until` where the nodal polynomial through `values` is found below zero: at a node,
+    /// or where it turns. It is not searched before the first node, where the polynomial extrapolates.
     pub fn first_dip(&self, values: &Nodal<S>, until: f64) -> Option<f64> {
         let mut nodes = self.nodes.iter().zip(values);
         let below = nodes.find(|(node, value)| **node < until && **value < 0.0);
         let below = below.map(|(node, _)| *node);
         let until = below.unwrap_or(until);
         let polynomial = combine::<Separate>(&self.nodal, values.iter());
-        let value = |x: f64| value_and_slope(&polynomial, x - 1.0).0;
-        let look = 1.0 / f64::from(LOOKS);
         let first = self.nodes.first().copied().unwrap_or_default();
-        let between = (1..LOOKS).map(|k| f64::from(k) * look).filter(|x| *x > first);
-        let looks = [first].into_iter().chain(between).chain([1.0]);
-        if let Some(dip) = looks.clone().take_while(|x| *x < until).find(|x| value(*x) < 0.0) {
-            return Some(dip);
-        }
-        // Golden-section search.
-        let lowest = looks.min_by(|a, b| value(*a).total_cmp(&value(*b))).unwrap_or_default();
-        let (mut a, mut b) = ((lowest - look).max(first), (lowest + look).min(1.0));
-        for _ in 0..25 {
-            let (c, d) = (b - GOLDEN * (b - a), a + GOLDEN * (b - a));
-            (a, b) = if value(c) < value(d) { (a, d) } else { (c, b) };
-        }
-        let bottom = f64::midpoint(a, b);
-        let dip = (bottom < until && value(bottom) < 0.0).then_some(bottom);
+        let turns = turning_points(&polynomial);
+        let mut places = turns.iter().map(|y| 1.0 + y).filter(|x| (first..until).contains(x));
+        let dip = places.find(|x| value_and_slope(&polynomial, x - 1.0).0 < 0.0);
         dip.or(below)
     }
 
@@ -275,6 +265,10 @@ fn combine<'a, A: Arithmetic>(basis: &[Prediction], values: impl Iterator<Item =
         add::<{ LONG + 1 }, A>(&mut sum, *value, polynomial);
     }
     sum
+}
+
+fn factorial(n: usize) -> f64 {
+    (1..=n).fold(1.0, |product, k| product * k as f64)
 }
 
 fn one<const N: usize>() -> [f64; N] {

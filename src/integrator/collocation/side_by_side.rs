@@ -7,10 +7,9 @@
 use std::array;
 
 use crate::beam::mode::{Mode, ModeState, ModeStates};
-use crate::integrator::collocation::modal_response::{ModeOverStep, Regime, decayed};
-use crate::integrator::collocation::shapes::{Load, Shapes};
+use crate::integrator::collocation::modal_response::{ModeOverStep, NEGLIGIBLE, Regime, decayed};
+use crate::integrator::collocation::shapes::{Load, Shapes, TERMS};
 use crate::integrator::collocation::superposition::Pair;
-use crate::integrator::constants::{NEGLIGIBLE, TERMS};
 use crate::math::free_motion::FreeMotion;
 use crate::math::nodal::{add, add_products};
 use crate::math::simd::{Arithmetic, LANES};

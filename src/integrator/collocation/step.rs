@@ -10,9 +10,8 @@ use crate::integrator::collocation::error::{Judged, estimate_in_flight};
 use crate::integrator::collocation::newton::{Linked, NodalMotion, Solution, Tangent, Unknowns};
 use crate::integrator::collocation::slip::follow;
 use crate::integrator::collocation::trial::{Estimate, FreeResponse, LinkEnd, Scratch, Source, Trial};
-use crate::integrator::constants::{QUADRATURE_LONG, QUADRATURE_SHORT};
 use crate::link::{MAX_PORTS, MAX_UNKNOWNS};
-use crate::math::nodal::{Nodal, SHORT, add, add_products, dot, end, scaled};
+use crate::math::nodal::{Nodal, add, add_products, dot, end, scaled};
 use crate::math::simd::{Arithmetic, LANES, compiled_for};
 use crate::model::Model;
 use crate::state::State;
@@ -130,7 +129,6 @@ impl<const S: usize> Step<'_, S> {
         let largest = accelerations
             .iter()
             .fold(f64::MIN_POSITIVE, |largest, a| largest.max(a.abs()));
-        let quadrature = if S == SHORT { QUADRATURE_SHORT } else { QUADRATURE_LONG };
 
         let pushed = scaled(accelerations, -1.0);
         let mut ports = [NodalMotion::ZERO; MAX_PORTS];
@@ -157,7 +155,7 @@ impl<const S: usize> Step<'_, S> {
         FreeResponse {
             ports,
             start_defect,
-            missed_mean: quadrature * start_defect * start_defect / largest,
+            missed_mean: collocation.quadrature * start_defect * start_defect / largest,
             axial: None,
         }
     }

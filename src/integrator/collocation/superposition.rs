@@ -4,8 +4,7 @@
 
 use bytemuck::Zeroable;
 
-use crate::integrator::collocation::shapes::{MAX_SHAPES, Row, Shapes, Table};
-use crate::integrator::constants::TERMS;
+use crate::integrator::collocation::shapes::{MAX_SHAPES, Row, Shapes, TERMS, Table};
 use crate::math::nodal::{Nodal, add, end};
 use crate::math::simd::Arithmetic;
 

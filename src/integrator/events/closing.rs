@@ -8,11 +8,14 @@
 use crate::beam::mode::Mode;
 use crate::contact::law::Law;
 use crate::integrator::collocation::part::{Instant, Whole};
-use crate::integrator::constants::{DEPTH, DISTANT, HALVINGS, SHORTEST_FLIGHT, UNSEEN};
+use crate::integrator::constants::{DISTANT, HALVINGS, SHORTEST_FLIGHT, UNSEEN};
 use crate::integrator::events::{Cut, Event, Locator, motion_rounding};
 use crate::link::Link;
 use crate::math::nodal::LONG;
 use crate::state::LinkState;
+
+/// Halvings of the cubic between two samples before the motion in their middle is computed.
+const ON_CUBIC: u32 = 3;
 
 /// An open contact in which a touch is sought.
 #[derive(Clone, Copy)]
@@ -101,13 +104,13 @@ impl<const S: usize> Locator<'_, S> {
     /// Whether the contact certainly stays open between two open samples, whose cubic is wrong by `error` (m).
     fn is_clear(&self, sought: &Sought, a: &Instant, b: &Instant, error: f64) -> bool {
         // A contact whose force is far below the tolerance need not be found.
-        let negligible = sought.law.overlap(1e-3 * self.tolerance.force);
+        let negligible = sought.law.overlap(self.tolerance.located);
         let (ripple, ripple_rate) = self.ripple(sought, b.at - a.at);
         let (least, unseen) = (negligible.max(sought.unsure), (error + ripple, ripple_rate));
         // A cubic wrong by this much in the middle has a slope wrong by four times that over its length at most.
         let steeper = 4.0 * error / (b.at - a.at);
         is_clear_along(sought.link, a, b, unseen, least, 0)
-            || is_clear_along(sought.link, a, b, (unseen.0, unseen.1 + steeper), least, HALVINGS)
+            || is_clear_along(sought.link, a, b, (unseen.0, unseen.1 + steeper), least, ON_CUBIC)
     }
 
     /// Engagement that does not count as contact, m. Just after an opening: what the resolution of time has left of it
@@ -163,12 +166,12 @@ impl<const S: usize> Locator<'_, S> {
         let (mut b, mut error, mut depth) = (b, error, 0);
         while !self.budget.is_exhausted(self.search) {
             if sought.link.engagement(b.d, b.rate) <= sought.unsure {
-                if self.is_clear(sought, &a, &b, error) || depth > DEPTH {
+                if self.is_clear(sought, &a, &b, error) || depth > HALVINGS {
                     a = b;
                     (b, error, depth) = self.search.halves.pop()?;
                     continue;
                 }
-            } else if a.rate >= 0.0 && highest(&a, &b) <= b.d && self.is_resolved(sought, &a, &b) || depth > DEPTH {
+            } else if a.rate >= 0.0 && highest(&a, &b) <= b.d && self.is_resolved(sought, &a, &b) || depth > HALVINGS {
                 let touch = self.crossing(sought, &a, &b);
                 // A contact that closes at the instant of opening still gets a short flight, so that time advances.
                 let shortest = SHORTEST_FLIGHT * b.at;

@@ -1,5 +1,8 @@
 //! Log of openings and closings, for reference runs that need every event.
-use crate::integrator::constants::EVENTS_KEPT;
+
+/// Openings and closings of a communication step that are kept for the log. Pinned: ÷ 512,
+/// `every_event_is_reported_once`.
+pub const EVENTS_KEPT: usize = 1024;
 
 /// An opening or closing.
 #[derive(Clone, Copy, Debug, PartialEq)]

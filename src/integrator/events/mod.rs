@@ -12,7 +12,7 @@ use crate::contact::friction::Phase;
 use crate::contact::law::Law;
 use crate::integrator::collocation::error::sum_rounding;
 use crate::integrator::collocation::part::{Instant, Whole};
-use crate::integrator::constants::GUESSES;
+use crate::integrator::constants::ITERATIONS;
 use crate::integrator::tolerance::Tolerance;
 use crate::integrator::workspace::{Budget, Search, work};
 use crate::link::Link;
@@ -147,7 +147,7 @@ impl<'a, const S: usize> Locator<'a, S> {
         rounding: f64,
     ) -> Instant {
         let (mut low, mut high, mut last) = (from, None, None);
-        for _ in 0..GUESSES {
+        for _ in 0..ITERATIONS {
             let now = self.inside(index, at);
             let found = value(self, &now);
             let beyond = (found > 0.0) != (from.1 > 0.0);
