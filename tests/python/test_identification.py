@@ -1,6 +1,7 @@
 """`identify` on measurements made by the second solution of the model: what the data tell, and what they do not."""
 
 import re
+import tomllib
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -8,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import tomlkit
 from scipy.stats import binom
 
 import measured
@@ -34,6 +36,7 @@ from relay_contact.command import main
 from relay_contact.identification import Identification
 from relay_contact.identification.measurement import Measurement, read
 from relay_contact.identification.prediction import Laboratory
+from relay_contact.identification.relay_file import put
 from relay_contact.qualification import Relay
 
 pytestmark = pytest.mark.filterwarnings("error::RuntimeWarning")
@@ -344,6 +347,28 @@ def test_each_position_has_its_overtravel(tmp_path: Path) -> None:
     paths[0].write_text(paths[0].read_text().split("\n", 1)[1])
     with pytest.raises(RelayContactError, match=r"0.csv:1: which position of the coil"):
         found(*paths, relay=file)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "[parameters]\nbeam.width = 1.0\nbeam.thickness = 1.0  # of a sheet\nbeam.length = 1.0\ntip.mass = 1.0\n",
+        "[parameters]\nbeam.width = 1.0\ntip.mass = 1.0\n# of a sheet\nbeam.length = 1.0\n",
+        "parameters.beam.width = 1.0\ntitle = 'a'\nparameters.tip.mass = 1.0\n[[position]]\nname = 'a'\n",
+        "[parameters.beam]\nwidth = 1.0\n[uncertainty]\ntip.mass = 0.1\n[parameters.tip]\nmass = 1.0\n",
+        "parameters = { beam = { width = 1.0 }, tip = { mass = 1.0 } }\n",
+    ],
+)
+def test_values_are_put_into_a_file_however_its_lines_are_ordered(text: str) -> None:
+    content: Any = tomlkit.parse(text)
+    expected = content.unwrap()
+    for name, value in (("tip.mass", 2.0), ("beam.density", 3.0), ("contact.damping", 4.0), ("beam.width", 5.0)):
+        put(content["parameters"], name, tomlkit.value(str(value)), "identified")
+        group, key = name.split(".")
+        expected["parameters"].setdefault(group, {})[key] = value
+    written = tomlkit.dumps(content)
+    assert tomllib.loads(written) == expected
+    assert written.count("# of") == text.count("# of")
 
 
 HEAD = "travel [mm],force [cN]\n"

@@ -5,6 +5,8 @@ from pathlib import Path
 from typing import Any
 
 import tomlkit
+from tomlkit.container import OutOfOrderTableProxy
+from tomlkit.items import InlineTable
 
 from relay_contact.identification.result import Identification, has
 from relay_contact.spring import PREFIX, text_of
@@ -22,6 +24,15 @@ def put(table: Any, name: str, item: Any, remark: str = "") -> None:  # noqa: AN
         item.comment(remark)
     path = name.split(".")
     for number, key in enumerate(path):
+        if key not in table and isinstance(table, OutOfOrderTableProxy):
+            # The lines of this table do not follow each other: to the first of them.
+            table[tomlkit.key(path[number:])] = item
+            return
+        if key not in table and isinstance(table, InlineTable):
+            for inner in reversed(path[number + 1 :]):
+                item = tomlkit.inline_table().append(inner, item)
+            table[key] = item
+            return
         if key not in table:
             # Before remarks that belong to what follows.
             body = table.value.body
