@@ -5,7 +5,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 use cargo_metadata::Package;
-use commands::{command, output, read};
+use crate::commands::{command, output, read};
 use serde::Deserialize;
 use serde_json::{Value, json};
 

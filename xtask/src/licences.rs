@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, Result, bail};
-use commands::{read, sysroot};
+use crate::commands::{read, sysroot};
 
 use crate::linked::{COMPONENT, Crates};
 use crate::package::Files;

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use anyhow::{Context, Result};
 use cargo_metadata::{Metadata, MetadataCommand, Package};
-use commands::{cargo, output, root};
+use crate::commands::{cargo, output, root};
 
 /// What cargo knows about the project.
 pub fn metadata() -> Result<Metadata> {

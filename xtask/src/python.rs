@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result, bail};
-use commands::{command, output, python, root, run, write};
+use crate::commands::{command, output, python, root, run, write};
 
 /// Oldest Python for which the pinned packages exist.
 const OLDEST: (u32, u32) = (3, 11);

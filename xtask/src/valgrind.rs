@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use anyhow::{Result, bail};
 use cargo_metadata::Message;
-use commands::{cargo, command, output, run as run_command};
+use crate::commands::{cargo, command, output, run as run_command};
 
 use crate::release::trial::{Runner, Trial};
 

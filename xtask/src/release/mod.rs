@@ -12,7 +12,7 @@ use std::path::PathBuf;
 use anyhow::{Result, bail};
 use cargo_metadata::Metadata;
 use clap::builder::PossibleValuesParser;
-use commands::write;
+use crate::commands::write;
 use sha2::{Digest, Sha256};
 
 use self::platform::{PLATFORMS, Platform};

@@ -4,7 +4,7 @@ use std::env::consts::EXE_SUFFIX;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
-use commands::{command, output, read, sysroot};
+use crate::commands::{command, output, read, sysroot};
 
 use crate::package::Files;
 use crate::python;

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use cargo_metadata::Metadata;
-use commands::sysroot;
+use crate::commands::sysroot;
 use goblin::mach::MultiArch;
 use relay_contact::variables;
 
