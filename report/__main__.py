@@ -48,7 +48,7 @@ def main() -> None:
     one.add_argument("--fit", action="store_true", help="before, fit the contact to the published numbers anew")
     tasks: dict[str, Callable[[], object]] = {
         "effects": effects.write,
-        "pictures": lambda: "\n".join(str(figure.write(PICTURES)) for figure in accuracy.figures()),
+        "accuracy": accuracy.write,
         "instructions": callgrind.show,
         "importers": importers.show,
     }

@@ -1,4 +1,4 @@
-"""Accuracy and cost: docs/accuracy.md, and its figures from what the package `benches` measured."""
+"""Accuracy and cost: docs/accuracy.md, its tables and figures from what the package `benches` measured."""
 
 import csv
 import re
@@ -6,8 +6,9 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 from report.figure import Curve, Figure
-from report.files import DOCS, OUT
+from report.files import DOCS, OUT, PICTURES
 from report.page import Section, whole
+from report.text import number, rendered, short, table
 
 MEASURED = OUT / "accuracy/accuracy.csv"
 RELAYS = DOCS / "promise.csv"
@@ -28,8 +29,11 @@ FORCE, INSTANTS = (
 )
 USELESS = {True: 10.0, False: 1.0}
 """Larger errors are not drawn, us and relative to the preload: such a run is of no use."""
+TABLES = "<!-- tables: written by cargo xtask accuracy -->", "<!-- end of tables -->"
 VERDICT = "From tolerances of"
 """Begin of the line among the tables that says down to which one the error stays below it."""
+OK = "ok"
+TIMES = "\N{MULTIPLICATION SIGN}"
 LEAST = 1e-14
 """Smaller errors, from rounding alone, are drawn at this."""
 
@@ -108,8 +112,8 @@ def figures() -> list[Figure]:
     if MEASURED.exists():
         measured = rows(MEASURED)
         found += [integrators(measured, *each) for each in COMPARED]
-        curves = list(over(measured, "delivered", "value"))
-        asked = sorted({float(row["value"]) for row in measured if row["part"] == "delivered"})
+        curves = list(over(measured, "delivered", "tolerance"))
+        asked = sorted({float(row["tolerance"]) for row in measured if row["part"] == "delivered"})
         curves.append(Curve("error = tolerance", asked, asked, "dashed", 6))
         found.append(Figure("accuracy-tolerance", "Error against tolerance", TOLERANCE, FORCE, curves, "xy"))
         modes = list(over(measured, "modes", "modes"))
@@ -117,6 +121,105 @@ def figures() -> list[Figure]:
     if RELAYS.exists():
         found.append(promise(rows(RELAYS)))
     return found
+
+
+def time(seconds: float) -> str:
+    """Return a time in s or ms."""
+    return f"{digits(seconds)} s" if seconds >= 1 else f"{digits(1e3 * seconds)} ms"
+
+
+def digits(value: float) -> str:
+    """Return a number with two digits, or all before the point."""
+    return f"{value:.1f}" if value < 9.95 else f"{value:.0f}"
+
+
+def envelope(measured: list[Row], scene: str, levels: tuple[float, ...], instants: bool) -> str:
+    """Return a table: of each integrator the cheapest run whose error is at most each level (s, or relative)."""
+    own = [row for row in measured if row["scene"] == scene and row["part"] in ("delivered", "peers") and row["events"]]
+    names = list(dict.fromkeys(row["integrator"] for row in own))
+    scale, unit = (1e-6, " s") if instants else (1.0, "")
+    lines = []
+    for level in levels:
+        cells, least = [f"{short(level)}{unit}"], 0.0
+        for name in names:
+            good = [row for row in own if row["integrator"] == name and scale * error(row, instants) <= level]
+            if not good:
+                cells.append("not reached")
+                continue
+            run = min(good, key=lambda row: float(row["seconds_per_second"]))
+            cost, tolerance = float(run["seconds_per_second"]), short(float(run["tolerance"]))
+            if run["part"] == "delivered":
+                least = cost
+                cells.append(f"{time(cost)}, {tolerance}, delivers {short(scale * error(run, instants))}{unit}")
+            else:
+                cells.append(f"**{digits(cost / least)}{TIMES}** {time(cost)}, {run['modes']} modes, {tolerance}")
+        lines.append(cells)
+    return table(["allowed", *names], lines)
+
+
+def delivered_table(measured: list[Row]) -> str:
+    """Return what the component delivers: error of the force, of opening durations, modes, computing time."""
+    own = [row for row in measured if row["part"] == "delivered"]
+    lines = []
+    for tolerance in dict.fromkeys(row["tolerance"] for row in own):
+        cells = [short(float(tolerance))]
+        for scene in SCENES:
+            (row,) = [row for row in own if (row["scene"], row["tolerance"]) == (scene, tolerance)]
+            duration = (
+                f"{short(float(row['opening_duration_error_us']))} µs, " if row["events"] not in ("", "0") else ""
+            )
+            cost = time(float(row["seconds_per_second"]))
+            cells.append(f"{short(float(row['force_error']))}, {duration}{row['modes']} modes, {cost}")
+        lines.append(cells)
+    return table(["tolerance", *SCENES], lines)
+
+
+def verdict(measured: list[Row]) -> str:
+    """Return down to which tolerance the error of the contact force stays below it."""
+    worst: dict[float, float] = {}
+    for row in measured:
+        if row["part"] == "delivered":
+            tolerance = float(row["tolerance"])
+            worst[tolerance] = max(worst.get(tolerance, 0.0), error(row, False))
+    limit = max((tolerance for tolerance, most in worst.items() if most > tolerance), default=0.0)
+    kept = {tolerance: most / tolerance for tolerance, most in worst.items() if tolerance > limit}
+    text = (f"{VERDICT} {short(max(kept))} to {short(min(kept))} the error of the contact force is at most "
+            f"{number(100 * max(kept.values()), 0)} % of `solver.tolerance`")  # fmt: skip
+    if limit:
+        most = max(most for tolerance, most in worst.items() if tolerance <= limit)
+        text += f"; from {short(limit)} on rounding shows, and it is up to {short(most)}"
+    return f"{text}."
+
+
+def write() -> Path:
+    """Write the tables of docs/accuracy.md, and the figures of what was measured."""
+    for figure in figures():
+        figure.write(PICTURES)
+    page = DOCS / "accuracy.md"
+    measured = rows(MEASURED)
+    timed = [row for row in measured if row["part"] != "modes" and row["seconds_per_second"]]
+    parts = [float(row["seconds_per_second"]) / float(row["least_seconds_per_second"]) for row in timed]
+    costs = {(row["scene"], short(float(row["tolerance"]))): float(row["seconds_per_second"])
+             for row in timed if row["part"] == "delivered"}  # fmt: skip
+    fine, coarse = (1e-6, 1e-7, 1e-8, 1e-9), (1e-2, 1e-4, 1e-6, 1e-8)
+    text, _ = rendered("accuracy.md", [], {
+        "verdict": verdict(measured), "spread": max(parts) / min(parts) - 1, "delivered": delivered_table(measured),
+        "growth": [costs[scene, "1e-10"] / costs[scene, "1e-2"] for scene in SCENES],
+        "tables": [
+            ("chatter", True, envelope(measured, "chatter", fine, True)),
+            ("paper", False, envelope(measured, "paper", (1e-2, 1e-4, 1e-6, 1e-10), False)),
+            ("chatter 3 %", True, envelope(measured, "chatter 3 %", fine, True)),
+            ("chatter 3 %", False, envelope(measured, "chatter 3 %", coarse, False)),
+            ("chatter", False, envelope(measured, "chatter", coarse, False)),
+            ("closing bounce", True, envelope(measured, "closing bounce", fine, True)),
+        ],
+        "machine": MEASURED.with_name("machine.txt").read_text(encoding="utf-8"),
+        "failed": [f"{row['scene']}, {row['integrator']}: {row['outcome']}" for row in measured if row["outcome"] != OK],
+    })  # fmt: skip
+    whole_page = page.read_text(encoding="utf-8")
+    before, rest = whole_page.split(TABLES[0])
+    page.write_text(f"{before}{TABLES[0]}\n\n{text}\n{TABLES[1]}{rest.split(TABLES[1])[1]}", encoding="utf-8")
+    return page
 
 
 def delivered(page: str) -> dict[float, list[float]]:

@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 use std::env;
 use std::path::{Path, PathBuf};
 
+use crate::commands::{cargo, command, output, read, root, run, write};
 use anyhow::{Result, bail};
 use cargo_metadata::Metadata;
-use crate::commands::{cargo, command, output, read, root, run, write};
 use relay_contact::C_HEADER;
 
 use crate::package::{Files, pack};

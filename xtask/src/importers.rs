@@ -8,8 +8,8 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use anyhow::{Context, Result};
 use crate::commands::{cargo, command, output, read, root, run as run_command, write};
+use anyhow::{Context, Result};
 
 use crate::package::{Files, pack};
 use crate::stage::stage;

@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use anyhow::{Context, Result, bail};
 use crate::commands::{read, sysroot};
+use anyhow::{Context, Result, bail};
 
 use crate::linked::{COMPONENT, Crates};
 use crate::package::Files;

@@ -5,8 +5,8 @@ use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
-use anyhow::{Context, Result, ensure};
 use crate::commands::{root, write as write_file};
+use anyhow::{Context, Result, ensure};
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::scene::file::SceneFile;
@@ -69,8 +69,14 @@ fn reference() -> Result<String> {
     let mut table = "time,base.acceleration,run,coupled\n".to_owned();
     let (single, coupled) = (single()?, coupled()?);
     // It opens, closes again, and the second contact vibrates about twice the preload.
-    let opened = single.iter().position(|force| *force == 0.0).context("it never opens")?;
-    ensure!(single.iter().skip(opened).any(|force| *force > 0.152), "it never closes again");
+    let opened = single
+        .iter()
+        .position(|force| *force == 0.0)
+        .context("it never opens")?;
+    ensure!(
+        single.iter().skip(opened).any(|force| *force > 0.152),
+        "it never closes again"
+    );
     for (n, (single, coupled)) in (0..=STEPS).zip(single.iter().zip(coupled)) {
         writeln!(table, "{},{},{single},{coupled}", time(n), acceleration(n))?;
     }

@@ -62,7 +62,7 @@ pub fn accuracy(arguments: &Arguments) -> Result<()> {
         return Ok(());
     }
     python::prepare()?;
-    start("pictures", &[""; 0])
+    start("accuracy", &[""; 0])
 }
 
 /// The report in its quick form, of what the tests have left, and its own tests in a browser.

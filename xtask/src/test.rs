@@ -3,8 +3,8 @@
 use std::process::Command;
 use std::{env, thread};
 
-use anyhow::{Result, anyhow, bail};
 use crate::commands::{cargo, output, run as run_command};
+use anyhow::{Result, anyhow, bail};
 
 use crate::stage::stage;
 use crate::{fmu, importers, python, report, valgrind, wheel};
@@ -49,7 +49,9 @@ pub fn run(arguments: Arguments) -> Result<()> {
         })?;
         // Of what both have left.
         let chromium = report::chromium().is_some();
-        if_installed("report", chromium, report::CHROMIUM_MISSING, || report::test(&fmu::path()))
+        if_installed("report", chromium, report::CHROMIUM_MISSING, || {
+            report::test(&fmu::path())
+        })
     })
 }
 

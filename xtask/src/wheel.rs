@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use anyhow::Result;
 use crate::commands::run as run_command;
+use anyhow::Result;
 
 use crate::{fmu, python};
 

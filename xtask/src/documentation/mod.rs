@@ -4,8 +4,8 @@
 mod block;
 mod description;
 
-use anyhow::{Context, Result, ensure};
 use crate::commands::read;
+use anyhow::{Context, Result, ensure};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd};
 use roxmltree::{Document, Node};
