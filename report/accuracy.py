@@ -214,7 +214,9 @@ def write() -> Path:
             ("closing bounce", True, envelope(measured, "closing bounce", fine, True)),
         ],
         "machine": MEASURED.with_name("machine.txt").read_text(encoding="utf-8"),
-        "failed": [f"{row['scene']}, {row['integrator']}: {row['outcome']}" for row in measured if row["outcome"] != OK],
+        "failed": [
+            f"{row['scene']}, {row['integrator']}: {row['outcome']}" for row in measured if row["outcome"] != OK
+        ],
     })  # fmt: skip
     whole_page = page.read_text(encoding="utf-8")
     before, rest = whole_page.split(TABLES[0])

@@ -73,7 +73,7 @@ class Figure:
                     logarithmic(axes, axis, letter)
             if len(self.curves) > 1:
                 longest = max(len(curve.name) for curve in self.curves)
-                columns = max(1, int(12.5 * width / (longest + 9)))
+                columns = max(1, int(11 * width / (longest + 9)))
                 drawing.set_figheight(3.8 + 0.21 * -(-len(self.curves) // columns))
                 drawing.legend(loc="outside lower left", ncols=columns, handlelength=3.4)
         return drawing

@@ -36,4 +36,5 @@ def parameter_set(name: str, scene: Scene, component: Component, plain: bool = F
             kind, text = variable.type, str(int(component.number(each, value)))
         SubElement(parameter, f"{{{NAMESPACE}}}{kind}", value=text)
     indent(root)
-    return tostring(root, encoding="UTF-8", xml_declaration=True) + b"\n"
+    written: bytes = tostring(root, encoding="UTF-8", xml_declaration=True)
+    return written + b"\n"

@@ -66,4 +66,3 @@ fn higher_derivatives_of_inputs_have_no_effect_and_are_told_of_once() {
         &["fmi2SetRealInputDerivatives: support.displacement", "order 2"],
     );
 }
-

@@ -1,7 +1,6 @@
 //! Habits of importers: how they reckon time, where they say the resources are, what they ask for at initialisation.
 
 use std::ffi::CString;
-use std::ptr;
 
 use relay_contact::fmi2::*;
 use testing::instance::{Arguments, Instance};
@@ -108,4 +107,3 @@ fn any_place_of_the_resources_will_do() {
         assert!(fmu.messages().is_empty());
     }
 }
-

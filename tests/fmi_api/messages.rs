@@ -3,7 +3,6 @@
 use std::ptr;
 
 use relay_contact::fmi2::*;
-use relay_contact::variables::{Group, VARIABLES};
 use testing::instance::{Instance, vr};
 
 #[test]

@@ -10,7 +10,6 @@ import argparse
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from math import pi, sin
-from typing import Any
 
 import numpy as np
 from sksundae.cvode import CVODE
@@ -22,7 +21,7 @@ from relay_contact import Array, RelayContactError, Value
 MARKS = "<!-- independent: written by tests/python/random_relays.py -->", "<!-- end of independent -->"
 PERIODS, SAMPLES = 4, 50
 """Of the vibration, and communication steps of a period."""
-FUNCTIONS = (20, 26)
+FUNCTIONS = (26, 32)
 """Of Galerkin's method: what more of them change is the error of the second solution."""
 TOLERANCE = 1e-11
 TIGHTEST = 1e-11
@@ -108,17 +107,20 @@ def second(relay: Relay, functions: int) -> tuple[Array, int, float]:
         indentation = reference.indentation - deflection
         values[0] = min(indentation, indentation - reference.power * reference.contact_damping * rate)
 
-    engaged.terminal = [False]  # type: ignore[attr-defined]
     solver = CVODE(
         rates, jacfn=jacobian, eventsfn=engaged, num_events=1, rtol=TOLERANCE, atol=TOLERANCE * equations.scale,
         max_num_steps=500_000,
     )  # fmt: skip
-    solution: Any = solver.solve(relay.times, np.zeros(equations.size))
-    assert solution.success, solution.message
-    asked = np.searchsorted(solution.t, relay.times)
-    tips = zip(*equations.tip(solution.y[asked].T), strict=True)
-    force = np.array([contact(0.0, deflection, rate)[0] for deflection, rate in tips])
-    return force, 0 if solution.t_events is None else len(solution.t_events), reference.force_scale
+    motion, force, events = np.zeros(equations.size), [reference.force], 0
+    solver.init_step(relay.times[0], motion)
+    for time in relay.times[1:]:
+        # Anew from each opening and closing, as the order of the method holds for smooth forces alone.
+        while (found := solver.step(time)).t < time:
+            events += 1
+            solver.init_step(found.t, found.y)
+        deflection, rate = equations.tip(found.y)
+        force.append(contact(time, deflection, rate)[0])
+    return np.array(force), events, reference.force_scale
 
 
 def own(relay: Relay, tolerance: float) -> Array:
@@ -141,6 +143,11 @@ class Compared:
     tightest: float
     refinement: float
 
+    @property
+    def resolved(self) -> bool:
+        """Whether the second solution is accurate enough to judge by it."""
+        return self.refinement < 0.4 * self.relay.tolerance
+
 
 def compare(number: int) -> Compared | None:
     """Compare a relay; none if the component refuses it, or it does not open."""
@@ -157,19 +164,21 @@ def compare(number: int) -> Compared | None:
     return Compared(relay, events, *deviations)
 
 
-def table(found: list[Compared]) -> str:
+def table(compared: list[Compared]) -> str:
     """Return median and largest of the deviations, by damping."""
-    refined = max(each.refinement / each.relay.tolerance for each in found)
+    found = [each for each in compared if each.resolved]
     lines = [
-        f"{len(found)} relays with {sum(each.events for each in found)} openings and closings. More functions of "
-        f"Galerkin's method change the force of the second solution by at most {refined:.0e} of the tolerance asked.",
+        f"{len(found)} relays with {sum(each.events for each in found)} openings and closings. Left out are "
+        f"{len(compared) - len(found)} more, of which the second solution itself is not known to 0.4 of the tolerance "
+        "asked: so much it changes with more functions of Galerkin's method.",
         "",
-        "| damping of the first mode | relays | deviation over tolerance, median | largest | at 1e-11, median | largest |",
+        "| damping of the first mode | relays | deviation over tolerance, median | largest | at 1e-11 | largest |",
         "|---|---:|---:|---:|---:|---:|",
     ]
     for name, (low, high) in CLASSES.items():
         own = [each for each in found if low <= each.relay.damping < high]
-        kept, tightest = [each.deviation / each.relay.tolerance for each in own], [each.tightest for each in own]
+        kept = [each.deviation / each.relay.tolerance for each in own]
+        tightest = [each.tightest for each in own]
         cells = [f"{value:.0e}" for values in (kept, tightest) for value in (np.median(values), max(values))]
         lines.append(f"| {name} | {len(own)} | {' | '.join(cells)} |")
     return "\n".join(lines)
@@ -183,7 +192,7 @@ def main() -> None:
         found = [each for each in pool.map(compare, range(line.parse_args().count)) if each]
     text = table(found)
     for each in found:
-        if each.deviation > each.relay.tolerance:
+        if each.resolved and each.deviation > each.relay.tolerance:
             print(each)
     page = ROOT / "docs/accuracy.md"
     before, rest = page.read_text(encoding="utf-8").split(MARKS[0])

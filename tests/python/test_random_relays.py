@@ -5,11 +5,11 @@ import pytest
 from random_relays import compare
 
 
-# Of closed and open contacts at rest, Hertz and rough, damped by 2 to 31 %; `random_relays.py` compares more.
-@pytest.mark.parametrize("number", [2, 3, 5, 7])
+# Of closed and open contacts at rest, Hertz and rough, damped by 1.5 to 30 %; `random_relays.py` compares more.
+@pytest.mark.parametrize("number", [2, 3, 5, 10])
 def test_the_force_of_a_random_relay_is_within_its_tolerance(number: int) -> None:
     found = compare(number)
     assert found is not None
     assert found.events > 4
-    assert found.refinement < 0.5 * found.relay.tolerance
+    assert found.resolved
     assert found.deviation < found.relay.tolerance
