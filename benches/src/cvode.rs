@@ -4,31 +4,50 @@
 //! times it.
 
 use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 
 use relay_contact::reference::Law;
 
-use crate::c_program::Program;
-use crate::integrator::{BUDGET, Failure, Integrator, Run, Setting};
+use crate::integrator::{BUDGET, Failure, Integrator, Run};
 use crate::problem::Problem;
 
-/// CVODE, if it could be compiled.
-pub struct Cvode {
-    program: Program,
-}
+/// The program, if it could be compiled.
+pub struct Cvode(Result<PathBuf, Failure>);
 
 impl Cvode {
-    /// Compiles the program.
+    /// Compiles the program against the SUNDIALS library of the system.
     pub fn new() -> Self {
-        Self {
-            program: Program::new("cvode", &["cvode", "sunmatrixdense", "sunlinsoldense"]),
+        Self(compile())
+    }
+
+    /// What the program answers: a key and its numbers on each line.
+    fn ask(&self, question: &str) -> Result<String, Failure> {
+        let program = self.0.as_ref().map_err(Clone::clone)?;
+        let failed = |error: std::io::Error| Failure::Stopped(error.to_string());
+        let mut command = Command::new(program);
+        let mut child = command
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .map_err(failed)?;
+        if let Some(mut input) = child.stdin.take() {
+            input.write_all(question.as_bytes()).map_err(failed)?;
+        }
+        let output = child.wait_with_output().map_err(failed)?;
+        let answer = String::from_utf8_lossy(&output.stdout).into_owned();
+        match line(&answer, "failure") {
+            Some(failure) => Err(Failure::Stopped(failure.to_owned())),
+            None => Ok(answer),
         }
     }
 
     /// Version of the SUNDIALS library, if installed.
     pub fn version(&self) -> Option<String> {
-        let problem = crate::scenes::linear().ok()?;
-        let answer = self.program.ask(&question(&problem, 1e-2)).ok()?;
-        answer.line("version ").map(ToOwned::to_owned)
+        let problem = crate::scenes::paper().ok()?;
+        let answer = self.ask(&question(&problem, 1e-2).ok()?).ok()?;
+        line(&answer, "version").map(ToOwned::to_owned)
     }
 }
 
@@ -43,28 +62,27 @@ impl Integrator for Cvode {
         "CVODE BDF"
     }
 
-    fn run(&self, problem: &Problem, setting: Setting) -> Result<Run, Failure> {
-        let answer = self.program.ask(&question(problem, setting.value()))?;
-        let work = answer.numbers("work")?;
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "counters of the C program, written as integers"
-        )]
-        let count = |which: usize| work.get(which).map_or(0, |count| *count as u64);
+    fn run(&self, problem: &Problem, tolerance: f64) -> Result<Run, Failure> {
+        let answer = self.ask(&question(problem, tolerance)?)?;
+        let numbers = |key| -> Result<Vec<f64>, Failure> {
+            let text = line(&answer, key).ok_or_else(|| Failure::Stopped("the C program stopped".to_owned()))?;
+            Ok(text.split_whitespace().filter_map(|word| word.parse().ok()).collect())
+        };
         Ok(Run {
-            forces: answer.numbers("forces")?,
-            events: answer.numbers("events")?,
-            time: answer.numbers("time")?.first().copied().unwrap_or(f64::NAN),
-            steps: count(0),
-            rejected: count(1),
-            iterations: count(2),
+            forces: numbers("forces")?,
+            events: numbers("events")?,
+            time: numbers("time")?.first().copied().unwrap_or(f64::NAN),
         })
     }
 }
 
+/// What follows a key.
+fn line<'a>(answer: &'a str, key: &str) -> Option<&'a str> {
+    answer.lines().find_map(|line| line.strip_prefix(key))
+}
+
 /// The problem as the C program reads it.
-fn question(problem: &Problem, tolerance: f64) -> String {
+fn question(problem: &Problem, tolerance: f64) -> Result<String, Failure> {
     let model = &problem.model;
     let mut text = format!("{}\n", problem.modes());
     let mut line = |numbers: &[f64]| {
@@ -76,15 +94,10 @@ fn question(problem: &Problem, tolerance: f64) -> String {
     for mode in model.modes() {
         line(&[mode.omega_squared, mode.damping, mode.tip, mode.participation]);
     }
-    match model.law() {
-        Law::Power(power) => line(&[0.0, power.coefficient, power.damping, power.exponent]),
-        Law::Linear(linear) => line(&[
-            if linear.bonded { 2.0 } else { 1.0 },
-            linear.stiffness,
-            linear.damping,
-            linear.offset,
-        ]),
-    }
+    let Law::Power(power) = model.law() else {
+        return Err(Failure::Stopped("a linear contact".to_owned()));
+    };
+    line(&[power.coefficient, power.damping, power.exponent]);
     let (amplitude, omega, phase) = problem.sine();
     line(&[model.preload().force, model.preload().indentation]);
     line(&[amplitude, omega, phase, problem.support_rate]);
@@ -92,5 +105,30 @@ fn question(problem: &Problem, tolerance: f64) -> String {
     line(&[problem.relative * tolerance]);
     line(&absolute);
     line(&[problem.end, f64::from(problem.cells), BUDGET]);
-    text
+    Ok(text)
+}
+
+fn compile() -> Result<PathBuf, Failure> {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("sundials/cvode.c");
+    let program = std::env::temp_dir().join(format!("relay-contact-cvode-{}", std::process::id()));
+    let libraries = ["cvode", "sunmatrixdense", "sunlinsoldense", "nvecserial"];
+    let libraries = libraries.map(|library| format!("-lsundials_{library}"));
+    let output = Command::new("cc")
+        .args(["-O3", "-o"])
+        .arg(&program)
+        .arg(source)
+        .args(libraries)
+        .arg("-lm")
+        .output();
+    match output {
+        Ok(output) if output.status.success() => Ok(program),
+        Ok(output) => {
+            let text = String::from_utf8_lossy(&output.stderr);
+            let cause = text.lines().find(|line| line.contains("error")).unwrap_or("cc failed");
+            Err(Failure::Unavailable(format!(
+                "it needs SUNDIALS 6 (on Debian: apt-get install libsundials-dev): {cause}"
+            )))
+        }
+        Err(error) => Err(Failure::Unavailable(format!("no C compiler cc: {error}"))),
+    }
 }

@@ -9,7 +9,7 @@ use ::diffsol::{
     DiffsolError, NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquations, OdeSolverMethod, OdeSolverStopReason,
 };
 
-use crate::integrator::{BUDGET, Failure, Integrator, Run, Setting};
+use crate::integrator::{BUDGET, Failure, Integrator, Run};
 use crate::problem::Problem;
 
 /// Runs with more openings and closings than this fail.
@@ -23,7 +23,7 @@ impl Integrator for Diffsol {
         "diffsol BDF"
     }
 
-    fn run(&self, problem: &Problem, setting: Setting) -> Result<Run, Failure> {
+    fn run(&self, problem: &Problem, tolerance: f64) -> Result<Run, Failure> {
         let start = ThreadTime::now();
         let mut run = Run {
             forces: vec![problem.model.preload().force],
@@ -36,8 +36,7 @@ impl Integrator for Diffsol {
         };
         while run.forces.len() <= problem.cells as usize {
             let stopped = |error: &DiffsolError| Failure::Stopped(format!("t = {:.6e} s: {error}", branch.time));
-            let next =
-                Self::branch(problem, &branch, setting.value(), start, &mut run).map_err(|error| stopped(&error))?;
+            let next = Self::branch(problem, &branch, tolerance, start, &mut run).map_err(|error| stopped(&error))?;
             if run.events.len() > MOST_EVENTS {
                 return Err(Failure::Stopped("too many openings and closings".to_owned()));
             }
@@ -140,9 +139,5 @@ where
             });
         }
     }
-    let work = solver.get_statistics();
-    run.steps += work.number_of_steps as u64;
-    run.rejected += work.number_of_error_test_failures as u64;
-    run.iterations += work.number_of_nonlinear_solver_iterations as u64;
     Ok(next)
 }

@@ -5,41 +5,6 @@ use crate::problem::Problem;
 /// Processor time an integrator may take for a run, s.
 pub const BUDGET: f64 = 5.0;
 
-/// Accuracy setting of an integrator.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Setting {
-    /// Tolerance of the force, relative to the force scale.
-    Tolerance(f64),
-    /// Length of all steps, s.
-    Step(f64),
-}
-
-impl Setting {
-    /// The number.
-    pub fn value(self) -> f64 {
-        match self {
-            Self::Tolerance(value) | Self::Step(value) => value,
-        }
-    }
-
-    /// The kind of setting.
-    pub fn kind(self) -> &'static str {
-        match self {
-            Self::Tolerance(_) => "tolerance",
-            Self::Step(_) => "step",
-        }
-    }
-}
-
-impl std::fmt::Display for Setting {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Tolerance(value) => write!(f, "{value:.0e}"),
-            Self::Step(value) => write!(f, "{value:.0e} s"),
-        }
-    }
-}
-
 /// A completed run.
 #[derive(Clone, Debug, Default)]
 pub struct Run {
@@ -49,12 +14,6 @@ pub struct Run {
     pub events: Vec<f64>,
     /// Processor time of the integration on its one thread, without setup, s; unaffected by other load.
     pub time: f64,
-    /// Steps taken.
-    pub steps: u64,
-    /// Rejected steps.
-    pub rejected: u64,
-    /// Newton iterations.
-    pub iterations: u64,
 }
 
 /// A failed run.
@@ -80,14 +39,9 @@ pub trait Integrator {
     /// Name in tables and figures.
     fn name(&self) -> &'static str;
 
-    /// Whether it uses a fixed step instead of a tolerance.
-    fn fixed_step(&self) -> bool {
-        false
-    }
-
-    /// Runs the problem.
+    /// Runs the problem with a tolerance of the force, relative to the force scale.
     ///
     /// # Errors
     /// A [`Failure`].
-    fn run(&self, problem: &Problem, setting: Setting) -> Result<Run, Failure>;
+    fn run(&self, problem: &Problem, tolerance: f64) -> Result<Run, Failure>;
 }

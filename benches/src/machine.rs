@@ -17,18 +17,13 @@ pub fn description() -> String {
         .unwrap_or_else(|| std::env::consts::ARCH.to_owned());
     let cores = available_parallelism().map_or(1, usize::from);
     let rustc = printed("rustc", "--version").unwrap_or_else(|| "rustc".to_owned());
-    let date = date();
+    let date = printed("date", "+%Y-%m-%d").unwrap_or_else(|| "unknown date".to_owned());
     let sundials = Cvode::new()
         .version()
         .map_or("without SUNDIALS".to_owned(), |version| format!("SUNDIALS {version}"));
     let diffsol = locked_version("diffsol").unwrap_or_default();
     let own = env!("CARGO_PKG_VERSION");
     format!("{date}, {processor}, {cores} cores, one used; {rustc}; relay-contact {own}, diffsol {diffsol}, {sundials}")
-}
-
-/// Today.
-pub fn date() -> String {
-    printed("date", "+%Y-%m-%d").unwrap_or_else(|| "unknown date".to_owned())
 }
 
 /// The output of a program.

@@ -1,126 +1,242 @@
-//! Runs of integrators against references, interleaved so that other load affects all of them.
+//! The measurement: the component in every scene, and of each peer the runs that no other run of its own beats.
+//!
+//! Runs are interleaved in rounds, so that other load on the machine falls on all of them.
 
+use std::fmt::Write as _;
 use std::rc::Rc;
 
+use anyhow::{Result, anyhow};
 use indicatif::{ProgressBar, ProgressStyle};
+use relay_contact::scene::Solver;
 
-use crate::integrator::{Failure, Integrator, Run, Setting};
+use crate::component::Component;
+use crate::cvode::Cvode;
+use crate::diffsol::Diffsol;
+use crate::integrator::{Failure, Integrator, Run};
 use crate::problem::Problem;
 use crate::radau::Reference;
+use crate::scenes;
 
-/// The part of a study with the best runs of other integrators, of any number of modes.
-pub const PEERS: &str = "peers";
+/// Numbers of modes tried with each peer.
+const MODES: [i32; 11] = [3, 4, 5, 6, 7, 8, 10, 12, 16, 20, 24];
 
-/// Runs shorter than this, s, are repeated within a round.
+/// Runs of one search that cost up to this much more than another at equal or better error are timed again.
+const NEARLY: f64 = 1.3;
+
+/// Runs shorter than this, s, are repeated within a round; those longer than the second are timed once.
 const SHORT: f64 = 2e-3;
-
-/// Runs longer than this, s, are timed once.
 const LONG: f64 = 0.5;
 
-/// One integrator at one setting.
-#[derive(Clone)]
-pub struct Case {
-    /// The part of the study.
-    pub part: &'static str,
-    /// The problem.
-    pub problem: Rc<Problem>,
-    /// The reference.
-    pub reference: Rc<Reference>,
-    /// The integrator.
-    pub integrator: Rc<dyn Integrator>,
-    /// The accuracy setting.
-    pub setting: Setting,
+/// The integrators that the component is compared with.
+fn peers() -> [Rc<dyn Integrator>; 2] {
+    [Rc::new(Cvode::new()), Rc::new(Diffsol)]
 }
 
-/// The result of a case.
-pub struct Row {
-    /// The case.
-    pub case: Case,
-    /// Number of modes.
-    pub modes: usize,
-    /// The measurement.
-    pub outcome: Result<Measured, Failure>,
+/// One integrator with one tolerance.
+#[derive(Clone)]
+struct Case {
+    /// `delivered`: the component as it is used; `modes`: with so many modes; `peers`.
+    part: &'static str,
+    problem: Rc<Problem>,
+    reference: Rc<Reference>,
+    integrator: Rc<dyn Integrator>,
+    tolerance: f64,
 }
 
 /// A completed run, measured.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Measured {
-    /// Processor time per simulated time, median of all rounds.
-    pub cost: f64,
-    /// The least of all rounds.
-    pub least_cost: f64,
+#[derive(Clone, Copy, Debug)]
+struct Measured {
+    /// Processor time per simulated time, median of all rounds, and the least.
+    cost: f64,
+    least_cost: f64,
     /// Largest deviation of the contact force on the grid, relative to the force scale.
-    pub force_error: f64,
+    force_error: f64,
     /// Openings and closings found.
-    pub events: usize,
-    /// Largest deviation of their times, s; none if their number is wrong.
-    pub event_error: Option<f64>,
-    /// Largest deviation of the length of an opening, s; none as before.
-    pub duration_error: Option<f64>,
-    /// Steps taken.
-    pub steps: u64,
-    /// Rejected steps.
-    pub rejected: u64,
-    /// Newton iterations.
-    pub iterations: u64,
+    events: usize,
+    /// Largest deviation of their times, and of the length of an opening, s; none if their number is wrong.
+    event_error: Option<f64>,
+    duration_error: Option<f64>,
 }
 
 impl Measured {
-    /// Of the force, relative, and of the instants, s; infinite where their number is wrong.
-    pub fn errors(&self) -> [f64; 2] {
-        [self.force_error, self.event_error.unwrap_or(f64::INFINITY)]
-    }
-
-    /// Whether it is as accurate as another one, and cheaper by this factor.
-    pub fn beats(&self, other: &Self, factor: f64) -> bool {
-        factor * self.cost < other.cost
-            && self
-                .errors()
-                .iter()
-                .zip(other.errors())
-                .all(|(own, error)| *own <= error)
+    /// Whether it is as accurate as another one in force and instants, and cheaper by this factor.
+    fn beats(&self, other: &Self, factor: f64) -> bool {
+        let errors = |run: &Self| [run.force_error, run.event_error.unwrap_or(f64::INFINITY)];
+        factor * self.cost < other.cost && errors(self).iter().zip(errors(other)).all(|(own, error)| *own <= error)
     }
 }
 
-/// Whether another run of the same integrator, compared in the same scene, beats this one.
-fn beaten(row: &Row, rows: &[Row]) -> bool {
-    let Ok(run) = row.outcome.as_ref() else {
-        return false;
+/// Measures everything, each run in `turns` rounds; gives it as CSV.
+///
+/// # Errors
+/// If a scene cannot be simulated or its reference fails.
+pub fn measure(quick: bool, turns: usize) -> Result<String> {
+    let cases = all(quick)?;
+    let rows = rounds(&cases, turns);
+    let beaten = |case: &Case, run: &Measured| {
+        case.part == "peers"
+            && cases.iter().zip(&rows).any(|(other, row)| {
+                let same = other.problem.name == case.problem.name && other.integrator.name() == case.integrator.name();
+                same && other.part == case.part && row.as_ref().is_ok_and(|other| other.beats(run, 1.0))
+            })
     };
-    let same = |case: &Case| {
-        case.part == PEERS
-            && case.problem.name == row.case.problem.name
-            && case.integrator.name() == row.case.integrator.name()
+    let mut text = String::from(
+        "part,scene,integrator,tolerance,modes,seconds_per_second,least_seconds_per_second,force_error,event_error_us,\
+         opening_duration_error_us,events,reference_force_error,reference_event_error_us,outcome\n",
+    );
+    let micro = |seconds: Option<f64>| seconds.map_or(String::new(), |seconds| format!("{:.4e}", 1e6 * seconds));
+    for (case, row) in cases.iter().zip(&rows) {
+        let (name, modes) = (case.integrator.name(), case.problem.modes());
+        let measured = match row {
+            Ok(run) if beaten(case, run) => continue,
+            Ok(run) => format!(
+                "{:.4e},{:.4e},{:.4e},{},{},{}",
+                run.cost,
+                run.least_cost,
+                run.force_error,
+                micro(run.event_error),
+                micro(run.duration_error),
+                run.events
+            ),
+            Err(_) => ",,,,,".to_owned(),
+        };
+        let outcome = row.as_ref().map_or_else(
+            |failure| failure.to_string().replace([',', '\n'], " "),
+            |_| "ok".to_owned(),
+        );
+        let Reference {
+            force_error,
+            event_error,
+            ..
+        } = *case.reference;
+        let _ = writeln!(
+            text,
+            "{},{},{name},{:e},{modes},{measured},{force_error:.4e},{},{outcome}",
+            case.part,
+            case.problem.name,
+            case.tolerance,
+            micro(Some(event_error))
+        );
+    }
+    Ok(text)
+}
+
+/// All cases: the component in each scene, and of its peers the runs that no other run of theirs beats.
+fn all(quick: bool) -> Result<Vec<Case>> {
+    let mut cases = Vec::new();
+    for problem in scenes::all()? {
+        let many = problem.with_modes(scenes::MANY_MODES)?;
+        let step = if quick { 1e-6 } else { 2e-5 * problem.end };
+        let reference = Reference::new(&many, step).map_err(|failure| anyhow!("{}: {failure}", problem.name))?;
+        let reference = Rc::new(reference);
+        cases.extend(own(&problem, &reference, quick)?);
+        if scenes::COMPARED.contains(&problem.name) {
+            for integrator in peers() {
+                cases.extend(best(&problem, &reference, &integrator, quick)?);
+            }
+        }
+    }
+    Ok(cases)
+}
+
+/// The component with the modes that it chooses; and at its smallest tolerance with each number of modes.
+fn own(problem: &Problem, reference: &Rc<Reference>, quick: bool) -> Result<Vec<Case>> {
+    let case = |part, problem, tolerance| Case {
+        part,
+        problem: Rc::new(problem),
+        reference: Rc::clone(reference),
+        integrator: Rc::new(Component),
+        tolerance,
     };
-    let mut others = rows
+    let mut cases = Vec::new();
+    for tolerance in tolerances(quick) {
+        let used = problem.with(|scene| scene.solver.tolerance = tolerance)?;
+        cases.push(case("delivered", used, tolerance));
+    }
+    let modes = (2..=16).chain((20..=scenes::MANY_MODES).step_by(4));
+    for modes in modes.step_by(if quick { 4 } else { 1 }) {
+        cases.push(case("modes", problem.with_modes(modes)?, Solver::TOLERANCE_FLOOR));
+    }
+    Ok(cases)
+}
+
+/// Searches modes and tolerances of a peer: the runs that no other beats in time and in both errors, or hardly.
+fn best(
+    problem: &Problem,
+    reference: &Rc<Reference>,
+    integrator: &Rc<dyn Integrator>,
+    quick: bool,
+) -> Result<Vec<Case>> {
+    let mut found: Vec<(Case, Measured)> = Vec::new();
+    for modes in MODES.into_iter().step_by(if quick { 3 } else { 1 }) {
+        for relative in [1.0, 0.01] {
+            let problem = Rc::new(Problem {
+                relative,
+                ..problem.with_modes(modes)?
+            });
+            let mut least = [f64::INFINITY; 2];
+            let mut idle = 0;
+            for tolerance in tolerances(quick) {
+                let case = Case {
+                    part: "peers",
+                    problem: Rc::clone(&problem),
+                    reference: Rc::clone(reference),
+                    integrator: Rc::clone(integrator),
+                    tolerance,
+                };
+                let run = match integrator
+                    .run(&problem, tolerance)
+                    .and_then(|run| judge(&case, &run, &[run.time]))
+                {
+                    Ok(run) => run,
+                    // Named once, by its row.
+                    Err(Failure::Unavailable(_)) => return Ok(vec![case]),
+                    Err(Failure::Stopped(_)) => continue,
+                };
+                // Where the modes left out decide, a smaller tolerance only costs more.
+                let errors = [run.force_error, run.event_error.unwrap_or(f64::INFINITY)];
+                let gains = errors.iter().zip(least).any(|(error, least)| *error < 0.7 * least);
+                idle = if gains { 0 } else { idle + 1 };
+                least = [errors[0].min(least[0]), errors[1].min(least[1])];
+                found.push((case, run));
+                if idle == 3 {
+                    break;
+                }
+            }
+        }
+    }
+    let beaten = |one: &Measured| found.iter().any(|(_, other)| other.beats(one, NEARLY));
+    Ok(found
         .iter()
-        .filter(|other| same(&other.case))
-        .filter_map(|other| other.outcome.as_ref().ok());
-    row.case.part == PEERS && others.any(|other| other.beats(run, 1.0))
+        .filter(|(_, one)| !beaten(one))
+        .map(|(case, _)| case.clone())
+        .collect())
 }
 
-/// Runs all cases in `turns` rounds; of other integrators the runs that no other one of theirs beats are left.
-pub fn run(cases: &[Case], turns: usize) -> Vec<Row> {
+fn tolerances(quick: bool) -> impl Iterator<Item = f64> {
+    (1..=11)
+        .step_by(if quick { 3 } else { 1 })
+        .map(|digits| 10_f64.powi(-digits))
+}
+
+/// Runs all cases in rounds.
+fn rounds(cases: &[Case], turns: usize) -> Vec<Result<Measured, Failure>> {
     let mut times = vec![Vec::new(); cases.len()];
     let mut first: Vec<Option<Result<Run, Failure>>> = cases.iter().map(|_| None).collect();
-    let style =
-        ProgressStyle::with_template("{bar:40} {pos}/{len} {msg}").unwrap_or_else(|_| ProgressStyle::default_bar());
+    let style = ProgressStyle::with_template("{bar:40} {pos}/{len}").unwrap_or_else(|_| ProgressStyle::default_bar());
     let progress = ProgressBar::new((turns * cases.len()) as u64).with_style(style);
     for _ in 0..turns {
         for ((case, times), first) in cases.iter().zip(&mut times).zip(&mut first) {
-            progress.set_message(case.integrator.name());
             progress.inc(1);
-            let again = match first {
-                None => true,
-                Some(Ok(run)) => run.time < LONG,
-                Some(Err(_)) => false,
-            };
-            if !again {
+            if first
+                .as_ref()
+                .is_some_and(|known| known.as_ref().map_or(true, |run| run.time > LONG))
+            {
                 continue;
             }
             let mut spent = 0.0;
             while spent < SHORT {
-                let outcome = case.integrator.run(&case.problem, case.setting);
+                let outcome = case.integrator.run(&case.problem, case.tolerance);
                 spent += outcome.as_ref().map_or(f64::INFINITY, |run| run.time);
                 times.extend(outcome.as_ref().ok().map(|run| run.time));
                 first.get_or_insert(outcome);
@@ -129,33 +245,17 @@ pub fn run(cases: &[Case], turns: usize) -> Vec<Row> {
     }
     progress.finish_and_clear();
     let rows = cases.iter().zip(times).zip(first);
-    let rows = rows.filter_map(|((case, mut times), first)| {
+    rows.map(|((case, mut times), first)| {
         times.sort_by(f64::total_cmp);
-        Some(Row {
-            case: case.clone(),
-            modes: case.problem.modes(),
-            outcome: first?.and_then(|run| measure(case, &run, &times)),
-        })
-    });
-    let rows: Vec<Row> = rows.collect();
-    let left: Vec<bool> = rows.iter().map(|row| !beaten(row, &rows)).collect();
-    rows.into_iter()
-        .zip(left)
-        .filter_map(|(row, left)| left.then_some(row))
-        .collect()
-}
-
-/// A single run of a case.
-///
-/// # Errors
-/// A [`Failure`].
-pub fn once(case: &Case) -> Result<Measured, Failure> {
-    let run = case.integrator.run(&case.problem, case.setting)?;
-    measure(case, &run, &[run.time])
+        first
+            .unwrap_or_else(|| Err(Failure::Stopped("not run".to_owned())))
+            .and_then(|run| judge(case, &run, &times))
+    })
+    .collect()
 }
 
 /// A run, and what it took in all rounds, s, in ascending order.
-fn measure(case: &Case, run: &Run, times: &[f64]) -> Result<Measured, Failure> {
+fn judge(case: &Case, run: &Run, times: &[f64]) -> Result<Measured, Failure> {
     let time = |place: usize| times.get(place).copied().unwrap_or(f64::NAN);
     let Case { problem, reference, .. } = case;
     if run.forces.len() != reference.forces.len() || run.forces.iter().any(|force| !force.is_finite()) {
@@ -172,28 +272,41 @@ fn measure(case: &Case, run: &Run, times: &[f64]) -> Result<Measured, Failure> {
             let closed = problem.starts_closed();
             largest_difference(&openings(events, closed), &openings(&reference.events, closed))
         }),
-        steps: run.steps,
-        rejected: run.rejected,
-        iterations: run.iterations,
     })
 }
 
 /// Lengths of the complete openings, s.
 fn openings(events: &[f64], starts_closed: bool) -> Vec<f64> {
-    let events = if starts_closed {
-        events
-    } else {
-        events.get(1..).unwrap_or_default()
-    };
-    events
-        .chunks_exact(2)
-        .filter_map(|pair| match pair {
-            [opening, closing] => Some(closing - opening),
-            _ => None,
-        })
-        .collect()
+    let events = events.get(usize::from(!starts_closed)..).unwrap_or_default();
+    events.chunks_exact(2).map(|pair| pair[1] - pair[0]).collect()
 }
 
 fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_integrate_the_same_equations() -> Result<(), Box<dyn std::error::Error>> {
+        let mut problem = scenes::paper()?;
+        problem.end = 2e-3;
+        problem.cells = 20;
+        let reference = Rc::new(Reference::new(&problem, 1e-6).map_err(|failure| failure.to_string())?);
+        let own: Rc<dyn Integrator> = Rc::new(Component);
+        for integrator in peers().into_iter().chain([own]) {
+            match integrator.run(&problem, 1e-7) {
+                Ok(run) => {
+                    let error = largest_difference(&run.forces, &reference.forces) / problem.model.force_scale();
+                    // A hundred steps of a local error of the tolerance.
+                    assert!(error < 1e-5, "{}: {error}", integrator.name());
+                }
+                Err(Failure::Unavailable(why)) => eprintln!("{}: {why}", integrator.name()),
+                Err(failure) => return Err(failure.to_string().into()),
+            }
+        }
+        Ok(())
+    }
 }

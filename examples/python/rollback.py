@@ -34,7 +34,7 @@ from tqdm import tqdm
 from circuit import Circuit, State
 from common import parser, read_arguments, save
 from relay_contact import Array, Component, Contact, Scene, write_table
-from relay_contact.figures import BLACK, BLUE, ORANGE, SKY, legend_beside
+from relay_contact.figures import BLACK, BLUE, ORANGE
 
 CIRCUIT = Circuit()
 PERIOD = 1e-3  # s, of the vibration
@@ -154,60 +154,26 @@ class Run:
     """Largest error of the load current [A]."""
 
 
-def spans(master: Master, stop: float) -> list[tuple[float, float]]:
-    """Give the intervals during which the contact was open, from the conductances."""
-    start, _, _, _, mean = np.array(master.rows).T
-    opened = mean < 1e-6  # S: far below a closed contact's, far above an open one's
-    begins, ends = (np.flatnonzero(np.diff(opened.astype(int), prepend=0, append=0) == sign) for sign in (1, -1))
-    return [(start[a], start[b] if b < len(start) else stop) for a, b in zip(begins, ends, strict=True)]
-
-
-def draw_work(runs: list[Run], path: Path) -> None:
-    """Draw the error over the cost."""
-    figure, axes = plt.subplots(figsize=(7, 4.5), layout="constrained")
+def draw(runs: list[Run], path: Path) -> None:
+    """Draw the error over the cost, and the steps chosen around the first opening."""
+    figure, (left, right) = plt.subplots(1, 2, figsize=(12, 4.8), layout="constrained")
     for method, (colour, marker, label) in LOOKS.items():
         chosen = [run for run in runs if run.method == method]
         errors = [1e3 * run.error for run in chosen]
-        axes.loglog([run.master.work for run in chosen], errors, marker=marker, color=colour, label=label)
-    axes.set(xlabel="calls of doStep", ylabel="maximum error of the load current [mA]")
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_formatter("{x:g}")
-    axes.grid(alpha=0.3)
-    axes.legend(fontsize="small")
-    axes.set_title("Error over cost of fixed and adaptive communication steps", fontsize="medium")
-    save(figure, path)
-
-
-def draw_steps(runs: list[Run], stop: float, path: Path) -> None:
-    """Draw the steps chosen around the first opening."""
-    figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(9, 6.5), layout="constrained")
-    chosen = {run.method: run.master for run in runs if run.setting == SHOWN and run.method != "fixed"}
-    times: Array = np.linspace(0.0, 1.5 * PERIOD, 3000)
-    for method, master in chosen.items():
-        start, length, current, _, _ = np.array(master.rows).T
-        colour, marker, label = LOOKS[method]
-        above.plot(1e3 * times, 1e3 * master.currents(times), color=colour, linewidth=1)
-        dots = {
-            "linestyle": "",
-            "marker": marker,
-            "markersize": 4,
-            "color": colour,
-            "label": label.replace(", ", ",\n"),
-        }
-        above.plot(1e3 * start, 1e3 * current, **dots)
-        below.semilogy(1e3 * start, 1e6 * length, marker=marker, markersize=4, color=colour, linewidth=0.6)
-    opening, closing = spans(chosen["adaptive with events"], stop)[0]
-    for axes in (above, below):
-        axes.axvspan(1e3 * opening, 1e3 * closing, color=SKY, alpha=0.25, linewidth=0, label="contact open")
-        axes.set_xlim(1e3 * opening - 0.1, 1e3 * closing + 0.1)
+        left.loglog([run.master.work for run in chosen], errors, marker=marker, color=colour, label=label)
+        shown = next((run.master for run in chosen if run.setting == SHOWN), None)
+        if shown:
+            start, length = np.array(shown.rows).T[:2]
+            right.semilogy(1e3 * start, 1e6 * length, marker=marker, markersize=4, color=colour, linewidth=0.6)
+    left.set(xlabel="calls of doStep", ylabel="maximum error of the load current [mA]")
+    left.legend(fontsize="small")
+    left.set_title("Error over cost of fixed and adaptive communication steps", fontsize="medium")
+    right.set(xlabel="time [ms]", ylabel="communication step [µs]", xlim=(0.6, 1.2))
+    right.set_title(f"Steps around the first opening at a tolerance of {SHOWN:g}", fontsize="medium")
+    for axes in (left, right):
         axes.grid(alpha=0.3)
-    below.yaxis.set_major_formatter("{x:g}")
-    above.set_ylabel("load current [mA]")
-    below.set_ylabel("communication step [µs]")
-    below.set_xlabel("time [ms]")
-    legend_beside(above)
-    figure.suptitle(f"Communication steps around an opening at a tolerance of {SHOWN:g}", fontsize="medium")
-    figure.align_ylabels()
+        axes.yaxis.set_major_formatter("{x:g}")
+    left.xaxis.set_major_formatter("{x:g}")
     save(figure, path)
 
 
@@ -247,7 +213,7 @@ def main() -> int:
         print(f"{run.method:20} {setting:>10} {cost} {1e3 * run.error:11.5f} mA")
     print(f"the accepted steps again without repetition: {'the same bits' if same else 'DIFFERENT RESULTS'}")
     print(f"FMU states not freed: {sum(run.master.states for run in runs)}")
-    paths = [given.out / f"rollback{end}" for end in (".csv", "-steps.csv", ".png", "-steps.png")]
+    paths = [given.out / f"rollback{end}" for end in (".csv", "-steps.csv", ".png")]
     with paths[0].open("w", encoding="utf-8") as file:
         file.write("master,setting,steps.done,steps.repeated,wallTime,error.load.current\n")
         for run in runs[1:]:
@@ -255,8 +221,7 @@ def main() -> int:
             values = f"{run.setting:g},{master.work},{master.rejected},{master.seconds:.6f},{run.error:.12g}"
             file.write(f"{run.method},{values}\n")
     write_table(paths[1], "time,step,load.current,capacitor.voltage,contact.conductance.mean", shown.rows, digits=17)
-    draw_work(runs[1:], paths[2])
-    draw_steps(runs[1:], stop, paths[3])
+    draw(runs[1:], paths[2])
     print(*paths, sep="\n")
     return 0 if same else 1
 

@@ -1,4 +1,4 @@
-"""Couple the relay contact to a partner FMU: connected by hand in FMPy, and as a system (SSP 1.0) in libcosim.
+"""Couple the relay contact to a partner FMU, connected by hand in FMPy.
 
 The partner, TestBench.fmu, which PythonFMU makes of two_fmus_bench.py, is a vibration table with a sine acceleration
 and the circuit of circuit.py, which starts in its steady state. Three connections, updated at every communication
@@ -10,14 +10,7 @@ communication step h: a sine held over h is late by h/2, and so are the openings
 next communication point, on average another h/2 later. The reference: the contact with its own generator (the same sine
 without steps), and the circuit at a finer step.
 
-libcosim
-- cannot set enumerations, so effects.excitation remains None and the table vibrates the contact (the variant of the
-  component that `cargo xtask fmu --plain` makes has numbers instead);
-- counts time in whole nanoseconds and passes differences of times. FMPy gives the same bits at the same times;
-- applies only the first ParameterBinding of each component of an .ssp, and silently ignores all others and those of the
-  system: here each component has one. It recognises the prefixes ssd, ssc, ssv by their letters;
-- terminates its process if a start value is rejected.
-It is installed on 64-bit x86 Linux only; elsewhere FMPy runs the system, and system.ssp is still written.
+Other tools couple the component by files: conformance/SystemStructure.ssd is a system for libcosim and Ecos.
 
 TestBench.fmu runs in the Python of the process that loads it and needs no packages: the FMU contains its part of
 PythonFMU. A tool that is not a Python program must load one: on Linux by LD_PRELOAD=libpython3.11.so.1.0 (the binary in
@@ -39,21 +32,15 @@ from tqdm import tqdm
 
 from common import parser, read_arguments, save, within
 from relay_contact import Array, Component, Contact, write_table
-from relay_contact.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED
+from relay_contact.figures import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED
 from two_fmus_bench import PARAMETERS
-from two_fmus_system import WIRES, Fmus, Starts, write_system
 
-try:
-    from libcosimpy.CosimExecution import CosimExecution
-    from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
-    from libcosimpy.CosimObserver import CosimObserver
-
-    # It warns of every variable that is an enumeration.
-    log_output_level(CosimLogLevel.ERROR)
-    NO_LIBCOSIM = ""
-except (ImportError, OSError) as error:
-    NO_LIBCOSIM = str(error)
-
+# From instance and output to instance and input. The first is the vibration.
+WIRES = [
+    ("bench", "table.acceleration", "contact", "base.acceleration"),
+    ("contact", "contact.conductance", "bench", "contact.conductance"),
+    ("bench", "contact.current", "contact", "contact.current"),
+]
 BENCH, CIRCUIT = (Path(__file__).with_name(f"{name}.py") for name in ("two_fmus_bench", "circuit"))
 FINER = 8  # steps of the reference in a communication step
 
@@ -61,6 +48,8 @@ RECORDED = [("bench", each) for each in ("table.acceleration", "contact.voltage"
 RECORDED += [("contact", f"contact.{each}") for each in ("force", "conductance", "lastOpening", "lastClosing")]
 
 Run = dict[str, Array]  # time and what is recorded, SI units
+Fmus = dict[str, Path]  # the file of each instance
+Starts = dict[str, dict[str, float]]  # start values of each instance
 
 
 def by_fmpy(fmus: Fmus, starts: Starts, time: Array, bar: "tqdm[Any]", generator: bool = False) -> Run:
@@ -80,8 +69,8 @@ def by_fmpy(fmus: Fmus, starts: Starts, time: Array, bar: "tqdm[Any]", generator
             instance.fmu.enterInitializationMode()
 
         def carry() -> None:
-            values = [instances[source].get(output) for source, output, *_ in wires]
-            for (_, _, sink, variable, _), value in zip(wires, values, strict=True):
+            values = [instances[source].get(output) for source, output, _, _ in wires]
+            for (_, _, sink, variable), value in zip(wires, values, strict=True):
                 instances[sink].set(variable, value)
 
         def record() -> None:
@@ -99,33 +88,7 @@ def by_fmpy(fmus: Fmus, starts: Starts, time: Array, bar: "tqdm[Any]", generator
             bar.update()
         for instance in instances.values():
             instance.fmu.terminate()
-    return as_run(time, rows)
-
-
-def as_run(time: Array, rows: list[list[float]]) -> Run:
-    """Name the columns."""
     return {"time": time} | {name: column for (_, name), column in zip(RECORDED, np.array(rows).T, strict=True)}
-
-
-def find(execution: Any, name: str, variable: str) -> tuple[int, int]:  # noqa: ANN401
-    """Give the index of an instance in libcosim and the value reference of its variable."""
-    index = execution.slave_index_from_instance_name(name)
-    variables = execution.slave_variables(index)
-    return index, next(each.reference for each in variables if each.name == variable.encode())
-
-
-def by_libcosim(execution: Any, time: Array, bar: "tqdm[Any]") -> Run:  # noqa: ANN401
-    """Run what libcosim was given. Values can be read after the first step, not before."""
-    observer = CosimObserver.create_last_value()
-    execution.add_observer(observer)
-    recorded = [find(execution, *each) for each in RECORDED]
-    rows = []
-    for _ in time[1:]:
-        if not execution.step():
-            raise RuntimeError("libcosim could not do a step")
-        rows.append([observer.last_real_values(index, [reference])[0] for index, reference in recorded])
-        bar.update()
-    return as_run(time[1:], rows)
 
 
 def instants(run: Run, name: str) -> Array:
@@ -148,10 +111,8 @@ def order(steps: Array, values: Array) -> float:
     return float(np.polyfit(np.log(steps), np.log(values), 1)[0])
 
 
-def draw(run: Run, convergence: Array, shaken: str, path: Path) -> None:
-    """Draw the last openings and the convergence."""
-    figure = plt.figure(figsize=(12, 7), layout="constrained")
-    left, right = figure.subfigures(1, 2, squeeze=False, width_ratios=(1.5, 1))[0]
+def draw(run: Run, shaken: str, path: Path) -> None:
+    """Draw the last openings."""
     time, end = 1e3 * run["time"], run["time"][-1]
     closings = instants(run, "contact.lastClosing")
     gaps = [(opening, min([*closings[closings > opening], end])) for opening in instants(run, "contact.lastOpening")]
@@ -163,7 +124,7 @@ def draw(run: Run, convergence: Array, shaken: str, path: Path) -> None:
         (run["contact.current"], "contact\ncurrent\n[A]", PURPLE),
     ]
     begin = gaps[-3][0] - 3e-4 if len(gaps) > 2 else 0.0
-    rows = left.subplots(len(shown), 1, sharex=True)
+    figure, rows = plt.subplots(len(shown), 1, sharex=True, figsize=(8, 7), layout="constrained")
     for axes, (values, label, colour) in zip(rows, shown, strict=True):
         axes.plot(time, values, color=colour, linewidth=1.2)
         for opening, closing in gaps:
@@ -175,47 +136,21 @@ def draw(run: Run, convergence: Array, shaken: str, path: Path) -> None:
     rows[1].set_yticks([0.0, 0.5, 1.0, 10.0], ["0", "0.5", "1", "10"])
     rows[2].set_yscale("log")
     rows[-1].set_xlabel("time [ms]")
-    left.align_ylabels()
-    left.suptitle(f"Relay contact in a circuit with a quench, {shaken} (shaded: open)", fontsize="medium")
-
-    steps = 1e6 * convergence[:, 0]
-    late = ("mean delay of the openings [µs]", 1e6 * convergence[:, 1], BLUE)
-    difference = ("mean error of the contact voltage [mV]", 1e3 * convergence[:, 2], GREEN)
-    for axes, (label, values, colour) in zip(right.subplots(2, 1), (late, difference), strict=True):
-        axes.set(xlabel="communication step [µs]", ylabel=label)
-        axes.grid(alpha=0.3)
-        if not np.all(values > 0):
-            axes.text(0.5, 0.5, "nothing to compare", ha="center", transform=axes.transAxes)
-            continue
-        axes.plot(steps, values, color=colour, marker="o", label=f"computed, order {order(steps, values):.2f}")
-        first_order = steps * np.exp(np.mean(np.log(values / steps)))
-        axes.plot(steps, first_order, color=GREY, linestyle=":", label="order 1")
-        axes.set_xscale("log", base=2)
-        axes.set_yscale("log", base=2)
-        axes.xaxis.set_major_formatter("{x:g}")
-        axes.yaxis.set_major_formatter("{x:g}")
-        axes.legend(frameon=False)
-    right.suptitle("Error of the coupling", fontsize="medium")
+    figure.align_ylabels()
+    figure.suptitle(f"Relay contact in a circuit with a quench, {shaken} (shaded: open)", fontsize="medium")
     save(figure, path)
 
 
-def summary(runs: dict[str, Run], convergence: Array) -> str:
+def summary(run: Run, convergence: Array) -> str:
     """Describe the results."""
-    run = runs["FMPy"]
     opened = len(instants(run, "contact.lastOpening"))
     voltage, current = (np.max(np.abs(run[f"contact.{each}"])) for each in ("voltage", "current"))
     lines = [
         f"{opened} openings, {100 * np.mean(run['contact.force'] <= 0):.1f} % of the time open",
         f"at most {voltage:.3f} V and {current:.4f} A; the contact is valid below 12 V and 0.4 A"
         + ("" if voltage < 12 and current < 0.4 else ": above, it would burn an arc"),
-        "largest difference from FMPy at the times of libcosim",
+        "  step [µs]  openings late [µs]  mean voltage difference [mV]",
     ]
-    for name, other in list(runs.items())[1:]:
-        first = len(run["time"]) - len(other["time"])
-        names = ("contact.force", "contact.voltage")
-        force, voltage = (np.max(np.abs(other[each] - run[each][first:])) for each in names)
-        lines.append(f"  {name:14} {force:8.1e} N  {voltage:8.1e} V")
-    lines.append("  step [µs]  openings late [µs]  mean voltage difference [mV]")
     lines += [f"{1e6 * step:11.3f}{1e6 * late:20.4f}{1e3 * difference:30.3f}" for step, late, difference in convergence]
     steps, late, difference = convergence.T
     lines.append(f"{'order':>11}{order(steps, late):20.2f}{order(steps, difference):30.2f}")
@@ -246,36 +181,20 @@ def main() -> int:
     bench = {name: start for name, _, start, _ in PARAMETERS}
     bench |= {"supply.voltage": given.voltage, "table.amplitude": given.amplitude, "table.frequency": given.frequency}
     starts: Starts = {"contact": {"solver.tolerance": 1e-7}, "bench": bench}
-    system = given.out / "system.ssp"
-    write_system(system, fmus, starts)
-
-    steps = count * ((1 if NO_LIBCOSIM else 2) + FINER) + sum(count // 2**each for each in range(1, halvings + 1))
-    # Whole nanoseconds in s, rounded once, as libcosim has them.
+    steps = count * (1 + FINER) + sum(count // 2**each for each in range(1, halvings + 1))
     time = np.arange(count + 1) * nanoseconds / 1e9
     with tqdm(total=steps, unit="step", desc="communication steps") as bar:
-        runs = {"FMPy": by_fmpy(fmus, starts, time, bar)}
-        if not NO_LIBCOSIM:
-            runs["libcosim"] = by_libcosim(CosimExecution.from_ssp_file(str(system), nanoseconds), time, bar)
+        run = by_fmpy(fmus, starts, time, bar)
         coarser = [by_fmpy(fmus, starts, time[:: 2**halving], bar) for halving in range(1, halvings + 1)]
         fine = np.arange(FINER * count + 1) * (nanoseconds / FINER) / 1e9
         reference = by_fmpy(fmus, starts, fine, bar, generator=True)
-    convergence = np.array([(run["time"][1], *errors(run, reference)) for run in [runs["FMPy"], *coarser]])
-
-    if NO_LIBCOSIM:
-        print(f"libcosim is not here ({NO_LIBCOSIM}): only FMPy ran the coupling, and system.ssp was not run")
-    print(summary(runs, convergence))
-    for name, run in runs.items():
-        write_table(given.out / f"two-fmus-{name}.csv", ",".join(run), np.column_stack(list(run.values())), digits=17)
-    write_table(given.out / "two-fmus-convergence.csv", "step,openings.late,voltage.meanDifference", convergence)
-    shaken = f"shaken with {given.amplitude:g} m/s² at {given.frequency:g} Hz"
-    draw(runs["FMPy"], convergence, shaken, given.out / "two-fmus.png")
-    for name in (
-        "TestBench.fmu",
-        "system.ssp",
-        *(f"two-fmus-{run}.csv" for run in [*runs, "convergence"]),
-        "two-fmus.png",
-    ):
-        print(given.out / name)
+    convergence = np.array([(each["time"][1], *errors(each, reference)) for each in [run, *coarser]])
+    print(summary(run, convergence))
+    paths = [given.out / name for name in ("two-fmus.csv", "two-fmus-convergence.csv", "two-fmus.png")]
+    write_table(paths[0], ",".join(run), np.column_stack(list(run.values())), digits=17)
+    write_table(paths[1], "step,openings.late,voltage.meanDifference", convergence)
+    draw(run, f"shaken with {given.amplitude:g} m/s² at {given.frequency:g} Hz", paths[2])
+    print(fmus["bench"], *paths, sep="\n")
     return 0
 
 

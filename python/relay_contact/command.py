@@ -7,9 +7,11 @@ import warnings
 from datetime import date
 from pathlib import Path
 
+import numpy as np
+
 from relay_contact.component import Component, Value, units
 from relay_contact.files import RelayContactError, fmu_path, read_toml, scenes
-from relay_contact.scene import Scene, run
+from relay_contact.scene import Scene, run, write_table
 
 EXAMPLES = """examples:
   relay-contact list                                   what comes along
@@ -17,10 +19,13 @@ EXAMPLES = """examples:
   relay-contact list --variables excitation            variables by name, with unit and start value
   relay-contact run paper-1khz                         writes paper-1khz.csv and paper-1khz.png
   relay-contact run chatter-41g --set excitation.frequency=500 --output contact.voltage
+  relay-contact ssv paper-1khz --plain                 what the scene changes, for tools that read SSP 1.0
   relay-contact qualify paper --standard MIL-PRF-28776  verdicts and margins, qualification.html
   relay-contact identify paper --data force.csv ring.csv  damping, rivet, overtravel from measurements
 """
 
+TOLD = ["contact.lastOpening", "contact.lastClosing", "chatter.count", "chatter.longestInterruption", "solver.steps"]
+"""Outputs whose last value is printed."""
 IDENTIFY = """Find overtravel, stiffness, rivet mass and damping of a relay by measurements of a sample, with intervals;
 write the relay's file with them, and a page. The columns of a file tell what was measured (their units in brackets):
 
@@ -88,19 +93,33 @@ def run_scene(given: argparse.Namespace) -> None:
         words.append(f"{name}={value.strip()}")
     scene = Scene.read(given.scene, component).changed(component, changes)
     titled = ", ".join([scene.title, *words])
-    result = run(
-        scene,
-        outputs=scene.outputs + [name for name in given.output if name not in scene.outputs],
-        stop=given.stop, step=given.step, component=component, progress=True,
-    )  # fmt: skip
+    names = list(dict.fromkeys([*scene.outputs, *(component.name(name) for name in given.output)]))
+    told = list(dict.fromkeys([*names, *TOLD]))
+    result = run(scene, outputs=told, stop=given.stop, step=given.step, component=component, progress=True)
     print(titled)
     width = max(map(len, result.columns))
-    for name, values in list(result.columns.items())[1:]:
+    for name in names:
+        values = result[name]
         print(f"  {name:{width}}  {values.min():.6g} to {values.max():.6g} {result.units[name]}".rstrip())
+    for name in TOLD:
+        print(f"  {name:{width}}  {result[name][-1]:.9g} {result.units[name]}".rstrip() + " at the end")
     given.out.mkdir(parents=True, exist_ok=True)
     table = given.out / f"{','.join([Path(given.scene).stem, *words])}.csv"
-    result.write(table)
+    columns = ["time", *names]
+    write_table(table, ",".join(columns), np.column_stack([result[name] for name in columns]))
     print(table, draw(table, titled, sweep_of(scene.values)), sep="\n")
+
+
+def write_parameters(given: argparse.Namespace) -> None:
+    """Write what scenes change as parameter sets of SSP 1.0."""
+    from relay_contact.ssp import parameter_set
+
+    component = Component(given.fmu)
+    given.out.mkdir(parents=True, exist_ok=True)
+    for name in given.scene or scenes():
+        path = given.out / f"{Path(name).stem}{'-plain' * given.plain}.ssv"
+        path.write_bytes(parameter_set(Path(name).stem, Scene.read(name, component), component, given.plain))
+        print(path)
 
 
 def qualify_relay(given: argparse.Namespace) -> None:
@@ -222,6 +241,14 @@ def line() -> argparse.ArgumentParser:
     add("--date", nargs="?", const=date.today().isoformat(), default="", metavar="DATE", help=text)
     text = "folder for what is written (qualification-RELAY-STANDARD); finished tests found there are not run again"
     add("--out", type=Path, metavar="FOLDER", help=text)
+
+    about = "Write what scenes change as parameter sets of SSP 1.0, NAME.ssv."
+    one = commands.add_parser("ssv", parents=[common], description=about, help="write scenes as SSP parameter sets")
+    one.set_defaults(act=write_parameters)
+    add = one.add_argument
+    add("scene", nargs="*", help="names or files of scenes; all that come along, if there are none")
+    add("--plain", action="store_true", help="for the component in which all numbers are Reals: NAME-plain.ssv")
+    add("--out", type=Path, default=Path(), metavar="FOLDER", help="folder for what is written (the current one)")
 
     one = commands.add_parser(
         "identify", parents=[common], description=IDENTIFY, formatter_class=argparse.RawDescriptionHelpFormatter,

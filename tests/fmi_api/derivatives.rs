@@ -52,18 +52,6 @@ fn the_force_follows_an_acceleration_that_grows() {
 }
 
 #[test]
-fn a_derivative_that_is_no_number_is_discarded_with_all_of_its_call() {
-    for wrong in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        let fmu = Instance::initialized();
-        let names = ["support.displacement", "base.acceleration"];
-        assert_eq!(set(&fmu, &names, &[1, 1], &[1e-3, wrong]), fmi2Discard);
-        let before = fmu.real("contact.force");
-        assert_eq!(fmu.step(0.0, 1e-4), fmi2OK);
-        assert_eq!(fmu.real("contact.force"), before);
-    }
-}
-
-#[test]
 fn higher_derivatives_of_inputs_have_no_effect_and_are_told_of_once() {
     let fmu = Instance::initialized();
     let names = ["support.displacement", "support.displacement", "base.acceleration"];
@@ -77,23 +65,4 @@ fn higher_derivatives_of_inputs_have_no_effect_and_are_told_of_once() {
         fmi2Warning,
         &["fmi2SetRealInputDerivatives: support.displacement", "order 2"],
     );
-}
-
-#[test]
-fn discrete_outputs_have_no_slope() {
-    let fmu = Instance::new();
-    assert_eq!(fmu.set_integer("effects.excitation", 2), fmi2OK);
-    assert_eq!(fmu.set_real("excitation.amplitude", 400.0), fmi2OK);
-    fmu.initialize();
-    assert_eq!(fmu.step(0.0, 2e-3), fmi2OK);
-    for name in [
-        "step.minimumForce",
-        "contact.lastOpening",
-        "chatter.totalInterruption",
-        "preload.force",
-    ] {
-        assert!(fmu.real(name) >= 0.0);
-        assert_eq!(get(&fmu, name, 1), (fmi2OK, 0.0), "{name}");
-    }
-    assert!(get(&fmu, "contact.force", 1).1 != 0.0 || fmu.real("contact.force") == 0.0);
 }

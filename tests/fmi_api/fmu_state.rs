@@ -80,32 +80,6 @@ fn what_is_restored_goes_on_bit_by_bit() {
     }
 }
 
-#[test]
-fn a_state_saved_again_keeps_its_address_and_may_be_used_and_freed_through_another_instance() {
-    let (fmu, other) = (shaken(), Instance::new());
-    let state = save(&fmu);
-    trace(&fmu, 0, 20, 3e-5);
-    let force = fmu.real("contact.force").to_bits();
-    let mut again = state;
-    assert_eq!(unsafe { fmi2GetFMUstate(fmu.component, &raw mut again) }, fmi2OK);
-    assert_eq!(again, state);
-    assert_eq!(restore(&other, state), fmi2OK);
-    assert_eq!(other.real("contact.force").to_bits(), force);
-    free(&other, state);
-    assert_eq!(restore(&fmu, state), fmi2Error);
-}
-
-#[test]
-fn an_instance_is_no_state() {
-    let (fmu, other) = (Instance::initialized(), Instance::initialized());
-    let mut instance = fmu.component;
-    assert_eq!(
-        unsafe { fmi2FreeFMUstate(other.component, &raw mut instance) },
-        fmi2Error
-    );
-    assert_eq!(fmu.step(0.0, 1e-5), fmi2OK);
-}
-
 /// The state as bytes.
 pub fn to_bytes(fmu: &Instance, state: fmi2FMUstate) -> Vec<fmi2Byte> {
     let mut size = 0;
@@ -122,25 +96,6 @@ pub fn to_bytes(fmu: &Instance, state: fmi2FMUstate) -> Vec<fmi2Byte> {
 
 pub fn from_bytes(fmu: &Instance, bytes: &[fmi2Byte], state: &mut fmi2FMUstate) -> fmi2Status {
     unsafe { fmi2DeSerializeFMUstate(fmu.component, bytes.as_ptr(), bytes.len(), &raw mut *state) }
-}
-
-#[test]
-fn a_state_goes_through_bytes_bit_by_bit() {
-    for steps in [0, 1, 700, 1200] {
-        let fmu = shaken();
-        trace(&fmu, 0, steps, 1e-6);
-        let state = save(&fmu);
-        let bytes = to_bytes(&fmu, state);
-        let first = trace(&fmu, steps, 600, 1e-6);
-        let other = Instance::new();
-        let mut made = ptr::null_mut();
-        assert_eq!(from_bytes(&other, &bytes, &mut made), fmi2OK);
-        assert_eq!(to_bytes(&other, made), bytes);
-        assert_eq!(restore(&other, made), fmi2OK);
-        assert_eq!(trace(&other, steps, 600, 1e-6), first, "after {steps} steps");
-        free(&fmu, state);
-        free(&other, made);
-    }
 }
 
 /// A scene in which the contact opens or starts open, and its communication step, s.

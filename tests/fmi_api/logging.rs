@@ -13,61 +13,12 @@ fn choose(fmu: &Instance, on: fmi2Boolean, categories: &[&CStr]) -> fmi2Status {
     unsafe { fmi2SetDebugLogging(fmu.component, on, pointers.len(), pointers.as_ptr()) }
 }
 
-/// Number of messages that a discarded value and then an error send.
-fn heard(fmu: &Instance) -> [usize; 2] {
-    assert_eq!(fmu.set_real("beam.length", -1.0), fmi2Discard);
-    assert_eq!(fmu.set_real("contact.force", 1.0), fmi2Error);
-    assert_eq!(fmu.reset(), fmi2OK);
-    let messages = fmu.messages();
-    ["logStatusWarning", "logStatusError"].map(|category| {
-        let told = messages.iter().filter(|message| message.category == category);
-        told.count()
-    })
-}
-
 #[test]
 fn the_categories_are_those_of_the_description() {
     for category in Category::ALL.map(Category::name) {
         assert!(MODEL_DESCRIPTION.contains(&format!("<Category name=\"{}\"", category.to_str().unwrap())));
     }
     assert_eq!(MODEL_DESCRIPTION.matches("<Category ").count(), Category::ALL.len());
-}
-
-#[test]
-fn errors_and_warnings_are_logged_unless_their_category_is_switched_off() {
-    let [error, warning, ..] = Category::ALL.map(Category::name);
-    let cases: [(fmi2Boolean, &[&CStr], [usize; 2]); 7] = [
-        (fmi2True, &[], [1, 1]),
-        (fmi2False, &[], [1, 1]),
-        (fmi2True, &[error], [0, 1]),
-        (fmi2True, &[warning], [1, 0]),
-        (fmi2False, &[warning], [0, 1]),
-        (fmi2False, &[error, warning], [0, 0]),
-        (fmi2True, &[error, warning], [1, 1]),
-    ];
-    assert_eq!(heard(&Instance::new()), [1, 1]);
-    for (on, categories, expected) in cases {
-        let fmu = Instance::new();
-        assert_eq!(choose(&fmu, on, categories), fmi2OK);
-        assert_eq!(heard(&fmu), expected, "{on} {categories:?}");
-    }
-}
-
-#[test]
-fn a_reset_shows_again_what_was_shown_after_instantiation() {
-    let fmu = Instance::new();
-    assert_eq!(
-        choose(&fmu, fmi2False, &[c"logStatusError", c"logStatusWarning"]),
-        fmi2OK
-    );
-    assert_eq!(heard(&fmu), [0, 0]);
-    // `heard` ends with a reset.
-    assert_eq!(heard(&fmu), [1, 1]);
-    assert_eq!(choose(&fmu, fmi2True, &[c"logSolver"]), fmi2OK);
-    assert_eq!(fmu.reset(), fmi2OK);
-    fmu.initialize();
-    assert_eq!(fmu.step(0.0, 1e-4), fmi2OK);
-    assert!(fmu.messages().is_empty());
 }
 
 #[test]
@@ -84,17 +35,6 @@ fn an_unknown_category_is_a_warning_that_changes_nothing() {
             "logStatusError, logStatusWarning, logEvents and logSolver",
         ],
     );
-    assert_eq!(heard(&fmu), [1, 1]);
-}
-
-#[test]
-fn messages_carry_the_name_of_the_instance_and_the_function() {
-    let fmu = Instance::new();
-    assert_eq!(fmu.step(0.0, 1.0), fmi2Error);
-    let messages = fmu.messages();
-    assert_eq!(messages[0].instance, "relay 1");
-    assert_eq!(messages[0].status, fmi2Error);
-    assert!(messages[0].text.starts_with("fmi2DoStep: "), "{messages:?}");
 }
 
 /// Arguments of `fmi2SetDebugLogging`.

@@ -3,7 +3,6 @@
 use std::ptr;
 
 use relay_contact::fmi2::*;
-use relay_contact::variables::{Group, VARIABLES};
 use testing::instance::{Instance, vr};
 
 #[test]
@@ -96,7 +95,7 @@ fn a_value_out_of_range_is_named_with_its_unit_and_the_range() {
 }
 
 #[test]
-fn a_variable_that_the_call_cannot_have_is_named_with_the_reason() {
+fn a_variable_of_another_type_or_state_is_named_with_the_reason() {
     let fmu = Instance::new();
     let unknown = unsafe { fmi2SetReal(fmu.component, [u32::MAX].as_ptr(), 1, [1.0].as_ptr()) };
     fmu.answers(unknown, fmi2Error, &["fmi2SetReal", "4294967295"]);
@@ -124,46 +123,6 @@ fn a_variable_that_the_call_cannot_have_is_named_with_the_reason() {
         let parts = [name, "step complete", "fixed parameter"];
         fmu.answers(set(&fmu, name), fmi2Error, &parts);
     }
-}
-
-#[test]
-fn a_derivative_that_there_is_not_is_named_with_its_order() {
-    let set = |fmu: &Instance, name, order, value| unsafe {
-        let (vr, order, value) = ([vr(name)], [order], [value]);
-        fmi2SetRealInputDerivatives(fmu.component, vr.as_ptr(), 1, order.as_ptr(), value.as_ptr())
-    };
-    let get = |fmu: &Instance, name, order| unsafe {
-        let (vr, order, mut value) = ([vr(name)], [order], [0.0]);
-        fmi2GetRealOutputDerivatives(fmu.component, vr.as_ptr(), 1, order.as_ptr(), value.as_mut_ptr())
-    };
-    for order in [i32::MIN, -1, 0, 2, i32::MAX] {
-        if order <= 0 {
-            let fmu = Instance::initialized();
-            let parts = ["base.acceleration", &order.to_string(), "allowed is 1"];
-            fmu.answers(set(&fmu, "base.acceleration", order, 1.0), fmi2Error, &parts);
-        }
-        let fmu = Instance::initialized();
-        let parts = ["contact.force", &order.to_string(), "allowed is 1"];
-        fmu.answers(get(&fmu, "contact.force", order), fmi2Error, &parts);
-    }
-    for variable in VARIABLES {
-        let fmu = Instance::initialized();
-        if !matches!(variable.group, Group::RealInput(_)) {
-            let parts = ["fmi2SetRealInputDerivatives", variable.name];
-            fmu.answers(set(&fmu, variable.name, 1, 1.0), fmi2Error, &parts);
-            assert_eq!(fmu.reset(), fmi2OK);
-        }
-        let fmu = Instance::initialized();
-        if matches!(variable.group, Group::RealOutput(_)) {
-            assert_eq!(get(&fmu, variable.name, 1), fmi2OK, "{}", variable.name);
-        } else {
-            let parts = ["fmi2GetRealOutputDerivatives", variable.name];
-            fmu.answers(get(&fmu, variable.name, 1), fmi2Error, &parts);
-        }
-    }
-    let fmu = Instance::initialized();
-    let parts = ["base.acceleration", "finite"];
-    fmu.answers(set(&fmu, "base.acceleration", 1, f64::NAN), fmi2Discard, &parts);
 }
 
 #[test]
@@ -209,7 +168,7 @@ fn a_number_of_the_experiment_or_of_a_step_is_named() {
 }
 
 #[test]
-fn what_there_is_not_is_named() {
+fn an_unsupported_status_derivative_or_foreign_state_is_named() {
     let fmu = Instance::initialized();
     let mut time = 0.0;
     for kind in [fmi2DoStepStatus, fmi2Terminated, 99] {

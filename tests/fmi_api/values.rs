@@ -4,16 +4,6 @@ use relay_contact::fmi2::*;
 use testing::instance::Instance;
 
 #[test]
-fn instances_do_not_share_anything() {
-    let (one, two) = (Instance::initialized(), Instance::new());
-    assert_eq!(two.set_real("beam.length", 0.02), fmi2OK);
-    assert_ne!(one.real("beam.length"), 0.02);
-    assert_eq!(one.step(0.0, -1.0), fmi2Error);
-    assert_eq!(two.set_real("beam.length", 0.03), fmi2OK);
-    assert!(two.messages().is_empty());
-}
-
-#[test]
 fn outputs_in_initialization_mode_follow_what_is_set() {
     let fmu = Instance::initializing();
     let before = fmu.real("preload.force");

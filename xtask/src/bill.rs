@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use crate::commands::{command, output, read};
 use anyhow::{Context, Result};
 use cargo_metadata::Package;
-use commands::{command, output, read};
 use serde::Deserialize;
 use serde_json::{Value, json};
 

@@ -9,8 +9,8 @@ pub fn run() -> Result<()> {
     // Python first, so that missing programs are reported before the build.
     python::prepare()?;
     let path = fmu::build()?;
-    commands::run(
-        commands::python()
+    crate::commands::run(
+        crate::commands::python()
             .arg("examples/python/paper_1khz.py")
             .arg("--fmu")
             .arg(path),

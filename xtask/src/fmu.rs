@@ -4,14 +4,19 @@ use std::collections::BTreeSet;
 use std::env;
 use std::path::{Path, PathBuf};
 
+use crate::commands::{cargo, command, output, read, root, run, write};
 use anyhow::{Result, bail};
 use cargo_metadata::Metadata;
-use commands::{cargo, command, output, read, run, write};
 use relay_contact::C_HEADER;
 
 use crate::package::{Files, pack};
 use crate::variant::Variant;
 use crate::{bill, documentation, licences, linked};
+
+/// Where the component is.
+pub fn path() -> PathBuf {
+    root().join("dist/RelayContact.fmu")
+}
 
 /// Writes the component as `dist/RelayContact.fmu` and returns its path.
 pub fn build() -> Result<PathBuf> {

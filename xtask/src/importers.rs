@@ -1,20 +1,20 @@
 //! The component in other importers.
 //!
-//! [`prepare`] writes reference runs and a system of two contacts to `out/conformance`, and the scenes' parameter sets to
-//! `out/ssv`; the tests under `conformance/` compare with them and each write a row of the table of results there.
+//! [`prepare`] writes reference runs and a system of two contacts to `out/conformance`; the tests under `conformance/` compare
+//! with them and each write a row of the table of results there.
 
 use std::ffi::OsString;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
+use crate::commands::{cargo, command, output, read, root, run as run_command, write};
 use anyhow::{Context, Result};
-use commands::{cargo, command, output, read, root, run as run_command, write};
 
 use crate::package::{Files, pack};
 use crate::stage::stage;
 use crate::variant::Variant;
-use crate::{fmu, python, report};
+use crate::{fmu, python, reference, report};
 
 const FOLDER: &str = "out/conformance";
 
@@ -48,14 +48,9 @@ pub fn stages(component: &Path) -> Result<()> {
 }
 
 /// The rows shown in the full report: importers called from Python.
-pub fn for_report(arguments: &report::Arguments) -> Result<()> {
-    if arguments.has(&["--quick", "--docs", "--help", "-h"]) {
-        return Ok(());
-    }
-    let component = fmu::build()?;
-    python::prepare()?;
-    prepare(&component)?;
-    python::test(&WITH_ROWS, &component)
+pub fn for_report(component: &Path) -> Result<()> {
+    prepare(component)?;
+    python::test(&WITH_ROWS, component)
 }
 
 /// Writes the reference runs, the system of two contacts and variants of the component; clears the table.
@@ -69,7 +64,7 @@ fn prepare(component: &Path) -> Result<()> {
         false,
         Some(&root().join("scenes/springs/tapered-cube.toml")),
     )?)?;
-    report::start("reference-runs", &[""; 0])?;
+    reference::write(FOLDER)?;
     let description = "SystemStructure.ssd";
     let system = Files::from([
         (description.to_owned(), read(format!("conformance/{description}"))?),

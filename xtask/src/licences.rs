@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::Path;
 
+use crate::commands::{read, sysroot};
 use anyhow::{Context, Result, bail};
-use commands::{read, sysroot};
 
 use crate::linked::{COMPONENT, Crates};
 use crate::package::Files;

@@ -2,9 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::commands::{cargo, output, root};
 use anyhow::{Context, Result};
 use cargo_metadata::{Metadata, MetadataCommand, Package};
-use commands::{cargo, output, root};
 
 /// What cargo knows about the project.
 pub fn metadata() -> Result<Metadata> {

@@ -1,6 +1,7 @@
 //! The project's tasks: `cargo xtask --help`.
 
 mod bill;
+mod commands;
 mod demo;
 mod documentation;
 mod fmu;
@@ -9,6 +10,7 @@ mod licences;
 mod linked;
 mod package;
 mod python;
+mod reference;
 mod release;
 mod report;
 mod stage;
@@ -46,22 +48,16 @@ enum Task {
         #[arg(long, value_name = "FILE")]
         spring: Option<PathBuf>,
     },
-    /// Run a scene, write its outputs to out/scenes/NAME.csv and .png, and print a summary
-    #[command(disable_help_flag = true)]
-    Scene(report::Arguments),
     /// Build the component and the Python package that carries it, dist/relay_contact-VERSION-py3-none-any.whl
     Wheel,
-    /// Write each scene as a parameter set for SSP tools, out/ssv/NAME.ssv
-    Ssv,
     /// Build the component, run the published 1 kHz case under FMPy, compare and plot
     Demo,
-    /// Measure time over accuracy, compared with other integrators; rewrite docs/accuracy.csv and the tables of accuracy.md
+    /// Measure time over accuracy, compared with other integrators; rewrite tables and figures of docs/accuracy.md
     #[command(disable_help_flag = true)]
     Accuracy(report::Arguments),
     /// Measure the cost and influence of each effect; rewrite docs/effects.md
-    #[command(disable_help_flag = true)]
-    Effects(report::Arguments),
-    /// Run everything shown in the report and write out/report/index.html
+    Effects,
+    /// Run everything shown in the report; write out/report/index.html, docs/validation.md and pictures of docs/report
     #[command(disable_help_flag = true)]
     Report(report::Arguments),
     /// Test the component in other importers and print the table of results
@@ -76,25 +72,20 @@ enum Task {
     Test(test::Arguments),
 }
 
-/// No arguments.
-const NONE: [&str; 0] = [];
-
 fn main() -> ExitCode {
     let outcome = match Arguments::parse().task {
         Task::Fmu { plain, spring } => {
             let built = Variant::new(plain, spring.as_deref()).and_then(|variant| fmu::build_variant(&variant));
             built.map(|path| println!("{}", path.display()))
         }
-        Task::Scene(arguments) => report::run("scene", &arguments),
         Task::Wheel => wheel::run(),
-        Task::Ssv => report::start("ssv", &NONE),
         Task::Demo => demo::run(),
-        Task::Accuracy(arguments) => report::run("accuracy", &arguments),
-        Task::Effects(arguments) => report::run("effects", &arguments),
-        Task::Report(arguments) => importers::for_report(&arguments).and_then(|()| report::run("report", &arguments)),
+        Task::Accuracy(arguments) => report::accuracy(&arguments),
+        Task::Effects => report::effects(),
+        Task::Report(arguments) => report::run(&arguments),
         Task::Importers => importers::run(),
         Task::Valgrind => valgrind::run(),
-        Task::Instructions => report::start("instructions", &NONE),
+        Task::Instructions => python::prepare().and_then(|()| report::start("instructions", &[""; 0])),
         Task::Release(arguments) => release::run(&arguments),
         Task::Test(arguments) => test::run(arguments),
     };

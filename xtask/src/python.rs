@@ -5,8 +5,8 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use crate::commands::{command, output, python, root, run, write};
 use anyhow::{Context, Result, bail};
-use commands::{command, output, python, root, run, write};
 
 /// Oldest Python for which the pinned packages exist.
 const OLDEST: (u32, u32) = (3, 11);

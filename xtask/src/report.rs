@@ -1,13 +1,13 @@
-//! Starts the program `report`: the report, the cost of effects and of accuracy, and scenes. A separate program, so
-//! that its dependencies are compiled only when needed.
+//! The report and the pages of `docs/` that are computed: written by the Python package `report`, from tables that Rust
+//! programs write.
 
 use std::ffi::{OsStr, OsString};
-use std::process::Command;
+use std::path::Path;
 
 use anyhow::Result;
-use commands::{cargo, command};
 
-use crate::python;
+use crate::commands::{cargo, command, output, python as python_command, run as run_command};
+use crate::{fmu, importers, python};
 
 /// The message where Chromium is missing.
 pub const CHROMIUM_MISSING: &str = "Chromium is missing (on Debian: apt-get install chromium)";
@@ -15,7 +15,7 @@ pub const CHROMIUM_MISSING: &str = "Chromium is missing (on Debian: apt-get inst
 /// Names of Chromium.
 const CHROMIUM: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
 
-/// Arguments passed on to the program.
+/// Arguments passed on.
 #[derive(clap::Args)]
 pub struct Arguments {
     #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
@@ -24,41 +24,61 @@ pub struct Arguments {
 
 impl Arguments {
     /// Whether one of these is among them.
-    pub fn has(&self, names: &[&str]) -> bool {
-        self.arguments
-            .iter()
-            .any(|known| names.iter().any(|name| known == name))
+    fn has(&self, names: &[&str]) -> bool {
+        let known = |argument: &OsString| names.iter().any(|name| argument == name);
+        self.arguments.iter().any(known)
     }
 }
 
-/// Prepares Python and runs a task of the program.
-pub fn run(task: &str, arguments: &Arguments) -> Result<()> {
+/// Everything that the report shows, and the report; with `--quick` importers do not run anew.
+pub fn run(arguments: &Arguments) -> Result<()> {
+    python::prepare()?;
     if !arguments.has(&["--help", "-h"]) {
-        python::prepare()?;
+        let component = fmu::build()?;
+        if !arguments.has(&["--quick"]) {
+            importers::for_report(&component)?;
+        }
+        // Leaves what was measured for the report; fails where a property is not kept.
+        run_command(cargo().args(["test", "--quiet", "--package=hard-cases", "--test=cases"]))?;
     }
-    start(task, &arguments.arguments)
+    start("report", &arguments.arguments)
 }
 
-/// The report in its quick form, in a browser.
-pub fn test() -> Result<()> {
+/// What each effect costs and changes, for `docs/effects.md`.
+pub fn effects() -> Result<()> {
+    python::prepare()?;
+    fmu::build()?;
+    start("effects", &[""; 0])
+}
+
+/// Measures time over accuracy, and draws the figures of `docs/accuracy.md`.
+pub fn accuracy(arguments: &Arguments) -> Result<()> {
+    let mut run = cargo();
+    run.args(["run", "--release", "--package=benches", "--bin=accuracy"])
+        // Its own, as the library is built here with other features.
+        .args(["--target-dir=target/benches", "--"]);
+    run_command(run.args(&arguments.arguments))?;
+    if arguments.has(&["--quick", "--help", "-h"]) {
+        return Ok(());
+    }
+    python::prepare()?;
+    start("accuracy", &[""; 0])
+}
+
+/// The report in its quick form, of what the tests have left, and its own tests in a browser.
+pub fn test(component: &Path) -> Result<()> {
     start("report", &["--quick"])?;
-    commands::run(commands::python().args(["-m", "pytest", "--quiet", "report/browser"]))
+    python::test(&["report"], component)
 }
 
-/// Runs a task of the program with its arguments.
+/// Runs a task of the package `report` with its arguments.
 pub fn start(task: &str, arguments: &[impl AsRef<OsStr>]) -> Result<()> {
-    commands::run(program().arg(task).args(arguments))
-}
-
-fn program() -> Command {
-    let mut program = cargo();
-    // Not `--package`, for the reason in `.cargo/config.toml`.
-    program.args(["run", "--quiet", "--bin=report", "--"]);
-    program
+    let mut report = python_command();
+    run_command(report.args(["-m", "report", task]).args(arguments))
 }
 
 /// The command name of Chromium, if installed.
 pub fn chromium() -> Option<&'static str> {
-    let there = |name: &&str| commands::output(command(name).arg("--version")).is_ok();
+    let there = |name: &&str| output(command(name).arg("--version")).is_ok();
     CHROMIUM.into_iter().find(there)
 }

@@ -3,8 +3,8 @@
 use std::process::Command;
 use std::{env, thread};
 
+use crate::commands::{cargo, output, run as run_command};
 use anyhow::{Result, anyhow, bail};
-use commands::{cargo, output, run as run_command};
 
 use crate::stage::stage;
 use crate::{fmu, importers, python, report, valgrind, wheel};
@@ -16,7 +16,7 @@ const PYTHON: [&str; 6] = [
     "tests/python",
     "conformance/python",
     "docs/model.py",
-    "report/browser",
+    "report",
 ];
 
 /// Arguments of cargo's lint after the packages.
@@ -46,6 +46,11 @@ pub fn run(arguments: Arguments) -> Result<()> {
         // A program of its own, so that its output stays together.
         both(library, || {
             output(Command::new(env::current_exe()?).args(["test", "--component"]))
+        })?;
+        // Of what both have left.
+        let chromium = report::chromium().is_some();
+        if_installed("report", chromium, report::CHROMIUM_MISSING, || {
+            report::test(&fmu::path())
         })
     })
 }
@@ -81,9 +86,7 @@ fn library() -> Result<()> {
     python::prepare()?;
     stage("conformance lint", || {
         run_command(importers::conformance("clippy")?.arg("--features=types").args(LINT))
-    })?;
-    let chromium = report::chromium().is_some();
-    if_installed("report", chromium, report::CHROMIUM_MISSING, report::test)
+    })
 }
 
 /// A stage with a program that a machine may lack.
@@ -99,7 +102,7 @@ fn if_installed(name: &str, installed: bool, missing: &str, run: impl FnOnce() -
 fn component() -> Result<()> {
     stage("Python environment", python::prepare)?;
     let component = stage("component", fmu::build)?;
-    let tool = |arguments: &[&str]| run_command(commands::python().arg("-m").args(arguments).args(PYTHON));
+    let tool = |arguments: &[&str]| run_command(crate::commands::python().arg("-m").args(arguments).args(PYTHON));
     stage("Python lint", || tool(&["ruff", "check"]))?;
     stage("Python format", || tool(&["ruff", "format", "--check"]))?;
     stage("Python types", || tool(&["mypy"]))?;

@@ -5,9 +5,9 @@
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::PathBuf;
 
+use crate::commands::{cargo, command, output, run as run_command};
 use anyhow::{Result, bail};
 use cargo_metadata::Message;
-use commands::{cargo, command, output, run as run_command};
 
 use crate::release::trial::{Runner, Trial};
 

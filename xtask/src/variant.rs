@@ -72,7 +72,7 @@ fn read(path: &Path) -> Result<(String, String)> {
 
 #[cfg(test)]
 mod tests {
-    use commands::root;
+    use crate::commands::root;
 
     use super::*;
 

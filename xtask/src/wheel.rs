@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use crate::commands::run as run_command;
 use anyhow::Result;
-use commands::run as run_command;
 
 use crate::{fmu, python};
 
@@ -16,7 +16,7 @@ pub fn run() -> Result<()> {
 /// Builds the wheel that carries a component, in a folder.
 pub fn build(component: &Path, folder: &str) -> Result<()> {
     run_command(
-        commands::python()
+        crate::commands::python()
             .args(["-m", "hatchling", "build", "-t", "wheel", "-d", folder])
             .env("RELAY_CONTACT_FMU", component),
     )

@@ -1,21 +1,18 @@
-//! Measures the cost of accuracy and writes `accuracy.csv`, and the tables of `accuracy.md` between its two markers.
-//! `cargo xtask accuracy` calls this and draws the figures.
+//! Measures the cost of accuracy and writes `accuracy.csv`, and the machine beside it. `cargo xtask accuracy` calls this, and
+//! writes tables and figures of `docs/accuracy.md`.
 
 use std::fs;
 use std::path::PathBuf;
 
 use anyhow::Result;
-use benches::{page, plan, study, table};
+use benches::{machine, study};
 use clap::Parser;
-
-const BEGIN: &str = "<!-- tables: written by cargo xtask accuracy -->";
-const END: &str = "<!-- end of tables -->";
 
 #[derive(Parser)]
 #[command(about = "Measures the cost of accuracy")]
 struct Arguments {
-    /// Folder of accuracy.csv and accuracy.md
-    #[arg(long, default_value = "docs")]
+    /// Folder of what is written
+    #[arg(long, default_value = "out/accuracy")]
     folder: PathBuf,
     /// Few settings and one round
     #[arg(long)]
@@ -26,16 +23,9 @@ struct Arguments {
 }
 
 fn main() -> Result<()> {
-    let arguments = Arguments::parse();
-    let rows = study::run(
-        &plan::all(arguments.quick)?,
-        if arguments.quick { 1 } else { arguments.turns },
-    );
-    fs::create_dir_all(&arguments.folder)?;
-    page::write(&arguments.folder.join("accuracy.csv"), &table::csv(&rows))?;
-    page::update(
-        &arguments.folder.join("accuracy.md"),
-        [BEGIN, END],
-        &table::report(&rows),
-    )
+    let Arguments { folder, quick, turns } = Arguments::parse();
+    let rows = study::measure(quick, if quick { 1 } else { turns })?;
+    fs::create_dir_all(&folder)?;
+    fs::write(folder.join("accuracy.csv"), rows)?;
+    Ok(fs::write(folder.join("machine.txt"), machine::description())?)
 }

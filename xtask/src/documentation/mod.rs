@@ -4,8 +4,8 @@
 mod block;
 mod description;
 
+use crate::commands::read;
 use anyhow::{Context, Result, ensure};
-use commands::read;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd};
 use roxmltree::{Document, Node};
@@ -15,7 +15,7 @@ use self::description::{attribute, start, unit};
 use crate::variant::Variant;
 
 /// That of the report.
-const STYLE: &str = include_str!("../../../report/src/page/style.css");
+const STYLE: &str = include_str!("../../../report/style.css");
 
 /// Sections of the README that the page repeats.
 const SECTIONS: [&str; 2] = ["Limits of validity", "Source"];
@@ -169,7 +169,7 @@ fn section<'a>(readme: &'a str, title: &str) -> Result<&'a str> {
 
 #[cfg(test)]
 mod tests {
-    use commands::root;
+    use crate::commands::root;
     use relay_contact::variables::VARIABLES;
 
     use super::*;

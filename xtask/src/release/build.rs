@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::commands::{cargo, command, read, run, write};
 use anyhow::{Context, Result};
 use cargo_metadata::Metadata;
-use commands::{cargo, command, read, run, write};
 
 use super::check::{declared, without_time};
 use super::tools::{Tools, lld};

@@ -9,10 +9,10 @@ pub mod trial;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use crate::commands::write;
 use anyhow::{Result, bail};
 use cargo_metadata::Metadata;
 use clap::builder::PossibleValuesParser;
-use commands::write;
 use sha2::{Digest, Sha256};
 
 use self::platform::{PLATFORMS, Platform};

@@ -3,8 +3,8 @@
 use std::env::consts::EXE_SUFFIX;
 use std::path::{Path, PathBuf};
 
+use crate::commands::{command, output, read, sysroot};
 use anyhow::{Result, bail};
-use commands::{command, output, read, sysroot};
 
 use crate::package::Files;
 use crate::python;

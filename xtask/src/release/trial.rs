@@ -10,8 +10,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use crate::commands::{command, output, root};
 use anyhow::{Context, Result, bail};
-use commands::{command, output, root};
 use relay_contact::C_HEADER;
 use relay_contact::scene::file::SceneFile;
 use relay_contact::simulation::Simulation;

@@ -11,9 +11,9 @@ use std::collections::BTreeSet;
 use std::env;
 use std::path::{Path, PathBuf};
 
+use crate::commands::sysroot;
 use anyhow::Result;
 use cargo_metadata::Metadata;
-use commands::sysroot;
 use goblin::mach::MultiArch;
 use relay_contact::variables;
 

@@ -3,8 +3,8 @@
 use std::fs;
 use std::process::Command;
 
+use crate::commands::output;
 use anyhow::Result;
-use commands::output;
 use object::write::{Object, Symbol, SymbolSection};
 use object::{Architecture, BinaryFormat, Endianness, SectionKind, SymbolFlags, SymbolKind, SymbolScope};
 use relay_contact::variables::GUID;

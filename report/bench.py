@@ -1,0 +1,169 @@
+"""The component in place of the published specimen: at rest, and in steady vibration."""
+
+import os
+from collections.abc import Callable, Iterable
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from functools import cache
+from typing import TypeVar
+
+import numpy as np
+
+from relay_contact import Array, Component, Contact, Value, Values
+from report.published import ACCELERATION, BEST
+
+RISE, SAMPLES = 20, 64
+"""Periods of the gentle start, and samples of the period that is read."""
+PIECES = 16
+"""Of a period of the gentle start."""
+PERIODIC = 1e-7
+"""A motion is periodic if the extremes of the force change by less than this part of the preload from one period to the
+next: below the digits shown."""
+PATIENCE = 2000  # periods
+SOON = 10  # periods after a sudden start
+FINE: Values = {"solver.tolerance": 1e-9}
+"""Far below the digits shown."""
+PRESTRESSED: Values = {"effects.axialForce": "FromPreload"}
+
+Task = TypeVar("Task")
+Result = TypeVar("Result")
+
+
+def in_parallel(function: Callable[[Task], Result], tasks: Iterable[Task]) -> list[Result]:
+    """Return the results of tasks that all cores share."""
+    with ProcessPoolExecutor(max_workers=os.cpu_count()) as pool:
+        return list(pool.map(function, tasks, chunksize=4))
+
+
+@dataclass(frozen=True)
+class Period:
+    """A period of vibration, sampled."""
+
+    frequency: float
+    force: Array
+    """Of the contact, N."""
+    elastic: Array
+    """Its elastic part, N."""
+    displacement: Array
+    """Of the contact with the base, m."""
+    resistance: Array
+    least: float
+    """Extremes of the force, N."""
+    greatest: float
+    base: float
+    """Amplitude of the base, m."""
+    repeats: bool
+    """Whether the motion is periodic; otherwise the extremes are those of this period."""
+
+    @property
+    def amplitude(self) -> float:
+        """Half the range of the force, cN."""
+        return 50 * (self.greatest - self.least)
+
+    @property
+    def elastic_amplitude(self) -> float:
+        """Half the range of its elastic part, cN."""
+        return 100 * half_range(self.elastic)
+
+    @property
+    def travel(self) -> float:
+        """Half the range of the displacement over the amplitude of the base."""
+        return half_range(self.displacement) / self.base
+
+    @property
+    def phase(self) -> float:
+        """The phase between force and displacement, from 0 to 180 degrees."""
+        force, displacement = (np.fft.rfft(each)[1] for each in (self.force, self.displacement))
+        return float(abs(np.degrees(np.angle(force / displacement))))
+
+
+def half_range(samples: Array) -> float:
+    """Return half the difference of maximum and minimum of a period, between its samples too, by its Fourier series."""
+    fine = 16 * np.fft.irfft(np.fft.rfft(samples), 16 * len(samples))
+    return float(np.ptp(fine) / 2)
+
+
+class Bench:
+    """An instance of the component."""
+
+    def __init__(self, component: Component) -> None:
+        """Instantiate it, once for all runs."""
+        self.component = component
+        self.contact = Contact(component)
+        self.known: dict[str, Period] = {}
+
+    def rest(self, values: Values, output: str) -> float:
+        """Return an output of the contact at rest."""
+        self.contact.begin_anew(values)
+        return self.contact.get(output)
+
+    def shaken(self, values: Values, frequency: float, level: float) -> float:
+        """Begin a vibration from rest; return the deflection there, m."""
+        sine: Values = {
+            "effects.excitation": "Sine", "excitation.frequency": frequency, "excitation.amplitude": level,
+        }  # fmt: skip
+        self.contact.begin_anew({**values, **sine})
+        return self.contact.get("tip.displacement")
+
+    def period(self, frequency: float, level: float, deflection: float, number: int, repeats: bool = False) -> Period:
+        """Return the period with this number, which comes next."""
+        contact = self.contact
+        names = ("contact.force", "contact.elasticForce", "tip.displacement", "contact.resistance",
+                 "step.minimumForce", "step.maximumForce")  # fmt: skip
+        outputs = contact.references(*names)
+        rows = []
+        for sample in range(SAMPLES):
+            contact.step((number + sample / SAMPLES) / frequency, 1 / SAMPLES / frequency)
+            rows.append(contact.fmu.getReal(outputs))
+        force, elastic, tip, resistance, least, greatest = np.array(rows).T
+        base = level / (2 * np.pi * frequency) ** 2
+        phase = 2 * np.pi * np.arange(1, SAMPLES + 1) / SAMPLES
+        with_base = tip - deflection - base * np.sin(phase)
+        extremes = float(least.min()), float(greatest.max())
+        return Period(frequency, force, elastic, with_base, resistance, *extremes, base, repeats)
+
+    def vibrate(self, values: Values, frequency: float, level: float = ACCELERATION) -> Period:
+        """Return a period of steady vibration, started gently so that it is steady soon."""
+        key = repr((sorted(values.items()), frequency, level))
+        if key not in self.known:
+            deflection = self.shaken(values, frequency, level)
+            self.contact.rise(frequency, level, RISE, PIECES)
+            number, repeats = self.settle(frequency)
+            self.known[key] = self.period(frequency, level, deflection, number, repeats)
+        return self.known[key]
+
+    def settle(self, frequency: float) -> tuple[int, bool]:
+        """Wait until the motion repeats; return the number of the next period, and whether it does."""
+        preload = self.contact.get("preload.force")
+        last = np.full(2, np.inf)
+        for number in range(RISE, RISE + PATIENCE):
+            self.contact.step(number / frequency, 1 / frequency)
+            this = np.array(self.contact.real("step.minimumForce", "step.maximumForce"))
+            if np.abs(this - last).max() < PERIODIC * preload:
+                return number + 1, True
+            last = this
+        return RISE + PATIENCE, False
+
+    def sudden(self, values: Values, frequency: float) -> float:
+        """Return the largest displacement amplitude (m) in a period soon after a sudden start."""
+        deflection = self.shaken(values, frequency, ACCELERATION)
+        periods = [self.period(frequency, ACCELERATION, deflection, number) for number in range(SOON)]
+        return max(float(np.ptp(each.displacement)) / 2 for each in periods)
+
+
+def damped(values: Values, ratio: float) -> dict[str, Value]:
+    """Return the values, which have the damping of the published ratio 10, with that of another one."""
+    names = ("beam.stiffnessDamping", "contact.damping")
+    return {**values, **{name: float(values[name]) * ratio / BEST for name in names}}
+
+
+def specimen(component: Component, ratio: float = BEST) -> dict[str, Value]:
+    """Return the specimen with the damping of a published ratio."""
+    names = ("beam.stiffnessDamping", "contact.damping")
+    return damped({**PRESTRESSED, **FINE, **{name: component.start(name) for name in names}}, ratio)
+
+
+@cache
+def bench() -> Bench:
+    """Return the instance of this process."""
+    return Bench(Component())

@@ -1,0 +1,174 @@
+"""The report and the component's documentation in a browser: nothing fails, nothing is fetched, all of it is seen.
+
+`cargo xtask test` writes the quick report before.
+"""
+
+import itertools
+import re
+import shutil
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+from playwright.sync_api import Browser, Page, sync_playwright
+
+from relay_contact import fmu_path
+from report.files import DOCS, OUT
+
+QUICK = OUT / "report-quick/index.html"
+PATIENCE = 300_000  # ms, of a machine however busy
+# Width of the window, its colours, whether it is touched. Each width and each colour once.
+WINDOWS = {"desktop": (1280, "light", False), "phone": (390, "dark", True)}
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    names = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+    path = next(filter(None, map(shutil.which, names)), None)
+    assert path, "Chromium is missing (on Debian: apt-get install chromium)"
+    with sync_playwright() as playwright:
+        # Root cannot have Chromium's sandbox.
+        browser = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"], timeout=PATIENCE)
+        yield browser
+        browser.close()
+
+
+def opened(browser: Browser, window: str) -> Page:
+    width, colours, touch = WINDOWS[window]
+    page = browser.new_page(
+        viewport={"width": width, "height": 900}, color_scheme="dark" if colours == "dark" else "light",
+        has_touch=touch, is_mobile=touch,
+    )  # fmt: skip
+    page.set_default_timeout(PATIENCE)
+    return page
+
+
+@pytest.fixture(scope="module", params=WINDOWS)
+def report(browser: Browser, request: pytest.FixtureRequest) -> Iterator[Page]:
+    page = opened(browser, request.param)
+    heard: list[str] = []
+    page.on("console", lambda message: heard.append(message.text))
+    page.on("pageerror", lambda error: heard.append(str(error)))
+    page.on("request", lambda request: heard.append(request.url))
+    page.goto(QUICK.as_uri())
+    assert heard == [QUICK.as_uri()]
+    yield page
+    page.screenshot(path=QUICK.with_name(f"{request.param}.png"), full_page=True)
+    page.close()
+
+
+@pytest.fixture(scope="module", params=WINDOWS)
+def documentation(
+    browser: Browser, request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Page]:
+    folder: Path = tmp_path_factory.mktemp("component")
+    with zipfile.ZipFile(fmu_path()) as archive:
+        archive.extractall(folder)
+    page = opened(browser, request.param)
+    page.goto((folder / "documentation/index.html").as_uri())
+    yield page
+    page.close()
+
+
+def test_text_of_the_publication_is_that_of_docs() -> None:
+    written = (DOCS / "validation.md").read_text(encoding="utf-8")
+    now = QUICK.with_name("validation.md").read_text(encoding="utf-8")
+    different = [pair for pair in zip(now.splitlines(), written.splitlines(), strict=False) if pair[0] != pair[1]]
+    assert not different[:1], "run cargo xtask report"
+    assert len(now) == len(written)
+
+
+def test_every_figure_is_drawn_with_all_its_curves_and_labels_inside(report: Page) -> None:
+    figures = report.locator("figure[id]").all()
+    assert len(figures) == 14
+    for figure in figures:
+        drawing = figure.locator("svg:visible")
+        box = drawing.bounding_box()
+        assert box is not None
+        assert box["width"] > 300
+        assert box["height"] > 200
+        for text in drawing.locator("text").all():
+            inside = text.bounding_box()
+            assert inside is not None
+            assert inside["x"] >= box["x"] - 1
+            assert inside["x"] + inside["width"] <= box["x"] + box["width"] + 1, text.text_content()
+        # Lines of curves, or their points.
+        assert drawing.locator("[id*='line2d'] path").count() > 4
+
+
+def test_curves_of_a_figure_differ_without_colour(report: Page) -> None:
+    for drawing in report.locator("figure[id] svg:visible").all():
+        entries = drawing.locator("[id*='legend_1'] > g[id*='line2d']").all()
+        looks = []
+        for entry in entries:
+            styles = entry.locator("path, use").evaluate_all("all => all.map(each => each.getAttribute('style'))")
+            marks = entry.locator("use").evaluate_all(
+                "all => all.map(each => document.querySelector(each.getAttribute('xlink:href')).getAttribute('d'))"
+            )
+            looks.append(re.sub(r"#\w{6}|var\(--\w+\)", "", str((styles, marks))))
+        assert len(set(looks)) == len(looks), drawing.get_attribute("aria-label")
+
+
+def test_figures_have_the_colours_of_the_page(report: Page) -> None:
+    ink = report.evaluate("getComputedStyle(document.body).color")
+    texts = "texts => texts.map(text => getComputedStyle(text).fill)"
+    assert set(report.locator("figure[id] svg:visible text").evaluate_all(texts)) == {ink}
+    paper = report.evaluate("getComputedStyle(document.body).backgroundColor")
+    width = report.evaluate("innerWidth")
+    assert (sum(map(int, re.findall(r"\d+", paper))) < 3 * 128) == (width < 500)
+
+
+def test_links_lead_somewhere(report: Page) -> None:
+    links = report.eval_on_selector_all("a[href]", "links => links.map(link => link.getAttribute('href'))")
+    ids = report.eval_on_selector_all("[id]", "elements => elements.map(element => element.id)")
+    assert len(ids) == len(set(ids))
+    inside = {link[1:] for link in links if link.startswith("#")}
+    assert inside
+    assert inside <= set(ids)
+    assert [link for link in links if not link.startswith(("#", "http:", "https:"))] == []
+
+
+def test_a_table_shows_all_columns_or_says_that_there_are_more(report: Page) -> None:
+    tables = report.eval_on_selector_all(
+        ".scroll",
+        """tables => tables.map(table =>
+            [table.scrollWidth > table.clientWidth, getComputedStyle(table, "::before").content.includes("scroll")])""",
+    )
+    assert tables
+    assert [pair for pair in tables if pair[0] != pair[1]] == []
+    wide = "cells => cells.filter(cell => cell.scrollWidth > cell.clientWidth + 1).map(cell => cell.textContent)"
+    assert report.eval_on_selector_all("td, th", wide) == []
+
+
+def test_the_report_is_no_wider_than_its_window(report: Page) -> None:
+    assert report.evaluate("document.documentElement.scrollWidth <= innerWidth")
+
+
+def test_the_documentation_is_no_wider_than_its_window(documentation: Page) -> None:
+    assert documentation.evaluate("document.documentElement.scrollWidth <= innerWidth")
+
+
+def test_the_block_shows_every_input_and_output_apart(documentation: Page) -> None:
+    with zipfile.ZipFile(fmu_path()) as archive:
+        description = ElementTree.fromstring(archive.read("modelDescription.xml"))
+    variables = description.iter("ScalarVariable")
+    pins = [variable.get("name") for variable in variables if variable.get("causality") in ("input", "output")]
+    texts = documentation.locator("svg.block text").all_text_contents()
+    assert pins
+    assert [pin for pin in pins if texts.count(pin or "") != 1] == []
+    boxes = documentation.locator("svg.block text").evaluate_all("all => all.map(each => each.getBoundingClientRect())")
+    for one, other in itertools.combinations(boxes, 2):
+        apart = (
+            one["right"] < other["left"] or other["right"] < one["left"]
+            or one["bottom"] - 3 < other["top"] or other["bottom"] - 3 < one["top"]
+        )  # fmt: skip
+        assert apart, (one, other)
+
+
+def test_links_of_the_documentation_lead_to_files(documentation: Page) -> None:
+    links = documentation.eval_on_selector_all("a[href]", "links => links.map(link => link.href)")
+    files = [link.removeprefix("file://").partition("#")[0] for link in links if link.startswith("file:")]
+    assert files
+    assert [file for file in files if not Path(file).exists()] == []

@@ -1,0 +1,208 @@
+"""The text of docs/validation.md: its numbers, and the tables of what was fitted and identified."""
+
+import csv
+from typing import Any
+
+import numpy as np
+from scipy.optimize import brentq
+
+from relay_contact import Scene
+from report import fit
+from report import published as paper
+from report import tables as tabulated
+from report.figure import Figure
+from report.publication import Publication, deviations, force, resistance
+from report.published import BEST, FORCE, FREQUENCIES, RATIOS
+from report.spring import PARAMETERS, RIVET, SOURCES, identified, sensitivities
+from report.tables import Row
+from report.text import number, percent, rendered, signed, significant, table
+
+CONTACTS = {"Hertz": "smooth spheres", "Rough": "rough contact", "support": "support that yields"}
+TABLES = (
+    tabulated.statics, tabulated.time_domain, tabulated.grid, tabulated.displacements, tabulated.frequency_domain,
+    tabulated.domains, tabulated.resistances, tabulated.peaks, tabulated.misfits,
+)  # fmt: skip
+
+
+def page(of: Publication, figures: list[Figure]) -> tuple[str, dict[str, str]]:
+    """Return docs/validation.md, and what its sections say in a sentence, by their titles."""
+    return rendered("validation.md", figures, values(of))
+
+
+def values(of: Publication) -> dict[str, Any]:
+    """Return what the text needs."""
+    found = {each.__name__: each(of) for each in TABLES}
+    return found | reproduced(of) | findings(of) | identification(of) | fitted_contacts()
+
+
+def reproduced(of: Publication) -> dict[str, Any]:
+    """Return numbers of the sections on what is reproduced and what is not."""
+    run, spring = of.runs[BEST, 1000.0], of.spring()
+    ends = FORCE - paper.FORCE_AMPLITUDE / 100, FORCE + paper.FORCE_AMPLITUDE / 100
+    measured = paper.LEAST_RESISTANCE, paper.GREATEST_RESISTANCE
+    inverted = []
+    for _, least, greatest in paper.RESISTANCE_DEVIATIONS:
+        high, low = force(measured[0] * (1 + 0.01 * least)), force(measured[1] * (1 - 0.01 * greatest))
+        inverted.append(((high + low) / 2, 50 * (high - low)))
+    found = np.abs([deviations(of.runs[ratio, 1000.0].least, of.runs[ratio, 1000.0].greatest)
+                    for ratio, *_ in paper.RESISTANCE_DEVIATIONS])  # fmt: skip
+    weakly = of.spring(RATIOS[0])
+    places = np.linspace(0, 1, 101)
+    shape = [abs(weakly.deflection(of.rest("preload.frequency"), place)[0]) for place in places]
+    rest = 100 * of.rest("preload.force")
+    linear = [100 * float(of.spring(ratio).force(np.array(FREQUENCIES)).max()) / rest for ratio in (0.1, 1.0, 5.0)]
+    alphas, apart = of.by_alpha
+    damping = float(of.component.start("beam.stiffnessDamping"))
+    return {
+        "damping_per_ratio": 1e6 * damping / BEST,
+        "most_excess": np.ceil(np.abs(of.excess()).max()),
+        "own_law": [resistance(end) / known for end, known in zip(ends, measured[::-1], strict=True)],
+        "inverted": inverted,
+        "greatest": of.peak(BEST),
+        "resistance_range": [resistance(run.greatest), resistance(run.least)],
+        "furthest": float(found[:, 1].max()), "nearest": float(found[:, 0].min()),
+        "best_alpha": alphas[int(np.argmin(apart))],
+        "shape": {"tip": shape[-1] / max(shape), "place": float(places[int(np.argmax(shape))])},
+        "shift": run.travel, "thickness": 1e3 * float(of.component.start("beam.thickness")),
+        "linear_peaks": linear,
+        "refitted": {
+            "rivet": 1e6 * of.refitted.rivet, "damping": of.refitted.contact_damping / spring.contact_damping,
+        },
+        "scene_rivet": 1e6 * float(Scene.read("paper-elastic").values["tip.mass"]),
+        "indentation": 1e9 * of.rest("preload.indentation"),
+        "first_damping": np.pi * of.rest("preload.frequency") * damping,
+    }  # fmt: skip
+
+
+def findings(of: Publication) -> dict[str, Any]:
+    """Return numbers of the findings."""
+    amplitudes = [run.amplitude for run in of.literal]
+    first = of.rest("preload.frequency")
+    without = of.rest("preload.frequency", effects_axialForce="None")
+    axial, spring = of.rest("preload.axialForce"), of.spring()
+    shift, known = without - first, paper.WITHOUT_PRESTRESS - paper.WITH_PRESTRESS
+    wanted = without * paper.WITH_PRESTRESS / paper.WITHOUT_PRESTRESS
+
+    def excess(force: float) -> float:
+        return of.rest("preload.frequency", effects_axialForce="Prescribed", beam_axialForce=force) - wanted
+
+    needed = brentq(excess, 0.0, 0.99 * spring.buckling)
+    beta, (_, alpha, _) = paper.BETAS[3], paper.EQUIVALENT[0]
+    return {
+        "literal": [min(amplitudes), max(amplitudes)], "omega": paper.ALPHA_PER_BETA**0.5, "first": first,
+        "tau": 2 * np.pi, "quotient": alpha / beta, "si_beta": f"{beta / (4 * np.pi**2):.3e}".replace("e-0", "e-"),
+        "eq32": 1e6 * alpha / (2 * np.pi * paper.WITH_PRESTRESS) ** 2,
+        "eq9": {
+            "force": 1e3 * axial, "shift": shift, "times": known / shift, "needed": needed,
+            "part": 100 * needed / spring.buckling, "buckling": spring.buckling,
+        },
+    }  # fmt: skip
+
+
+def identification(of: Publication) -> dict[str, Any]:
+    """Return the tables of identified parameters."""
+    found = identified(of.materials)
+    slopes = sensitivities(of.materials, [1e-3] * len(SOURCES))
+    digits = [0.5 * source.digit / source.value for source in SOURCES]
+    rounding = sensitivities(of.materials, digits)
+    elastic = identified(of.materials, elastic=True)
+    start = of.component.start
+    width, thickness = float(start("beam.width")), float(start("beam.thickness"))
+    bending = of.materials.youngs_modulus * width * thickness**3 / 12
+    starts = [
+        1e3 * float(start("contact.curvatureRadius")), 1e6 * bending, 1e3 * of.materials.density * width * thickness,
+        1e3 * width, 1e3 * thickness, 1e6 * float(start("tip.mass")), 1e6 * float(start("beam.stiffnessDamping")),
+    ]  # fmt: skip
+    rows = []
+    for (name, unit, by), value, own in zip(PARAMETERS, found.values, starts, strict=True):
+        texts = [f"{significant(each, 6)} {unit}" for each in (value, own)]
+        rows.append([name, by, *texts, percent(own / value)])
+    columns = ["parameter", "determined by", "identified", "start value", "difference"]
+    changes = []
+    for source, digit, slopes_ in zip(SOURCES, digits, slopes, strict=True):
+        cells = [percent(1 + 0.01 * slope) for slope in slopes_]
+        cells = ["" if cell == "0.00 %" else cell for cell in cells]
+        changes.append([f"{source.name}: {source.shown}, {source.place}", f"± {number(100 * digit, 3)} %", *cells])
+    symbols = [name.rpartition(" ")[2] for name, *_ in PARAMETERS]
+    return {
+        "identified": table(columns, rows),
+        "sensitivities": table(["published result", "half a unit of its last digit", *symbols], changes),
+        "found_width": float(found.values[3]), "slope": float(0.01 * slopes[2][RIVET]),
+        "precision": 100 * abs(float(rounding[0][RIVET])) * digits[0], "elastic_rivet": float(elastic.values[RIVET]),
+    }  # fmt: skip
+
+
+def fitted_contacts() -> dict[str, Any]:
+    """Return the tables and numbers of the three contacts that were fitted."""
+    with fit.TABLE.open(newline="", encoding="utf-8") as file:
+        numbers = list(csv.DictReader(file))
+    with fit.PARAMETERS.open(newline="", encoding="utf-8") as file:
+        parameters = {(each["contact"], each["parameter"]): each for each in csv.DictReader(file)}
+
+    def parameter(contact: str, name: str) -> float:
+        return float(parameters[contact, name]["value"])
+
+    def find(text: str) -> dict[str, float]:
+        own = next(each for each in numbers if text in each["quantity"])
+        return {name: float(own[name]) for name in ("published", *CONTACTS)}
+
+    def deviation(own: dict[str, str], contact: str) -> str:
+        value, known = float(own[contact]), float(own["published"])
+        apart = f"{signed(value - known, 0)} °" if own["unit"] == "°" else percent(value / known, 1)
+        return f"{significant(value)} {own['unit']}".strip() + f", {apart}"
+
+    def compared(own: list[dict[str, str]], *last: Row) -> str:
+        rows = [[each["quantity"], f"{float(each['published']):.5g} {each['unit']}".strip(),
+                 *(deviation(each, contact) for contact in CONTACTS), each["location"]] for each in own]  # fmt: skip
+        columns = ["quantity", "published", *CONTACTS.values(), "location in the publication"]
+        return table(columns, [*rows, *last])
+
+    def cell(contact: str, name: str) -> str:
+        own = parameters.get((contact, name))
+        if own is None:
+            return ""
+        value, low, high = (float(own[each]) for each in ("value", "low", "high"))
+        shown = f"{significant(value, 3)} {own['unit']}".strip()
+        return (
+            f"{shown}, undetermined"
+            if high > 100 * low
+            else f"{shown} ({significant(low, 3)} to {significant(high, 3)})"
+        )
+
+    fitted = [each for each in numbers if each["fitted"] == "1"]
+    others = [each for each in numbers if each["fitted"] != "1"]
+    rms = {contact: parameter(contact, "rms") for contact in CONTACTS}
+    names = [name for contact, name in parameters if contact == "Rough" and name != "rms"]
+    rows = [[name, *(cell(contact, name) for contact in CONTACTS)] for name in names]
+    # Those fitted, and the displacement with the weakest damping, which stands first among the others.
+    squares = {contact: [np.log(float(each[contact]) / float(each["published"])) ** 2 for each in [*fitted, others[0]]]
+               for contact in CONTACTS}  # fmt: skip
+    stiffness, exponent = (
+        parameter("Rough", "contact stiffness at 0.152 N"),
+        parameter("Rough", "exponent of the stiffness"),
+    )
+    rest, stiff, phase = find("resistance at rest"), find("contact as a spring"), find("phase")
+    law = stiffness * rest["Rough"] / rest["published"]
+    before, after = find("s = 0.45 mm"), find("s = 0.5 mm")
+    short = [find(text) for text in ("s = 0.45 mm", "L = 7.5 mm")]
+    return {
+        "rms": rms,
+        "fitted": compared(fitted,
+                           ["**rms**", "", *(f"**{number(each, 1)} %**" for each in rms.values()), ""]),
+        "others": compared(others),
+        "fits": table(["parameter", *CONTACTS.values()], rows),
+        "softer_support": paper.STIFFNESS / parameter("support", "contact stiffness at 0.152 N"),
+        "table4": 100 * (paper.DISPLACEMENTS[0] / paper.DISPLACEMENTS[1] - 1),
+        "with_weakest": {contact: 100 * np.mean(each) ** 0.5 for contact, each in squares.items()},
+        "softer": paper.STIFFNESS / stiffness,
+        "worst_rough": np.ceil(max(100 * abs(float(each["Rough"]) / float(each["published"]) - 1) for each in fitted)),
+        "short": {contact: [percent(each[contact] / each["published"], 1) for each in short] for contact in CONTACTS},
+        "rest": rest, "law_stiffness": law, "exponent": exponent,
+        "crossing": FORCE * (stiffness / law) ** (1 / (paper.EXPONENT - exponent)),
+        "roughness": FORCE / paper.ROUGHNESS,
+        "vibrating": [find(f"{name} resistance")["Rough"] for name in ("least", "greatest")],
+        "stiff": {"value": stiff["Rough"], "above": 100 * (stiff["Rough"] / stiff["published"] - 1)},
+        "fall": {"published": after["published"] - before["published"], "rough": after["Rough"] - before["Rough"]},
+        "phase": {"rough": phase["Rough"], "hertz": phase["Hertz"]},
+        "weakest": {"rough": find("ratio 0.1")["Rough"]}, "sudden": find("after a sudden start")["Rough"],
+    }  # fmt: skip

@@ -1,0 +1,133 @@
+//! The runs that importers reproduce, by the Rust library: `out/conformance/reference.csv`, and every scene.
+
+use std::f64::consts::TAU;
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+
+use crate::commands::{root, write as write_file};
+use anyhow::{Context, Result, ensure};
+use relay_contact::inputs::Inputs;
+use relay_contact::scene::Scene;
+use relay_contact::scene::file::SceneFile;
+use relay_contact::simulation::Simulation;
+use relay_contact::variables::RealOutput;
+
+/// Communication step, s.
+const STEP: f64 = 1e-5;
+/// Communication steps.
+const STEPS: u32 = 500;
+const TOLERANCE: f64 = 1e-7;
+/// Amplitude, m/s2, at which the contact opens and closes, and frequency, Hz.
+const SINE: (f64, f64) = (400.0, 1000.0);
+/// The frame's acceleration in `SystemStructure.ssd`, m/s2.
+const JUMP: f64 = 50.0;
+
+/// Writes all of them.
+pub fn write(folder: &str) -> Result<()> {
+    write_file(format!("{folder}/reference.csv"), reference()?.as_bytes())?;
+    for entry in fs::read_dir(root().join("scenes"))? {
+        let path = entry?.path();
+        if path.extension().is_some_and(|extension| extension == "toml") {
+            let name = path.file_stem().unwrap_or_default().to_string_lossy();
+            let table = scene(&path).with_context(|| name.clone().into_owned())?;
+            write_file(format!("{folder}/scenes/{name}.csv"), table.as_bytes())?;
+        }
+    }
+    Ok(())
+}
+
+/// The outputs of a scene file at its communication points, which have to be finite.
+fn scene(path: &Path) -> Result<String> {
+    let file = SceneFile::read(path)?;
+    let names: Vec<_> = file.outputs.iter().map(|output| output.name).collect();
+    let mut table = format!("time,{}\n", names.join(","));
+    let mut row = |simulation: &Simulation, time: f64| {
+        write!(table, "{time}")?;
+        for output in &file.outputs {
+            let value = simulation.output(output).context("not an output")?;
+            ensure!(value.is_finite(), "{} at {time} s: {value}", output.name);
+            write!(table, ",{value}")?;
+        }
+        table.push('\n');
+        Ok::<_, anyhow::Error>(())
+    };
+    let mut simulation = Simulation::new(&file.scene, &file.inputs_over(0.0, file.communication_step)?, 0.0)?;
+    row(&simulation, 0.0)?;
+    for (time, size) in file.steps() {
+        simulation.step(&file.inputs_over(time, size)?, time, size)?;
+        row(&simulation, time + size)?;
+    }
+    Ok(table)
+}
+
+/// For each communication step the acceleration over it, and the contact forces of both runs at its start.
+///
+/// Importers reckon time differently: `n h`, a sum of steps, whole nanoseconds. That makes no difference to the first run:
+/// a length of step that differs from the last by the rounding of time counts as the same.
+fn reference() -> Result<String> {
+    let mut table = "time,base.acceleration,run,coupled\n".to_owned();
+    let (single, coupled) = (single()?, coupled()?);
+    // It opens, closes again, and the second contact vibrates about twice the preload.
+    let opened = single
+        .iter()
+        .position(|force| *force == 0.0)
+        .context("it never opens")?;
+    ensure!(
+        single.iter().skip(opened).any(|force| *force > 0.152),
+        "it never closes again"
+    );
+    for (n, (single, coupled)) in (0..=STEPS).zip(single.iter().zip(coupled)) {
+        writeln!(table, "{},{},{single},{coupled}", time(n), acceleration(n))?;
+    }
+    Ok(table)
+}
+
+fn time(n: u32) -> f64 {
+    f64::from(n) * STEP
+}
+
+fn acceleration(n: u32) -> f64 {
+    SINE.0 * (TAU * SINE.1 * time(n)).sin()
+}
+
+fn start(inputs: &Inputs) -> Result<Simulation> {
+    let mut scene = Scene::default();
+    scene.solver.tolerance = TOLERANCE;
+    Ok(Simulation::new(&scene, inputs, 0.0)?)
+}
+
+/// Contact forces, N, of one contact, its frame's acceleration a sine held from each communication point to the next.
+fn single() -> Result<Vec<f64>> {
+    let mut inputs = Inputs::default();
+    let mut contact = start(&inputs)?;
+    let mut forces = vec![contact.real(RealOutput::ContactForce)];
+    for n in 0..STEPS {
+        inputs.base_acceleration = acceleration(n);
+        contact.step(&inputs, time(n), STEP)?;
+        forces.push(contact.real(RealOutput::ContactForce));
+    }
+    Ok(forces)
+}
+
+/// Contact forces, N, of the second of the two contacts of `SystemStructure.ssd`. Both step from the same communication
+/// point; what the first reached there is what the second gets.
+fn coupled() -> Result<Vec<f64>> {
+    let jump = Inputs {
+        base_acceleration: JUMP,
+        ..Inputs::default()
+    };
+    let mut first = start(&jump)?;
+    let carried = |first: &Simulation| Inputs {
+        support_displacement: first.real(RealOutput::TipDisplacement),
+        ..jump
+    };
+    let mut second = start(&carried(&first))?;
+    let mut forces = vec![second.real(RealOutput::ContactForce)];
+    for n in 0..STEPS {
+        second.step(&carried(&first), time(n), STEP)?;
+        first.step(&jump, time(n), STEP)?;
+        forces.push(second.real(RealOutput::ContactForce));
+    }
+    Ok(forces)
+}
