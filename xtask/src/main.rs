@@ -3,6 +3,7 @@
 mod bill;
 mod demo;
 mod documentation;
+mod explore;
 mod fmu;
 mod importers;
 mod licences;
@@ -51,6 +52,8 @@ enum Task {
     Scene(report::Arguments),
     /// Build the component and the Python package that carries it, dist/relay_contact-VERSION-py3-none-any.whl
     Wheel,
+    /// Build the page that runs the simulation in a browser, dist/explore.html, and test it
+    Explore,
     /// Write each scene as a parameter set for SSP tools, out/ssv/NAME.ssv
     Ssv,
     /// Build the component, run the published 1 kHz case under FMPy, compare and plot
@@ -87,6 +90,7 @@ fn main() -> ExitCode {
         }
         Task::Scene(arguments) => report::run("scene", &arguments),
         Task::Wheel => wheel::run(),
+        Task::Explore => explore::run_task(),
         Task::Ssv => report::start("ssv", &NONE),
         Task::Demo => demo::run(),
         Task::Accuracy(arguments) => report::run("accuracy", &arguments),

@@ -10,13 +10,14 @@ use crate::stage::stage;
 use crate::{fmu, importers, python, report, valgrind, wheel};
 
 /// Folders and files with Python in them.
-const PYTHON: [&str; 6] = [
+const PYTHON: [&str; 7] = [
     "python",
     "examples/python",
     "tests/python",
     "conformance/python",
     "docs/model.py",
     "report/browser",
+    "explore",
 ];
 
 /// Arguments of cargo's lint after the packages.

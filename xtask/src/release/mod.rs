@@ -39,7 +39,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let mut release = Release {
         metadata: &metadata,
         tools: &tools,
-        private: check::private_folders(&metadata, &tools.rustc)?,
+        private: check::private_folders(&metadata, &tools.rust.rustc)?,
         built: BTreeMap::new(),
     };
     let (mut libraries, mut lines, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
@@ -69,7 +69,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         .into_iter()
         .map(|(platform, library)| (platform.folder, platform.extension, library));
     let variant = Variant::new(false, None)?;
-    let files = fmu::files(&variant, &metadata, binaries, &tools.rustc, &targets, tools.licences()?)?;
+    let files = fmu::files(&variant, &metadata, binaries, &tools.rust.rustc, &targets, tools.licences()?)?;
     let packed = pack(&files)?;
     let archive = write("dist/release/RelayContact.fmu", &packed)?;
     write("dist/release/SHA256SUMS", sum("RelayContact.fmu", &packed).as_bytes())?;
