@@ -12,6 +12,7 @@ mod package;
 mod python;
 mod release;
 mod report;
+mod site;
 mod stage;
 mod test;
 mod valgrind;
@@ -50,10 +51,12 @@ enum Task {
     /// Run a scene, write its outputs to out/scenes/NAME.csv and .png, and print a summary
     #[command(disable_help_flag = true)]
     Scene(report::Arguments),
-    /// Build the component and the Python package that carries it, dist/relay_contact-VERSION-py3-none-any.whl
+    /// Build the component and the Python package that carries it, dist/relay_contact-VERSION-py3-none-PLATFORM.whl
     Wheel,
     /// Build the page that runs the simulation in a browser, dist/explore.html, and test it
     Explore,
+    /// Build the documentation site, out/site/html/index.html
+    Docs,
     /// Write each scene as a parameter set for SSP tools, out/ssv/NAME.ssv
     Ssv,
     /// Build the component, run the published 1 kHz case under FMPy, compare and plot
@@ -91,6 +94,7 @@ fn main() -> ExitCode {
         Task::Scene(arguments) => report::run("scene", &arguments),
         Task::Wheel => wheel::run(),
         Task::Explore => explore::run_task(),
+        Task::Docs => site::run(),
         Task::Ssv => report::start("ssv", &NONE),
         Task::Demo => demo::run(),
         Task::Accuracy(arguments) => report::run("accuracy", &arguments),

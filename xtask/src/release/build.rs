@@ -10,9 +10,10 @@ use super::check::{declared, without_time};
 use super::tools::{Tools, lld};
 use crate::fmu;
 
-/// Oldest C library of Linux, and oldest macOS, on which the libraries load.
-const GLIBC: &str = "2.17";
-const MACOS: &str = "11.0";
+/// Oldest C library of Linux on which the libraries load.
+pub const GLIBC: &str = "2.17";
+/// Oldest macOS.
+pub const MACOS: &str = "11.0";
 
 /// Where all of it is built.
 pub fn folder(metadata: &Metadata) -> PathBuf {
