@@ -58,7 +58,7 @@ function search() {
 
 // ---- what the library gives: the order is that of `Curves::numbers` ----
 function read({ numbers, taken }) {
-  const [count, rows, events, preload, frequency, longest, total, error] = numbers;
+  const [count, rows, events, preload, frequency, longest, total, forceError] = numbers;
   const column = (n) => Float64Array.from({ length: rows }, (_, row) => numbers[8 + 6 * row + n]);
   const [time, force, least, most, resistance, highest] = [0, 1, 2, 3, 4, 5].map(column);
   const end = time[rows - 1];
@@ -68,7 +68,7 @@ function read({ numbers, taken }) {
     if (opens) open.push([instant, end]);
     else if (open.length) open[open.length - 1][1] = instant;
   }
-  return { count, preload, frequency, longest, total, error, time, force, least, most, resistance, highest, open, taken };
+  return { count, preload, frequency, longest, total, forceError, time, force, least, most, resistance, highest, open, taken };
 }
 
 // ---- drawing ----
@@ -89,13 +89,13 @@ function draw() {
   const bottom = least.reduce((a, b) => Math.min(a, b));
   const interruptions = run.count === 0 ? "no interruption"
     : `${run.count} interruption${run.count > 1 ? "s" : ""}, the longest ${digits(1e6 * run.longest)} µs`;
-  state.textContent = `${open.length ? `opens ${open.length} times` : "stays closed"}; ${interruptions}`;
+  state.textContent = `${open.length ? `opens ${open.length} time${open.length > 1 ? "s" : ""}` : "stays closed"}; ${interruptions}`;
   plot(element("force"), {
     x, y: { low: 0, high: 1.08 * top, label: "contact force, N" }, bands,
     curves: [{ x: ms, y: least, to: most }, { x: ms, y: force }], marks: [{ y: preload, text: "preload" }],
   });
   element("force-caption").textContent = `Contact force: ${digits(bottom)} to ${digits(top)} N, ${digits(preload)} N at rest. `
-    + `First natural frequency ${digits(run.frequency, 4)} Hz. ${open.length ? "Shaded: open. " : ""}Computed in ${run.taken.toFixed(0)} ms.`;
+    + `First natural frequency ${digits(run.frequency, 4)} Hz. ${open.length ? "Shaded: open. " : ""}Computed in ${run.taken.toFixed(0)} ms, to ${digits(100 * run.forceError, 1)} % of the force scale.`;
   const worst = highest.reduce((a, b) => Math.max(a, b));
   const best = resistance.reduce((a, b) => Math.min(a, b));
   const low = 10 ** Math.floor(Math.log10(1e3 * best) - 0.3);

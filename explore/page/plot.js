@@ -1,5 +1,5 @@
 // Curves in an SVG, redrawn as a whole.
-const MARGIN = { left: 58, right: 12, top: 22, bottom: 34 };
+const MARGIN = { left: 58, right: 22, top: 22, bottom: 34 };
 
 function ticks(low, high, log) {
   if (log) {
