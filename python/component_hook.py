@@ -1,7 +1,7 @@
-"""Adds the component to the wheel, its bill of materials, and the page; and names the platform that the component is for.
+"""Adds the component, its bill of materials and the page to the wheel, which is for the component's platform alone.
 
-The component is the file that RELAY_CONTACT_FMU names, else that of this project, built by cargo where it is not yet there,
-as in a source distribution. RELAY_CONTACT_PLATFORM is the wheel's platform tag, else this machine's.
+The component is the file that RELAY_CONTACT_FMU names, else that of this project, built by cargo where it is not there
+yet, as in a source distribution. RELAY_CONTACT_PLATFORM is the wheel's platform tag, else this machine's.
 """
 
 import os
