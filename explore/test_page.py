@@ -21,7 +21,7 @@ PAGE = ROOT / "dist/explore.html"
 if not PAGE.is_file():
     pytest.skip("dist/explore.html is not built: cargo xtask explore", allow_module_level=True)
 PICTURES = ROOT / "out/explore"
-# Of the force scale. The page's library rounds otherwise: without fused multiply-add, with functions of another C library.
+# Of the force scale. The page rounds otherwise: without fused multiply-add, with functions of another C library.
 # What it rounds by, 1e-16, grows at each closing; after those of the hardest scene here it is still less than this.
 ROUNDING = 1e-9
 SCENES = [

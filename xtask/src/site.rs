@@ -37,10 +37,13 @@ pub fn run() -> Result<()> {
         write(Path::new(SOURCE).join(file), &read(file)?)?;
     }
     write(Path::new(SOURCE).join("python.md"), PYTHON.as_bytes())?;
-    let page = read(explore::page()?)?;
-    write(Path::new(SOURCE).join("explore.html"), &page)?;
+    write(Path::new(SOURCE).join("explore.html"), &read(explore::page()?)?)?;
+    let search = "iframe-worker.js";
+    write(Path::new(SOURCE).join(search), &read(Path::new("explore/page").join(search))?)?;
     python::install("docs")?;
-    run_command(commands::python().args(["-m", "mkdocs", "build", "--strict", "--quiet"]))?;
+    let mut build = commands::python();
+    build.args(["-m", "mkdocs", "build", "--strict", "--quiet"]);
+    run_command(build.env("NO_MKDOCS_2_WARNING", "1"))?;
     println!("{}", root().join("out/site/html/index.html").display());
     Ok(())
 }

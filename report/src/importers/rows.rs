@@ -14,7 +14,7 @@ pub fn folder() -> PathBuf {
 }
 
 /// Every row that the table has to have.
-const EXPECTED: [(&str, &str); 19] = [
+const EXPECTED: [(&str, &str); 21] = [
     ("FMPy", "validation"),
     ("FMPy", "run"),
     ("FMPy", "published run"),
@@ -34,6 +34,8 @@ const EXPECTED: [(&str, &str); 19] = [
     ("FMU container", "two coupled"),
     ("fmi (Rust)", "run"),
     ("fmi (Rust)", "published run"),
+    ("fmi-rs (Rust)", "run"),
+    ("fmi-rs (Rust)", "published run"),
 ];
 
 /// What became of one task of an importer.
