@@ -1,21 +1,17 @@
 """The page that runs the simulation, from its file in Chromium; `cargo xtask explore` builds it."""
 
 import re
-import shutil
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Page
 
+from conftest import ROOT
 from relay_contact import Component, run
 
-ROOT = Path(__file__).parents[1]
 COMPONENT = ROOT / "dist/RelayContact.fmu"
-# Of a machine however busy, ms.
-PATIENCE = 300_000
 Scheme = Literal["light", "dark"]
 PAGE = ROOT / "dist/explore.html"
 if not PAGE.is_file():
@@ -33,26 +29,6 @@ SCENES = [
     "effects.excitation=HalfSine&excitation.amplitude=-600&excitation.duration=0.001",
     "contact.damping=0&tip.mass=0.00008&excitation.frequency=3000&excitation.amplitude=250",
 ]
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    names = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
-    path = next(filter(None, map(shutil.which, names)), None)
-    assert path, "Chromium is missing (on Debian: apt-get install chromium)"
-    with sync_playwright() as playwright:
-        # Root cannot have Chromium's sandbox.
-        started = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"], timeout=PATIENCE)
-        yield started
-        started.close()
-
-
-@pytest.fixture
-def page(browser: Browser) -> Iterator[Page]:
-    page = browser.new_page(viewport={"width": 1280, "height": 900})
-    page.set_default_timeout(PATIENCE)
-    yield page
-    page.close()
 
 
 def opened(page: Page, hash_: str = "") -> Page:

@@ -26,7 +26,7 @@ const SIZE: usize = 1_500_000;
 pub fn run_task() -> Result<()> {
     python::prepare()?;
     let page = page()?;
-    python::test(&["explore"], &fmu::build()?)?;
+    python::test(&["explore/test_page.py"], &fmu::build()?)?;
     println!("{}", page.display());
     Ok(())
 }

@@ -18,7 +18,8 @@ const SOURCE: &str = "out/site/source";
 const FOLDERS: [&str; 2] = ["docs", "."];
 
 /// The page of the Python interface.
-const PYTHON: &str = "# Python interface\n\n::: relay_contact\n";
+const PYTHON: &str = "# Python interface\n\n::: relay_contact\n\n::: relay_contact.qualification.qualify\n\n\
+                      ::: relay_contact.identification.identify\n";
 
 /// Builds the site in `out/site/html`; a dead link is an error.
 pub fn run() -> Result<()> {
@@ -33,8 +34,8 @@ pub fn run() -> Result<()> {
     let pages = pages()?;
     let linked = pages.iter().map(|page| Page::read(page)).collect::<Result<Vec<_>>>()?;
     let files: BTreeSet<_> = linked.iter().flat_map(Page::files).chain(pages.iter().cloned()).collect();
-    for file in files.iter().filter(|file| root().join(file).is_file()) {
-        write(Path::new(SOURCE).join(file), &read(file)?)?;
+    for file in &files {
+        copy(file)?;
     }
     write(Path::new(SOURCE).join("python.md"), PYTHON.as_bytes())?;
     write(Path::new(SOURCE).join("explore.html"), &read(explore::page()?)?)?;
@@ -44,7 +45,20 @@ pub fn run() -> Result<()> {
     let mut build = commands::python();
     build.args(["-m", "mkdocs", "build", "--strict", "--quiet"]);
     run_command(build.env("NO_MKDOCS_2_WARNING", "1"))?;
+    run_command(commands::python().args(["-m", "pytest", "--quiet", "explore/test_site.py"]))?;
     println!("{}", root().join("out/site/html/index.html").display());
+    Ok(())
+}
+
+/// Copies a file, or all files in a folder.
+fn copy(path: &Path) -> Result<()> {
+    if root().join(path).is_dir() {
+        for entry in fs::read_dir(root().join(path))? {
+            copy(&path.join(entry?.file_name()))?;
+        }
+        return Ok(());
+    }
+    write(Path::new(SOURCE).join(path), &read(path)?)?;
     Ok(())
 }
 
