@@ -107,7 +107,7 @@ fn component() -> Result<()> {
     // Which the Python tests install into an empty environment.
     stage("wheel", wheel::run)?;
     stage("Python tests and examples", || {
-        python::test(&["examples/python", "tests/python"], &component)
+        python::test(&["examples/python", "tests/python", "explore"], &component)
     })?;
     importers::stages(&component)
 }
