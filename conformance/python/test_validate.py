@@ -14,9 +14,9 @@ from component import FMU, PLAIN, ROOT, SPRUNG
 from results import record
 
 
-def test_fmpy_finds_no_problem() -> None:
-    for fmu in (FMU, PLAIN, SPRUNG):
-        assert validate_fmu(str(fmu)) == []
+@pytest.mark.parametrize("fmu", [FMU, PLAIN, SPRUNG], ids=["own", "plain", "sprung"])
+def test_fmpy_finds_no_problem(fmu: Path) -> None:
+    assert validate_fmu(str(fmu)) == []
     record("FMPy", fmpy.__version__, "validation")
 
 
@@ -37,7 +37,7 @@ def test_package_holds_documentation_licences_and_icon() -> None:
         assert f"<code>{variable.name}</code>" in page
 
 
-@pytest.mark.parametrize("fmu", [FMU, PLAIN])
+@pytest.mark.parametrize("fmu", [FMU, PLAIN], ids=["own", "plain"])
 def test_terminals_are_of_the_standard_and_of_this_component(fmu: Path) -> None:
     folder = "terminalsAndIcons/"
     with zipfile.ZipFile(fmu) as archive:
