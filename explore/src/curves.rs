@@ -37,7 +37,11 @@ pub struct Curves {
 impl Curves {
     /// Interruptions, rows, events, the summary, all rows, all events.
     pub fn numbers(&self) -> Vec<f64> {
-        let counts = [f64::from(self.interruptions), self.rows.len() as f64, self.events.len() as f64];
+        let counts = [
+            f64::from(self.interruptions),
+            self.rows.len() as f64,
+            self.events.len() as f64,
+        ];
         let events = self.events.iter().flat_map(|(time, opens)| [*time, *opens]);
         let head = counts.into_iter().chain(self.summary);
         head.chain(self.rows.iter().flatten().copied()).chain(events).collect()
@@ -50,7 +54,8 @@ impl Curves {
         }
         self.rows.push(row);
         let events = contact.events().0.filter(|event| !event.second);
-        self.events.extend(events.map(|event| (event.time, f64::from(u8::from(!event.closes)))));
+        self.events
+            .extend(events.map(|event| (event.time, f64::from(u8::from(!event.closes)))));
     }
 }
 
@@ -98,15 +103,29 @@ mod tests {
         // Open for as long as the interruptions say, but for the time with little force before and after.
         let closings = curves.events.iter().skip(1).step_by(2).chain([&(0.004, 0.0)]);
         let openings = curves.events.iter().step_by(2);
-        let open: f64 = openings.zip(closings).map(|(opening, closing)| closing.0 - opening.0).sum();
+        let open: f64 = openings
+            .zip(closings)
+            .map(|(opening, closing)| closing.0 - opening.0)
+            .sum();
         assert!(curves.events.iter().step_by(2).all(|event| event.1 == 1.0));
-        assert!(open > 0.0 && open <= numbers[6] && numbers[6] < 1.1 * open, "{open} {}", numbers[6]);
+        assert!(
+            open > 0.0 && open <= numbers[6] && numbers[6] < 1.1 * open,
+            "{open} {}",
+            numbers[6]
+        );
         Ok(())
     }
 
     #[test]
     fn what_is_wrong_is_said_with_its_line() {
-        let failure = curves(&SCENE.replace("400", "-1e99")).map(|_| ()).map_err(|failure| failure.to_string());
-        assert!(failure.as_ref().is_err_and(|text| text.contains("excitation.amplitude")), "{failure:?}");
+        let failure = curves(&SCENE.replace("400", "-1e99"))
+            .map(|_| ())
+            .map_err(|failure| failure.to_string());
+        assert!(
+            failure
+                .as_ref()
+                .is_err_and(|text| text.contains("excitation.amplitude")),
+            "{failure:?}"
+        );
     }
 }

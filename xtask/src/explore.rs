@@ -78,7 +78,13 @@ fn library() -> Result<Vec<u8>> {
     let mut build = cargo();
     build
         // The shared library only, as otherwise it is not optimised across crates.
-        .args(["rustc", "--release", "--package=explore", "--lib", "--crate-type=cdylib"])
+        .args([
+            "rustc",
+            "--release",
+            "--package=explore",
+            "--lib",
+            "--crate-type=cdylib",
+        ])
         .args(["-Zbuild-std=std,panic_abort", "-Zbuild-std-features="])
         .arg(format!("--target={TARGET}"))
         .arg("--target-dir")

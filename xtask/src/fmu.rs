@@ -97,7 +97,10 @@ pub fn files<'a>(
         ("modelDescription.xml", variant.description.clone().into_bytes()),
         ("model.png", read("docs/model.png")?),
         ("documentation/index.html", documentation::page(variant)?.into_bytes()),
-        ("terminalsAndIcons/terminalsAndIcons.xml", terminal("terminalsAndIcons.xml")?),
+        (
+            "terminalsAndIcons/terminalsAndIcons.xml",
+            terminal("terminalsAndIcons.xml")?,
+        ),
         ("terminalsAndIcons/icon.png", terminal("icon.png")?),
         ("terminalsAndIcons/icon.svg", terminal("icon.svg")?),
         ("terminalsAndIcons/pin.png", terminal("pin.png")?),

@@ -33,14 +33,21 @@ pub fn run() -> Result<()> {
     }
     let pages = pages()?;
     let linked = pages.iter().map(|page| Page::read(page)).collect::<Result<Vec<_>>>()?;
-    let files: BTreeSet<_> = linked.iter().flat_map(Page::files).chain(pages.iter().cloned()).collect();
+    let files: BTreeSet<_> = linked
+        .iter()
+        .flat_map(Page::files)
+        .chain(pages.iter().cloned())
+        .collect();
     for file in &files {
         copy(file)?;
     }
     write(Path::new(SOURCE).join("python.md"), PYTHON.as_bytes())?;
     write(Path::new(SOURCE).join("explore.html"), &read(explore::page()?)?)?;
     let search = "iframe-worker.js";
-    write(Path::new(SOURCE).join(search), &read(Path::new("explore/page").join(search))?)?;
+    write(
+        Path::new(SOURCE).join(search),
+        &read(Path::new("explore/page").join(search))?,
+    )?;
     python::install("docs")?;
     let mut build = commands::python();
     build.args(["-m", "mkdocs", "build", "--strict", "--quiet"]);
@@ -69,7 +76,12 @@ fn pages() -> Result<Vec<PathBuf>> {
         for entry in fs::read_dir(root().join(folder))? {
             let path = entry?.path();
             if path.extension().is_some_and(|extension| extension == "md") {
-                pages.push(path.strip_prefix(root())?.components().filter(|part| *part != Component::CurDir).collect());
+                pages.push(
+                    path.strip_prefix(root())?
+                        .components()
+                        .filter(|part| *part != Component::CurDir)
+                        .collect(),
+                );
             }
         }
     }
@@ -113,7 +125,10 @@ impl Page {
 
     /// Links within the project: the path that one leads to, relative to the top folder, and the part of the page.
     fn within(&self) -> impl Iterator<Item = (PathBuf, &str)> {
-        let own = self.links.iter().filter(|link| !link.contains("://") && !link.starts_with("mailto:"));
+        let own = self
+            .links
+            .iter()
+            .filter(|link| !link.contains("://") && !link.starts_with("mailto:"));
         own.map(|link| {
             let (path, part) = link.split_once('#').unwrap_or((link, ""));
             let place = match path {
@@ -152,7 +167,10 @@ fn anchor(heading: &str) -> String {
 
 /// Links of all pages to files or headings that are not there.
 fn dead_links() -> Result<Vec<String>> {
-    let pages = pages()?.iter().map(|path| Page::read(path)).collect::<Result<Vec<_>>>()?;
+    let pages = pages()?
+        .iter()
+        .map(|path| Page::read(path))
+        .collect::<Result<Vec<_>>>()?;
     let mut wrong = Vec::new();
     for page in &pages {
         for (path, part) in page.within() {
@@ -186,7 +204,11 @@ mod tests {
         assert!(readme.files().any(|path| path == Path::new("docs/importers.md")));
         assert!(readme.anchors.contains("limits-of-validity"));
         let importers = Page::read(Path::new("docs/importers.md"))?;
-        assert!(importers.files().any(|path| path == Path::new("conformance/SystemStructure.ssd")));
+        assert!(
+            importers
+                .files()
+                .any(|path| path == Path::new("conformance/SystemStructure.ssd"))
+        );
         assert_eq!(anchor("What `it` is: 98 m/s²"), "what-it-is-98-ms²");
         Ok(())
     }

@@ -73,7 +73,10 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             .collect();
         if !carried.is_empty() {
             let tag = wheel.tag();
-            let path = build::folder(&metadata).join("wheels").join(&tag).join("RelayContact.fmu");
+            let path = build::folder(&metadata)
+                .join("wheels")
+                .join(&tag)
+                .join("RelayContact.fmu");
             wheel::build(&write(path, &release.packed(&carried)?)?, "dist/release", Some(&tag))?;
         }
     }
@@ -114,7 +117,14 @@ impl Release<'_> {
             .map(|(platform, library)| (platform.folder, platform.extension, library.clone()));
         let (variant, licences) = (Variant::new(false, None)?, self.tools.licences()?);
         let rustc = &self.tools.rust.rustc;
-        pack(&fmu::files(&variant, self.metadata, binaries, rustc, &targets, licences)?)
+        pack(&fmu::files(
+            &variant,
+            self.metadata,
+            binaries,
+            rustc,
+            &targets,
+            licences,
+        )?)
     }
 
     /// The library of a platform, checked, and what its trial showed.
