@@ -14,6 +14,7 @@ EXPECTED = {
     "Ecos": ("run", "published run", "two coupled", "SSP"),
     "FMU container": ("run", "run as FMI 3", "two coupled"),
     "fmi (Rust)": ("run", "published run"),
+    "fmi-rs (Rust)": ("run", "published run"),
 }
 """Tasks that the table has to have, by importer."""
 COLUMNS = ("importer", "version", "task", "result", "largest difference in contact force")

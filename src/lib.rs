@@ -35,6 +35,8 @@
 //!
 //! Source of the physics: Zhang, Zhang, Meng, Ren, Machines 2025, 13(1), 52, <https://doi.org/10.3390/machines13010052>.
 #![deny(unsafe_code)]
+// Without `fmi2`, some of what only that calls.
+#![cfg_attr(target_family = "wasm", allow(dead_code))]
 #![warn(
     clippy::unwrap_used,
     clippy::expect_used,
@@ -54,6 +56,8 @@ mod electrical;
 pub mod error;
 mod excitation;
 mod fingerprint;
+// No importer loads WebAssembly, which has no C library.
+#[cfg(not(target_family = "wasm"))]
 pub mod fmi2;
 mod force_error;
 mod harmonic;

@@ -1,18 +1,22 @@
 """The component is a valid FMU in FMPy's judgement, and what belongs in the package is there."""
 
 import zipfile
+from pathlib import Path
+from xml.etree import ElementTree
 
 import fmpy
+import pytest
 from fmpy import read_model_description
 from fmpy.validation import validate_fmu
+from xmlschema import XMLSchema
 
 from component import FMU, PLAIN, ROOT, SPRUNG
 from results import record
 
 
-def test_fmpy_finds_no_problem() -> None:
-    for fmu in (FMU, PLAIN, SPRUNG):
-        assert validate_fmu(str(fmu)) == []
+@pytest.mark.parametrize("fmu", [FMU, PLAIN, SPRUNG], ids=["own", "plain", "sprung"])
+def test_fmpy_finds_no_problem(fmu: Path) -> None:
+    assert validate_fmu(str(fmu)) == []
     record("FMPy", fmpy.__version__, "validation")
 
 
@@ -31,6 +35,28 @@ def test_package_holds_documentation_licences_and_icon() -> None:
     assert icon.startswith(b"\x89PNG\r\n\x1a\n")
     for variable in read_model_description(str(FMU)).modelVariables:
         assert f"<code>{variable.name}</code>" in page
+
+
+@pytest.mark.parametrize("fmu", [FMU, PLAIN], ids=["own", "plain"])
+def test_terminals_are_of_the_standard_and_of_this_component(fmu: Path) -> None:
+    folder = "terminalsAndIcons/"
+    with zipfile.ZipFile(fmu) as archive:
+        names = {name for name in archive.namelist() if name.startswith(folder)}
+        description = ElementTree.fromstring(archive.read(f"{folder}terminalsAndIcons.xml"))
+        pictures = {name: archive.read(name) for name in names - {f"{folder}terminalsAndIcons.xml"}}
+    schema = Path(fmpy.__file__).parent / "schema/fmi3/fmi3TerminalsAndIcons.xsd"
+    XMLSchema(schema).validate(description)
+    causalities = {v.name: v.causality for v in read_model_description(str(fmu)).modelVariables}
+    members = [member.get("variableName") for member in description.iter("TerminalMemberVariable")]
+    assert len(members) == len(set(members))
+    assert {causalities[str(member)] for member in members} == {"input", "output"}
+    bases = {each.get("iconBaseName") for each in description.iter("TerminalGraphicalRepresentation")} | {"icon"}
+    assert pictures.keys() == {f"{folder}{base}.{kind}" for base in bases for kind in ("png", "svg")}
+    for name, picture in pictures.items():
+        if name.endswith("svg"):
+            assert ElementTree.fromstring(picture).tag == "{http://www.w3.org/2000/svg}svg"
+        else:
+            assert picture.startswith(b"\x89PNG\r\n\x1a\n")
 
 
 def test_a_component_that_carries_a_spring_says_which() -> None:

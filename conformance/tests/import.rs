@@ -1,6 +1,6 @@
 //! The packaged component, loaded and run by the importer of the crate `fmi`.
 
-use std::path::Path;
+mod rows;
 
 use fmi::fmi2::Fmi2Error;
 use fmi::fmi2::import::Fmi2Import;
@@ -43,29 +43,7 @@ fn the_package_belongs_to_this_source() {
     assert_eq!(instance.get_types_platform(), "default");
 }
 
-/// Columns of a table that `cargo xtask importers` wrote.
-fn table<const N: usize>(path: &str, names: [&str; N]) -> Vec<[f64; N]> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../out/conformance")
-        .join(path);
-    let text =
-        std::fs::read_to_string(path).expect("our own runs: `cargo xtask importers` writes them and runs this test");
-    let mut lines = text.lines();
-    let header: Vec<_> = lines.next().expect("names").split(',').collect();
-    let columns = names.map(|name| header.iter().position(|column| *column == name).expect("a column"));
-    lines
-        .map(|line| {
-            let cells: Vec<_> = line.split(',').collect();
-            columns.map(|column| cells[column].parse().expect("a number"))
-        })
-        .collect()
-}
-
-/// Runs with the acceleration held from each row to the next, compares the contact force with that of the rows, and
-/// writes the row of the table of results.
 fn compare(task: &str, rows: &[[f64; 2]], prepare: impl FnOnce(&Fmi2Import, &mut InstanceCS)) {
-    const STEP: f64 = 1e-5;
-
     let import = import();
     let mut instance = instantiate(&import);
     instance.setup_experiment(None, 0.0, None).expect("the experiment");
@@ -74,31 +52,20 @@ fn compare(task: &str, rows: &[[f64; 2]], prepare: impl FnOnce(&Fmi2Import, &mut
     Common::exit_initialization_mode(&mut instance).expect("initialised");
     let input = [reference(&import, "base.acceleration")];
     let output = [reference(&import, "contact.force")];
-    let mut difference = 0.0_f64;
-    for (n, [acceleration, expected]) in (0_u32..).zip(rows) {
+    let version = fmi::built_info::PKG_VERSION;
+    rows::compare("fmi (Rust)", version, task, rows, |acceleration, time, length| {
         let mut force = [f64::NAN];
         instance.get_real(&output, &mut force).expect("the force");
-        difference = difference.max((force[0] - expected).abs());
-        instance.set_real(&input, &[*acceleration]).expect("the acceleration");
-        let [time, end] = [n, n + 1].map(|n| f64::from(n) * STEP);
-        instance.do_step(time, end - time, true).expect("a step");
-    }
-    Common::terminate(&mut instance).expect("the end");
-    // The same library, given the same numbers, gives the same numbers.
-    assert_eq!(difference, 0.0);
-    let row = serde_json::json!({
-        "importer": "fmi (Rust)", "version": fmi::built_info::PKG_VERSION, "task": task,
-        "result": "passed", "difference": difference,
+        instance.set_real(&input, &[acceleration]).expect("the acceleration");
+        instance.do_step(time, length, true).expect("a step");
+        force[0]
     });
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../out/conformance");
-    std::fs::write(folder.join(format!("fmi, {task}.json")), row.to_string()).expect("a row of the table");
+    Common::terminate(&mut instance).expect("the end");
 }
 
 #[test]
 fn a_sine_given_at_the_communication_points_gives_the_forces_of_our_own_run() {
-    let rows = table("reference.csv", ["base.acceleration", "run"]);
-    assert_eq!(rows.len(), 501);
-    compare("run", &rows, |import, instance| {
+    compare("run", &rows::held(), |import, instance| {
         instance
             .set_real(&[reference(import, "solver.tolerance")], &[1e-7])
             .expect("the tolerance");
@@ -107,11 +74,7 @@ fn a_sine_given_at_the_communication_points_gives_the_forces_of_our_own_run() {
 
 #[test]
 fn the_published_run_gives_the_forces_of_our_own() {
-    let forces = table("scenes/paper-1khz.csv", ["contact.force"]);
-    let rows: Vec<_> = forces.iter().map(|[force]| [0.0, *force]).collect();
-    assert_eq!(rows.len(), 2001);
-    compare("published run", &rows, |import, instance| {
-        // `Sine` and `FromPreload`.
+    compare("published run", &rows::published(), |import, instance| {
         let choices = ["effects.excitation", "effects.axialForce"].map(|name| reference(import, name));
         instance.set_integer(&choices, &[2, 1]).expect("the choices");
     });

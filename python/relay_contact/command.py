@@ -4,13 +4,14 @@ import argparse
 import math
 import sys
 import warnings
+import webbrowser
 from datetime import date
 from pathlib import Path
 
 import numpy as np
 
 from relay_contact.component import Component, Value, units
-from relay_contact.files import RelayContactError, fmu_path, read_toml, scenes
+from relay_contact.files import RelayContactError, fmu_path, page_path, read_toml, scenes
 from relay_contact.scene import Scene, run, write_table
 
 EXAMPLES = """examples:
@@ -20,6 +21,7 @@ EXAMPLES = """examples:
   relay-contact run paper-1khz                         writes paper-1khz.csv and paper-1khz.png
   relay-contact run chatter-41g --set excitation.frequency=500 --output contact.voltage
   relay-contact ssv paper-1khz --plain                 what the scene changes, for tools that read SSP 1.0
+  relay-contact explore                                a page with sliders in the browser; no server, no network
   relay-contact qualify paper --standard MIL-PRF-28776  verdicts and margins, qualification.html
   relay-contact identify paper --data force.csv ring.csv  damping, rivet, overtravel from measurements
 """
@@ -153,6 +155,16 @@ def identify_relay(given: argparse.Namespace) -> None:
     print(*silent(result), folder / f"{result.path.stem}.toml", *(folder / name for name in FILES), sep="\n")
 
 
+def explore(given: argparse.Namespace) -> None:
+    """Open the page that runs the simulation, and print its address."""
+    page = page_path()
+    if not page.is_file():
+        raise RelayContactError("the page is not in this installation: `cargo xtask explore` builds it")
+    print(page.as_uri())
+    if not given.print:
+        webbrowser.open(page.as_uri())
+
+
 def print_table(rows: list[list[str]]) -> None:
     """Print texts in columns."""
     widths = [max(map(len, column)) + 2 for column in zip(*rows, strict=True)]
@@ -261,6 +273,11 @@ def line() -> argparse.ArgumentParser:
     text = "seek this one instead of the usual; may be repeated; spring.thickness and the like are entries of its file"
     add("--parameter", action="append", metavar="NAME", help=text)
     add("--out", type=Path, metavar="FOLDER", help="folder for what is written (identification-RELAY)")
+
+    about = "Open a page that simulates as one drags sliders, from its file: force, resistance, level that opens."
+    one = commands.add_parser("explore", description=about, help="sliders and curves in the browser")
+    one.set_defaults(act=explore)
+    one.add_argument("--print", action="store_true", help="only print its address")
 
     about = "Draw a table of outputs, such as `relay-contact run` writes, beside it as PNG."
     one = commands.add_parser("plot", parents=[common], description=about, help="draw a table of outputs")

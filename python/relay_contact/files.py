@@ -31,6 +31,11 @@ def fmu_path() -> Path:
     return Path(given) if given else found("RelayContact.fmu", "dist/RelayContact.fmu")
 
 
+def page_path() -> Path:
+    """Return the page that runs the simulation in a browser: the one carried, else the one built here."""
+    return found("explore.html", "dist/explore.html")
+
+
 def description_path() -> Path:
     """Give the list of variables: the project's, which is there before the component is built, else the component."""
     own = PROJECT / "modelDescription.xml"

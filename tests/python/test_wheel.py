@@ -5,15 +5,22 @@
 
 import ast
 import csv
+import json
 import os
 import subprocess
 import sys
 import sysconfig
+import tarfile
 import tomllib
 import venv
+import zipfile
+from email.parser import Parser
 from pathlib import Path
+from urllib.parse import urlsplit
+from urllib.request import url2pathname
 
 import pytest
+from packaging.tags import sys_tags
 
 from component import FMU, ROOT
 
@@ -29,29 +36,41 @@ print(relay_contact.fmu_path())
 """
 
 
-def run(*command: str | Path, folder: Path = ROOT) -> str:
-    """Run a program without the project's folders in its path; give what it printed."""
+def started(*command: str | Path, folder: Path = ROOT, **further: str) -> subprocess.CompletedProcess[str]:
+    """Run a program without the project's folders in its path."""
     clean = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "RELAY_CONTACT_FMU")}
     hatch = {"RELAY_CONTACT_FMU": str(FMU)} if "hatchling" in command else {}
-    done = subprocess.run(command, cwd=folder, env=clean | hatch, capture_output=True, text=True, check=False)
+    environment = clean | hatch | further
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+
+
+def run(*command: str | Path, folder: Path = ROOT) -> str:
+    """Run a program as `started` does; return what it printed."""
+    done = started(*command, folder=folder)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
 
 @pytest.fixture(scope="module")
-def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the wheel, built unless `cargo xtask test` has."""
+    folder = tmp_path_factory.mktemp("built")
+    if "RELAY_CONTACT_FMU" in os.environ:
+        built = list(FMU.parent.glob("relay_contact-*.whl"))
+    else:
+        run(sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", folder)
+        built = list(folder.glob("*.whl"))
+    return max(built, key=lambda path: path.stat().st_mtime)
+
+
+@pytest.fixture(scope="module")
+def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Install the wheel into a new environment; give the folder of its programs.
 
     The packages that it needs are those of the environment of the tests: pip checks that they suffice, and downloads
     nothing. The path to this project in that environment is not followed, as it is not a site folder of the new one.
     """
     folder = tmp_path_factory.mktemp("wheel")
-    if "RELAY_CONTACT_FMU" in os.environ:
-        built = list(FMU.parent.glob("relay_contact-*.whl"))
-    else:
-        run(sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", folder)
-        built = list(folder.glob("*.whl"))
-    wheel = max(built, key=lambda path: path.stat().st_mtime)
     venv.create(folder / "environment", with_pip=False)
     programs = folder / "environment" / SCRIPTS
     python = programs / Path(sys.executable).name
@@ -60,6 +79,66 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (site / "others.pth").write_text("\n".join(others))
     run(sys.executable, "-m", "pip", "--python", python, "install", "--quiet", "--no-index", wheel)
     return programs
+
+
+def test_the_wheel_is_for_this_platform_alone(wheel: Path, tmp_path: Path) -> None:
+    name, version, python, abi, platform = wheel.stem.split("-")
+    assert (python, abi) == ("py3", "none")
+    assert platform in {tag.platform for tag in sys_tags()} - {"any"}
+    with zipfile.ZipFile(wheel) as archive:
+        about = archive.read(f"{name}-{version}.dist-info/WHEEL").decode()
+    assert "Root-Is-Purelib: false" in about
+    assert f"Tag: py3-none-{platform}\n" in about
+    foreign = tmp_path / wheel.name.replace(platform, "win_amd64" if os.name != "nt" else "manylinux_2_17_x86_64")
+    foreign.write_bytes(wheel.read_bytes())
+    refused = started(sys.executable, "-m", "pip", "install", "--no-index", "--target", tmp_path / "site", foreign)
+    assert refused.returncode != 0
+    assert f"{foreign.name} is not a supported wheel on this platform" in refused.stderr
+
+
+def test_a_component_for_another_platform_is_not_packed(tmp_path: Path) -> None:
+    platform = "win_amd64" if os.name != "nt" else "manylinux_2_17_x86_64"
+    build = (sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", tmp_path)
+    refused = started(*build, RELAY_CONTACT_PLATFORM=platform)
+    assert refused.returncode != 0
+    assert f"no library for {platform}" in refused.stderr
+
+
+def test_the_wheel_tells_what_it_is_made_of(wheel: Path) -> None:
+    with zipfile.ZipFile(wheel) as archive:
+        (bill,) = [name for name in archive.namelist() if ".dist-info/sboms/" in name]
+        (about,) = [name for name in archive.namelist() if name.endswith(".dist-info/METADATA")]
+        metadata = Parser().parsestr(archive.read(about).decode())
+        parts = json.loads(archive.read(bill))["components"]
+    with zipfile.ZipFile(FMU) as component, zipfile.ZipFile(wheel) as archive:
+        assert component.read("documentation/sbom.cdx.json") == archive.read(bill)
+    assert {"nalgebra", "rust-standard-library"} <= {part["name"] for part in parts}
+    assert metadata["License-Expression"] == "MIT OR Apache-2.0"
+    for field in ("Summary", "Author", "Project-URL", "Classifier", "Keywords", "Requires-Python", "Provides-Extra"):
+        assert metadata[field], field
+    assert "# relay-contact" in str(metadata.get_payload())
+
+
+def test_the_source_distribution_has_what_cargo_needs(tmp_path: Path) -> None:
+    run(sys.executable, "-m", "hatchling", "build", "-t", "sdist", "-d", tmp_path)
+    with tarfile.open(next(tmp_path.glob("*.tar.gz"))) as archive:
+        files = {name.partition("/")[2] for name in archive.getnames()}
+    workspace = tomllib.loads((ROOT / "Cargo.toml").read_text(encoding="utf-8"))["workspace"]
+    manifests = {f"{member}/Cargo.toml" for member in workspace["members"]}
+    read = {"Cargo.toml", "Cargo.lock", "build.rs", "modelDescription.xml", "src/lib.rs", "docs/model.png", "README.md"}
+    assert manifests | read | {"python/component_hook.py", ".cargo/config.toml"} <= files
+    assert not [name for name in files if name.startswith(("target/", "dist/", "out/", ".venv/"))]
+
+
+def test_the_command_opens_the_page(installed: Path, tmp_path: Path) -> None:
+    command = next(installed.glob("relay-contact*"))
+    done = started(command, "explore", "--print", folder=tmp_path)
+    if (ROOT / "dist/explore.html").is_file():
+        path = Path(url2pathname(urlsplit(done.stdout.strip()).path))
+        assert path.is_relative_to(installed.parent)
+        assert path.read_bytes() == (ROOT / "dist/explore.html").read_bytes()
+    else:
+        assert "`cargo xtask explore` builds it" in done.stderr
 
 
 def test_the_package_is_used_from_its_own_folder(installed: Path, tmp_path: Path) -> None:

@@ -96,11 +96,20 @@ pub fn files<'a>(
     more_licences: Files,
 ) -> Result<Files> {
     let crates = linked::crates(metadata, targets)?;
+    let terminal = |name: &str| read(Path::new("docs/terminalsAndIcons").join(name));
     let mut files = licences::texts(&crates, rustc, more_licences)?;
     for (path, contents) in [
         ("modelDescription.xml", variant.description.clone().into_bytes()),
         ("model.png", read("docs/model.png")?),
         ("documentation/index.html", documentation::page(variant)?.into_bytes()),
+        (
+            "terminalsAndIcons/terminalsAndIcons.xml",
+            terminal("terminalsAndIcons.xml")?,
+        ),
+        ("terminalsAndIcons/icon.png", terminal("icon.png")?),
+        ("terminalsAndIcons/icon.svg", terminal("icon.svg")?),
+        ("terminalsAndIcons/pin.png", terminal("pin.png")?),
+        ("terminalsAndIcons/pin.svg", terminal("pin.svg")?),
         ("documentation/sbom.cdx.json", bill::text(&crates, rustc)?.into_bytes()),
     ] {
         files.insert(path.to_owned(), contents);

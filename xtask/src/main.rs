@@ -4,6 +4,7 @@ mod bill;
 mod commands;
 mod demo;
 mod documentation;
+mod explore;
 mod fmu;
 mod importers;
 mod licences;
@@ -13,6 +14,7 @@ mod python;
 mod reference;
 mod release;
 mod report;
+mod site;
 mod stage;
 mod test;
 mod valgrind;
@@ -48,8 +50,12 @@ enum Task {
         #[arg(long, value_name = "FILE")]
         spring: Option<PathBuf>,
     },
-    /// Build the component and the Python package that carries it, dist/relay_contact-VERSION-py3-none-any.whl
+    /// Build the component and the Python package that carries it, dist/relay_contact-VERSION-py3-none-PLATFORM.whl
     Wheel,
+    /// Build the page that runs the simulation in a browser, dist/explore.html, and test it
+    Explore,
+    /// Build the documentation site, out/site/html/index.html
+    Docs,
     /// Build the component, run the published 1 kHz case under FMPy, compare and plot
     Demo,
     /// Measure time over accuracy, compared with other integrators; rewrite tables and figures of docs/accuracy.md
@@ -79,6 +85,8 @@ fn main() -> ExitCode {
             built.map(|path| println!("{}", path.display()))
         }
         Task::Wheel => wheel::run(),
+        Task::Explore => explore::run_task(),
+        Task::Docs => site::run(),
         Task::Demo => demo::run(),
         Task::Accuracy(arguments) => report::accuracy(&arguments),
         Task::Effects => report::effects(),

@@ -64,14 +64,20 @@ fn package(name: &str) -> Result<PathBuf> {
     Ok(PathBuf::from(path.trim()))
 }
 
-/// zig and cargo-zigbuild, which only the release needs: marked in requirements.txt and not installed by `prepare`.
-pub fn zig() -> Result<(PathBuf, PathBuf)> {
-    const MARK: &str = "; extra == 'release'";
+/// Adds the packages that only one task needs: marked in requirements.txt with its name, and not installed by [`prepare`].
+pub fn install(task: &str) -> Result<()> {
     prepare()?;
     let required = requirements()?;
-    println!("installing zig (Python package of requirements.txt)");
-    let marked = required.lines().filter_map(|line| line.strip_suffix(MARK));
+    let mark = format!("; extra == '{task}'");
+    println!("installing what the task {task} needs (Python packages of requirements.txt)");
+    let marked = required.lines().filter_map(|line| line.strip_suffix(&mark));
     output(pip().args(marked.map(str::trim)))?;
+    Ok(())
+}
+
+/// zig and cargo-zigbuild, which only the release needs.
+pub fn zig() -> Result<(PathBuf, PathBuf)> {
+    install("release")?;
     let zigbuild = Path::new(python().get_program()).with_file_name(format!("cargo-zigbuild{EXE_SUFFIX}"));
     Ok((package("ziglang")?.join(format!("zig{EXE_SUFFIX}")), zigbuild))
 }

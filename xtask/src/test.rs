@@ -10,13 +10,14 @@ use crate::stage::stage;
 use crate::{fmu, importers, python, report, valgrind, wheel};
 
 /// Folders and files with Python in them.
-const PYTHON: [&str; 6] = [
+const PYTHON: [&str; 7] = [
     "python",
     "examples/python",
     "tests/python",
     "conformance/python",
     "docs/model.py",
     "report",
+    "explore",
 ];
 
 /// Arguments of cargo's lint after the packages.
@@ -109,7 +110,7 @@ fn component() -> Result<()> {
     // Which the Python tests install into an empty environment.
     stage("wheel", wheel::run)?;
     stage("Python tests and examples", || {
-        python::test(&["examples/python", "tests/python"], &component)
+        python::test(&["examples/python", "tests/python", "explore"], &component)
     })?;
     importers::stages(&component)
 }

@@ -10,14 +10,16 @@ use crate::{fmu, python};
 /// Builds the component for this machine, and the wheel that carries it, in `dist/`.
 pub fn run() -> Result<()> {
     python::prepare()?;
-    build(&fmu::build()?, "dist")
+    build(&fmu::build()?, "dist", None)
 }
 
-/// Builds the wheel that carries a component, in a folder.
-pub fn build(component: &Path, folder: &str) -> Result<()> {
-    run_command(
-        crate::commands::python()
-            .args(["-m", "hatchling", "build", "-t", "wheel", "-d", folder])
-            .env("RELAY_CONTACT_FMU", component),
-    )
+/// Builds the wheel that carries a component, in a folder; `platform` is its tag, else this machine's.
+pub fn build(component: &Path, folder: &str, platform: Option<&str>) -> Result<()> {
+    let mut build = crate::commands::python();
+    build
+        .args(["-m", "hatchling", "build", "-t", "wheel", "-d", folder])
+        .env("RELAY_CONTACT_FMU", component)
+        .env_remove("RELAY_CONTACT_PLATFORM")
+        .envs(platform.map(|tag| ("RELAY_CONTACT_PLATFORM", tag)));
+    run_command(&mut build)
 }

@@ -10,9 +10,10 @@ use super::check::{declared, without_time};
 use super::tools::{Tools, lld};
 use crate::fmu;
 
-/// Oldest C library of Linux, and oldest macOS, on which the libraries load.
-const GLIBC: &str = "2.17";
-const MACOS: &str = "11.0";
+/// Oldest C library of Linux on which the libraries load.
+pub const GLIBC: &str = "2.17";
+/// Oldest macOS.
+pub const MACOS: &str = "11.0";
 
 /// Where all of it is built.
 pub fn folder(metadata: &Metadata) -> PathBuf {
@@ -24,17 +25,12 @@ pub fn folder(metadata: &Metadata) -> PathBuf {
 pub fn library(target: &str, tools: &Tools, metadata: &Metadata) -> Result<Vec<u8>> {
     let folder = folder(metadata);
     let mut flags = fmu::path_flags(metadata);
-    flags.extend(
-        tools
-            .sources
-            .iter()
-            .map(|folder| format!("--remap-path-prefix={}=rust", folder.display())),
-    );
+    flags.extend(tools.rust.path_flags());
     if target.contains("windows") {
         flags.push(format!("-Clink-arg={}", exports(&folder)?.display()));
     }
     let mut build = if target.contains("apple") {
-        flags.extend(apple_flags(&lld(&tools.rustc)?));
+        flags.extend(apple_flags(&lld(&tools.rust.rustc)?));
         let mut build = cargo();
         build.env("SDKROOT", sdk(&tools.zig, &folder)?);
         // The linker strips: rustc would ask for a program that is not there.
@@ -62,7 +58,7 @@ pub fn library(target: &str, tools: &Tools, metadata: &Metadata) -> Result<Vec<u
     build
         .env("CARGO_ENCODED_RUSTFLAGS", flags.join("\x1f"))
         .env_remove("RUSTC_WRAPPER");
-    build.env("RUSTC", &tools.rustc).env("RUSTC_BOOTSTRAP", "1");
+    build.env("RUSTC", &tools.rust.rustc).env("RUSTC_BOOTSTRAP", "1");
     run(&mut build)?;
     let release = folder.join(target).join("release");
     let names = ["librelay_contact.so", "relay_contact.dll", "librelay_contact.dylib"];

@@ -15,11 +15,11 @@ use cargo_metadata::Metadata;
 use clap::builder::PossibleValuesParser;
 use sha2::{Digest, Sha256};
 
-use self::platform::{PLATFORMS, Platform};
+use self::platform::{PLATFORMS, Platform, WHEELS};
 use self::tools::Tools;
 use crate::package::pack;
 use crate::variant::Variant;
-use crate::{fmu, linked, python, wheel};
+use crate::{explore, fmu, linked, python, wheel};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -28,8 +28,8 @@ pub struct Arguments {
     platforms: Vec<String>,
 }
 
-/// Builds, checks and tries the libraries, and writes `dist/release/RelayContact.fmu` with `SHA256SUMS` beside it and the Python
-/// package that carries it. A platform that cannot be built is omitted, and the command fails at the end.
+/// Builds, checks and tries the libraries, and writes `dist/release/RelayContact.fmu` with `SHA256SUMS` beside it and a Python
+/// package for each platform that carries its libraries and the page. A platform that cannot be built is omitted, and the command fails at the end.
 pub fn run(arguments: &Arguments) -> Result<()> {
     let metadata = linked::metadata()?;
     let tools = Tools::find()?;
@@ -39,7 +39,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let mut release = Release {
         metadata: &metadata,
         tools: &tools,
-        private: check::private_folders(&metadata, &tools.rustc)?,
+        private: check::private_folders(&metadata, &tools.rust.rustc)?,
         built: BTreeMap::new(),
     };
     let (mut libraries, mut lines, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
@@ -60,28 +60,32 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     if libraries.is_empty() {
         bail!("no platform could be built");
     }
-    let targets: Vec<_> = libraries
-        .iter()
-        .flat_map(|(platform, _)| platform.targets.iter().copied())
-        .collect();
     let runs_here = libraries.iter().any(|(platform, _)| trial::is_host(platform));
-    let binaries = libraries
-        .into_iter()
-        .map(|(platform, library)| (platform.folder, platform.extension, library));
-    let variant = Variant::new(false, None)?;
-    let files = fmu::files(&variant, &metadata, binaries, &tools.rustc, &targets, tools.licences()?)?;
-    let packed = pack(&files)?;
+    let packed = release.packed(&libraries)?;
     let archive = write("dist/release/RelayContact.fmu", &packed)?;
     write("dist/release/SHA256SUMS", sum("RelayContact.fmu", &packed).as_bytes())?;
-    wheel::build(&archive, "dist/release")?;
+    explore::page()?;
+    for wheel in &WHEELS {
+        let carried: Vec<_> = libraries
+            .iter()
+            .filter(|(platform, _)| platform.is_of(wheel))
+            .cloned()
+            .collect();
+        if !carried.is_empty() {
+            let tag = wheel.tag();
+            let path = build::folder(&metadata)
+                .join("wheels")
+                .join(&tag)
+                .join("RelayContact.fmu");
+            wheel::build(&write(path, &release.packed(&carried)?)?, "dist/release", Some(&tag))?;
+        }
+    }
     println!("== FMPy");
     if runs_here {
-        for tests in [
-            "conformance/python/test_validate.py",
-            "tests/python/test_effects_outputs.py",
-        ] {
-            python::test(&[tests], &archive)?;
-        }
+        // The archive alone, without its variants.
+        let own = "not plain and not sprung and not carries";
+        python::test(&["conformance/python/test_validate.py", "-k", own], &archive)?;
+        python::test(&["tests/python/test_effects_outputs.py"], &archive)?;
     } else {
         println!("NOT RUN, the archive has no library for this machine");
     }
@@ -102,6 +106,27 @@ struct Release<'a> {
 }
 
 impl Release<'_> {
+    /// The archive with these libraries.
+    fn packed(&self, libraries: &[(&Platform, Vec<u8>)]) -> Result<Vec<u8>> {
+        let targets: Vec<_> = libraries
+            .iter()
+            .flat_map(|(platform, _)| platform.targets.iter().copied())
+            .collect();
+        let binaries = libraries
+            .iter()
+            .map(|(platform, library)| (platform.folder, platform.extension, library.clone()));
+        let (variant, licences) = (Variant::new(false, None)?, self.tools.licences()?);
+        let rustc = &self.tools.rust.rustc;
+        pack(&fmu::files(
+            &variant,
+            self.metadata,
+            binaries,
+            rustc,
+            &targets,
+            licences,
+        )?)
+    }
+
     /// The library of a platform, checked, and what its trial showed.
     fn platform(&mut self, platform: &Platform) -> Result<(Vec<u8>, String)> {
         let mut parts = Vec::new();

@@ -1,5 +1,7 @@
 //! The platforms of the full archive.
 
+use super::build::{GLIBC, MACOS};
+
 /// A platform that FMI tools run on.
 pub struct Platform {
     /// Its folder below `binaries/` in the archive: the name of FMI 2.0, or of FMI 3.0 where 2.0 has none.
@@ -10,7 +12,55 @@ pub struct Platform {
     pub targets: &'static [&'static str],
 }
 
+impl Platform {
+    /// Whether wheels of a system and processor carry its library.
+    pub fn is_of(&self, wheel: &Wheel) -> bool {
+        wheel.folders.contains(&self.folder)
+    }
+}
+
+/// A Python package with the libraries of one platform.
+pub struct Wheel {
+    /// Its platform tag but for the oldest version of the system.
+    tag: (&'static str, &'static str, &'static str),
+    /// Folders of the libraries that it carries.
+    folders: &'static [&'static str],
+}
+
+impl Wheel {
+    /// Its platform tag, as pip and the index of Python packages know it: the libraries are checked for just this oldest
+    /// system.
+    pub fn tag(&self) -> String {
+        let (system, oldest, processor) = self.tag;
+        [system, &oldest.replace('.', "_"), processor]
+            .into_iter()
+            .filter(|part| !part.is_empty())
+            .collect::<Vec<_>>()
+            .join("_")
+    }
+}
+
 /// All of them.
+pub const WHEELS: [Wheel; 4] = [
+    Wheel {
+        tag: ("manylinux", GLIBC, "x86_64"),
+        folders: &["linux64"],
+    },
+    Wheel {
+        tag: ("manylinux", GLIBC, "aarch64"),
+        folders: &["aarch64-linux"],
+    },
+    Wheel {
+        tag: ("win", "", "amd64"),
+        folders: &["win64"],
+    },
+    Wheel {
+        tag: ("macosx", MACOS, "universal2"),
+        folders: &["darwin64", "aarch64-darwin"],
+    },
+];
+
+/// All platforms.
 pub const PLATFORMS: [Platform; 5] = [
     Platform {
         folder: "linux64",
@@ -38,3 +88,25 @@ pub const PLATFORMS: [Platform; 5] = [
         targets: &["aarch64-apple-darwin"],
     },
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_library_is_in_one_wheel_and_tags_are_those_of_the_index() {
+        for platform in &PLATFORMS {
+            let carriers = WHEELS.iter().filter(|wheel| platform.is_of(wheel)).count();
+            assert_eq!(carriers, 1, "{}", platform.folder);
+        }
+        assert_eq!(
+            WHEELS.map(|wheel| wheel.tag()),
+            [
+                "manylinux_2_17_x86_64",
+                "manylinux_2_17_aarch64",
+                "win_amd64",
+                "macosx_11_0_universal2"
+            ]
+        );
+    }
+}

@@ -9,12 +9,37 @@ use anyhow::{Result, bail};
 use crate::package::Files;
 use crate::python;
 
+/// A Rust compiler that comes with the sources of its standard library: they are compiled for each platform.
+pub struct Rust {
+    /// The compiler.
+    pub rustc: PathBuf,
+    /// The folder of the sources, by its two names: where it is below the compiler, and where that leads on Debian.
+    sources: [PathBuf; 2],
+}
+
+impl Rust {
+    /// Finds it.
+    pub fn find() -> Result<Self> {
+        let Some(rust) = ["rustc", "/usr/bin/rustc"].into_iter().find_map(with_sources) else {
+            bail!(
+                "no sources of Rust's standard library: rustup component add rust-src (or on Debian: apt-get install \
+                 rustc-web rust-web-src)"
+            );
+        };
+        Ok(rust)
+    }
+
+    /// Flags that remove its folders from what it compiles.
+    pub fn path_flags(&self) -> impl Iterator<Item = String> {
+        let folders = self.sources.iter();
+        folders.map(|folder| format!("--remap-path-prefix={}=rust", folder.display()))
+    }
+}
+
 /// Programs and files that were found.
 pub struct Tools {
-    /// A Rust compiler that comes with the sources of its standard library: they are compiled for each platform.
-    pub rustc: PathBuf,
-    /// Their folder, by its two names: where it is below the compiler, and where that leads on Debian.
-    pub sources: [PathBuf; 2],
+    /// The compiler.
+    pub rust: Rust,
     /// Compiles and links C for Linux and Windows.
     pub zig: PathBuf,
     /// Lets cargo link with zig.
@@ -27,19 +52,9 @@ const ZIG_LICENCES: [&str; 3] = ["LICENSE", "lib/libunwind/LICENSE.TXT", "lib/li
 impl Tools {
     /// Finds a compiler, and installs zig into `.venv`.
     pub fn find() -> Result<Self> {
-        let Some((rustc, sources)) = ["rustc", "/usr/bin/rustc"].into_iter().find_map(with_sources) else {
-            bail!(
-                "no sources of Rust's standard library: rustup component add rust-src (or on Debian: apt-get install \
-                 rustc-web rust-web-src)"
-            );
-        };
+        let rust = Rust::find()?;
         let (zig, zigbuild) = python::zig()?;
-        Ok(Self {
-            rustc,
-            sources,
-            zig,
-            zigbuild,
-        })
+        Ok(Self { rust, zig, zigbuild })
     }
 
     /// Licence texts of what zig links into libraries, by path in the archive.
@@ -53,18 +68,19 @@ impl Tools {
 }
 
 /// The compiler itself, not rustup's stand-in for it, and the sources, where it has them.
-fn with_sources(rustc: &str) -> Option<(PathBuf, [PathBuf; 2])> {
+fn with_sources(rustc: &str) -> Option<Rust> {
     let sysroot = sysroot(rustc).ok()?;
     let sources = sysroot.join("lib/rustlib/src/rust");
     let rustc = sysroot.join("bin").join(format!("rustc{EXE_SUFFIX}"));
     let leads_to = sources.canonicalize().ok()?;
-    sources
-        .join("library/Cargo.toml")
-        .exists()
-        .then_some((rustc, [sources, leads_to]))
+    let found = sources.join("library/Cargo.toml").exists();
+    found.then_some(Rust {
+        rustc,
+        sources: [sources, leads_to],
+    })
 }
 
-/// Links for macOS. It comes with rustup's toolchains; Debian's have none.
+/// Links for macOS and WebAssembly. It comes with rustup's toolchains; Debian's have none.
 pub fn lld(rustc: &Path) -> Result<PathBuf> {
     let found = [rustc, Path::new("rustc")].into_iter().find_map(|rustc| {
         let libraries = output(command(rustc).args(["--print", "target-libdir"])).ok()?;
@@ -73,7 +89,7 @@ pub fn lld(rustc: &Path) -> Result<PathBuf> {
         lld.exists().then_some(lld)
     });
     let Some(lld) = found else {
-        bail!("rust-lld is missing, which links for macOS: it comes with the toolchains of rustup");
+        bail!("rust-lld is missing, which links for macOS and WebAssembly: it comes with the toolchains of rustup");
     };
     Ok(lld)
 }

@@ -1,0 +1,141 @@
+//! The level of a steady vibration that opens the contact.
+
+use std::f64::consts::{PI, TAU};
+
+use relay_contact::inputs::Inputs;
+use relay_contact::reference::{self, Model};
+use relay_contact::scene::Scene;
+use relay_contact::scene::file::SceneFile;
+use relay_contact::simulation::Simulation;
+use relay_contact::variables::{ExcitationKind, RealOutput};
+
+use crate::Failure;
+
+/// To this part of it: less than the line on the page is wide.
+const RESOLUTION: f64 = 2e-3;
+
+/// From guess to guess. Larger steps would pass a level at which the contact opens and stays closed again above.
+const FACTOR: f64 = 1.1;
+
+/// Guesses at most: a level a thousand times that of linear theory is none.
+const GUESSES: i32 = 73;
+
+/// Decades by which the start has died away when the vibration counts as steady: as [`RESOLUTION`].
+const DECADES: f64 = 3.0;
+
+/// Periods in which an opening counts: one that bounces may open in every second one.
+const WATCHED: f64 = 4.0;
+
+/// Linear pieces of a period in which the rise is given: off the sine by 1.2e-3 of the amplitude, and exact at its end.
+const PIECES: u32 = 64;
+
+/// Least amplitude (m/s²) of a sine of this frequency (Hz) at which the contact of a scene opens in steady vibration, and that
+/// of linear theory. The scene's own excitation does not act. Infinite if no level opens it.
+///
+/// # Errors
+/// A [`Failure`] with its cause.
+pub fn level(text: &str, frequency: f64) -> Result<[f64; 2], Failure> {
+    let file: SceneFile = text.parse()?;
+    let mut scene = file.scene;
+    scene.effects.excitation = ExcitationKind::Sine;
+    scene.excitation.frequency = frequency;
+    scene.excitation.start_time = 0.0;
+    let linear = reference::opening_threshold(&Model::new(&scene, 0.0)?, TAU * frequency);
+    let mut opens = |amplitude: f64| {
+        scene.excitation.amplitude = amplitude;
+        opens(&scene, &file.inputs)
+    };
+    let (mut low, mut high) = (linear / FACTOR, linear);
+    if opens(high)? {
+        while opens(low)? {
+            (low, high) = (low / FACTOR, low);
+        }
+    } else {
+        for guess in 1.. {
+            (low, high) = (high, FACTOR * high);
+            if opens(high)? {
+                break;
+            }
+            if guess == GUESSES {
+                return Ok([f64::INFINITY, linear]);
+            }
+        }
+    }
+    while high > (1.0 + RESOLUTION) * low {
+        let middle = (low * high).sqrt();
+        if opens(middle)? {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    Ok([high, linear])
+}
+
+/// Whether the contact opens in steady vibration: after it was raised to the level over half a period of a cosine and held,
+/// each for as long as the start takes to die away.
+fn opens(scene: &Scene, inputs: &Inputs) -> Result<bool, Failure> {
+    let mut contact = Simulation::new(scene, inputs, 0.0)?;
+    let (frequency, amplitude) = (scene.excitation.frequency, scene.excitation.amplitude);
+    let natural = TAU * contact.real(RealOutput::PreloadFrequency);
+    let decay = 0.5 * (scene.beam.mass_damping + scene.beam.stiffness_damping * natural.powi(2));
+    let settling = DECADES * 10.0_f64.ln() / decay;
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a small positive count"
+    )]
+    let periods = (settling * frequency).clamp(2.0, 1000.0).ceil() as u32;
+    // What the rise lacks of the generated sine.
+    let lacking = |piece: u32| {
+        let phase = TAU * f64::from(piece) / f64::from(PIECES);
+        let part = f64::from(piece) / f64::from(PIECES * periods);
+        -0.5 * amplitude * phase.sin() * (1.0 + (PI * part).cos())
+    };
+    let step = 1.0 / (frequency * f64::from(PIECES));
+    for piece in 0..PIECES * periods {
+        let mut inputs = *inputs;
+        inputs.base_acceleration += lacking(piece);
+        inputs.base_acceleration_rate = (lacking(piece + 1) - lacking(piece)) / step;
+        contact.step(&inputs, contact.time(), step)?;
+    }
+    contact.step(inputs, contact.time(), f64::from(periods) / frequency)?;
+    let steady = contact.time();
+    contact.step(inputs, steady, WATCHED / frequency)?;
+    Ok(contact.real(RealOutput::ContactLastOpening) > steady)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scene(frequency: f64, rest: &str) -> Result<[f64; 2], Failure> {
+        let text = format!("stop = 1\ncommunicationStep = 1\noutputs = []\n[parameters]\n{rest}");
+        level(&text, frequency)
+    }
+
+    /// The contact is closed at rest, so the level of a linearised one is that of linear theory; the search and the run in
+    /// time know nothing of that.
+    #[test]
+    fn a_linearised_contact_opens_at_the_level_of_linear_theory() -> Result<(), Failure> {
+        for frequency in [200.0, 1000.0, 2500.0] {
+            let [found, linear] = scene(frequency, "effects.contactLaw = \"Linearised\"")?;
+            assert!(
+                (found / linear - 1.0).abs() < 2.0 * RESOLUTION,
+                "{frequency} Hz: {found} {linear}"
+            );
+        }
+        Ok(())
+    }
+
+    /// Of the report, which finds it by another rise and another search: 29.7 g near the first resonance.
+    #[test]
+    fn the_published_contact_opens_most_easily_at_the_level_of_the_report() -> Result<(), Failure> {
+        let levels = [1250.0, 1300.0, 1350.0, 1400.0, 1450.0].map(|frequency| scene(frequency, ""));
+        let least = levels
+            .into_iter()
+            .try_fold(f64::INFINITY, |least, level| Ok::<_, Failure>(least.min(level?[0])))?;
+        assert!((least / 9.80665 - 29.7).abs() < 0.3, "{}", least / 9.80665);
+        Ok(())
+    }
+}

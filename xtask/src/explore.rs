@@ -1,0 +1,98 @@
+//! The page that runs the simulation: one file, with the library in WebAssembly.
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use crate::commands::{cargo, read, run, write};
+use anyhow::{Context, Result, bail};
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use relay_contact::variables::VARIABLES;
+use serde_json::json;
+
+use crate::release::build;
+use crate::release::tools::{Rust, lld};
+use crate::{fmu, linked, python};
+
+/// What cargo calls the platform.
+const TARGET: &str = "wasm32-unknown-unknown";
+
+/// Largest size of the page, in bytes.
+const SIZE: usize = 1_500_000;
+
+/// Builds the page as `dist/explore.html`, and tests it in Chromium with the component beside it.
+pub fn run_task() -> Result<()> {
+    python::prepare()?;
+    let page = page()?;
+    python::test(&["explore/test_page.py"], &fmu::build()?)?;
+    println!("{}", page.display());
+    Ok(())
+}
+
+/// Writes the page and returns its path.
+pub fn page() -> Result<PathBuf> {
+    let mut packed = GzEncoder::new(Vec::new(), Compression::best());
+    packed.write_all(&library()?)?;
+    let library = STANDARD.encode(packed.finish()?);
+    let start: serde_json::Map<_, _> = VARIABLES
+        .iter()
+        .map(|variable| (variable.name.to_owned(), json!(variable.start)))
+        .collect();
+    let mut page = text("page.html")?;
+    for (mark, contents) in [
+        ("/*style*/", text("style.css")?),
+        ("/*start values*/", serde_json::to_string(&start)?),
+        ("/*worker*/", text("worker.js")?),
+        ("/*scene*/", text("scene.js")?),
+        ("/*plot*/", text("plot.js")?),
+        ("/*page*/", text("page.js")?),
+        ("/*version*/", env!("CARGO_PKG_VERSION").to_owned()),
+        ("/*library*/", library),
+    ] {
+        if page.matches(mark).count() != 1 {
+            bail!("explore/page/page.html: not once: {mark}");
+        }
+        page = page.replace(mark, &contents);
+    }
+    if page.len() > SIZE {
+        bail!("the page has {} bytes; at most {SIZE} are allowed", page.len());
+    }
+    write("dist/explore.html", page.as_bytes())
+}
+
+fn text(name: &str) -> Result<String> {
+    let path = Path::new("explore/page").join(name);
+    String::from_utf8(read(&path)?).with_context(|| path.display().to_string())
+}
+
+/// The library in WebAssembly. The standard library is compiled with it, as for all platforms of the release.
+fn library() -> Result<Vec<u8>> {
+    let metadata = linked::metadata()?;
+    let rust = Rust::find()?;
+    let folder = build::folder(&metadata);
+    let mut flags = fmu::path_flags(&metadata);
+    flags.extend(rust.path_flags());
+    flags.push(format!("-Clinker={}", lld(&rust.rustc)?.display()));
+    let mut build = cargo();
+    build
+        // The shared library only, as otherwise it is not optimised across crates.
+        .args([
+            "rustc",
+            "--release",
+            "--package=explore",
+            "--lib",
+            "--crate-type=cdylib",
+        ])
+        .args(["-Zbuild-std=std,panic_abort", "-Zbuild-std-features="])
+        .arg(format!("--target={TARGET}"))
+        .arg("--target-dir")
+        .arg(&folder)
+        .env("CARGO_ENCODED_RUSTFLAGS", flags.join("\x1f"))
+        .env_remove("RUSTC_WRAPPER")
+        .env("RUSTC", &rust.rustc)
+        .env("RUSTC_BOOTSTRAP", "1");
+    run(&mut build)?;
+    read(folder.join(TARGET).join("release/explore.wasm"))
+}
