@@ -13,7 +13,8 @@ from scipy.special import betaincinv
 from common import save
 from relay_contact import Array
 from relay_contact.figures import BLACK, BLUE, GRAVITY, GREEN, GREY, ORANGE, PURPLE, RED, SKY, acceleration_in_g
-from relay_contact.qualification.standards import Sine, Standard
+from relay_contact.qualification.excitation import Sine
+from relay_contact.qualification.standards import Standard
 
 NAME = "MIL-PRF-28776"
 ASKED = Standard.read(NAME)
