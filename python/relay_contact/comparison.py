@@ -156,8 +156,8 @@ def draw(found: Comparison, threshold: float, path: Path) -> None:
         if whole:
             course.plot(1e3 * own.time, own.resistance, line, color=colour, linewidth=1, label=name)
         else:
-            course.broken_barh([(1e3 * start, 1e3 * length) for start, length in zip(own.start, own.duration, strict=True)],
-                               (row + 0.15, 0.7), color=colour, edgecolor=colour)  # fmt: skip
+            spans = [(1e3 * start, 1e3 * length) for start, length in zip(own.start, own.duration, strict=True)]
+            course.broken_barh(spans, (row + 0.15, 0.7), color=colour, edgecolor=colour)
         durations.plot(
             1e3 * own.start, 1e6 * own.duration, marker, color=colour, fillstyle=("full", "none")[row], label=name
         )

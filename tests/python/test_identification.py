@@ -65,6 +65,9 @@ def test_what_a_laboratory_measures_gives_the_parameters(
     assert (tmp_path / "found/identification.png").read_bytes().startswith(b"\x89PNG")
     relay = Relay.read(tmp_path / "found/paper.toml", COMPONENT)
     assert set(relay.uncertainty) == set(TRUTH)
+    # Its covariance, which `qualify` draws from.
+    assert list(relay.correlation.names) == list(relay.uncertainty)
+    assert np.abs(np.tril(relay.correlation.matrix, -1)).max() > 0.3
     for name, true in TRUTH.items():
         value = float(relay.positions["contact closed"][name])
         # By the information that the data have, their scatter known, 1.1 to 1.5 %, of the rivet 10.6 %: it is a small

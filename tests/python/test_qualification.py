@@ -292,6 +292,27 @@ def test_page_and_tables(paper: tuple[dict[str, Tested], Path]) -> None:
         }
 
 
+def test_the_result_is_a_table_a_page_and_a_pdf(paper: tuple[dict[str, Tested], Path], tmp_path: Path) -> None:
+    """Also in a notebook, which shows the page."""
+    relay = Relay.read("paper", COMPONENT)
+    standard = assessment.chosen(MILITARY, ["sine"])
+    whole = Assessment(relay, standard, [paper[0]["vibration (sine)"]], tmp_path)
+    write(whole, COMPONENT, pdf=True)
+    table = whole.table
+    assert list(table["model"]) == list(MODELS)
+    assert table.attrs["units"]["closed contact least force"] == "N"
+    assert table["margin"][0] == whole["vibration (sine)"].margin.margin
+    assert set(whole.sweeps["frequency"]) >= set(whole.tests[0].margin.curves["frequency"])
+    assert (tmp_path / "qualification.pdf").read_bytes().startswith(b"%PDF")
+    shown = whole._repr_html_()
+    assert shown.startswith("<iframe srcdoc=")
+    page = (tmp_path / "qualification.html").read_text(encoding="utf-8")
+    for text in ("Not judged", "only the normal one is judged", relay.digest, standard.digest, "first-order Sobol"):
+        assert text in page
+    with pytest.raises(KeyError, match="there are vibration"):
+        whole["shock"]
+
+
 class KilledError(Exception):
     """Stands for a kill."""
 

@@ -194,16 +194,16 @@ def transient(position: Position, test: Transient) -> tuple[Margin, str]:
     least = {name: float(min(rows[:, 2 + number].min() for *_, rows in runs))
              for number, name in enumerate(specimen.monitors)}  # fmt: skip
     start = test.record.time[0] if isinstance(test, History) else 0.0
-    shown = shown_run(test, specimen, runs, piece)
+    shown = shown_run(test, specimen, runs, piece, start)
     where, limits, weakest = words(position, test, way, piece, start)
     return found(
         position, limits, margin=factor, decides=decides, linear=own[0][1].guess, weakest=weakest, failed=failed_,
         where=dict.fromkeys(failed_, where), least=least, tolerance=tolerated(position, test),
-        curves={"time": shown[:, 0].tolist(), "course": shown[:, 1].tolist(), **excited(test, piece)},
+        curves={"time": shown[:, 0].tolist(), "course": shown[:, 1].tolist(), **excited(test)},
     )  # fmt: skip
 
 
-def shown_run(test: Transient, specimen: Specimen, runs: list[Any], piece: Piece) -> Array:
+def shown_run(test: Transient, specimen: Specimen, runs: list[Any], piece: Piece, start: float) -> Array:
     """Return the run that is shown: that in the direction that opens a closed contact, or around the worst dip."""
     if isinstance(test, Shock):
         wanted = "closing" if specimen.is_open else "opening"
@@ -211,7 +211,7 @@ def shown_run(test: Transient, specimen: Specimen, runs: list[Any], piece: Piece
     rows = next(rows for _, each, _, rows in runs if each is piece)
     dip = int(rows[:, 2].argmin())
     near = np.abs(rows[:, 0] - rows[dip, 0]) < SHOWN_TIME
-    return np.asarray(np.column_stack((rows[near, 0] + piece.begin, rows[near, 1])))
+    return np.asarray(np.column_stack((rows[near, 0] + piece.begin + start, rows[near, 1])))
 
 
 def words(position: Position, test: Transient, way: str, piece: Piece, start: float) -> tuple[str, str, str]:
@@ -237,7 +237,7 @@ def tolerated(position: Position, test: Transient) -> tuple[float, float] | None
     return min(margins), max(min(margins[at : at + 2]) for at in range(0, len(margins), 2))
 
 
-def excited(test: Transient, piece: Piece) -> dict[str, Any]:
+def excited(test: Transient) -> dict[str, Any]:
     """Return what the figures show of a course itself: the whole, its spectrum, its shock response spectrum."""
     if isinstance(test, Shock):
         return {}
@@ -257,7 +257,6 @@ def excited(test: Transient, piece: Piece) -> dict[str, Any]:
         shown["required"] = (G * straight(test.response, frequency)).tolist()
     shown["whole"] = envelope(course, test.record.time[0] if isinstance(test, History) else 0.0)
     shown["spectrum"] = density(sampled, frequency, spacing)
-    shown["dip"] = piece.begin + piece.course.end
     return shown
 
 
@@ -272,7 +271,7 @@ def density(sampled: Array, frequency: Array, spacing: float) -> list[float]:
     """Return the power spectral density (m2/s3) of a course, the mean in bands around frequencies (Hz)."""
     power = np.abs(np.fft.rfft(sampled)) ** 2 * 2 * STEP / len(sampled)
     own = np.fft.rfftfreq(len(sampled), STEP)
-    ends = np.searchsorted(own, np.sqrt(np.outer(frequency, [1 / spacing, spacing])))
+    ends = np.searchsorted(own, np.outer(frequency, [spacing**-0.5, spacing**0.5]))
     return [float(power[low : max(high, low + 1)].mean()) for low, high in ends]
 
 

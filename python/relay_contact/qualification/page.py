@@ -8,7 +8,7 @@ from typing import Any
 import matplotlib as mpl
 
 from relay_contact import pages
-from relay_contact.component import Component, Values, units
+from relay_contact.component import DIFFERENCE, Component, Values, units
 from relay_contact.figures import three
 from relay_contact.qualification import plots, statistics
 from relay_contact.qualification.assessment import spring_of
@@ -219,12 +219,15 @@ def html(assessment: Assessment, component: Component, date: str) -> str:
     relay, standard, tests = assessment.relay, assessment.standard, assessment.tests
     counts = {verdict: sum(tested.verdict == verdict for tested in tests) for verdict in FILLS}
     judged, not_judged = scope(relay, standard)
-    warned = dict.fromkeys(text for tested in tests for each in tested.models for text in each.warnings)
+    # The first of each kind.
+    warned = {DIFFERENCE.sub("", text): text
+              for tested in tests[::-1] for each in tested.models[::-1] for text in each.warnings}  # fmt: skip
     sources = [(test.name, str(test), test.clause, evidence_told(test.evidence)) for test in standard.tests]
     return pages.render(
         "qualification.html", title=f"{relay.title}: {standard.title}", relay=relay.title, standard=standard.title,
         counts=", ".join(f"{count} {verdict}" for verdict, count in counts.items() if count), date=date,
-        warnings=list(warned), judged=judged, not_judged=not_judged, margins=pages.svg(plots.margins(tests)),
+        warnings=list(warned.values())[::-1], judged=judged, not_judged=not_judged,
+        margins=pages.svg(plots.margins(tests)),
         positions=[position_context(assessment, component, name, values) for name, values in relay.positions.items()],
         head=HEAD, reasons=REASONS, fills=FILLS, several=len(relay.models) > 1, first_model=relay.models[0].name,
         inputs=inputs(component, relay), springs=springs(relay), limit=limit(standard), sources=sources,

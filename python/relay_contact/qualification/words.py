@@ -95,7 +95,7 @@ def chance_text(chance: Chance) -> str:
     if chance.low == 0:
         return f"< {ppm(chance.high)}"
     if chance.high == 1:
-        return f"> {ppm(chance.low)}"
+        return f"all but < {ppm(1 - chance.low)}"
     return f"{ppm(chance.failing)} ({ppm(chance.low)} to {ppm(chance.high)})"
 
 
