@@ -64,8 +64,9 @@ def test_levels_of_standards() -> None:
         for test in Standard.read(name).tests:
             if isinstance(test, Random):
                 power = np.trapezoid(test.spectrum(frequency), frequency)
-                # Printed with three or four digits.
-                assert np.sqrt(power) / G == pytest.approx(test.rms, rel=2e-3), (name, test.name)
+                # Printed with three or four digits; that of NAVMAT with one.
+                printed = 0.011 if name.startswith("NAVMAT") else 3e-3
+                assert np.sqrt(power) / G == pytest.approx(test.rms, rel=printed), (name, test.name)
     flat = next(test for test in MILITARY.tests if isinstance(test, Random))
     assert np.sqrt(flat.spectrum(np.array([300.0])))[0] / G == pytest.approx(0.4**0.5)
 

@@ -13,7 +13,7 @@ from relay_contact.figures import three
 from relay_contact.qualification import plots, statistics
 from relay_contact.qualification.assessment import spring_of
 from relay_contact.qualification.excitation import LEVELS, evidence_told
-from relay_contact.qualification.position import DRAWS
+from relay_contact.qualification.position import DRAWS, FEWEST
 from relay_contact.qualification.relay import Relay
 from relay_contact.qualification.results import Assessment, Tested
 from relay_contact.qualification.standards import Standard
@@ -34,7 +34,7 @@ LAWS = {
 NOTES = {
     "Margin": """the level that interrupts the closed contact, or closes the open one, for the time that the standard
 allows, relative to that of the test. Its interval has 95 % confidence: the component answers a pulse with each of
-{draws} draws of the uncertain parameters, the margins of {many} further draws follow from these answers, and at both
+{fewest} to {draws} draws of the uncertain parameters, the margins of {many} further draws follow from these answers, and at both
 ends of the interval and at its limit the component seeks the level itself. If the interval includes 1, the verdict is
 undecided; if there are several models, a test is passed only by all, and failed only by all. Fails first: the contact
 that fails at the margin. In the test: which contacts fail at its level, and the longest failure. Left at least: of the
@@ -231,7 +231,7 @@ def html(assessment: Assessment, component: Component, date: str) -> str:
         positions=[position_context(assessment, component, name, values) for name, values in relay.positions.items()],
         head=HEAD, reasons=REASONS, fills=FILLS, several=len(relay.models) > 1, first_model=relay.models[0].name,
         inputs=inputs(component, relay), springs=springs(relay), limit=limit(standard), sources=sources,
-        notes=[f"{name}: {' '.join(text.format(draws=DRAWS, many=statistics.MANY).split())}"
+        notes=[f"{name}: {' '.join(text.format(fewest=FEWEST, draws=DRAWS, many=statistics.MANY).split())}"
                for name, text in NOTES.items()],
         versions=versions(assessment, component),
     )  # fmt: skip

@@ -26,8 +26,8 @@ MODEL = "model"
 CHANCE = "chance of the largest dip"
 WORN = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2)
 """Parts of the overtravel over which margins are shown."""
-DRAWS = 256
-"""Of the uncertain parameters, in which the component answers a pulse."""
+FEWEST, EACH, DRAWS = 64, 16, 256
+"""Draws of the uncertain parameters in which the component answers a pulse: fewest, for each parameter, most."""
 AT_LIMIT = 2
 """Draws next to the limit in which the component seeks the level itself."""
 SETTLED = 1e-3
@@ -100,9 +100,11 @@ class Position:
         They are points of Sobol's sequence, which fill the space evenly: each column alone is as even as it can be.
         """
         count = len(self.relay.uncertainty)
-        return np.asarray(norm.ppf(qmc.Sobol(count, scramble=False).random(DRAWS) + 0.5 / DRAWS)) if count else (
-            np.zeros((1, 0))
-        )  # fmt: skip
+        if not count:
+            return np.zeros((1, 0))
+        # Powers of 2, of which each column is even.
+        draws = min(DRAWS, max(FEWEST, 2 ** int(np.ceil(np.log2(EACH * (count + 1))))))
+        return np.asarray(norm.ppf(qmc.Sobol(count, scramble=False).random(draws) + 0.5 / draws))
 
     @cached_property
     def root(self) -> Array:
