@@ -169,7 +169,7 @@ def respond(component: Component, values: Values, threshold: float, calm: float 
     # The triangle begins one step before its peak, which the first of these is at. Lines are close enough for the
     # narrowest resonance, which the answer just shows, and end where its aliases begin.
     count = max(POINTS, 4 * len(answer))
-    lines = int(count * BAND[1] * STEP)
+    lines = int(count * BAND[1] * STEP) + 1
     frequency = np.arange(lines) / (count * STEP)
     spectrum = zoom_fft(answer, lines / (count * STEP), lines, fs=1 / STEP)
     return Response(reserve, natural, frequency, spectrum * STEP / np.sinc(frequency * STEP) ** 2, answer)
