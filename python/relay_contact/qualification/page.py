@@ -34,8 +34,8 @@ LAWS = {
 NOTES = {
     "Margin": """the level that interrupts the closed contact, or closes the open one, for the time that the standard
 allows, relative to that of the test. Its interval has 95 % confidence: the component answers a pulse with each of
-{fewest} to {draws} draws of the uncertain parameters, the margins of {many} further draws follow from these answers, and at both
-ends of the interval and at its limit the component seeks the level itself. If the interval includes 1, the verdict is
+{fewest} to {draws} draws of the uncertain parameters, the margins of {many} further draws follow from these answers,
+and at both ends of the interval and at its limit the component seeks the level itself. If the interval includes 1, the verdict is
 undecided; if there are several models, a test is passed only by all, and failed only by all. Fails first: the contact
 that fails at the margin. In the test: which contacts fail at its level, and the longest failure. Left at least: of the
 force of the closed contact and the gap of the open one, in parts of those at rest. Chance of failing: the part of the
