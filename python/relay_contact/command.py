@@ -23,6 +23,8 @@ EXAMPLES = """examples:
   relay-contact ssv paper-1khz --plain                 what the scene changes, for tools that read SSP 1.0
   relay-contact explore                                a page with sliders in the browser; no server, no network
   relay-contact qualify paper --standard MIL-PRF-28776  verdicts and margins, qualification.html
+  relay-contact qualify paper --history road.csv        margin on a measured acceleration
+  relay-contact compare chatter-41g.csv log.csv        interruptions simulated and measured
   relay-contact identify paper --data force.csv ring.csv  damping, rivet, overtravel from measurements
 """
 
@@ -125,20 +127,36 @@ def write_parameters(given: argparse.Namespace) -> None:
 
 
 def qualify_relay(given: argparse.Namespace) -> None:
-    """Test a relay as a standard asks, and print the verdicts."""
+    """Test a relay as a standard asks, or under measured records, and print the verdicts."""
     from relay_contact.qualification import qualify
-    from relay_contact.qualification.page import FILES, HEAD, UNVERIFIED, mark, rows
+    from relay_contact.qualification.page import FILES, PDF
+    from relay_contact.qualification.words import HEAD, MARKS, UNREAD, rows
 
-    folder = given.out or Path(f"qualification-{Path(given.relay).stem}-{Path(given.standard).stem}")
-    parts = qualify(
-        given.relay, given.standard, out=folder, tests=given.test, quick=given.quick, cluster=given.cluster,
-        component=Component(given.fmu), progress=True, date=given.date,
+    if not (given.standard or given.history):
+        raise RelayContactError("--standard, --history: one of them is needed, the tests of a standard or a record")
+    asked = Path(given.standard).stem if given.standard else Path(given.history[0]).stem
+    folder = given.out or Path(f"qualification-{Path(given.relay).stem}-{asked}")
+    found = qualify(
+        given.relay, given.standard, out=folder, tests=given.test, history=given.history, unit=given.unit,
+        rate=given.rate, quick=given.quick, cluster=given.cluster, component=Component(given.fmu), progress=True,
+        date=given.date, pdf=given.pdf,
     )  # fmt: skip
-    lines = [[part["position"], row[0] + mark(part), *row[1:]] for part in parts for row in rows(part)]
+    marks = [MARKS[tested.first.evidence] for tested in found]
+    lines = [
+        [tested.first.position, row[0] + mark, *row[1:]]
+        for tested, mark in zip(found, marks, strict=True) for row in rows(tested)
+    ]  # fmt: skip
     print_table([["position", *HEAD], *lines])
-    if any(map(mark, parts)):
-        print(f"* {UNVERIFIED}")
-    print(*(folder / name for name in FILES), sep="\n")
+    print(*(UNREAD,) * any(marks), *(folder / name for name in (*FILES, *(PDF,) * given.pdf)), sep="\n")
+
+
+def compare_runs(given: argparse.Namespace) -> None:
+    """Compare a run with a measurement: interruptions, or resistance over time."""
+    from relay_contact.comparison import HEAD, compare
+
+    found = compare(given.run, given.measured, out=given.out, threshold=given.threshold, shift=given.shift)
+    print_table([list(HEAD), *found.rows])
+    print(*found.notes, *found.paths, sep="\n")
 
 
 def identify_relay(given: argparse.Namespace) -> None:
@@ -240,7 +258,11 @@ def line() -> argparse.ArgumentParser:
     one.set_defaults(act=qualify_relay)
     add = one.add_argument
     add("relay", help="name of a relay, as `relay-contact list` prints them, or path of a relay file of your own")
-    add("--standard", required=True, metavar="NAME", help="name of a standard, or path of a file of your own")
+    add("--standard", metavar="NAME", help="name of a standard, or path of a file of your own")
+    text = "a measured acceleration as a test: CSV, MDF4, UFF58, TDMS or .mat, each channel by itself; may be repeated"
+    add("--history", action="append", default=[], metavar="FILE", help=text)
+    add("--unit", choices=["g", "m/s2"], default="", help="unit of a record that does not tell it")
+    add("--rate", type=positive, metavar="HZ", help="samples a second of a record without time")
     text = "only tests with TEXT in their names; may be repeated"
     add("--test", action="append", default=[], metavar="TEXT", help=text)
     add("--quick", action="store_true", help="fewer frequencies in the figures; the margins are the same")
@@ -249,6 +271,7 @@ def line() -> argparse.ArgumentParser:
         metavar="ADDRESS",
         help="of a Dask cluster whose workers have this package, such as tcp://host:8786",
     )
+    add("--pdf", action="store_true", help="the page as PDF, too (pip install 'relay-contact[pdf]')")
     text = "date to write on the page, today's if none follows; without it each run writes the same bytes"
     add("--date", nargs="?", const=date.today().isoformat(), default="", metavar="DATE", help=text)
     text = "folder for what is written (qualification-RELAY-STANDARD); finished tests found there are not run again"
@@ -278,6 +301,18 @@ def line() -> argparse.ArgumentParser:
     one = commands.add_parser("explore", description=about, help="sliders and curves in the browser")
     one.set_defaults(act=explore)
     one.add_argument("--print", action="store_true", help="only print its address")
+
+    about = "Compare a run with a chatter log or a measured resistance: counts, durations and a figure."
+    one = commands.add_parser("compare", description=about, help="a run beside a measurement")
+    one.set_defaults(act=compare_runs)
+    add = one.add_argument
+    add("run", type=Path, help="table of `relay-contact run`, with contact.resistance")
+    add("measured", type=Path, help="CSV: start and duration of interruptions, or time and resistance")
+    text = "resistance [Ohm] above which the contact is interrupted (%(default)g)"
+    add("--threshold", type=positive, default=60.0, metavar="OHM", help=text)
+    text = "time [s] to add to that measured; without it both begin at their first interruption"
+    add("--shift", type=finite, metavar="SECONDS", help=text)
+    add("--out", type=Path, default=Path(), metavar="FOLDER", help="folder for what is written (the current one)")
 
     about = "Draw a table of outputs, such as `relay-contact run` writes, beside it as PNG."
     one = commands.add_parser("plot", parents=[common], description=about, help="draw a table of outputs")

@@ -6,9 +6,11 @@ import shutil
 import sys
 import warnings
 import weakref
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from copy import copy
 from dataclasses import dataclass
+from functools import cached_property
 from numbers import Real
 from pathlib import Path
 from tempfile import mkdtemp
@@ -22,6 +24,7 @@ from numpy.typing import NDArray
 
 from relay_contact.files import RelayContactError, RelayContactWarning, fmu_path, shown
 from relay_contact.spring import PREFIX, applied
+from relay_contact.stepping import drive
 
 DIFFERENCE = re.compile(r"\S*[/\\]\S*|\d[\d.e+-]*")
 """Paths and numbers, by which two warnings may differ that say the same."""
@@ -71,6 +74,17 @@ def units(description: Any) -> dict[str, Unit]:  # noqa: ANN401
     return found
 
 
+class FMU2Functions(fmi2.FMU2Slave):  # type: ignore[misc]
+    """The functions of the library, which FMPy takes longer to look up than the component to initialise.
+
+    Each instance has a copy.
+    """
+
+    def freeInstance(self) -> None:  # noqa: N802
+        """Free the instance, not the library, which others have in common."""
+        self.fmi2FreeInstance(self.component)
+
+
 class Component:
     """The component as a file: its description, and the folder it is unpacked in."""
 
@@ -91,6 +105,15 @@ class Component:
         self.warnings: dict[str, str] = {}
         """The first warning of each kind since this was cleared, of all instances."""
         self.told: set[str] = set()
+
+    @cached_property
+    def functions(self) -> FMU2Functions:
+        """The functions of the library, without an instance."""
+        return FMU2Functions(
+            guid=self.description.guid,
+            modelIdentifier=self.description.coSimulation.modelIdentifier,
+            unzipDirectory=self.folder,
+        )
 
     def warn(self, message: str) -> None:
         """Keep a warning, and tell it as a Python warning, once for all instances."""
@@ -205,12 +228,7 @@ class Contact:
         # was made, and crash the process when that is gone.
         callbacks = fmi2.fmi2CallbackFunctions()
         callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(keep)
-        description = component.description
-        self.fmu = fmi2.FMU2Slave(
-            guid=description.guid,
-            modelIdentifier=description.coSimulation.modelIdentifier,
-            unzipDirectory=component.folder,
-        )
+        self.fmu = copy(component.functions)
         self.fmu.instantiate(callbacks=callbacks)
         self.initialised = False
 
@@ -264,18 +282,23 @@ class Contact:
         self.fmu.setReal(references, [begin])
         self.fmu.setRealInputDerivatives(references, [1], [(end - begin) / length])
 
+    def drive(self, time: Array, courses: Mapping[str, Array], watched: Sequence[str] = ()) -> dict[str, Array]:
+        """Have inputs follow straight lines between points of time, a communication step each.
+
+        Return what is watched after each step. A time given twice is a jump; the first is that already reached.
+        """
+        return drive(self, time, courses, watched)
+
     def rise(self, frequency: float, amplitude: float, periods: int, pieces: int) -> None:
         """Start the sine generator, which vibrates at full level from time 0 on, gently over these periods.
 
         base.acceleration withholds what a rise over half a period of a cosine has not reached, linearly over each of so
         many pieces of a period: a sudden start may open a contact that stays closed in steady vibration.
         """
-        phase = 2 * np.pi * np.arange(periods * pieces + 1) / pieces
+        time = np.arange(periods * pieces + 1) / pieces / frequency
+        phase = 2 * np.pi * frequency * time
         missing = -amplitude * np.sin(phase) * (1 + np.cos(phase / (2 * periods))) / 2
-        step = 1 / frequency / pieces
-        for piece in range(periods * pieces):
-            self.change("base.acceleration", missing[piece], missing[piece + 1], step)
-            self.step(piece * step, step)
+        self.drive(time, {"base.acceleration": missing})
         self.set("base.acceleration", 0.0)
 
     def get(self, name: str) -> float:

@@ -144,10 +144,10 @@ def at(path: Path, *place: str | int) -> Iterator[None]:
 
 
 def leaves(table: Mapping[str, Any], *above: str) -> Iterator[tuple[str, Place, Any]]:
-    """Return dotted name, keys and value of each value in nested tables; an empty table is one."""
+    """Return dotted name, keys and value of each value in nested tables; an empty table or a distribution is one."""
     for key, value in table.items():
         keys = (*above, key)
-        if isinstance(value, dict) and value:
+        if isinstance(value, dict) and value and "distribution" not in value:
             yield from leaves(value, *keys)
         else:
             yield ".".join(keys), keys, value

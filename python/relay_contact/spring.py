@@ -79,7 +79,9 @@ def applied(values: Mapping[str, Any], start: float, folder: Path) -> dict[str, 
     for name, value in factors.items():
         if name not in known(file):
             raise RelayContactError(f"{name}: no such entry; there are {', '.join(known(file))}")
-        if isinstance(value, str) or not 0 < value < math.inf:
+        # That of a participation in another axis may be of either sign.
+        signed = name.endswith(".participation")
+        if isinstance(value, str) or not math.isfinite(value) or not (value > 0 or signed):
             raise RelayContactError(f"{name} = {value}: not allowed, allowed is a factor greater than 0")
     if STIFFNESS in factors:
         own["beam.youngsModulus"] = float(own.get("beam.youngsModulus", start)) * factors[STIFFNESS]

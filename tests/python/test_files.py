@@ -15,8 +15,8 @@ from relay_contact import RelayContactError, Scene, run, scenes
 from relay_contact.command import main
 from relay_contact.files import read_toml
 from relay_contact.qualification import Relay, Standard, qualify, relays, standards
+from relay_contact.qualification.excitation import BAND, NARROWEST, overall
 from relay_contact.qualification.response import respond
-from relay_contact.qualification.standards import BAND, NARROWEST, overall
 from relay_contact.schema import line
 
 READERS: dict[str, Callable[[Path], Any]] = {
@@ -73,7 +73,8 @@ def wrong(content: dict[str, Any]) -> Iterator[tuple[dict[str, Any], tuple[Any, 
         elif key not in TEXT:
             yield changed(put(3.5)), place, True
         if isinstance(value, list) and len(value) > 1 and not isinstance(value[0], str | dict):
-            yield changed(put(value[::-1])), place, True
+            # A response may be in either order.
+            yield changed(put(value[::-1])), place, "response" not in place
         if isinstance(value, list) and value and isinstance(value[0], dict):
             yield changed(put([*value, value[0]])), place, True
 
@@ -87,6 +88,9 @@ def written(path: Path, content: dict[str, Any]) -> Path:
 @pytest.mark.parametrize(("kind", "shipped"), SHIPPED, ids=lambda each: getattr(each, "stem", each))
 def test_what_is_wrong_is_told_or_in_the_result(kind: str, shipped: Path, tmp_path: Path) -> None:
     content = read_toml(shipped)
+    for tests in (each for each in content.values() if isinstance(each, list)):
+        # Of many that are alike.
+        del tests[1:-1]
     for table in (content.get("inputs", {}), content.get("parameters", {}).get("beam", {})):
         if "file" in table:
             table["file"] = str(shipped.parent / table["file"])
@@ -251,7 +255,7 @@ def test_a_monitor_between_the_contact_at_rest_and_open(tmp_path: Path) -> None:
 def test_bands_that_the_response_does_not_resolve(tmp_path: Path, frequencies: str) -> None:
     path, text = tmp_path / "standard.toml", standards()["IEC-60068-2"].read_text()
     path.write_text(text.replace("[10.0, 500.0]", frequencies))
-    with pytest.raises(RelayContactError, match=r"standard.toml:16: sine.1.frequencies"):
+    with pytest.raises(RelayContactError, match=r"standard.toml:17: sine.1.frequencies"):
         Standard.read(path)
     known = respond(COMPONENT, {}, 600.0).frequency
     # The widest band that is allowed is known, and the narrowest holds two lines.

@@ -68,12 +68,15 @@ def test_what_a_laboratory_measures_gives_the_parameters(
     assert (tmp_path / "found/identification.png").read_bytes().startswith(b"\x89PNG")
     relay = Relay.read(tmp_path / "found/paper.toml", COMPONENT)
     assert set(relay.uncertainty) == set(TRUTH)
+    # Its covariance, which `qualify` draws from.
+    assert list(relay.correlation.names) == list(relay.uncertainty)
+    assert np.abs(np.tril(relay.correlation.matrix, -1)).max() > 0.3
     for name, true in TRUTH.items():
         value = float(relay.positions["contact closed"][name])
         # By the information that the data have, their scatter known, 1.1 to 1.5 %, of the rivet 10.6 %: it is a small
         # part of the moved mass; half as much again for scatters that are estimated from 6 to 9 rows.
-        assert relay.uncertainty[name] < 1.5 * (0.106 if name == "tip.mass" else 0.015)
-        assert abs(np.log(value / true)) < relay.uncertainty[name], name
+        assert relay.parts(COMPONENT)[name] < 1.5 * (0.106 if name == "tip.mass" else 0.015)
+        assert abs(np.log(value / true)) < relay.parts(COMPONENT)[name], name
 
 
 def test_intervals_hold_the_true_values_as_often_as_they_say() -> None:
@@ -119,7 +122,7 @@ def test_frequencies_over_the_overtravel_tell_the_law_of_a_rough_contact(tmp_pat
     (values,) = written.positions.values()
     for name, true in ROUGH.items():
         assert holds(result, name, true)
-        assert values[name] == pytest.approx(true, rel=written.uncertainty[name])
+        assert values[name] == pytest.approx(true, rel=written.parts(COMPONENT)[name])
     # Without names the law is sought too, as the file has a rough contact; what frequencies do not tell is said.
     result = found(data, relay=relay)
     assert {"beam.stiffnessDamping", "contact.damping"} <= set(result.missing)

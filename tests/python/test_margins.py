@@ -12,18 +12,34 @@ from scipy.stats import binom
 from component import COMPONENT
 from relay_contact import RelayContactWarning, Values, run
 from relay_contact.figures import three
-from relay_contact.qualification import FEW, Part, Relay, Standard, assessment, qualify
-from relay_contact.qualification.page import failures, passes_text, write
+from relay_contact.qualification import (
+    FEW,
+    Assessment,
+    Finding,
+    Relay,
+    Standard,
+    Tested,
+    assessment,
+    judgement,
+    qualify,
+)
+from relay_contact.qualification import position as positions
+from relay_contact.qualification.distributions import Distribution
+from relay_contact.qualification.excitation import Random, Shock, Sine
+from relay_contact.qualification.excitation import Test as Asked
+from relay_contact.qualification.page import write
 from relay_contact.qualification.relay import Model
 from relay_contact.qualification.response import margin, respond
-from relay_contact.qualification.standards import Monitor, Random, Shock, Sine
-from relay_contact.qualification.standards import Test as Asked
-from relay_contact.qualification.trials import CLOSED, Specimen, shock, steady
+from relay_contact.qualification.results import CLOSED
+from relay_contact.qualification.standards import Monitor
+from relay_contact.qualification.trials import Specimen, pieces, steady
+from relay_contact.qualification.words import failures, passes_text
 
+READ: Any = "read in the standard"
 CONTACTS = Standard.read("MIL-PRF-28776").contacts
-SINE = Sine("sine", "", True, 30.0, 4.95e-3, (10.0, 3000.0), 1200.0)
-SHOCK = Shock("shock", "", True, 50.0, 3e-3)
-RANDOM = Random("random", "", True, ((50.0, 0.02), (2000.0, 0.02)), 6.24, 900.0)
+SINE = Sine("sine", "", READ, 30.0, 4.95e-3, (10.0, 3000.0), 1200.0)
+SHOCK = Shock("shock", "", READ, 50.0, 3e-3)
+RANDOM = Random("random", "", READ, ((50.0, 0.02), (2000.0, 0.02)), 6.24, 900.0)
 
 
 def drawn(seed: int, spread: float = 0.2) -> Relay:
@@ -41,11 +57,11 @@ def drawn(seed: int, spread: float = 0.2) -> Relay:
     }  # fmt: skip
     names = ["contact.overtravel", "tip.mass", "beam.stiffnessDamping", "beam.thickness"]
     sizes = (1.0, 0.5, 2.0, 0.15)
-    uncertainty = {name: spread * size for name, size in zip(names, sizes, strict=True)}
+    uncertainty = {name: Distribution(part=spread * size) for name, size in zip(names, sizes, strict=True)}
     return Relay(f"relay {seed}", {"closed": values}, uncertainty, (Model("one", {}, 0.0),), Monitor())
 
 
-def judged(relay: Relay, folder: Path, *tests: Asked) -> list[Part]:
+def judged(relay: Relay, folder: Path, *tests: Asked) -> list[Tested]:
     """Return what some tests show."""
     standard = Standard("own", CONTACTS, tests)
     return assessment.assess(COMPONENT, relay, standard, folder, FEW)
@@ -56,8 +72,8 @@ def varied(relay: Relay, count: int, seed: int) -> list[Values]:
     (values,) = relay.positions.values()
     deviates = np.random.default_rng(seed).standard_normal((count, len(relay.uncertainty)))
     return [
-        {**values, **{name: float(values[name]) * (1 + part * z / 1.96)
-                      for (name, part), z in zip(relay.uncertainty.items(), row, strict=True)}}
+        {**values, **{name: float(values[name]) * (1 + (each.part or 0.0) * z / 1.96)
+                      for (name, each), z in zip(relay.uncertainty.items(), row, strict=True)}}
         for row in deviates
     ]  # fmt: skip
 
@@ -69,9 +85,10 @@ def fails(values: Values, test: Asked, level: float) -> bool:
     """
     specimen = Specimen(COMPONENT, values, CONTACTS, respond(COMPONENT, values, CONTACTS.threshold, 1e-3))
     if isinstance(test, Shock):
-        return any(shock(specimen, test, sign * level)[0] for sign in (-1, 1))
+        (piece,) = pieces(specimen, test.course(), 1.0)
+        return any(piece.follow(specimen, sign * level)[0] for sign in (-1, 1))
     assert isinstance(test, Sine)
-    low, high = test.frequencies
+    low, high = test.band
     frequencies = np.geomspace(low, high, 1 + int(np.log(high / low) / 0.02))
     # From the highest, where the weakest usually are: the first failure decides.
     return any(
@@ -97,11 +114,11 @@ def test_the_interval_of_a_sine_is_that_of_brute_force(seed: int, beside: float)
 
 def several(relay: Relay, test: Asked, count: int) -> None:
     """Compare the distribution of margins with counts of brute force, at the ends of the interval and between."""
-    position = assessment.Position(COMPONENT, relay, "closed", CONTACTS, (test,), relay.models[0])
-    part = assessment.judged(position, test, FEW)
+    position = positions.Position(COMPONENT, relay, "closed", CONTACTS, (test,), relay.models[0])
+    part = judgement.judged(position, test, FEW).margin
     shares = (0.025, 0.16, 0.5, 0.84, 0.975)
-    levels = np.quantile(position.margins(test, part["margin"], part["linear"]), shares, method="hazen")
-    assert (part["low"], part["high"]) == (levels[0], levels[-1])
+    levels = np.quantile(position.margins(test, part.margin)[0], shares, method="hazen")
+    assert (part.low, part.high) == (levels[0], levels[-1])
 
     def first(values: Values) -> int:
         return bisect_left(levels, True, key=lambda level: fails(values, test, float(level)))
@@ -118,9 +135,11 @@ def test_a_resonance_beside_the_range_makes_the_interval_unsymmetrical(tmp_path:
     """Sine to 96 % of the resonance: the margin falls steeply where the resonance comes nearer."""
     values: Values = {"beam.stiffnessDamping": 5e-6, "contact.damping": 2e-6}
     natural = respond(COMPONENT, values, CONTACTS.threshold).natural
-    relay = Relay("beside", {"closed": values}, {"beam.thickness": 0.04}, (Model("one", {}, 0.0),), Monitor())
+    relay = Relay(
+        "beside", {"closed": values}, {"beam.thickness": Distribution(part=0.04)}, (Model("one", {}, 0.0),), Monitor()
+    )
     test = replace(SINE, frequencies=(10.0, 0.96 * natural), acceleration=3.0)
-    (part,) = judged(relay, tmp_path, test)
+    part = judged(relay, tmp_path, test)[0].margin
 
     def at(deviate: float) -> float:
         changed = {**values, "beam.thickness": COMPONENT.start("beam.thickness") * (1 + 0.04 * deviate / 1.96)}  # type: ignore[operator]
@@ -128,16 +147,16 @@ def test_a_resonance_beside_the_range_makes_the_interval_unsymmetrical(tmp_path:
         return float(found.sine(test, CONTACTS.opening)[1].min())
 
     # The margin rises with the thickness, so that the ends are those of the thickness.
-    assert part["low"] == pytest.approx(at(-1.96), rel=0.02)
-    assert part["high"] == pytest.approx(at(1.96), rel=0.02)
+    assert part.low == pytest.approx(at(-1.96), rel=0.02)
+    assert part.high == pytest.approx(at(1.96), rel=0.02)
     # By twice as much as the ends are uncertain.
-    assert abs((part["high"] - part["margin"]) / (part["margin"] - part["low"]) - 1) > 0.1
+    assert abs((part.high - part.margin) / (part.margin - part.low) - 1) > 0.1
 
 
 @pytest.mark.parametrize("seed", range(12))
 def test_verdict_margin_and_text_agree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seed: int) -> None:
     """Levels near those that fail, where a contradiction would show."""
-    monkeypatch.setattr(assessment, "DRAWS", 64)
+    monkeypatch.setattr(positions, "DRAWS", 64)
     relay = drawn(100 + seed, 0.02)
     generator = np.random.default_rng(seed)
     tests: list[Asked] = [SINE, SHOCK, RANDOM]
@@ -148,9 +167,9 @@ def test_verdict_margin_and_text_agree(tmp_path: Path, monkeypatch: pytest.Monke
         for test in tests
     ]
     for whole in judged(relay, tmp_path, *tests):
-        for part in whole["models"]:
-            coherent(part)
-            assert whole["verdict"] == part["verdict"]
+        for finding in whole.models:
+            coherent(finding)
+            assert whole.verdict == finding.verdict
 
 
 def scaled(test: Asked, factor: float) -> Asked:
@@ -158,7 +177,9 @@ def scaled(test: Asked, factor: float) -> Asked:
     match test:
         case Sine():
             return replace(
-                test, acceleration=factor * test.acceleration, double_amplitude=factor * test.double_amplitude
+                test,
+                acceleration=factor * (test.acceleration or 0.0),
+                double_amplitude=factor * (test.double_amplitude or 0.0),
             )
         case Shock():
             return replace(test, acceleration=factor * test.acceleration)
@@ -168,34 +189,37 @@ def scaled(test: Asked, factor: float) -> Asked:
     raise TypeError(test)
 
 
-def coherent(part: Part) -> None:
+def coherent(finding: Finding) -> None:
     """Check that nothing that is said of a test contradicts anything else."""
-    assert part["low"] <= part["margin"] <= part["high"]
+    part, chance = finding.margin, finding.margin.chance
+    assert chance
+    assert chance.low <= chance.failing <= chance.high
+    assert part.low <= part.margin <= part.high
     text = failures(part)
-    if part["margin"] > 1:
-        assert not part["failed"]
+    if part.margin > 1:
+        assert not part.failed
         assert text == "none fails"
     else:
-        assert part["failed"] or "but at" in text, text
-    assert (float(three(part["margin"])) < 1) == (part["margin"] < 1)
-    match part["verdict"]:
+        assert part.failed or "but at" in text, text
+    assert (float(three(part.margin)) < 1) == (part.margin < 1)
+    match finding.verdict:
         case "pass":
-            assert part["low"] > 1
-            assert part["chance"] <= 0.025
+            assert part.low > 1
+            assert chance.failing <= 0.025
         case "FAIL":
-            assert part["high"] < 1
-            assert part["chance"] >= 0.975
+            assert part.high < 1
+            assert chance.failing >= 0.975
         case _:
-            assert part["low"] <= 1 <= part["high"]
-    if part["passes"] is None:
-        assert part["verdict"] != "pass"
+            assert part.low <= 1 <= part.high
+    if part.passes is None:
+        assert finding.verdict != "pass"
     else:
-        assert (part["passes"] <= part["overtravel"] * (1 + 1e-12)) == (part["verdict"] == "pass")
+        assert (part.passes <= part.overtravel * (1 + 1e-12)) == (finding.verdict == "pass")
 
 
 def test_passes_below_what_was_computed_is_told_so(tmp_path: Path) -> None:
     relay = replace(drawn(7), uncertainty={})
-    (part,) = judged(relay, tmp_path, replace(SHOCK, acceleration=0.1))
+    part = judged(relay, tmp_path, replace(SHOCK, acceleration=0.1))[0].margin
     (values,) = relay.positions.values()
     assert passes_text(part) == f"< {three(100 * float(values['contact.overtravel']))} mm overtravel"
 
@@ -210,26 +234,26 @@ def test_a_failure_without_an_end_is_a_failure() -> None:
 
 
 def test_each_model_is_judged_and_all_have_to_pass(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(assessment, "DRAWS", 32)
+    monkeypatch.setattr(positions, "DRAWS", 32)
     relay = drawn(8, 0.02)
     (part,) = judged(relay, tmp_path, SHOCK)
-    test = replace(SHOCK, acceleration=SHOCK.acceleration * part["margin"] / 1.1)
+    test = replace(SHOCK, acceleration=SHOCK.acceleration * part.margin.margin / 1.1)
     heavier: Values = {"tip.mass": 3 * float(relay.positions["closed"]["tip.mass"])}
     both = replace(relay, models=(*relay.models, Model("heavier", heavier, 0.01)))
     (whole,) = judged(both, tmp_path, test)
     alone = replace(relay, positions={"closed": {**relay.positions["closed"], **heavier}}, models=(both.models[1],))
     (other,) = judged(alone, tmp_path, test)
-    assert [each["verdict"] for each in whole["models"]] == ["pass", "FAIL"]
-    assert whole["models"][1] == other["models"][0]
-    assert whole["verdict"] == "undecided"
-    write(tmp_path, both, Standard("own", CONTACTS, (test,)), [whole], COMPONENT)
+    assert [each.verdict for each in whole.models] == ["pass", "FAIL"]
+    assert whole.models[1] == other.models[0]
+    assert whole.verdict == "undecided"
+    write(Assessment(both, Standard("own", CONTACTS, (test,)), [whole], tmp_path), COMPONENT)
     page = (tmp_path / "qualification.html").read_text(encoding="utf-8")
     assert "- heavier" in page
-    assert f"{three(whole['models'][1]['margin'])} to {three(whole['models'][0]['margin'])}" in page
+    assert f"{three(whole.models[1].margin.margin)} to {three(whole.models[0].margin.margin)}" in page
 
 
 def test_pages_have_all_inputs_and_the_date_if_asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(assessment, "DRAWS", 16)
+    monkeypatch.setattr(positions, "DRAWS", 16)
     relay = tmp_path / "relay.toml"
     relay.write_text("parameters.tip.mass = 12.345e-6\nuncertainty.beam.youngsModulus = 0.0377\n")
     pages = []
@@ -245,7 +269,7 @@ def test_pages_have_all_inputs_and_the_date_if_asked(tmp_path: Path, monkeypatch
 
 def test_warnings_reach_results_and_pages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Told once, kept by each result; also the one that every draw repeats with another file."""
-    monkeypatch.setattr(assessment, "DRAWS", 16)
+    monkeypatch.setattr(positions, "DRAWS", 16)
     spring = Path(Relay.read("cube-changeover", COMPONENT).positions["coil energised"]["beam.file"])  # type: ignore[arg-type]
     unused: Any = {"beam.file": str(spring), "beam.thickness": 1.23e-4, "contact.overtravel": 8e-4}
     COMPONENT.told.clear()
@@ -260,7 +284,7 @@ def test_warnings_reach_results_and_pages(tmp_path: Path, monkeypatch: pytest.Mo
         "uncertainty.spring.thickness = 0.01\n"
     )
     (part,) = qualify(relay, "MIL-STD-202", out=tmp_path, tests=["213 A"], component=COMPONENT)
-    assert len([text for text in part["models"][0]["warnings"] if "not used" in text]) == 1
+    assert len([text for text in part.first.warnings if "not used" in text]) == 1
     assert "not used" in (tmp_path / "qualification.html").read_text(encoding="utf-8")
 
 

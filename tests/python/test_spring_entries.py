@@ -8,9 +8,9 @@ import pytest
 from component import COMPONENT, ROOT
 from relay_contact import RelayContactError
 from relay_contact.qualification import Relay, Standard
-from relay_contact.qualification.assessment import Position
+from relay_contact.qualification.excitation import Shock
+from relay_contact.qualification.position import Position
 from relay_contact.qualification.response import margin
-from relay_contact.qualification.standards import Shock
 
 SEGMENTS = ROOT / "scenes/springs/tapered-cube.toml"
 MODES = ROOT / "scenes/springs/tapered-cube-modes.toml"
@@ -66,10 +66,10 @@ def test_uncertain_entries_make_margins_uncertain(tmp_path: Path) -> None:
     file.write_text(text + "uncertainty.spring.thickness = 0.02\nuncertainty.spring.stiffness = 0.05\n")
     relay = Relay.read(file, COMPONENT)
     (name,) = relay.positions
-    test = Shock("slow", "", True, 20.0, 0.1)
+    test = Shock("slow", "", "from memory", 20.0, 0.1)
     position = Position(COMPONENT, relay, name, Standard.read("MIL-PRF-28776").contacts, (test,), relay.models[0])
-    linear = margin(position.specimen.response, test, position.specimen.lasting)
-    effects = position.effects(test, position.linear[test], linear)
+    _, chance = position.margins(test, margin(position.specimen.response, test, position.specimen.lasting))
+    effects = chance.effects
     # The mass that the spring carries beside its own is not as thick.
     assert 2 * 0.02 < effects["spring.thickness"] < 3 * 0.02
     # 10 us, the indentation, and the vibration of the spring itself, 5 Hz over 1600 Hz.

@@ -226,7 +226,7 @@ class Laboratory:
         """Return what counts as an interruption."""
         names = ("chatter.minimumDuration", "chatter.resistanceThreshold")
         opening, resistance = (float(values.get(name, self.component.start(name))) for name in names)
-        return Contacts(opening, 1e-6, resistance, 1.0, "", False)
+        return Contacts(opening, 1e-6, resistance, 1.0, "", "measured")
 
     def correction(self, measurement: Measurement, values: Values) -> Array:
         """Return by which factor the levels of a contact that opens differ from those of the linear one."""

@@ -4,6 +4,7 @@ import math
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import tomlkit
 from tomlkit.container import OutOfOrderTableProxy
 from tomlkit.items import InlineTable
@@ -63,11 +64,27 @@ def text(result: Identification, spring: str) -> str:
                 put(table, name, number(each.value, each.half), remark)
         widest = max(other.half for other in result.found if other.unknown.name == name)
         put(content["uncertainty"], name, number(widest, 0.1), "identified")
+    names, matrix = correlations(result)
+    content["correlation"] = tomlkit.table()
+    content["correlation"]["names"] = names
+    content["correlation"]["matrix"] = [[round(each, 4) for each in row] for row in matrix]
     if spring:
         for table in (content["parameters"], *(each.get("parameters", {}) for each in tables.values())):
             if has({"parameters": table}, "beam.file"):
                 put(table, "beam.file", tomlkit.item(spring))
     return tomlkit.dumps(content)
+
+
+def correlations(result: Identification) -> tuple[list[str], list[list[float]]]:
+    """Return names and coefficients of correlation of what was found; of a parameter in several positions the first."""
+    first: dict[str, int] = {}
+    for place, each in enumerate(result.found):
+        first.setdefault(each.unknown.name, place)
+    chosen = list(first.values())
+    matrix = result.whole[np.ix_(chosen, chosen)]
+    matrix = (matrix + matrix.T) / 2
+    np.fill_diagonal(matrix, 1.0)
+    return list(first), np.clip(matrix, -1.0, 1.0).tolist()
 
 
 def spring_text(result: Identification) -> tuple[str, str]:

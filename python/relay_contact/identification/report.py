@@ -1,7 +1,6 @@
 """The results of an identification as a table, a page and a figure: measured and fitted values, and what is left."""
 
 import csv
-from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -11,9 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
+from relay_contact import pages
 from relay_contact.component import SIGNS, Array, Component, Unit, units
 from relay_contact.figures import BLACK, BLUE, GREY, RED
-from relay_contact.html import STYLE, document, svg, table
 from relay_contact.identification import relay_file
 from relay_contact.identification.fit import Set
 from relay_contact.identification.measurement import BOUNCE, COLUMNS, FORCE, FREQUENCY, RELATIVE, RINGDOWN
@@ -81,14 +80,14 @@ def silent(result: Identification) -> list[str]:
     return told + [f"{note}." for note in result.notes]
 
 
-def matrix(result: Identification) -> str:
+def matrix(result: Identification) -> pages.Table:
     """Return the correlations as a table."""
     labels = [each.unknown.label for each in result.found]
     rows = [
         [label, *(f"{result.correlation[i, j]:+.3f}" if j < i else "" for j in range(len(labels) - 1))]
         for i, label in enumerate(labels) if i
     ]  # fmt: skip
-    return table(["", *labels[:-1]], rows)
+    return ["", *labels[:-1]], rows
 
 
 def panels(axes: Axes, below: Axes, each: Set, model: Array, curve: tuple[Array, Array]) -> None:
@@ -140,21 +139,17 @@ def draw(result: Identification) -> Figure:
 def write(folder: Path, result: Identification, component: Component) -> list[Path]:
     """Write the relay's file, page, figure and table; give their paths."""
     folder.mkdir(parents=True, exist_ok=True)
-    settings: Any = STYLE
+    settings: Any = pages.STYLE
     with mpl.rc_context(settings):
         figure = draw(result)
         figure.savefig(folder / FILES[1], dpi=130)
-        body = [f"<h1>{escape(result.relay.title)}, identified</h1>"]
-        body.append(table(HEAD, cells(component, result)))
-        lines = "".join(f"<li>{escape(line)}</li>" for line in silent(result))
-        body.append(f"<h2>What the data do not tell, and remarks</h2><ul>{lines}</ul>" if lines else "")
-        body += ["<h2>Measured and fitted</h2>", svg(figure)]
-        body.append(table(("measurement", "file", "position", "contact", "values", "scatter (rms)"), data(result)))
-        if len(result.found) > 1:
-            body += ["<h2>Correlations</h2>", matrix(result)]
-        body += ["<h2>How this was found</h2>", f"<p>{escape(NOTES)}</p>"]
-        body.append(f'<p class="note">Component {escape(component.description.guid)}.</p>')
-    (folder / FILES[0]).write_text(document(f"{result.relay.title}, identified", body), encoding="utf-8")
+        page = pages.render(
+            "identification.html", title=f"{result.relay.title}, identified", found=(HEAD, cells(component, result)),
+            remarks=silent(result), figure=pages.svg(figure), notes=NOTES, component=component.description.guid,
+            data=(("measurement", "file", "position", "contact", "values", "scatter (rms)"), data(result)),
+            correlations=matrix(result) if len(result.found) > 1 else None,
+        )  # fmt: skip
+    (folder / FILES[0]).write_text(page, encoding="utf-8")
     with (folder / FILES[2]).open("w", newline="", encoding="utf-8") as file:
         lines_ = csv.writer(file, lineterminator="\n")
         lines_.writerow(["parameter", "in the file (SI)", "identified (SI)", "low", "high"])

@@ -69,7 +69,9 @@ class Identification:
     missing: dict[str, str]
     """Parameters that the data do not determine, and why."""
     correlation: Array
-    """Of those found."""
+    """Of those found, by the scatter of the measurements."""
+    whole: Array
+    """The same with what parameters that are not sought contribute: with the intervals, the covariance of all."""
     sets: list[Set]
     fitted: list[Array]
     """The model's values for each measurement."""
@@ -168,7 +170,8 @@ def sought(
         if not len(wide):
             break
         # What is known from elsewhere is taken out first: the data then tell the others.
-        order = [(relay.uncertainty.get(fit.unknowns[each].name, np.inf), -halves[each], each) for each in wide]
+        known = relay.parts(laboratory.component)
+        order = [(known.get(fit.unknowns[each].name, np.inf), -halves[each], each) for each in wide]
         worst = int(min(order)[2])
         missing[fit.unknowns[worst].label] = reason(fit, worst, relay)
         fit = without(fit, worst)
@@ -229,7 +232,7 @@ def reason(fit: Fit, number: int, relay: Relay) -> str:
     why = "the data hardly depend on it"
     if partners:
         why = f"the data tell it only together with {' and '.join(partners)}"
-    part = relay.uncertainty.get(fit.unknowns[number].name)
+    part = relay.parts(fit.laboratory.component).get(fit.unknowns[number].name)
     kept = f"with its ± {100 * part:g} %" if part else "as if it were exact"
     return f"{why}; taken from the relay's file {kept}"
 
@@ -238,7 +241,8 @@ def conclude(fit: Fit, missing: dict[str, str], relay: Relay, path: Path) -> Ide
     """Return intervals, correlations and what else has to be said."""
     halves = fit.halves() if fit.unknowns else np.zeros(0)
     names = {unknown.name for unknown in fit.unknowns}
-    others = {name: part for name, part in relay.uncertainty.items() if name not in names and part}
+    parts = relay.parts(fit.laboratory.component)
+    others = {name: part for name, part in parts.items() if name not in names and part}
     shifts = {name: fit.shifts(name, part) for name, part in others.items()} if fit.unknowns else {}
     found = []
     for number, unknown in enumerate(fit.unknowns):
@@ -248,13 +252,17 @@ def conclude(fit: Fit, missing: dict[str, str], relay: Relay, path: Path) -> Ide
     fitted = [fit.modelled(each, fit.logarithms) for each in fit.sets]
     curves = [curve(fit, each, model) for each, model in zip(fit.sets, fitted, strict=True)]
     correlation = fit.correlation if fit.unknowns else np.zeros((0, 0))
+    # What others contribute moves several parameters at once.
+    together = correlation * np.outer(halves, halves) + sum(np.outer(shift, shift) for shift in shifts.values())
+    sizes = np.array([each.half for each in found])
     notes = [line for each, model in zip(fit.sets, fitted, strict=True) for line in remarks(fit, each, model)]
     notes += [
         f"{one.label} and {other.label} are known better together than alone (correlation {correlation[i, j]:+.3f})"
         for i, one in enumerate(fit.unknowns) for j, other in enumerate(fit.unknowns[:i])
         if abs(correlation[i, j]) > TOGETHER
     ]  # fmt: skip
-    return Identification(relay, path, found, missing, correlation, fit.sets, fitted, curves, notes)
+    whole = together / np.outer(sizes, sizes)
+    return Identification(relay, path, found, missing, correlation, whole, fit.sets, fitted, curves, notes)
 
 
 def curve(fit: Fit, each: Set, model: Array) -> tuple[Array, Array]:

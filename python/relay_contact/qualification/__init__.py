@@ -4,12 +4,13 @@ from dataclasses import replace
 from pathlib import Path
 
 from relay_contact.component import Component
-from relay_contact.qualification.assessment import Part, assess, chosen
+from relay_contact.qualification.assessment import assess, chosen
 from relay_contact.qualification.relay import Relay, check_monitor, relays
+from relay_contact.qualification.results import Assessment, Finding, Tested
 from relay_contact.qualification.standards import Standard, standards
 from relay_contact.scene import progress_bar
 
-__all__ = ["Part", "Relay", "Standard", "qualify", "relays", "standards"]
+__all__ = ["Assessment", "Finding", "Relay", "Standard", "Tested", "qualify", "relays", "standards"]
 
 POINTS, FEW = 120, 24
 """Frequencies of a sweep, and in the short form."""
@@ -17,37 +18,51 @@ POINTS, FEW = 120, 24
 
 def qualify(
     relay: str | Path,
-    standard: str | Path,
+    standard: str | Path | None = None,
     *,
     out: str | Path,
     tests: list[str] | None = None,
+    history: list[str | Path] | None = None,
+    unit: str = "",
+    rate: float | None = None,
     quick: bool = False,
     component: Component | None = None,
     progress: bool = False,
     cluster: str | None = None,
     date: str = "",
-) -> list[Part]:
+    pdf: bool = False,
+) -> Assessment:
     """Test a relay as a standard asks, each by its name or its file; write page and tables; return the results.
 
-    `tests` are parts of the names of those wanted, without it all. What an interrupted assessment has finished is not
-    run again. `quick` vibrates at fewer frequencies; margins are the same. `cluster` is the address of a Dask
-    cluster whose workers have this package. `date` stands on the page, without which its bytes are
-    the same for each run.
+    `tests` are parts of the names of those wanted, without it all. `history` are files of measured accelerations, each
+    of whose channels is a further test (without a standard the only ones, with the limits of MIL-PRF-28776); `unit` and
+    `rate` (samples a second) are those of files that do not tell. What an interrupted assessment has finished is not
+    run again. `quick` vibrates at fewer frequencies; margins are the same. `cluster` is the address of a Dask cluster
+    whose workers have this package. `date` stands on the page, without which its bytes are the same for each run;
+    `pdf` writes it as PDF, too.
     """
     # Workers and lists of relays import this package, too, and draw nothing.
     from relay_contact.qualification.page import write
 
     component, out = component or Component(), Path(out)
     described = Relay.read(relay, component)
-    asked = chosen(Standard.read(standard), tests or [])
+    asked = Standard.read(standard or LIMITS)
+    asked = chosen(asked, tests or []) if standard else replace(asked, title="measured records", tests=())
+    for file in history or []:
+        asked = asked.with_history(Path(file), unit=unit, rate=rate)
     asked = replace(asked, contacts=asked.contacts.monitored(described.monitor))
     check_monitor(component, described, asked.contacts)
-    count = len(asked.tests) * len(described.positions) * len(described.models)
+    count = len(asked.tests) * len(described.positions) * len(described.models) * (1 + len(described.axes))
     with progress_bar(count, "{desc} |{bar}| {n_fmt} of {total_fmt} tests", progress) as bar:
 
         def tell(label: str) -> None:
             bar.set_description_str(label) if label else bar.update()
 
-        parts = assess(component, described, asked, out, FEW if quick else POINTS, tell, cluster)
-    write(out, described, asked, parts, component, date)
-    return parts
+        found = assess(component, described, asked, out, FEW if quick else POINTS, tell, cluster)
+    assessment = Assessment(described, asked, found, out)
+    write(assessment, component, date, pdf)
+    return assessment
+
+
+LIMITS = "MIL-PRF-28776"
+"""The standard whose limits hold for records alone."""

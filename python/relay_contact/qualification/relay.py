@@ -1,13 +1,18 @@
 """A relay as its file describes it: contacts, coil positions, and how well its parameters are known."""
 
-from dataclasses import dataclass
+import hashlib
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any
 
+import numpy as np
 from pydantic import Field
+from scipy.stats import norm
 
 from relay_contact.component import Component, Values, nearest
-from relay_contact.files import RelayContactError, by_name, found, named
+from relay_contact.files import RelayContactError, by_name, found, named, read_toml
+from relay_contact.qualification import distributions
+from relay_contact.qualification.distributions import Correlation, Distribution
 from relay_contact.qualification.standards import Contacts, Monitor
 from relay_contact.schema import (
     Nested,
@@ -29,6 +34,10 @@ OF_THE_TEST = ("excitation.", "effects.excitation", "chatter.", "effects.chatter
 """Beginnings of the names of parameters that the tests set: in the file of a relay they would contradict them."""
 HALF, STEP, FURTHER = 10, 1e-5, 1e-4
 """Steps of a blow either way, their length (s), and how far (m) a mass without a spring moves beyond the contacts."""
+
+
+NORMAL = "normal"
+"""The axis of base acceleration along the motion of the contact."""
 
 
 class CoilPosition(Table):
@@ -59,9 +68,11 @@ class Content(Table):
     parameters: Nested
     position: Annotated[list[CoilPosition], Field(min_length=1, default_factory=lambda: [CoilPosition(parameters={})])]
     uncertainty: Nested
+    correlation: Correlation = Correlation()
     model: Annotated[list[Rival], Field(min_length=1, default_factory=lambda: [Rival(parameters={})])]
     monitor: Monitor = Monitor()
     contact: Surfaces = Surfaces()
+    axes: dict[str, list[float]] = Field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -82,13 +93,28 @@ class Relay:
     title: str
     positions: dict[str, Values]
     """Parameters of the component in each position of the coil, by its name."""
-    uncertainty: dict[str, float]
-    """Of parameters, or entries of the spring file, as parts of their values, with 95 % confidence."""
+    uncertainty: dict[str, Distribution]
+    """Of parameters, or entries of the spring file."""
     models: tuple[Model, ...]
     """The first is that of figures and tables; a relay passes only by all of them."""
     monitor: Monitor
     roughness: float | None = None
     """Root mean square of the heights of both surfaces together, m."""
+    correlation: Correlation = field(default_factory=Correlation)
+    """Of the uncertain parameters."""
+    axes: dict[str, Values] = field(default_factory=dict)
+    """Further axes of base acceleration: factors of the participations of the modes."""
+    digest: str = ""
+    """Of the file."""
+
+    def value(self, component: Component, name: str, position: str | None = None) -> float:
+        """Return the value of a parameter, in the first position unless another is named; of an entry a factor of 1."""
+        values = self.positions[position or next(iter(self.positions))]
+        return 1.0 if name.startswith(PREFIX) else value_of(component, values, name)
+
+    def parts(self, component: Component) -> dict[str, float]:
+        """Return half of each interval of 95 %, as a part of the value."""
+        return {name: each.half(self.value(component, name)) for name, each in self.uncertainty.items()}
 
     @classmethod
     def read(cls, relay: str | Path, component: Component) -> "Relay":
@@ -107,6 +133,10 @@ class Relay:
                 # Parameters that do not fit together.
                 blow(component, positions[name])
         uncertainty = uncertainties(path, content.uncertainty, positions, component)
+        for number, name in enumerate(content.correlation.names):
+            if name not in uncertainty:
+                allowed = f"allowed are the names in [uncertainty]{nearest(name, uncertainty)}"
+                raise refused(path, ("correlation", "names", number), name, allowed)
         models: dict[str, Model] = {}
         for number, rival in enumerate(content.model):
             place = ("model", number)
@@ -121,7 +151,12 @@ class Relay:
                 for values in positions.values():
                     blow(component, {**values, **changed})
         title, roughness = content.title or path.stem, content.contact.roughness
-        return cls(title, positions, uncertainty, tuple(models.values()), content.monitor, roughness)
+        axes = {name: participations(path, name, own, positions) for name, own in content.axes.items()}
+        digest = hashlib.sha256(path.read_bytes()).hexdigest()[:16]
+        return cls(
+            title, positions, uncertainty, tuple(models.values()), content.monitor, roughness, content.correlation,
+            axes, digest,
+        )  # fmt: skip
 
 
 def check_monitor(component: Component, relay: Relay, contacts: Contacts) -> None:
@@ -145,11 +180,28 @@ def parameters(path: Path, table: dict[str, Any], place: Place, component: Compo
     return variables(path, table, place, component)
 
 
+def participations(path: Path, axis: str, own: list[float], positions: dict[str, Values]) -> Values:
+    """Return the participations of the modes in an axis as factors of those in the spring file."""
+    found: dict[str, float] = {}
+    for values in positions.values():
+        file = str(values.get("beam.file", ""))
+        modes = read_toml(Path(file)).get("mode", []) if file else []
+        if axis == NORMAL or len(modes) != len(own):
+            text = f"allowed is one participation for each of the {len(modes)} modes in the spring file"
+            raise refused(path, ("axes", axis), own, "the spring file has it" if axis == NORMAL else text)
+        for number, (mode, part) in enumerate(zip(modes, own, strict=True), 1):
+            if not mode["participation"]:
+                text = f"mode {number} has none in the spring file, of which this is a factor"
+                raise refused(path, ("axes", axis, number - 1), part, text)
+            found[f"{PREFIX}mode.{number}.participation"] = part / mode["participation"]
+    return found
+
+
 def uncertainties(
     path: Path, table: dict[str, Any], positions: dict[str, Values], component: Component
-) -> dict[str, float]:
+) -> dict[str, Distribution]:
     """Return the uncertainties of a relay's file by name; each changes something in one position at least."""
-    found: dict[str, tuple[Place, float]] = {}
+    found: dict[str, tuple[Place, Distribution]] = {}
     for name, keys, part in leaves(table):
         place = ("uncertainty", *keys)
         with at(path, *place):
@@ -161,35 +213,39 @@ def uncertainties(
                         raise RelayContactError(f"{dotted(place)}: {text}")
             elif component.variables[exact(component, name, "parameter")].type != "Real":
                 raise RelayContactError(f"{dotted(place)}: not a real parameter")
-        if isinstance(part, bool) or not isinstance(part, int | float) or not 0 <= part < 1:
-            raise refused(path, place, part, "allowed is a part of the value, from 0 to less than 1")
         if name in found:
             raise refused(path, place, part, "given twice")
-        found[name] = place, float(part)
+        try:
+            found[name] = place, distributions.read(part)
+        except ValueError as error:
+            raise refused(path, place, part, str(error)) from error
     rest = {name: blow(component, values) for name, values in positions.items()} if found else {}
-    for name, (place, part) in found.items():
+    for name, (place, distribution) in found.items():
         with at(path, *place):
-            used = [part == 0]
+            used = [distribution.part == 0]
             for position, values in positions.items():
                 start = 1.0 if name.startswith(PREFIX) else value_of(component, values, name)
-                for end in (start * (1 - part), start * (1 + part)):
-                    used.append(blow(component, values, {name: end}) != rest[position])
+                ends = (
+                    [start, start] if not start else start * distribution.factor(norm.ppf(distributions.LIMITS), start)
+                )
+                for end in ends:
+                    used.append(blow(component, values, {name: float(end)}) != rest[position])
             if not any(used):
                 raise RelayContactError(f"{dotted(place)}: not used, {name} changes nothing in this relay, or it is 0")
-    return {name: part for name, (_, part) in found.items()}
+    return {name: distribution for name, (_, distribution) in found.items()}
 
 
 def blow(component: Component, values: Values, changed: Values | None = None) -> list[float]:
     """Return what the contacts do after a blow that closes the first and one that opens it, with other parameters."""
     watched = ("contact.force", "contact.resistance", "tip.displacement", "second.force", "second.resistance")
     travel = FURTHER + sum(abs(value_of(component, values, name)) for name in ("contact.overtravel", "second.gap"))
+    size = 2 * travel / (HALF * STEP) ** 2
+    # The middle twice: there it turns around.
+    time = STEP * np.insert(np.arange(2.0 * HALF + 1), HALF, HALF)
+    course = np.repeat([size, -size], HALF + 1)
     with component.started({**values, **(changed or {})}) as contact, contact.explained():
-        found = []
-        for number, sign in enumerate([1.0] * HALF + [-1.0] * HALF):
-            contact.set("base.acceleration", sign * 2 * travel / (HALF * STEP) ** 2)
-            contact.step(number * STEP, STEP)
-            found += contact.real(*watched)
-        return found
+        rows = contact.drive(time, {"base.acceleration": course}, watched)
+        return [float(value) for row in zip(*rows.values(), strict=True) for value in row]
 
 
 def value_of(component: Component, values: Values, name: str) -> float:
@@ -198,5 +254,5 @@ def value_of(component: Component, values: Values, name: str) -> float:
 
 
 def relays() -> dict[str, Path]:
-    """Give the files of the relays by name."""
+    """Return the files of the relays by name."""
     return by_name(found("relays", "relays"))

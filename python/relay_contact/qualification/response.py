@@ -11,14 +11,18 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter1d
+from scipy.optimize import brentq
+from scipy.signal import oaconvolve, zoom_fft
+from scipy.stats import norm, qmc
 
 from relay_contact.component import Array, Component, Values
-from relay_contact.figures import GRAVITY
+from relay_contact.figures import GRAVITY as G
 from relay_contact.files import RelayContactError
-from relay_contact.qualification.standards import Random, Shock, Sine, Test
+from relay_contact.qualification.excitation import BAND, STEP, Course, Random, Sine, Test, Transient
 
-STEP = 1e-5
-"""Length (s) of the steps: resonances above 50 kHz are folded back, a thousand times weaker."""
+PHASES = 1024
+"""Combinations of the phases of sines on noise, over which the rate of crossings is averaged."""
 WATCHED, LONGEST = 1000, 200_000  # steps: an answer ends after some of at most
 CALM = 1e-6  # part of its largest force
 POINTS = 2**18  # of the transform at least, every 0.38 Hz
@@ -53,12 +57,12 @@ class Response:
         return np.abs(self.transfer)
 
     def settling(self, part: float = 1e-3) -> float:
-        """Give the time (s) after which less than a part of a vibration is left."""
+        """Return the time (s) after which less than a part of a vibration is left."""
         left = np.maximum.accumulate(np.abs(self.answer[::-1]))[::-1]
         return STEP * int(np.argmax(left < part * left[0]))
 
     def bandwidth(self, frequency: float) -> float:
-        """Give the width (Hz) of a resonance at half of its power."""
+        """Return the width (Hz) of a resonance at half of its power."""
         at = int(np.searchsorted(self.frequency, frequency))
         low = self.gain < self.gain[at] / np.sqrt(2)
         below, above = np.flatnonzero(low[:at]), np.flatnonzero(low[at:])
@@ -67,50 +71,65 @@ class Response:
         return float(self.frequency[last] - self.frequency[first])
 
     def sine(self, test: Sine, opening: float) -> tuple[Array, Array]:
-        """Give the factors of the level that fail for a time (s), at the frequencies (Hz) of a sweep."""
-        low, high = test.frequencies
-        inside = (self.frequency >= low) & (self.frequency <= high)
-        frequency = self.frequency[inside]
+        """Return the factors of the level that fail for a time (s), at the frequencies (Hz) of a test."""
+        tried = test.tried(self.frequency, self.gain)
+        frequency = self.frequency[tried]
         # Force or gap is below zero for the time where its amplitude is the reserve over this cosine.
         needed = self.reserve / np.cos(np.minimum(np.pi * frequency * opening, 1.5))
-        return frequency, needed / (test.amplitude(frequency) * self.gain[inside])
+        return frequency, needed / (test.amplitude(frequency) * self.gain[tried])
 
     def moments(self, test: Random) -> tuple[float, float]:
-        """Give rms (N or m) and mean frequency (Hz) of force or gap in random vibration."""
+        """Return rms (N or m) and mean frequency (Hz) of force or gap in random vibration, without its sines."""
         density = test.spectrum(self.frequency) * self.gain**2
         step = self.frequency[1]
         power = float(density.sum() * step)
         return power**0.5, float((density * self.frequency**2).sum() * step / power) ** 0.5
 
     def random(self, test: Random, opening: float, chance: float = 0.5) -> float:
-        """Give the factor of the level that fails within the test with a chance, by Rice's rate of crossings."""
+        """Return the factor of the level that fails within the test with a chance, by Rice's rate of crossings."""
         rms, mean = self.moments(test)
         needed = self.reserve * (1 + (np.pi * mean * opening) ** 2 / 2)
-        return float(needed / (rms * np.sqrt(2 * np.log(mean * test.duration / -np.log1p(-chance)))))
+        crossings = -np.log1p(-chance) / test.duration
+        largest = rms * np.sqrt(2 * np.log(mean / crossings))
+        if test.sines:
+            frequency, level = np.array(test.sines).T
+            size = G * level * np.interp(frequency, self.frequency, self.gain)
+            phases = 2 * np.pi * qmc.Sobol(len(size), scramble=False).random(PHASES)
+            shift, speed = np.cos(phases) @ size, np.sin(phases) @ (2 * np.pi * frequency * size)
+            slope = 2 * np.pi * mean * rms
+            # Noise and sines are independent: at each phase the crossings are those of noise that moves with them.
+            moving = slope * norm.pdf(speed / slope) + speed * norm.cdf(speed / slope)
 
-    def shock(self, test: Shock, opening: float) -> dict[str, float]:
-        """Give the factors of the level that fail, by the direction of the acceleration on the contact."""
-        pulse = half_sine(test)
-        count = 2 ** int(np.ceil(np.log2(len(pulse) + len(self.answer))))
-        change = np.fft.irfft(np.fft.rfft(pulse, count) * np.fft.rfft(self.answer, count), count) * STEP
-        dwell = max(1, round(opening / STEP))
+            def excess(dip: float) -> float:
+                rate = float((norm.pdf((dip - shift) / rms) / rms * moving).mean())
+                return float(np.log(max(rate, 1e-300) / crossings))
 
-        def dip(course: Array) -> float:
-            """Give the level below which it stays for the time."""
-            lasting = np.lib.stride_tricks.sliding_window_view(course, dwell + 1).max(axis=1)
-            return float(-lasting.min())
+            largest = brentq(excess, rms, largest + size.sum() + rms)
+        return float(needed / largest)
 
-        return {way: self.reserve / max(dip(sign * change), 1e-12) for way, sign in (("closing", 1), ("opening", -1))}
+    def change(self, course: Array) -> Array:
+        """Return the change of force (N) or gap (m), at every step, by an acceleration (m/s2) at every step."""
+        return np.asarray(oaconvolve(course, self.answer)) * STEP
+
+    def course(self, course: Course, sign: float, opening: float) -> float:
+        """Return the factor of a course that fails, with a sign."""
+        return self.reserve / max(dip(sign * self.change(course.padded(self.settling()).sampled()), opening), 1e-12)
 
 
-def half_sine(test: Shock) -> Array:
-    """Give a shock at every step, m/s2."""
-    time = STEP * np.arange(round(test.duration / STEP) + 1)
-    return np.asarray(GRAVITY * test.acceleration * np.sin(np.pi * time / test.duration))
+def dip(change: Array, opening: float) -> float:
+    """Return the level below which a change stays for a time (s)."""
+    return float(-stays(change, opening).min())
+
+
+def stays(change: Array, opening: float) -> Array:
+    """Return the level below which a change stays for a time (s) from each step on."""
+    dwell = max(1, round(opening / STEP))
+    # Of a window from each step on, not around it.
+    return np.asarray(maximum_filter1d(change, dwell + 1, origin=-((dwell + 1) // 2)))[: len(change) - dwell]
 
 
 def open_at_rest(component: Component, values: Values) -> bool:
-    """Tell whether the first contact of a position is open: a gap in place of overtravel."""
+    """Return whether the first contact of a position is open: a gap in place of overtravel."""
     return float(values.get("contact.overtravel", component.start("contact.overtravel"))) < 0
 
 
@@ -121,9 +140,8 @@ def respond(component: Component, values: Values, threshold: float, calm: float 
     """
     is_open = open_at_rest(component, values)
     with component.started({**values, **FREE, "solver.tolerance": EXACT}) as contact, contact.explained():
-        read = contact.references("tip.displacement" if is_open else "contact.force")
-        input_ = contact.references("base.acceleration")
-        rest = contact.fmu.getReal(read)[0]
+        name = "tip.displacement" if is_open else "contact.force"
+        (rest,) = contact.real(name)
         natural = contact.get("preload.frequency")
         if is_open:
             reserve = -contact.get("preload.indentation")
@@ -134,36 +152,31 @@ def respond(component: Component, values: Values, threshold: float, calm: float 
             overtravel = float(values.get("contact.overtravel", component.start("contact.overtravel")))
             reserve, size = rest - lost, WEAK * overtravel * 2 * np.pi * natural
         # Up within a step and down within the next.
-        peak = size / STEP
-        answer: list[float] = []
+        time, pulse = STEP * np.arange(WATCHED + 1.0), np.zeros(WATCHED + 1)
+        pulse[1] = size / STEP
+        answer = np.zeros(0)
         largest = left = 1.0
         while left >= calm * largest:
             if len(answer) >= LONGEST:
                 raise RelayContactError(
                     f"the contact still vibrates {STEP * LONGEST:g} s after a blow: too little damping"
                 )
-            for number in range(len(answer), len(answer) + WATCHED):
-                if number < 3:
-                    begin, end = ((0.0, peak), (peak, 0.0), (0.0, 0.0))[number]
-                    contact.fmu.setReal(input_, [begin])
-                    contact.fmu.setRealInputDerivatives(input_, [1], [(end - begin) / STEP])
-                contact.step(number * STEP, STEP)
-                answer.append((contact.fmu.getReal(read)[0] - rest) / size)
-            left, largest = max(map(abs, answer[-WATCHED:])), max(map(abs, answer))
-    # The triangle begins one step before its peak, which the first of these is at.
-    course = np.array(answer)
-    # Lines close enough for the narrowest resonance, which the answer just shows.
-    count = max(POINTS, 4 * len(course))
-    spectrum = np.fft.rfft(course, count)
-    frequency: Array = np.fft.rfftfreq(count, STEP).astype(np.float64)
-    return Response(
-        reserve, natural, frequency[frequency < 1e4],
-        (spectrum * STEP / np.sinc(frequency * STEP) ** 2)[frequency < 1e4], course,
-    )  # fmt: skip
+            watched = contact.drive(time + STEP * len(answer), {"base.acceleration": pulse}, [name])
+            new = (watched[name] - rest) / size
+            answer = np.concatenate((answer, new))
+            pulse = np.zeros(WATCHED + 1)
+            left, largest = np.abs(new).max(), np.abs(answer).max()
+    # The triangle begins one step before its peak, which the first of these is at. Lines are close enough for the
+    # narrowest resonance, which the answer just shows, and end where its aliases begin.
+    count = max(POINTS, 4 * len(answer))
+    lines = int(count * BAND[1] * STEP) + 1
+    frequency = np.arange(lines) / (count * STEP)
+    spectrum = zoom_fft(answer, lines / (count * STEP), lines, fs=1 / STEP)
+    return Response(reserve, natural, frequency, spectrum * STEP / np.sinc(frequency * STEP) ** 2, answer)
 
 
 def interrupting_force(law: list[float], threshold: float) -> float:
-    """Give the contact force (N) at which the resistance is the threshold, by the power law."""
+    """Return the contact force (N) at which the resistance is the threshold, by the power law."""
     coefficient, exponent = law
     return float((coefficient / threshold) ** (1 / exponent))
 
@@ -178,6 +191,7 @@ def margin(response: Response, test: Test, opening: float, chance: float = 0.5) 
             return float(response.sine(test, opening)[1].min())
         case Random():
             return response.random(test, opening, chance)
-        case Shock():
-            return min(response.shock(test, opening).values())
+        case Transient():
+            course = test.course()
+            return min(response.course(course, sign, opening) for sign in test.directions.values())
     raise TypeError(test)

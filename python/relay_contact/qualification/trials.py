@@ -1,15 +1,18 @@
-"""The tests as the component runs them: steady vibration, shaped random vibration, shocks; levels that fail."""
+"""The tests as the component runs them: steady vibration, and courses over time; levels that fail."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.signal import find_peaks
 
 from relay_contact.component import Array, Component, Contact, Values
 from relay_contact.figures import GRAVITY as G
-from relay_contact.qualification.response import Response, open_at_rest
-from relay_contact.qualification.standards import Contacts, Random, Shock, Sine
+from relay_contact.qualification.excitation import STEP, Course, Random, Sine, overall
+from relay_contact.qualification.response import Response, open_at_rest, stays
+from relay_contact.qualification.results import CLOSED, OPEN
+from relay_contact.qualification.standards import Contacts
 
 RESOLUTION = 1e-4  # of levels
 WATCHED = 10  # periods
@@ -22,15 +25,16 @@ APART, BESIDE, TRIED = 0.01, 0.05, 9
 """Part by which a level that fails differs from linear theory, from which on the weakest frequency is sought with the
 component; step of the search, as a part of the frequency, at most; frequencies tried before its last."""
 
-# Random vibration is simulated around the largest dips of force or gap in a record of it.
-RECORD = 60.0  # s
-SAMPLE = 2e-5  # s
+# A long course, such as a record or random vibration, is simulated around its largest dips of force or gap.
+SHORT = 0.25  # s, up to which a course is simulated as a whole
 DIPS = 3
+BEFORE, AFTER = 5e-3, 2e-3  # s, of a dip, at least
+RECORD = 60.0  # s, of random vibration
+SAMPLE = 2e-5  # s
 SEED = 1
+RANKS = 30  # dips of noise by which it is told what clipping does to the largest
 
 
-CLOSED, OPEN = "closed contact", "open contact"
-"""What may fail, by its state at rest: by an interruption and by a false make."""
 INTERRUPTIONS = ("chatter.count", "chatter.totalInterruption", "chatter.longestInterruption")
 MAKES = ("chatter.falseMakes", "chatter.totalFalseMake", "chatter.longestFalseMake")
 OTHER_MAKES = ("second.falseMakes", "second.totalFalseMake", "second.longestFalseMake")
@@ -67,7 +71,7 @@ class Specimen:
         return {CLOSED: INTERRUPTIONS} | ({OPEN: OTHER_MAKES} if second else {})
 
     def start(self, values: Values) -> Contact:
-        """Give the contacts at rest, with further parameters."""
+        """Return the contacts at rest, with further parameters."""
         monitored = {
             "chatter.minimumDuration": self.contacts.opening,
             "second.minimumDuration": self.contacts.false_make,
@@ -75,29 +79,29 @@ class Specimen:
         }
         return self.component.started({**monitored, **self.values, **values})
 
-    def left(self, contact: Contact) -> list[float]:
-        """Give the least force (N) of the closed contact in the last step, and gap (m) of the open one.
-
-        The gap of an open first contact is that at the end of the step.
-        """
+    @cached_property
+    def watched(self) -> list[str]:
+        """The outputs that tell force and gap, and what was left of them in a step."""
         if self.is_open:
-            tip, gap = contact.real("tip.displacement", "contact.overtravel")
-            return [tip - gap]
-        return contact.real("step.minimumForce", "step.minimumGap")[: len(self.monitors)]
+            return ["tip.displacement"]
+        least = ["step.minimumForce", "step.minimumGap"][: len(self.monitors)]
+        return ["contact.force", "second.force", *least]
 
-    def observed(self, contact: Contact) -> list[float]:
-        """Give the force (N) of the closed contact less that of the open one, or the gap (m) of a lone open contact.
+    def observed(self, rows: dict[str, Array]) -> Array:
+        """Return columns of the force (N) of the closed contact less that of the open one, and what is left of each.
 
-        And what `left` gives.
+        Left are the least force of the closed contact in each step, and gap (m) of the open one. Of an open first
+        contact its gap at the end of a step stands for all.
         """
-        left = self.left(contact)
+        columns = [rows[name] for name in self.watched]
         if self.is_open:
-            return [left[0], *left]
-        first, second = contact.real("contact.force", "second.force")
-        return [first - second, *left]
+            gap = self.values.get("contact.overtravel", self.component.start("contact.overtravel"))
+            apart = columns[0] - float(gap)
+            return np.column_stack((apart, apart))
+        return np.column_stack((columns[0] - columns[1], *columns[2:]))
 
     def longest(self, contact: Contact) -> Lengths:
-        """Give the longest failure so far, by contact."""
+        """Return the longest failure so far, by contact."""
         return {name: contact.get(each[2]) for name, each in self.monitors.items() if contact.get(each[0])}
 
 
@@ -149,18 +153,16 @@ def steady(specimen: Specimen, frequency: float, amplitude: float, gently: bool)
         time += periods / frequency
         pieces = WATCHED * (SAMPLES if specimen.is_open else 1)
         step = 1 / frequency * WATCHED / pieces
-        left = []
-        for piece in range(pieces):
-            contact.step(time + piece * step, step)
-            left.append(specimen.left(contact))
+        rows = contact.drive(time + step * np.arange(pieces + 1.0), {}, specimen.watched)
+        left = specimen.observed(rows)[:, 1:]
         # Of failures that last long enough; also of one without an end.
         still = [name for name, total in totals().items() if total > before[name]]
         lengths = {name: length for name, length in specimen.longest(contact).items() if name in still}
-        return lengths, np.min(left, axis=0).tolist()
+        return lengths, left.min(axis=0).tolist()
 
 
 def sweep(specimen: Specimen, test: Sine, frequencies: Array) -> list[tuple[Lengths, list[float]]]:
-    """Vibrate at frequencies (Hz) of a sweep; give what `steady` gives at each."""
+    """Vibrate at frequencies (Hz) of a sweep; return what `steady` gives at each."""
     known, factors = specimen.response.sine(test, specimen.lasting)
     rows = []
     for frequency, factor in zip(frequencies, np.interp(frequencies, known, factors), strict=True):
@@ -180,23 +182,26 @@ def sine_threshold(
 def sine_least(specimen: Specimen, test: Sine) -> tuple[float, float, list[str]]:
     """Return the frequency (Hz) of a sweep that fails at the least level, its factor of the level, and which contacts.
 
-    That of linear theory, if the component fails there as expected. Else steps from there to lower levels, then the
-    vertex of a parabola: the resonance of a contact that is far from linear, or rubs, is elsewhere.
+    That of linear theory, if the component fails there as expected, or the test has no other. Else steps from there to
+    lower levels, then the vertex of a parabola: the resonance of a contact that is far from linear, or rubs, is
+    elsewhere.
     """
     known, factors = specimen.response.sine(test, specimen.lasting)
     at = int(factors.argmin())
     first, guess = float(known[at]), float(factors[at])
     step = 1 + min(BESIDE, specimen.response.bandwidth(first) / first / 2)
 
+    low, high = test.band
+
     def tried(place: float) -> tuple[float, float, list[str]]:
         frequency = first * step**place
-        if not test.frequencies[0] <= frequency <= test.frequencies[1]:
+        if not low <= frequency <= high:
             return frequency, np.inf, []
         return frequency, *sine_threshold(specimen, test, frequency, found[0.0][1] if found else guess)
 
     found: dict[float, tuple[float, float, list[str]]] = {}
     found[0.0] = tried(0.0)
-    if abs(found[0.0][1] / guess - 1) > APART:
+    if len(known) > 1 and not test.steps and abs(found[0.0][1] / guess - 1) > APART:
         best = 0.0
         while beside := {best - 1, best + 1} - found.keys():
             found |= {place: tried(place) for place in beside}
@@ -204,101 +209,131 @@ def sine_least(specimen: Specimen, test: Sine) -> tuple[float, float, list[str]]
             if len(found) > TRIED:
                 break
         else:
-            low, middle, high = (found[best + each][1] for each in (-1, 0, 1))
-            bent = low - 2 * middle + high
+            below, middle, above = (found[best + each][1] for each in (-1, 0, 1))
+            bent = below - 2 * middle + above
             if np.isfinite(bent) and bent > 0:
-                vertex = best + (low - high) / (2 * bent)
+                vertex = best + (below - above) / (2 * bent)
                 found[vertex] = tried(vertex)
     return min(found.values(), key=lambda each: each[1])
 
 
-def shock(specimen: Specimen, test: Shock, factor: float, points: int = 1) -> tuple[Lengths, Array]:
-    """Run a shock of a factor of its level, negative: opens the first contact.
+@dataclass(frozen=True)
+class Piece:
+    """A course, or what of it is around a dip, and the factor of its level that fails by linear theory."""
 
-    It is observed until calm. Give the longest failures, and rows of time (s), force or gap, and what was left at least
-    since the last row: so many in three times the length of the shock, and one at the end.
-    """
-    pulse: Values = {
-        "effects.excitation": "HalfSine",
-        "excitation.amplitude": factor * G * test.acceleration,
-        "excitation.duration": test.duration,
-    }
-    end = max(3 * test.duration, test.duration + specimen.response.settling())
-    with specimen.start(pulse) as contact, contact.explained():
-        rows = []
-        time = 0.0
-        for instant in [*np.linspace(0, 3 * test.duration, points + 1)[1:], end]:
-            if instant > time:
-                contact.step(time, instant - time)
-                time = float(instant)
-                rows.append([time, *specimen.observed(contact)])
-        return specimen.longest(contact), np.array(rows)
+    course: Course
+    guess: float
+    begin: float
+    """Time (s) of the whole course at which it begins."""
+
+    def follow(self, specimen: Specimen, factor: float, points: int = 0) -> tuple[Lengths, Array]:
+        """Run it at a factor of its level; return the longest failures, and rows of time (s) and what is observed.
+
+        There are so many points at least, if any. A course that ends at 0 is observed until calm.
+        """
+        course = self.course
+        values = {**course.generator, **({"excitation.amplitude": factor * course.acceleration.max()}
+                                         if course.generator else {})}  # fmt: skip
+        time, acceleration = course.time, factor * course.acceleration
+        if not acceleration[-1]:
+            end = max(3 * course.end, course.end + specimen.response.settling())
+            time, acceleration = np.append(time, end), np.append(acceleration, 0.0)
+        if points:
+            dense = np.setdiff1d(np.linspace(0.0, min(3 * course.end, time[-1]), points + 1), time)
+            at = np.searchsorted(time, dense)
+            acceleration = np.insert(acceleration, at, np.interp(dense, time, acceleration))
+            time = np.insert(time, at, dense)
+        with specimen.start(values) as contact, contact.explained():
+            course_ = {} if course.generator else {"base.acceleration": acceleration}
+            rows = contact.drive(time, course_, specimen.watched if points else [])
+            lengths = specimen.longest(contact)
+        if not points:
+            return lengths, np.zeros((0, 0))
+        return lengths, np.column_stack((time[1:][np.diff(time) > 0], specimen.observed(rows)))
+
+    def threshold(self, specimen: Specimen, sign: float, failing: Lengths | None = None, guess: float = 0.0) -> (
+        tuple[float, list[str]]
+    ):  # fmt: skip
+        """Return the factor of its level that fails with a sign, and which contacts."""
+        return threshold(lambda factor: self.follow(specimen, sign * factor)[0], guess or self.guess, failing)
 
 
-def shock_threshold(
-    specimen: Specimen, test: Shock, sign: float, guess: float, failing: Lengths | None = None
-) -> tuple[float, list[str]]:
-    """Return the factor of the level that fails in a direction, and which contacts."""
-    return threshold(lambda factor: shock(specimen, test, sign * factor)[0], guess, failing)
+def pieces(specimen: Specimen, course: Course, sign: float, count: int = DIPS) -> list[Piece]:
+    """Return a course as a whole if it is short, else what is around its largest dips, by linear theory."""
+    response = specimen.response
+    whole = course.padded(response.settling())
+    change = sign * response.change(whole.sampled())
+    level = stays(change, specimen.lasting)
+    lead = whole.end - course.end
+    if whole.end <= SHORT:
+        return [Piece(whole, response.reserve / max(float(-level.min()), 1e-12), -lead)]
+    before = 2 * max(response.settling(), BEFORE)
+    found = []
+    for _ in range(count):
+        at = int(level.argmin())
+        dip, now = float(-level[at]), STEP * at
+        begin = max(now - before, 0.0)
+        found.append(
+            Piece(whole.part(begin, now + specimen.lasting + AFTER), response.reserve / max(dip, 1e-12), begin - lead)
+        )
+        level[max(0, at - round(before / STEP)) : at + round(before / STEP)] = np.inf
+    return found
 
 
-def record(specimen: Specimen, test: Random) -> tuple[Array, Array]:
-    """Give random acceleration (m/s2) at every sample, and the change of force (N) or gap (m) by linear theory.
+def noise(test: Random) -> tuple[Course, Course]:
+    """Return a record of random acceleration as it is before and after clipping.
 
-    The acceleration is the sum of sines a sixtieth of a Hz apart with normally distributed amplitudes; between samples
-    it is linear, for which the amplitudes are raised.
+    It is the sum of sines a sixtieth of a Hz apart with normally distributed amplitudes, and of the sines of the test
+    with any phases; between samples it is linear, for which the amplitudes are raised.
     """
     count = round(RECORD / SAMPLE)
     frequency: Array = np.fft.rfftfreq(count, SAMPLE).astype(np.float64)
-    normal = np.random.default_rng(SEED).standard_normal((2, len(frequency)))
+    generator = np.random.default_rng(SEED)
+    normal = generator.standard_normal((2, len(frequency)))
     amplitude = np.sqrt(test.spectrum(frequency) / (4 * RECORD)) * (count * SAMPLE) / SAMPLE
     spectrum = amplitude * (normal[0] + 1j * normal[1])
-    known = specimen.response
-    transfer = np.interp(frequency, known.frequency, known.transfer)
-    change = np.fft.irfft(spectrum * transfer, count)
-    return np.fft.irfft(spectrum / np.sinc(frequency * SAMPLE) ** 2, count), change
+    time = SAMPLE * np.arange(count)
+    acceleration = np.fft.irfft(spectrum / np.sinc(frequency * SAMPLE) ** 2, count)
+    most = G * overall(test.density) * (test.clipping or np.inf)
+    tones = np.zeros(count)
+    for (tone, level), phase in zip(test.sines, generator.uniform(0, 2 * np.pi, len(test.sines)), strict=True):
+        tones += G * level / np.sinc(tone * SAMPLE) ** 2 * np.sin(2 * np.pi * tone * time + phase)
+    return Course(time, acceleration + tones), Course(time, np.clip(acceleration, -most, most) + tones)
 
 
-def window(specimen: Specimen, acceleration: Array, factor: float, watched: bool = False) -> tuple[Lengths, Array]:
-    """Run part of a record, its first half as a rise; give the longest failures, and what is observed if watched."""
-    rise = len(acceleration) // 2
-    shape = np.ones(len(acceleration))
-    shape[:rise] = (1 - np.cos(np.pi * np.arange(rise) / rise)) / 2
-    course = factor * shape * acceleration
-    with specimen.start({}) as contact, contact.explained():
-        rows = []
-        for number in range(len(course) - 1):
-            contact.change("base.acceleration", course[number], course[number + 1], SAMPLE)
-            contact.step(number * SAMPLE, SAMPLE)
-            if watched:
-                rows.append(specimen.observed(contact))
-        return specimen.longest(contact), np.array(rows)
-
-
-def middle_dip(specimen: Specimen, test: Random) -> tuple[float, list[str], Array, float]:
+def middle_dip(specimen: Specimen, dips: list[Piece]) -> tuple[float, list[str], Piece]:
     """Return at which part of the level of linear theory the contacts fail, and which, in the middle of the dips.
 
-    That is, of the largest dips of a record, the one whose part is neither least nor greatest; with its acceleration,
-    and the factor of its level that fails by linear theory.
+    That is, of the largest dips of a record of noise, the one whose part is neither least nor greatest.
     """
     found = []
-    for course, guess in dips(specimen, test):
-        level, failed = threshold(lambda factor, course=course: window(specimen, course, factor)[0], guess)  # type: ignore[misc]
-        found.append((level / guess, failed, course, guess))
+    for piece in dips:
+        level, failed = piece.threshold(specimen, 1.0)
+        found.append((level / piece.guess, failed, piece))
     return sorted(found, key=lambda each: each[0])[len(found) // 2]
 
 
-def dips(specimen: Specimen, test: Random) -> list[tuple[Array, float]]:
-    """Give the acceleration around the largest dips of a record, and the factors that fail by linear theory."""
-    acceleration, change = record(specimen, test)
-    after = round(2e-3 / SAMPLE)
-    before = 2 * round(max(specimen.response.settling(), 5e-3) / SAMPLE)
-    _, mean = specimen.response.moments(test)
-    needed = specimen.response.reserve * (1 + (np.pi * mean * specimen.lasting) ** 2 / 2)
-    found = []
-    change[:before] = change[-after:] = 0.0
-    for _ in range(DIPS):
-        at = int(change.argmin())
-        found.append((acceleration[at - before : at + after], float(needed / -change[at])))
-        change[max(0, at - before) : at + before] = 0.0
-    return found
+def noise_dips(specimen: Specimen, test: Random) -> tuple[list[Piece], float]:
+    """Return what is around the largest dips of a record of noise, and the part by which clipping raises the level."""
+    free, clipped = noise(test)
+    return pieces(specimen, clipped, 1.0), eased(specimen, test, free, clipped) if test.clipping else 1.0
+
+
+def eased(specimen: Specimen, test: Random, free: Course, clipped: Course) -> float:
+    """Return by which part clipping raises the level that fails in the time of a test.
+
+    The largest dips of a record with and without it, by rank, are on a line, which is followed to the largest dip in
+    the time of the test: where the contact resonates it has a slope near 1, as many clipped peaks make a dip, and where
+    it follows the acceleration its slope is 0.
+    """
+    response = specimen.response
+    apart = max(1, round(1 / response.moments(test)[1] / STEP))
+    sizes = []
+    for course in (free, clipped):
+        change = -response.change(course.sampled())
+        peaks, _ = find_peaks(change, distance=apart)
+        sizes.append(np.sort(change[peaks])[-RANKS:])
+    slope, _ = np.polyfit(sizes[0], sizes[1], 1)
+    largest = response.reserve / response.random(test, 0.0)
+    dip = sizes[1].mean() + float(np.clip(slope, 0.0, 1.0)) * (largest - sizes[0].mean())
+    return float(max(largest / dip, 1.0))

@@ -1,0 +1,224 @@
+"""What an assessment showed: a finding for each test, position and model, and all of them as tables."""
+
+from dataclasses import asdict, field
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from pydantic import TypeAdapter
+from pydantic.dataclasses import dataclass
+
+from relay_contact.qualification.relay import NORMAL, Relay
+from relay_contact.qualification.standards import Standard
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    import pandas as pd
+
+Verdict = Literal["pass", "FAIL", "undecided", "not judged"]
+CLOSED, OPEN = "closed contact", "open contact"
+"""What may fail, by its state at rest: by an interruption and by a false make."""
+TIMES = {CLOSED: "closed contact interrupted", OPEN: "open contact makes"}
+LEAST = {CLOSED: "closed contact least force", OPEN: "open contact least gap"}
+UNITS = {CLOSED: "N", OPEN: "m"}
+
+
+@dataclass(frozen=True)
+class Chance:
+    """What the uncertain parameters make of a margin."""
+
+    failing: float
+    """Share of the draws that fail."""
+    low: float
+    """Ends of the interval of that chance, of 95 %."""
+    high: float
+    effects: dict[str, float]
+    """What each uncertainty does to the margin, as a part of it, with 95 % confidence."""
+    indices: dict[str, float]
+    """First-order Sobol indices: by which share the variance of the margin falls once a parameter is known."""
+    confirmed: int
+    """Draws in which the component sought the level itself."""
+    error: float
+    """Largest part by which it was found to be another than drawn."""
+
+
+@dataclass(frozen=True)
+class Margin:
+    """The level that fails relative to that of the test, and what happens at that of the test."""
+
+    margin: float
+    linear: float
+    """By linear theory."""
+    decides: list[str]
+    """The contacts that fail at the margin."""
+    weakest: str
+    failed: dict[str, float]
+    """Longest failure (s) at the level of the test, by contact."""
+    where: dict[str, str]
+    least: dict[str, float]
+    """What is left at least of force (N) or gap (m), by contact."""
+    rest: dict[str, float]
+    """The same at rest."""
+    natural: float
+    """First resonance, Hz."""
+    curves: dict[str, Any]
+    """What the figures show."""
+    overtravel: float
+    wear: dict[str, list[float]] = field(default_factory=dict)
+    """Margins over the overtravel (m), or the gap of a contact that is open alone."""
+    passes: float | None = None
+    """From which overtravel or gap (m) on the test is passed."""
+    low: float = 0.0
+    high: float = 0.0
+    chance: Chance | None = None
+    tolerance: tuple[float, float] | None = None
+    """Margins by linear theory at the ends of the tolerance of a pulse."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What a test showed in a position of the coil, by one of the models."""
+
+    position: str
+    test: str
+    axis: str
+    kind: str
+    level: str
+    clause: str
+    evidence: str
+    model: str
+    verdict: Verdict
+    limits: str
+    """What limits the margin, or why there is none."""
+    judged: Margin | None = None
+    notes: list[str] = field(default_factory=list)
+    """What has to be said of the test itself."""
+    warnings: list[str] = field(default_factory=list)
+    """Of the component."""
+
+    @property
+    def named(self) -> str:
+        """Return the name of the test, with the axis of the vibration where it is not the normal one."""
+        return self.test if self.axis == NORMAL else f"{self.test}, {self.axis} axis"
+
+    @property
+    def margin(self) -> Margin:
+        """Return the margin of a test that was judged."""
+        if self.judged is None:
+            raise ValueError(f"{self.test}, {self.position}: {self.verdict}: {self.limits}")
+        return self.judged
+
+
+FINDING = TypeAdapter(Finding)
+"""For their files."""
+
+
+@dataclass(frozen=True)
+class Tested:
+    """A test in a position of the coil, by all models."""
+
+    verdict: Verdict
+    models: list[Finding]
+
+    @property
+    def first(self) -> Finding:
+        """Return the finding by the first model, which figures show."""
+        return self.models[0]
+
+    @property
+    def judged(self) -> Margin | None:
+        """Return the margin by the first model."""
+        return self.first.judged
+
+    @property
+    def margin(self) -> Margin:
+        """Return the margin by the first model of a test that was judged."""
+        return self.first.margin
+
+
+class Assessment:
+    """A relay against a standard: a list of tests, tables of results, and a page, which a notebook shows."""
+
+    def __init__(self, relay: Relay, standard: Standard, tests: list[Tested], folder: Path) -> None:
+        """Keep what was found, and the folder that it was written to."""
+        self.relay, self.standard, self.tests, self.folder = relay, standard, tests, folder
+
+    def __iter__(self) -> "Iterator[Tested]":
+        """Return the tests one after another."""
+        return iter(self.tests)
+
+    def __len__(self) -> int:
+        """Return the number of tests."""
+        return len(self.tests)
+
+    def __getitem__(self, name: str) -> Tested:
+        """Return a test by its name, in the first position that has it."""
+        for each in self.tests:
+            if each.first.test == name:
+                return each
+        raise KeyError(f"{name}: there are {', '.join(dict.fromkeys(each.first.test for each in self.tests))}")
+
+    @property
+    def table(self) -> "pd.DataFrame":
+        """A row for each test, position and model; `attrs["units"]` has the units."""
+        import pandas as pd
+
+        rows: list[dict[str, Any]] = []
+        units: dict[str, str] = {}
+        for tested in self.tests:
+            for each in tested.models:
+                found = asdict(each)
+                row = {name: found[name] for name in (*FIELDS, "limits")} | {"verdict of all models": tested.verdict}
+                if (judged := each.judged) is not None:
+                    row |= {"margin": judged.margin, "low": judged.low, "high": judged.high, "weakest": judged.weakest}
+                    if judged.chance:
+                        chance = judged.chance
+                        row |= {"chance": chance.failing, "chance low": chance.low, "chance high": chance.high}
+                    row |= {"fails first": " and ".join(judged.decides), "resonance": judged.natural}
+                    row |= {TIMES[name]: value for name, value in judged.failed.items()}
+                    row |= {LEAST[name]: value for name, value in judged.least.items()}
+                    units |= {LEAST[name]: UNITS[name] for name in judged.least}
+                rows.append(row)
+        table = pd.DataFrame(rows, columns=[*FIELDS, *NUMBERS])
+        table.attrs["units"] = units | dict.fromkeys(TIMES.values(), "s") | {"resonance": "Hz"}
+        return table
+
+    @property
+    def sweeps(self) -> "pd.DataFrame":
+        """A row for each frequency of each sine, at the level of the test; `attrs["units"]` has the units."""
+        import pandas as pd
+
+        tables = []
+        for each in (each for tested in self.tests for each in tested.models):
+            if each.kind == "sine" and each.judged:
+                curves = each.judged.curves
+                columns = {"frequency": curves["frequency"], "acceleration": curves["level"]}
+                for key, names in (("length", TIMES), ("least", LEAST)):
+                    columns |= {names[name]: values for name, values in curves[key].items()}
+                own = pd.DataFrame(columns)
+                tables.append(own.assign(position=each.position, test=each.test, model=each.model))
+        keys = ["position", "test", "model", "frequency", "acceleration", *TIMES.values(), *LEAST.values()]
+        table = pd.concat(tables, ignore_index=True) if tables else pd.DataFrame()
+        table = table.reindex(columns=keys)
+        table.attrs["units"] = {"frequency": "Hz", "acceleration": "m/s2", **dict.fromkeys(TIMES.values(), "s"),
+                                **{LEAST[name]: UNITS[name] for name in LEAST}}  # fmt: skip
+        return table
+
+    def write(self) -> None:
+        """Write both tables as CSV, with the units in the names of their columns."""
+        for name, table in (("qualification.csv", self.table), ("sweeps.csv", self.sweeps)):
+            units = table.attrs["units"]
+            heads = [f"{column} [{units[column]}]" if column in units else column for column in table.columns]
+            table.to_csv(self.folder / name, index=False, header=heads, float_format="%.9g", lineterminator="\n")
+
+    def _repr_html_(self) -> str:
+        """Return the page for a notebook, apart from the notebook's own style."""
+        page = (self.folder / "qualification.html").read_text(encoding="utf-8")
+        return f'<iframe srcdoc="{escape(page)}" style="width:100%;height:50em;border:1px solid #ccc"></iframe>'
+
+
+FIELDS = ["position", "test", "axis", "model", "clause", "evidence", "level", "verdict"]
+NUMBERS = ["margin", "low", "high", "chance", "chance low", "chance high", "weakest", "limits", "verdict of all models",
+           "fails first", "resonance", *TIMES.values(), *LEAST.values()]  # fmt: skip
+"""Columns of the table of results."""

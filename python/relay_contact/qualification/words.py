@@ -1,0 +1,130 @@
+"""What an assessment found, in words and in the cells of tables, three significant digits each."""
+
+from relay_contact.figures import three
+from relay_contact.qualification.excitation import LEVELS
+from relay_contact.qualification.position import CHANCE, MODEL, WORN
+from relay_contact.qualification.results import CLOSED, OPEN, Chance, Finding, Margin, Tested
+
+HEAD = (
+    "test", "level", "verdict", "margin", "95 % interval of the parameters", "weakest at", "fails first", "in the test",
+    "left at least",
+)  # fmt: skip
+REASONS = ("test", "what limits", "what the interval comes from", "to measure or tighten", "chance of failing",
+           "passes from")  # fmt: skip
+QUANTITIES = {CLOSED: "force", OPEN: "gap"}
+FAILURES = {CLOSED: "interrupted", OPEN: "makes"}
+MARKS: dict[str, str] = dict(zip(LEVELS, ("", "", " †", " *"), strict=True))
+"""Of tests with numbers that were not read in the standard."""
+UNREAD = "† Read in a quotation of the standard. * From memory: not, or not all, read in the standard's text."
+TOLD = {MODEL: "allowance for the model", CHANCE: CHANCE}
+LEAST_SHARE = 0.01  # of the variance, below which a parameter is not named
+
+
+def time_text(seconds: float) -> str:
+    """Return a short time in words."""
+    return f"{three(1e3 * seconds)} ms" if seconds >= 1e-3 else f"{three(1e6 * seconds)} µs"
+
+
+def is_open(margin: Margin) -> bool:
+    """Return whether the first contact was open, so that its gap was observed."""
+    return CLOSED not in margin.rest
+
+
+def failures(margin: Margin) -> str:
+    """Return which contacts fail at the level of the test, and the longest failure, in words."""
+    told = [
+        f"{name} {FAILURES[name]} for {time_text(length)} {margin.where[name]}".rstrip()
+        for name, length in margin.failed.items()
+    ]
+    if not told and margin.margin <= 1:
+        return f"none fails at this level itself, but at {three(margin.margin)} of it"
+    return ", ".join(told) or "none fails"
+
+
+def at_rest(margin: Margin) -> str:
+    """Return force and gap at rest, in words."""
+    texts = {CLOSED: ("force of the closed contact {} cN", 100), OPEN: ("gap of the open contact {} mm", 1e3)}
+    return ", ".join(texts[name][0].format(three(texts[name][1] * value)) for name, value in margin.rest.items())
+
+
+def own_cells(finding: Finding) -> list[str]:
+    """Return what the table has of a test by one model, from the verdict on."""
+    if finding.judged is None:
+        return [finding.verdict, "", "", finding.limits, "", "", ""]
+    own = finding.judged
+    left = [
+        f"{QUANTITIES[name]} {three(100 * max(least, 0.0) / own.rest[name])} %" for name, least in own.least.items()
+    ]
+    first = " and ".join(own.decides) or "none"
+    interval = f"{three(own.low)} to {three(own.high)}"
+    return [finding.verdict, three(own.margin), interval, own.weakest, first, failures(own), ", ".join(left)]
+
+
+def rows(tested: Tested) -> list[list[str]]:
+    """Return the rows of a test in the table: one, or the verdict of all models and a row for each of them."""
+    first = tested.first
+    if len(tested.models) == 1:
+        return [[first.named, first.level, *own_cells(first)]]
+    known = [each.judged.margin for each in tested.models if each.judged]
+    spread = f"{three(min(known))} to {three(max(known))}" if known else ""
+    whole = [first.named, first.level, tested.verdict, spread, "by model", *[""] * 4]
+    return [whole, *([f"- {each.model}", "", *own_cells(each)] for each in tested.models)]
+
+
+def contributions(chance: Chance) -> str:
+    """Return what contributes most to an interval, in words."""
+    found = sorted(chance.effects.items(), key=lambda item: -item[1])[:3]
+    told = [f"{TOLD.get(name, name)} ± {three(100 * effect)} %" for name, effect in found if effect > 1e-4]
+    return ", ".join(told) or "nothing: the relay's file names no uncertainty"
+
+
+def tighten(chance: Chance) -> str:
+    """Return of which parameters the knowledge would narrow the interval most, in words."""
+    found = sorted(((share, name) for name, share in chance.indices.items() if name not in TOLD), reverse=True)[:2]
+    told = [f"{name}, {three(100 * share)} % of the variance" for share, name in found if share > LEAST_SHARE]
+    return "; ".join(told) or "no parameter"
+
+
+def ppm(share: float) -> str:
+    """Return a chance in parts per million, of many in per cent."""
+    return f"{three(100 * share)} %" if share >= 0.1 else f"{three(1e6 * share)} ppm"
+
+
+def chance_text(chance: Chance) -> str:
+    """Return the chance of failing with its own interval, in words."""
+    if chance.low == 0:
+        return f"< {ppm(chance.high)}"
+    if chance.high == 1:
+        return f"all but < {ppm(1 - chance.low)}"
+    return f"{ppm(chance.failing)} ({ppm(chance.low)} to {ppm(chance.high)})"
+
+
+def passes_text(margin: Margin) -> str:
+    """Return from which overtravel or gap on a test is passed, in words."""
+    what, over = "gap" if is_open(margin) else "overtravel", margin.wear["overtravel"]
+    if margin.passes is None:
+        return f"nothing up to {WORN[-1]:g} times the {what}"
+    below = "< " if margin.passes <= over[0] else ""
+    return f"{below}{three(1e3 * margin.passes)} mm {what}"
+
+
+def limits(finding: Finding) -> str:
+    """Return what limits a margin, and what the tolerance of a pulse makes of it."""
+    own = finding.judged
+    if own is None or own.tolerance is None:
+        return finding.limits
+    low, high = own.tolerance
+    return f"{finding.limits}; {three(low)} to {three(high)} by the pulses within the tolerance"
+
+
+def reasons(tested: Tested) -> list[list[str]]:
+    """Return the rows of a test in the table of reasons."""
+    found = []
+    for each in tested.models:
+        test = each.named + (f": {each.model}" if len(tested.models) > 1 else "")
+        told = [""] * 4
+        if each.judged and each.judged.chance:
+            chance = each.judged.chance
+            told = [contributions(chance), tighten(chance), chance_text(chance), passes_text(each.judged)]
+        found.append([test, limits(each), *told])
+    return found

@@ -1,0 +1,179 @@
+"""Measured accelerations over time, from the files of measuring programs: channels by name, in SI units.
+
+Text (CSV), MDF4 (`asammdf`), UFF58 (`pyuff`), TDMS (`npTDMS`) and MATLAB's `.mat`; each package is imported only for a
+file of its kind (`pip install 'relay-contact[records]'`). The time is that of the file, its offset and unequal steps
+included: nothing is resampled.
+"""
+
+import importlib
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from relay_contact import tables
+from relay_contact.component import Array, nearest
+from relay_contact.figures import three
+from relay_contact.files import RelayContactError
+from relay_contact.tables import ACCELERATIONS, TIMES, spelled
+
+EQUAL = 1e-3
+"""Part by which steps of time may differ from their median, as the digits of a file make them."""
+LOOKED = 200  # lines of a text in which the names of its columns are sought
+TIME = ("time", "t")
+"""Names of the column, or of the variable, of time."""
+
+
+@dataclass(frozen=True)
+class Record:
+    """A channel: acceleration (m/s2) over the time of the file (s)."""
+
+    path: Path
+    channel: str
+    time: Array
+    acceleration: Array
+
+    @property
+    def notes(self) -> list[str]:
+        """Return what has to be said of its time."""
+        steps = np.diff(self.time)
+        usual = float(np.median(steps))
+        told = [f"time begins at {self.time[0]:.9g} s, which is kept"] if self.time[0] else []
+        if np.abs(steps - usual).max() > EQUAL * usual:
+            told.append(
+                f"steps of time are unequal, {three(1e6 * steps.min())} to {three(1e6 * steps.max())} µs: each is used "
+                "as it is"
+            )
+        if self.acceleration[0]:
+            told.append(f"before its begin the acceleration is taken as that there, {three(self.acceleration[0])} m/s²")
+        return told
+
+
+Channel = tuple[str, str, Any, Any]
+"""Name, unit, time (s; none: by the rate) and values of a channel."""
+
+
+def read(path: Path, channel: str = "", unit: str = "", rate: float | None = None) -> list[Record]:
+    """Return the accelerations of a file: of all channels in such a unit, or of the one asked for.
+
+    `unit` is that of channels without one, `rate` (samples a second) that of a file without time.
+    """
+    if not path.is_file():
+        raise RelayContactError(f"{path}: no such file; it has to be a record of acceleration")
+    found = []
+    names = []
+    for name, own, time, values in READERS.get(path.suffix.lower(), text)(path):
+        names.append(name)
+        known = spelled(own) or spelled(unit)
+        if channel.lower() != name.lower() if channel else known not in ACCELERATIONS:
+            continue
+        if known not in ACCELERATIONS:
+            text_ = f"unit {own or 'none'}: not allowed, allowed is {', '.join(ACCELERATIONS)}"
+            raise RelayContactError(f"{path}: channel {name}: {text_}{'' if own else '; give the unit'}")
+        found.append(checked(path, name, time, np.asarray(values, dtype=float) * ACCELERATIONS[known], rate))
+    if not found:
+        there = f"there are {', '.join(names)}" if names else "there is none"
+        if channel:
+            raise RelayContactError(f"{path}: no channel {channel}; {there}{nearest(channel, names)}")
+        raise RelayContactError(f"{path}: no channel with an acceleration in g or m/s2; {there}; a unit may be given")
+    return found
+
+
+def checked(path: Path, name: str, time: Any, values: Array, rate: float | None) -> Record:  # noqa: ANN401
+    """Return a channel whose values are finite and whose time rises."""
+    if time is None or len(time) == 0:
+        if rate is None:
+            raise RelayContactError(f"{path}: channel {name}: no time; give the rate, in samples a second")
+        time = np.arange(len(values)) / rate
+    elif rate is not None:
+        raise RelayContactError(f"{path}: channel {name}: a rate is given, and the file has a time")
+    time = np.asarray(time, dtype=float)
+    if len(values) != len(time) or len(values) < 2:
+        raise RelayContactError(f"{path}: channel {name}: {len(values)} values for {len(time)} times: not allowed")
+    for what, bad in (
+        ("a finite number", ~(np.isfinite(values) & np.isfinite(time))),
+        ("more than the time before", np.concatenate([[False], np.diff(time) <= 0])),
+    ):
+        if bad.any():
+            at = int(bad.argmax())
+            told = f"value {at + 1}: {values[at]:g} at {time[at]:.9g} s: not allowed, allowed is {what}"
+            raise RelayContactError(f"{path}: channel {name}: {told}")
+    return Record(path, name, time, values)
+
+
+def text(path: Path) -> Iterator[Channel]:
+    """Read columns of numbers: one named time, the others with their units; or acceleration alone."""
+    lines = tables.decoded(path, 2**16).splitlines()[:LOOKED]
+    known: dict[str, Mapping[str, float]] = {}
+    for line in lines:
+        heads = [tables.parted(cell) for each in tables.SEPARATORS if each in line for cell in line.split(each)]
+        heads = heads or [tables.parted(line.strip(tables.BLANK))]
+        if any(name in TIME for name, _ in heads) or any(unit in ACCELERATIONS for _, unit in heads):
+            known |= {name: TIMES if name in TIME else ACCELERATIONS for name, _ in heads if name}
+    if not known:
+        raise RelayContactError(f"{path}: no line with the names of the columns, such as: time [s],acceleration [g]")
+    table = tables.read(path, known)
+    there = [name for name in table.units if name in TIME]
+    time = table[there[0]] if there else None
+    for name, unit in table.units.items():
+        if name not in TIME:
+            usable = unit in ACCELERATIONS or not unit
+            yield name, unit, time, table.numbers(name) if usable else ()
+
+
+def asked(package: str, path: Path) -> Any:  # noqa: ANN401
+    """Import a package for a file of its kind."""
+    try:
+        return importlib.import_module(package)
+    except ImportError as error:
+        needs = f"{path}: needs the package {package}: pip install 'relay-contact[records]'"
+        raise RelayContactError(needs) from error
+
+
+def mdf(path: Path) -> Iterator[Channel]:
+    """Read a file of ASAM MDF."""
+    with asked("asammdf", path).MDF(path) as file:
+        for signal in file.iter_channels():
+            if np.issubdtype(np.asarray(signal.samples).dtype, np.number):
+                yield signal.name, signal.unit, signal.timestamps, signal.samples
+
+
+def uff(path: Path) -> Iterator[Channel]:
+    """Read the sets 58 of a universal file, functions over time alone."""
+    sets = asked("pyuff", path).UFF(str(path)).read_sets()
+    for number, each in enumerate(sets if isinstance(sets, list) else [sets], 1):
+        if each.get("type") == 58 and each.get("func_type") == 1:
+            unit = str(each.get("ordinate_axis_units_lab", "")).strip()
+            name = str(each.get("id1", "")).strip()
+            yield name if name not in ("", "NONE") else f"set {number}", unit, each["x"], each["data"]
+
+
+def tdms(path: Path) -> Iterator[Channel]:
+    """Read a file of LabVIEW."""
+    for group in asked("nptdms", path).TdmsFile.read(path).groups():
+        for channel in group.channels():
+            timed = "wf_increment" in channel.properties
+            unit = str(channel.properties.get("unit_string", ""))
+            yield channel.name, unit, channel.time_track() if timed else None, channel[:]
+
+
+def mat(path: Path) -> Iterator[Channel]:
+    """Read the vectors of MATLAB's workspace; one of them may be the time."""
+    try:
+        found = asked("scipy.io", path).loadmat(path)
+    except NotImplementedError as error:
+        raise RelayContactError(f"{path}: MATLAB 7.3: not allowed; save it with -v7") from error
+    vectors = {name: np.ravel(value) for name, value in found.items()
+               if isinstance(value, np.ndarray) and value.size == max(value.shape) > 1}  # fmt: skip
+    time = next((value for name, value in vectors.items() if name.lower() in TIME), None)
+    for name, value in vectors.items():
+        if name.lower() not in TIME:
+            yield name, "", time, value
+
+
+READERS: dict[str, Callable[[Path], Iterator[Channel]]] = {
+    ".mf4": mdf, ".mdf": mdf, ".uff": uff, ".unv": uff, ".tdms": tdms, ".mat": mat,
+}  # fmt: skip
+"""By the end of the name of a file; others are text."""

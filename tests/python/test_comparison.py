@@ -1,0 +1,70 @@
+"""A run beside a chatter log, and beside a measured resistance."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from relay_contact import Array, RelayContactError
+from relay_contact.command import main
+from relay_contact.comparison import compare
+
+TIME = np.linspace(0, 10e-3, 10_001)
+STARTS, LENGTHS = np.array([1e-3, 3e-3, 6.5e-3]), np.array([100e-6, 40e-6, 250e-6])
+
+
+def resistance(shift: float, factor: float) -> Array:
+    """Return a resistance that is high in the interruptions."""
+    found = np.full(len(TIME), 0.05)
+    for start, length in zip(STARTS + shift, factor * LENGTHS, strict=True):
+        found[(start < TIME) & (start + length >= TIME)] = 1e9
+    return found
+
+
+@pytest.fixture
+def run(tmp_path: Path) -> Path:
+    """Write the table of a run."""
+    path = tmp_path / "run.csv"
+    np.savetxt(path, np.column_stack((TIME, resistance(0.0, 1.0))), delimiter=",", header="time,contact.resistance",
+               comments="")  # fmt: skip
+    return path
+
+
+def test_a_chatter_log(run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    log = tmp_path / "log.csv"
+    rows = "\n".join(f"{1e3 * (start + 5)};{1.1e6 * length}" for start, length in zip(STARTS, LENGTHS, strict=True))
+    log.write_text(f"start [ms];duration [us]\n{rows}\n")
+    assert main(["compare", str(run), str(log), "--out", str(tmp_path)]) == 0
+    printed = capsys.readouterr().out.splitlines()
+    assert printed[1].split() == ["count", "3", "3", "1.00"]
+    # Between values 1 us apart.
+    assert float(printed[2].split()[-1]) == pytest.approx(1 / 1.1, rel=0.01)
+    found = compare(run, log)
+    # Between values 1 us apart.
+    assert found.simulated.duration == pytest.approx(LENGTHS, abs=2e-6)
+    assert found.measured.start == pytest.approx(STARTS, abs=2e-6)
+    assert len(found.table) == 6
+    assert (tmp_path / "comparison.png").stat().st_size > 10_000
+    assert len((tmp_path / "comparison.csv").read_text().splitlines()) == 7
+    # By a shift that is known.
+    assert compare(run, log, shift=-4.0).measured.start == pytest.approx(STARTS + 1, abs=1e-9)
+
+
+def test_a_measured_resistance(run: Path, tmp_path: Path) -> None:
+    log = tmp_path / "scope.csv"
+    np.savetxt(log, np.column_stack((1e3 * TIME, 1e3 * resistance(2e-4, 0.9))), delimiter=",", comments="",
+               header="time [ms],resistance [mOhm]")  # fmt: skip
+    found = compare(run, log, out=tmp_path, shift=0.0)
+    assert found.measured.start == pytest.approx(STARTS + 2e-4, abs=2e-6)
+    assert found.rows[3][3] == "1.11"
+
+
+def test_what_a_comparison_needs(run: Path, tmp_path: Path) -> None:
+    log = tmp_path / "log.csv"
+    log.write_text("start [ms],length [us]\n1,2\n")
+    with pytest.raises(RelayContactError, match=r"log.csv:1: columns: not allowed, allowed are start and duration"):
+        compare(run, log)
+    other = tmp_path / "other.csv"
+    other.write_text("time,contact.force\n0,1\n1,1\n")
+    with pytest.raises(RelayContactError, match=r"no columns time and contact.resistance: run it with --output"):
+        compare(other, log)

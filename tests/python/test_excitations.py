@@ -1,0 +1,287 @@
+"""Courses, spectra, noise and records as tests: against closed forms, a second solution, and the whole record."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from component import COMPONENT
+from reference import Reference
+from relay_contact import Array, RelayContactError, Values
+from relay_contact.qualification import FEW, Relay, Standard, assessment, qualify, standards, synthesis
+from relay_contact.qualification.excitation import STEP, Course, Random, Shock, Sine, Spectrum, overall
+from relay_contact.qualification.response import Response, respond
+from relay_contact.qualification.standards import Contacts, Recorded
+from relay_contact.qualification.trials import Piece, Specimen, eased, noise, pieces
+
+G = 9.80665
+READ: Any = "from memory"
+PUBLISHED: Values = {"effects.axialForce": "FromPreload"}
+SPECIMEN = Reference(PUBLISHED)
+CONTACTS = Standard.read("MIL-PRF-28776").contacts
+LASTING = CONTACTS.opening
+CALM = Specimen(COMPONENT, PUBLISHED, CONTACTS, respond(COMPONENT, PUBLISHED, CONTACTS.threshold))
+
+
+def history(path: Path, **entries: Any) -> Any:  # noqa: ANN401
+    """Return the test of a record."""
+    (test,) = Recorded(file=path.name, **entries).tests(path.parent)
+    return test
+
+
+@pytest.mark.parametrize("shape", ["terminal-peak sawtooth", "trapezoid"])
+def test_pulses_open_the_contact_where_the_second_solution_does(shape: Any) -> None:  # noqa: ANN401
+    """Of 3 ms, four periods of the contact: its own vibration counts."""
+    test = Shock("a", "", READ, 50.0, 3e-3, shape)
+    course = test.course()
+    (piece,) = pieces(CALM, course, -1.0)
+    level, failed = piece.threshold(CALM, -1.0)
+    assert failed == ["closed contact"]
+    # Hertz's stiffness changes with the force: linear theory is right to 1 %.
+    assert level == pytest.approx(piece.guess, rel=0.01)
+
+    def acceleration(time: float) -> float:
+        # Jumps take 1 ns.
+        steep = course.time + 1e-9 * np.arange(len(course.time))
+        return -float(np.interp(time, steep, course.acceleration, left=0.0, right=0.0))
+
+    def least(factor: float) -> float:
+        motion = SPECIMEN.motion(lambda time: factor * level * acceleration(time), 3.8e-3, 1e-6, max_step=1e-5)
+        return min(motion(time) for time in np.linspace(0, 3.8e-3, 3800))
+
+    # An interruption of 10 us begins above the first opening: of a period of 0.74 ms by (pi 10 us / 0.74 ms)^2 / 2.
+    assert least(0.99) > 1e-3 * SPECIMEN.force
+    assert least(1.01) < 1e-6 * SPECIMEN.force
+
+
+def test_the_tolerance_of_a_pulse_moves_the_margin(tmp_path: Path) -> None:
+    """A slow pulse by its peak alone."""
+    entries: Any = {"peak": 0.2, "duration": 0.1}
+    test = Shock("slow", "", READ, 50.0, 11e-3, tolerance=entries)
+    relay = Relay.read("paper", COMPONENT)
+    relay = replace(relay, models=relay.models[:1], uncertainty={})
+    (tested,) = assessment.assess(COMPONENT, relay, Standard("own", CONTACTS, (test,)), tmp_path, FEW)
+    assert tested.margin.tolerance
+    low, high = tested.margin.tolerance
+    assert low == pytest.approx(tested.margin.margin / 1.2, rel=0.02)
+    assert high == pytest.approx(tested.margin.margin / 0.8, rel=0.02)
+
+
+def test_a_recorded_pulse_is_that_of_the_generator(tmp_path: Path) -> None:
+    """With an offset of time, in g, in the direction that opens the contact, and reversed."""
+    time = np.linspace(0, 3e-3, 151)
+    path = tmp_path / "pulse.csv"
+    rows = "\n".join(f"{t + 7:.9f},{-50 * np.sin(np.pi * t / 3e-3):.9f}" for t in time)
+    path.write_text(f"Time [s],Z [g]\n{rows}\n")
+    test = history(path)
+    assert any("begins at 7 s" in note for note in test.record.notes)
+    (own,) = pieces(CALM, Shock("a", "", READ, 50.0, 3e-3).course(), -1.0)
+    (piece,) = pieces(CALM, test.course(), 1.0)
+    # Chords of 20 us lie (pi 20 us / 3 ms)^2 / 8 below the sine.
+    assert piece.threshold(CALM, 1.0)[0] == pytest.approx(own.threshold(CALM, -1.0)[0], rel=2e-4)
+    assert history(path, reversed=True).directions == {"as recorded": 1.0, "reversed": -1.0}
+
+
+def test_the_margin_of_a_record_is_that_of_the_whole(tmp_path: Path) -> None:
+    """Noise with unequal steps and an offset: the pieces around its dips fail where the whole record does."""
+    generator = np.random.default_rng(5)
+    count = 30_000
+    frequency = np.fft.rfftfreq(count, 2e-5)
+    band = (frequency > 50) & (frequency < 2000)
+    course = np.fft.irfft(
+        band * (generator.standard_normal(len(frequency)) + 1j * generator.standard_normal(len(band)))
+    )
+    time = 2e-5 * (np.arange(count) + generator.uniform(-0.2, 0.2, count))
+    path = tmp_path / "road.csv"
+    values = 3.0 * course / course.std() + 1.0
+    np.savetxt(path, np.column_stack((time - time[0], values)), delimiter=",", header="time [s],a [g]", comments="")
+    test = history(path)
+    assert [each for each in test.record.notes if "unequal" in each]
+    assert [each for each in test.record.notes if "before its begin" in each]
+    found = [piece.threshold(CALM, 1.0)[0] for piece in pieces(CALM, test.course(), 1.0)]
+    whole = Piece(test.course().padded(CALM.response.settling()), 1.0, 0.0)
+    assert not whole.follow(CALM, 0.9985 * min(found))[0]
+    assert whole.follow(CALM, 1.0015 * min(found))[0]
+
+
+def test_a_record_alone_is_a_test(tmp_path: Path) -> None:
+    relay = tmp_path / "relay.toml"
+    relay.write_text("parameters.effects.axialForce = 'FromPreload'\n")
+    time = np.linspace(0, 4e-3, 201)
+    pulse = -30 * np.sin(np.pi * time / 4e-3)
+    (tmp_path / "two.csv").write_text(
+        "time [ms];x [g];temperature [degC];y [m/s2]\n"
+        + "\n".join(f"{1e3 * t};{a};20;{9.80665 * a / 2}" for t, a in zip(time, pulse, strict=True))
+    )
+    found = qualify(relay, history=[tmp_path / "two.csv"], out=tmp_path, component=COMPONENT)
+    first, second = found["two.csv, x"], found["two.csv, y"]
+    assert second.margin.margin == pytest.approx(2 * first.margin.margin, rel=2e-4)
+    page = (tmp_path / "qualification.html").read_text(encoding="utf-8")
+    assert "Shock response spectrum" in page or page.count("<svg") == 5
+
+
+@pytest.mark.parametrize("required", [((20.0, 10.0), (80.0, 40.0), (2000.0, 40.0)), ((100.0, 20.0), (1000.0, 500.0))])
+def test_a_pulse_of_damped_sines_meets_its_spectrum(required: Any) -> None:  # noqa: ANN401
+    time, acceleration = synthesis.pulse(required, 10.0)
+    corners, levels = np.array(required).T
+    # Also between its sines, by oscillators that are integrated.
+    for frequency in np.geomspace(corners[0] * 1.05, corners[-1] / 1.05, 4):
+        omega = 2 * np.pi * frequency
+        wanted = G * np.exp(np.interp(np.log(frequency), np.log(corners), np.log(levels)))
+        found = synthesis.response(acceleration, time[1], np.array([frequency]), 10.0)[0]
+        # 0.3 dB below at most, 0.7 dB above.
+        assert 0.96 < found / wanted < 1.085
+        if frequency > 0.1 * corners[-1]:
+            continue
+
+        def motion(now: float, state: Array, omega: float = omega) -> list[float]:
+            base = float(np.interp(now, time, acceleration, right=0.0))
+            return [state[1], -base - omega * state[1] / 10 - omega**2 * state[0]]
+
+        own = solve_ivp(motion, (0, time[-1]), [0, 0], max_step=0.05 / frequency, rtol=1e-6)
+        absolute = np.abs(omega * own.y[1] / 10 + omega**2 * own.y[0]).max()
+        assert found == pytest.approx(absolute, rel=0.01)
+    # No change of velocity is left, beside that of the pulse.
+    assert abs(np.trapezoid(acceleration, time)) < 1e-2 * np.abs(acceleration).max() / (2 * np.pi * corners[0])
+
+
+def test_densities_by_slopes() -> None:
+    (screen,) = Standard.read("NAVMAT-P-9492").tests
+    assert isinstance(screen, Random)
+    assert screen.density[0][1] == pytest.approx(0.04 * 10 ** (-0.3 * 2), rel=1e-12)
+    assert screen.density[-1][1] == pytest.approx(0.04 * 10 ** (-0.3 * np.log2(2000 / 350)), rel=1e-12)
+    # What the standards print, of their own break points.
+    for name in standards():
+        for test in Standard.read(name).tests:
+            if isinstance(test, Random):
+                assert overall(test.density) == pytest.approx(test.rms, rel=0.011 if name.startswith("NAV") else 3e-3)
+    (spectrum,) = (test for test in Standard.read("MIL-STD-810").tests if isinstance(test, Spectrum))
+    assert spectrum.course().end < 3.0
+
+
+def oscillator(natural: float, quality: float, stiff: bool = False) -> Response:
+    """Return the response of an oscillator, or of a contact that follows the acceleration."""
+    time = STEP * np.arange(8000)
+    omega = 2 * np.pi * natural
+    answer = -omega * np.exp(-omega * time / 2 / quality) * np.sin(omega * time)
+    if stiff:
+        answer = np.zeros(2000)
+        answer[0] = -1 / STEP
+    frequency = np.arange(2, 10_000) * 0.5
+    turn = np.exp(-2j * np.pi * np.outer(frequency[::40], STEP * np.arange(len(answer))))
+    sampled = turn @ answer * STEP
+    transfer = np.interp(frequency, frequency[::40], sampled.real) + 1j * np.interp(
+        frequency, frequency[::40], sampled.imag
+    )
+    known: Array = np.concatenate(([0.0, 0.5], frequency))
+    return Response(100.0, natural, known, np.concatenate((transfer[[0, 0]], transfer)), answer)
+
+
+def test_crossings_of_noise_with_sines_are_those_of_a_record() -> None:
+    response = oscillator(300.0, 5.0)
+    test = Random("a", "", READ, ((50.0, 0.01), (1000.0, 0.01)), 3.08, 60.0, sines=((200.0, 3.0), (330.0, 1.0)))
+    change = response.change(noise(test)[0].sampled())
+    peaks = np.sort(-change[1:-1][(change[1:-1] < change[:-2]) & (change[1:-1] < change[2:])])
+    for crossed in (280, 100):
+        # The level that is crossed so often: in this time once, by expectation.
+        own = replace(test, duration=60.0 / crossed)
+        largest = response.reserve / response.random(own, 0.0, float(-np.expm1(-1.0)))
+        # Peaks come in clusters of some: an uncertainty of the number by a fifth is one of the level by 2 %.
+        assert largest == pytest.approx(peaks[-crossed], rel=0.03)
+    # Without sines, Rice's own formula.
+    bare = replace(test, sines=())
+    rms_, mean = response.moments(bare)
+    assert response.reserve / response.random(bare, 0.0) == pytest.approx(
+        rms_ * np.sqrt(2 * np.log(mean * 60 / np.log(2))), rel=1e-12
+    )
+    tiny = replace(test, sines=((200.0, 1e-6),))
+    assert response.random(tiny, 0.0) == pytest.approx(response.random(bare, 0.0), rel=1e-4)
+
+
+def test_clipping_bounds_what_follows_the_acceleration_and_hardly_what_resonates() -> None:
+    test = Random("a", "", READ, ((50.0, 0.01), (1000.0, 0.01)), 3.08, 900.0, clipping=3.0)
+    free, clipped = noise(test)
+    assert np.abs(clipped.acceleration).max() == pytest.approx(3 * 3.082 * G, rel=1e-3)
+    factors = {}
+    for name, response in (("stiff", oscillator(0.0, 1.0, stiff=True)), ("resonant", oscillator(300.0, 30.0))):
+        specimen = replace(CALM, response=response)
+        factors[name] = eased(specimen, test, free, clipped)
+    stiff = oscillator(0.0, 1.0, stiff=True)
+    bound = stiff.reserve / (3 * 3.082 * G)
+    assert factors["stiff"] * stiff.random(test, 0.0) == pytest.approx(bound, rel=0.02)
+    assert 1 <= factors["resonant"] < 1.05
+
+
+def test_a_dwell_at_resonance_and_steps_have_the_margins_of_the_sweep() -> None:
+    response = CALM.response
+    sweep = Sine("a", "", READ, 30.0, None, (100.0, 3000.0), 60.0)
+    dwell = Sine("a", "", READ, 30.0, None, (100.0, 3000.0), dwell=True)
+    _, factors = response.sine(sweep, LASTING)
+    own, factor = response.sine(dwell, LASTING)
+    # The interruption of 10 us moves the weakest frequency by less than a line of the response.
+    assert len(own) == 1
+    assert factor[0] == pytest.approx(factors.min(), rel=1e-4)
+    steps = Sine("a", "", READ, 30.0, None, steps=(200.0, float(own[0]), 2000.0))
+    assert response.sine(steps, LASTING)[1].min() == pytest.approx(factor[0], rel=1e-3)
+    assert sweep.rate == pytest.approx(2 * np.log2(30), rel=1e-12)
+    assert replace(sweep, sweep_time=None, sweep_rate=1.0).rate == 1.0
+
+
+@pytest.mark.parametrize(
+    ("entries", "message"),
+    [
+        ({"steps": (100.0,)}, "either frequencies or steps"),
+        ({"sweep_rate": 1.0}, "one of sweep_time and sweep_rate"),
+        ({"acceleration": None}, "acceleration or double_amplitude: missing"),
+        ({"evidence": {"duration": "from memory"}}, "evidence.duration: not an entry of this test"),
+    ],
+)
+def test_sines_that_do_not_fit_together(entries: dict[str, Any], message: str) -> None:
+    sweep = Sine("a", "", READ, 30.0, None, (100.0, 3000.0), 60.0)
+    with pytest.raises(ValueError, match=message):
+        replace(sweep, **entries)
+    with pytest.raises(ValueError, match=r"the pulse has 3\.43"):
+        Shock("a", "", READ, 50.0, 11e-3, velocity_change=4.0)
+
+
+def test_another_axis_by_its_participations(tmp_path: Path) -> None:
+    """Half of the normal ones, reversed: twice the margin, in the other direction."""
+    spring = Relay.read("finite-elements", COMPONENT).positions["contact closed"]["beam.file"]
+    parts = [
+        float(line.split("=")[1]) for line in Path(str(spring)).read_text().splitlines() if "participation" in line
+    ]
+    relay = tmp_path / "relay.toml"
+    text = f"parameters.beam.file = '{spring}'\nparameters.contact.overtravel = 8e-4\n"
+    text += "parameters.beam.stiffnessDamping = 5e-6\nparameters.contact.damping = 2e-6\n"
+    relay.write_text(f"{text}axes.lateral = {[-part / 2 for part in parts]}\n")
+    test = Shock("shock", "", READ, 500.0, 3e-3)
+    found = assessment.assess(
+        COMPONENT, Relay.read(relay, COMPONENT), Standard("own", CONTACTS, (test, replace(test, name="z", axis="z"))),
+        tmp_path, FEW,
+    )  # fmt: skip
+    normal, lateral, other = found
+    assert (lateral.first.named, lateral.first.axis) == ("shock, lateral axis", "lateral")
+    assert lateral.margin.margin == pytest.approx(2 * normal.margin.margin, rel=3e-4)
+    assert {normal.margin.weakest, lateral.margin.weakest} == {"opening direction", "closing direction"}
+    assert other.verdict == "not judged"
+    relay.write_text(f"{text}axes.lateral = [0.1]\n")
+    with pytest.raises(RelayContactError, match=r"relay.toml:5: axes.lateral = .*one participation for each of the"):
+        Relay.read(relay, COMPONENT)
+
+
+def test_contacts_have_their_evidence() -> None:
+    assert CONTACTS.weakest_evidence == "read in the standard"
+    assert isinstance(CONTACTS, Contacts)
+    sine = Standard.read("MIL-PRF-28776").tests[0]
+    # The time of the sweep is from memory, but no verdict depends on it.
+    assert sine.weakest_evidence == "read in the standard"
+
+
+def test_a_course_begins_gently_where_it_does_not_begin_at_rest() -> None:
+    course = Course(np.array([0.0, 1.0]), np.array([2.0, 2.0]))
+    padded = course.padded(0.1)
+    assert padded.acceleration[0] == 0
+    assert padded.end == pytest.approx(1.3)

@@ -1,0 +1,116 @@
+"""Records of acceleration in the files of measuring programs: their time and units, and what is wrong with them."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.io import savemat
+
+from relay_contact import RelayContactError, tables
+from relay_contact.records import read
+
+G = 9.80665
+TIME = 12.5 + 2e-5 * np.arange(400)
+VALUES = 3 * np.sin(1e3 * TIME)
+
+
+def test_text_with_several_channels_and_an_offset_of_time(tmp_path: Path) -> None:
+    path = tmp_path / "road.csv"
+    rows = "\n".join(f"{t:.6f};{a:.6f};21,5;{2 * a:.6f}".replace(".", ",") for t, a in zip(TIME, VALUES, strict=True))
+    path.write_text(f"Logger 7\n# anything\nTime;X;Temp;Y\ns;g;degC;m/s²\n{rows}\n", encoding="utf-8")
+    first, second = read(path)
+    assert (first.channel, second.channel) == ("x", "y")
+    assert first.time == pytest.approx(TIME, abs=1e-9)
+    assert first.acceleration == pytest.approx(G * VALUES, abs=1e-5)
+    assert second.acceleration == pytest.approx(2 * VALUES, abs=1e-6)
+    assert read(path, "Y")[0].channel == "y"
+    assert [note for note in first.notes if "12.5 s" in note]
+    assert not [note for note in first.notes if "unequal" in note]
+    with pytest.raises(RelayContactError, match=r"no channel z; there are x, temp, y"):
+        read(path, "z")
+    with pytest.raises(RelayContactError, match=r"channel temp: unit degC: not allowed, allowed is m/s2, g"):
+        read(path, "temp")
+
+
+def test_text_without_time_has_a_rate(tmp_path: Path) -> None:
+    path = tmp_path / "bare.csv"
+    path.write_text("acceleration [g]\n" + "\n".join(map(str, VALUES)))
+    with pytest.raises(RelayContactError, match=r"no time; give the rate"):
+        read(path)
+    (record,) = read(path, rate=50e3)
+    assert record.time == pytest.approx(TIME - 12.5, abs=1e-12)
+    path.write_text("time [s],acceleration\n" + "\n".join(f"{t},{a}" for t, a in zip(TIME, VALUES, strict=True)))
+    with pytest.raises(
+        RelayContactError, match=r"no channel with an acceleration in g or m/s2; there are acceleration"
+    ):
+        read(path)
+    assert read(path, unit="g")[0].acceleration == pytest.approx(G * VALUES)
+    with pytest.raises(RelayContactError, match="a rate is given, and the file has a time"):
+        read(path, unit="g", rate=1.0)
+
+
+def test_unequal_steps_are_told_and_times_have_to_rise(tmp_path: Path) -> None:
+    path = tmp_path / "steps.csv"
+    path.write_text("time [ms],a [g]\n0,0\n1,1\n3,2\n4,3\n")
+    (record,) = read(path)
+    assert [note for note in record.notes if "unequal, 1000 to 2000 µs" in note]
+    assert record.time == pytest.approx([0, 1e-3, 3e-3, 4e-3])
+    path.write_text("time [ms],a [g]\n0,0\n1,1\n1,2\n")
+    with pytest.raises(RelayContactError, match=r"value 3: .* allowed is more than the time before"):
+        read(path)
+
+
+def test_a_large_file_is_read_at_once_and_alike(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "large.csv"
+    rows = "\n".join(f"{t:.6f};{a:.6f}".replace(".", ",") for t, a in zip(TIME, VALUES, strict=True))
+    path.write_text(f"some\n\ntime;a\ns;g\n{rows}\n")
+    (slow,) = read(path)
+    monkeypatch.setattr(tables, "LARGE", 100)
+    monkeypatch.setattr(tables, "BEGIN", 300)
+    thorough: list[int] = []
+    whole = tables.thorough
+
+    def counted(*given: Any) -> Any:  # noqa: ANN401
+        thorough.append(len(given))
+        return whole(*given)
+
+    monkeypatch.setattr(tables, "thorough", counted)
+    (fast,) = read(path)
+    # Its begin alone.
+    assert thorough == [3]
+    assert np.array_equal(fast.time, slow.time)
+    assert fast.acceleration == pytest.approx(slow.acceleration, rel=1e-14)
+    path.write_text(f"some\n\ntime;a\ns;g\n{rows}\n5;x\n")
+    with pytest.raises(RelayContactError, match=r"large.csv:405: column a: x: not allowed, allowed is a number"):
+        read(path)
+
+
+def test_files_of_measuring_programs(tmp_path: Path) -> None:
+    asammdf, pyuff, nptdms = (pytest.importorskip(name) for name in ("asammdf", "pyuff", "nptdms"))
+    with asammdf.MDF(version="4.10") as file:
+        file.append(
+            [asammdf.Signal(VALUES, TIME, unit="g", name="Z"), asammdf.Signal(VALUES, TIME, unit="V", name="U")]
+        )
+        file.save(tmp_path / "road.mf4")
+    blank: dict[str, Any] = {
+        "type": 58, "func_type": 1, "rsp_node": 1, "rsp_dir": 3, "ref_node": 1, "ref_dir": 3, "data": VALUES, "x": TIME,
+        "id1": "Z", "ordinate_axis_units_lab": "m/s2", "orddenom_spec_data_type": 0, "abscissa_spacing": 1,
+    }  # fmt: skip
+    pyuff.UFF(str(tmp_path / "road.uff")).write_sets(blank, "overwrite")
+    with nptdms.TdmsWriter(tmp_path / "road.tdms") as writer:
+        properties = {"unit_string": "g", "wf_increment": 2e-5, "wf_start_offset": 12.5}
+        writer.write_segment([nptdms.ChannelObject("group", "Z", VALUES, properties=properties)])
+    savemat(tmp_path / "road.mat", {"t": TIME, "Z": VALUES})
+    for suffix, unit, factor in (("mf4", "", G), ("uff", "", 1.0), ("tdms", "", G), ("mat", "g", G)):
+        (record,) = read(tmp_path / f"road.{suffix}", unit=unit)
+        assert record.channel == "Z", suffix
+        assert record.time == pytest.approx(TIME, abs=1e-9), suffix
+        assert record.acceleration == pytest.approx(factor * VALUES, rel=1e-6, abs=1e-9), suffix
+
+
+def test_packages_are_asked_for_only_where_they_are_needed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "road.tdms").write_bytes(b"")
+    monkeypatch.setitem(__import__("sys").modules, "nptdms", None)
+    with pytest.raises(RelayContactError, match=r"needs the package nptdms: pip install 'relay-contact\[records\]'"):
+        read(tmp_path / "road.tdms")

@@ -1,0 +1,128 @@
+"""Distributions, correlations, chances and indices: against closed forms; a relay file that identification wrote."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.stats import norm, qmc
+
+from component import COMPONENT
+from relay_contact import RelayContactError
+from relay_contact.qualification import Relay, Standard
+from relay_contact.qualification import position as positions
+from relay_contact.qualification.distributions import LIMITS, Distribution
+from relay_contact.qualification.excitation import Shock
+from relay_contact.qualification.position import Position
+from relay_contact.qualification.statistics import MANY, Surface, chance, drawn, first_order
+
+SLOW = Shock("slow", "", "from memory", 20.0, 0.1)
+
+
+@pytest.mark.parametrize(
+    ("entries", "ends"),
+    [
+        ({"part": 0.1}, (0.9, 1.1)),
+        ({"distribution": "uniform", "part": 0.1}, (0.905, 1.095)),
+        # Triangles: of their area 2.5 % lies below low + sqrt(0.025 (high - low) (mode - low)).
+        ({"distribution": "triangular", "low": -0.1, "mode": 0.0, "high": 0.1},
+         (0.9 + np.sqrt(0.025 * 0.2 * 0.1), 1.1 - np.sqrt(0.025 * 0.2 * 0.1))),
+        ({"distribution": "data", "values": tuple(np.linspace(1.8, 2.2, 4001))}, (0.905, 1.095)),
+    ],
+)  # fmt: skip
+def test_distributions_by_name(entries: Any, ends: tuple[float, float]) -> None:  # noqa: ANN401
+    found = Distribution(**entries)
+    assert found.factor(norm.ppf(LIMITS), 2.0) == pytest.approx(ends, abs=2e-4)
+    assert found.half(2.0) == pytest.approx((ends[1] - ends[0]) / 2, abs=2e-4)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("uncertainty.tip.mass = {distribution = 'uniform'}", "1: uncertainty.tip.mass = .*a uniform .* has part"),
+        ("uncertainty.tip.mass = {distribution = 'normal', part = 2.0}", "1: .*part: allowed is less than 1"),
+        ("uncertainty.tip.mass = {distribution = 'gauss', part = 0.1}", "1: .*distribution: allowed is 'normal'"),
+        ("uncertainty.tip.mass = {distribution = 'triangular', low = 0.1, mode = 0.0, high = 0.1}", "1: .*to rise"),
+        ("uncertainty.tip.mass = 0.1\n[correlation]\nnames = ['tip.mas']\nmatrix = [[1.0]]", "3: correlation.names.1"),
+        ("[correlation]\nnames = ['a', 'b']\nmatrix = [[1.0, 2.0], [2.0, 1.0]]", "3: correlation.matrix.1.2 = 2.0"),
+        ("[correlation]\nnames = ['a', 'b']\nmatrix = [[1.0, 0.5], [0.4, 1.0]]", "1: correlation = .*symmetrical"),
+        ("[correlation]\nnames = ['a', 'b', 'c']\nmatrix = [[1.0, 0.9, -0.9], [0.9, 1.0, 0.9], [-0.9, 0.9, 1.0]]",
+         "1: correlation = .*negative eigenvalue"),
+    ],
+)  # fmt: skip
+def test_wrong_uncertainties(tmp_path: Path, text: str, message: str) -> None:
+    path = tmp_path / "relay.toml"
+    path.write_text(f"{text}\n")
+    with pytest.raises(RelayContactError, match=f"relay.toml:{message}"):
+        Relay.read(path, COMPONENT)
+
+
+def slow_shock(tmp_path: Path, text: str) -> tuple[Position, float]:
+    """Return a position of a relay under a slow shock, and the margin: that of linear theory."""
+    path = tmp_path / "relay.toml"
+    path.write_text(text)
+    relay = Relay.read(path, COMPONENT)
+    (name,) = relay.positions
+    position = Position(COMPONENT, relay, name, Standard.read("MIL-PRF-28776").contacts, (SLOW,), relay.models[0])
+    return position, position.linear(position.specimen.response, SLOW)
+
+
+def test_a_correlation_changes_the_interval_as_it_should(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Preload over mass: goes with Young's modulus and overtravel, whose errors add up, or cancel."""
+    monkeypatch.setattr(positions, "DRAWS", 64)
+    text = "uncertainty.contact.overtravel = 0.05\nuncertainty.beam.youngsModulus = 0.05\n[correlation]\n"
+    text += "names = ['beam.youngsModulus', 'contact.overtravel']\nmatrix = [[1.0, {0}], [{0}, 1.0]]\n"
+    for coefficient in (-0.9, 0.0, 0.9):
+        position, margin = slow_shock(tmp_path, text.format(coefficient))
+        margins, told = position.margins(SLOW, margin)
+        # Of 10,000 draws the deviation is known to 0.7 %.
+        part = 0.05 * np.sqrt(2 + 2 * coefficient) / 1.96
+        assert np.std(margins) / margin == pytest.approx(part, rel=0.03)
+        # Of each: its own and what it tells of the other.
+        index = (1 + coefficient) / 2
+        assert told.indices["contact.overtravel"] == pytest.approx(index, abs=0.03)
+        assert told.confirmed >= 2
+        # The component was where the polynomial had told.
+        assert told.error < 2e-3
+
+
+def test_a_chance_in_ppm_with_its_interval(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(positions, "DRAWS", 64)
+    position, margin = slow_shock(tmp_path, "uncertainty.contact.overtravel = 0.05\n")
+    for sigmas in (0.0, 2.0, 3.0):
+        own = 1 + sigmas * 0.05 / 1.96
+        test = replace(SLOW, acceleration=SLOW.acceleration * margin / own)
+        position = replace(position, tests=(test,))
+        _, told = position.margins(test, own)
+        expected = norm.cdf(-sigmas / own)
+        assert told.low <= expected <= told.high, sigmas
+        # By the number of draws, and an error of the margin of up to 0.05 %.
+        assert told.high - told.low < 5 * np.sqrt(expected / MANY) + 0.04 * expected + 1e-3
+
+
+def test_intervals_of_a_chance() -> None:
+    margins = np.full(MANY, 2.0)
+    # The rule of three, two-sided: ln(40) / n.
+    assert chance(margins, 0.0) == pytest.approx((0.0, 0.0, np.log(40) / MANY), rel=1e-3)
+    margins[:100] = 0.5
+    assert chance(margins, 0.0) == pytest.approx((0.01, 0.00814, 0.01215), abs=1e-5)
+    margins[:200] = 0.995
+    assert chance(margins, 0.01)[1:] == pytest.approx((0.0, 0.0229), abs=1e-4)
+
+
+def test_a_surface_follows_margins_and_tells_its_error() -> None:
+    scores = norm.ppf(qmc.Sobol(4, scramble=False).random(256) + 0.5 / 256)
+
+    def margin(at: Any) -> Any:  # noqa: ANN401
+        return np.log(1.2 * (1 + 0.05 * at[:, 0]) * np.sqrt(1 + 0.03 * at[:, 1]) + 0.02 * at[:, 0] * at[:, 2])
+
+    surface, others = Surface(scores, margin(scores)), drawn(4)
+    left = surface(others) - margin(others)
+    # Terms of third order: 0.05 times 0.02 / 1.2, in scores of 1.
+    assert np.std(left) < 2 * 0.05 * 0.02 / 1.2
+    assert 0.3 < surface.error / np.std(left) < 6
+    found = first_order(others, np.exp(margin(others)), ["a", "b", "c", "d"])
+    # By the slopes: 0.06 and 0.018 of 1.2.
+    assert found["a"] == pytest.approx(0.06**2 / (0.06**2 + 0.018**2), abs=0.1)
+    assert found["d"] < 0.02
