@@ -8,9 +8,9 @@ import numpy as np
 
 from relay_contact import Component, Values
 from relay_contact.figures import GRAVITY as G
+from relay_contact.qualification.excitation import Shock, Sine
 from relay_contact.qualification.relay import Relay
 from relay_contact.qualification.response import Response, respond
-from relay_contact.qualification.excitation import Shock, Sine
 from relay_contact.qualification.standards import Standard
 from relay_contact.qualification.trials import (
     RESOLUTION,
