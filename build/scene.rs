@@ -9,11 +9,12 @@ use roxmltree::{Document, Node};
 use crate::{attribute, camel, snake, start, unit};
 
 /// What the groups of parameters describe.
-const GROUPS: [(&str, &str); 11] = [
+const GROUPS: [(&str, &str); 12] = [
     ("beam", "Cantilever spring, as an equivalent uniform section."),
     ("tip", "Rivet at the tip."),
     ("contact", "Contact geometry and law."),
     ("second", "Second contact: of the materials of the first."),
+    ("fixed", "Spring of the fixed contact."),
     ("friction", "Friction between the contacts."),
     (
         "resistance",
@@ -139,9 +140,10 @@ fn structs(
         code,
         "/// Parameters and effects of a simulation. SI units.\n#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]\n\
          pub struct Scene {{\n{fields}    /// The spring of `beam.file`, in place of the length, width and thickness of the beam.\n    \
-         pub spring: Option<Arc<SpringFile>>,\n}}\n\
+         pub spring: Option<Arc<SpringFile>>,\n    /// The spring of `fixed.file`, which carries the fixed contact; rigid without one.\n    \
+         pub fixed_spring: Option<Arc<SpringFile>>,\n}}\n\
          impl Default for Scene {{\n    /// The start values of `modelDescription.xml`.\n    fn default() -> Self {{\n        Self {{\n{all}            \
-         spring: None,\n        }}\n    }}\n}}"
+         spring: None,\n            fixed_spring: None,\n        }}\n    }}\n}}"
     )?;
     Ok(code)
 }

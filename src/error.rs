@@ -90,15 +90,17 @@ pub enum SceneError {
          effects.secondContact = true are Hertz and Rough"
     )]
     LinearBesideSecond,
-    /// Friction beside something that it cannot be combined with.
-    #[error(
-        "{name} = {choice}: not allowed with effects.friction = Coulomb, allowed is {allowed}; or effects.friction = None"
-    )]
-    NoFriction {
-        /// The other choice.
+    /// Two things that cannot be combined.
+    #[error("{name} = {choice}: not allowed with {other}, allowed is {allowed}; or {instead}")]
+    NotTogether {
+        /// The choice.
         name: &'static str,
         /// Its value.
         choice: &'static str,
+        /// The other.
+        other: &'static str,
+        /// What that may be.
+        instead: &'static str,
         /// What it may be.
         allowed: &'static str,
     },
@@ -311,10 +313,12 @@ pub enum Remark {
     },
     /// Modes that end below what a blow excites.
     #[error(
-        "beam.file = {file}: its modes end at {highest:.0} Hz, a blow of the contact excites the spring up to {reached:.0} Hz; \
+        "{name} = {file}: its modes end at {highest:.0} Hz, a blow of the contact excites the spring up to {reached:.0} Hz; \
          forces of blows, and what rings on after them, are right only as far as the modes reach"
     )]
     FewModes {
+        /// The parameter.
+        name: &'static str,
         /// The spring file.
         file: String,
         /// Frequency of the highest mode, Hz.

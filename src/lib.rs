@@ -48,6 +48,7 @@
 )]
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
+mod assembly;
 mod beam;
 mod chatter;
 mod closed_loop;

@@ -14,7 +14,7 @@
 //!
 //! with approach `d_0` and force `F_0` of the static equilibrium, of which `q_i` are the deviations. The integrator knows modes,
 //! ports and links, and not what they stand for: the contact, the second contact on the other side of the spring, whose
-//! approach grows where that of the first one shrinks, and friction are links.
+//! approach grows where that of the first one shrinks, and friction are links; so is a displacement that is read, without force.
 
 use std::ops::Range;
 
@@ -26,7 +26,7 @@ use crate::electrical::ElectricalContact;
 use crate::math::simd::Arithmetic;
 
 /// Most ports of a model.
-pub const MAX_PORTS: usize = 2;
+pub const MAX_PORTS: usize = 3;
 
 /// Most links of a model.
 pub const MAX_LINKS: usize = 3;
@@ -87,6 +87,8 @@ pub enum LinkLaw {
     Contact(Law),
     /// Friction at the first contact.
     Friction(Friction),
+    /// No force: its approach is a displacement that is read.
+    Gauge,
 }
 
 /// A law at a port.
@@ -111,12 +113,26 @@ pub struct Link {
 }
 
 impl Link {
+    /// A link that no input moves, without force or approach at the equilibrium.
+    pub fn passive(law: LinkLaw, port: usize) -> Self {
+        Self {
+            law,
+            port,
+            sense: 1.0,
+            driven: [0.0; INPUTS],
+            force: 0.0,
+            approach: 0.0,
+            electrical: None,
+            criterion: None,
+        }
+    }
+
     /// The contact law, if it is a contact.
     #[inline(always)]
     pub fn contact(&self) -> Option<&Law> {
         match &self.law {
             LinkLaw::Contact(law) => Some(law),
-            LinkLaw::Friction(_) => None,
+            LinkLaw::Friction(_) | LinkLaw::Gauge => None,
         }
     }
 

@@ -2,12 +2,13 @@
 
 use std::ops::Range;
 
+use crate::assembly::{Assembly, Roles};
 use crate::beam::axial::Feedback;
 use crate::beam::mode::{MAX_MODES, Modal, Mode, ModeState, ModeStates};
 use crate::beam::mode_count::Blow;
 use crate::beam::section::Section;
-use crate::beam::spring::{Basis, Spring};
-use crate::chatter::Criterion;
+use crate::beam::spring::Basis;
+use crate::beam::springs::Springs;
 use crate::closed_loop::system::ClosedLoop;
 use crate::contact::friction::{self, Friction, Slip};
 use crate::contact::law::Law;
@@ -19,14 +20,14 @@ use crate::excitation::generator::Generator;
 use crate::force_error::ForceError;
 use crate::integrator::step_length::StepLengths;
 use crate::integrator::tolerance::Tolerance;
-use crate::link::{CONTACT, INPUTS, Link, LinkLaw, MAX_LINKS, Port};
+use crate::link::{INPUTS, Link, LinkLaw, MAX_LINKS, Port};
 use crate::math::simd::Simd;
 use crate::preload::Preload;
 use crate::scene::Scene;
 use crate::scene::spring::SpringFile;
 use crate::slip_stability;
 use crate::state::{LinkState, State};
-use crate::variables::{AxialForceKind, ContactLawKind, RealParameter};
+use crate::variables::{AxialForceKind, ContactLawKind, RealParameter, StringParameter};
 
 /// Deflection at the preload, in lengths of the spring, above which the user is told what a linear beam misses, 1.
 const BENT_FAR: f64 = 0.1;
@@ -46,8 +47,10 @@ pub struct Model {
     law: Law,
     /// Where forces act on the modes.
     pub(crate) ports: Vec<Port>,
-    /// The laws of these forces: the contact, then the second contact and friction, where there are such.
+    /// The laws of these forces.
     pub(crate) links: Vec<Link>,
+    /// Which link is what, beside the contact.
+    roles: Roles,
     /// Load on each mode per base acceleration, with opposite sign.
     pub(crate) participations: Modal,
     /// The static equilibrium, the reference of the motion.
@@ -76,8 +79,9 @@ pub struct Model {
     pub(crate) compliance: f64,
     /// Lowest natural frequency with the contact as a spring, from the exact characteristic equation, Hz.
     pub(crate) frequency: f64,
-    /// Frequency of the highest mode of a spring file, and that up to which a blow excites the spring, if higher, Hz.
-    missed: Option<(f64, f64)>,
+    /// Frequency of the highest mode of a spring file, and that up to which a blow excites the spring, if higher, Hz; and whether
+    /// it is the fixed contact's.
+    missed: Option<(f64, f64, bool)>,
     /// Length of the spring, if it is known, m.
     spring_length: Option<f64>,
     /// The errors allowed.
@@ -109,24 +113,23 @@ impl Model {
     pub fn new(scene: &Scene, support: f64) -> Result<Self, SceneError> {
         scene.validate()?;
         friction::check(scene)?;
-        let spring = Spring::new(scene)?;
-        let section = spring.section;
+        let springs = Springs::new(scene)?;
+        let (spring, section) = (&springs.moving, springs.moving.section);
         let power = Power::of(scene);
         let second = Power::of_second(scene);
-        let preload = Preload::new(scene, &spring, &power, support)?;
+        let preload = Preload::new(scene, &springs, &power, support)?;
         let tolerance = scene.solver.effective_tolerance();
-        let force_scale = preload.force.max(bending_force(scene, &section));
+        let bending_force = bending_force(scene, &springs);
+        let force_scale = preload.force.max(bending_force);
         let law = law(scene, power, &preload)?.parting(tolerance, force_scale);
-        let count = |blow: &Blow| spring.count(blow, tolerance);
-        let own = blow(scene, &section, &power);
-        let blow = second
-            .map(|second| blow(scene, &section, &second))
-            .filter(|second| count(second) > count(&own))
-            .unwrap_or(own);
-        let wanted = count(&blow);
-        let asked = usize::try_from(scene.solver.modes).ok().filter(|count| *count > 0);
-        let count = asked.unwrap_or(wanted).min(MAX_MODES);
-        let Some(Basis { modes, shapes, space }) = spring.modes(scene, count, preload.axial_force) else {
+        let blow = |power: &Power| blow(scene, bending_force, power);
+        let own = blow(&power);
+        let on_second = second.as_ref().map_or(own, blow);
+        let wanted = springs.counts(&own, &on_second, tolerance);
+        let counts = wanted
+            .or(usize::try_from(scene.solver.modes).unwrap_or_default())
+            .within_room();
+        let Some(Basis { modes, shapes, space }) = springs.modes(scene, counts, preload.axial_force) else {
             return Err(SceneError::Buckled {
                 name: RealParameter::BeamAxialForce.variable().name,
                 value: preload.axial_force,
@@ -139,7 +142,7 @@ impl Model {
         let feedback = axial.as_ref();
         let frequency = feedback
             .and_then(|axial| axial.frequency(&modes, preload.contact_stiffness))
-            .or_else(|| spring.frequency(preload.axial_force, preload.contact_stiffness))
+            .or_else(|| springs.frequency(scene, preload.axial_force, preload.contact_stiffness))
             .map_or(0.0, |omega| omega / std::f64::consts::TAU);
         let generator = Generator::new(scene)?;
         if scene.effects.chatter && ElectricalContact::new(scene, &law).is_none() {
@@ -149,6 +152,7 @@ impl Model {
             Law::Linear(contact)
                 if generator.is_harmonic()
                     && axial.is_none()
+                    && scene.fixed_spring.is_none()
                     && !scene.effects.extremes
                     && is_rayleigh(scene, &modes) =>
             {
@@ -157,11 +161,14 @@ impl Model {
             _ => None,
         };
         let memory = modes.first().map_or(0.0, |mode| 1.0 / mode.omega_squared.sqrt());
-        let missed = (count < wanted).then(|| spring.error(&blow, count));
+        let missed = counts
+            .less_than(wanted)
+            .then(|| springs.error(&own, counts).max(springs.error(&on_second, counts)));
         let mut model = Self {
             law,
             ports: Vec::new(),
             links: Vec::new(),
+            roles: Roles::default(),
             participations: [0.0; MAX_MODES],
             missed_by_modes: missed.unwrap_or_default(),
             inertia: inertia(&modes),
@@ -178,7 +185,7 @@ impl Model {
             force_scale,
             tolerance: Tolerance::new(tolerance, force_scale),
             frequency,
-            missed: spring.missed(&blow),
+            missed: springs.missed(&own),
             spring_length: spring.length(),
             simd: Simd::detect(),
         };
@@ -187,59 +194,22 @@ impl Model {
         Ok(model)
     }
 
-    /// Sets ports and links: a contact with the first law, one with the second law on the other side of the spring, and friction.
+    /// Sets ports and links, with this law of the contact and that of a second one.
     fn link(&mut self, law: Law, second: Option<Law>) {
         for (participation, mode) in self.participations.iter_mut().zip(&self.modes) {
             *participation = mode.participation;
         }
-        self.law = law;
-        self.ports = vec![Port::new(&self.modes, |mode| mode.tip)];
-        let contact = |law: Law| {
-            let electrical = ElectricalContact::new(&self.scene, &law);
-            let criterion = electrical.as_ref();
-            Link {
-                law: LinkLaw::Contact(law),
-                port: 0,
-                sense: 1.0,
-                driven: [1.0, 0.0],
-                force: self.preload.force,
-                approach: self.preload.indentation,
-                electrical,
-                criterion: criterion.and_then(|electrical| Criterion::new(&self.scene, electrical)),
-            }
-        };
-        let mut links = vec![contact(law)];
-        // At the distance of the gap; the second input moves its fixed contact relative to the first.
-        links.extend(second.map(|law| Link {
-            sense: -1.0,
-            driven: [-1.0, 1.0],
-            force: 0.0,
-            approach: -self.scene.second.gap,
-            ..contact(law)
-        }));
-        if let (Some(friction), Some(share)) = (
-            Friction::new(&self.scene, &self.modes),
-            friction::tangential_share(&self.scene),
-        ) {
-            self.ports
-                .push(Port::new(&self.modes, |mode| friction.height * mode.rotation));
-            links.push(Link {
-                law: LinkLaw::Friction(friction),
-                port: 1,
-                sense: 1.0,
-                driven: [0.0; INPUTS],
-                force: share * self.preload.force,
-                approach: 0.0,
-                electrical: None,
-                criterion: None,
-            });
-        }
-        self.links = links;
+        let Assembly { ports, links, roles } = Assembly::new((&self.scene, &self.modes, &self.preload), law, second);
+        (self.law, self.ports, self.links, self.roles) = (law, ports, links, roles);
     }
 
     /// The same model with other parts, for test problems without a spring. It takes no exact steps.
     #[must_use]
     pub fn with(mut self, change: impl FnOnce(&mut Parts)) -> Self {
+        let second = self
+            .second()
+            .and_then(|index| self.links.get(index)?.contact())
+            .copied();
         let mut parts = Parts {
             law: *self.law(),
             modes: self.modes,
@@ -247,7 +217,6 @@ impl Model {
             generator: self.generator,
             force_scale: self.force_scale,
         };
-        let second = self.links.get(1).and_then(Link::contact).copied();
         change(&mut parts);
         parts.modes.truncate(MAX_MODES);
         let tolerance = self.scene.solver.effective_tolerance();
@@ -271,8 +240,9 @@ impl Model {
             remarks.extend(slip_stability::remarks(&self.modes, friction, law, usual));
         }
         if let Some(spring) = &self.scene.spring {
-            remarks.extend(self.remarks_on_file(spring));
+            remarks.extend(self.not_used(spring));
         }
+        remarks.extend(self.few_modes());
         remarks
     }
 
@@ -301,7 +271,7 @@ impl Model {
         })
     }
 
-    fn remarks_on_file(&self, spring: &SpringFile) -> impl Iterator<Item = Remark> {
+    fn not_used(&self, spring: &SpringFile) -> impl Iterator<Item = Remark> {
         let sizes = [
             RealParameter::BeamLength,
             RealParameter::BeamWidth,
@@ -310,18 +280,27 @@ impl Model {
         let set = sizes
             .into_iter()
             .filter(|size| self.scene.real(*size) != size.variable().start);
-        let not_used = set.map(|size| Remark::NotUsed {
+        set.map(|size| Remark::NotUsed {
             name: size.variable().name,
             value: self.scene.real(size),
             unit: size.variable().unit,
             file: spring.name.clone(),
-        });
-        let few = self.missed.map(|(highest, reached)| Remark::FewModes {
-            file: spring.name.clone(),
+        })
+    }
+
+    fn few_modes(&self) -> Option<Remark> {
+        let (highest, reached, is_fixed) = self.missed?;
+        let parameter = if is_fixed {
+            StringParameter::FixedFile
+        } else {
+            StringParameter::BeamFile
+        };
+        Some(Remark::FewModes {
+            name: parameter.variable().name,
+            file: self.scene.string(parameter).to_owned(),
             highest,
             reached,
-        });
-        not_used.chain(few)
+        })
     }
 
     /// The scene.
@@ -343,8 +322,12 @@ impl Model {
     /// The index of the second contact, where there is one.
     #[inline(always)]
     pub(crate) fn second(&self) -> Option<usize> {
-        let second = self.links.get(CONTACT + 1).and_then(Link::contact);
-        second.map(|_| CONTACT + 1)
+        self.roles.second
+    }
+
+    /// The index of the displacement of the fixed contact on its spring, where it has one.
+    pub(crate) fn fixed(&self) -> Option<usize> {
+        self.roles.fixed
     }
 
     /// Distance of both fixed contacts with the second displaced by so much (m); infinite where there is one.
@@ -389,9 +372,10 @@ impl Model {
     /// The index of friction among the links, where there is any.
     #[inline(always)]
     pub(crate) fn friction(&self) -> Option<(usize, &Friction)> {
-        match self.links.last().map(|link| &link.law) {
-            Some(LinkLaw::Friction(friction)) => Some((self.links.len() - 1, friction)),
-            _ => None,
+        let index = self.roles.friction?;
+        match &self.links.get(index)?.law {
+            LinkLaw::Friction(friction) => Some((index, friction)),
+            LinkLaw::Contact(_) | LinkLaw::Gauge => None,
         }
     }
 
@@ -508,11 +492,11 @@ fn law(scene: &Scene, power: Power, preload: &Preload) -> Result<Law, SceneError
 }
 
 /// A blow as the scene may have it.
-fn blow(scene: &Scene, section: &Section, power: &Power) -> Blow {
+fn blow(scene: &Scene, bending_force: f64, power: &Power) -> Blow {
     // A blow fifty times the force of the bent spring; with Hertz the number of modes follows it by the 18th root.
     let force = match scene.effects.contact_law {
-        ContactLawKind::Hertz | ContactLawKind::Rough => 50.0 * bending_force(scene, section),
-        ContactLawKind::Linearised | ContactLawKind::Bonded => bending_force(scene, section),
+        ContactLawKind::Hertz | ContactLawKind::Rough => 50.0 * bending_force,
+        ContactLawKind::Linearised | ContactLawKind::Bonded => bending_force,
     };
     Blow {
         mass_damping: scene.beam.mass_damping,
@@ -531,7 +515,7 @@ fn is_rayleigh(scene: &Scene, modes: &[Mode]) -> bool {
         .all(|mode| mode.damping == alpha + beta * mode.omega_squared)
 }
 
-/// Force of the spring bent by the overtravel, at least by 0.1 mm, N: 3 E I max(|s|, 0.1 mm) / L^3.
-fn bending_force(scene: &Scene, section: &Section) -> f64 {
-    section.tip_stiffness() * scene.contact.overtravel.abs().max(1e-4)
+/// Force of the springs bent by the overtravel, at least by 0.1 mm, N: of one of them 3 E I max(|s|, 0.1 mm) / L^3.
+fn bending_force(scene: &Scene, springs: &Springs) -> f64 {
+    springs.stiffness() * scene.contact.overtravel.abs().max(1e-4)
 }

@@ -4,10 +4,12 @@
 //! compliances of the cantilever under the axial force `N`, which may depend on `y`. The unknown is the indentation
 //! `d`, as `s - y` would lose four digits by cancellation.
 //!
+//! A spring of the fixed contact adds its deflection under gravity to `s` and gives way by its compliance per contact force.
+//!
 //! With friction `T_0 = tau F_0` at the height `h` of the contact point, its moment adds `c_m(N) h tau` to `c(N)`, `c_m` the
 //! deflection per moment.
 
-use crate::beam::spring::Spring;
+use crate::beam::springs::{FixedSpring, Springs};
 use crate::beam::statics::Statics;
 use crate::contact::friction::tangential_share;
 use crate::contact::power::Power;
@@ -18,7 +20,7 @@ use crate::scene::Scene;
 use crate::variables::{AxialForceKind, RealOutput, RealParameter};
 
 /// The equilibrium.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Preload {
     /// Contact force F_0, N; 0 if the contact is open.
     pub force: f64,
@@ -28,6 +30,8 @@ pub struct Preload {
     pub contact_stiffness: f64,
     /// Deflection of the tip, m.
     pub deflection: f64,
+    /// Deflection of the fixed contact's spring, m; positive closes.
+    pub fixed_deflection: f64,
     /// Axial force, compression positive, N.
     pub axial_force: f64,
 }
@@ -37,7 +41,8 @@ impl Preload {
     ///
     /// # Errors
     /// [`SceneError::Buckled`] where the axial force reaches the buckling load of the cantilever.
-    pub fn new(scene: &Scene, spring: &Spring, law: &Power, support: f64) -> Result<Self, SceneError> {
+    pub fn new(scene: &Scene, springs: &Springs, law: &Power, support: f64) -> Result<Self, SceneError> {
+        let (spring, fixed) = (&springs.moving, springs.fixed.as_ref());
         let statics = &spring.statics;
         let total_overtravel = scene.contact.overtravel + support;
         let gravity = scene.environment.gravity;
@@ -66,6 +71,11 @@ impl Preload {
             })
         };
 
+        // The fixed contact's spring: its deflection alone, and what the contact force bends it back.
+        let fixed_alone = fixed.map_or(0.0, FixedSpring::free_deflection);
+        let give = fixed.map_or(0.0, FixedSpring::compliance);
+        let total_overtravel = total_overtravel + fixed_alone;
+
         let alone = free_deflection(statics, gravity, &axial);
         if total_overtravel <= alone {
             let axial_force = axial(alone);
@@ -75,11 +85,12 @@ impl Preload {
                 indentation: total_overtravel - alone,
                 contact_stiffness: 0.0,
                 deflection: alone,
+                fixed_deflection: fixed_alone,
                 axial_force,
             });
         }
         let n = axial(total_overtravel);
-        if share.is_some() && compliance(n) <= 0.0 {
+        if share.is_some() && compliance(n).min(compliance(n) + give) <= 0.0 {
             return Err(SceneError::Jams {
                 coefficient: scene.friction.coefficient,
                 height: scene.tip.contact_height,
@@ -87,10 +98,10 @@ impl Preload {
                 initial: scene.friction.initial,
             });
         }
+        let deflection = |d: f64| total_overtravel - d - give * law.elastic_force(d);
         let residual = |d: f64| {
-            let n = axial(total_overtravel - d);
-            let spring = (total_overtravel - d - statics.gravity_compliance(n) * gravity) / compliance(n);
-            law.elastic_force(d) - spring
+            let (y, n) = (deflection(d), axial(deflection(d)));
+            law.elastic_force(d) - (y - statics.gravity_compliance(n) * gravity) / compliance(n)
         };
         // No sign change: the spring exerts no force on the contact, it has buckled under its own deflection.
         let Some(indentation) = roots::bracketed(residual, 0.0, total_overtravel - alone) else {
@@ -99,14 +110,15 @@ impl Preload {
                 value: residual(0.0),
             }));
         };
-        let deflection = total_overtravel - indentation;
+        let (force, deflection) = (law.elastic_force(indentation), deflection(indentation));
         let axial_force = axial(deflection);
         check(axial_force)?;
         Ok(Self {
-            force: law.elastic_force(indentation),
+            force,
             indentation,
             contact_stiffness: law.tangent_stiffness(indentation),
             deflection,
+            fixed_deflection: fixed_alone - give * force,
             axial_force,
         })
     }

@@ -16,6 +16,7 @@ use crate::state::{LinkState, State};
 use crate::variables::{BooleanOutput, Group, IntegerOutput, RealOutput, Variable};
 
 pub use crate::integrator::events::log::Event;
+use crate::integrator::motion::LinkNow;
 pub use crate::integrator::motion::Motion;
 
 /// A simulation, which starts at rest in the preload.
@@ -162,6 +163,11 @@ impl Simulation {
         let Self { model, motion, .. } = self;
         let (state, contact) = (motion.state(), || motion.link(model, CONTACT));
         let force = || contact().force;
+        let fixed = || {
+            model
+                .fixed()
+                .map_or_else(LinkNow::default, |index| motion.link(model, index))
+        };
         let second = model.second();
         let second_force = || second.map_or(0.0, |index| motion.link(model, index).force);
         let electrical = |index: usize| model.links.get(index).and_then(|link| link.electrical);
@@ -213,8 +219,12 @@ impl Simulation {
             RealOutput::EnergyBalance => state.energy_balance,
             RealOutput::SolverForceError => self.force_error(),
             RealOutput::ContactIndentation => model.preload.indentation + contact().approach,
-            RealOutput::TipDisplacement => model.preload.deflection + motion.support().0 - contact().approach,
-            RealOutput::TipVelocity => motion.support().1 - contact().rate,
+            RealOutput::TipDisplacement => {
+                model.preload.deflection + motion.support().0 + fixed().approach - contact().approach
+            }
+            RealOutput::TipVelocity => motion.support().1 + fixed().rate - contact().rate,
+            RealOutput::FixedDisplacement => model.preload.fixed_deflection + fixed().approach,
+            RealOutput::FixedVelocity => fixed().rate,
             RealOutput::ContactLastOpening => or_not_yet(state.links[CONTACT].last_opening),
             RealOutput::ContactLastClosing => or_not_yet(state.links[CONTACT].last_closing),
             RealOutput::ContactTangentialForce => motion.friction(model).0,
@@ -247,6 +257,7 @@ impl Simulation {
         let Self { model, motion, .. } = self;
         let rates = || motion.link_rates(model, CONTACT);
         let along = || motion.friction_rates(model);
+        let fixed_acceleration = || model.fixed().map_or(0.0, |index| motion.link_rates(model, index).1);
         let electrical = |index: usize| model.links.get(index).and_then(|link| link.electrical);
         // Conductance and its rate.
         let conducting_at = |electrical: Option<ElectricalContact>, force, rate| {
@@ -293,7 +304,9 @@ impl Simulation {
             },
             RealOutput::ContactIndentation => motion.link(model, CONTACT).rate,
             RealOutput::TipDisplacement => self.real(RealOutput::TipVelocity),
-            RealOutput::TipVelocity => -rates().1,
+            RealOutput::FixedDisplacement => self.real(RealOutput::FixedVelocity),
+            RealOutput::TipVelocity => fixed_acceleration() - rates().1,
+            RealOutput::FixedVelocity => fixed_acceleration(),
             RealOutput::ContactTangentialForce => along().0,
             RealOutput::ContactSlip => along().1.way,
             RealOutput::ContactSlipDistance => along().1.distance,

@@ -41,7 +41,7 @@ fn rig(exponent: f64, ratios: [f64; 2], [frequency, level, phase]: [f64; 3]) -> 
         damping: 2.0 * ratios[0] / time,
         tip: 1.0 / MASS.sqrt(),
         participation: MASS.sqrt(),
-        rotation: 0.0,
+        ..Mode::default()
     };
     let coefficient = FORCE * (exponent * length).powf(-exponent);
     let law = power(coefficient, exponent, 2.0 * ratios[1] * time);
@@ -50,8 +50,7 @@ fn rig(exponent: f64, ratios: [f64; 2], [frequency, level, phase]: [f64; 3]) -> 
             force: FORCE,
             indentation: exponent * length,
             contact_stiffness: STIFFNESS,
-            deflection: 0.0,
-            axial_force: 0.0,
+            ..Preload::default()
         };
         parts.generator = Generator::new(&scene).unwrap();
     }))

@@ -109,7 +109,7 @@ impl Ride {
             damping: 0.0,
             tip: METER,
             participation: 0.0,
-            rotation: 0.0,
+            ..Mode::default()
         };
         model = model.with(|parts| parts.modes.insert(0, massless));
         let mut rig = Rig::new(model);

@@ -55,6 +55,11 @@ impl Given {
         }
     }
 
+    /// Their number, with the residual flexibility.
+    pub fn count(&self) -> usize {
+        (self.modes.len() + 1).min(MAX_MODES)
+    }
+
     /// Up to `count` modes and the residual flexibility, if there is room.
     pub fn modes(&self, count: usize, (alpha, beta): Rayleigh) -> Vec<Mode> {
         let mut modes: Vec<_> = self
@@ -70,6 +75,7 @@ impl Given {
                     tip: mode.contact,
                     participation: mode.participation,
                     rotation: mode.rotation.unwrap_or_default(),
+                    fixed: 0.0,
                 }
             })
             .collect();
@@ -89,6 +95,7 @@ impl Given {
                 tip: (rest * omega_squared).sqrt(),
                 participation: 0.0,
                 rotation: 0.0,
+                fixed: 0.0,
             });
         }
         modes

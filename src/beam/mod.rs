@@ -12,4 +12,5 @@ mod pieces;
 mod ritz;
 pub mod section;
 pub mod spring;
+pub mod springs;
 pub mod statics;

@@ -1,4 +1,4 @@
-//! The damped modes of the cantilever without contact, and their motion.
+//! The damped modes of the springs without contact, and their motion.
 
 use bytemuck::Zeroable;
 use serde::{Deserialize, Serialize};
@@ -9,19 +9,21 @@ pub const MAX_MODES: usize = 64;
 /// A value for each mode; those beyond the modes in use are zero.
 pub type Modal = [f64; MAX_MODES];
 
-/// One damped mode of the cantilever without contact, of modal mass 1 kg.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// One damped mode of a spring without contact, of modal mass 1 kg.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mode {
     /// omega_i^2, 1/s2.
     pub omega_squared: f64,
     /// c_i = alpha + beta omega_i^2, 1/s (Machines 2025, 13(1), 52, eq. (22)).
     pub damping: f64,
-    /// Tip displacement T_i, 1/sqrt(kg).
+    /// Displacement T_i that opens the contact, 1/sqrt(kg): of the tip, or of a fixed contact with the opposite sign.
     pub tip: f64,
     /// Load per base acceleration g_i, sqrt(kg).
     pub participation: f64,
     /// Rotation of the spring at the contact T_i', 1/(m sqrt(kg)).
     pub rotation: f64,
+    /// Displacement of the fixed contact, 1/sqrt(kg); 0 of the moving spring.
+    pub fixed: f64,
 }
 
 impl Mode {

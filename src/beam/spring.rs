@@ -120,7 +120,7 @@ impl Spring {
         }
     }
 
-    /// Number of modes for a tolerance; all there is room for where they are given.
+    /// Number of modes for a tolerance; all where they are given.
     pub fn count(&self, blow: &Blow, tolerance: f64) -> usize {
         match &self.form {
             Form::Uniform => blow.modes(&self.section, tolerance),
@@ -129,7 +129,7 @@ impl Spring {
                 let more = if pieces.are_uniform() { 0 } else { count * IRREGULAR / 4 };
                 (count + more).next_multiple_of(LANES)
             }
-            Form::Modes(_) => MAX_MODES,
+            Form::Modes(given) => given.count(),
         }
     }
 
@@ -176,6 +176,7 @@ impl Spring {
                     tip: mode.tip,
                     participation: mode.participation,
                     rotation: mode.rotation,
+                    fixed: 0.0,
                 };
                 (mode, shape)
             })

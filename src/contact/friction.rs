@@ -210,7 +210,7 @@ fn stiffness_ratio(contact: &Contact) -> f64 {
 /// Refuses what friction cannot be combined with.
 ///
 /// # Errors
-/// [`SceneError::NoFriction`] or [`SceneError::NoRotation`].
+/// [`SceneError::NotTogether`] or [`SceneError::NoRotation`].
 pub(crate) fn check(scene: &Scene) -> Result<(), SceneError> {
     if !scene.rubs() {
         return Ok(());
@@ -221,21 +221,27 @@ pub(crate) fn check(scene: &Scene) -> Result<(), SceneError> {
         choice.map_or("", |(label, _)| *label)
     };
     if !matches!(scene.effects.contact_law, ContactLawKind::Hertz | ContactLawKind::Rough) {
-        return Err(SceneError::NoFriction {
+        return Err(SceneError::NotTogether {
+            other: "effects.friction = Coulomb",
+            instead: "effects.friction = None",
             name: "effects.contactLaw",
             choice: named(EnumerationParameter::EffectsContactLaw),
             allowed: "Hertz and Rough, whose tangential stiffness follows that along the normal",
         });
     }
     if scene.effects.second_contact {
-        return Err(SceneError::NoFriction {
+        return Err(SceneError::NotTogether {
+            other: "effects.friction = Coulomb",
+            instead: "effects.friction = None",
             name: "effects.secondContact",
             choice: "true",
             allowed: "false",
         });
     }
     if scene.effects.axial_force == AxialForceKind::FromDeflection {
-        return Err(SceneError::NoFriction {
+        return Err(SceneError::NotTogether {
+            other: "effects.friction = Coulomb",
+            instead: "effects.friction = None",
             name: "effects.axialForce",
             choice: named(EnumerationParameter::EffectsAxialForce),
             allowed: "None, FromPreload and Prescribed, which are constant",

@@ -19,9 +19,11 @@ impl Scene {
 
     /// Value of a string parameter: the file as it was named.
     pub fn string(&self, parameter: StringParameter) -> &str {
-        match parameter {
-            StringParameter::BeamFile => self.spring.as_ref().map_or("", |spring| &spring.name),
-        }
+        let spring = match parameter {
+            StringParameter::BeamFile => self.spring.as_ref(),
+            StringParameter::FixedFile => self.fixed_spring.as_ref(),
+        };
+        spring.map_or("", |spring| &spring.name)
     }
 
     /// Sets a string parameter, and reads the file that it names; a relative name is one in `folder`.
@@ -29,11 +31,11 @@ impl Scene {
     /// # Errors
     /// A [`SceneError`] if the file cannot be read or is wrong; the scene is then unchanged.
     pub fn set_string(&mut self, parameter: StringParameter, value: &str, folder: &Path) -> Result<(), SceneError> {
+        let read = |name| SpringFile::read(folder, name).map(Arc::new);
+        let spring = Some(value).filter(|name| !name.is_empty()).map(read).transpose()?;
         match parameter {
-            StringParameter::BeamFile => {
-                let read = |name| SpringFile::read(folder, name).map(Arc::new);
-                self.spring = Some(value).filter(|name| !name.is_empty()).map(read).transpose()?;
-            }
+            StringParameter::BeamFile => self.spring = spring,
+            StringParameter::FixedFile => self.fixed_spring = spring,
         }
         Ok(())
     }
@@ -86,7 +88,7 @@ impl Scene {
             let allowed = format!("allowed is 0 (no limit), or {} or more", number(SHORTEST_LIMIT));
             return Err(SceneError::out_of_range(variable, longest, allowed));
         }
-        if let Some(spring) = &self.spring {
+        for spring in self.spring.iter().chain(&self.fixed_spring) {
             spring.check()?;
         }
         let mut copy = self.clone();

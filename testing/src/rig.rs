@@ -109,11 +109,8 @@ pub fn compose(modes: &[Mode], law: Law, gap: f64, tolerance: f64, force_scale: 
     scene.effects.chatter = false;
     Model::new(&scene, 0.0).expect("the specimen").with(|parts| {
         parts.preload = Preload {
-            force: 0.0,
             indentation: -gap,
-            contact_stiffness: 0.0,
-            deflection: 0.0,
-            axial_force: 0.0,
+            ..Preload::default()
         };
         parts.modes = modes.to_vec();
         parts.law = law;
@@ -128,7 +125,7 @@ pub fn oscillator(mass: f64, stiffness: f64) -> Mode {
         damping: 0.0,
         tip: 1.0 / mass.sqrt(),
         participation: mass.sqrt(),
-        rotation: 0.0,
+        ..Mode::default()
     }
 }
 

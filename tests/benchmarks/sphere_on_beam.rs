@@ -24,7 +24,7 @@ fn greatest_force_its_instant_and_the_duration() {
             damping: 0.0,
             tip: (2.0 / (per_length * length)).sqrt(),
             participation: 0.0,
-            rotation: 0.0,
+            ..Mode::default()
         }
     });
     let sphere = oscillator(density * 4.0 / 3.0 * PI * radius.powi(3), 0.0);

@@ -288,7 +288,7 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
                         laws.coupling[a][k] = stick.by_indentation;
                     }
                 }
-                LinkLaw::Friction(_) => {}
+                LinkLaw::Friction(_) | LinkLaw::Gauge => {}
             }
         }
         (residuals, laws)

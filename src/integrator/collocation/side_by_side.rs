@@ -274,6 +274,7 @@ mod tests {
             tip: 1.0,
             participation: 1.0,
             rotation: 1.0,
+            ..Mode::default()
         })
     }
 

@@ -1,0 +1,96 @@
+//! The ports and links of a model: what its scene puts together.
+
+use crate::beam::mode::Mode;
+use crate::chatter::Criterion;
+use crate::contact::friction::{self, Friction};
+use crate::contact::law::Law;
+use crate::electrical::ElectricalContact;
+use crate::link::{Link, LinkLaw, Port};
+use crate::preload::Preload;
+use crate::scene::Scene;
+
+/// Ports and links.
+#[derive(Clone, Debug, Default)]
+pub struct Assembly {
+    /// Where forces act on the modes.
+    pub ports: Vec<Port>,
+    /// The laws of these forces, the contact first.
+    pub links: Vec<Link>,
+    /// Which link is what.
+    pub roles: Roles,
+}
+
+/// The index of each link that a model may have beside the contact.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Roles {
+    /// Second contact.
+    pub second: Option<usize>,
+    /// Friction at the contact.
+    pub friction: Option<usize>,
+    /// Displacement of the fixed contact on its spring.
+    pub fixed: Option<usize>,
+}
+
+impl Assembly {
+    /// That of a scene with these modes and this preload, this law of the contact and that of a second one.
+    pub fn new((scene, modes, preload): (&Scene, &[Mode], &Preload), law: Law, second: Option<Law>) -> Self {
+        let mut all = Self::default();
+        let port = all.port(Port::new(modes, |mode| mode.tip));
+        let contact = |law: Law| {
+            let electrical = ElectricalContact::new(scene, &law);
+            let criterion = electrical.as_ref();
+            Link {
+                electrical,
+                criterion: criterion.and_then(|electrical| Criterion::new(scene, electrical)),
+                force: preload.force,
+                approach: preload.indentation,
+                driven: [1.0, 0.0],
+                ..Link::passive(LinkLaw::Contact(law), port)
+            }
+        };
+        all.link(contact(law));
+        if let Some(law) = second {
+            // Its fixed contact is rigid.
+            let port = match scene.fixed_spring {
+                Some(_) => all.port(Port::new(modes, |mode| mode.tip + mode.fixed)),
+                None => port,
+            };
+            // At the distance of the gap; the second input moves it relative to the first.
+            all.roles.second = all.link(Link {
+                port,
+                sense: -1.0,
+                driven: [-1.0, 1.0],
+                force: 0.0,
+                approach: -scene.second.gap,
+                ..contact(law)
+            });
+        }
+        if scene.fixed_spring.is_some() {
+            let port = all.port(Port::new(modes, |mode| mode.fixed));
+            all.roles.fixed = all.link(Link {
+                sense: -1.0,
+                ..Link::passive(LinkLaw::Gauge, port)
+            });
+        }
+        if let (Some(friction), Some(share)) = (Friction::new(scene, modes), friction::tangential_share(scene)) {
+            let port = all.port(Port::new(modes, |mode| friction.height * mode.rotation));
+            all.roles.friction = all.link(Link {
+                force: share * preload.force,
+                ..Link::passive(LinkLaw::Friction(friction), port)
+            });
+        }
+        all
+    }
+
+    /// Adds a port, and returns its index.
+    fn port(&mut self, port: Port) -> usize {
+        self.ports.push(port);
+        self.ports.len() - 1
+    }
+
+    /// Adds a link, and returns its index.
+    fn link(&mut self, link: Link) -> Option<usize> {
+        self.links.push(link);
+        Some(self.links.len() - 1)
+    }
+}

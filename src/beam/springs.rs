@@ -1,0 +1,273 @@
+//! The moving spring, and the one that carries the fixed contact (`fixed.file`), clamped to the frame beside it and deflecting
+//! along the same axis.
+//!
+//! A deflection of the fixed contact's spring closes the contact, and the contact force bends it back: with its modes `j`,
+//! shapes `T_j` and participations `g_j`,
+//!
+//! ```text
+//! d - d_0 = u - sum T_i q_i + sum T_j q_j
+//! q_j'' + c_j q_j' + omega_j^2 q_j = -T_j (F - F_0) - g_j a
+//! ```
+//!
+//! so that they join the modes of the moving spring with the opposite sign at the contact. `support.displacement` moves the
+//! contact point as if its spring were rigid: the inertia of a clamp that moves is left out.
+
+use crate::beam::mode::{MAX_MODES, Mode};
+use crate::beam::mode_count::Blow;
+use crate::beam::spring::{Basis, Spring};
+use crate::contact::friction::tangential_share;
+use crate::error::SceneError;
+use crate::math::roots;
+use crate::math::simd::LANES;
+use crate::scene::{Beam, Scene, Tip};
+use crate::variables::AxialForceKind;
+
+/// Modes of each spring for the lowest frequency of both: what the others add to the flexibility there, beyond their static
+/// share, is less than rounding of the compliance.
+const FREQUENCY_MODES: usize = MAX_MODES / 2;
+
+/// The springs of a scene.
+#[derive(Clone, Debug)]
+pub struct Springs {
+    /// The moving one.
+    pub moving: Spring,
+    /// That of the fixed contact, if it is not rigid.
+    pub fixed: Option<FixedSpring>,
+}
+
+/// Numbers of modes of both springs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Counts {
+    /// Of the moving one.
+    pub moving: usize,
+    /// Of that of the fixed contact.
+    pub fixed: usize,
+}
+
+impl Counts {
+    /// This number of both springs, where there are two; 0: as it is.
+    #[must_use]
+    pub fn or(self, asked: usize) -> Self {
+        match (asked, self.fixed) {
+            (0, _) => self,
+            (_, 0) => Self {
+                moving: asked,
+                fixed: 0,
+            },
+            _ => Self {
+                moving: asked,
+                fixed: asked,
+            },
+        }
+    }
+
+    /// As many as there is room for, in the same ratio.
+    #[must_use]
+    pub fn within_room(self) -> Self {
+        let Self { moving, fixed } = self;
+        if moving + fixed <= MAX_MODES {
+            return self;
+        }
+        let share = MAX_MODES * moving / (moving + fixed) / LANES * LANES;
+        let moving = share.clamp(LANES.min(MAX_MODES - fixed.min(LANES)), MAX_MODES - fixed.min(LANES));
+        Self {
+            moving,
+            fixed: MAX_MODES - moving,
+        }
+    }
+
+    /// Whether one of them is less than another.
+    pub fn less_than(self, other: Self) -> bool {
+        self.moving < other.moving || self.fixed < other.fixed
+    }
+}
+
+impl Springs {
+    /// Those of a scene.
+    ///
+    /// # Errors
+    /// A [`SceneError`] if a spring cannot have the axial force that it is to have.
+    pub fn new(scene: &Scene) -> Result<Self, SceneError> {
+        Ok(Self {
+            moving: Spring::new(scene)?,
+            fixed: FixedSpring::new(scene)?,
+        })
+    }
+
+    /// Static stiffness of both at the contact, N/m.
+    pub fn stiffness(&self) -> f64 {
+        let moving = self.moving.section.tip_stiffness();
+        match &self.fixed {
+            Some(fixed) => 1.0 / (1.0 / moving + fixed.spring.statics.tip_compliance(0.0)),
+            None => moving,
+        }
+    }
+
+    /// Numbers of modes for a tolerance in blows of the contact, and of the second one on the moving spring.
+    pub fn counts(&self, own: &Blow, second: &Blow, tolerance: f64) -> Counts {
+        let count = |blow| self.moving.count(blow, tolerance);
+        Counts {
+            moving: count(own).max(count(second)),
+            fixed: self
+                .fixed
+                .as_ref()
+                .map_or(0, |fixed| fixed.spring.count(&fixed.blow(own), tolerance)),
+        }
+    }
+
+    /// Error of the force of a blow with so many modes, relative to it.
+    pub fn error(&self, blow: &Blow, counts: Counts) -> f64 {
+        let fixed = self.fixed.as_ref();
+        let of_fixed = fixed.map_or(0.0, |fixed| fixed.spring.error(&fixed.blow(blow), counts.fixed));
+        self.moving.error(blow, counts.moving).max(of_fixed)
+    }
+
+    /// Frequencies of the highest mode of a spring given by modes and up to which a blow excites it, where that is higher,
+    /// Hz; and whether it is the fixed contact's.
+    pub fn missed(&self, blow: &Blow) -> Option<(f64, f64, bool)> {
+        let moving = self
+            .moving
+            .missed(blow)
+            .map(|(highest, reached)| (highest, reached, false));
+        moving.or_else(|| {
+            let fixed = self.fixed.as_ref()?;
+            let (highest, reached) = fixed.spring.missed(&fixed.blow(blow))?;
+            Some((highest, reached, true))
+        })
+    }
+
+    /// The damped modes of both, frequency ascending, under an axial compression of the moving one (N); the rest of the basis is
+    /// that of the moving one. `None` at or above the buckling load.
+    pub fn modes(&self, scene: &Scene, counts: Counts, axial_force: f64) -> Option<Basis> {
+        let mut basis = self.moving.modes(scene, counts.moving, axial_force)?;
+        if let Some(fixed) = &self.fixed {
+            basis.modes.extend(fixed.modes(counts.fixed));
+            basis.modes.truncate(MAX_MODES);
+            basis.modes.sort_by(|a, b| a.omega_squared.total_cmp(&b.omega_squared));
+        }
+        Some(basis)
+    }
+
+    /// Lowest angular frequency with the contact as a spring of `stiffness` (N/m), rad/s, under an axial compression of the
+    /// moving one (N).
+    pub fn frequency(&self, scene: &Scene, axial_force: f64, stiffness: f64) -> Option<f64> {
+        match &self.fixed {
+            Some(fixed) => fixed.frequency(scene, &self.moving, axial_force, stiffness),
+            None => self.moving.frequency(axial_force, stiffness),
+        }
+    }
+}
+
+/// The spring of the fixed contact.
+#[derive(Clone, Debug)]
+pub struct FixedSpring {
+    /// The scene with this spring in the place of the moving one.
+    scene: Scene,
+    spring: Spring,
+}
+
+impl FixedSpring {
+    /// That of a scene, if it has one; refused beside an axial force that follows the deflection.
+    fn new(scene: &Scene) -> Result<Option<Self>, SceneError> {
+        let Some(file) = &scene.fixed_spring else {
+            return Ok(None);
+        };
+        if scene.effects.axial_force == AxialForceKind::FromDeflection {
+            return Err(SceneError::NotTogether {
+                name: "effects.axialForce",
+                choice: "FromDeflection",
+                other: "fixed.file",
+                instead: "no fixed.file",
+                allowed: "None, FromPreload and Prescribed, which are constant",
+            });
+        }
+        let mut own = Scene {
+            spring: Some(file.clone()),
+            fixed_spring: None,
+            tip: Tip {
+                mass: 0.0,
+                rotary_inertia: 0.0,
+                ..scene.tip
+            },
+            beam: Beam {
+                mass_damping: scene.fixed.mass_damping,
+                stiffness_damping: scene.fixed.stiffness_damping,
+                axial_force: 0.0,
+                ..scene.beam
+            },
+            ..scene.clone()
+        };
+        own.effects.axial_force = AxialForceKind::None;
+        let spring = Spring::new(&own)?;
+        Ok(Some(Self { scene: own, spring }))
+    }
+
+    /// Deflection that opens the contact, per contact force with the share of friction that comes with it, m/N.
+    pub fn compliance(&self) -> f64 {
+        let statics = &self.spring.statics;
+        let turned = tangential_share(&self.scene).map_or(0.0, |share| {
+            share * self.scene.tip.contact_height * statics.moment_compliance(0.0)
+        });
+        statics.tip_compliance(0.0) - turned
+    }
+
+    /// Deflection without contact, m: zero without gravity.
+    pub fn free_deflection(&self) -> f64 {
+        self.spring.statics.gravity_compliance(0.0) * self.scene.environment.gravity
+    }
+
+    /// A blow of the contact with the damping of this spring.
+    fn blow(&self, blow: &Blow) -> Blow {
+        Blow {
+            mass_damping: self.scene.beam.mass_damping,
+            stiffness_damping: self.scene.beam.stiffness_damping,
+            ..*blow
+        }
+    }
+
+    /// Its modes as they act at the contact.
+    fn modes(&self, count: usize) -> Vec<Mode> {
+        let basis = self.spring.modes(&self.scene, count, 0.0);
+        let turned = |mode: Mode| Mode {
+            tip: -mode.tip,
+            fixed: mode.tip,
+            ..mode
+        };
+        basis.map_or_else(Vec::new, |basis| basis.modes.into_iter().map(turned).collect())
+    }
+
+    /// Lowest angular frequency of both springs joined by the contact as a spring of `stiffness` (N/m), rad/s, with an axial
+    /// compression of the moving one (N).
+    ///
+    /// The receptance of both at the contact, with what the modes left out give statically, is `-1 / stiffness` there.
+    fn frequency(&self, scene: &Scene, moving: &Spring, axial_force: f64, stiffness: f64) -> Option<f64> {
+        let mut modes = moving.modes(scene, FREQUENCY_MODES, axial_force)?.modes;
+        modes.extend(self.modes(FREQUENCY_MODES));
+        modes.sort_by(|a, b| a.omega_squared.total_cmp(&b.omega_squared));
+        let held: f64 = modes.iter().map(Mode::compliance).sum();
+        let rest = moving.statics.tip_compliance(axial_force) + self.spring.statics.tip_compliance(0.0) - held;
+        let [first, second, ..] = modes.as_slice() else {
+            return None;
+        };
+        let (first, gap) = (first.omega_squared, second.omega_squared - first.omega_squared);
+        if stiffness <= 0.0 || gap <= 0.0 {
+            return Some(first.sqrt());
+        }
+        // Times the distances from both modes, which makes it finite there.
+        let balance = |place: f64| {
+            let square = first + place * gap;
+            let dynamic = |index: usize, mode: &Mode| {
+                let factor = match index {
+                    0 => (1.0 - place) * -1.0,
+                    1 => place,
+                    _ => place * (1.0 - place) * gap / (mode.omega_squared - square),
+                };
+                mode.tip * mode.tip * factor
+            };
+            let modes = modes.iter().enumerate().map(|(index, mode)| dynamic(index, mode));
+            modes.sum::<f64>() + place * (1.0 - place) * gap * (rest.max(0.0) + 1.0 / stiffness)
+        };
+        let place = roots::bracketed(balance, 0.0, 1.0);
+        Some(place.map_or(first, |place| first + place * gap).sqrt())
+    }
+}
