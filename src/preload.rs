@@ -98,7 +98,8 @@ impl Preload {
                 initial: scene.friction.initial,
             });
         }
-        let deflection = |d: f64| total_overtravel - d - give * law.elastic_force(d);
+        // Whatever the force, it does not draw the spring beyond where it is alone.
+        let deflection = |d: f64| (total_overtravel - d - give * law.elastic_force(d)).max(alone);
         let residual = |d: f64| {
             let (y, n) = (deflection(d), axial(deflection(d)));
             law.elastic_force(d) - (y - statics.gravity_compliance(n) * gravity) / compliance(n)

@@ -92,7 +92,10 @@ fn two_equal_springs_struck_in_opposite_ways_are_one_against_a_rigid_wall() {
         let allowed = 2.0 * tolerance * greatest.max(both.force_scale()).max(one.force_scale());
         assert!((a - b).abs() <= allowed, "{time}: {a} {b}");
     }
-    assert!(least == 0.0 && greatest > 3.0 * one.preload().force, "{least} {greatest}");
+    assert!(
+        least == 0.0 && greatest > 3.0 * one.preload().force,
+        "{least} {greatest}"
+    );
 }
 
 /// The scene with a short fixed spring that is so many times stiffer than the moving one.
@@ -101,7 +104,9 @@ fn stiffer(mut scene: Scene, times: f64) -> Scene {
     let (length, modulus) = (1e-3, 1e13);
     let cube = times * beam.youngs_modulus / modulus * (length / beam.length).powi(3);
     let file = on_spring(scene.clone(), 1.0, cube.cbrt()).fixed_spring.unwrap();
-    let Shape::Segments(mut segments) = file.shape.clone() else { panic!("segments") };
+    let Shape::Segments(mut segments) = file.shape.clone() else {
+        panic!("segments")
+    };
     for segment in &mut segments.segments {
         (segment.length, segment.youngs_modulus) = (length, Some(modulus));
     }
@@ -137,7 +142,10 @@ fn a_stiff_fixed_spring_is_a_rigid_contact() {
         assert_eq!(rigid.contains(&0.0), amplitude > 200.0, "whether it opens");
         let pairs = rigid.iter().zip(&stiff);
         let worst = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        assert!(worst > 0.0 && worst < share * greatest, "{amplitude} m/s2: {worst} of {greatest}");
+        assert!(
+            worst > 0.0 && worst < share * greatest,
+            "{amplitude} m/s2: {worst} of {greatest}"
+        );
     }
 }
 
@@ -195,5 +203,8 @@ fn an_axial_force_that_follows_the_deflection_is_refused() {
     let mut scene = on_spring(Scene::default(), 1.0, 1.0);
     scene.effects.axial_force = AxialForceKind::FromDeflection;
     let error = Model::new(&scene, 0.0).unwrap_err().to_string();
-    assert!(error.contains("effects.axialForce = FromDeflection: not allowed with fixed.file"), "{error}");
+    assert!(
+        error.contains("effects.axialForce = FromDeflection: not allowed with fixed.file"),
+        "{error}"
+    );
 }

@@ -24,7 +24,7 @@ const ALWAYS: Values = &[
 
 /// Scenes in which every known that matters at all matters somewhere: the start values with these changes. A threshold of
 /// [`CRITICAL`] is the resistance at rest, an overtravel of it closes the contact without force.
-const SCENES: [Values; 31] = [
+const SCENES: [Values; 34] = [
     &[],
     &[("effects.axialForce", 2.0)],
     &[("effects.axialForce", 3.0)],
@@ -94,7 +94,24 @@ const SCENES: [Values; 31] = [
     ],
     &[RUBBING, PULLED, ("effects.axialForce", 4.0)],
     &[RUBBING, ("solver.tolerance", 1e-9), ("beam.stiffnessDamping", 3e-6)],
+    &[
+        ON_SPRING,
+        RUBBING,
+        PULLED,
+        ALL_COUNT,
+        ("effects.axialForce", 4.0),
+        ("beam.axialForce", 1.0),
+        ("chatter.resistanceThreshold", CRITICAL),
+    ],
+    &[
+        ON_SPRING,
+        ("effects.contactLaw", 4.0),
+        ("solver.tolerance", 1e-9),
+        ("fixed.stiffnessDamping", 3e-6),
+    ],
+    &[ON_SPRING, PULLED, ("contact.overtravel", CRITICAL)],
 ];
+const ON_SPRING: (&str, f64) = ("fixed.file", 1.0);
 const SECOND: (&str, f64) = ("effects.secondContact", 1.0);
 const RUBBING: (&str, f64) = ("effects.friction", 2.0);
 const CRITICAL: f64 = f64::NAN;

@@ -34,6 +34,7 @@ impl Variant {
         };
         if let Some(path) = spring {
             let (file, text) = read(path)?;
+            let declaration = declaration("beam.file", description)?;
             variant.name = format!("{name}-{}", file.trim_end_matches(".toml"));
             for (given, carrying) in [
                 (
@@ -41,8 +42,10 @@ impl Variant {
                     format!("modelName=\"{}\"", variant.name),
                 ),
                 (guid.to_owned(), guid_carrying(guid, &file, &text)),
-                // The only string.
-                ("<String start=\"\"/>".to_owned(), format!("<String start=\"{file}\"/>")),
+                (
+                    declaration.to_owned(),
+                    declaration.replace("<String start=\"\"/>", &format!("<String start=\"{file}\"/>")),
+                ),
             ] {
                 ensure!(
                     variant.description.matches(&given).count() == 1,
@@ -54,6 +57,14 @@ impl Variant {
         }
         Ok(variant)
     }
+}
+
+/// The declaration of a variable in a description.
+fn declaration<'a>(name: &str, description: &'a str) -> Result<&'a str> {
+    let mut declarations = description.split_inclusive("</ScalarVariable>");
+    let found = declarations.find(|declaration| declaration.contains(&format!("name=\"{name}\"")));
+    let found = found.with_context(|| format!("{name}: not declared"))?;
+    Ok(found.split_once("<ScalarVariable ").map_or(found, |(_, own)| own))
 }
 
 /// Name and text of a spring file, checked.
@@ -77,7 +88,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_spring_is_the_start_value_of_the_only_string_and_part_of_name_and_guid() -> Result<()> {
+    fn a_spring_is_the_start_value_of_beam_file_and_part_of_name_and_guid() -> Result<()> {
         for (plain, own) in [(false, GUID), (true, PLAIN_GUID)] {
             let path = root().join("scenes/springs/tapered-cube.toml");
             let variant = Variant::new(plain, Some(&path))?;
@@ -88,7 +99,7 @@ mod tests {
             for part in [&name, "<String start=\"tapered-cube.toml\"/>"] {
                 assert_eq!(variant.description.matches(part).count(), 1, "{part}");
             }
-            assert_eq!(variant.description.matches("<String").count(), 1);
+            assert!(declaration("beam.file", &variant.description)?.contains("tapered-cube.toml"));
         }
         for wrong in ["a&b.toml", "none.toml", "\u{e4}.toml"] {
             assert!(Variant::new(false, Some(Path::new(wrong))).is_err(), "{wrong}");

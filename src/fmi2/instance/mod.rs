@@ -38,8 +38,8 @@ pub(super) struct Instance {
     plain: bool,
     /// The start values, with the spring that the component may carry.
     start: Scene,
-    /// The string read last.
-    text: CString,
+    /// The strings read last, one of each variable.
+    texts: [CString; StringParameter::ALL.len()],
     told: Told,
     step_finished: StepFinished,
     saved_states: SavedStates,
@@ -81,7 +81,7 @@ impl Instance {
             resources,
             plain: identity.plain,
             start: Scene::default(),
-            text: CString::default(),
+            texts: Default::default(),
             told: Told::default(),
             step_finished,
             saved_states: SavedStates::default(),

@@ -141,17 +141,20 @@ impl Instance {
         Ok(())
     }
 
-    /// The value of a string parameter, kept until another is read: a call may ask for the same one twice.
+    /// The value of a string parameter, kept until it is read again: a call may ask for all, and for the same one twice.
     pub(in crate::fmi2) fn string(&mut self, reference: u32) -> Result<&CStr, Failure> {
         let variable = find("String", reference)?;
         match variable.group {
             Group::StringParameter(parameter) => {
                 let value = self.scene.string(parameter);
-                if self.text.to_bytes() != value.as_bytes() {
+                let Some(text) = self.texts.get_mut(parameter as usize) else {
+                    return Err(wrong_type("String", variable));
+                };
+                if text.to_bytes() != value.as_bytes() {
                     // Set from C, or by a state, which may hold anything.
-                    self.text = CString::new(value).unwrap_or_default();
+                    *text = CString::new(value).unwrap_or_default();
                 }
-                Ok(&self.text)
+                Ok(text)
             }
             _ => Err(wrong_type("String", variable)),
         }
