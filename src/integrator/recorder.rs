@@ -7,6 +7,7 @@ use crate::integrator::dense_output::DenseOutput;
 use crate::integrator::events::interruption::Passages;
 use crate::integrator::extremes::Extremes;
 use crate::integrator::grid::Target;
+use crate::link::LinkLaw;
 use crate::math::prediction::value_and_slope;
 use crate::model::Model;
 use crate::state::State;
@@ -75,7 +76,7 @@ impl Recorder<'_> {
             let through = |start: f64, values| collocation.through(model.simd, start, values);
             if let Some(dense) = self.dense.as_mut().and_then(|dense| dense.links.get_mut(index)) {
                 (dense.force, dense.turns, dense.passages) = (at.course, turns, *passages);
-                if read && link.contact().is_some() {
+                if read && !matches!(link.law, LinkLaw::Friction(_)) {
                     dense.approach = through(at.approach, &nodes.approaches);
                     dense.rate = through(at.rate, &nodes.rates);
                 }
