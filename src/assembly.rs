@@ -4,6 +4,7 @@ use crate::beam::mode::Mode;
 use crate::chatter::Criterion;
 use crate::contact::friction::{self, Friction};
 use crate::contact::law::Law;
+use crate::contact::power::Power;
 use crate::electrical::ElectricalContact;
 use crate::link::{Link, LinkLaw, Port};
 use crate::preload::Preload;
@@ -27,6 +28,8 @@ pub struct Roles {
     pub second: Option<usize>,
     /// Friction at the contact.
     pub friction: Option<usize>,
+    /// Pusher.
+    pub pusher: Option<usize>,
     /// Displacement of the fixed contact on its spring.
     pub fixed: Option<usize>,
 }
@@ -44,8 +47,8 @@ impl Assembly {
                 criterion: criterion.and_then(|electrical| Criterion::new(scene, electrical)),
                 force: preload.force,
                 approach: preload.indentation,
-                driven: [1.0, 0.0],
-                ..Link::passive(LinkLaw::Contact(law), port)
+                driven: [1.0, 0.0, 0.0],
+                ..Link::passive("contact", LinkLaw::Contact(law), port)
             }
         };
         all.link(contact(law));
@@ -56,28 +59,41 @@ impl Assembly {
                 None => port,
             };
             // At the distance of the gap; the second input moves it relative to the first.
-            all.roles.second = all.link(Link {
+            all.roles.second = Some(all.link(Link {
+                name: "second contact",
                 port,
                 sense: -1.0,
-                driven: [-1.0, 1.0],
+                driven: [-1.0, 1.0, 0.0],
                 force: 0.0,
                 approach: -scene.second.gap,
                 ..contact(law)
-            });
+            }));
+        }
+        if scene.pushed_at().is_some() {
+            let port = all.port(Port::new(modes, |mode| mode.pusher));
+            let law = Law::Power(Power::linear(scene.pusher.stiffness, scene.pusher.damping));
+            // On the side away from the fixed contact: where the spring rises, it comes closer.
+            all.roles.pusher = Some(all.link(Link {
+                sense: -1.0,
+                driven: [0.0, 0.0, 1.0],
+                force: preload.pusher_force,
+                approach: preload.pusher_overlap,
+                ..Link::passive("pusher", LinkLaw::Contact(law), port)
+            }));
         }
         if scene.fixed_spring.is_some() {
             let port = all.port(Port::new(modes, |mode| mode.fixed));
-            all.roles.fixed = all.link(Link {
+            all.roles.fixed = Some(all.link(Link {
                 sense: -1.0,
-                ..Link::passive(LinkLaw::Gauge, port)
-            });
+                ..Link::passive("fixed contact", LinkLaw::Gauge, port)
+            }));
         }
         if let (Some(friction), Some(share)) = (Friction::new(scene, modes), friction::tangential_share(scene)) {
             let port = all.port(Port::new(modes, |mode| friction.height * mode.rotation));
-            all.roles.friction = all.link(Link {
+            all.roles.friction = Some(all.link(Link {
                 force: share * preload.force,
-                ..Link::passive(LinkLaw::Friction(friction), port)
-            });
+                ..Link::passive("friction", LinkLaw::Friction(friction), port)
+            }));
         }
         all
     }
@@ -89,8 +105,8 @@ impl Assembly {
     }
 
     /// Adds a link, and returns its index.
-    fn link(&mut self, link: Link) -> Option<usize> {
+    fn link(&mut self, link: Link) -> usize {
         self.links.push(link);
-        Some(self.links.len() - 1)
+        self.links.len() - 1
     }
 }

@@ -113,6 +113,15 @@ pub enum SceneError {
         /// The spring file.
         file: String,
     },
+    /// A pusher on a spring that is given by modes without its place.
+    #[error(
+        "effects.pusher: not allowed with beam.file = {file}, which gives modes without pusher; allowed with the displacement at \
+         the pusher in each [[mode]]"
+    )]
+    NoPusher {
+        /// The spring file.
+        file: String,
+    },
     /// Friction so strong that the contact jams as it closes: no preload with it at its limit.
     #[error(
         "friction.coefficient = {} with tip.contactHeight = {} m: the contact jams as it closes, allowed is a product of less \

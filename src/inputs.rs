@@ -1,6 +1,7 @@
 //! The continuous inputs at the start of a communication step, and their rates over it.
 
 use crate::error::SceneError;
+use crate::link::Ways;
 use crate::scene::check_range;
 use crate::variables::RealInput;
 use serde::{Deserialize, Serialize};
@@ -15,6 +16,8 @@ pub struct Inputs {
     pub support_displacement: f64,
     /// Displacement of the second fixed contact relative to the first, positive closes, m. It moves as that does.
     pub second_displacement: f64,
+    /// Position of the pusher, positive presses, m. It moves as the fixed contact does.
+    pub pusher_displacement: f64,
     /// Current through the contact, A.
     pub contact_current: f64,
     /// Rate of the acceleration, m/s3.
@@ -23,6 +26,8 @@ pub struct Inputs {
     pub support_displacement_rate: f64,
     /// Rate of the displacement of the second fixed contact, m/s.
     pub second_displacement_rate: f64,
+    /// Rate of the position of the pusher, m/s.
+    pub pusher_displacement_rate: f64,
     /// Rate of the current, A/s.
     pub contact_current_rate: f64,
 }
@@ -49,6 +54,7 @@ impl Inputs {
             RealInput::BaseAcceleration => &mut self.base_acceleration,
             RealInput::SupportDisplacement => &mut self.support_displacement,
             RealInput::SecondDisplacement => &mut self.second_displacement,
+            RealInput::PusherDisplacement => &mut self.pusher_displacement,
             RealInput::ContactCurrent => &mut self.contact_current,
         }
     }
@@ -76,6 +82,7 @@ impl Inputs {
             RealInput::BaseAcceleration => &mut self.base_acceleration_rate,
             RealInput::SupportDisplacement => &mut self.support_displacement_rate,
             RealInput::SecondDisplacement => &mut self.second_displacement_rate,
+            RealInput::PusherDisplacement => &mut self.pusher_displacement_rate,
             RealInput::ContactCurrent => &mut self.contact_current_rate,
         }
     }
@@ -111,14 +118,13 @@ impl Inputs {
         }
     }
 
-    /// Displacement of the fixed contact after `size` seconds, m.
-    pub fn support_displacement_after(&self, size: f64) -> f64 {
-        self.support_displacement + self.support_displacement_rate * size
-    }
-
-    /// Displacement of the second fixed contact after `size` seconds, m.
-    pub fn second_displacement_after(&self, size: f64) -> f64 {
-        self.second_displacement + self.second_displacement_rate * size
+    /// Displacements of the bodies that inputs move after `size` seconds, m.
+    pub fn displacements_after(&self, size: f64) -> Ways {
+        [
+            self.support_displacement + self.support_displacement_rate * size,
+            self.second_displacement + self.second_displacement_rate * size,
+            self.pusher_displacement + self.pusher_displacement_rate * size,
+        ]
     }
 
     /// Current after `size` seconds, A.

@@ -26,18 +26,18 @@ use crate::electrical::ElectricalContact;
 use crate::math::simd::Arithmetic;
 
 /// Most ports of a model.
-pub const MAX_PORTS: usize = 3;
+pub const MAX_PORTS: usize = 4;
 
 /// Most links of a model.
-pub const MAX_LINKS: usize = 3;
+pub const MAX_LINKS: usize = 4;
 
-/// Most links whose forces are unknown at the same time: of two contacts on either side of a spring one is open.
-pub const MAX_UNKNOWNS: usize = 2;
+/// Most links whose forces are unknown at the same time.
+pub const MAX_UNKNOWNS: usize = 4;
 
-/// Inputs that move bodies: the fixed contact, and the second one relative to it.
-pub const INPUTS: usize = 2;
+/// Inputs that move bodies: the fixed contact, the second one relative to it, and the pusher.
+pub const INPUTS: usize = 3;
 
-/// A displacement (m) or velocity (m/s) for each of [`INPUTS`].
+/// A displacement (m) or velocity (m/s) for each of [`INPUTS`], in that order.
 pub type Ways = [f64; INPUTS];
 
 /// The first contact, which every model has.
@@ -94,6 +94,8 @@ pub enum LinkLaw {
 /// A law at a port.
 #[derive(Clone, Copy, Debug)]
 pub struct Link {
+    /// What the user calls it.
+    pub name: &'static str,
     /// The law.
     pub law: LinkLaw,
     /// The index of its port.
@@ -114,8 +116,9 @@ pub struct Link {
 
 impl Link {
     /// A link that no input moves, without force or approach at the equilibrium.
-    pub fn passive(law: LinkLaw, port: usize) -> Self {
+    pub fn passive(name: &'static str, law: LinkLaw, port: usize) -> Self {
         Self {
+            name,
             law,
             port,
             sense: 1.0,

@@ -20,7 +20,7 @@ use crate::excitation::generator::Generator;
 use crate::force_error::ForceError;
 use crate::integrator::step_length::StepLengths;
 use crate::integrator::tolerance::Tolerance;
-use crate::link::{INPUTS, Link, LinkLaw, MAX_LINKS, Port};
+use crate::link::{INPUTS, Link, LinkLaw, MAX_LINKS, Port, Ways};
 use crate::math::simd::Simd;
 use crate::preload::Preload;
 use crate::scene::Scene;
@@ -64,8 +64,8 @@ pub struct Model {
     pub(crate) closed_loop: Option<Box<ClosedLoop>>,
     /// Generated base acceleration.
     pub(crate) generator: Generator,
-    /// `support.displacement` at the start, m: part of the preload.
-    pub(crate) initial_support: f64,
+    /// Displacements of the inputs at the start that are part of the preload, m.
+    pub(crate) initial: Ways,
     /// Force scale of the tolerance, N: max(F_0, 3 E I max(|s|, 0.1 mm) / L^3).
     pub(crate) force_scale: f64,
     /// Error of the force once the contact has closed, relative to the force scale, where there are fewer modes than the
@@ -111,13 +111,21 @@ impl Model {
     /// # Errors
     /// A [`SceneError`] if the scene cannot be simulated.
     pub fn new(scene: &Scene, support: f64) -> Result<Self, SceneError> {
+        Self::displaced(scene, [support, 0.0, 0.0])
+    }
+
+    /// The model of a scene, with the bodies that inputs move displaced so far (m) at the start.
+    ///
+    /// # Errors
+    /// A [`SceneError`] if the scene cannot be simulated.
+    pub fn displaced(scene: &Scene, initial: Ways) -> Result<Self, SceneError> {
         scene.validate()?;
         friction::check(scene)?;
         let springs = Springs::new(scene)?;
         let (spring, section) = (&springs.moving, springs.moving.section);
         let power = Power::of(scene);
         let second = Power::of_second(scene);
-        let preload = Preload::new(scene, &springs, &power, support)?;
+        let preload = Preload::new(scene, &springs, &power, initial)?;
         let tolerance = scene.solver.effective_tolerance();
         let bending_force = bending_force(scene, &springs);
         let force_scale = preload.force.max(bending_force);
@@ -125,7 +133,11 @@ impl Model {
         let blow = |power: &Power| blow(scene, bending_force, power);
         let own = blow(&power);
         let on_second = second.as_ref().map_or(own, blow);
-        let wanted = springs.counts(&own, &on_second, tolerance);
+        let pushed = scene
+            .pushed_at()
+            .map(|_| Power::linear(scene.pusher.stiffness, scene.pusher.damping));
+        let by_pusher = pushed.as_ref().map_or(own, blow);
+        let wanted = springs.counts(&own, &[on_second, by_pusher], tolerance);
         let counts = wanted
             .or(usize::try_from(scene.solver.modes).unwrap_or_default())
             .within_room();
@@ -142,7 +154,14 @@ impl Model {
         let feedback = axial.as_ref();
         let frequency = feedback
             .and_then(|axial| axial.frequency(&modes, preload.contact_stiffness))
-            .or_else(|| springs.frequency(scene, preload.axial_force, preload.contact_stiffness))
+            .or_else(|| {
+                let pushed = if preload.pusher_force > 0.0 {
+                    scene.pusher.stiffness
+                } else {
+                    0.0
+                };
+                springs.frequency(scene, preload.axial_force, preload.contact_stiffness, pushed)
+            })
             .map_or(0.0, |omega| omega / std::f64::consts::TAU);
         let generator = Generator::new(scene)?;
         if scene.effects.chatter && ElectricalContact::new(scene, &law).is_none() {
@@ -153,6 +172,7 @@ impl Model {
                 if generator.is_harmonic()
                     && axial.is_none()
                     && scene.fixed_spring.is_none()
+                    && scene.pushed_at().is_none()
                     && !scene.effects.extremes
                     && is_rayleigh(scene, &modes) =>
             {
@@ -181,7 +201,7 @@ impl Model {
             axial,
             closed_loop,
             generator,
-            initial_support: support,
+            initial,
             force_scale,
             tolerance: Tolerance::new(tolerance, force_scale),
             frequency,
@@ -323,6 +343,16 @@ impl Model {
     #[inline(always)]
     pub(crate) fn second(&self) -> Option<usize> {
         self.roles.second
+    }
+
+    /// The index of the pusher, where there is one.
+    pub(crate) fn pusher(&self) -> Option<usize> {
+        self.roles.pusher
+    }
+
+    /// What the user calls a link.
+    pub fn name_of(&self, link: usize) -> &'static str {
+        self.links.get(link).map_or("", |link| link.name)
     }
 
     /// The index of the displacement of the fixed contact on its spring, where it has one.

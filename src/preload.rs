@@ -6,6 +6,9 @@
 //!
 //! A spring of the fixed contact adds its deflection under gravity to `s` and gives way by its compliance per contact force.
 //!
+//! A pusher at the place `p` towards the contact presses with `P = k_p (p + w(x_p))`, where positive, and `w(x_p)` follows from
+//! contact force, gravity, and `P` itself.
+//!
 //! With friction `T_0 = tau F_0` at the height `h` of the contact point, its moment adds `c_m(N) h tau` to `c(N)`, `c_m` the
 //! deflection per moment.
 
@@ -14,7 +17,7 @@ use crate::beam::statics::Statics;
 use crate::contact::friction::tangential_share;
 use crate::contact::power::Power;
 use crate::error::SceneError;
-
+use crate::link::Ways;
 use crate::math::roots;
 use crate::scene::Scene;
 use crate::variables::{AxialForceKind, RealOutput, RealParameter};
@@ -34,14 +37,54 @@ pub struct Preload {
     pub fixed_deflection: f64,
     /// Axial force, compression positive, N.
     pub axial_force: f64,
+    /// Force of the pusher, N; 0 without one.
+    pub pusher_force: f64,
+    /// Overlap of pusher and spring, m; negative: a gap.
+    pub pusher_overlap: f64,
+}
+
+/// A pusher at rest against the spring.
+#[derive(Clone, Copy, Debug)]
+struct Pusher {
+    /// Where it would touch the unloaded spring, towards the contact, m.
+    place: f64,
+    /// Of the touch, N/m.
+    stiffness: f64,
+    /// Share of friction in its turning the spring: tangential force times height per contact force, m.
+    lever: f64,
+    gravity: f64,
+}
+
+impl Pusher {
+    fn of(scene: &Scene, displacement: f64) -> Option<Self> {
+        scene.pushed_at().map(|_| Self {
+            place: displacement,
+            stiffness: scene.pusher.stiffness,
+            lever: tangential_share(scene).map_or(0.0, |share| share * scene.tip.contact_height),
+            gravity: scene.environment.gravity,
+        })
+    }
+
+    /// Force of a pusher (N), and its overlap with the spring (m), under a contact force and an axial force (N).
+    fn press(&self, statics: &Statics, force: f64, axial_force: f64) -> (f64, f64) {
+        let by = statics.at_pusher(axial_force);
+        // Of the spring without the pusher, which is where it pushes.
+        let spring = (by.across + self.lever * by.turning) * force + by.sag * self.gravity;
+        let alone = self.place + spring;
+        if alone <= 0.0 {
+            return (0.0, alone);
+        }
+        let force = alone / (1.0 / self.stiffness + by.own);
+        (force, force / self.stiffness)
+    }
 }
 
 impl Preload {
-    /// Equilibrium of the scene with the fixed contact displaced by `support` (m).
+    /// Equilibrium of the scene with the inputs that move bodies displaced so far (m).
     ///
     /// # Errors
     /// [`SceneError::Buckled`] where the axial force reaches the buckling load of the cantilever.
-    pub fn new(scene: &Scene, springs: &Springs, law: &Power, support: f64) -> Result<Self, SceneError> {
+    pub fn new(scene: &Scene, springs: &Springs, law: &Power, [support, _, pushed]: Ways) -> Result<Self, SceneError> {
         let (spring, fixed) = (&springs.moving, springs.fixed.as_ref());
         let statics = &spring.statics;
         let total_overtravel = scene.contact.overtravel + support;
@@ -76,7 +119,16 @@ impl Preload {
         let give = fixed.map_or(0.0, FixedSpring::compliance);
         let total_overtravel = total_overtravel + fixed_alone;
 
-        let alone = free_deflection(statics, gravity, &axial);
+        let pusher = Pusher::of(scene, pushed);
+        let press = |force: f64, n: f64| pusher.map_or((0.0, 0.0), |pusher| pusher.press(statics, force, n));
+        // What gravity and pusher do to the tip under a contact force and an axial force (N).
+        let loaded = |force: f64, n: f64| {
+            let by_gravity = statics.gravity_compliance(n) * gravity;
+            pusher.map_or(by_gravity, |pusher| {
+                by_gravity - statics.at_pusher(n).across * pusher.press(statics, force, n).0
+            })
+        };
+        let alone = free_deflection(|n| loaded(0.0, n), &axial);
         if total_overtravel <= alone {
             let axial_force = axial(alone);
             check(axial_force)?;
@@ -87,6 +139,8 @@ impl Preload {
                 deflection: alone,
                 fixed_deflection: fixed_alone,
                 axial_force,
+                pusher_force: press(0.0, axial_force).0,
+                pusher_overlap: press(0.0, axial_force).1,
             });
         }
         let n = axial(total_overtravel);
@@ -102,7 +156,8 @@ impl Preload {
         let deflection = |d: f64| (total_overtravel - d - give * law.elastic_force(d)).max(alone);
         let residual = |d: f64| {
             let (y, n) = (deflection(d), axial(deflection(d)));
-            law.elastic_force(d) - (y - statics.gravity_compliance(n) * gravity) / compliance(n)
+            let force = law.elastic_force(d);
+            force - (y - loaded(force, n)) / compliance(n)
         };
         // No sign change: the spring exerts no force on the contact, it has buckled under its own deflection.
         let Some(indentation) = roots::bracketed(residual, 0.0, total_overtravel - alone) else {
@@ -120,17 +175,19 @@ impl Preload {
             contact_stiffness: law.tangent_stiffness(indentation),
             deflection,
             fixed_deflection: fixed_alone - give * force,
+            pusher_force: press(force, axial_force).0,
+            pusher_overlap: press(force, axial_force).1,
             axial_force,
         })
     }
 }
 
-/// Deflection of the tip without contact, m: zero without gravity. The axial force may depend on it; this feedback is
+/// Deflection of the tip without contact, m: that of its loads under an axial force (N), which may depend on it; this feedback is
 /// weak (N grows with the square of y), so the fixed-point iteration converges fast.
-fn free_deflection(statics: &Statics, gravity: f64, axial: &impl Fn(f64) -> f64) -> f64 {
+fn free_deflection(loaded: impl Fn(f64) -> f64, axial: &impl Fn(f64) -> f64) -> f64 {
     let mut y = 0.0;
     for _ in 0..50 {
-        let next = statics.gravity_compliance(axial(y)) * gravity;
+        let next = loaded(axial(y));
         if next == y {
             break;
         }

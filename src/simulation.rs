@@ -8,7 +8,7 @@ use crate::integrator::communication_step;
 use crate::integrator::extremes::Range;
 use crate::integrator::with_contact;
 use crate::integrator::workspace::Workspace;
-use crate::link::CONTACT;
+use crate::link::{CONTACT, Ways};
 use crate::memory;
 use crate::model::Model;
 use crate::scene::Scene;
@@ -33,8 +33,8 @@ impl Simulation {
     /// # Errors
     /// A [`SceneError`] if the scene cannot be simulated.
     pub fn new(scene: &Scene, inputs: &Inputs, start_time: f64) -> Result<Self, SceneError> {
-        let model = on_heap(scene, inputs.support_displacement)?;
-        let displacement = inputs.second_displacement;
+        let [support, displacement, pusher] = inputs.displacements_after(0.0);
+        let model = on_heap(scene, [support, 0.0, pusher])?;
         let room = model.room(displacement);
         if room.min(room + model.preload.indentation) <= 0.0 {
             return Err(SceneError::NoGap {
@@ -46,7 +46,7 @@ impl Simulation {
         let mut motion = Motion::at_rest(&model, start_time);
         if model.second().is_some() {
             for state in [&mut motion.start, &mut motion.end] {
-                state.displacements = [0.0, displacement];
+                state.displacements = [0.0, displacement, 0.0];
                 for (link, at) in model.links.iter().zip(&mut state.links) {
                     at.approach = link.offset(&state.displacements);
                 }
@@ -99,13 +99,13 @@ impl Simulation {
         )
     }
 
-    /// With the state of another simulation of the same scene, which started with the fixed contact displaced by
-    /// `initial_support` (m).
+    /// With the state of another simulation of the same scene, which started with the inputs displaced so far (m), as
+    /// [`Model::displaced`] takes them.
     ///
     /// # Errors
     /// A [`SceneError`] if the scene cannot be simulated.
-    pub fn resume(scene: &Scene, initial_support: f64, motion: &Motion) -> Result<Self, SceneError> {
-        let model = on_heap(scene, initial_support)?;
+    pub fn resume(scene: &Scene, initial: Ways, motion: &Motion) -> Result<Self, SceneError> {
+        let model = on_heap(scene, initial)?;
         let workspace = Workspace::new(&model);
         let mut simulation = Self {
             motion: Motion::at_rest(&model, 0.0),
@@ -203,6 +203,8 @@ impl Simulation {
             RealOutput::StepMinimumGap => extremes()
                 .filter(|_| second.is_some())
                 .map_or(0.0, |extremes| -extremes.nearest),
+            RealOutput::PusherForce => model.pusher().map_or(0.0, |index| motion.link(model, index).force),
+            RealOutput::StepMinimumPusherForce => model.pusher().map_or(0.0, |index| range(index).least),
             RealOutput::SecondForce => second_force(),
             RealOutput::SecondConductance => second_conductance().unwrap_or_default(),
             RealOutput::SecondResistance => second_conductance().map_or(0.0, |conductance| 1.0 / conductance),
@@ -270,13 +272,14 @@ impl Simulation {
         };
         let force = || motion.link(model, CONTACT).force;
         let conducting = || conducting_at(electrical(CONTACT), force(), rates().0);
-        let second_rate = |index| motion.link_rates(model, index).0;
+        let force_rate = |index| motion.link_rates(model, index).0;
         let second_conducting = || {
             let index = model.second()?;
-            conducting_at(electrical(index), motion.link(model, index).force, second_rate(index))
+            conducting_at(electrical(index), motion.link(model, index).force, force_rate(index))
         };
         Some(match output {
-            RealOutput::SecondForce => model.second().map_or(0.0, second_rate),
+            RealOutput::SecondForce => model.second().map_or(0.0, force_rate),
+            RealOutput::PusherForce => model.pusher().map_or(0.0, force_rate),
             RealOutput::SecondConductance => second_conducting().map_or(0.0, |(_, rate)| rate),
             RealOutput::SecondResistance => {
                 second_conducting().map_or(0.0, |(conductance, rate)| -rate / conductance.powi(2))
@@ -317,6 +320,7 @@ impl Simulation {
             | RealOutput::StepMaximumForce
             | RealOutput::StepMaximumResistance
             | RealOutput::StepMinimumGap
+            | RealOutput::StepMinimumPusherForce
             | RealOutput::SecondLastOpening
             | RealOutput::SecondLastClosing
             | RealOutput::SecondMinimumForce
@@ -390,6 +394,7 @@ impl Simulation {
         let index = match output {
             BooleanOutput::ContactClosed => Some(CONTACT),
             BooleanOutput::SecondClosed => self.model.second(),
+            BooleanOutput::PusherClosed => self.model.pusher(),
         };
         index.is_some_and(|index| {
             let closed = self.motion.state().links.get(index).is_some_and(|link| link.closed);
@@ -401,8 +406,8 @@ impl Simulation {
 
 /// The model of a scene, made out of line, as it is large; refused where there is no memory to simulate it.
 #[inline(never)]
-fn on_heap(scene: &Scene, support: f64) -> Result<Box<Model>, SceneError> {
-    let model = Model::new(scene, support)?;
+fn on_heap(scene: &Scene, initial: Ways) -> Result<Box<Model>, SceneError> {
+    let model = Model::displaced(scene, initial)?;
     let needed = Workspace::size(&model);
     if memory::has(needed) {
         Ok(Box::new(model))

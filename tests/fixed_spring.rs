@@ -198,7 +198,9 @@ fn the_fixed_contact_moves_as_its_outputs_say() {
         before = Some((fixed, get(&simulation, RealOutput::FixedVelocity)));
         if (n + 1) % 50 == 0 {
             let time = coarse.time();
-            coarse.step(&Inputs::default(), time, f64::from(n + 1) * step - time).unwrap();
+            coarse
+                .step(&Inputs::default(), time, f64::from(n + 1) * step - time)
+                .unwrap();
             let other = get(&coarse, RealOutput::FixedDisplacement);
             // A part in 1e8 of the force bends the spring by that of its deflection.
             assert!((fixed - other).abs() < 1e-8 * overtravel, "{n}: {fixed} {other}");

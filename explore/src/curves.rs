@@ -53,7 +53,7 @@ impl Curves {
             *value = contact.real(output);
         }
         self.rows.push(row);
-        let events = contact.events().0.filter(|event| !event.second);
+        let events = contact.events().0.filter(|event| event.link == 0);
         self.events
             .extend(events.map(|event| (event.time, f64::from(u8::from(!event.closes)))));
     }

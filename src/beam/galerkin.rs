@@ -23,6 +23,16 @@ pub struct Space {
     pub(crate) tip: DVector<f64>,
     /// Slope with respect to xi of each function at the tip.
     pub(crate) tip_slope: DVector<f64>,
+    /// Value of each function at the pusher.
+    pub(crate) pusher: DVector<f64>,
+}
+
+/// What functions do at the places of a spring that are asked for: deflection (m) and rotation at the tip, deflection at the
+/// pusher (m).
+pub(super) struct Places {
+    pub(super) tip: DVector<f64>,
+    pub(super) slope: DVector<f64>,
+    pub(super) pusher: DVector<f64>,
 }
 
 /// One mode, normalised to a modal mass of 1 kg.
@@ -36,6 +46,8 @@ pub struct Mode {
     pub participation: f64,
     /// Rotation at the tip, 1/(m sqrt(kg)).
     pub rotation: f64,
+    /// Displacement at the pusher, 1/sqrt(kg).
+    pub pusher: f64,
 }
 
 impl Space {
@@ -48,6 +60,7 @@ impl Space {
             load: DVector::zeros(count),
             tip: functions(1.0).0,
             tip_slope: functions(1.0).1,
+            pusher: DVector::zeros(count),
         };
         // Degree 2 (count + 1) is integrated exactly.
         for (x, weight) in legendre::gauss(count + 2) {
@@ -60,14 +73,14 @@ impl Space {
     }
 
     /// The space of other functions, orthonormal in strain energy, in units of the section, which carries no rivet: products
-    /// of the functions over the mass (kg), of their slopes over the length (m), the mass each moves (kg), and the deflection
-    /// (m) and the rotation of each at the tip.
+    /// of the functions over the mass (kg), of their slopes over the length (m), the mass each moves (kg), and what each does at
+    /// the places asked for.
     pub(super) fn with(
         section: &Section,
         mass: DMatrix<f64>,
         slopes: DMatrix<f64>,
         load: DVector<f64>,
-        (tip, slope): (DVector<f64>, DVector<f64>),
+        Places { tip, slope, pusher }: Places,
     ) -> Self {
         let half_mass = section.mass_per_length * section.length / 2.0;
         let half_stiffness = 8.0 * section.bending_stiffness / section.length.powi(3);
@@ -77,6 +90,7 @@ impl Space {
             load: load * (half_stiffness.sqrt() / half_mass),
             tip_slope: slope * (half_stiffness.sqrt() * section.length / 2.0),
             tip: tip * half_stiffness.sqrt(),
+            pusher: pusher * half_stiffness.sqrt(),
         }
     }
 
@@ -146,6 +160,7 @@ impl Space {
                     tip,
                     participation: half_mass * shape.dot(&self.load) * normalisation + tip_mass * tip,
                     rotation: 2.0 / length * shape.dot(&self.tip_slope) * normalisation,
+                    pusher: shape.dot(&self.pusher) * normalisation,
                 };
                 (mode, shape * normalisation)
             })

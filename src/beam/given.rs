@@ -7,7 +7,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::beam::galerkin::Space;
+use crate::beam::galerkin::{Places, Space};
 use crate::beam::mode::{MAX_MODES, Mode};
 use crate::beam::mode_count::Blow;
 use crate::beam::section::Section;
@@ -76,6 +76,7 @@ impl Given {
                     participation: mode.participation,
                     rotation: mode.rotation.unwrap_or_default(),
                     fixed: 0.0,
+                    pusher: mode.pusher.unwrap_or_default(),
                 }
             })
             .collect();
@@ -93,9 +94,7 @@ impl Given {
                 omega_squared,
                 damping: beta * omega_squared + 2.0 * omega_squared.sqrt(),
                 tip: (rest * omega_squared).sqrt(),
-                participation: 0.0,
-                rotation: 0.0,
-                fixed: 0.0,
+                ..Mode::default()
             });
         }
         modes
@@ -109,10 +108,11 @@ impl Given {
             DMatrix::from_diagonal(&vector(&|mode| 1.0 / mode.omega_squared)),
             DMatrix::zeros(modes.len(), modes.len()),
             vector(&|mode| mode.participation / mode.omega_squared.sqrt()),
-            (
-                vector(&|mode| mode.tip / mode.omega_squared.sqrt()),
-                vector(&|mode| mode.rotation / mode.omega_squared.sqrt()),
-            ),
+            Places {
+                tip: vector(&|mode| mode.tip / mode.omega_squared.sqrt()),
+                slope: vector(&|mode| mode.rotation / mode.omega_squared.sqrt()),
+                pusher: vector(&|mode| mode.pusher / mode.omega_squared.sqrt()),
+            },
         )
     }
 

@@ -11,6 +11,7 @@ use crate::math::legendre;
 pub struct Mesh {
     stretches: Vec<Stretch>,
     before_contact: usize,
+    before_pusher: Option<usize>,
     clamp_flexibility: f64,
     rule: Rule,
 }
@@ -67,6 +68,7 @@ impl Mesh {
         Self {
             stretches: stretches.collect(),
             before_contact: spring.before_contact,
+            before_pusher: spring.before_pusher,
             clamp_flexibility: spring.clamp_flexibility,
             rule,
         }
@@ -139,6 +141,11 @@ impl Mesh {
         self.loaded(self.before_contact.saturating_sub(1), 1.0, 0.0)
     }
 
+    /// Under unit force at the pusher, where there is one.
+    pub fn pushed_by_pusher(&self) -> Option<Bend> {
+        Some(self.loaded(self.before_pusher?.checked_sub(1)?, 1.0, 0.0))
+    }
+
     /// Under unit moment at the contact.
     pub fn turned(&self) -> Bend {
         self.loaded(self.before_contact.saturating_sub(1), 0.0, 1.0)
@@ -192,6 +199,14 @@ impl Mesh {
     pub fn at_contact(&self, shape: &Bend) -> (f64, f64) {
         let last = self.before_contact.checked_sub(1).and_then(|last| shape.ends.get(last));
         last.copied().unwrap_or_default()
+    }
+
+    /// Deflection at the pusher, m; 0 without one.
+    pub fn at_pusher(&self, shape: &Bend) -> f64 {
+        let last = self
+            .before_pusher
+            .and_then(|before| shape.ends.get(before.checked_sub(1)?));
+        last.map_or(0.0, |(deflection, _)| *deflection)
     }
 
     /// Factors of the products of deflections in the kinetic energy, and of slopes in the work of an axial compression:

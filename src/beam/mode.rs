@@ -24,6 +24,8 @@ pub struct Mode {
     pub rotation: f64,
     /// Displacement of the fixed contact, 1/sqrt(kg); 0 of the moving spring.
     pub fixed: f64,
+    /// Displacement of the moving spring at the pusher, 1/sqrt(kg).
+    pub pusher: f64,
 }
 
 impl Mode {

@@ -101,6 +101,8 @@ pub struct Pieces {
     pub parts: Vec<Piece>,
     /// Number of pieces up to the contact.
     pub before_contact: usize,
+    /// Number of pieces up to the pusher, where there is one.
+    pub before_pusher: Option<usize>,
     /// Rotation of the clamp per moment, rad/(N m).
     pub clamp_flexibility: f64,
 }
@@ -113,6 +115,7 @@ impl Pieces {
         let masses = spring.masses.iter().map(|at| (at.position, at.mass, at.rotary_inertia));
         let mut carried: Vec<_> = masses
             .chain([(contact, scene.tip.mass, scene.tip.rotary_inertia)])
+            .chain(scene.pushed_at().map(|position| (position, 0.0, 0.0)))
             .collect();
         carried.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut pieces = Vec::new();
@@ -132,10 +135,14 @@ impl Pieces {
             start = end;
         }
         let (mut end, mut before_contact) = (0.0, 0);
+        let mut before_pusher = scene.pushed_at().map(|position| (position, 0));
         for piece in &mut pieces {
             let start = end;
             end += piece.length;
             before_contact += usize::from(end <= contact + same);
+            if let Some((position, before)) = &mut before_pusher {
+                *before += usize::from(end <= *position + same);
+            }
             for &(_, mass, inertia) in carried
                 .iter()
                 .filter(|(at, ..)| *at > start + same && *at <= end + same)
@@ -147,6 +154,7 @@ impl Pieces {
         Self {
             parts: pieces,
             before_contact,
+            before_pusher: before_pusher.map(|(_, before)| before),
             clamp_flexibility: spring.clamp_stiffness.map_or(0.0, f64::recip),
         }
     }

@@ -1,7 +1,7 @@
 //! Ritz space of a spring of segments: the shapes under a few loads, and under the inertia of the shapes before.
 //!
-//! The loads are the contact force, base acceleration, angular acceleration about the clamp, and force and moment at the
-//! end. A spring has four independent motions of a given frequency; each is a power series in the square of the frequency
+//! The loads are the contact force, base acceleration, the force of a pusher, angular acceleration about the clamp, and force
+//! and moment at the end. A spring has four independent motions of a given frequency; each is a power series in the square of the frequency
 //! whose terms arise from these shapes by `K^-1 M`. So the space holds what moves the spring at any place for frequencies
 //! up to a bound that grows with its size. On a uniform spring it is the space of polynomials of [`galerkin`], and holds the
 //! static shape under a contact force in any case. (E. L. Wilson, M.-W. Yuan, J. M. Dickens, Earthquake Engineering and
@@ -13,7 +13,7 @@ use std::collections::VecDeque;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::beam::galerkin::Space;
+use crate::beam::galerkin::{Places, Space};
 use crate::beam::mesh::{Bend, Mesh};
 use crate::beam::pieces::Pieces;
 use crate::beam::section::Section;
@@ -47,6 +47,7 @@ pub fn dynamic_space(spring: &Pieces, section: &Section, count: usize, axial_for
     let mesh = Mesh::new(spring, count.max(STATIC_SHAPES));
     let [moved, turned] = mesh.shaken();
     let mut starts = vec![pushed_under(&mesh, section, axial_force)?, moved];
+    starts.extend(mesh.pushed_by_pusher());
     let [force, moment] = mesh.pushed_at_end();
     starts.extend([moment, turned]);
     if spring.goes_on() {
@@ -61,12 +62,8 @@ pub fn dynamic_space(spring: &Pieces, section: &Section, count: usize, axial_for
 
 fn static_shapes(mesh: &Mesh) -> Vec<Bend> {
     let [moved, _] = mesh.shaken();
-    krylov(
-        mesh,
-        vec![mesh.pushed(), moved],
-        |shape| mesh.compressed(shape),
-        STATIC_SHAPES,
-    )
+    let starts = [mesh.pushed(), moved].into_iter().chain(mesh.pushed_by_pusher());
+    krylov(mesh, starts.collect(), |shape| mesh.compressed(shape), STATIC_SHAPES)
 }
 
 /// The shape under unit contact force and an axial compression (N).
@@ -128,9 +125,10 @@ fn space(mesh: &Mesh, shapes: &[Bend], section: &Section) -> Space {
         products(shapes.iter().map(moved).collect()),
         products(shapes.iter().map(turned).collect()),
         vector(&loaded),
-        (
-            vector(&|shape| mesh.at_contact(shape).0),
-            vector(&|shape| mesh.at_contact(shape).1),
-        ),
+        Places {
+            tip: vector(&|shape| mesh.at_contact(shape).0),
+            slope: vector(&|shape| mesh.at_contact(shape).1),
+            pusher: vector(&|shape| mesh.at_pusher(shape)),
+        },
     )
 }

@@ -13,9 +13,9 @@ use crate::beam::section::Section;
 use crate::beam::statics::{Statics, axial_force_from_deflection};
 use crate::error::SceneError;
 use crate::math::simd::LANES;
-use crate::scene::spring::{Shape, SpringFile};
+use crate::scene::spring::{Segments, Shape, SpringFile};
 use crate::scene::{Scene, choices};
-use crate::variables::{AxialForceKind, EnumerationParameter};
+use crate::variables::{AxialForceKind, EnumerationParameter, RealParameter};
 
 /// A spring with its rivet.
 #[derive(Clone, Debug)]
@@ -60,21 +60,16 @@ impl Spring {
     /// # Errors
     /// A [`SceneError`] if a spring given by modes is to have an axial force.
     pub fn new(scene: &Scene) -> Result<Self, SceneError> {
+        check_pusher(scene)?;
         let Some(file) = &scene.spring else {
-            return Ok(Self::uniform(&Section::new(scene)));
+            return Ok(if scene.pushed_at().is_some() {
+                Self::of_segments(&scene.uniform_spring(), scene)
+            } else {
+                Self::uniform(&Section::new(scene))
+            });
         };
         match &file.shape {
-            Shape::Segments(segments) => {
-                let pieces = Pieces::new(segments, scene);
-                let section = ritz::equivalent(&pieces);
-                let statics = Statics::of(&section, ritz::static_space(&pieces, &section));
-                Ok(Self {
-                    section,
-                    buckling_load: statics.buckling_load(),
-                    statics,
-                    form: Form::Segments(pieces),
-                })
-            }
+            Shape::Segments(segments) => Ok(Self::of_segments(segments, scene)),
             Shape::Modes(modes) => {
                 no_axial_force(scene, file)?;
                 let given = Given::new(modes);
@@ -87,6 +82,18 @@ impl Spring {
                     form: Form::Modes(given),
                 })
             }
+        }
+    }
+
+    fn of_segments(segments: &Segments, scene: &Scene) -> Self {
+        let pieces = Pieces::new(segments, scene);
+        let section = ritz::equivalent(&pieces);
+        let statics = Statics::of(&section, ritz::static_space(&pieces, &section));
+        Self {
+            section,
+            buckling_load: statics.buckling_load(),
+            statics,
+            form: Form::Segments(pieces),
         }
     }
 
@@ -177,6 +184,7 @@ impl Spring {
                     participation: mode.participation,
                     rotation: mode.rotation,
                     fixed: 0.0,
+                    pusher: mode.pusher,
                 };
                 (mode, shape)
             })
@@ -199,6 +207,43 @@ impl Spring {
         let modes = space.modes(&self.section, axial_force, stiffness)?;
         modes.first().map(|mode| mode.omega_squared.sqrt())
     }
+}
+
+/// A pusher touches the spring somewhere, and leaves the axial force as it is.
+fn check_pusher(scene: &Scene) -> Result<(), SceneError> {
+    let Some(position) = scene.pushed_at() else {
+        return Ok(());
+    };
+    if scene.effects.axial_force == AxialForceKind::FromDeflection {
+        return Err(SceneError::NotTogether {
+            name: "effects.axialForce",
+            choice: "FromDeflection",
+            other: "effects.pusher = Prescribed",
+            instead: "effects.pusher = None",
+            allowed: "None, FromPreload and Prescribed, which are constant",
+        });
+    }
+    let length = match scene.spring.as_ref().map(|file| (file, &file.shape)) {
+        None => scene.beam.length,
+        Some((_, Shape::Segments(segments))) => segments.length(),
+        Some((file, Shape::Modes(modes))) => {
+            let touched = modes.modes.iter().all(|mode| mode.pusher.is_some());
+            let file = file.name.clone();
+            return touched.then_some(()).ok_or(SceneError::NoPusher { file });
+        }
+    };
+    if position <= length {
+        return Ok(());
+    }
+    let allowed = format!(
+        "allowed is at most the length of the spring, {} m",
+        crate::error::number(length)
+    );
+    Err(SceneError::out_of_range(
+        RealParameter::PusherPosition.variable(),
+        position,
+        allowed,
+    ))
 }
 
 /// A spring given by modes has no geometry on which an axial force could act.

@@ -12,6 +12,8 @@
 //! so that they join the modes of the moving spring with the opposite sign at the contact. `support.displacement` moves the
 //! contact point as if its spring were rigid: the inertia of a clamp that moves is left out.
 
+use nalgebra::{DMatrix, DVector};
+
 use crate::beam::mode::{MAX_MODES, Mode};
 use crate::beam::mode_count::Blow;
 use crate::beam::spring::{Basis, Spring};
@@ -20,7 +22,7 @@ use crate::error::SceneError;
 use crate::math::roots;
 use crate::math::simd::LANES;
 use crate::scene::{Beam, Scene, Tip};
-use crate::variables::AxialForceKind;
+use crate::variables::{AxialForceKind, PusherKind};
 
 /// Modes of each spring for the lowest frequency of both: what the others add to the flexibility there, beyond their static
 /// share, is less than rounding of the compliance.
@@ -103,11 +105,11 @@ impl Springs {
         }
     }
 
-    /// Numbers of modes for a tolerance in blows of the contact, and of the second one on the moving spring.
-    pub fn counts(&self, own: &Blow, second: &Blow, tolerance: f64) -> Counts {
-        let count = |blow| self.moving.count(blow, tolerance);
+    /// Numbers of modes for a tolerance in blows of the contact, and of others on the moving spring.
+    pub fn counts(&self, own: &Blow, others: &[Blow], tolerance: f64) -> Counts {
+        let count = |most: usize, blow| self.moving.count(blow, tolerance).max(most);
         Counts {
-            moving: count(own).max(count(second)),
+            moving: others.iter().fold(count(0, own), count),
             fixed: self
                 .fixed
                 .as_ref()
@@ -148,9 +150,27 @@ impl Springs {
         Some(basis)
     }
 
-    /// Lowest angular frequency with the contact as a spring of `stiffness` (N/m), rad/s, under an axial compression of the
-    /// moving one (N).
-    pub fn frequency(&self, scene: &Scene, axial_force: f64, stiffness: f64) -> Option<f64> {
+    /// Lowest angular frequency with the contact as a spring of `stiffness`, and a pusher as one of `pushed` (N/m), rad/s, under
+    /// an axial compression of the moving spring (N).
+    pub fn frequency(&self, scene: &Scene, axial_force: f64, stiffness: f64, pushed: f64) -> Option<f64> {
+        if pushed > 0.0 {
+            let counts = Counts {
+                moving: FREQUENCY_MODES,
+                fixed: FREQUENCY_MODES,
+            };
+            let modes = self.modes(scene, counts, axial_force)?.modes;
+            let vector = |value: &dyn Fn(&Mode) -> f64| DVector::from_iterator(modes.len(), modes.iter().map(value));
+            let mut rigidity = DMatrix::from_diagonal(&vector(&|mode| mode.omega_squared));
+            for (stiffness, shape) in [
+                (stiffness, vector(&|mode| mode.tip)),
+                (pushed, vector(&|mode| mode.pusher)),
+            ] {
+                rigidity.ger(stiffness, &shape, &shape, 1.0);
+            }
+            // From the inverse, whose largest eigenvalue has full relative accuracy.
+            let flexibility = rigidity.cholesky()?.inverse();
+            return Some(1.0 / flexibility.symmetric_eigenvalues().max().sqrt());
+        }
         match &self.fixed {
             Some(fixed) => fixed.frequency(scene, &self.moving, axial_force, stiffness),
             None => self.moving.frequency(axial_force, stiffness),
@@ -198,6 +218,7 @@ impl FixedSpring {
             ..scene.clone()
         };
         own.effects.axial_force = AxialForceKind::None;
+        own.effects.pusher = PusherKind::None;
         let spring = Spring::new(&own)?;
         Ok(Some(Self { scene: own, spring }))
     }
@@ -258,7 +279,7 @@ impl FixedSpring {
             let square = first + place * gap;
             let dynamic = |index: usize, mode: &Mode| {
                 let factor = match index {
-                    0 => (1.0 - place) * -1.0,
+                    0 => place - 1.0,
                     1 => place,
                     _ => place * (1.0 - place) * gap / (mode.omega_squared - square),
                 };

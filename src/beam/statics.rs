@@ -17,6 +17,15 @@ pub struct Statics {
     terms: Vec<Term>,
 }
 
+/// Deflection at the pusher per load.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AtPusher {
+    pub(crate) own: f64,
+    pub(crate) across: f64,
+    pub(crate) turning: f64,
+    pub(crate) sag: f64,
+}
+
 /// One of the modes of the geometric stiffness.
 #[derive(Clone, Copy, Debug)]
 struct Term {
@@ -24,6 +33,7 @@ struct Term {
     tip: f64,
     slope: f64,
     load: f64,
+    pusher: f64,
 }
 
 impl Statics {
@@ -44,6 +54,7 @@ impl Statics {
                 tip: shape.dot(&space.tip),
                 slope: shape.dot(&space.tip_slope),
                 load: shape.dot(&space.load),
+                pusher: shape.dot(&space.pusher),
             })
             .collect();
         Self {
@@ -70,10 +81,25 @@ impl Statics {
 
     /// Tip deflection per constant base acceleration, m per m/s2, negative: the spring lags behind the frame.
     pub fn gravity_compliance(&self, axial_force: f64) -> f64 {
+        self.under_gravity(axial_force, |term| term.tip)
+    }
+
+    /// Of the deflection at the pusher: per force there and per tip force (m/N), per moment at the tip (1/N), and per constant
+    /// base acceleration (m per m/s2).
+    pub(crate) fn at_pusher(&self, axial_force: f64) -> AtPusher {
+        AtPusher {
+            own: self.sum(axial_force, |term| term.pusher * term.pusher),
+            across: self.sum(axial_force, |term| term.pusher * term.tip),
+            turning: self.sum(axial_force, |term| term.pusher * term.slope) * (2.0 / self.section.length),
+            sag: self.under_gravity(axial_force, |term| term.pusher),
+        }
+    }
+
+    fn under_gravity(&self, axial_force: f64, place: impl Fn(&Term) -> f64) -> f64 {
         let half_mass = self.section.mass_per_length * self.section.length / 2.0;
         let tip_mass = self.section.tip_mass;
         -self.sum(axial_force, |term| {
-            term.tip * (half_mass * term.load + tip_mass * term.tip)
+            place(term) * (half_mass * term.load + tip_mass * term.tip)
         })
     }
 

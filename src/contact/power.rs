@@ -60,6 +60,17 @@ impl Power {
         }
     }
 
+    /// A linear spring (N/m) with a damper (N s/m) that acts while it is compressed.
+    pub fn linear(stiffness: f64, damping: f64) -> Self {
+        Self {
+            coefficient: stiffness,
+            exponent: 1.0,
+            damping: damping / stiffness,
+            traces: 0.0,
+            least: 0.0,
+        }
+    }
+
     /// Rough surfaces, from the tangent stiffness at a force, and how it grows with the force.
     pub fn rough(contact: &Contact) -> Self {
         let n = contact.stiffness_exponent;

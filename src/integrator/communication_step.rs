@@ -16,6 +16,7 @@ use crate::integrator::rest::rests_until;
 use crate::integrator::stepper::{Progress, Stepper, resolution};
 use crate::integrator::with_contact;
 use crate::integrator::workspace::{Budget, Workspace};
+use crate::link::Ways;
 use crate::model::Model;
 use crate::state::State;
 
@@ -169,11 +170,7 @@ fn step_by<const EXTREMES: bool>(
     let since = motion.time;
     workspace.events.forget_until(since);
     // The fixed contacts move at constant velocity to their positions at the end of the step.
-    let second = match model.second() {
-        Some(_) => second_support(model, inputs, time, size)?,
-        None => 0.0,
-    };
-    let displacements = [inputs.support_displacement_after(size) - model.initial_support, second];
+    let displacements = displaced(model, inputs, time, size)?;
     let drive = Drive::new(inputs, time, size, motion.ways(displacements));
     let steady = drive.continues(&motion.drive);
     let ahead = motion.time < motion.end.time;
@@ -274,17 +271,24 @@ fn advance_end(
     done.inspect_err(|_| motion.end = workspace.former.end)
 }
 
-/// Displacement of the second fixed contact after a communication step of `size` seconds from `time` (s), m.
+/// Displacements of the inputs since the preload after a communication step of `size` seconds from `time` (s), m.
 ///
 /// # Errors
-/// [`StepErrorCause::NoRoom`] where it would reach the first.
-fn second_support(model: &Model, inputs: &Inputs, time: f64, size: f64) -> Result<f64, StepError> {
-    let displacement = inputs.second_displacement_after(size);
-    let room = model.room(displacement);
-    let limit = displacement + room;
+/// [`StepErrorCause::NoRoom`] where the second fixed contact would reach the first.
+fn displaced(model: &Model, inputs: &Inputs, time: f64, size: f64) -> Result<Ways, StepError> {
+    let [support, second, pusher] = inputs.displacements_after(size);
+    let initial = model.initial;
+    let present = |link: Option<usize>, displacement: f64| link.map_or(0.0, |_| displacement);
+    let second = present(model.second(), second);
+    let room = model.room(second);
+    let (displacement, limit) = (second, second + room);
     let cause = StepErrorCause::NoRoom { displacement, limit };
-    let fits = room > 0.0;
-    fits.then_some(displacement).ok_or(StepError { time, cause })
+    let displacements = [
+        support - initial[0],
+        second,
+        present(model.pusher(), pusher - initial[2]),
+    ];
+    (room > 0.0).then_some(displacements).ok_or(StepError { time, cause })
 }
 
 /// The state at the communication point, by a step from the start of the integration step around it.

@@ -133,7 +133,7 @@ impl Motion {
         ahead.map(|(index, (_, end))| Event {
             time: self.end.time,
             closes: end.closed,
-            second: index > 0,
+            link: index,
         })
     }
 
@@ -353,8 +353,8 @@ impl Motion {
     /// Displacement (m) and velocity (m/s) of the fixed contact.
     pub fn support(&self) -> (f64, f64) {
         let State {
-            displacements: [displacement, _],
-            velocities: [velocity, _],
+            displacements: [displacement, ..],
+            velocities: [velocity, ..],
             ..
         } = self.state();
         (*displacement, *velocity)

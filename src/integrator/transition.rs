@@ -24,7 +24,7 @@ pub(crate) fn switch(model: &Model, state: &mut State, index: usize, log: &mut E
     log.record(log::Event {
         time,
         closes: closed,
-        second: index > 0,
+        link: index,
     });
     let touch = link.contact().and_then(|law| law.power()).filter(|_| closed);
     at.force = touch.map_or(0.0, |law| law.force_at_touch(at.rate));

@@ -8,10 +8,10 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::scene::spring::SpringFile;
+use crate::scene::spring::{Segment, Segments, SpringFile};
 use crate::variables::{
     AxialForceKind, BooleanParameter, ContactLawKind, EnumerationParameter, ExcitationKind, FrictionKind,
-    IntegerParameter, RealParameter, ResistanceKind,
+    IntegerParameter, PusherKind, RealParameter, ResistanceKind,
 };
 
 include!(concat!(env!("OUT_DIR"), "/scene.rs"));
@@ -20,6 +20,31 @@ impl Scene {
     /// Whether the contact rubs.
     pub(crate) fn rubs(&self) -> bool {
         self.effects.friction != FrictionKind::None
+    }
+
+    /// Distance from the clamp at which a pusher presses the spring, m, where there is one.
+    pub(crate) fn pushed_at(&self) -> Option<f64> {
+        (self.effects.pusher != PusherKind::None).then_some(self.pusher.position)
+    }
+
+    /// The uniform section as a spring of one segment.
+    pub(crate) fn uniform_spring(&self) -> Segments {
+        let Beam {
+            length,
+            width,
+            thickness,
+            ..
+        } = self.beam;
+        Segments {
+            segments: vec![Segment {
+                length,
+                width: [width; 2],
+                thickness: [thickness; 2],
+                youngs_modulus: None,
+                density: None,
+            }],
+            ..Segments::default()
+        }
     }
 }
 

@@ -83,6 +83,8 @@ pub struct GivenMode {
     pub damping: Option<f64>,
     /// Rotation at the contact, 1/(m sqrt(kg)).
     pub rotation: Option<f64>,
+    /// Displacement where the pusher touches, 1/sqrt(kg).
+    pub pusher: Option<f64>,
 }
 
 /// A key of a spring file that holds a number: its unit and range.
@@ -114,6 +116,7 @@ pub(crate) const FREQUENCY: Field = field("frequency", "Hz", 1e-3, 1e9);
 pub(crate) const CONTACT: Field = field("contact", "1/sqrt(kg)", -1e9, 1e9);
 pub(crate) const PARTICIPATION: Field = field("participation", "sqrt(kg)", -1.0, 1.0);
 pub(crate) const DAMPING: Field = field("damping", "1", 0.0, 100.0);
+pub(crate) const PUSHER: Field = field("pusher", "1/sqrt(kg)", -1e9, 1e9);
 pub(crate) const ROTATION: Field = field("rotation", "1/(m sqrt(kg))", -1e12, 1e12);
 
 /// The value itself, that at the start, that at the end.
@@ -271,6 +274,7 @@ impl GivenMode {
         CONTACT.check(self.contact)?;
         PARTICIPATION.check(self.participation)?;
         self.damping.map_or(Ok(()), |damping| DAMPING.check(damping))?;
+        self.pusher.map_or(Ok(()), |pusher| PUSHER.check(pusher))?;
         self.rotation.map_or(Ok(()), |rotation| ROTATION.check(rotation))
     }
 }

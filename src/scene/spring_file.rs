@@ -44,8 +44,8 @@ use crate::error::SceneError;
 use crate::scene::names::located;
 use crate::scene::spring::{
     CLAMP_STIFFNESS, COMPLIANCE, CONTACT, CONTACT_POSITION, DAMPING, DENSITY, FREQUENCY, Field, GivenMode, LENGTH,
-    MASS, Modes, PARTICIPATION, POSITION, PointMass, ROTARY_INERTIA, ROTATION, Segment, Segments, Shape, SpringFile,
-    THICKNESS, WIDTH, YOUNGS_MODULUS, count,
+    MASS, Modes, PARTICIPATION, POSITION, PUSHER, PointMass, ROTARY_INERTIA, ROTATION, Segment, Segments, Shape,
+    SpringFile, THICKNESS, WIDTH, YOUNGS_MODULUS, count,
 };
 
 /// Largest file, bytes.
@@ -188,13 +188,14 @@ fn modes(top: &Entry) -> Result<Modes, SceneError> {
 }
 
 fn mode(entry: &Entry) -> Result<GivenMode, SceneError> {
-    entry.knows(&["frequency", "contact", "participation", "damping", "rotation"])?;
+    entry.knows(&["frequency", "contact", "participation", "damping", "rotation", "pusher"])?;
     Ok(GivenMode {
         frequency: entry.required(FREQUENCY)?,
         contact: entry.required(CONTACT)?,
         participation: entry.required(PARTICIPATION)?,
         damping: entry.optional(DAMPING)?,
         rotation: entry.optional(ROTATION)?,
+        pusher: entry.optional(PUSHER)?,
     })
 }
 

@@ -23,8 +23,9 @@ const ALWAYS: Values = &[
 ];
 
 /// Scenes in which every known that matters at all matters somewhere: the start values with these changes. A threshold of
-/// [`CRITICAL`] is the resistance at rest, an overtravel of it closes the contact without force.
-const SCENES: [Values; 34] = [
+/// [`CRITICAL`] is the resistance at rest, an overtravel or a pusher of it closes the
+/// contact or touches without force.
+const SCENES: [Values; 41] = [
     &[],
     &[("effects.axialForce", 2.0)],
     &[("effects.axialForce", 3.0)],
@@ -110,7 +111,56 @@ const SCENES: [Values; 34] = [
         ("fixed.stiffnessDamping", 3e-6),
     ],
     &[ON_SPRING, PULLED, ("contact.overtravel", CRITICAL)],
+    &[
+        PRESSED,
+        OPEN,
+        ("pusher.displacement", 3e-4),
+        RUBBING,
+        PULLED,
+        ALL_COUNT,
+        ("effects.axialForce", 4.0),
+        ("beam.axialForce", 1.0),
+        ("chatter.resistanceThreshold", CRITICAL),
+    ],
+    &[
+        PRESSED,
+        OPEN,
+        ("pusher.displacement", 3e-4),
+        ON_SPRING,
+        ("solver.tolerance", 1e-9),
+    ],
+    &[
+        PRESSED,
+        ("pusher.stiffness", 1e9),
+        ("pusher.damping", 1e3),
+        ("solver.tolerance", 1e-9),
+        ("beam.stiffnessDamping", 3e-6),
+    ],
+    &[
+        PRESSED,
+        PULLED,
+        ("pusher.displacement", 1e-5),
+        ("contact.overtravel", CRITICAL),
+    ],
+    &[
+        PRESSED,
+        PULLED,
+        RUBBING,
+        ("effects.axialForce", 4.0),
+        ("beam.axialForce", 1.0),
+        ("pusher.displacement", CRITICAL),
+    ],
+    &[
+        PRESSED,
+        PULLED,
+        ON_SPRING,
+        ("effects.contactLaw", 4.0),
+        ("pusher.displacement", CRITICAL),
+    ],
+    &[PRESSED, OPEN, PULLED, ("pusher.displacement", CRITICAL)],
 ];
+const PRESSED: (&str, f64) = ("effects.pusher", 2.0);
+const OPEN: (&str, f64) = ("contact.overtravel", -1e-4);
 const ON_SPRING: (&str, f64) = ("fixed.file", 1.0);
 const SECOND: (&str, f64) = ("effects.secondContact", 1.0);
 const RUBBING: (&str, f64) = ("effects.friction", 2.0);
@@ -158,6 +208,12 @@ impl Known {
                     // The same distance further than where the contact is open.
                     known.scene.contact.overtravel = -1e-3;
                     -1e-3 - known.at_rest(RealOutput::ContactIndentation)
+                }
+                "pusher.displacement" if value.is_nan() => {
+                    // Where it touches without force.
+                    known.inputs.pusher_displacement = -1e-3;
+                    let simulation = Simulation::new(&known.scene, &known.inputs, 0.0).unwrap();
+                    -1e-3 - simulation.model().preload().pusher_overlap
                 }
                 _ => value,
             };

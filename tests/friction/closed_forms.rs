@@ -35,6 +35,7 @@ fn slider(amplitude: f64, frequency: f64, own: f64, ratio: f64) -> Scene {
             participation: 0.0,
             damping: Some(1.0),
             rotation: Some(0.0),
+            pusher: None,
         },
         GivenMode {
             frequency: own,
@@ -42,6 +43,7 @@ fn slider(amplitude: f64, frequency: f64, own: f64, ratio: f64) -> Scene {
             participation: LOADED * lever,
             damping: Some(ratio),
             rotation: Some(lever / scene.tip.contact_height),
+            pusher: None,
         },
     ];
     scene.spring = Some(Arc::new(SpringFile {

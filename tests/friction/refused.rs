@@ -46,6 +46,7 @@ fn modes_need_their_rotation() {
             participation: 0.005,
             damping: None,
             rotation,
+            pusher: None,
         }],
     };
     let with = |rotation| {

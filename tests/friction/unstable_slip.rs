@@ -39,6 +39,7 @@ fn squealing(loads: [f64; 2]) -> Scene {
         participation: 0.0,
         damping: Some(0.0),
         rotation: Some((contact - load) / share),
+        pusher: None,
     });
     let slide = GivenMode {
         frequency: 0.1,
@@ -46,6 +47,7 @@ fn squealing(loads: [f64; 2]) -> Scene {
         participation: 0.0,
         damping: Some(0.0),
         rotation: Some(1.0 / scene.tip.contact_height),
+        pusher: None,
     };
     let modes: Vec<_> = flexible.chain([slide]).collect();
     let compliance = MODES

@@ -17,6 +17,7 @@ fn written(model: &Model) -> Modes {
         participation,
         damping: None,
         rotation: None,
+        pusher: None,
     };
     let modes = model
         .modes()
@@ -95,6 +96,7 @@ fn a_single_mode_with_its_residual_is_a_mass_between_two_springs() {
             participation: mass.sqrt(),
             damping: Some(0.01),
             rotation: None,
+            pusher: None,
         }],
     };
     let mut scene = shaken(20.0, 300.0);

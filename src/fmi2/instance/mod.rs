@@ -227,7 +227,7 @@ impl Instance {
             scene: self.scene.clone(),
             inputs: self.inputs,
             experiment: self.experiment,
-            simulation: simulation.map(|simulation| (simulation.copied_motion(), simulation.model().initial_support)),
+            simulation: simulation.map(|simulation| (simulation.copied_motion(), simulation.model().initial)),
             time: self.time,
         }
     }
@@ -244,13 +244,13 @@ impl Instance {
         } = *snapshot;
         let wanted = experiment.scene(scene);
         match (&mut self.simulation, simulation) {
-            (Some(present), Some((motion, initial_support)))
-                if present.model().scene == wanted && present.model().initial_support == *initial_support =>
+            (Some(present), Some((motion, initial)))
+                if present.model().scene == wanted && present.model().initial == *initial =>
             {
                 present.go_on_from(motion);
             }
-            (present, Some((motion, initial_support))) => {
-                let resumed = Simulation::resume(&wanted, *initial_support, motion);
+            (present, Some((motion, initial))) => {
+                let resumed = Simulation::resume(&wanted, *initial, motion);
                 *present = Some(Box::new(resumed.map_err(Failure::Initialisation)?));
             }
             (present, None) => *present = None,

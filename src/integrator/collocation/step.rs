@@ -44,6 +44,7 @@ pub fn compute<const S: usize>(
     };
     match unknowns.count {
         0 | 1 => compiled_for!(model.simd, A => step.compute::<1, A>(trial, scratch)),
+        2 => compiled_for!(model.simd, A => step.compute::<2, A>(trial, scratch)),
         _ => compiled_for!(model.simd, A => step.compute::<MAX_UNKNOWNS, A>(trial, scratch)),
     }
 }

@@ -170,7 +170,7 @@ mod tests {
             base_acceleration_rate: 1e5,
             ..Inputs::default()
         };
-        let drive = Drive::new(&inputs, 0.0, 1e-3, [-2e-8, 0.0]);
+        let drive = Drive::new(&inputs, 0.0, 1e-3, [-2e-8, 0.0, 0.0]);
         let steps = Steps::Exactly {
             time: 0.0,
             size: 4e-4,

@@ -10,6 +10,7 @@ use crate::excitation::generator::Generator;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::trial::Trial;
 use crate::integrator::constants::RETURNED;
+use crate::link::{Link, LinkLaw};
 use crate::math::simd::Separate;
 use crate::model::Model;
 use crate::state::State;
@@ -17,7 +18,8 @@ use crate::state::State;
 /// Whether there is no dissipation and the work of the drive is known exactly.
 pub(crate) fn conserves(model: &Model, drive: &Drive) -> bool {
     let undamped = model.modes.iter().all(|mode| mode.damping == 0.0);
-    let mut laws = model.links.iter().map(|link| link.contact());
+    let exerting = model.links.iter().filter(|link| !matches!(link.law, LinkLaw::Gauge));
+    let mut laws = exerting.map(Link::contact);
     // An axial force that follows the deflection has no potential, nor has friction.
     undamped
         && model.axial().is_none()

@@ -11,8 +11,8 @@ pub struct Event {
     pub time: f64,
     /// Whether it closes.
     pub closes: bool,
-    /// Whether it is the second contact.
-    pub second: bool,
+    /// Which link, in the order of the model.
+    pub link: usize,
 }
 
 /// Events of a communication step, and those located ahead of its end; the first ones if there are too many.

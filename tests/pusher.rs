@@ -1,0 +1,198 @@
+//! A pusher between clamp and contact: statics, against the second contact that it is at the tip, and energy.
+
+#![allow(clippy::unwrap_used)]
+
+use relay_contact::inputs::Inputs;
+use relay_contact::reference::Model;
+use relay_contact::scene::Scene;
+use relay_contact::simulation::Simulation;
+use relay_contact::variables::{AxialForceKind, BooleanOutput, ContactLawKind, PusherKind, RealOutput};
+use testing::scenes::shaken;
+
+/// A contact open by 0.1 mm without a pusher, and the specimen without its rivet.
+fn pushed(mut scene: Scene) -> Scene {
+    scene.effects.pusher = PusherKind::Prescribed;
+    scene.contact.overtravel = -1e-4;
+    scene.tip.mass = 0.0;
+    scene.tip.rotary_inertia = 0.0;
+    scene
+}
+
+fn at(pusher_displacement: f64) -> Inputs {
+    Inputs {
+        pusher_displacement,
+        ..Inputs::default()
+    }
+}
+
+/// Cantilever under forces at the tip and at the pusher (Timoshenko): deflections L^3 / (3 EI), x^2 (3 L - x) / (6 EI) and
+/// x^3 / (3 EI) per force.
+#[test]
+fn pusher_and_contact_share_the_bending_of_the_spring() {
+    let mut scene = pushed(Scene::default());
+    scene.environment.gravity = 30.0;
+    let (length, x) = (scene.beam.length, scene.pusher.position);
+    let bending = scene.beam.youngs_modulus * scene.beam.width * scene.beam.thickness.powi(3) / 12.0;
+    let load = scene.beam.density * scene.beam.width * scene.beam.thickness * 30.0;
+    let by_contact = length.powi(3) / (3.0 * bending);
+    let across = x * x * (3.0 * length - x) / (6.0 * bending);
+    let by_pusher = x.powi(3) / (3.0 * bending);
+    let sag = |x: f64| load * x * x * (6.0 * length * length - 4.0 * length * x + x * x) / (24.0 * bending);
+    for place in [3e-4, 6e-4] {
+        let simulation = Simulation::new(&scene, &at(place), 0.0).unwrap();
+        let preload = simulation.model().preload();
+        let (force, push) = (preload.force, preload.pusher_force);
+        assert!(force > 0.01 && push > force);
+        let close = |a: f64, b: f64| assert!((a - b).abs() <= 1e-9 * b.abs(), "{a} {b}");
+        let tip = by_contact * force - across * push - sag(length);
+        close(preload.deflection, tip);
+        close(preload.indentation, scene.contact.overtravel - tip);
+        let there = across * force - by_pusher * push - sag(x);
+        close(push / scene.pusher.stiffness, place + there);
+        close(simulation.real(RealOutput::PusherForce), push);
+        assert!(simulation.boolean(BooleanOutput::PusherClosed));
+    }
+    // Too far away, it leaves the spring as it is.
+    let simulation = Simulation::new(&scene, &at(-1e-4), 0.0).unwrap();
+    let preload = simulation.model().preload();
+    assert_eq!((preload.force, preload.pusher_force), (0.0, 0.0));
+    assert!((preload.pusher_overlap + 1e-4 + sag(x)).abs() < 1e-15);
+    assert!(!simulation.boolean(BooleanOutput::PusherClosed));
+}
+
+/// At the tip a pusher is a second contact: of linear springs both, as a rough contact of exponent 0.
+#[test]
+fn a_pusher_at_the_tip_is_a_second_contact() {
+    let tolerance = 1e-8;
+    let mut scene = pushed(shaken(300.0, 400.0));
+    scene.solver.tolerance = tolerance;
+    scene.contact.overtravel = -1e-3;
+    scene.effects.contact_law = ContactLawKind::Rough;
+    scene.contact.stiffness_exponent = 0.0;
+    scene.pusher.position = scene.beam.length;
+    scene.pusher.stiffness = 1e5;
+    scene.pusher.damping = 0.5;
+    let gap = 2e-5;
+    let mut second = scene.clone();
+    second.effects.pusher = PusherKind::None;
+    second.effects.second_contact = true;
+    second.second.gap = gap;
+    second.second.stiffness = 1e5;
+    second.second.damping = 0.5 / 1e5;
+    let mut a = Simulation::new(&scene, &at(-gap), 0.0).unwrap();
+    let mut b = Simulation::new(&second, &Inputs::default(), 0.0).unwrap();
+    let mut greatest = 0.0_f64;
+    let mut touches = 0;
+    let mut before = 0.0;
+    for n in 0..1000 {
+        let time = f64::from(n) * 1e-5;
+        a.step(&at(-gap), time, 1e-5).unwrap();
+        b.step(&Inputs::default(), time, 1e-5).unwrap();
+        let (push, force) = (a.real(RealOutput::PusherForce), b.real(RealOutput::SecondForce));
+        greatest = greatest.max(force);
+        touches += u32::from(before == 0.0 && force > 0.0);
+        before = force;
+        let scale = greatest.max(a.model().force_scale());
+        assert!(
+            (push - force).abs() <= 3.0 * tolerance * scale,
+            "{time}: {push} {force} {greatest}"
+        );
+        let (least, other) = (
+            a.real(RealOutput::StepMinimumPusherForce),
+            b.real(RealOutput::SecondMinimumForce),
+        );
+        assert!(
+            (least - other).abs() <= 3.0 * tolerance * scale,
+            "{time}: {least} {other}"
+        );
+    }
+    assert!(touches >= 4 && greatest > 0.1, "{touches} {greatest}");
+}
+
+/// What goes in stays, as energy of spring and touches, or is dissipated.
+#[test]
+fn energy_is_kept_where_the_spring_leaves_the_pusher() {
+    let mut scene = pushed(shaken(1500.0, 700.0));
+    scene.effects.energy = true;
+    scene.solver.tolerance = 1e-8;
+    let place = 7e-5;
+    let mut simulation = Simulation::new(&scene, &at(place), 0.0).unwrap();
+    let (mut left, mut least) = (false, f64::INFINITY);
+    for n in 0..1000 {
+        // A pusher that moves does work too.
+        let inputs = Inputs {
+            pusher_displacement: place + 1e-3 * f64::from(n) * 1e-5,
+            pusher_displacement_rate: 1e-3,
+            ..Inputs::default()
+        };
+        simulation.step(&inputs, f64::from(n) * 1e-5, 1e-5).unwrap();
+        least = least.min(simulation.real(RealOutput::PusherForce));
+        left |= !simulation.boolean(BooleanOutput::PusherClosed);
+        let size = simulation.model().energy(simulation.state()).abs().max(1e-6);
+        let balance = simulation.real(RealOutput::EnergyBalance);
+        assert!(balance.abs() < 1e-5 * size.max(1e-5), "{n}: {balance} of {size}");
+    }
+    assert!(left, "the spring leaves the pusher: {least}");
+}
+
+/// With the pusher as one more spring, from the determinant of the receptances of the cantilever's exact static shapes: at rest
+/// far below the first frequency of the held spring only the stiffness counts, so here the frequency is that of a run.
+#[test]
+fn the_frequency_is_that_of_free_motion() {
+    let mut scene = pushed(Scene::default());
+    scene.solver.tolerance = 1e-9;
+    scene.beam.stiffness_damping = 0.0;
+    scene.contact.damping = 0.0;
+    scene.pusher.damping = 0.0;
+    let mut simulation = Simulation::new(&scene, &at(5e-4), 0.0).unwrap();
+    let frequency = simulation.model().frequency();
+    // A small push, and where the force passes its mean.
+    let push = Inputs {
+        base_acceleration: 1e-3,
+        ..at(5e-4)
+    };
+    let (size, steps) = (0.02 / frequency, 2000);
+    let force = simulation.real(RealOutput::ContactForce);
+    let mut forces = vec![force];
+    for n in 0..steps {
+        simulation.step(&push, f64::from(n) * size, size).unwrap();
+        forces.push(simulation.real(RealOutput::ContactForce));
+    }
+    // All modes swing about the new equilibrium: the largest of the spectrum near the frequency, by least squares.
+    let mean = forces.iter().sum::<f64>() / forces.len() as f64;
+    let power = |f: f64| {
+        let (mut c, mut s) = (0.0, 0.0);
+        for (n, force) in forces.iter().enumerate() {
+            let t = n as f64 * size;
+            // Hann's window: the other modes stay out.
+            let window = (std::f64::consts::PI * n as f64 / f64::from(steps)).sin().powi(2);
+            let phase = std::f64::consts::TAU * f * t;
+            c += window * (force - mean) * phase.cos();
+            s += window * (force - mean) * phase.sin();
+        }
+        c * c + s * s
+    };
+    let near: Vec<f64> = (-100..=100).map(|k| frequency * (1.0 + 1e-4 * f64::from(k))).collect();
+    let best = near
+        .iter()
+        .copied()
+        .max_by(|a, b| power(*a).total_cmp(&power(*b)))
+        .unwrap();
+    assert!((best - frequency).abs() <= 2.1e-4 * frequency, "{best} {frequency}");
+}
+
+#[test]
+fn what_a_pusher_cannot_be_combined_with_is_refused() {
+    let said = |change: &dyn Fn(&mut Scene)| {
+        let mut scene = pushed(Scene::default());
+        change(&mut scene);
+        Model::new(&scene, 0.0).unwrap_err().to_string()
+    };
+    let text = said(&|scene| scene.effects.axial_force = AxialForceKind::FromDeflection);
+    assert!(text.contains("effects.pusher = Prescribed"), "{text}");
+    let text = said(&|scene| scene.pusher.position = 0.02);
+    assert!(
+        text.contains("pusher.position = 0.02 m") && text.contains("0.0155 m"),
+        "{text}"
+    );
+}
