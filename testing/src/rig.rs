@@ -5,6 +5,7 @@ use relay_contact::inputs::Inputs;
 use relay_contact::reference::{Generator, Law, Linear, Mode, Model, Power, Preload, State};
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
+use relay_contact::variables::PusherKind;
 
 use crate::scenes::shaken;
 // For those who need both.
@@ -95,9 +96,22 @@ impl Rig {
                 0.5 * stiffness * overlap * overlap
             }
         };
-        let Preload { indentation, force, .. } = model.preload();
+        let Preload {
+            indentation,
+            force,
+            pusher_force,
+            pusher_overlap,
+            ..
+        } = model.preload();
         let deviation = state.contact().approach;
-        modes + contact(indentation + deviation) - contact(indentation) - force * deviation
+        let bent = modes + contact(indentation + deviation) - contact(indentation) - force * deviation;
+        if model.scene().effects.pusher == PusherKind::None {
+            return bent;
+        }
+        // The spring between it and the pusher, which does not move: what the modes do there.
+        let moved: f64 = model.modes().iter().zip(&state.modes).map(|(mode, at)| mode.pusher * at.q).sum();
+        let spring = |d: f64| 0.5 * model.scene().pusher.stiffness * d.max(0.0).powi(2);
+        bent + spring(pusher_overlap + moved) - spring(pusher_overlap) - pusher_force * moved
     }
 }
 
