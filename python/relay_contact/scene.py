@@ -24,6 +24,7 @@ MOST = 10**7
 """Communication steps of a run, whose rows stay in memory."""
 INPUTS: Units = {
     "time": TIMES, "base.acceleration": ACCELERATIONS, "support.displacement": LENGTHS, "second.displacement": LENGTHS,
+    "pusher.displacement": LENGTHS,
     "contact.current": CURRENTS,
 }  # fmt: skip
 """Columns of a table of inputs, and their units."""

@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from relay_contact.component import Component, Contact, Value, nearest
 from relay_contact.files import RelayContactError, read_toml, shown
+from relay_contact.spring import SPRING_FILES
 
 STRICT = ConfigDict(extra="forbid")
 """No entries that the schema does not name."""
@@ -165,7 +166,7 @@ def variables(
         for name, keys, value in leaves(table):
             if name in values:
                 raise refused(path, (*place, *keys), value, "given twice")
-            if name == "beam.file" and isinstance(value, str) and value:
+            if name in SPRING_FILES and isinstance(value, str) and value:
                 value = str(path.resolve().parent / value)
             if contact:
                 with at(path, *place, *keys), contact.explained():

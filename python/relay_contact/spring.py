@@ -16,6 +16,8 @@ import tomlkit
 
 from relay_contact.files import RelayContactError, read_toml
 
+SPRING_FILES = ("beam.file", "fixed.file")
+"""Parameters that name spring files."""
 PREFIX = "spring."
 STIFFNESS = f"{PREFIX}stiffness"
 ENDS = ("", "_start", "_end")

@@ -20,15 +20,16 @@ from relay_contact.qualification.position import Position
 from relay_contact.qualification.relay import NORMAL, Relay
 from relay_contact.qualification.results import FINDING, Finding, Tested
 from relay_contact.qualification.standards import Standard
+from relay_contact.spring import SPRING_FILES
 
 Job = tuple[Path, Position, Test, int]
 """The file that a test is to write, the position, the test, and the number of frequencies."""
 
 
-def spring_of(values: Values) -> bytes:
-    """Return the contents of the spring file of a position, if it has one."""
-    file = str(values.get("beam.file", ""))
-    return Path(file).read_bytes() if file else b""
+def springs_of(values: Values) -> dict[str, bytes]:
+    """Return the contents of the spring files of a position, by the parameters that name them."""
+    files = {name: Path(str(values.get(name, ""))) for name in SPRING_FILES if values.get(name)}
+    return {name: path.read_bytes() for name, path in files.items()}
 
 
 def key(position: Position, test: Test, points: int) -> str:
@@ -36,8 +37,9 @@ def key(position: Position, test: Test, points: int) -> str:
     text = hashlib.sha256(position.component.path.read_bytes())
     for path in sorted((HERE / "qualification").glob("*.py")):
         text.update(path.read_bytes())
-    text.update(spring_of(position.values))
-    values = {name: value for name, value in position.values.items() if name != "beam.file"}
+    for name, spring in springs_of(position.values).items():
+        text.update(name.encode() + spring)
+    values = {name: value for name, value in position.values.items() if name not in SPRING_FILES}
     model = position.model
     relay = position.relay
     uncertainty = [repr(relay.uncertainty), repr(relay.correlation)]
@@ -47,15 +49,16 @@ def key(position: Position, test: Test, points: int) -> str:
     return text.hexdigest()[:16]
 
 
-def on_worker(fmu: bytes, spring: bytes, position: Position, test: Test, points: int) -> str:
+def on_worker(fmu: bytes, springs: dict[str, bytes], position: Position, test: Test, points: int) -> str:
     """Run a test on another machine, which has this package; return the text of its finding."""
     with TemporaryDirectory() as folder:
         path = Path(folder) / "component.fmu"
         path.write_bytes(fmu)
         values = dict(position.values)
-        if spring:
-            values["beam.file"] = str(Path(folder) / "spring.toml")
-            Path(str(values["beam.file"])).write_bytes(spring)
+        for name, spring in springs.items():
+            spring_path = Path(folder) / f"{name}.toml"
+            spring_path.write_bytes(spring)
+            values[name] = str(spring_path)
         relay = replace(position.relay, positions={position.name: values})
         model = replace(position.model, parameters={})
         here = Position(Component(path), relay, position.name, position.contacts, (test,), model, position.axis)
@@ -77,10 +80,10 @@ def on_cluster(address: str, component: Component, jobs: list[Job]) -> Iterator[
     with Client(address) as client:
         paths = {}
         for path, position, test, points in jobs:
-            spring = spring_of(position.values)
+            springs = springs_of(position.values)
             # A component cannot be sent; the worker unpacks its own.
             bare = replace(position, component=None)  # type: ignore[arg-type]
-            paths[client.submit(on_worker, fmu, spring, bare, test, points, pure=False)] = path
+            paths[client.submit(on_worker, fmu, springs, bare, test, points, pure=False)] = path
         for future, text in as_completed(list(paths), with_results=True):
             yield paths[future], text
 

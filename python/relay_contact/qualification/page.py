@@ -11,7 +11,7 @@ from relay_contact import pages
 from relay_contact.component import DIFFERENCE, Component, Values, units
 from relay_contact.figures import three
 from relay_contact.qualification import plots, statistics
-from relay_contact.qualification.assessment import spring_of
+from relay_contact.qualification.assessment import springs_of
 from relay_contact.qualification.excitation import LEVELS, evidence_told
 from relay_contact.qualification.position import DRAWS, FEWEST
 from relay_contact.qualification.relay import Relay
@@ -138,8 +138,10 @@ def inputs(component: Component, relay: Relay) -> pages.Table:
 
 def springs(relay: Relay) -> list[tuple[str, str]]:
     """Return names and contents of the spring files."""
-    files = {Path(str(values["beam.file"])).name: spring_of(values) for values in columns_of(relay).values()
-             if values.get("beam.file")}  # fmt: skip
+    files = {
+        Path(str(values[name])).name: content
+        for values in columns_of(relay).values() for name, content in springs_of(values).items()
+    }  # fmt: skip
     return [(name, content.decode()) for name, content in files.items()]
 
 
