@@ -29,7 +29,10 @@ def run(
     signals: Any = None,  # noqa: ANN401
 ) -> dict[str, Array]:
     """Simulate from 0 to `stop`; give time and the outputs at every communication point."""
-    start = {name: COMPONENT.number(name, value) for name, value in values.items()}
+    start = {
+        name: value if COMPONENT.variables[name].type == "String" else COMPONENT.number(name, value)
+        for name, value in values.items()
+    }
     result = simulate_fmu(
         str(FMU), stop_time=stop, output_interval=step, start_values=start, output=output, input=signals
     )
