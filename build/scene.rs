@@ -9,13 +9,14 @@ use roxmltree::{Document, Node};
 use crate::{attribute, camel, snake, start, unit};
 
 /// What the groups of parameters describe.
-const GROUPS: [(&str, &str); 13] = [
+const GROUPS: [(&str, &str); 14] = [
     ("beam", "Cantilever spring, as an equivalent uniform section."),
     ("tip", "Rivet at the tip."),
     ("contact", "Contact geometry and law."),
     ("second", "Second contact: of the materials of the first."),
     ("fixed", "Spring of the fixed contact."),
     ("pusher", "Pusher between clamp and contact."),
+    ("armature", "Armature that moves the pusher."),
     ("friction", "Friction between the contacts."),
     (
         "resistance",

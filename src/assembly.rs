@@ -1,5 +1,8 @@
 //! The ports and links of a model: what its scene puts together.
 
+use nalgebra::{DMatrix, DVector};
+
+use crate::armature::Armature;
 use crate::beam::mode::Mode;
 use crate::chatter::Criterion;
 use crate::contact::friction::{self, Friction};
@@ -28,6 +31,8 @@ pub struct Roles {
     pub second: Option<usize>,
     /// Friction at the contact.
     pub friction: Option<usize>,
+    /// Core that stops the armature.
+    pub core: Option<usize>,
     /// Pusher.
     pub pusher: Option<usize>,
     /// Displacement of the fixed contact on its spring.
@@ -36,7 +41,12 @@ pub struct Roles {
 
 impl Assembly {
     /// That of a scene with these modes and this preload, this law of the contact and that of a second one.
-    pub fn new((scene, modes, preload): (&Scene, &[Mode], &Preload), law: Law, second: Option<Law>) -> Self {
+    pub fn new(
+        (scene, modes, preload): (&Scene, &[Mode], &Preload),
+        law: Law,
+        second: Option<Law>,
+        armature: Option<&Armature>,
+    ) -> Self {
         let mut all = Self::default();
         let port = all.port(Port::new(modes, |mode| mode.tip));
         let contact = |law: Law| {
@@ -81,6 +91,9 @@ impl Assembly {
                 ..Link::passive("pusher", LinkLaw::Contact(law), port)
             }));
         }
+        if let Some(armature) = armature {
+            all.armature(armature, modes, preload);
+        }
         if scene.fixed_spring.is_some() {
             let port = all.port(Port::new(modes, |mode| mode.fixed));
             all.roles.fixed = Some(all.link(Link {
@@ -96,6 +109,48 @@ impl Assembly {
             }));
         }
         all
+    }
+
+    /// Adds the stops of the armature and its magnet.
+    fn armature(&mut self, armature: &Armature, modes: &[Mode], preload: &Preload) {
+        let port = self.port(Port::new(modes, |mode| mode.armature));
+        let at = preload.armature;
+        let stop = LinkLaw::Contact(Law::Power(armature.stop()));
+        self.roles.core = Some(self.link(Link {
+            sense: -1.0,
+            force: at.core_force,
+            approach: at.place - armature.core,
+            ..Link::passive("core", stop, port)
+        }));
+        self.link(Link {
+            force: at.rest_force,
+            approach: armature.rest - at.place,
+            ..Link::passive("rest stop", stop, port)
+        });
+        self.link(Link {
+            force: at.magnet_force,
+            approach: armature.core - at.place,
+            ..Link::passive("magnet", LinkLaw::Magnet(armature.magnet), port)
+        });
+    }
+
+    /// Lowest angular frequency about the preload, rad/s: of the modes with every closed link as a spring.
+    pub fn frequency(&self, modes: &[Mode], coil: f64) -> Option<f64> {
+        let squares = modes.iter().map(|mode| mode.omega_squared);
+        let mut rigidity = DMatrix::from_diagonal(&DVector::from_iterator(modes.len(), squares));
+        for link in &self.links {
+            let stiffness = match &link.law {
+                LinkLaw::Contact(law) if link.force > 0.0 => law.tangent_stiffness(link.force),
+                LinkLaw::Magnet(magnet) => magnet.force(link.approach, coil).1,
+                _ => continue,
+            };
+            let shape = &self.ports.get(link.port)?.shape;
+            let shape = DVector::from_iterator(modes.len(), shape.iter().copied().take(modes.len()));
+            rigidity.ger(stiffness, &shape, &shape, 1.0);
+        }
+        // From the inverse, whose largest eigenvalue has full relative accuracy.
+        let flexibility = rigidity.cholesky()?.inverse();
+        Some(1.0 / flexibility.symmetric_eigenvalues().max().sqrt())
     }
 
     /// Adds a port, and returns its index.

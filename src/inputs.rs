@@ -7,7 +7,7 @@ use crate::variables::RealInput;
 use serde::{Deserialize, Serialize};
 
 /// Values of the inputs and their rates. SI units. With rates of 0 the inputs are held.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Inputs {
     /// Acceleration of the frame, positive presses the contact, m/s2.
     pub base_acceleration: f64,
@@ -18,6 +18,8 @@ pub struct Inputs {
     pub second_displacement: f64,
     /// Position of the pusher, positive presses, m. It moves as the fixed contact does.
     pub pusher_displacement: f64,
+    /// Current of the coil, relative to that of the hold force. Over the step its mean counts.
+    pub coil_relative_current: f64,
     /// Current through the contact, A.
     pub contact_current: f64,
     /// Rate of the acceleration, m/s3.
@@ -28,8 +30,30 @@ pub struct Inputs {
     pub second_displacement_rate: f64,
     /// Rate of the position of the pusher, m/s.
     pub pusher_displacement_rate: f64,
+    /// Rate of the current of the coil, 1/s.
+    pub coil_relative_current_rate: f64,
     /// Rate of the current, A/s.
     pub contact_current_rate: f64,
+}
+
+impl Default for Inputs {
+    /// The start values of `modelDescription.xml`: nothing moves, and the coil has its current.
+    fn default() -> Self {
+        Self {
+            base_acceleration: 0.0,
+            support_displacement: 0.0,
+            second_displacement: 0.0,
+            pusher_displacement: 0.0,
+            coil_relative_current: 1.0,
+            contact_current: 0.0,
+            base_acceleration_rate: 0.0,
+            support_displacement_rate: 0.0,
+            second_displacement_rate: 0.0,
+            pusher_displacement_rate: 0.0,
+            coil_relative_current_rate: 0.0,
+            contact_current_rate: 0.0,
+        }
+    }
 }
 
 impl Inputs {
@@ -55,6 +79,7 @@ impl Inputs {
             RealInput::SupportDisplacement => &mut self.support_displacement,
             RealInput::SecondDisplacement => &mut self.second_displacement,
             RealInput::PusherDisplacement => &mut self.pusher_displacement,
+            RealInput::CoilRelativeCurrent => &mut self.coil_relative_current,
             RealInput::ContactCurrent => &mut self.contact_current,
         }
     }
@@ -83,6 +108,7 @@ impl Inputs {
             RealInput::SupportDisplacement => &mut self.support_displacement_rate,
             RealInput::SecondDisplacement => &mut self.second_displacement_rate,
             RealInput::PusherDisplacement => &mut self.pusher_displacement_rate,
+            RealInput::CoilRelativeCurrent => &mut self.coil_relative_current_rate,
             RealInput::ContactCurrent => &mut self.contact_current_rate,
         }
     }

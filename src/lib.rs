@@ -48,6 +48,7 @@
 )]
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
+mod armature;
 mod assembly;
 mod beam;
 mod chatter;
@@ -65,6 +66,7 @@ mod harmonic;
 pub mod inputs;
 mod integrator;
 mod link;
+mod magnet;
 mod math;
 mod memory;
 mod model;

@@ -23,16 +23,17 @@ use crate::chatter::Criterion;
 use crate::contact::friction::Friction;
 use crate::contact::law::Law;
 use crate::electrical::ElectricalContact;
+use crate::magnet::Magnet;
 use crate::math::simd::Arithmetic;
 
 /// Most ports of a model.
-pub const MAX_PORTS: usize = 4;
+pub const MAX_PORTS: usize = 5;
 
 /// Most links of a model.
-pub const MAX_LINKS: usize = 4;
+pub const MAX_LINKS: usize = 7;
 
 /// Most links whose forces are unknown at the same time.
-pub const MAX_UNKNOWNS: usize = 4;
+pub const MAX_UNKNOWNS: usize = 5;
 
 /// Inputs that move bodies: the fixed contact, the second one relative to it, and the pusher.
 pub const INPUTS: usize = 3;
@@ -87,6 +88,8 @@ pub enum LinkLaw {
     Contact(Law),
     /// Friction at the first contact.
     Friction(Friction),
+    /// A magnet, which draws over the gap that is its approach.
+    Magnet(Magnet),
     /// No force: its approach is a displacement that is read.
     Gauge,
 }
@@ -135,7 +138,7 @@ impl Link {
     pub fn contact(&self) -> Option<&Law> {
         match &self.law {
             LinkLaw::Contact(law) => Some(law),
-            LinkLaw::Friction(_) | LinkLaw::Gauge => None,
+            LinkLaw::Friction(_) | LinkLaw::Magnet(_) | LinkLaw::Gauge => None,
         }
     }
 

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use crate::armature::Armature;
 use crate::assembly::{Assembly, Roles};
 use crate::beam::axial::Feedback;
 use crate::beam::mode::{MAX_MODES, Modal, Mode, ModeState, ModeStates};
@@ -20,9 +21,9 @@ use crate::excitation::generator::Generator;
 use crate::force_error::ForceError;
 use crate::integrator::step_length::StepLengths;
 use crate::integrator::tolerance::Tolerance;
-use crate::link::{INPUTS, Link, LinkLaw, MAX_LINKS, Port, Ways};
+use crate::link::{INPUTS, Link, LinkLaw, MAX_LINKS, Port};
 use crate::math::simd::Simd;
-use crate::preload::Preload;
+use crate::preload::{Initial, Preload};
 use crate::scene::Scene;
 use crate::scene::spring::SpringFile;
 use crate::slip_stability;
@@ -64,8 +65,10 @@ pub struct Model {
     pub(crate) closed_loop: Option<Box<ClosedLoop>>,
     /// Generated base acceleration.
     pub(crate) generator: Generator,
-    /// Displacements of the inputs at the start that are part of the preload, m.
-    pub(crate) initial: Ways,
+    /// What is part of the preload of the inputs at the start.
+    pub(crate) initial: Initial,
+    /// The armature, if there is one.
+    armature: Option<Armature>,
     /// Force scale of the tolerance, N: max(F_0, 3 E I max(|s|, 0.1 mm) / L^3).
     pub(crate) force_scale: f64,
     /// Error of the force once the contact has closed, relative to the force scale, where there are fewer modes than the
@@ -111,14 +114,18 @@ impl Model {
     /// # Errors
     /// A [`SceneError`] if the scene cannot be simulated.
     pub fn new(scene: &Scene, support: f64) -> Result<Self, SceneError> {
-        Self::displaced(scene, [support, 0.0, 0.0])
+        let initial = Initial {
+            displacements: [support, 0.0, 0.0],
+            ..Initial::default()
+        };
+        Self::starting(scene, &initial)
     }
 
-    /// The model of a scene, with the bodies that inputs move displaced so far (m) at the start.
+    /// The model of a scene, with these inputs at the start.
     ///
     /// # Errors
     /// A [`SceneError`] if the scene cannot be simulated.
-    pub fn displaced(scene: &Scene, initial: Ways) -> Result<Self, SceneError> {
+    pub fn starting(scene: &Scene, initial: &Initial) -> Result<Self, SceneError> {
         scene.validate()?;
         friction::check(scene)?;
         let springs = Springs::new(scene)?;
@@ -154,13 +161,13 @@ impl Model {
         let feedback = axial.as_ref();
         let frequency = feedback
             .and_then(|axial| axial.frequency(&modes, preload.contact_stiffness))
-            .or_else(|| {
-                let pushed = if preload.pusher_force > 0.0 {
-                    scene.pusher.stiffness
-                } else {
-                    0.0
-                };
-                springs.frequency(scene, preload.axial_force, preload.contact_stiffness, pushed)
+            .or_else(|| match scene.pushed_at() {
+                Some(_) => {
+                    let modes = springs.many_modes(scene, preload.axial_force)?;
+                    let parts = (scene, modes.as_slice(), &preload);
+                    Assembly::new(parts, law, None, springs.armature.as_ref()).frequency(&modes, initial.coil)
+                }
+                None => springs.frequency(scene, preload.axial_force, preload.contact_stiffness),
             })
             .map_or(0.0, |omega| omega / std::f64::consts::TAU);
         let generator = Generator::new(scene)?;
@@ -180,7 +187,8 @@ impl Model {
             }
             _ => None,
         };
-        let memory = modes.first().map_or(0.0, |mode| 1.0 / mode.omega_squared.sqrt());
+        let at_contact = modes.iter().find(|mode| mode.tip != 0.0);
+        let memory = at_contact.map_or(0.0, |mode| 1.0 / mode.omega_squared.sqrt());
         let missed = counts
             .less_than(wanted)
             .then(|| springs.error(&own, counts).max(springs.error(&on_second, counts)));
@@ -201,7 +209,8 @@ impl Model {
             axial,
             closed_loop,
             generator,
-            initial,
+            initial: *initial,
+            armature: springs.armature,
             force_scale,
             tolerance: Tolerance::new(tolerance, force_scale),
             frequency,
@@ -219,7 +228,12 @@ impl Model {
         for (participation, mode) in self.participations.iter_mut().zip(&self.modes) {
             *participation = mode.participation;
         }
-        let Assembly { ports, links, roles } = Assembly::new((&self.scene, &self.modes, &self.preload), law, second);
+        let Assembly { ports, links, roles } = Assembly::new(
+            (&self.scene, &self.modes, &self.preload),
+            law,
+            second,
+            self.armature.as_ref(),
+        );
         (self.law, self.ports, self.links, self.roles) = (law, ports, links, roles);
     }
 
@@ -350,6 +364,11 @@ impl Model {
         self.roles.pusher
     }
 
+    /// The index of the armature's core, where there is one.
+    pub(crate) fn core(&self) -> Option<usize> {
+        self.roles.core
+    }
+
     /// What the user calls a link.
     pub fn name_of(&self, link: usize) -> &'static str {
         self.links.get(link).map_or("", |link| link.name)
@@ -405,7 +424,7 @@ impl Model {
         let index = self.roles.friction?;
         match &self.links.get(index)?.law {
             LinkLaw::Friction(friction) => Some((index, friction)),
-            LinkLaw::Contact(_) | LinkLaw::Gauge => None,
+            LinkLaw::Contact(_) | LinkLaw::Magnet(_) | LinkLaw::Gauge => None,
         }
     }
 
@@ -425,6 +444,7 @@ impl Model {
             with_contact: false,
             displacements: [0.0; INPUTS],
             velocities: [0.0; INPUTS],
+            coil: self.initial.coil,
             links,
             slip: self.initial_slip(),
             last_kink: time,

@@ -12,12 +12,15 @@
 //! With friction `T_0 = tau F_0` at the height `h` of the contact point, its moment adds `c_m(N) h tau` to `c(N)`, `c_m` the
 //! deflection per moment.
 
+use serde::{Deserialize, Serialize};
+
+use crate::armature::AtRest;
 use crate::beam::springs::{FixedSpring, Springs};
 use crate::beam::statics::Statics;
 use crate::contact::friction::tangential_share;
 use crate::contact::power::Power;
 use crate::error::SceneError;
-use crate::link::Ways;
+use crate::link::{INPUTS, Ways};
 use crate::math::roots;
 use crate::scene::Scene;
 use crate::variables::{AxialForceKind, RealOutput, RealParameter};
@@ -41,6 +44,33 @@ pub struct Preload {
     pub pusher_force: f64,
     /// Overlap of pusher and spring, m; negative: a gap.
     pub pusher_overlap: f64,
+    /// The armature.
+    pub armature: AtRest,
+}
+
+/// What belongs to the preload of the inputs at the start.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Initial {
+    /// Displacements of the bodies that inputs move, m; that of the second contact is not among them.
+    pub displacements: Ways,
+    /// Current of the coil, relative.
+    pub coil: f64,
+}
+
+impl Initial {
+    /// Whether all of it is finite.
+    pub fn is_finite(&self) -> bool {
+        self.coil.is_finite() && self.displacements.iter().all(|way| way.is_finite())
+    }
+}
+
+impl Default for Initial {
+    fn default() -> Self {
+        Self {
+            displacements: [0.0; INPUTS],
+            coil: 1.0,
+        }
+    }
 }
 
 /// A pusher at rest against the spring.
@@ -80,11 +110,31 @@ impl Pusher {
 }
 
 impl Preload {
-    /// Equilibrium of the scene with the inputs that move bodies displaced so far (m).
+    /// Equilibrium of the scene with these inputs.
     ///
     /// # Errors
     /// [`SceneError::Buckled`] where the axial force reaches the buckling load of the cantilever.
-    pub fn new(scene: &Scene, springs: &Springs, law: &Power, [support, _, pushed]: Ways) -> Result<Self, SceneError> {
+    pub fn new(scene: &Scene, springs: &Springs, law: &Power, initial: &Initial) -> Result<Self, SceneError> {
+        let Some(armature) = &springs.armature else {
+            return Self::pushed(scene, springs, law, initial.displacements);
+        };
+        let at = |place: f64| {
+            let [support, ..] = initial.displacements;
+            Self::pushed(scene, springs, law, [support, 0.0, place])
+        };
+        let force = |place: f64| at(place).map_or(f64::NAN, |preload| preload.pusher_force);
+        let armature = armature.at_rest(initial.coil, force);
+        Ok(Self {
+            armature,
+            ..at(armature.place)?
+        })
+    }
+
+    /// Equilibrium with the inputs that move bodies displaced so far (m).
+    ///
+    /// # Errors
+    /// [`SceneError::Buckled`] where the axial force reaches the buckling load of the cantilever.
+    fn pushed(scene: &Scene, springs: &Springs, law: &Power, [support, _, pushed]: Ways) -> Result<Self, SceneError> {
         let (spring, fixed) = (&springs.moving, springs.fixed.as_ref());
         let statics = &spring.statics;
         let total_overtravel = scene.contact.overtravel + support;
@@ -141,6 +191,7 @@ impl Preload {
                 axial_force,
                 pusher_force: press(0.0, axial_force).0,
                 pusher_overlap: press(0.0, axial_force).1,
+                armature: AtRest::default(),
             });
         }
         let n = axial(total_overtravel);
@@ -177,6 +228,7 @@ impl Preload {
             fixed_deflection: fixed_alone - give * force,
             pusher_force: press(force, axial_force).0,
             pusher_overlap: press(force, axial_force).1,
+            armature: AtRest::default(),
             axial_force,
         })
     }

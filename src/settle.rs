@@ -1,7 +1,7 @@
 //! What follows from the motion of the modes: the links of a state.
 
 use crate::contact::friction::Phase;
-use crate::link::CONTACT;
+use crate::link::{CONTACT, LinkLaw};
 use crate::math::simd::Separate;
 use crate::model::Model;
 use crate::state::State;
@@ -16,9 +16,13 @@ impl Model {
             let (y, rate) = port.motion::<Separate>(&state.modes);
             at.approach = link.offset(&state.displacements) - link.sense * y;
             at.rate = link.offset(&state.velocities) - link.sense * rate;
-            if link.contact().is_some() {
-                at.force = link.force_at(at.approach, at.rate);
-                at.closed = link.engagement(at.approach, at.rate) > 0.0;
+            match &link.law {
+                LinkLaw::Contact(_) => {
+                    at.force = link.force_at(at.approach, at.rate);
+                    at.closed = link.engagement(at.approach, at.rate) > 0.0;
+                }
+                LinkLaw::Magnet(magnet) => at.force = magnet.force(link.approach + at.approach, state.coil).0,
+                LinkLaw::Friction(_) | LinkLaw::Gauge => {}
             }
         }
         self.settle_friction(state);

@@ -8,9 +8,10 @@ use crate::integrator::communication_step;
 use crate::integrator::extremes::Range;
 use crate::integrator::with_contact;
 use crate::integrator::workspace::Workspace;
-use crate::link::{CONTACT, Ways};
+use crate::link::CONTACT;
 use crate::memory;
 use crate::model::Model;
+use crate::preload::Initial;
 use crate::scene::Scene;
 use crate::state::{LinkState, State};
 use crate::variables::{BooleanOutput, Group, IntegerOutput, RealOutput, Variable};
@@ -34,7 +35,11 @@ impl Simulation {
     /// A [`SceneError`] if the scene cannot be simulated.
     pub fn new(scene: &Scene, inputs: &Inputs, start_time: f64) -> Result<Self, SceneError> {
         let [support, displacement, pusher] = inputs.displacements_after(0.0);
-        let model = on_heap(scene, [support, 0.0, pusher])?;
+        let initial = Initial {
+            displacements: [support, 0.0, pusher],
+            coil: inputs.coil_relative_current,
+        };
+        let model = on_heap(scene, &initial)?;
         let room = model.room(displacement);
         if room.min(room + model.preload.indentation) <= 0.0 {
             return Err(SceneError::NoGap {
@@ -99,12 +104,11 @@ impl Simulation {
         )
     }
 
-    /// With the state of another simulation of the same scene, which started with the inputs displaced so far (m), as
-    /// [`Model::displaced`] takes them.
+    /// With the state of another simulation of the same scene, which started with these inputs.
     ///
     /// # Errors
     /// A [`SceneError`] if the scene cannot be simulated.
-    pub fn resume(scene: &Scene, initial: Ways, motion: &Motion) -> Result<Self, SceneError> {
+    pub fn resume(scene: &Scene, initial: &Initial, motion: &Motion) -> Result<Self, SceneError> {
         let model = on_heap(scene, initial)?;
         let workspace = Workspace::new(&model);
         let mut simulation = Self {
@@ -163,6 +167,7 @@ impl Simulation {
         let Self { model, motion, .. } = self;
         let (state, contact) = (motion.state(), || motion.link(model, CONTACT));
         let force = || contact().force;
+        let core = || model.core().map(|index| motion.link(model, index));
         let fixed = || {
             model
                 .fixed()
@@ -204,6 +209,16 @@ impl Simulation {
                 .filter(|_| second.is_some())
                 .map_or(0.0, |extremes| -extremes.nearest),
             RealOutput::PusherForce => model.pusher().map_or(0.0, |index| motion.link(model, index).force),
+            RealOutput::ArmatureDisplacement => core().map_or(0.0, |at| model.preload.armature.place + at.approach),
+            RealOutput::ArmatureVelocity => core().map_or(0.0, |at| at.rate),
+            RealOutput::ArmatureGap => model.core().zip(core()).map_or(0.0, |(index, at)| {
+                let overlap = model.links.get(index).map_or(0.0, |link| link.approach);
+                -(overlap + at.approach)
+            }),
+            RealOutput::ArmatureLastRelease => {
+                or_not_yet(model.core().and_then(|index| state.links.get(index)?.last_opening))
+            }
+            RealOutput::StepMinimumStopForce => model.core().map_or(0.0, |index| range(index).least),
             RealOutput::StepMinimumPusherForce => model.pusher().map_or(0.0, |index| range(index).least),
             RealOutput::SecondForce => second_force(),
             RealOutput::SecondConductance => second_conductance().unwrap_or_default(),
@@ -280,6 +295,9 @@ impl Simulation {
         Some(match output {
             RealOutput::SecondForce => model.second().map_or(0.0, force_rate),
             RealOutput::PusherForce => model.pusher().map_or(0.0, force_rate),
+            RealOutput::ArmatureDisplacement => self.real(RealOutput::ArmatureVelocity),
+            RealOutput::ArmatureVelocity => model.core().map_or(0.0, |index| motion.link_rates(model, index).1),
+            RealOutput::ArmatureGap => -self.real(RealOutput::ArmatureVelocity),
             RealOutput::SecondConductance => second_conducting().map_or(0.0, |(_, rate)| rate),
             RealOutput::SecondResistance => {
                 second_conducting().map_or(0.0, |(conductance, rate)| -rate / conductance.powi(2))
@@ -321,6 +339,8 @@ impl Simulation {
             | RealOutput::StepMaximumResistance
             | RealOutput::StepMinimumGap
             | RealOutput::StepMinimumPusherForce
+            | RealOutput::StepMinimumStopForce
+            | RealOutput::ArmatureLastRelease
             | RealOutput::SecondLastOpening
             | RealOutput::SecondLastClosing
             | RealOutput::SecondMinimumForce
@@ -406,8 +426,8 @@ impl Simulation {
 
 /// The model of a scene, made out of line, as it is large; refused where there is no memory to simulate it.
 #[inline(never)]
-fn on_heap(scene: &Scene, initial: Ways) -> Result<Box<Model>, SceneError> {
-    let model = Model::displaced(scene, initial)?;
+fn on_heap(scene: &Scene, initial: &Initial) -> Result<Box<Model>, SceneError> {
+    let model = Model::starting(scene, initial)?;
     let needed = Workspace::size(&model);
     if memory::has(needed) {
         Ok(Box::new(model))

@@ -26,6 +26,8 @@ pub struct State {
     pub displacements: Ways,
     /// Their velocities over the last communication step, m/s.
     pub velocities: Ways,
+    /// Current of the coil, relative.
+    pub coil: f64,
     /// The links, in the order of the model.
     pub links: [LinkState; MAX_LINKS],
     /// Slip of the first contact.
@@ -115,6 +117,7 @@ impl State {
             with_contact: _,
             displacements,
             velocities,
+            coil,
             links,
             slip,
             last_kink,
@@ -127,7 +130,7 @@ impl State {
             rejected_steps: _,
             iterations: _,
         } = self;
-        [time, energy_surplus, energy_balance]
+        [time, coil, energy_surplus, energy_balance]
             .into_iter()
             .chain(displacements)
             .chain(velocities)

@@ -77,6 +77,7 @@ impl Given {
                     rotation: mode.rotation.unwrap_or_default(),
                     fixed: 0.0,
                     pusher: mode.pusher.unwrap_or_default(),
+                    armature: 0.0,
                 }
             })
             .collect();

@@ -24,8 +24,10 @@ pub struct Mode {
     pub rotation: f64,
     /// Displacement of the fixed contact, 1/sqrt(kg); 0 of the moving spring.
     pub fixed: f64,
-    /// Displacement of the moving spring at the pusher, 1/sqrt(kg).
+    /// Displacement that closes the gap between pusher and spring, 1/sqrt(kg).
     pub pusher: f64,
+    /// Displacement of the armature towards the contact, 1/sqrt(kg); 0 of a spring.
+    pub armature: f64,
 }
 
 impl Mode {

@@ -185,6 +185,7 @@ impl Spring {
                     rotation: mode.rotation,
                     fixed: 0.0,
                     pusher: mode.pusher,
+                    armature: 0.0,
                 };
                 (mode, shape)
             })

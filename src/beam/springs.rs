@@ -12,8 +12,7 @@
 //! so that they join the modes of the moving spring with the opposite sign at the contact. `support.displacement` moves the
 //! contact point as if its spring were rigid: the inertia of a clamp that moves is left out.
 
-use nalgebra::{DMatrix, DVector};
-
+use crate::armature::Armature;
 use crate::beam::mode::{MAX_MODES, Mode};
 use crate::beam::mode_count::Blow;
 use crate::beam::spring::{Basis, Spring};
@@ -35,6 +34,8 @@ pub struct Springs {
     pub moving: Spring,
     /// That of the fixed contact, if it is not rigid.
     pub fixed: Option<FixedSpring>,
+    /// The armature, which joins their modes.
+    pub armature: Option<Armature>,
 }
 
 /// Numbers of modes of both springs.
@@ -93,6 +94,7 @@ impl Springs {
         Ok(Self {
             moving: Spring::new(scene)?,
             fixed: FixedSpring::new(scene)?,
+            armature: Armature::new(scene)?,
         })
     }
 
@@ -142,35 +144,28 @@ impl Springs {
     /// that of the moving one. `None` at or above the buckling load.
     pub fn modes(&self, scene: &Scene, counts: Counts, axial_force: f64) -> Option<Basis> {
         let mut basis = self.moving.modes(scene, counts.moving, axial_force)?;
-        if let Some(fixed) = &self.fixed {
-            basis.modes.extend(fixed.modes(counts.fixed));
-            basis.modes.truncate(MAX_MODES);
+        if self.fixed.is_some() || self.armature.is_some() {
+            let others = self.fixed.iter().flat_map(|fixed| fixed.modes(counts.fixed));
+            basis.modes.extend(others);
+            basis.modes.truncate(MAX_MODES - usize::from(self.armature.is_some()));
+            basis.modes.extend(self.armature.as_ref().map(Armature::mode));
             basis.modes.sort_by(|a, b| a.omega_squared.total_cmp(&b.omega_squared));
         }
         Some(basis)
     }
 
-    /// Lowest angular frequency with the contact as a spring of `stiffness`, and a pusher as one of `pushed` (N/m), rad/s, under
-    /// an axial compression of the moving spring (N).
-    pub fn frequency(&self, scene: &Scene, axial_force: f64, stiffness: f64, pushed: f64) -> Option<f64> {
-        if pushed > 0.0 {
-            let counts = Counts {
-                moving: FREQUENCY_MODES,
-                fixed: FREQUENCY_MODES,
-            };
-            let modes = self.modes(scene, counts, axial_force)?.modes;
-            let vector = |value: &dyn Fn(&Mode) -> f64| DVector::from_iterator(modes.len(), modes.iter().map(value));
-            let mut rigidity = DMatrix::from_diagonal(&vector(&|mode| mode.omega_squared));
-            for (stiffness, shape) in [
-                (stiffness, vector(&|mode| mode.tip)),
-                (pushed, vector(&|mode| mode.pusher)),
-            ] {
-                rigidity.ger(stiffness, &shape, &shape, 1.0);
-            }
-            // From the inverse, whose largest eigenvalue has full relative accuracy.
-            let flexibility = rigidity.cholesky()?.inverse();
-            return Some(1.0 / flexibility.symmetric_eigenvalues().max().sqrt());
-        }
+    /// Modes for the lowest frequency of all.
+    pub fn many_modes(&self, scene: &Scene, axial_force: f64) -> Option<Vec<Mode>> {
+        let counts = Counts {
+            moving: FREQUENCY_MODES,
+            fixed: FREQUENCY_MODES,
+        };
+        self.modes(scene, counts, axial_force).map(|basis| basis.modes)
+    }
+
+    /// Lowest angular frequency with the contact as a spring of `stiffness` (N/m), rad/s, under an axial compression of the
+    /// moving one (N); without pusher and armature.
+    pub fn frequency(&self, scene: &Scene, axial_force: f64, stiffness: f64) -> Option<f64> {
         match &self.fixed {
             Some(fixed) => fixed.frequency(scene, &self.moving, axial_force, stiffness),
             None => self.moving.frequency(axial_force, stiffness),

@@ -15,6 +15,8 @@ pub struct Drive {
     since: f64,
     /// Velocities of the inputs that move bodies, m/s.
     pub velocities: Ways,
+    /// Mean current of the coil, relative.
+    pub coil: f64,
 }
 
 impl Drive {
@@ -25,6 +27,7 @@ impl Drive {
             jerk: inputs.base_acceleration_rate,
             since: time,
             velocities: ways.map(|way| way / size),
+            coil: inputs.coil_relative_current + 0.5 * size * inputs.coil_relative_current_rate,
         }
     }
 
@@ -41,6 +44,6 @@ impl Drive {
 
     /// Whether both are constant and equal to those of the last communication step.
     pub fn continues(&self, last: &Self) -> bool {
-        self.is_constant() && last.is_constant() && self.acceleration == last.acceleration
+        self.is_constant() && last.is_constant() && self.acceleration == last.acceleration && self.coil == last.coil
     }
 }

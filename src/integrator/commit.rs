@@ -5,7 +5,7 @@ use crate::excitation::drive::Drive;
 use crate::integrator::collocation::coefficients::Cache;
 use crate::integrator::collocation::trial::Trial;
 use crate::integrator::grid::Target;
-use crate::link::CONTACT;
+use crate::link::{CONTACT, LinkLaw};
 use crate::math::free_motion::FreeMotion;
 use crate::math::nodal::{Nodal, add_columns, end};
 use crate::math::prediction::Prediction;
@@ -32,8 +32,10 @@ pub(crate) fn commit<const S: usize>(
     }
     for ((link, at), nodes) in model.links.iter().zip(&mut state.links).zip(&trial.links) {
         (at.approach, at.rate) = (nodes.end.approach, nodes.end.rate);
-        if let Some(law) = link.contact().filter(|_| at.closed) {
-            at.force = law.without_pull(link.force + nodes.end.force);
+        match &link.law {
+            LinkLaw::Contact(law) if at.closed => at.force = law.without_pull(link.force + nodes.end.force),
+            LinkLaw::Magnet(_) => at.force = link.force + nodes.end.force,
+            _ => {}
         }
     }
     state.lengths.last = target.length;

@@ -277,17 +277,14 @@ fn advance_end(
 /// [`StepErrorCause::NoRoom`] where the second fixed contact would reach the first.
 fn displaced(model: &Model, inputs: &Inputs, time: f64, size: f64) -> Result<Ways, StepError> {
     let [support, second, pusher] = inputs.displacements_after(size);
-    let initial = model.initial;
+    let initial = model.initial.displacements;
     let present = |link: Option<usize>, displacement: f64| link.map_or(0.0, |_| displacement);
+    let prescribed = model.pusher().filter(|_| model.core().is_none());
     let second = present(model.second(), second);
     let room = model.room(second);
     let (displacement, limit) = (second, second + room);
     let cause = StepErrorCause::NoRoom { displacement, limit };
-    let displacements = [
-        support - initial[0],
-        second,
-        present(model.pusher(), pusher - initial[2]),
-    ];
+    let displacements = [support - initial[0], second, present(prescribed, pusher - initial[2])];
     (room > 0.0).then_some(displacements).ok_or(StepError { time, cause })
 }
 

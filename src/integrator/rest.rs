@@ -3,9 +3,9 @@
 use crate::contact::friction::Phase;
 use crate::excitation::drive::Drive;
 use crate::integrator::constants::{FORCE_ROUNDING, UNREST, WEAK};
-use crate::link::MAX_LINKS;
+use crate::link::{Link, LinkLaw, MAX_LINKS};
 use crate::model::Model;
-use crate::state::State;
+use crate::state::{LinkState, State};
 
 /// The instant (s), at most `end`, until which the contact force stays within a hundredth of the tolerance of its
 /// present value; `None` if the contact is not at rest. Requires constant base acceleration and a fixed contact that
@@ -27,7 +27,14 @@ pub(crate) fn rests_until(model: &Model, state: &State, drive: &Drive, end: f64)
         || state.with_contact
         || !drive.is_constant()
         || model.generator.is_active(state.time)
+        || drive.coil != state.coil
     {
+        return None;
+    }
+    // A magnet has no convex potential; against a stop, which is far stiffer, that does not count.
+    let drawn = model.links.iter().any(|link| matches!(link.law, LinkLaw::Magnet(_)));
+    let stopped = |(link, at): (&Link, &LinkState)| at.closed && ["core", "rest stop"].contains(&link.name);
+    if drawn && !model.links.iter().zip(&state.links).any(stopped) {
         return None;
     }
     let mut forces = [0.0; MAX_LINKS];

@@ -76,6 +76,7 @@ impl Stepper<'_> {
             return Err(self.error(StepErrorCause::Speed(*speed)));
         }
         transition::set_velocities(self.model, self.state, &self.drive, &mut self.workspace.events);
+        transition::set_coil(self.model, self.state, self.drive.coil);
         self.recorder.note_forces(self.model, self.state);
         let steps = self.state.steps;
         let mut first = None;

@@ -4,6 +4,7 @@ use crate::contact::friction::Phase;
 use crate::excitation::drive::Drive;
 use crate::integrator::constants::WORTH;
 use crate::integrator::events::log::{self, Events};
+use crate::link::LinkLaw;
 use crate::model::Model;
 use crate::state::State;
 
@@ -89,6 +90,20 @@ pub(crate) fn set_velocities(model: &Model, state: &mut State, drive: &Drive, lo
         }
         model.settle_friction(state);
         restart(model, state, index);
+    }
+}
+
+/// Sets the current of the coil, with which the force of the magnet jumps.
+pub(crate) fn set_coil(model: &Model, state: &mut State, coil: f64) {
+    if state.coil == coil {
+        return;
+    }
+    state.coil = coil;
+    for (index, link) in model.links.iter().enumerate() {
+        if let (LinkLaw::Magnet(magnet), Some(at)) = (&link.law, state.links.get_mut(index)) {
+            at.force = magnet.force(link.approach + at.approach, coil).0;
+            restart(model, state, index);
+        }
     }
 }
 

@@ -109,7 +109,12 @@ impl Rig {
             return bent;
         }
         // The spring between it and the pusher, which does not move: what the modes do there.
-        let moved: f64 = model.modes().iter().zip(&state.modes).map(|(mode, at)| mode.pusher * at.q).sum();
+        let moved: f64 = model
+            .modes()
+            .iter()
+            .zip(&state.modes)
+            .map(|(mode, at)| mode.pusher * at.q)
+            .sum();
         let spring = |d: f64| 0.5 * model.scene().pusher.stiffness * d.max(0.0).powi(2);
         bent + spring(pusher_overlap + moved) - spring(pusher_overlap) - pusher_force * moved
     }

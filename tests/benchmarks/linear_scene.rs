@@ -146,7 +146,12 @@ fn what_is_read_inside_exact_steps_is_within_the_tolerance() {
                         );
                     }
                     if k % 37 == 0 {
-                        restored = Simulation::resume(inside.model().scene(), [0.0; 3], inside.motion()).unwrap();
+                        restored = Simulation::resume(
+                            inside.model().scene(),
+                            &relay_contact::reference::Initial::default(),
+                            inside.motion(),
+                        )
+                        .unwrap();
                     }
                 }
                 assert_eq!(single.integer(IntegerOutput::SolverSteps), 600);

@@ -166,7 +166,7 @@ fn saved_states_go_on_with_the_same_bits() {
             };
             let steps = 1 + 7 * n % 19;
             let once = run(&mut simulation, steps);
-            let mut other = Simulation::resume(&scene, [0.0; 3], &saved).unwrap();
+            let mut other = Simulation::resume(&scene, &relay_contact::reference::Initial::default(), &saved).unwrap();
             assert_eq!(once, run(&mut other, steps));
             simulation.go_on_from(&saved);
             assert_eq!(once, run(&mut simulation, steps));

@@ -1,4 +1,4 @@
-"""The fixed contact's spring and the pusher, by finite elements of both springs that share nothing with the component."""
+"""The fixed contact's spring and the pusher, by finite elements of both springs that share no code with the component."""
 
 from collections.abc import Callable
 from math import pi, sin
@@ -16,7 +16,7 @@ from relay_contact import Array, Values
 ELEMENTS = 30
 """Of each spring."""
 ALLOWED = 2e-4
-"""Share of the largest force: the elements' error. With 20, 30 and 40 of them the differences are 4e-4, 7e-5 and 3e-5 at most."""
+"""Share of the largest force: the elements' error. With 20, 30 and 40 the differences are 4e-4, 7e-5, 3e-5."""
 
 
 class Beam:
@@ -131,8 +131,8 @@ def forces(values: Values, fixed: tuple[float, float] | None, pushed: Callable[[
     return np.array([contact(state[:n], state[n:])[0] for state in solution.y.T])
 
 
-# Shaken closed, shaken until it opens, on a fixed spring softer than the moving one; closed by a pusher that moves in, and shaken
-# until the spring leaves it.
+# Shaken closed, shaken until it opens, on a fixed spring softer than the moving one; shaken until the spring leaves its pusher;
+# closed by a pusher that moves in.
 SHAKEN: Values = {"effects.excitation": "Sine", "excitation.frequency": 700.0, "solver.tolerance": 1e-8}
 CASES: dict[str, tuple[Values, tuple[float, float] | None, tuple[float, float]]] = {
     "closed": ({**SHAKEN, "excitation.amplitude": 300.0}, (0.02, 0.15e-3), (0.0, 0.0)),

@@ -181,7 +181,8 @@ fn the_communication_steps_do_not_matter() {
             }
             if saved {
                 let motion = *simulation.motion();
-                simulation = Simulation::resume(&scene, [0.0; 3], &motion).unwrap();
+                simulation =
+                    Simulation::resume(&scene, &relay_contact::reference::Initial::default(), &motion).unwrap();
             }
             courses.push([RealOutput::ContactForce, RealOutput::SecondForce].map(|output| simulation.real(output)));
         }

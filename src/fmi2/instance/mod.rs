@@ -250,7 +250,7 @@ impl Instance {
                 present.go_on_from(motion);
             }
             (present, Some((motion, initial))) => {
-                let resumed = Simulation::resume(&wanted, *initial, motion);
+                let resumed = Simulation::resume(&wanted, initial, motion);
                 *present = Some(Box::new(resumed.map_err(Failure::Initialisation)?));
             }
             (present, None) => *present = None,

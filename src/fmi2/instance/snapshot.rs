@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::fmi2::states::State;
 use crate::inputs::Inputs;
 use crate::integrator::motion::Motion;
-use crate::link::Ways;
+use crate::preload::Initial;
 use crate::scene::Scene;
 
 /// Larger tolerances of the experiment are reduced to this one, the largest that `solver.tolerance` allows.
@@ -37,8 +37,8 @@ pub(in crate::fmi2) struct Snapshot {
     pub(super) scene: Scene,
     pub(super) inputs: Inputs,
     pub(super) experiment: Experiment,
-    /// The state of the simulation, and the displacements of the inputs that belong to its preload, m.
-    pub(super) simulation: Option<(Box<Motion>, Ways)>,
+    /// The state of the simulation, and the inputs that belong to its preload.
+    pub(super) simulation: Option<(Box<Motion>, Initial)>,
     pub(super) time: f64,
 }
 
@@ -59,8 +59,7 @@ impl Snapshot {
             && stop_time.is_none_or(|stop| stop >= start_time)
             && self.time >= start_time
             && self.time.is_finite()
-            && simulation.is_none_or(|(motion, initial)| {
-                motion.is_sound() && motion.time == self.time && initial.iter().all(|way| way.is_finite())
-            })
+            && simulation
+                .is_none_or(|(motion, initial)| motion.is_sound() && motion.time == self.time && initial.is_finite())
     }
 }

@@ -50,7 +50,7 @@ impl Unknowns {
         let friction = model.friction();
         for (index, (link, at)) in model.links.iter().zip(&state.links).enumerate() {
             let Some((rubbing, friction)) = friction.filter(|_| index == CONTACT) else {
-                if at.closed && link.contact().is_some() {
+                if at.closed && link.contact().is_some() || matches!(link.law, LinkLaw::Magnet(_)) {
                     unknowns.push(index, None);
                 }
                 continue;
@@ -286,6 +286,13 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
                         laws.stiffness[a][k] = stick.stiffness;
                         laws.damping[a][k] = stick.stiffness * law.damping;
                         laws.coupling[a][k] = stick.by_indentation;
+                    }
+                }
+                LinkLaw::Magnet(magnet) => {
+                    for k in 0..S {
+                        let (force, stiffness) = magnet.force(link.approach + motion.d[k], self.state.coil);
+                        residuals[a][k] -= force - link.force;
+                        laws.stiffness[a][k] = stiffness;
                     }
                 }
                 LinkLaw::Friction(_) | LinkLaw::Gauge => {}

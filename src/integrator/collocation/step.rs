@@ -92,6 +92,12 @@ impl<const S: usize> Step<'_, S> {
                 free: &free,
             };
             judged.estimate::<A>(&solution, trial);
+            if !state.is_closed() {
+                // A magnet alone: what flies is judged as well.
+                let (error, inside) = (trial.error, trial.inner_error);
+                estimate_in_flight(model, step, &free, trial);
+                (trial.error, trial.inner_error) = (trial.error.or(error), trial.inner_error.or(inside));
+            }
             self.set_motion::<A>(&free.ports, &solution.motions, trial);
         } else {
             trial.iterations = 0;

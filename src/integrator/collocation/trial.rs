@@ -126,6 +126,11 @@ impl Estimate {
         Self { total, lasting: total }
     }
 
+    /// The larger of two.
+    pub fn or(self, other: Self) -> Self {
+        if other.total > self.total { other } else { self }
+    }
+
     /// With this share of what the contacts' dampers take back.
     pub fn with(&self, share: f64) -> f64 {
         self.lasting + share * (self.total - self.lasting)

@@ -128,7 +128,7 @@ fn powers(model: &Model, state: &State, motion: &Trial<LONG>) -> Nodal<LONG> {
                     };
                     (link.force + force - expected) * rate
                 }
-                LinkLaw::Contact(_) | LinkLaw::Gauge => 0.0,
+                LinkLaw::Contact(_) | LinkLaw::Magnet(_) | LinkLaw::Gauge => 0.0,
             };
         }
     }
