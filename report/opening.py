@@ -15,13 +15,13 @@ from relay_contact.qualification.standards import Standard
 from relay_contact.qualification.trials import (
     RESOLUTION,
     Lengths,
+    Piece,
     Specimen,
-    shock,
     sine_threshold,
     steady,
     sweep,
     threshold,
-)  # fmt: skip
+)
 from report.bench import in_parallel, specimen
 from report.figure import Curve, Figure
 from report.published import FORCE, PEAKS
@@ -30,8 +30,9 @@ from report.text import table
 
 RANGE = (10.0, 3000.0)  # Hz
 FINE = 9  # frequencies around the weakest
-UNIT = Sine("1 g", "", True, 1.0, 10.0, RANGE, 1.0)
+UNIT = Sine("1 g", "", "measured", 1.0, 10.0, RANGE, 1.0)
 """At every frequency of the map 1 g, not limited by the displacement."""
+CONDITIONS = ("204 A", "204 B", "204 D")  # of MIL-STD-202 that the map shows
 DIGIT = 0.0005  # N, half a unit of the last digit of the published preload
 SHOCK = (
     "test",
@@ -55,7 +56,7 @@ def levels() -> dict[str, Sine]:
     found = {}
     for each in (Standard.read("MIL-STD-202"), standard()):
         for test in each.tests:
-            if isinstance(test, Sine):
+            if isinstance(test, Sine) and (each is standard() or test.name in CONDITIONS):
                 name = f"{each.title.partition(',')[0]} {test.clause.partition(';')[0]}: {test.acceleration:g} g"
                 found[name] = test
     return found
@@ -134,7 +135,7 @@ def verdict(margin: float, uncertainty: float) -> str:
 def seen(points: list[Thresholds]) -> tuple[str, list[tuple[Sine, float, float]]]:
     """Run the levels; return their table, and the margin of each with its frequency (Hz)."""
     rows, margins, uncertainty = [], [], total(uncertainties())
-    tasks = [(test, [each for each in points if test.frequencies[0] <= each.frequency <= test.frequencies[1]])
+    tasks = [(test, [each for each in points if test.band[0] <= each.frequency <= test.band[1]])
              for test in levels().values()]  # fmt: skip
     results = in_parallel(level, [(test, [each.frequency for each in covered]) for test, covered in tasks])
     for name, (test, covered), outcomes in zip(levels(), tasks, results, strict=True):
@@ -146,7 +147,7 @@ def seen(points: list[Thresholds]) -> tuple[str, list[tuple[Sine, float, float]]
         margins.append((test, float(factors[at]), float(frequencies[at])))
         longest, least = int(lengths.argmax()), int(forces.argmin())
         rows.append([
-            name, "{:g} to {:g} Hz".format(*test.frequencies),
+            name, "{:g} to {:g} Hz".format(*test.band),
             verdict(factors[at], uncertainty), f"{factors[at]:.2f} at {frequencies[at]:.0f} Hz",
             f"{duration(lengths[longest])} at {frequencies[longest]:.0f} Hz" if lengths.any() else "none",
             f"{100 * forces[least]:.1f} % at {frequencies[least]:.0f} Hz",
@@ -189,7 +190,7 @@ def shocks(quick: bool) -> str:
     tests = [test for test in standard().tests if isinstance(test, Shock)]
     for test in tests[:1] if quick else tests:
         for direction, sign in (("presses the contact", 1.0), ("pulls it open", -1.0)):
-            lengths, course = shock(subject(), test, sign)
+            lengths, course = Piece(test.course(), 1.0, 0.0).follow(subject(), sign, 1)
             least = float(course[:, 2].min()) / rest()
             rows.append([
                 f"{test.clause.rpartition(' of ')[2].rpartition(', ')[2]}, condition {test.name[-1]}",
@@ -201,7 +202,7 @@ def shocks(quick: bool) -> str:
 
 def found(quick: bool) -> list[Thresholds]:
     """Return thresholds at equal ratios of frequency and at the ends of the levels, and more where they are lowest."""
-    ends = [frequency for test in levels().values() for frequency in test.frequencies]
+    ends = [frequency for test in levels().values() for frequency in test.band]
     frequencies = sorted({round(each, 6) for each in [*np.geomspace(*RANGE, 12 if quick else 80), *ends]})
     points = in_parallel(thresholds, frequencies)
     at = min(range(len(points)), key=lambda place: points[place].opens)
@@ -219,7 +220,7 @@ def figure(points: list[Thresholds]) -> Figure:
     ]
     for colour, (name, test) in enumerate(levels().items(), 1):
         own = np.sort([*frequencies, test.corner])
-        own = own[(own >= test.frequencies[0]) & (own <= test.frequencies[1])]
+        own = own[(own >= test.band[0]) & (own <= test.band[1])]
         curves.append(Curve(name, own, test.amplitude(own) / G, "dashed", colour))
     x, y = "frequency / Hz", "amplitude of the base acceleration / g"
     return Figure("opening-map", "Base acceleration that opens the contact", x, y, curves, "xy")
@@ -243,7 +244,7 @@ def values(quick: bool) -> tuple[list[Figure], dict[str, Any]]:
     return [figure(points)], {
         "answer": words.get(verdict(margin, total(parts)), "It is undecided whether the contact passes"),
         "asked": asked.acceleration, "passed": ", ".join(passed) or "none of the levels",
-        "from_": margin * asked.acceleration,
+        "from_": margin * float(asked.amplitude(np.array(frequency))) / G,
         "at": frequency, "uncertainty": 100 * total(parts), "weakest": weakest, "parts": [100 * part for part in parts],
         "elastic": needed[0] / needed[1], "levels": seen_levels, "shocks": shocks(quick), "count": len(points),
         "furthest": {"opens": furthest("opens"), "linear": furthest("linear")}, "at_2000": at_2000, "gravity": G,

@@ -165,7 +165,7 @@ fn ride(case: &str, scene: &Scene, rng: &mut Rng, duration: f64, inputs: impl Fn
 fn outputs_of_random_relays_agree_with_each_other() {
     let kinds = [Relay::draw, Relay::changeover, Relay::friction, Relay::held];
     for (kind, draw) in kinds.into_iter().enumerate() {
-        for number in 50_000..50_150 {
+        for number in 50_000..50_050 {
             let relay = draw(number);
             let (size, count) = relay.steps;
             let case = format!("kind {kind}, relay {number}");
@@ -196,7 +196,7 @@ fn outputs_of_the_projects_scenes_agree_with_each_other() {
 #[test]
 fn closed_contacts_at_any_frequency_stay_closed_in_what_is_read() {
     let rng = &mut Rng::with_seed(1);
-    for number in 0..300 {
+    for number in 0..100 {
         let frequency = 1800.0 + 2200.0 * rng.f64();
         let scene = scenes::shaken(294.1995, frequency);
         let case = format!("{number}: {frequency} Hz");

@@ -20,7 +20,7 @@ from relay_contact.qualification.response import respond
 from relay_contact.qualification.standards import Contacts
 from relay_contact.qualification.trials import Specimen, steady
 
-MONITOR = Contacts(opening=0.0, false_make=0.0, voltage=6.0, current=10e-3, clause="", verified=True)
+MONITOR = Contacts(opening=0.0, false_make=0.0, voltage=6.0, current=10e-3, clause="", evidence={})
 
 
 @cache

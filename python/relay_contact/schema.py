@@ -37,7 +37,6 @@ Share = Annotated[float, Field(strict=True, ge=0, lt=1)]
 """Part of a value."""
 Nested = Annotated[dict[str, Any], Field(default_factory=dict)]
 """Values by dotted names, in tables within each other."""
-Flag = Annotated[bool, Field(strict=True)]
 
 
 class Table(BaseModel):

@@ -14,7 +14,7 @@ use anyhow::{Context, Result};
 use crate::package::{Files, pack};
 use crate::stage::stage;
 use crate::variant::Variant;
-use crate::{fmu, python, reference, report};
+use crate::{fmu, python, reference};
 
 const FOLDER: &str = "out/conformance";
 
@@ -44,7 +44,7 @@ pub fn stages(component: &Path) -> Result<()> {
         let mut test = conformance("test")?;
         run_command(test.env("RELAY_CONTACT_FMU", component))
     })?;
-    stage("importers", || report::start("importers", &[""; 0]))
+    stage("importers", || python::report("importers", &[""; 0]))
 }
 
 /// The rows shown in the full report: importers called from Python.

@@ -1,6 +1,7 @@
 //! The Python environment `.venv`, with exactly what `requirements.txt` lists.
 
 use std::env::consts::EXE_SUFFIX;
+use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -19,6 +20,11 @@ pub fn test(tests: &[&str], component: &Path) -> Result<()> {
         // Their matrices are small: two threads wait for each other longer than one computes.
         .env("OPENBLAS_NUM_THREADS", "1")
         .env("RELAY_CONTACT_FMU", component))
+}
+
+/// Runs a task of the package `report` with its arguments.
+pub fn report(task: &str, arguments: &[impl AsRef<OsStr>]) -> Result<()> {
+    run(python().args(["-m", "report", task]).args(arguments))
 }
 
 /// Creates the environment, unless it exists with the same requirements. Where another stage does so, waits for it.

@@ -1,12 +1,12 @@
 //! The report and the pages of `docs/` that are computed: written by the Python package `report`, from tables that Rust
 //! programs write.
 
-use std::ffi::{OsStr, OsString};
+use std::ffi::OsString;
 use std::path::Path;
 
 use anyhow::Result;
 
-use crate::commands::{cargo, command, output, python as python_command, run as run_command};
+use crate::commands::{cargo, command, output, run as run_command};
 use crate::{fmu, importers, python};
 
 /// The message where Chromium is missing.
@@ -41,14 +41,14 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         // Leaves what was measured for the report; fails where a property is not kept.
         run_command(cargo().args(["test", "--quiet", "--package=hard-cases", "--test=cases"]))?;
     }
-    start("report", &arguments.arguments)
+    python::report("report", &arguments.arguments)
 }
 
 /// What each effect costs and changes, for `docs/effects.md`.
 pub fn effects() -> Result<()> {
     python::prepare()?;
     fmu::build()?;
-    start("effects", &[""; 0])
+    python::report("effects", &[""; 0])
 }
 
 /// Measures time over accuracy, and draws the figures of `docs/accuracy.md`.
@@ -62,19 +62,13 @@ pub fn accuracy(arguments: &Arguments) -> Result<()> {
         return Ok(());
     }
     python::prepare()?;
-    start("accuracy", &[""; 0])
+    python::report("accuracy", &[""; 0])
 }
 
 /// The report in its quick form, of what the tests have left, and its own tests in a browser.
 pub fn test(component: &Path) -> Result<()> {
-    start("report", &["--quick"])?;
+    python::report("report", &["--quick"])?;
     python::test(&["report"], component)
-}
-
-/// Runs a task of the package `report` with its arguments.
-pub fn start(task: &str, arguments: &[impl AsRef<OsStr>]) -> Result<()> {
-    let mut report = python_command();
-    run_command(report.args(["-m", "report", task]).args(arguments))
 }
 
 /// The command name of Chromium, if installed.

@@ -23,7 +23,7 @@ fn hostile_contents_are_refused_or_gone_on_from() {
     // Fewer and shorter under valgrind, which is thirty times slower.
     let short = std::env::var_os("CAMPAIGN_CALLS").is_some();
     let mut outcomes = BTreeMap::new();
-    for (seed, specimen) in (0..if short { 100 } else { 1000 }).zip(specimens.iter().cycle()) {
+    for (seed, specimen) in (0..if short { 100 } else { 400 }).zip(specimens.iter().cycle()) {
         let drawn = bytes(seed, 32);
         let hostile = changed(specimen, &mut Choices::new(&drawn));
         let steps = if short { 0 } else { 2 };

@@ -17,7 +17,6 @@ MANY = 10_000
 SEED = 2
 FOLDS = 8
 CONFIDENCE = 0.95
-INDICES = 20_000  # draws in which the first-order indices are found
 SHARE = 3  # of the draws that a polynomial has coefficients, at most one in so many
 
 
