@@ -298,6 +298,12 @@ pub enum Remark {
         /// Those for which the tolerance is promised.
         range: Range<f64>,
     },
+    /// An armature, with which the tolerance is not promised.
+    #[error(
+        "effects.pusher = Armature: solver.tolerance is kept by the cases in docs/relay.md, but has not been tried on relays at \
+         random, as it has without an armature; compare with a tolerance ten times smaller"
+    )]
+    NotTried,
     /// Friction with which slip is unstable.
     #[error(
         "effects.friction = Coulomb: slip {} the clamp is unstable with friction.coefficient = {} and tip.contactHeight = {} m: at \

@@ -1,7 +1,7 @@
-"""The fixed contact's spring and the pusher, by finite elements of both springs that share no code with the component."""
+"""Fixed spring, pusher and armature, by finite elements of the springs that share no code with the component."""
 
 from collections.abc import Callable
-from math import pi, sin
+from math import atan2, exp, pi, sin, sqrt
 from pathlib import Path
 
 import numpy as np
@@ -48,6 +48,46 @@ class Beam:
         self.tip[-2], self.place[2 * before - 2] = 1.0, 1.0
 
 
+class Armature:
+    """The forces of magnet, return spring and stops on an armature."""
+
+    def __init__(self, get: Callable[[str], float]) -> None:
+        """Take its parameters."""
+        names = ("mass", "stiffness", "returnForce", "holdForce", "gapConstant", "restPosition", "corePosition")
+        self.mass, self.stiffness, self.back, self.hold, self.constant, self.rest, self.core = (
+            float(get(f"armature.{name}")) for name in names
+        )
+        self.stop = float(get("armature.stopStiffness"))
+
+        def left(ratio: float) -> float:
+            swing = sqrt(1 - ratio**2)
+            return exp(-ratio / swing * atan2(2 * ratio * swing, 2 * ratio**2 - 1))
+
+        ratio = brentq(lambda ratio: left(ratio) - get("armature.stopRestitution"), 1e-9, 1 - 1e-9)
+        self.damper = 2 * ratio * sqrt(self.stop * self.mass)
+
+    def pressed(self, depth: float, rate: float) -> bool:
+        """Whether a stop presses."""
+        return bool(depth > 0 and self.stop * depth + self.damper * rate > 0)
+
+    def load(self, place: float, velocity: float) -> float:
+        """Force towards the contact, N, without the return spring's slope."""
+        force = (
+            self.hold / (1 + max(self.core - place, 0.0) / self.constant) ** 2 - self.back + self.stiffness * self.rest
+        )
+        for depth, rate, way in ((place - self.core, velocity, -1), (self.rest - place, -velocity, 1)):
+            if self.pressed(depth, rate):
+                force += way * (self.stop * depth + self.damper * rate)
+        return force
+
+    def slopes(self, place: float, velocity: float) -> tuple[float, float]:
+        """Its derivatives by place and velocity."""
+        gap = self.core - place
+        slope = 2 * self.hold / self.constant / (1 + gap / self.constant) ** 3 if gap > 0 else 0.0
+        stops = int(self.pressed(-gap, velocity)) + int(self.pressed(self.rest - place, -velocity))
+        return slope - stops * self.stop, -stops * self.damper
+
+
 def forces(values: Values, fixed: tuple[float, float] | None, pushed: Callable[[float], float], times: Array) -> Array:
     """Return the contact force (N) at instants (s).
 
@@ -55,7 +95,8 @@ def forces(values: Values, fixed: tuple[float, float] | None, pushed: Callable[[
     """
     get = {**STARTS, **values}.__getitem__
     length, beta = get("beam.length"), get("beam.stiffnessDamping")
-    has_pusher = get("effects.pusher") == "Prescribed"
+    has_pusher, moves = get("effects.pusher") != "None", get("effects.pusher") == "Armature"
+    relay = Armature(get) if moves else None
     moving = Beam(
         length, get("beam.width"), get("beam.thickness"), beta, get("pusher.position") if has_pusher else length / 2
     )
@@ -75,7 +116,13 @@ def forces(values: Values, fixed: tuple[float, float] | None, pushed: Callable[[
     )
     hertz, beta_c = 4 / 3 / compliance * get("contact.curvatureRadius") ** 0.5, get("contact.damping")
     stiff, damper = get("pusher.stiffness"), get("pusher.damping")
-    amplitude, omega = get("excitation.amplitude"), 2 * pi * get("excitation.frequency")
+    amplitude, duration = get("excitation.amplitude"), np.inf
+    omega = 2 * pi * get("excitation.frequency")
+    if get("effects.excitation") == "HalfSine":
+        duration = get("excitation.duration")
+        omega = pi / duration
+    elif get("effects.excitation") == "None":
+        amplitude = 0.0
 
     def contact(w: Array, v: Array) -> tuple[float, float, float]:
         d, rate = get("contact.overtravel") - opens @ w, -opens @ v
@@ -91,27 +138,54 @@ def forces(values: Values, fixed: tuple[float, float] | None, pushed: Callable[[
         return (force, stiff, damper) if has_pusher and d > 0 and force > 0 else (0.0, 0.0, 0.0)
 
     def loads(time: float, w: Array, v: Array) -> Array:
-        return opens * contact(w, v)[0] - touched * push(time, w, v)[0]
+        both = opens * contact(w, v)[0] - touched * push(time, w, v)[0]
+        if relay:
+            both[-1] += relay.load(w[-1], v[-1])
+        return both
 
+    if relay:
+        # The armature as one more degree of freedom.
+        mass, rigidity, damping = (
+            block_diag(matrix, entry)
+            for matrix, entry in (
+                (mass, relay.mass),
+                (rigidity, get("armature.stiffness")),
+                (damping, get("armature.damping")),
+            )
+        )
+        load = np.append(load, -get("armature.unbalance") * relay.mass)
+        opens, touched = np.append(opens, 0.0), np.append(touched, 1.0)
     n = len(load)
     none = np.zeros(n)
-    flexible = np.linalg.inv(rigidity)
+    springs = np.s_[: n - 1] if relay else np.s_[:]
+    flexible = np.zeros((n, n))
+    flexible[springs, springs] = np.linalg.inv(rigidity[springs, springs])
     soft = 1 / stiff + touched @ flexible @ touched
 
-    def bent(force: float) -> Array:
-        pressed = max(pushed(0.0) + touched @ flexible @ opens * force, 0.0) / soft if has_pusher else 0.0
+    def bent(force: float, place: float) -> Array:
+        pressed = max(place + touched @ flexible @ opens * force, 0.0) / soft if has_pusher else 0.0
         return flexible @ (opens * force - touched * pressed)
 
-    def unbalance(force: float) -> float:
-        return contact(bent(force), none)[0] - force
+    def at_rest(place: float) -> Array:
+        def unbalance(force: float) -> float:
+            return contact(bent(force, place), none)[0] - force
 
-    # Of a closed contact; more than a rigid one has in no case.
-    start = bent(brentq(unbalance, 0.0, 10.0, xtol=1e-16) if unbalance(0.0) > 0 else 0.0)
+        # Of a closed contact; more than a rigid one has in no case.
+        w = bent(brentq(unbalance, 0.0, 10.0, xtol=1e-16) if unbalance(0.0) > 0 else 0.0, place)
+        return np.append(w[:-1], place) if relay else w
+
+    def balance(place: float) -> float:
+        w = at_rest(place)
+        return float(loads(0.0, w, none)[-1] - rigidity[-1, -1] * place)
+
+    # An armature that is held rests on its core.
+    core = get("armature.corePosition")
+    start = at_rest(brentq(balance, core, core + 1e-4, xtol=1e-18) if relay else pushed(0.0))
     inverse = np.linalg.inv(mass)
 
     def rates(time: float, state: Array) -> Array:
         w, v = state[:n], state[n:]
-        shaken = load * amplitude * sin(omega * time) if get("effects.excitation") == "Sine" else 0.0
+        shaken = load * (amplitude * sin(omega * time) if time < duration else 0.0)
         return np.concatenate([v, inverse @ (loads(time, w, v) - shaken - rigidity @ w - damping @ v)])
 
     def jacobian(time: float, state: Array) -> Array:
@@ -121,6 +195,10 @@ def forces(values: Values, fixed: tuple[float, float] | None, pushed: Callable[[
         lower = inverse @ np.hstack(
             [-rigidity - by_d * across - stiffness * along, -damping - by_rate * across - damped * along]
         )
+        if relay:
+            by_place, by_velocity = relay.slopes(w[-1], v[-1])
+            lower[:, n - 1] += inverse[:, -1] * by_place
+            lower[:, 2 * n - 1] += inverse[:, -1] * by_velocity
         return np.vstack([np.hstack([np.zeros((n, n)), np.eye(n)]), lower])
 
     solution = solve_ivp(
@@ -131,8 +209,8 @@ def forces(values: Values, fixed: tuple[float, float] | None, pushed: Callable[[
     return np.array([contact(state[:n], state[n:])[0] for state in solution.y.T])
 
 
-# Shaken closed, shaken until it opens, on a fixed spring softer than the moving one; shaken until the spring leaves its pusher;
-# closed by a pusher that moves in.
+# Shaken closed, shaken until it opens, on a fixed spring softer than the moving one; shaken until the spring leaves its
+# pusher; closed by a pusher that moves in; opened by an armature that a shock takes from its core and that comes back.
 SHAKEN: Values = {"effects.excitation": "Sine", "excitation.frequency": 700.0, "solver.tolerance": 1e-8}
 CASES: dict[str, tuple[Values, tuple[float, float] | None, tuple[float, float]]] = {
     "closed": ({**SHAKEN, "excitation.amplitude": 300.0}, (0.02, 0.15e-3), (0.0, 0.0)),
@@ -144,6 +222,14 @@ CASES: dict[str, tuple[Values, tuple[float, float] | None, tuple[float, float]]]
     "making": (
         {"solver.tolerance": 1e-8, "effects.pusher": "Prescribed", "contact.overtravel": -5e-5},
         (0.05, 0.15e-3), (-1e-5, 0.05),
+    ),
+    "released": (
+        {
+            "solver.tolerance": 1e-8, "effects.pusher": "Armature", "contact.overtravel": -5e-5,
+            "effects.excitation": "HalfSine", "excitation.amplitude": -1275.0, "excitation.duration": 1.5e-3,
+            "armature.unbalance": 1.0, "armature.gapConstant": 5e-4,
+        },
+        None, (0.0, 0.0),
     ),
 }  # fmt: skip
 
