@@ -34,6 +34,12 @@ impl Drive {
         self.acceleration + self.jerk * (time - self.since)
     }
 
+    /// Whether the communication step began less than half a step of `length` seconds before an instant (s).
+    #[inline(always)]
+    pub(crate) fn has_just_begun(&self, time: f64, length: f64) -> bool {
+        time - self.since < 0.5 * length
+    }
+
     /// Whether the base acceleration is constant and the fixed contacts at rest.
     pub fn is_constant(&self) -> bool {
         self.jerk == 0.0 && self.velocities.iter().all(|velocity| *velocity == 0.0)

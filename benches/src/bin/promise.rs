@@ -39,6 +39,7 @@ enum Kind {
     Changeover,
     Friction,
     Held,
+    Knots,
     Rough,
     Segments,
 }
@@ -50,6 +51,7 @@ fn main() -> Result<()> {
         Some(Kind::Changeover) => Relay::changeover,
         Some(Kind::Friction) => Relay::friction,
         Some(Kind::Held) => Relay::held,
+        Some(Kind::Knots) => Relay::knots,
         Some(Kind::Rough) => Relay::rough,
         Some(Kind::Segments) => Relay::with_segments,
     };
