@@ -17,15 +17,15 @@ pub type Kind = (&'static str, u8, fn(u64) -> Relay);
 /// All of them.
 pub const KINDS: [Kind; 11] = [
     ("plain", 10, Relay::draw),
-    ("held inputs", 6, Relay::held),
-    ("inputs with knots", 16, Relay::knots),
-    ("linear law", 12, Relay::linear),
-    ("rough contacts", 8, Relay::rough),
-    ("near buckling", 8, Relay::near_buckling),
-    ("spring of segments", 8, Relay::with_segments),
-    ("spring of modes", 6, Relay::with_modes),
-    ("gap closed by the fixed contact", 10, Relay::closing),
-    ("second contact", 8, Relay::changeover),
+    ("held", 6, Relay::held),
+    ("knots", 16, Relay::knots),
+    ("linear", 12, Relay::linear),
+    ("rough", 8, Relay::rough),
+    ("buckling", 8, Relay::near_buckling),
+    ("segments", 8, Relay::with_segments),
+    ("modes", 6, Relay::with_modes),
+    ("closing", 10, Relay::closing),
+    ("changeover", 8, Relay::changeover),
     ("friction", 8, Relay::friction),
 ];
 

@@ -133,11 +133,11 @@ impl<const S: usize, const L: usize> Judged<'_, S, L> {
             let forces = &trial.links[index].forces;
             let mut defect = start - dot::<S, A>(forces, &self.collocation.at_start);
             let (last, decay) = self.collocation.last_terms::<A>(start, forces);
-            trial.start_defect = trial.start_defect.max(defect.abs());
-            trial.next_terms = trial.next_terms.max(last * decay * decay);
             if self.bent {
                 defect = defect.abs().max(last * decay).copysign(defect);
             }
+            trial.start_defect = trial.start_defect.max(defect.abs());
+            trial.next_terms = trial.next_terms.max(last * decay * decay);
             defects.0[index] = defect;
         };
         for a in 0..in_use::<L>(self.linked.unknowns.count) {

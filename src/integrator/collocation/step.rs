@@ -89,7 +89,7 @@ impl<const S: usize> Step<'_, S> {
                 step,
                 collocation,
                 free: &free,
-                bent: self.drive.has_just_begun(state.time, step.length),
+                bent: self.drive.has_just_changed(state.time, step.length),
             };
             judged.estimate::<A>(&solution, trial);
             self.set_motion::<A>(&free.ports, &solution.motions, trial);
