@@ -7,6 +7,7 @@ use crate::assembly::{Assembly, Roles};
 use crate::beam::axial::Feedback;
 use crate::beam::mode::{MAX_MODES, Modal, Mode, ModeState, ModeStates};
 use crate::beam::mode_count::Blow;
+use crate::beam::resolution::Resolution;
 use crate::beam::section::Section;
 use crate::beam::spring::Basis;
 use crate::beam::springs::Springs;
@@ -71,9 +72,8 @@ pub struct Model {
     armature: Option<Armature>,
     /// Force scale of the tolerance, N: max(F_0, 3 E I max(|s|, 0.1 mm) / L^3).
     pub(crate) force_scale: f64,
-    /// Error of the force once the contact has closed, relative to the force scale, where there are fewer modes than the
-    /// tolerance takes; else 0.
-    pub(crate) missed_by_modes: f64,
+    /// What the modes left out do.
+    pub(crate) resolution: Resolution,
     /// Force at the held tip per base acceleration that varies slowly, kg.
     pub(crate) inertia: f64,
     /// Time in which a velocity of the open spring becomes a displacement, s: 1 / omega_1.
@@ -148,13 +148,15 @@ impl Model {
         let counts = wanted
             .or(usize::try_from(scene.solver.modes).unwrap_or_default())
             .within_room();
-        let Some(Basis { modes, shapes, space }) = springs.modes(scene, counts, preload.axial_force) else {
+        let Some(basis) = springs.modes(scene, counts, preload.axial_force) else {
             return Err(SceneError::Buckled {
                 name: RealParameter::BeamAxialForce.variable().name,
                 value: preload.axial_force,
                 limit: spring.buckling_load,
             });
         };
+        let resolution = Resolution::new(&section, &basis, &own);
+        let Basis { modes, shapes, space } = basis;
         let axial = (scene.effects.axial_force == AxialForceKind::FromDeflection)
             .then(|| Feedback::new(&section, &preload, scene.environment.gravity, &space, &modes, &shapes))
             .map(Box::new);
@@ -183,22 +185,19 @@ impl Model {
                     && !scene.effects.extremes
                     && is_rayleigh(scene, &modes) =>
             {
-                ClosedLoop::new(scene, &modes, contact, &generator).map(Box::new)
+                ClosedLoop::new(scene, (&modes, &resolution), contact, &generator).map(Box::new)
             }
             _ => None,
         };
         let at_contact = modes.iter().find(|mode| mode.tip != 0.0);
         let memory = at_contact.map_or(0.0, |mode| 1.0 / mode.omega_squared.sqrt());
-        let missed = counts
-            .less_than(wanted)
-            .then(|| springs.error(&own, counts).max(springs.error(&on_second, counts)));
         let mut model = Self {
             law,
             ports: Vec::new(),
             links: Vec::new(),
             roles: Roles::default(),
             participations: [0.0; MAX_MODES],
-            missed_by_modes: missed.unwrap_or_default(),
+            resolution,
             inertia: inertia(&modes),
             memory,
             compliance: modes.iter().map(Mode::compliance).sum(),
@@ -257,6 +256,7 @@ impl Model {
         (self.modes, self.preload) = (parts.modes, parts.preload);
         (self.generator, self.force_scale, self.closed_loop) = (parts.generator, parts.force_scale, None);
         self.compliance = self.modes.iter().map(Mode::compliance).sum();
+        self.resolution = Resolution::default();
         self.tolerance = Tolerance::new(tolerance, self.force_scale);
         let law = parts.law.parting(tolerance, self.force_scale);
         // Friction keeps its share of the force that the scene has.

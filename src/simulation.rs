@@ -258,14 +258,7 @@ impl Simulation {
 
     /// Estimate of the error of the contact force so far, relative as the tolerance is; 1 at most.
     pub fn force_error(&self) -> f64 {
-        let Self { model, motion, .. } = self;
-        let state = motion.state();
-        let by_modes = if state.last_closing().is_some() {
-            model.missed_by_modes
-        } else {
-            0.0
-        };
-        state.force_error.relative(model.force_scale).max(by_modes)
+        self.motion.state().force_error.relative()
     }
 
     /// Rate of a continuous output at the communication point (limit from the left), in its SI unit per second; `None`

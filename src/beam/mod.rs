@@ -9,6 +9,7 @@ mod mesh;
 pub mod mode;
 pub mod mode_count;
 mod pieces;
+pub mod resolution;
 mod ritz;
 pub mod section;
 pub mod spring;

@@ -62,12 +62,6 @@ impl Blow {
         LANES * (count / LANES as f64).ceil().max(3.0) as usize
     }
 
-    /// Error of the force of a blow with this number of modes, relative to it; 1 at most.
-    pub fn error(&self, section: &Section, modes: usize) -> f64 {
-        let digits = modes as f64 / self.per_digit(section);
-        10_f64.powf(self.first_digits(section) - digits).min(1.0)
-    }
-
     /// Modes per digit, 1.
     fn per_digit(&self, section: &Section) -> f64 {
         let steepness = if self.steep { STEEP } else { 1.0 };

@@ -140,16 +140,6 @@ impl Spring {
         }
     }
 
-    /// Error of the force of a blow with this number of modes, relative to it; 1 at most, 0 where the modes are given.
-    pub fn error(&self, blow: &Blow, count: usize) -> f64 {
-        match &self.form {
-            Form::Uniform => blow.error(&self.section, count),
-            Form::Segments(pieces) if pieces.are_uniform() => blow.error(&pieces.at_contact(), count),
-            Form::Segments(pieces) => blow.error(&pieces.at_contact(), count * 4 / (4 + IRREGULAR)),
-            Form::Modes(_) => 0.0,
-        }
-    }
-
     /// The highest frequency of the modes given, and that up to which a blow excites the spring, if it is higher, Hz.
     pub fn missed(&self, blow: &Blow) -> Option<(f64, f64)> {
         match &self.form {

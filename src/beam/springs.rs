@@ -12,6 +12,8 @@
 //! so that they join the modes of the moving spring with the opposite sign at the contact. `support.displacement` moves the
 //! contact point as if its spring were rigid: the inertia of a clamp that moves is left out.
 
+use nalgebra::DVector;
+
 use crate::armature::Armature;
 use crate::beam::mode::{MAX_MODES, Mode};
 use crate::beam::mode_count::Blow;
@@ -78,11 +80,6 @@ impl Counts {
             fixed: MAX_MODES - moving,
         }
     }
-
-    /// Whether one of them is less than another.
-    pub fn less_than(self, other: Self) -> bool {
-        self.moving < other.moving || self.fixed < other.fixed
-    }
 }
 
 impl Springs {
@@ -119,13 +116,6 @@ impl Springs {
         }
     }
 
-    /// Error of the force of a blow with so many modes, relative to it.
-    pub fn error(&self, blow: &Blow, counts: Counts) -> f64 {
-        let fixed = self.fixed.as_ref();
-        let of_fixed = fixed.map_or(0.0, |fixed| fixed.spring.error(&fixed.blow(blow), counts.fixed));
-        self.moving.error(blow, counts.moving).max(of_fixed)
-    }
-
     /// Frequencies of the highest mode of a spring given by modes and up to which a blow excites it, where that is higher,
     /// Hz; and whether it is the fixed contact's.
     pub fn missed(&self, blow: &Blow) -> Option<(f64, f64, bool)> {
@@ -145,11 +135,16 @@ impl Springs {
     pub fn modes(&self, scene: &Scene, counts: Counts, axial_force: f64) -> Option<Basis> {
         let mut basis = self.moving.modes(scene, counts.moving, axial_force)?;
         if self.fixed.is_some() || self.armature.is_some() {
+            // Modes of others have no part in the shapes of the moving spring.
+            let size = basis.shapes.first().map_or(0, DVector::len);
+            let shapes = basis.shapes.drain(..).chain(std::iter::repeat(DVector::zeros(size)));
             let others = self.fixed.iter().flat_map(|fixed| fixed.modes(counts.fixed));
-            basis.modes.extend(others);
-            basis.modes.truncate(MAX_MODES - usize::from(self.armature.is_some()));
-            basis.modes.extend(self.armature.as_ref().map(Armature::mode));
-            basis.modes.sort_by(|a, b| a.omega_squared.total_cmp(&b.omega_squared));
+            let room = MAX_MODES - usize::from(self.armature.is_some());
+            let springs = basis.modes.drain(..).chain(others).take(room);
+            let all = springs.chain(self.armature.as_ref().map(Armature::mode));
+            let mut pairs: Vec<_> = all.zip(shapes).collect();
+            pairs.sort_by(|(a, _), (b, _)| a.omega_squared.total_cmp(&b.omega_squared));
+            (basis.modes, basis.shapes) = pairs.into_iter().unzip();
         }
         Some(basis)
     }

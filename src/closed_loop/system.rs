@@ -12,6 +12,7 @@
 use bytemuck::zeroed_box;
 
 use crate::beam::mode::{MAX_MODES, Mode};
+use crate::beam::resolution::Resolution;
 use crate::closed_loop::eigenvectors::EigenPair;
 use crate::closed_loop::oscillator::{Coordinates, Oscillator, set};
 use crate::closed_loop::problem::Problem;
@@ -36,6 +37,8 @@ pub struct ClosedLoop {
     to_oscillators: Columns,
     /// Displacement and velocity of the tip per displacement, then per velocity, of each oscillator.
     pub(crate) tip: Box<[Coordinates; 2]>,
+    /// What the modes left out do, of the motion of each oscillator.
+    pub(crate) resolution: Resolution,
     /// Particular solution at its start, under unit base acceleration and under one that grows linearly with time.
     acceleration: Box<Coordinates>,
     jerk: Box<Coordinates>,
@@ -95,7 +98,12 @@ impl Columns {
 impl ClosedLoop {
     /// From the modes and the contact of the scene; `None` if the eigenvectors are too close to be separated
     /// accurately.
-    pub fn new(scene: &Scene, modes: &[Mode], contact: Linear, generator: &Generator) -> Option<Self> {
+    pub fn new(
+        scene: &Scene,
+        (modes, resolution): (&[Mode], &Resolution),
+        contact: Linear,
+        generator: &Generator,
+    ) -> Option<Self> {
         let problem = Problem {
             modes: modes.iter().map(|mode| (mode.omega_squared, mode.tip)).collect(),
             mass_damping: scene.beam.mass_damping,
@@ -142,6 +150,7 @@ impl ClosedLoop {
             to_oscillators: Columns::new(2 * count, left),
             oscillators,
             tip: zeroed_box(),
+            resolution: Resolution::default(),
             acceleration: zeroed_box(),
             jerk: zeroed_box(),
             force: zeroed_box(),
@@ -150,7 +159,7 @@ impl ClosedLoop {
             forces: [0.0; 5],
         };
         let resonant = closed_loop.set_particular(generator);
-        closed_loop.set_tip(modes);
+        closed_loop.set_tip(modes, resolution);
         let force = |motion: &Coordinates| closed_loop.force_of(motion);
         let [per_sine, per_cosine] = closed_loop.steady.each_ref().map(force);
         closed_loop.forces = [
@@ -191,9 +200,11 @@ impl ClosedLoop {
     }
 
     /// Sets the motion of the tip per oscillator.
-    fn set_tip(&mut self, modes: &[Mode]) {
+    fn set_tip(&mut self, modes: &[Mode], resolution: &Resolution) {
         let size = 2 * self.oscillators.len();
         let columns = self.to_modes.entries.chunks_exact(size);
+        let displacements = columns.clone().take(size).map(|column| column.iter().step_by(2));
+        self.resolution = resolution.of_motions(displacements);
         let [displacement, velocity] = &mut *self.tip;
         for ((displacement, velocity), column) in displacement.iter_mut().zip(velocity).zip(columns).take(size) {
             for (mode, motion) in modes.iter().zip(column.chunks_exact(2)) {

@@ -13,6 +13,8 @@ pub struct Drive {
     pub jerk: f64,
     /// The start of the communication step, s.
     since: f64,
+    /// Whether it is another one than before.
+    new: bool,
     /// Velocities of the inputs that move bodies, m/s.
     pub velocities: Ways,
     /// Mean current of the coil, relative.
@@ -26,6 +28,7 @@ impl Drive {
             acceleration: inputs.base_acceleration,
             jerk: inputs.base_acceleration_rate,
             since: time,
+            new: true,
             velocities: ways.map(|way| way / size),
             coil: inputs.coil_relative_current + 0.5 * size * inputs.coil_relative_current_rate,
         }
@@ -35,6 +38,12 @@ impl Drive {
     #[inline(always)]
     pub fn acceleration(&self, time: f64) -> f64 {
         self.acceleration + self.jerk * (time - self.since)
+    }
+
+    /// Whether it began less than half a step of `length` seconds before an instant (s).
+    #[inline(always)]
+    pub(crate) fn has_just_changed(&self, time: f64, length: f64) -> bool {
+        self.new && time - self.since < 0.5 * length
     }
 
     /// Whether the base acceleration is constant and the fixed contacts at rest.

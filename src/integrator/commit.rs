@@ -13,6 +13,9 @@ use crate::math::simd::Separate;
 use crate::model::Model;
 use crate::state::State;
 
+/// Steps from one look at what is unresolved to the next: it lasts longer than a step, and a look at each costs 1 %.
+const EACH: u64 = 4;
+
 /// Moves a state, of which the recorder has taken what it needs, to the end of an accepted step.
 pub(crate) fn commit<const S: usize>(
     model: &Model,
@@ -33,10 +36,17 @@ pub(crate) fn commit<const S: usize>(
     for ((link, at), nodes) in model.links.iter().zip(&mut state.links).zip(&trial.links) {
         (at.approach, at.rate) = (nodes.end.approach, nodes.end.rate);
         match &link.law {
-            LinkLaw::Contact(law) if at.closed => at.force = law.without_pull(link.force + nodes.end.force),
+            LinkLaw::Contact(law) if at.closed => {
+                at.force = law.without_pull(link.force + nodes.end.force);
+                state.force_error.greatest = state.force_error.greatest.max(at.force);
+            }
             LinkLaw::Magnet(_) => at.force = link.force + nodes.end.force,
             _ => {}
         }
+    }
+    if state.steps.is_multiple_of(EACH) {
+        let error = model.resolution.error(state.modes.iter().map(|mode| mode.q));
+        state.force_error.note_unresolved(error, model.force_scale);
     }
     state.lengths.last = target.length;
     state.steps += 1;

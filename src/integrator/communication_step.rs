@@ -173,6 +173,7 @@ fn step_by<const EXTREMES: bool>(
     let displacements = displaced(model, inputs, time, size)?;
     let drive = Drive::new(inputs, time, size, motion.ways(displacements));
     let steady = drive.continues(&motion.drive);
+    let drive = if steady { motion.drive } else { drive };
     let ahead = motion.time < motion.end.time;
     // The end lies inside the current integration step: nothing to integrate, outputs come from its dense output.
     let inside = steady && until < motion.end.time;

@@ -145,7 +145,7 @@ pub(crate) fn step_ahead(
                 ..DenseLink::default()
             };
             state.time = time;
-            state.force_error.add(ratio * allowed);
+            state.force_error.add(ratio * allowed, model.force_scale);
             state.lengths.long = StepOutcome::accepted(length, requested, growth::<LONG>(ratio)).length;
             return true;
         }
@@ -241,6 +241,8 @@ impl<'a> Start<'a> {
         if !(indentation.is_finite() && rate.is_finite()) {
             return false;
         }
+        let unresolved = closed_loop.resolution.error(motion.iter().copied());
+        state.force_error.note_unresolved(unresolved, model.force_scale);
         let (x, v) = motion.split_at(closed_loop.oscillators.len());
         for (mode, (x, v)) in state.modes.iter_mut().zip(x.iter().zip(v)) {
             (mode.q, mode.v) = (*x, *v);

@@ -75,6 +75,8 @@
 //! - the part of slow modes, which hardly feel the shape, as it is orthogonal to polynomials of low degree: three times `m^2` over the
 //!   largest force (fitted to the impact of a free mass on a Hertz contact), and for the base acceleration the error of the
 //!   quadrature, `S / 2 (S - 1)!^2 / (2 S - 1)!` times `m_a^2` over the largest acceleration;
+//! - where inputs have just changed forces bend, and a defect that passes through zero shows nothing of it: there `m` is at least what
+//!   the polynomials through fewer nodes let expect;
 //! - after a closing or a jump, where the force moves like the root of time: a share [`constants::KINKED`] of `m`, which falls with
 //!   the distance from the kink as the convergence of a polynomial near a branch point does (Trefethen, Approximation Theory and
 //!   Approximation Practice, 2013, chapters 8 and 19).
@@ -175,9 +177,10 @@
 //! once the contact opens, and motions in which a change of the excitation by the tolerance moves the force by more.
 //!
 //! `solver.forceError` says what the error may be by now ([`force_error`](crate::force_error)): the largest error that a step has
-//! added, times the growth of a small deviation of the motion that is carried along once a contact has opened or closed
-//! ([`deviation`]), times a factor that makes it an upper bound for 95 % of random relays. With inputs that jump at each of thousands
-//! of communication steps the errors of as many steps add up, and it is too small for a third of them.
+//! added, times a power of the growth of a small deviation of the motion that is carried along once a contact has opened or closed
+//! ([`deviation`]), times a factor that makes it an upper bound for nine of ten random relays; and what the modes left out do
+//! ([`resolution`](crate::beam::resolution)). With inputs that jump at each of thousands of communication steps the errors of as many
+//! steps add up, and it is too small for a third of them.
 //!
 //! # Files
 //!

@@ -591,7 +591,7 @@ impl Stepper<'_> {
             state.energy_surplus +=
                 conservation::surplus(model, state, drive, cache.collocation(), trial, target.length).0;
         }
-        state.force_error.add(trial.error.with(passing));
+        state.force_error.add(trial.error.with(passing), model.force_scale);
         recorder.note_step((*model, &mut **state), cache.collocation(), trial, target, passages);
         let slip = state.slip;
         commit(model, state, drive, cache, trial, target);

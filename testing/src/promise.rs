@@ -44,6 +44,8 @@ fn reference(relay: &Relay, stronger: f64) -> Option<Course> {
 pub struct Judged {
     /// Its number.
     pub number: u64,
+    /// Its kind.
+    pub kind: &'static str,
     /// Damping of the first mode of the spring without contact, relative to critical.
     pub damping: f64,
     /// Whether it opens.
@@ -69,6 +71,7 @@ pub fn judge(number: u64, draw: fn(u64) -> Relay) -> Judged {
     let tolerance = relay.scene.solver.tolerance;
     let mut judged = Judged {
         number,
+        kind: relay.kind,
         damping: relay.damping,
         opens: true,
         tolerance,

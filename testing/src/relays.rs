@@ -8,15 +8,15 @@ use relay_contact::error::{SceneError, StepError};
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{
-    AxialForceKind, ContactLawKind, ExcitationKind, FrictionKind, RealOutput, ResistanceKind,
-};
+use relay_contact::variables::{AxialForceKind, ContactLawKind, ExcitationKind, RealOutput};
 
 use crate::scenes::{propped_mass, tip_stiffness};
 
 /// A relay, how it is driven, and how it is asked.
 #[derive(Clone, Debug)]
 pub struct Relay {
+    /// What kind of relay ([`crate::kinds`]).
+    pub kind: &'static str,
     /// Parameters and effects.
     pub scene: Scene,
     /// Amplitude (m/s2) and frequency (Hz) of `base.acceleration`, an input beside the generator.
@@ -25,6 +25,8 @@ pub struct Relay {
     pub travel: (f64, f64),
     /// Whether inputs are held over each communication step, and jump to the next; else they change linearly.
     pub held: bool,
+    /// Inputs of each communication step, in place of both and of `held`; empty: none.
+    pub knots: Vec<Inputs>,
     /// Length of the communication steps, s, and their number.
     pub steps: (f64, u32),
     /// Damping of the first mode of the spring without contact, relative to critical.
@@ -89,92 +91,27 @@ impl Relay {
         let duration = (5.0 / frequency).clamp(2e-3, 2e-2);
         let step = logarithmic(rng, 2e-6, 1e-3_f64.min(duration / 5.0));
         Self {
+            kind: "plain",
             scene,
             shake,
             travel,
             held: false,
+            knots: Vec::new(),
             steps: steps(step, duration),
             damping,
         }
     }
 
-    /// The relay of a number, driven by an input alone that is sampled in steps as short as controllers have.
-    pub fn held(number: u64) -> Self {
-        let mut relay = Self::draw(number);
-        let (rng, scene) = (&mut Rng::with_seed(!number), &mut relay.scene);
-        relay.shake = (scene.excitation.amplitude, scene.excitation.frequency);
-        relay.travel = (0.0, 1.0);
-        relay.held = true;
-        scene.effects.excitation = ExcitationKind::None;
-        let step = logarithmic(rng, 2e-6, 2e-5);
-        let duration = (5.0 / relay.shake.1).clamp(2e-3, 6e-3);
-        relay.steps = steps(step, duration);
-        relay
-    }
-
-    /// The relay of a number with a second contact as near as the spring moves.
-    pub fn changeover(number: u64) -> Self {
-        let mut relay = Self::draw(number);
-        let rng = &mut Rng::with_seed(!number);
-        let scene = &mut relay.scene;
-        scene.effects.contact_law = ContactLawKind::Hertz;
-        scene.effects.second_contact = true;
-        scene.excitation.amplitude *= 1.5;
-        scene.second.gap = scene.contact.overtravel.abs() * logarithmic(rng, 0.02, 0.5);
-        scene.second.curvature_radius = logarithmic(rng, 3e-4, 3e-2);
-        scene.second.damping = logarithmic(rng, 1e-7, 1e-4);
-        relay
-    }
-
-    /// The relay of a number with friction.
-    pub fn friction(number: u64) -> Self {
-        let mut relay = Self::draw(number);
-        let rng = &mut Rng::with_seed(!number);
-        let scene = &mut relay.scene;
-        scene.effects.friction = FrictionKind::Coulomb;
-        scene.effects.contact_law = ContactLawKind::Hertz;
-        if scene.effects.axial_force == AxialForceKind::FromDeflection {
-            scene.effects.axial_force = AxialForceKind::FromPreload;
-        }
-        scene.friction.coefficient = logarithmic(rng, 0.05, 1.0);
-        scene.tip.contact_height = scene.beam.length * logarithmic(rng, 0.01, 0.2);
-        if rng.u8(..3) == 0 {
-            scene.friction.initial = uniform(rng, -1.0, 1.0);
-        }
-        relay
-    }
-
-    /// The relay of a number with rough contacts, which are softer than spheres: alone, beside a second contact, or with
-    /// friction.
-    pub fn rough(number: u64) -> Self {
-        let mut relay = match number % 3 {
-            0 => Self::draw(number),
-            1 => Self::changeover(number),
-            _ => Self::friction(number),
-        };
-        let rng = &mut Rng::with_seed(number.rotate_left(32));
-        let scene = &mut relay.scene;
-        let bending = scene.beam.youngs_modulus * scene.beam.width * scene.beam.thickness.powi(3) / 12.0;
-        let tip = 3.0 * bending / scene.beam.length.powi(3);
-        let contact = &mut scene.contact;
-        contact.stiffness_force = tip * contact.overtravel.abs();
-        contact.stiffness = tip * logarithmic(rng, 10.0, 1e4);
-        // With friction the tolerance is not promised outside this range.
-        let rubs = scene.effects.friction != FrictionKind::None;
-        let (least, most) = if rubs { (0.1, 0.6) } else { (0.0, 0.9) };
-        let linear = rng.u8(..8) == 0 && !rubs;
-        contact.stiffness_exponent = if linear { 0.0 } else { uniform(rng, least, most) };
-        // The indentation at that force, beyond which the second contact lies.
-        let depth = contact.stiffness_force / ((1.0 - contact.stiffness_exponent) * contact.stiffness);
-        scene.second.gap += 1.5 * depth;
-        scene.second.stiffness = contact.stiffness * logarithmic(rng, 0.1, 10.0);
-        scene.effects.contact_law = ContactLawKind::Rough;
-        scene.effects.resistance = ResistanceKind::Barber;
-        relay
-    }
-
     /// The inputs over a communication step: values at its start, and the rates that lead to those at its end.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a count of steps"
+    )]
     pub fn inputs(&self, time: f64, size: f64) -> Inputs {
+        if let Some(inputs) = self.knots.get((time / size).round() as usize) {
+            return *inputs;
+        }
         let at = |(amplitude, frequency): (f64, f64), time: f64| amplitude * (TAU * frequency * time).sin();
         let rate = |wave| {
             if self.held {
@@ -212,8 +149,13 @@ impl Relay {
                 return Ok((course, Some(error)));
             }
             course.force.push(simulation.real(RealOutput::ContactForce));
-            course.least.push(simulation.real(RealOutput::StepMinimumForce));
-            course.greatest.push(simulation.real(RealOutput::StepMaximumForce));
+            let extremes = if scene.effects.extremes {
+                [RealOutput::StepMinimumForce, RealOutput::StepMaximumForce]
+            } else {
+                [RealOutput::ContactForce; 2]
+            };
+            course.least.push(simulation.real(extremes[0]));
+            course.greatest.push(simulation.real(extremes[1]));
             if scene.effects.second_contact {
                 course.force.push(simulation.real(RealOutput::SecondForce));
                 course.least.push(simulation.real(RealOutput::SecondMinimumForce));
@@ -228,7 +170,7 @@ impl Relay {
 
 /// Communication steps of this length (s) over a duration (s): their length and number.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count of steps
-fn steps(length: f64, duration: f64) -> (f64, u32) {
+pub(crate) fn steps(length: f64, duration: f64) -> (f64, u32) {
     (length, (duration / length).ceil() as u32)
 }
 

@@ -4,9 +4,10 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use benches::page;
-use clap::{Parser, ValueEnum};
+use clap::Parser;
+use testing::kinds::KINDS;
 use testing::promise::{Judged, Outcome, judge_all};
 use testing::relays::Relay;
 
@@ -30,28 +31,14 @@ struct Arguments {
     count: u64,
     /// Which relays; those of one kind only are printed, and written to no file
     #[arg(long)]
-    kind: Option<Kind>,
-}
-
-/// A kind of relay.
-#[derive(Clone, Copy, ValueEnum)]
-enum Kind {
-    Changeover,
-    Friction,
-    Held,
-    Rough,
-    Segments,
+    kind: Option<String>,
 }
 
 fn main() -> Result<()> {
     let arguments = Arguments::parse();
-    let draw = match arguments.kind {
-        None => Relay::draw,
-        Some(Kind::Changeover) => Relay::changeover,
-        Some(Kind::Friction) => Relay::friction,
-        Some(Kind::Held) => Relay::held,
-        Some(Kind::Rough) => Relay::rough,
-        Some(Kind::Segments) => Relay::with_segments,
+    let draw = match &arguments.kind {
+        None => Relay::any,
+        Some(kind) => KINDS.iter().find(|(name, ..)| name == kind).context("no such kind")?.2,
     };
     let judged = judge_all(arguments.first, arguments.count, draw);
     let text = report(&judged);
@@ -66,9 +53,10 @@ fn main() -> Result<()> {
 }
 
 fn csv(judged: &[Judged]) -> String {
-    let mut text = "relay,damping,opens,tolerance,error,instants,estimate,outcome\n".to_owned();
+    let mut text = "relay,kind,damping,opens,tolerance,error,instants,estimate,outcome\n".to_owned();
     for Judged {
         number,
+        kind,
         damping,
         opens,
         tolerance,
@@ -81,7 +69,7 @@ fn csv(judged: &[Judged]) -> String {
         let instants = instants.map_or(String::new(), |instants| format!("{instants:.3e}"));
         let _ = writeln!(
             text,
-            "{number},{damping:.3e},{opens},{tolerance:.3e},{error:.3e},{instants},{estimate:.3e},{outcome:?}"
+            "{number},{kind},{damping:.3e},{opens},{tolerance:.3e},{error:.3e},{instants},{estimate:.3e},{outcome:?}"
         );
     }
     text
@@ -94,6 +82,7 @@ fn report(judged: &[Judged]) -> String {
         .filter(|judged| judged.outcome != Outcome::NotRun)
         .collect();
     let mut text = table(&run);
+    text.push_str(&table_of_kinds(&run));
     let kept = |judged: &&&Judged| judged.opens && judged.outcome == Outcome::Kept;
     let instants: Vec<_> = run.iter().filter(kept).filter_map(|judged| judged.instants).collect();
     let _ = write!(
@@ -145,6 +134,26 @@ fn table(run: &[&Judged]) -> String {
                 count(|judged| judged.error > judged.tolerance.max(judged.estimate)),
             );
         }
+    }
+    text
+}
+
+/// Of each kind, how many keep their tolerance, and whether the others say that they do not.
+fn table_of_kinds(run: &[&Judged]) -> String {
+    let mut text = "\n| kind | relays | kept | above, announced | above, not announced | kept, announced as above |\n\
+                    |---|---:|---:|---:|---:|---:|\n"
+        .to_owned();
+    for (kind, ..) in KINDS {
+        let count = |is: fn(&Judged) -> bool| run.iter().filter(|judged| judged.kind == kind && is(judged)).count();
+        let _ = writeln!(
+            text,
+            "| {kind} | {} | {} | {} | {} | {} |",
+            count(|_| true),
+            count(|judged| judged.error <= judged.tolerance),
+            count(|judged| judged.error > judged.tolerance && judged.estimate > judged.tolerance),
+            count(|judged| judged.error > judged.tolerance && judged.estimate <= judged.tolerance),
+            count(|judged| judged.error <= judged.tolerance && judged.estimate > judged.tolerance),
+        );
     }
     text
 }

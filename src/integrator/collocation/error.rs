@@ -27,6 +27,9 @@ pub(super) struct Judged<'a, const S: usize, const L: usize> {
     pub(super) step: &'a StepCoefficients<S>,
     pub(super) collocation: &'a Collocation<S>,
     pub(super) free: &'a FreeResponse<S>,
+    /// Whether inputs, or their slopes, may just have changed: forces then bend, and a defect that passes through zero shows
+    /// nothing of it.
+    pub(super) bent: bool,
 }
 
 impl<const S: usize, const L: usize> Judged<'_, S, L> {
@@ -46,6 +49,7 @@ impl<const S: usize, const L: usize> Judged<'_, S, L> {
             step,
             collocation,
             free,
+            bent: _,
         } = *self;
         let Linked { model, state, .. } = *linked;
         let defects = self.defects::<A>(trial);
@@ -127,10 +131,14 @@ impl<const S: usize, const L: usize> Judged<'_, S, L> {
         let mut add = |index: usize| {
             let start = state.links[index].force - model.links[index].force;
             let forces = &trial.links[index].forces;
-            let defect = start - dot::<S, A>(forces, &self.collocation.at_start);
-            defects.0[index] = defect;
+            let mut defect = start - dot::<S, A>(forces, &self.collocation.at_start);
+            let (last, decay) = self.collocation.last_terms::<A>(start, forces);
+            if self.bent {
+                defect = defect.abs().max(last * decay).copysign(defect);
+            }
             trial.start_defect = trial.start_defect.max(defect.abs());
-            trial.next_terms = trial.next_terms.max(self.collocation.next_terms::<A>(start, forces));
+            trial.next_terms = trial.next_terms.max(last * decay * decay);
+            defects.0[index] = defect;
         };
         for a in 0..in_use::<L>(self.linked.unknowns.count) {
             let unknown = self.linked.unknowns.get(a);

@@ -198,14 +198,14 @@ impl<const S: usize> Collocation<S> {
         dip.or(below)
     }
 
-    /// Estimate of the terms that the nodal polynomial through `values` lacks beyond the one that its defect at the start
-    /// shows, from the defects of the polynomials through fewer nodes, where the value at the start is `start`. A defect may pass
-    /// through zero while they are large.
-    pub fn next_terms<A: Arithmetic>(&self, start: f64, values: &Nodal<S>) -> f64 {
+    /// What the polynomial through all `values` but the first misses at the start, where the value is `start`, and over that of
+    /// the polynomial without two: times that ratio it is the defect to be expected, and once more the terms beyond. A defect
+    /// may pass through zero while they are large.
+    #[inline(always)]
+    pub fn last_terms<A: Arithmetic>(&self, start: f64, values: &Nodal<S>) -> (f64, f64) {
         let [one, two] = &self.at_start_of_fewer;
         let (one, two) = (start - dot::<S, A>(values, one), start - dot::<S, A>(values, two));
-        let decay = (one / two).abs().min(SLOWEST_DECAY);
-        one.abs() * decay * decay
+        (one.abs(), (one / two).abs().min(SLOWEST_DECAY))
     }
 
     /// Mean over the step of the nodal polynomial through `values`.

@@ -90,6 +90,7 @@ impl<const S: usize> Step<'_, S> {
                 step,
                 collocation,
                 free: &free,
+                bent: self.drive.has_just_changed(state.time, step.length),
             };
             judged.estimate::<A>(&solution, trial);
             if !state.is_closed() {
