@@ -9,6 +9,7 @@ use relay_contact::scene::Scene;
 use relay_contact::scene::file::SceneFile;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{BooleanOutput, ContactLawKind, IntegerOutput, RealOutput};
+use testing::kinds;
 use testing::relays::Relay;
 use testing::scenes;
 
@@ -163,7 +164,7 @@ fn ride(case: &str, scene: &Scene, rng: &mut Rng, duration: f64, inputs: impl Fn
 
 #[test]
 fn outputs_of_random_relays_agree_with_each_other() {
-    let kinds = [Relay::draw, Relay::changeover, Relay::friction, Relay::held];
+    let kinds = [Relay::draw, kinds::changeover, kinds::friction, kinds::held];
     for (kind, draw) in kinds.into_iter().enumerate() {
         for number in 50_000..50_050 {
             let relay = draw(number);

@@ -9,6 +9,7 @@ use relay_contact::inputs::Inputs;
 use relay_contact::scene::{Scene, Solver};
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{AxialForceKind, RealOutput};
+use testing::kinds;
 use testing::promise::{Judged, Outcome, judge, judge_all, tighten};
 use testing::relays::Relay;
 use testing::scenes::{at_rest, largest_difference, shaken, tip_stiffness};
@@ -30,19 +31,19 @@ fn relays_with_springs_of_segments_keep_their_tolerance_or_say_that_they_may_not
 /// Errors of so many steps add up to more than the estimate, which was fitted to other scenes, for a third of them.
 #[test]
 fn relays_with_inputs_held_over_each_step_keep_their_tolerance() {
-    none_above_in_silence(&judge_all(50_000, COUNT, Relay::held), COUNT);
+    none_above_in_silence(&judge_all(50_000, COUNT, kinds::held), COUNT);
 }
 
 /// The derivatives of the inputs change at communication points, and some inputs jump.
 #[test]
 fn relays_with_inputs_that_are_linear_between_knots_keep_their_tolerance() {
-    none_above_in_silence(&judge_all(70_000, COUNT, Relay::knots), COUNT);
+    none_above_in_silence(&judge_all(70_000, COUNT, kinds::knots), COUNT);
 }
 
 /// All kinds, a third of them with inputs that have knots.
 #[test]
 fn relays_of_any_kind_keep_their_tolerance_or_say_that_they_may_not() {
-    keep_their_tolerance(&judge_all(80_000, COUNT, Relay::any), COUNT);
+    keep_their_tolerance(&judge_all(80_000, COUNT, kinds::any), COUNT);
 }
 
 /// Eight modes are too few for these: the run says so, also of contacts that stay closed.
@@ -50,7 +51,7 @@ fn relays_of_any_kind_keep_their_tolerance_or_say_that_they_may_not() {
 fn too_few_modes_are_not_silent() {
     let mut above = 0;
     for number in 80_000..80_024 {
-        let mut relay = Relay::linear(number);
+        let mut relay = kinds::linear(number);
         (relay.scene.solver.modes, relay.scene.solver.tolerance) = (8, 1e-6);
         let Ok((expected, None)) = relay.run(|scene| tighten(scene, 0.0)) else {
             continue;
@@ -112,19 +113,19 @@ fn the_force_after_a_knot_is_within_the_tolerance() {
 
 #[test]
 fn changeover_relays_keep_their_tolerance_or_say_that_they_may_not() {
-    keep_their_tolerance(&judge_all(20_000, COUNT, Relay::changeover), COUNT);
+    keep_their_tolerance(&judge_all(20_000, COUNT, kinds::changeover), COUNT);
 }
 
 /// Exponents of the stiffness from 0 to 0.9, stiffnesses over four decades; alone, with a second contact, with friction.
 #[test]
 fn relays_with_rough_contacts_keep_their_tolerance_or_say_that_they_may_not() {
-    keep_their_tolerance(&judge_all(60_000, COUNT, Relay::rough), COUNT);
+    keep_their_tolerance(&judge_all(60_000, COUNT, kinds::rough), COUNT);
 }
 
 /// A third as many.
 #[test]
 fn relays_with_friction_keep_their_tolerance_or_say_that_they_may_not() {
-    keep_their_tolerance(&judge_all(30_000, COUNT / 3, Relay::friction), COUNT / 3);
+    keep_their_tolerance(&judge_all(30_000, COUNT / 3, kinds::friction), COUNT / 3);
 }
 
 fn keep_their_tolerance(judged: &[Judged], count: u64) {
@@ -165,7 +166,7 @@ fn former_excesses_are_within_the_tolerance() {
     for number in [
         40_109, 40_148, 40_274, 40_282, 40_283, 40_375, 40_377, 40_462, 41_276, 41_346,
     ] {
-        assert_eq!(judge(number, Relay::friction).outcome, Outcome::Kept, "{number}");
+        assert_eq!(judge(number, kinds::friction).outcome, Outcome::Kept, "{number}");
     }
 }
 

@@ -17,264 +17,263 @@ pub type Kind = (&'static str, u8, fn(u64) -> Relay);
 /// All of them.
 pub const KINDS: [Kind; 11] = [
     ("plain", 10, Relay::draw),
-    ("held", 6, Relay::held),
-    ("knots", 16, Relay::knots),
-    ("linear", 12, Relay::linear),
-    ("rough", 8, Relay::rough),
-    ("buckling", 8, Relay::near_buckling),
+    ("held", 6, held),
+    ("knots", 16, knots),
+    ("linear", 12, linear),
+    ("rough", 8, rough),
+    ("buckling", 8, near_buckling),
     ("segments", 8, Relay::with_segments),
-    ("modes", 6, Relay::with_modes),
-    ("closing", 10, Relay::closing),
-    ("changeover", 8, Relay::changeover),
-    ("friction", 8, Relay::friction),
+    ("modes", 6, with_modes),
+    ("closing", 10, closing),
+    ("changeover", 8, changeover),
+    ("friction", 8, friction),
 ];
 
-impl Relay {
-    /// The relay of a number, of any kind; a third of those that are shaken by a generator alone or by sines have inputs with
-    /// knots instead.
-    pub fn any(number: u64) -> Self {
-        let rng = &mut Rng::with_seed(number.rotate_left(16));
-        let mut left = rng.u8(..100);
-        let kind = KINDS.iter().find(|(_, share, _)| {
-            let found = left < *share;
-            left = left.wrapping_sub(*share);
-            found
-        });
-        let (name, _, draw) = kind.expect("shares of a hundred");
-        let mut relay = draw(number);
-        relay.kind = name;
-        if rng.u8(..3) == 0 && relay.knots.is_empty() && !relay.held {
-            relay.tie_knots(rng);
-        }
-        relay
+/// The relay of a number, of any kind; a third of those that are shaken by a generator alone or by sines have inputs with
+/// knots instead.
+pub fn any(number: u64) -> Relay {
+    let rng = &mut Rng::with_seed(number.rotate_left(16));
+    let mut left = rng.u8(..100);
+    let kind = KINDS.iter().find(|(_, share, _)| {
+        let found = left < *share;
+        left = left.wrapping_sub(*share);
+        found
+    });
+    let (name, _, draw) = kind.expect("shares of a hundred");
+    let mut relay = draw(number);
+    relay.kind = name;
+    if rng.u8(..3) == 0 && relay.knots.is_empty() && !relay.held {
+        tie_knots(&mut relay, rng);
     }
+    relay
+}
 
-    /// The relay of a number with inputs that are linear between knots.
-    pub fn knots(number: u64) -> Self {
-        let mut relay = Self::draw(number);
-        relay.tie_knots(&mut Rng::with_seed(!number));
-        relay
+/// The relay of a number with inputs that are linear between knots.
+pub fn knots(number: u64) -> Relay {
+    let mut relay = Relay::draw(number);
+    tie_knots(&mut relay, &mut Rng::with_seed(!number));
+    relay
+}
+
+/// Inputs that are linear between knots, beside the generator or alone: base acceleration, which jumps at the start and at
+/// some knots, and support displacement.
+fn tie_knots(relay: &mut Relay, rng: &mut Rng) {
+    let acceleration = relay.scene.excitation.amplitude;
+    if rng.bool() {
+        relay.scene.effects.excitation = ExcitationKind::None;
     }
-
-    /// Inputs that are linear between knots, beside the generator or alone: base acceleration, which jumps at the start and at
-    /// some knots, and support displacement.
-    fn tie_knots(&mut self, rng: &mut Rng) {
-        let acceleration = self.scene.excitation.amplitude;
-        if rng.bool() {
-            self.scene.effects.excitation = ExcitationKind::None;
-        }
-        let way = match rng.u8(..3) {
-            0 => self.scene.contact.overtravel.abs() * logarithmic(rng, 0.1, 2.0),
-            _ => 0.0,
-        };
-        // Knots are this many communication steps apart at most.
-        let widest = rng.u32(1..=12);
-        let (size, count) = self.steps;
-        while self.knots.len() < count as usize {
-            let last = self
-                .knots
-                .last()
-                .map_or(Inputs::default(), |inputs| after(inputs, size));
-            let first = self.knots.is_empty();
-            let jumps = if first { rng.bool() } else { rng.u8(..5) == 0 };
-            let start = if jumps {
-                uniform(rng, -acceleration, acceleration)
-            } else {
-                last.base_acceleration
-            };
-            let steps = rng.u32(1..=widest);
-            let to = (uniform(rng, -acceleration, acceleration), uniform(rng, -way, way));
-            self.lead(
-                Inputs {
-                    base_acceleration: start,
-                    ..last
-                },
-                to,
-                steps,
-            );
-        }
-    }
-
-    /// Inputs that lead from these in a number of communication steps to a base acceleration (m/s2) and a displacement of the
-    /// fixed contact (m), at most at 0.5 m/s.
-    fn lead(&mut self, from: Inputs, (acceleration, displacement): (f64, f64), steps: u32) {
-        let (size, _) = self.steps;
-        let duration = f64::from(steps) * size;
-        let rate = (displacement - from.support_displacement) / duration;
-        let first = Inputs {
-            base_acceleration_rate: (acceleration - from.base_acceleration) / duration,
-            support_displacement_rate: rate.clamp(-0.5, 0.5),
-            ..from
-        };
-        let inputs = (0..steps).map(|k| after(&first, f64::from(k) * size));
-        self.knots.extend(inputs);
-    }
-
-    /// The relay of a number with a contact that is a spring with a damper: Linearised or Bonded, in exact steps or not.
-    pub fn linear(number: u64) -> Self {
-        let mut relay = Self::draw(number);
-        let rng = &mut Rng::with_seed(!number);
-        let scene = &mut relay.scene;
-        scene.contact.overtravel = scene.contact.overtravel.abs();
-        scene.effects.contact_law = [ContactLawKind::Linearised, ContactLawKind::Bonded][rng.usize(..2)];
-        scene.effects.extremes = rng.bool();
-        relay
-    }
-
-    /// The relay of a number with an axial force near the buckling load, or one that follows a large deflection.
-    pub fn near_buckling(number: u64) -> Self {
-        let mut relay = Self::draw(number);
-        let rng = &mut Rng::with_seed(!number);
-        let scene = &mut relay.scene;
-        let softer = if rng.bool() {
-            let rest = logarithmic(rng, 3e-3, 0.5);
-            scene.effects.axial_force = AxialForceKind::Prescribed;
-            scene.beam.axial_force = (1.0 - rest) * tip_stiffness(scene) * scene.beam.length * 0.822;
-            rest
+    let way = match rng.u8(..3) {
+        0 => relay.scene.contact.overtravel.abs() * logarithmic(rng, 0.1, 2.0),
+        _ => 0.0,
+    };
+    // Knots are this many communication steps apart at most.
+    let widest = rng.u32(1..=12);
+    let (size, count) = relay.steps;
+    while relay.knots.len() < count as usize {
+        let last = relay
+            .knots
+            .last()
+            .map_or(Inputs::default(), |inputs| after(inputs, size));
+        let first = relay.knots.is_empty();
+        let jumps = if first { rng.bool() } else { rng.u8(..5) == 0 };
+        let start = if jumps {
+            uniform(rng, -acceleration, acceleration)
         } else {
-            let overtravel = (scene.beam.length * logarithmic(rng, 0.03, 0.4)).min(0.01);
-            scene.effects.axial_force = AxialForceKind::FromDeflection;
-            overtravel / std::mem::replace(&mut scene.contact.overtravel, overtravel).abs()
+            last.base_acceleration
         };
-        scene.excitation.amplitude *= softer;
-        relay.shake.0 *= softer;
-        relay
+        let steps = rng.u32(1..=widest);
+        let to = (uniform(rng, -acceleration, acceleration), uniform(rng, -way, way));
+        lead(
+            relay,
+            Inputs {
+                base_acceleration: start,
+                ..last
+            },
+            to,
+            steps,
+        );
     }
+}
 
-    /// The relay of a number with its spring given by some of its modes.
-    pub fn with_modes(number: u64) -> Self {
-        let mut relay = Self::draw(number);
-        let rng = &mut Rng::with_seed(!number);
-        let scene = &mut relay.scene;
-        scene.effects.axial_force = AxialForceKind::None;
-        let basis = Spring::new(scene)
-            .ok()
-            .and_then(|spring| spring.modes(scene, rng.usize(4..=24), 0.0));
-        let modes = basis.expect("a spring without axial force").modes;
-        let own = rng.bool();
-        let given = modes.iter().take(rng.usize(2..=modes.len())).map(|mode| GivenMode {
-            frequency: mode.omega_squared.sqrt() / std::f64::consts::TAU,
-            contact: mode.tip,
-            participation: mode.participation,
-            damping: own.then(|| (0.5 * mode.damping / mode.omega_squared.sqrt()).min(1.0)),
-            rotation: None,
-            pusher: None,
-        });
-        let shape = Shape::Modes(Modes {
-            compliance: 1.0 / tip_stiffness(scene),
-            modes: given.collect(),
-        });
-        let name = format!("random modes {number}");
-        scene.spring = Some(Arc::new(SpringFile { name, shape }));
-        relay
-    }
+/// Inputs that lead from these in a number of communication steps to a base acceleration (m/s2) and a displacement of the
+/// fixed contact (m), at most at 0.5 m/s.
+fn lead(relay: &mut Relay, from: Inputs, (acceleration, displacement): (f64, f64), steps: u32) {
+    let (size, _) = relay.steps;
+    let duration = f64::from(steps) * size;
+    let rate = (displacement - from.support_displacement) / duration;
+    let first = Inputs {
+        base_acceleration_rate: (acceleration - from.base_acceleration) / duration,
+        support_displacement_rate: rate.clamp(-0.5, 0.5),
+        ..from
+    };
+    let inputs = (0..steps).map(|k| after(&first, f64::from(k) * size));
+    relay.knots.extend(inputs);
+}
 
-    /// The relay of a number with a gap that the fixed contact closes: at rest, at constant velocity, at rest.
-    pub fn closing(number: u64) -> Self {
-        let mut relay = Self::draw(number);
-        let rng = &mut Rng::with_seed(!number);
-        let scene = &mut relay.scene;
-        scene.effects.contact_law = ContactLawKind::Hertz;
-        let overtravel = scene.contact.overtravel.abs();
-        let gap = overtravel * logarithmic(rng, 0.02, 0.5);
-        scene.contact.overtravel = -gap;
-        if rng.bool() {
-            scene.effects.excitation = ExcitationKind::None;
-        }
-        relay.shake = (0.0, 1.0);
-        let way = gap + overtravel * logarithmic(rng, 0.1, 1.0);
-        let (size, count) = relay.steps;
-        let (slowest, fastest) = (f64::from(count / 2) * size, way / 0.5);
-        let parts = [
-            rng.u32(..=count / 4),
-            steps(size, logarithmic(rng, 0.02, 1.0).mul_add(slowest, fastest)).1,
-            count / 2,
-        ];
-        for (steps, to) in parts.into_iter().zip([0.0, way, way]) {
-            let from = relay
-                .knots
-                .last()
-                .map_or(Inputs::default(), |inputs| after(inputs, size));
-            relay.lead(from, (0.0, to), steps);
-        }
-        relay.steps.1 = parts.into_iter().sum();
-        relay
-    }
+/// The relay of a number with a contact that is a spring with a damper: Linearised or Bonded, in exact steps or not.
+pub fn linear(number: u64) -> Relay {
+    let mut relay = Relay::draw(number);
+    let rng = &mut Rng::with_seed(!number);
+    let scene = &mut relay.scene;
+    scene.contact.overtravel = scene.contact.overtravel.abs();
+    scene.effects.contact_law = [ContactLawKind::Linearised, ContactLawKind::Bonded][rng.usize(..2)];
+    scene.effects.extremes = rng.bool();
+    relay
+}
 
-    /// The relay of a number, driven by an input alone that is sampled in steps as short as controllers have.
-    pub fn held(number: u64) -> Self {
-        let mut relay = Self::draw(number);
-        let (rng, scene) = (&mut Rng::with_seed(!number), &mut relay.scene);
-        relay.shake = (scene.excitation.amplitude, scene.excitation.frequency);
-        relay.travel = (0.0, 1.0);
-        relay.held = true;
+/// The relay of a number with an axial force near the buckling load, or one that follows a large deflection.
+pub fn near_buckling(number: u64) -> Relay {
+    let mut relay = Relay::draw(number);
+    let rng = &mut Rng::with_seed(!number);
+    let scene = &mut relay.scene;
+    let softer = if rng.bool() {
+        let rest = logarithmic(rng, 3e-3, 0.5);
+        scene.effects.axial_force = AxialForceKind::Prescribed;
+        scene.beam.axial_force = (1.0 - rest) * tip_stiffness(scene) * scene.beam.length * 0.822;
+        rest
+    } else {
+        let overtravel = (scene.beam.length * logarithmic(rng, 0.03, 0.4)).min(0.01);
+        scene.effects.axial_force = AxialForceKind::FromDeflection;
+        overtravel / std::mem::replace(&mut scene.contact.overtravel, overtravel).abs()
+    };
+    scene.excitation.amplitude *= softer;
+    relay.shake.0 *= softer;
+    relay
+}
+
+/// The relay of a number with its spring given by some of its modes.
+pub fn with_modes(number: u64) -> Relay {
+    let mut relay = Relay::draw(number);
+    let rng = &mut Rng::with_seed(!number);
+    let scene = &mut relay.scene;
+    scene.effects.axial_force = AxialForceKind::None;
+    let basis = Spring::new(scene)
+        .ok()
+        .and_then(|spring| spring.modes(scene, rng.usize(4..=24), 0.0));
+    let modes = basis.expect("a spring without axial force").modes;
+    let own = rng.bool();
+    let given = modes.iter().take(rng.usize(2..=modes.len())).map(|mode| GivenMode {
+        frequency: mode.omega_squared.sqrt() / std::f64::consts::TAU,
+        contact: mode.tip,
+        participation: mode.participation,
+        damping: own.then(|| (0.5 * mode.damping / mode.omega_squared.sqrt()).min(1.0)),
+        rotation: None,
+        pusher: None,
+    });
+    let shape = Shape::Modes(Modes {
+        compliance: 1.0 / tip_stiffness(scene),
+        modes: given.collect(),
+    });
+    let name = format!("random modes {number}");
+    scene.spring = Some(Arc::new(SpringFile { name, shape }));
+    relay
+}
+
+/// The relay of a number with a gap that the fixed contact closes: at rest, at constant velocity, at rest.
+pub fn closing(number: u64) -> Relay {
+    let mut relay = Relay::draw(number);
+    let rng = &mut Rng::with_seed(!number);
+    let scene = &mut relay.scene;
+    scene.effects.contact_law = ContactLawKind::Hertz;
+    let overtravel = scene.contact.overtravel.abs();
+    let gap = overtravel * logarithmic(rng, 0.02, 0.5);
+    scene.contact.overtravel = -gap;
+    if rng.bool() {
         scene.effects.excitation = ExcitationKind::None;
-        let step = logarithmic(rng, 2e-6, 2e-5);
-        let duration = (5.0 / relay.shake.1).clamp(2e-3, 6e-3);
-        relay.steps = steps(step, duration);
-        relay
     }
+    relay.shake = (0.0, 1.0);
+    let way = gap + overtravel * logarithmic(rng, 0.1, 1.0);
+    let (size, count) = relay.steps;
+    let (slowest, fastest) = (f64::from(count / 2) * size, way / 0.5);
+    let parts = [
+        rng.u32(..=count / 4),
+        steps(size, logarithmic(rng, 0.02, 1.0).mul_add(slowest, fastest)).1,
+        count / 2,
+    ];
+    for (steps, to) in parts.into_iter().zip([0.0, way, way]) {
+        let from = relay
+            .knots
+            .last()
+            .map_or(Inputs::default(), |inputs| after(inputs, size));
+        lead(&mut relay, from, (0.0, to), steps);
+    }
+    relay.steps.1 = parts.into_iter().sum();
+    relay
+}
 
-    /// The relay of a number with a second contact as near as the spring moves.
-    pub fn changeover(number: u64) -> Self {
-        let mut relay = Self::draw(number);
-        let rng = &mut Rng::with_seed(!number);
-        let scene = &mut relay.scene;
-        scene.effects.contact_law = ContactLawKind::Hertz;
-        scene.effects.second_contact = true;
-        scene.excitation.amplitude *= 1.5;
-        scene.second.gap = scene.contact.overtravel.abs() * logarithmic(rng, 0.02, 0.5);
-        scene.second.curvature_radius = logarithmic(rng, 3e-4, 3e-2);
-        scene.second.damping = logarithmic(rng, 1e-7, 1e-4);
-        relay
-    }
+/// The relay of a number, driven by an input alone that is sampled in steps as short as controllers have.
+pub fn held(number: u64) -> Relay {
+    let mut relay = Relay::draw(number);
+    let (rng, scene) = (&mut Rng::with_seed(!number), &mut relay.scene);
+    relay.shake = (scene.excitation.amplitude, scene.excitation.frequency);
+    relay.travel = (0.0, 1.0);
+    relay.held = true;
+    scene.effects.excitation = ExcitationKind::None;
+    let step = logarithmic(rng, 2e-6, 2e-5);
+    let duration = (5.0 / relay.shake.1).clamp(2e-3, 6e-3);
+    relay.steps = steps(step, duration);
+    relay
+}
 
-    /// The relay of a number with friction.
-    pub fn friction(number: u64) -> Self {
-        let mut relay = Self::draw(number);
-        let rng = &mut Rng::with_seed(!number);
-        let scene = &mut relay.scene;
-        scene.effects.friction = FrictionKind::Coulomb;
-        scene.effects.contact_law = ContactLawKind::Hertz;
-        if scene.effects.axial_force == AxialForceKind::FromDeflection {
-            scene.effects.axial_force = AxialForceKind::FromPreload;
-        }
-        scene.friction.coefficient = logarithmic(rng, 0.05, 1.0);
-        scene.tip.contact_height = scene.beam.length * logarithmic(rng, 0.01, 0.2);
-        if rng.u8(..3) == 0 {
-            scene.friction.initial = uniform(rng, -1.0, 1.0);
-        }
-        relay
-    }
+/// The relay of a number with a second contact as near as the spring moves.
+pub fn changeover(number: u64) -> Relay {
+    let mut relay = Relay::draw(number);
+    let rng = &mut Rng::with_seed(!number);
+    let scene = &mut relay.scene;
+    scene.effects.contact_law = ContactLawKind::Hertz;
+    scene.effects.second_contact = true;
+    scene.excitation.amplitude *= 1.5;
+    scene.second.gap = scene.contact.overtravel.abs() * logarithmic(rng, 0.02, 0.5);
+    scene.second.curvature_radius = logarithmic(rng, 3e-4, 3e-2);
+    scene.second.damping = logarithmic(rng, 1e-7, 1e-4);
+    relay
+}
 
-    /// The relay of a number with rough contacts, which are softer than spheres: alone, beside a second contact, or with
-    /// friction.
-    pub fn rough(number: u64) -> Self {
-        let mut relay = match number % 3 {
-            0 => Self::draw(number),
-            1 => Self::changeover(number),
-            _ => Self::friction(number),
-        };
-        let rng = &mut Rng::with_seed(number.rotate_left(32));
-        let scene = &mut relay.scene;
-        let bending = scene.beam.youngs_modulus * scene.beam.width * scene.beam.thickness.powi(3) / 12.0;
-        let tip = 3.0 * bending / scene.beam.length.powi(3);
-        let contact = &mut scene.contact;
-        contact.stiffness_force = tip * contact.overtravel.abs();
-        contact.stiffness = tip * logarithmic(rng, 10.0, 1e4);
-        // With friction the tolerance is not promised outside this range.
-        let rubs = scene.effects.friction != FrictionKind::None;
-        let (least, most) = if rubs { (0.1, 0.6) } else { (0.0, 0.9) };
-        let linear = rng.u8(..8) == 0 && !rubs;
-        contact.stiffness_exponent = if linear { 0.0 } else { uniform(rng, least, most) };
-        // The indentation at that force, beyond which the second contact lies.
-        let depth = contact.stiffness_force / ((1.0 - contact.stiffness_exponent) * contact.stiffness);
-        scene.second.gap += 1.5 * depth;
-        scene.second.stiffness = contact.stiffness * logarithmic(rng, 0.1, 10.0);
-        scene.effects.contact_law = ContactLawKind::Rough;
-        scene.effects.resistance = ResistanceKind::Barber;
-        relay
+/// The relay of a number with friction.
+pub fn friction(number: u64) -> Relay {
+    let mut relay = Relay::draw(number);
+    let rng = &mut Rng::with_seed(!number);
+    let scene = &mut relay.scene;
+    scene.effects.friction = FrictionKind::Coulomb;
+    scene.effects.contact_law = ContactLawKind::Hertz;
+    if scene.effects.axial_force == AxialForceKind::FromDeflection {
+        scene.effects.axial_force = AxialForceKind::FromPreload;
     }
+    scene.friction.coefficient = logarithmic(rng, 0.05, 1.0);
+    scene.tip.contact_height = scene.beam.length * logarithmic(rng, 0.01, 0.2);
+    if rng.u8(..3) == 0 {
+        scene.friction.initial = uniform(rng, -1.0, 1.0);
+    }
+    relay
+}
+
+/// The relay of a number with rough contacts, which are softer than spheres: alone, beside a second contact, or with
+/// friction.
+pub fn rough(number: u64) -> Relay {
+    let mut relay = match number % 3 {
+        0 => Relay::draw(number),
+        1 => changeover(number),
+        _ => friction(number),
+    };
+    let rng = &mut Rng::with_seed(number.rotate_left(32));
+    let scene = &mut relay.scene;
+    let bending = scene.beam.youngs_modulus * scene.beam.width * scene.beam.thickness.powi(3) / 12.0;
+    let tip = 3.0 * bending / scene.beam.length.powi(3);
+    let contact = &mut scene.contact;
+    contact.stiffness_force = tip * contact.overtravel.abs();
+    contact.stiffness = tip * logarithmic(rng, 10.0, 1e4);
+    // With friction the tolerance is not promised outside this range.
+    let rubs = scene.effects.friction != FrictionKind::None;
+    let (least, most) = if rubs { (0.1, 0.6) } else { (0.0, 0.9) };
+    let linear = rng.u8(..8) == 0 && !rubs;
+    contact.stiffness_exponent = if linear { 0.0 } else { uniform(rng, least, most) };
+    // The indentation at that force, beyond which the second contact lies.
+    let depth = contact.stiffness_force / ((1.0 - contact.stiffness_exponent) * contact.stiffness);
+    scene.second.gap += 1.5 * depth;
+    scene.second.stiffness = contact.stiffness * logarithmic(rng, 0.1, 10.0);
+    scene.effects.contact_law = ContactLawKind::Rough;
+    scene.effects.resistance = ResistanceKind::Barber;
+    relay
 }
 
 /// Inputs after `size` seconds.

@@ -7,9 +7,8 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use benches::page;
 use clap::Parser;
-use testing::kinds::KINDS;
+use testing::kinds::{self, KINDS};
 use testing::promise::{Judged, Outcome, judge_all};
-use testing::relays::Relay;
 
 const BEGIN: &str = "<!-- promise: written by cargo run --release --package benches --bin promise -->";
 const END: &str = "<!-- end of promise -->";
@@ -37,7 +36,7 @@ struct Arguments {
 fn main() -> Result<()> {
     let arguments = Arguments::parse();
     let draw = match &arguments.kind {
-        None => Relay::any,
+        None => kinds::any,
         Some(kind) => KINDS.iter().find(|(name, ..)| name == kind).context("no such kind")?.2,
     };
     let judged = judge_all(arguments.first, arguments.count, draw);
