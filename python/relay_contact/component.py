@@ -88,9 +88,9 @@ class FMU2Functions(fmi2.FMU2Slave):  # type: ignore[misc]
 class Component:
     """The component as a file: its description, and the folder it is unpacked in."""
 
-    def __init__(self, path: Path | None = None, folder: Path | None = None) -> None:
+    def __init__(self, path: Path | str | None = None, folder: Path | None = None) -> None:
         """Unpack it, into a temporary folder if none is given, which is deleted together with this object."""
-        self.path = path or fmu_path()
+        self.path = Path(path) if path else fmu_path()
         if not self.path.is_file():
             raise RelayContactError(f"{self.path} is missing: build it with `cargo xtask fmu`")
         if platform not in supported_platforms(str(self.path)):

@@ -81,7 +81,7 @@ def test_a_component_for_other_machines_is_refused(tmp_path: Path) -> None:
     with pytest.raises(RelayContactError, match=r"has libraries for win32 only, not for this machine"):
         Component(other)
     with pytest.raises(RelayContactError, match=r"is missing: build it with"):
-        Component(tmp_path / "none.fmu")
+        Component(str(tmp_path / "none.fmu"))
 
 
 def test_every_scene_names_known_variables() -> None:
