@@ -23,7 +23,8 @@ cases! { CASES:
 fn shaken_by_ten_thousand_g(damping: f64) -> Result<Vec<Check>> {
     let wave = [98_066.5, -98_066.5, 98_066.5, 0.0];
     let segments = wave.map(|acceleration| Segment::accelerated(1e-4, acceleration));
-    Ride::new(with_damping(damping), segments).checks()
+    // Each blow of some newtons amplifies what the flight before it has left.
+    Ride::new(with_damping(damping), segments).checks_of_large_forces()
 }
 
 fn shock() -> Result<Vec<Check>> {

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from math import atan2, exp, pi, sin, sqrt
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -51,7 +52,7 @@ class Beam:
 class Armature:
     """The forces of magnet, return spring and stops on an armature."""
 
-    def __init__(self, get: Callable[[str], float]) -> None:
+    def __init__(self, get: Callable[[str], Any]) -> None:
         """Take its parameters."""
         names = ("mass", "stiffness", "returnForce", "holdForce", "gapConstant", "restPosition", "corePosition")
         self.mass, self.stiffness, self.back, self.hold, self.constant, self.rest, self.core = (
@@ -93,7 +94,8 @@ def forces(values: Values, fixed: tuple[float, float] | None, pushed: Callable[[
 
     `fixed` is the width and thickness (m) of the fixed contact's spring; the pusher is where `pushed` says (m).
     """
-    get = {**STARTS, **values}.__getitem__
+    known: dict[str, Any] = {**STARTS, **values}
+    get = known.__getitem__
     length, beta = get("beam.length"), get("beam.stiffnessDamping")
     has_pusher, moves = get("effects.pusher") != "None", get("effects.pusher") == "Armature"
     relay = Armature(get) if moves else None

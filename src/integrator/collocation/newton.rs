@@ -43,14 +43,18 @@ pub(crate) struct Unknowns {
 }
 
 impl Unknowns {
-    /// Contacts that are closed, and friction that sticks.
+    /// Contacts that are closed, friction that sticks, and a magnet that draws over a gap.
     #[inline(always)]
     pub(crate) fn of(model: &Model, state: &State) -> Self {
         let mut unknowns = Self::default();
         let friction = model.friction();
+        // On its core the armature has no gap, and the magnet a constant force.
+        let seated = model
+            .core()
+            .is_some_and(|core| state.links.get(core).is_some_and(|at| at.closed));
         for (index, (link, at)) in model.links.iter().zip(&state.links).enumerate() {
             let Some((rubbing, friction)) = friction.filter(|_| index == CONTACT) else {
-                if at.closed && link.contact().is_some() || matches!(link.law, LinkLaw::Magnet(_)) {
+                if at.closed && link.contact().is_some() || matches!(link.law, LinkLaw::Magnet(_)) && !seated {
                     unknowns.push(index, None);
                 }
                 continue;

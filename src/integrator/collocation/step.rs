@@ -10,7 +10,7 @@ use crate::integrator::collocation::error::{Judged, estimate_in_flight};
 use crate::integrator::collocation::newton::{Linked, NodalMotion, Solution, Tangent, Unknowns};
 use crate::integrator::collocation::slip::follow;
 use crate::integrator::collocation::trial::{Estimate, FreeResponse, LinkEnd, Scratch, Source, Trial};
-use crate::link::{MAX_PORTS, MAX_UNKNOWNS};
+use crate::link::{LinkLaw, MAX_PORTS, MAX_UNKNOWNS};
 use crate::math::nodal::{Nodal, add, add_products, dot, end, scaled};
 use crate::math::simd::{Arithmetic, LANES, compiled_for};
 use crate::model::Model;
@@ -45,6 +45,7 @@ pub fn compute<const S: usize>(
     match unknowns.count {
         0 | 1 => compiled_for!(model.simd, A => step.compute::<1, A>(trial, scratch)),
         2 => compiled_for!(model.simd, A => step.compute::<2, A>(trial, scratch)),
+        3 => compiled_for!(model.simd, A => step.compute::<3, A>(trial, scratch)),
         _ => compiled_for!(model.simd, A => step.compute::<MAX_UNKNOWNS, A>(trial, scratch)),
     }
 }
@@ -185,6 +186,9 @@ impl<const S: usize> Step<'_, S> {
             match (followed, self.source) {
                 // The share of the contact's preload; that of its deviation is unknown.
                 (Some(force), _) => nodes.forces = [force - link.force; S],
+                (None, Source::Laws(_)) if matches!(link.law, LinkLaw::Magnet(_)) => {
+                    nodes.forces = [self.state.links[index].force - link.force; S];
+                }
                 (None, Source::Laws(_)) => nodes.forces = [-link.force; S],
                 (None, Source::Given) => {}
             }
