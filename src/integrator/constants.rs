@@ -75,11 +75,6 @@ pub const INHERITED: f64 = 0.25;
 /// `inputs_and_lengths_that_are_new_in_each_step_keep_the_tolerance`.
 pub const DRIVEN: f64 = 0.02;
 
-/// Factor on the error inside such a step, 1: what is read goes through the start of the step too, and beyond the first node
-/// the shape that it lacks is 0.4 of what it is at the start. Observed: of 3,300 closed relays with held inputs none is above
-/// its tolerance, one of 1,448 with 0.4. Pinned: 0, the same test.
-pub const INSIDE_DRIVEN: f64 = 0.5;
-
 /// Rounding of a contact force, of loads or of the indentation between nodes, relative to them, 1. About a thousand
 /// roundings. Pinned: × 1e8, `tests/calibration.rs`.
 pub const FORCE_ROUNDING: f64 = 1e-13;

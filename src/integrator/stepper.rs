@@ -11,8 +11,8 @@ use crate::integrator::collocation::step::compute;
 use crate::integrator::collocation::trial::{LinkNodes, Source, Trial};
 use crate::integrator::commit::{commit, follow_slip};
 use crate::integrator::constants::{
-    AFTER_BLOW, DRIVEN, HALVINGS, INHERITED, INSIDE_DRIVEN, ITERATIONS, LEAST_SHRINK, MOST_CHANGES, MOST_SHRINK,
-    NEAR_BLOW, ROUNDED, SAFETY, STEP_GROWTH,
+    AFTER_BLOW, DRIVEN, HALVINGS, INHERITED, ITERATIONS, LEAST_SHRINK, MOST_CHANGES, MOST_SHRINK, NEAR_BLOW, ROUNDED,
+    SAFETY, STEP_GROWTH,
 };
 use crate::integrator::dense_output::DenseSlip;
 use crate::integrator::discrete_gradient;
@@ -257,11 +257,9 @@ impl Stepper<'_> {
         let (model, closed) = (self.model, self.state.is_closed());
         let read = self.recorder.reads_before(target.time);
         let watched = model.scene.effects.extremes || model.counts_interruptions();
-        // 4-node steps may be inaccurate inside: they end where they are read.
+        // 4-node steps may be inaccurate inside: they end where they are read. After a change of the inputs extremes lie there.
         let driven = self.progress.driven;
-        let inside = if driven && watched && closed {
-            INSIDE_DRIVEN * self.inaccuracy(trial, target.length)
-        } else if (read || watched || !closed) && S != SHORT {
+        let inside = if driven && watched && closed || (read || watched || !closed) && S != SHORT {
             self.inaccuracy(trial, target.length)
         } else {
             0.0
