@@ -188,8 +188,12 @@ def scope(relay: Relay, standard: Standard) -> tuple[list[str], list[str]]:
         f"Base acceleration along: {axes}.",
         f"{len(standard.tests)} tests, in the positions of the coil: {', '.join(relay.positions)}.",
     ]
-    left = ["Armature, actuator, coil and case are not in the model: what they do to the contact is not in any verdict "
-            "here.", "Bounce after switching, and wear beyond the loss of overtravel."]  # fmt: skip
+    moved = all(values.get("effects.pusher") == "Armature" for values in relay.positions.values())
+    absent = "Actuator, coil and case" if moved else "Armature, actuator, coil and case"
+    left = [f"{absent} are not in the model: what they do to the contact is not in any verdict here.",
+            "Bounce after switching, and wear beyond the loss of overtravel."]  # fmt: skip
+    if moved:
+        left.append("Whether the armature leaves its core without opening the contact.")
     if not relay.axes:
         left.append("The other two axes of the relay: only the normal one is judged, as the relay's file has no "
                     "participations of the modes in others.")  # fmt: skip
