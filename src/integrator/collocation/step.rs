@@ -45,9 +45,19 @@ pub fn compute<const S: usize>(
     match unknowns.count {
         0 | 1 => compiled_for!(model.simd, A => step.compute::<1, A>(trial, scratch)),
         2 => compiled_for!(model.simd, A => step.compute::<2, A>(trial, scratch)),
-        3 => compiled_for!(model.simd, A => step.compute::<3, A>(trial, scratch)),
-        _ => compiled_for!(model.simd, A => step.compute::<MAX_UNKNOWNS, A>(trial, scratch)),
+        3 => compute_many::<S, 3>(&step, trial, scratch),
+        _ => compute_many::<S, MAX_UNKNOWNS>(&step, trial, scratch),
     }
+}
+
+/// Of many unknowns, whose equations take room on the stack that others need not have.
+#[inline(never)]
+fn compute_many<const S: usize, const L: usize>(
+    step: &Step<S>,
+    trial: &mut Trial<S>,
+    scratch: &mut Scratch<S>,
+) -> Option<()> {
+    compiled_for!(step.model.simd, A => step.compute::<L, A>(trial, scratch))
 }
 
 /// What a step is computed from.
