@@ -3,12 +3,12 @@
 use serde::{Deserialize, Serialize};
 use serde_big_array::BigArray;
 
-use crate::beam::mode::ModeStates;
+use crate::beam::mode::{MAX_MODES, ModeState, ModeStates};
 use crate::chatter::Interruptions;
 use crate::contact::friction::Slip;
 use crate::force_error::ForceError;
 use crate::integrator::step_length::StepLengths;
-use crate::link::{CONTACT, MAX_LINKS, Ways};
+use crate::link::{CONTACT, INPUTS, MAX_LINKS, Ways};
 use crate::math::prediction::Prediction;
 
 /// The state at a time.
@@ -104,6 +104,29 @@ impl LinkState {
 }
 
 impl State {
+    /// Room for a state.
+    pub(crate) fn empty() -> Self {
+        Self {
+            time: 0.0,
+            modes: [ModeState::default(); MAX_MODES],
+            with_contact: false,
+            displacements: [0.0; INPUTS],
+            velocities: [0.0; INPUTS],
+            coil: 0.0,
+            links: [LinkState::default(); MAX_LINKS],
+            slip: Slip::default(),
+            last_kink: 0.0,
+            kink_is_closing: false,
+            lengths: StepLengths::new(0.0),
+            energy_surplus: 0.0,
+            energy_balance: 0.0,
+            force_error: ForceError::default(),
+            steps: 0,
+            rejected_steps: 0,
+            iterations: 0,
+        }
+    }
+
     /// The first contact.
     pub fn contact(&self) -> &LinkState {
         &self.links[CONTACT]

@@ -6,6 +6,8 @@
 //! output). When an input changes, the step is repeated from its start to the communication point and integration
 //! restarts there.
 
+use std::fmt;
+
 use crate::beam::mode::{MAX_MODES, Modal};
 use crate::chatter::Interruptions;
 use crate::contact::friction::{Phase, Slip};
@@ -19,7 +21,8 @@ use crate::link::{CONTACT, Link, MAX_LINKS, Ways};
 use crate::math::prediction::value_and_slope;
 use crate::model::Model;
 use crate::state::{LinkState, State};
-use serde::{Deserialize, Serialize};
+use serde::de::{self, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// All that changes in a simulation: the motion around a communication point. Plain numbers, so saving it is a copy.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -42,6 +45,50 @@ pub struct Motion {
     pub(crate) end: State,
     /// The links between `start` and `end`.
     pub(crate) dense: DenseOutput,
+}
+
+/// Reads a motion part by part into its place on the heap: as a whole it takes much of a small stack.
+pub(crate) fn on_heap<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Box<Motion>, D::Error> {
+    struct Parts;
+    impl<'de> Visitor<'de> for Parts {
+        type Value = Box<Motion>;
+
+        fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+            formatter.write_str("a motion")
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, mut parts: A) -> Result<Box<Motion>, A::Error> {
+            let mut motion = empty();
+            read(&mut parts, &mut motion.time)?;
+            read(&mut parts, &mut motion.current)?;
+            read(&mut parts, &mut motion.current_rate)?;
+            read(&mut parts, &mut motion.size)?;
+            read(&mut parts, &mut motion.extremes)?;
+            read(&mut parts, &mut motion.drive)?;
+            read(&mut parts, &mut motion.start)?;
+            read(&mut parts, &mut motion.end)?;
+            read(&mut parts, &mut motion.dense)?;
+            Ok(motion)
+        }
+    }
+    deserializer.deserialize_tuple(PARTS, Parts)
+}
+
+/// Number of fields of [`Motion`], in the order of which they are saved.
+const PARTS: usize = 9;
+
+/// Room for a motion.
+#[inline(never)]
+fn empty() -> Box<Motion> {
+    Box::new(Motion::new(State::empty()))
+}
+
+/// Reads the next part.
+#[inline(never)]
+fn read<'de, A: SeqAccess<'de>, T: Deserialize<'de>>(parts: &mut A, part: &mut T) -> Result<(), A::Error> {
+    let missing = || de::Error::custom("it ends within a motion");
+    *part = parts.next_element()?.ok_or_else(missing)?;
+    Ok(())
 }
 
 /// A link at a communication point.

@@ -6,7 +6,7 @@ mod variables;
 use std::ffi::{CStr, CString};
 use std::path::{Path, PathBuf};
 
-use snapshot::{Experiment, LARGEST_TOLERANCE, Snapshot};
+use snapshot::{Experiment, LARGEST_TOLERANCE, SavedMotion, Snapshot};
 
 use super::failure::Failure;
 use super::logger::Logger;
@@ -227,7 +227,10 @@ impl Instance {
             scene: self.scene.clone(),
             inputs: self.inputs,
             experiment: self.experiment,
-            simulation: simulation.map(|simulation| (simulation.copied_motion(), simulation.model().initial)),
+            simulation: simulation.map(|simulation| SavedMotion {
+                motion: simulation.copied_motion(),
+                initial: simulation.model().initial,
+            }),
             time: self.time,
         }
     }
@@ -244,12 +247,12 @@ impl Instance {
         } = *snapshot;
         let wanted = experiment.scene(scene);
         match (&mut self.simulation, simulation) {
-            (Some(present), Some((motion, initial)))
+            (Some(present), Some(SavedMotion { motion, initial }))
                 if present.model().scene == wanted && present.model().initial == *initial =>
             {
                 present.go_on_from(motion);
             }
-            (present, Some((motion, initial))) => {
+            (present, Some(SavedMotion { motion, initial })) => {
                 let resumed = Simulation::resume(&wanted, initial, motion);
                 *present = Some(Box::new(resumed.map_err(Failure::Initialisation)?));
             }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::fmi2::states::State;
 use crate::inputs::Inputs;
-use crate::integrator::motion::Motion;
+use crate::integrator::motion::{Motion, on_heap};
 use crate::preload::Initial;
 use crate::scene::Scene;
 
@@ -38,8 +38,16 @@ pub(in crate::fmi2) struct Snapshot {
     pub(super) inputs: Inputs,
     pub(super) experiment: Experiment,
     /// The state of the simulation, and the inputs that belong to its preload.
-    pub(super) simulation: Option<(Box<Motion>, Initial)>,
+    pub(super) simulation: Option<SavedMotion>,
     pub(super) time: f64,
+}
+
+/// The state of a simulation, and the inputs that belong to its preload.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(in crate::fmi2) struct SavedMotion {
+    #[serde(deserialize_with = "on_heap")]
+    pub(super) motion: Box<Motion>,
+    pub(super) initial: Initial,
 }
 
 impl Snapshot {
@@ -59,7 +67,8 @@ impl Snapshot {
             && stop_time.is_none_or(|stop| stop >= start_time)
             && self.time >= start_time
             && self.time.is_finite()
-            && simulation
-                .is_none_or(|(motion, initial)| motion.is_sound() && motion.time == self.time && initial.is_finite())
+            && simulation.is_none_or(|SavedMotion { motion, initial }| {
+                motion.is_sound() && motion.time == self.time && initial.is_finite()
+            })
     }
 }
