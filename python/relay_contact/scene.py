@@ -17,14 +17,14 @@ from tqdm import tqdm
 from relay_contact.component import Array, Component, Value, nearest, units
 from relay_contact.files import RelayContactError, named, scenes
 from relay_contact.schema import Nested, Positive, Table, at, leaves, read, refused, variables
-from relay_contact.tables import ACCELERATIONS, CURRENTS, LENGTHS, TIMES, Units
+from relay_contact.tables import ACCELERATIONS, CURRENTS, LENGTHS, RATIOS, TIMES, Units
 from relay_contact.tables import read as read_columns
 
 MOST = 10**7
 """Communication steps of a run, whose rows stay in memory."""
 INPUTS: Units = {
     "time": TIMES, "base.acceleration": ACCELERATIONS, "support.displacement": LENGTHS, "second.displacement": LENGTHS,
-    "pusher.displacement": LENGTHS,
+    "pusher.displacement": LENGTHS, "coil.relativeCurrent": RATIOS,
     "contact.current": CURRENTS,
 }  # fmt: skip
 """Columns of a table of inputs, and their units."""

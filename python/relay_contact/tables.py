@@ -26,6 +26,7 @@ VELOCITIES = {"m/s": 1.0, "mm/s": 1e-3}
 ACCELERATIONS = {"m/s2": 1.0, "g": GRAVITY}
 FORCES = {"N": 1.0, "cN": 1e-2, "mN": 1e-3, "gf": 1e-3 * GRAVITY}
 FREQUENCIES = {"Hz": 1.0, "kHz": 1e3}
+RATIOS = {"1": 1.0, "%": 1e-2}
 CURRENTS = {"A": 1.0, "mA": 1e-3}
 SPELLINGS = {"\N{MICRO SIGN}": "u", "\N{GREEK SMALL LETTER MU}": "u", "\N{SUPERSCRIPT TWO}": "2", "^2": "2", "**2": "2"}
 OTHERS = {"sec": "s", "msec": "ms", "usec": "us", "hz": "Hz", "khz": "kHz", "G": "g"}

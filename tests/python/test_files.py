@@ -92,7 +92,8 @@ def test_what_is_wrong_is_told_or_in_the_result(kind: str, shipped: Path, tmp_pa
     for tests in (each for each in content.values() if isinstance(each, list)):
         # Of many that are alike.
         del tests[1:-1]
-    for table in (content.get("inputs", {}), content.get("parameters", {}).get("beam", {})):
+    parameters = content.get("parameters", {})
+    for table in (content.get("inputs", {}), parameters.get("beam", {}), parameters.get("fixed", {})):
         if "file" in table:
             table["file"] = str(shipped.parent / table["file"])
     read, path = READERS[kind], tmp_path / "file.toml"

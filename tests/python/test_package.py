@@ -69,7 +69,9 @@ def test_wrong_names_and_values_are_explained(changes: Any, message: str) -> Non
 
 
 def test_an_unknown_scene_is_answered_with_those_there_are() -> None:
-    with pytest.raises(RelayContactError, match="no scene of this name; there are at-rest, changeover-make"):
+    with pytest.raises(
+        RelayContactError, match="no scene of this name; there are armature-shock, at-rest, changeover-make"
+    ):
         Scene.read("paper")
 
 

@@ -193,6 +193,7 @@ def test_every_package_that_is_imported_is_declared() -> None:
                 imported.add(str(node.module).split(".")[0])
     foreign = imported - sys.stdlib_module_names - {"relay_contact"}
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    asked = project["dependencies"] + project["optional-dependencies"]["cluster"]
+    extras = project["optional-dependencies"]
+    asked = project["dependencies"] + extras["cluster"] + extras["pdf"]
     declared = {text.split(">")[0] for text in asked}
     assert foreign == declared
