@@ -91,6 +91,7 @@ def test_derivatives_of_inputs_are_set_after_each_step() -> None:
             COMPONENT.folder,
             model_description=COMPONENT.description,
             fmu_instance=fmu,
+            fmi_type="CoSimulation",
             stop_time=steps * STEP,
             output_interval=STEP,
             start_values=values,
