@@ -9,11 +9,12 @@ use roxmltree::{Document, Node};
 use crate::{attribute, camel, snake, start, unit};
 
 /// What the groups of parameters describe.
-const GROUPS: [(&str, &str); 14] = [
+const GROUPS: [(&str, &str); 15] = [
     ("beam", "Cantilever spring, as an equivalent uniform section."),
     ("tip", "Rivet at the tip."),
     ("contact", "Contact geometry and law."),
     ("second", "Second contact: of the materials of the first."),
+    ("parallel", "Contact beside the first: of its materials."),
     ("fixed", "Spring of the fixed contact."),
     ("pusher", "Pusher between clamp and contact."),
     ("armature", "Armature that moves the pusher."),

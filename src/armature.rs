@@ -70,15 +70,6 @@ impl Armature {
             let variable = RealParameter::ArmatureCorePosition.variable();
             return Err(SceneError::out_of_range(variable, given.core_position, allowed));
         }
-        if scene.effects.energy {
-            return Err(SceneError::NotTogether {
-                name: "effects.energy",
-                choice: "true",
-                other: "effects.pusher = Armature, whose magnet does work that is not counted",
-                instead: "effects.pusher = Prescribed",
-                allowed: "false",
-            });
-        }
         Ok(Some(Self {
             mass: given.mass,
             stiffness: given.stiffness,
@@ -116,8 +107,9 @@ impl Armature {
         Power::linear(self.stop_stiffness, critical * damping_ratio(self.stop_restitution))
     }
 
-    /// Where it rests with this current of the coil (relative), and with the force of the pusher at a place (m).
-    pub fn at_rest(&self, current: f64, pushed: impl Fn(f64) -> f64) -> AtRest {
+    /// Where it rests with this current of the coil (relative), and with the force of the pusher at a place (m); `None` where
+    /// nothing holds it.
+    pub fn at_rest(&self, current: f64, pushed: impl Fn(f64) -> f64) -> Option<AtRest> {
         let stop = self.stop_stiffness;
         let load = |p: f64| {
             let spring = self.return_force + self.stiffness * (p - self.rest);
@@ -137,13 +129,12 @@ impl Armature {
             at_rest().or_else(between).or_else(at_core)
         } else {
             at_core().or_else(at_rest).or_else(between)
-        };
-        let place = place.unwrap_or(self.rest);
-        AtRest {
+        }?;
+        Some(AtRest {
             place,
             core_force: stop * (place - self.core).max(0.0),
             rest_force: stop * (self.rest - place).max(0.0),
             magnet_force: self.magnet.force(self.core - place, current).0,
-        }
+        })
     }
 }

@@ -24,9 +24,22 @@ pub struct Assembly {
     pub roles: Roles,
 }
 
+/// The laws of the contacts.
+#[derive(Clone, Copy, Debug)]
+pub struct Laws {
+    /// Of the contact.
+    pub contact: Law,
+    /// Of a parallel contact.
+    pub parallel: Option<Law>,
+    /// Of a second contact.
+    pub second: Option<Law>,
+}
+
 /// The index of each link that a model may have beside the contact.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Roles {
+    /// Parallel contact.
+    pub parallel: Option<usize>,
     /// Second contact.
     pub second: Option<usize>,
     /// Friction at the contact.
@@ -40,11 +53,14 @@ pub struct Roles {
 }
 
 impl Assembly {
-    /// That of a scene with these modes and this preload, this law of the contact and that of a second one.
+    /// That of a scene with these modes and this preload, and these laws of the contacts.
     pub fn new(
         (scene, modes, preload): (&Scene, &[Mode], &Preload),
-        law: Law,
-        second: Option<Law>,
+        Laws {
+            contact: law,
+            parallel,
+            second,
+        }: Laws,
         armature: Option<&Armature>,
     ) -> Self {
         let mut all = Self::default();
@@ -62,6 +78,16 @@ impl Assembly {
             }
         };
         all.link(contact(law));
+        if let Some(law) = parallel {
+            let port = all.port(Port::new(modes, |mode| mode.parallel));
+            all.roles.parallel = Some(all.link(Link {
+                name: "parallel contact",
+                port,
+                force: preload.parallel_force,
+                approach: preload.parallel_indentation,
+                ..contact(law)
+            }));
+        }
         if let Some(law) = second {
             // Its fixed contact is rigid.
             let port = match scene.fixed_spring {
@@ -76,6 +102,7 @@ impl Assembly {
                 driven: [-1.0, 1.0, 0.0],
                 force: 0.0,
                 approach: -scene.second.gap,
+                circuit: 1,
                 ..contact(law)
             }));
         }

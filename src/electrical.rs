@@ -60,12 +60,21 @@ impl ElectricalContact {
 
     /// Conductance of the contact at a force (N), S; never 0.
     pub fn conductance(&self, force: f64) -> f64 {
-        let closed = if force > 0.0 {
+        self.beside(self.spot(force))
+    }
+
+    /// Conductance with the open resistance in parallel to that of all spots, S.
+    pub fn beside(&self, spots: f64) -> f64 {
+        spots + 1.0 / self.open
+    }
+
+    /// Conductance of the spot at a force (N), with the film, S; 0 of an open contact.
+    pub fn spot(&self, force: f64) -> f64 {
+        if force > 0.0 {
             1.0 / (self.constriction(force) + self.film)
         } else {
             0.0
-        };
-        closed + 1.0 / self.open
+        }
     }
 
     /// Its derivative, S/N.

@@ -84,12 +84,12 @@ pub enum SceneError {
     /// Counting of interruptions, which are defined by the resistance, without a resistance.
     #[error("effects.chatter = true: not allowed with effects.resistance = None, allowed is false")]
     NoResistance,
-    /// A linear contact law beside a second contact.
+    /// A linear contact law beside another contact.
     #[error(
-        "effects.contactLaw: Linearised and Bonded are laws about the preload, at which the second contact is open; allowed with \
-         effects.secondContact = true are Hertz and Rough"
+        "effects.contactLaw: Linearised and Bonded are laws about the preload of the first contact; allowed with {0} = true are \
+         Hertz and Rough"
     )]
-    LinearBesideSecond,
+    LinearBesideOther(&'static str),
     /// Two things that cannot be combined.
     #[error("{name} = {choice}: not allowed with {other}, allowed is {allowed}; or {instead}")]
     NotTogether {
@@ -113,12 +113,16 @@ pub enum SceneError {
         /// The spring file.
         file: String,
     },
-    /// A pusher on a spring that is given by modes without its place.
+    /// A pusher or a parallel contact on a spring that is given by modes without its place.
     #[error(
-        "effects.pusher: not allowed with beam.file = {file}, which gives modes without pusher; allowed with the displacement at \
-         the pusher in each [[mode]]"
+        "{effect}: not allowed with beam.file = {file}, which gives modes without {place}; allowed with the displacement there, \
+         {place}, in each [[mode]]"
     )]
-    NoPusher {
+    NoPlace {
+        /// What touches the spring.
+        effect: &'static str,
+        /// Its entry in a mode.
+        place: &'static str,
         /// The spring file.
         file: String,
     },

@@ -13,7 +13,7 @@
 //! link        ports and links: where forces act on the modes, and by which laws;   settle  the links that a motion makes
 //! integrator  Model, State, inputs -> State after a communication step: "The method" at its head
 //! closed_loop the same where spring and contact are linear: exact steps
-//! chatter     interruptions of the current;   force_error  the error of the contact force so far
+//! chatter, circuits  interruptions of the current;   force_error  the error of the contact force so far
 //! electrical  contact force -> resistance;   harmonic  the same contact in the frequency domain
 //! simulation  Model and State together, read by output;   reference  the model's parts, for reference solutions
 //! fmi2        all of it behind the C interface of FMI 2.0
@@ -52,6 +52,7 @@ mod armature;
 mod assembly;
 mod beam;
 mod chatter;
+mod circuits;
 mod closed_loop;
 mod contact;
 mod electrical;

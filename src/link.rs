@@ -27,13 +27,13 @@ use crate::magnet::Magnet;
 use crate::math::simd::Arithmetic;
 
 /// Most ports of a model.
-pub const MAX_PORTS: usize = 5;
+pub const MAX_PORTS: usize = 6;
 
 /// Most links of a model.
-pub const MAX_LINKS: usize = 7;
+pub const MAX_LINKS: usize = 8;
 
 /// Most links whose forces are unknown at the same time.
-pub const MAX_UNKNOWNS: usize = 5;
+pub const MAX_UNKNOWNS: usize = 6;
 
 /// Inputs that move bodies: the fixed contact, the second one relative to it, and the pusher.
 pub const INPUTS: usize = 3;
@@ -115,6 +115,8 @@ pub struct Link {
     pub electrical: Option<ElectricalContact>,
     /// Criterion for its interruptions, if they are counted.
     pub criterion: Option<Criterion>,
+    /// The circuit that it closes ([`crate::circuits`]).
+    pub circuit: usize,
 }
 
 impl Link {
@@ -130,6 +132,7 @@ impl Link {
             approach: 0.0,
             electrical: None,
             criterion: None,
+            circuit: 0,
         }
     }
 

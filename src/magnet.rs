@@ -27,6 +27,12 @@ impl Magnet {
         let force = held * ratio * ratio;
         (force, -2.0 * force / (self.constant + gap))
     }
+
+    /// Work that opening a gap (m) from none takes at a relative current, J.
+    pub fn energy(&self, gap: f64, current: f64) -> f64 {
+        let open = gap.max(0.0);
+        self.hold * current * current * (self.constant / (self.constant + open) * open + gap.min(0.0))
+    }
 }
 
 /// Share of critical damping with which a mass leaves a linear spring, which only presses, with this share of its velocity.
@@ -97,6 +103,9 @@ mod tests {
             let [below, above] = [gap - step, gap + step].map(|gap| magnet.force(gap, 0.7).0);
             let slope = (above - below) / (2.0 * step);
             assert!((magnet.force(gap, 0.7).1 - slope).abs() < 1e-6 * slope.abs());
+            let [below, above] = [gap - step, gap + step].map(|gap| magnet.energy(gap, 0.7));
+            let force = (above - below) / (2.0 * step);
+            assert!((magnet.force(gap, 0.7).0 - force).abs() < 1e-6 * force);
         }
         assert_eq!(magnet.force(1e-4, 1.0).0, 1.0);
         assert_eq!(magnet.force(-1e-6, 0.5), (1.0, 0.0));

@@ -3,14 +3,14 @@
 use std::ops::Range;
 
 use crate::armature::Armature;
-use crate::assembly::{Assembly, Roles};
+use crate::assembly::{Assembly, Laws, Roles};
 use crate::beam::axial::Feedback;
-use crate::beam::mode::{MAX_MODES, Modal, Mode, ModeState, ModeStates};
+use crate::beam::mode::{MAX_MODES, Modal, Mode, ModeStates};
 use crate::beam::mode_count::Blow;
 use crate::beam::resolution::Resolution;
 use crate::beam::section::Section;
 use crate::beam::spring::Basis;
-use crate::beam::springs::Springs;
+use crate::beam::springs::{Counts, Springs};
 use crate::closed_loop::system::ClosedLoop;
 use crate::contact::friction::{self, Friction, Slip};
 use crate::contact::law::Law;
@@ -19,10 +19,9 @@ use crate::contact::power::Power;
 use crate::electrical::ElectricalContact;
 use crate::error::{Remark, SceneError};
 use crate::excitation::generator::Generator;
-use crate::force_error::ForceError;
 use crate::integrator::step_length::StepLengths;
 use crate::integrator::tolerance::Tolerance;
-use crate::link::{INPUTS, Link, LinkLaw, MAX_LINKS, Port};
+use crate::link::{Link, LinkLaw, MAX_LINKS, Port};
 use crate::math::simd::Simd;
 use crate::preload::{Initial, Preload};
 use crate::scene::Scene;
@@ -131,23 +130,20 @@ impl Model {
         let springs = Springs::new(scene)?;
         let (spring, section) = (&springs.moving, springs.moving.section);
         let power = Power::of(scene);
-        let second = Power::of_second(scene);
-        let preload = Preload::new(scene, &springs, &power, initial)?;
+        let (parallel, second) = (Power::of_parallel(scene), Power::of_second(scene));
+        let preload = Preload::new(scene, &springs, (&power, parallel.as_ref()), initial)?;
         let tolerance = scene.solver.effective_tolerance();
         let bending_force = bending_force(scene, &springs);
         let force_scale = preload.force.max(bending_force);
-        let law = law(scene, power, &preload)?.parting(tolerance, force_scale);
-        let blow = |power: &Power| blow(scene, bending_force, power);
-        let own = blow(&power);
-        let on_second = second.as_ref().map_or(own, blow);
-        let pushed = scene
-            .pushed_at()
-            .map(|_| Power::linear(scene.pusher.stiffness, scene.pusher.damping));
-        let by_pusher = pushed.as_ref().map_or(own, blow);
-        let wanted = springs.counts(&own, &[on_second, by_pusher], tolerance);
-        let counts = wanted
-            .or(usize::try_from(scene.solver.modes).unwrap_or_default())
-            .within_room();
+        let other = |power: Power| Law::Power(power).parting(tolerance, force_scale);
+        let laws = Laws {
+            contact: law(scene, power, &preload)?.parting(tolerance, force_scale),
+            parallel: parallel.map(other),
+            second: second.map(other),
+        };
+        let law = laws.contact;
+        let own = blow(scene, bending_force, &power);
+        let counts = counts(scene, &springs, (&own, [parallel, second], bending_force));
         let Some(basis) = springs.modes(scene, counts, preload.axial_force) else {
             return Err(SceneError::Buckled {
                 name: RealParameter::BeamAxialForce.variable().name,
@@ -160,31 +156,16 @@ impl Model {
         let axial = (scene.effects.axial_force == AxialForceKind::FromDeflection)
             .then(|| Feedback::new(&section, &preload, scene.environment.gravity, &space, &modes, &shapes))
             .map(Box::new);
-        let feedback = axial.as_ref();
-        let frequency = feedback
+        let frequency = axial
+            .as_ref()
             .and_then(|axial| axial.frequency(&modes, preload.contact_stiffness))
-            .or_else(|| match scene.pushed_at() {
-                Some(_) => {
-                    let modes = springs.many_modes(scene, preload.axial_force)?;
-                    let parts = (scene, modes.as_slice(), &preload);
-                    Assembly::new(parts, law, None, springs.armature.as_ref()).frequency(&modes, initial.coil)
-                }
-                None => springs.frequency(scene, preload.axial_force, preload.contact_stiffness),
-            })
-            .map_or(0.0, |omega| omega / std::f64::consts::TAU);
+            .or_else(|| frequency((scene, &springs, &preload), laws, initial.coil));
         let generator = Generator::new(scene)?;
         if scene.effects.chatter && ElectricalContact::new(scene, &law).is_none() {
             return Err(SceneError::NoResistance);
         }
         let closed_loop = match law {
-            Law::Linear(contact)
-                if generator.is_harmonic()
-                    && axial.is_none()
-                    && scene.fixed_spring.is_none()
-                    && scene.pushed_at().is_none()
-                    && !scene.effects.extremes
-                    && is_rayleigh(scene, &modes) =>
-            {
+            Law::Linear(contact) if generator.is_harmonic() && is_linear(scene) && is_rayleigh(scene, &modes) => {
                 ClosedLoop::new(scene, (&modes, &resolution), contact, &generator).map(Box::new)
             }
             _ => None,
@@ -212,37 +193,30 @@ impl Model {
             armature: springs.armature,
             force_scale,
             tolerance: Tolerance::new(tolerance, force_scale),
-            frequency,
+            frequency: frequency.map_or(0.0, |omega| omega / std::f64::consts::TAU),
             missed: springs.missed(&own),
             spring_length: spring.length(),
             simd: Simd::detect(),
         };
-        let second = second.map(|second| Law::Power(second).parting(tolerance, force_scale));
-        model.link(law, second);
+        model.link(laws);
         Ok(model)
     }
 
-    /// Sets ports and links, with this law of the contact and that of a second one.
-    fn link(&mut self, law: Law, second: Option<Law>) {
+    /// Sets ports and links, with these laws of the contacts.
+    fn link(&mut self, laws: Laws) {
         for (participation, mode) in self.participations.iter_mut().zip(&self.modes) {
             *participation = mode.participation;
         }
-        let Assembly { ports, links, roles } = Assembly::new(
-            (&self.scene, &self.modes, &self.preload),
-            law,
-            second,
-            self.armature.as_ref(),
-        );
-        (self.law, self.ports, self.links, self.roles) = (law, ports, links, roles);
+        let Assembly { ports, links, roles } =
+            Assembly::new((&self.scene, &self.modes, &self.preload), laws, self.armature.as_ref());
+        (self.law, self.ports, self.links, self.roles) = (laws.contact, ports, links, roles);
     }
 
     /// The same model with other parts, for test problems without a spring. It takes no exact steps.
     #[must_use]
     pub fn with(mut self, change: impl FnOnce(&mut Parts)) -> Self {
-        let second = self
-            .second()
-            .and_then(|index| self.links.get(index)?.contact())
-            .copied();
+        let law_of = |role: Option<usize>| self.links.get(role?)?.contact().copied();
+        let (parallel, second) = (law_of(self.parallel()), law_of(self.second()));
         let mut parts = Parts {
             law: *self.law(),
             modes: self.modes,
@@ -258,9 +232,12 @@ impl Model {
         self.compliance = self.modes.iter().map(Mode::compliance).sum();
         self.resolution = Resolution::default();
         self.tolerance = Tolerance::new(tolerance, self.force_scale);
-        let law = parts.law.parting(tolerance, self.force_scale);
         // Friction keeps its share of the force that the scene has.
-        self.link(law, second);
+        self.link(Laws {
+            contact: parts.law.parting(tolerance, self.force_scale),
+            parallel,
+            second,
+        });
         self
     }
 
@@ -354,6 +331,11 @@ impl Model {
         &self.law
     }
 
+    /// The index of the parallel contact, where there is one.
+    pub(crate) fn parallel(&self) -> Option<usize> {
+        self.roles.parallel
+    }
+
     /// The index of the second contact, where there is one.
     #[inline(always)]
     pub(crate) fn second(&self) -> Option<usize> {
@@ -435,29 +417,19 @@ impl Model {
         for (link, at) in self.links.iter().zip(&mut links) {
             at.force = link.force;
             at.closed = link.contact().is_some() && link.force > 0.0;
-            if let Some(criterion) = link.criterion.filter(|criterion| link.force < criterion.force) {
-                at.interruptions.turn(&criterion, time);
-            }
         }
-        State {
+        let mut state = State {
             time,
-            modes: [ModeState::default(); MAX_MODES],
-            with_contact: false,
-            displacements: [0.0; INPUTS],
-            velocities: [0.0; INPUTS],
             coil: self.initial.coil,
             links,
             slip: self.initial_slip(),
             last_kink: time,
-            kink_is_closing: false,
             lengths: StepLengths::new(self.first_step(time)),
-            energy_surplus: 0.0,
-            energy_balance: 0.0,
-            force_error: ForceError::default(),
-            steps: 0,
-            rejected_steps: 0,
-            iterations: 0,
-        }
+            ..State::empty()
+        };
+        let forces = state.links.iter().map(|link| link.force);
+        state.circuits.note(&self.links, forces, time);
+        state
     }
 
     /// Slip at the preload.
@@ -475,23 +447,27 @@ impl Model {
 
     /// Energy of a state relative to the preload, J.
     pub fn energy(&self, state: &State) -> f64 {
-        self.energy_at(&state.modes, |index| {
+        self.energy_at(&state.modes, state.coil, |index| {
             state.links.get(index).map_or(0.0, |link| link.approach)
         })
     }
 
-    /// Kinetic and strain energy of the modes, and elastic energy of the contacts at approaches given as deviations from the
-    /// preload (m); relative to the preload, J.
-    pub(crate) fn energy_at(&self, modes: &ModeStates, approach: impl Fn(usize) -> f64) -> f64 {
+    /// Kinetic and strain energy of the modes, elastic energy of the contacts, and that of the magnet at a current of the coil
+    /// (relative), at approaches given as deviations from the preload (m); relative to the preload, J.
+    pub(crate) fn energy_at(&self, modes: &ModeStates, coil: f64, approach: impl Fn(usize) -> f64) -> f64 {
         let pairs = self.modes.iter().zip(modes);
         let beam: f64 = pairs
             .map(|(mode, at)| at.v * at.v + mode.omega_squared * at.q * at.q)
             .sum();
-        let contacts = self.links.iter().enumerate().filter_map(|(index, link)| {
-            let law = link.contact()?;
-            Some(law.energy_above_tangent(link.approach, approach(index)))
+        let links = self.links.iter().enumerate().map(|(index, link)| match &link.law {
+            LinkLaw::Contact(law) => law.energy_above_tangent(link.approach, approach(index)),
+            LinkLaw::Magnet(magnet) => {
+                let way = approach(index);
+                magnet.energy(link.approach + way, coil) - magnet.energy(link.approach, coil) - link.force * way
+            }
+            LinkLaw::Friction(_) | LinkLaw::Gauge => 0.0,
         });
-        0.5 * beam + contacts.sum::<f64>()
+        0.5 * beam + links.sum::<f64>()
     }
 
     /// Velocity of a port per impulse on it, 1/kg.
@@ -530,7 +506,10 @@ fn law(scene: &Scene, power: Power, preload: &Preload) -> Result<Law, SceneError
     match scene.effects.contact_law {
         ContactLawKind::Hertz | ContactLawKind::Rough => Ok(Law::Power(power)),
         ContactLawKind::Linearised | ContactLawKind::Bonded if scene.effects.second_contact => {
-            Err(SceneError::LinearBesideSecond)
+            Err(SceneError::LinearBesideOther("effects.secondContact"))
+        }
+        ContactLawKind::Linearised | ContactLawKind::Bonded if scene.effects.parallel_contact => {
+            Err(SceneError::LinearBesideOther("effects.parallelContact"))
         }
         ContactLawKind::Linearised | ContactLawKind::Bonded if preload.force <= 0.0 => Err(SceneError::NoPreload),
         kind @ (ContactLawKind::Linearised | ContactLawKind::Bonded) => Ok(Law::Linear(Linear {
@@ -540,6 +519,42 @@ fn law(scene: &Scene, power: Power, preload: &Preload) -> Result<Law, SceneError
             bonded: kind == ContactLawKind::Bonded,
         })),
     }
+}
+
+/// Lowest angular frequency about the preload with every closed link as a spring, rad/s: of one spring with one contact exact.
+fn frequency((scene, springs, preload): (&Scene, &Springs, &Preload), laws: Laws, coil: f64) -> Option<f64> {
+    let (axial_force, stiffness) = (preload.axial_force, preload.contact_stiffness);
+    if scene.pushed_at().is_none() && springs.fixed.is_none() && laws.parallel.is_none() {
+        return springs.moving.frequency(axial_force, stiffness);
+    }
+    let modes = springs.many_modes(scene, axial_force)?;
+    let parts = (scene, modes.as_slice(), preload);
+    Assembly::new(parts, laws, springs.armature.as_ref()).frequency(&modes, coil)
+}
+
+/// Numbers of modes for blows of the contact (`own`) and of all others: as many as the tolerance needs, or as the scene asks for.
+fn counts(
+    scene: &Scene,
+    springs: &Springs,
+    (own, [parallel, second], bending_force): (&Blow, [Option<Power>; 2], f64),
+) -> Counts {
+    let pusher = scene
+        .pushed_at()
+        .map(|_| Power::linear(scene.pusher.stiffness, scene.pusher.damping));
+    let blow = |power: Power| blow(scene, bending_force, &power);
+    let others = [parallel, second, pusher].map(|power| power.map_or(*own, blow));
+    springs
+        .counts(own, &others, scene.solver.effective_tolerance())
+        .or(usize::try_from(scene.solver.modes).unwrap_or_default())
+        .within_room()
+}
+
+/// Whether nothing but the contact law can keep the scene from being linear, and nothing within a step is requested.
+fn is_linear(scene: &Scene) -> bool {
+    scene.effects.axial_force != AxialForceKind::FromDeflection
+        && scene.fixed_spring.is_none()
+        && scene.pushed_at().is_none()
+        && !scene.effects.extremes
 }
 
 /// A blow as the scene may have it.

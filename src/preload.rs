@@ -9,6 +9,9 @@
 //! A pusher at the place `p` towards the contact presses with `P = k_p (p + w(x_p))`, where positive, and `w(x_p)` follows from
 //! contact force, gravity, and `P` itself.
 //!
+//! A parallel contact presses with `F_2` of its own indentation; its deflection follows from both forces by the compliances at and
+//! between the two places.
+//!
 //! With friction `T_0 = tau F_0` at the height `h` of the contact point, its moment adds `c_m(N) h tau` to `c(N)`, `c_m` the
 //! deflection per moment.
 
@@ -16,7 +19,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::armature::AtRest;
 use crate::beam::springs::{FixedSpring, Springs};
-use crate::beam::statics::Statics;
 use crate::contact::friction::tangential_share;
 use crate::contact::power::Power;
 use crate::error::SceneError;
@@ -34,6 +36,10 @@ pub struct Preload {
     pub indentation: f64,
     /// Tangent stiffness k_j0, N/m.
     pub contact_stiffness: f64,
+    /// Force of the parallel contact, N; 0 without one.
+    pub parallel_force: f64,
+    /// Its indentation, m; negative: a gap.
+    pub parallel_indentation: f64,
     /// Deflection of the tip, m.
     pub deflection: f64,
     /// Deflection of the fixed contact's spring, m; positive closes.
@@ -95,11 +101,16 @@ impl Pusher {
         })
     }
 
-    /// Force of a pusher (N), and its overlap with the spring (m), under a contact force and an axial force (N).
-    fn press(&self, statics: &Statics, force: f64, axial_force: f64) -> (f64, f64) {
-        let by = statics.at_pusher(axial_force);
+    /// Force of a pusher (N), and its overlap with the spring (m), under the forces of both contacts and an axial force (N).
+    fn press(&self, springs: &Springs, [force, parallel]: [f64; 2], axial_force: f64) -> (f64, f64) {
+        let by = springs.moving.statics.at_pusher(axial_force);
+        let by_parallel = if parallel > 0.0 {
+            springs.at_parallel(axial_force).pushed * parallel
+        } else {
+            0.0
+        };
         // Of the spring without the pusher, which is where it pushes.
-        let spring = (by.across + self.lever * by.turning) * force + by.sag * self.gravity;
+        let spring = (by.across + self.lever * by.turning) * force + by_parallel + by.sag * self.gravity;
         let alone = self.place + spring;
         if alone <= 0.0 {
             return (0.0, alone);
@@ -110,126 +121,234 @@ impl Pusher {
 }
 
 impl Preload {
-    /// Equilibrium of the scene with these inputs.
+    /// Equilibrium of the scene with these inputs, with these laws of the contact and of a parallel one.
     ///
     /// # Errors
-    /// [`SceneError::Buckled`] where the axial force reaches the buckling load of the cantilever.
-    pub fn new(scene: &Scene, springs: &Springs, law: &Power, initial: &Initial) -> Result<Self, SceneError> {
+    /// [`SceneError::Buckled`] where the axial force reaches the buckling load of the cantilever, [`SceneError::Jams`] by
+    /// friction, [`SceneError::NotFinite`] where the armature or a contact finds no rest.
+    pub fn new(
+        scene: &Scene,
+        springs: &Springs,
+        laws: (&Power, Option<&Power>),
+        initial: &Initial,
+    ) -> Result<Self, SceneError> {
         let Some(armature) = &springs.armature else {
-            return Self::pushed(scene, springs, law, initial.displacements);
+            return Pressed::new(scene, springs, laws, initial.displacements).equilibrium();
         };
         let at = |place: f64| {
             let [support, ..] = initial.displacements;
-            Self::pushed(scene, springs, law, [support, 0.0, place])
+            Pressed::new(scene, springs, laws, [support, 0.0, place]).equilibrium()
         };
         let force = |place: f64| at(place).map_or(f64::NAN, |preload| preload.pusher_force);
-        let armature = armature.at_rest(initial.coil, force);
+        let Some(armature) = armature.at_rest(initial.coil, force) else {
+            // Where the spring has no equilibrium under the pusher, it says why.
+            at(scene.armature.rest_position)?;
+            at(scene.armature.core_position)?;
+            return Err(SceneError::NotFinite {
+                name: RealOutput::ArmatureDisplacement.variable().name,
+                value: f64::NAN,
+            });
+        };
         Ok(Self {
             armature,
             ..at(armature.place)?
         })
     }
+}
 
-    /// Equilibrium with the inputs that move bodies displaced so far (m).
-    ///
-    /// # Errors
-    /// [`SceneError::Buckled`] where the axial force reaches the buckling load of the cantilever.
-    fn pushed(scene: &Scene, springs: &Springs, law: &Power, [support, _, pushed]: Ways) -> Result<Self, SceneError> {
-        let (spring, fixed) = (&springs.moving, springs.fixed.as_ref());
-        let statics = &spring.statics;
-        let total_overtravel = scene.contact.overtravel + support;
-        let gravity = scene.environment.gravity;
-        let axial = |y: f64| spring.axial_force(scene, y);
-        let limit = spring.buckling_load;
-        let check = |axial_force: f64| {
-            if axial_force < limit {
-                return Ok(());
-            }
-            let name = match scene.effects.axial_force {
-                AxialForceKind::Prescribed => RealParameter::BeamAxialForce.variable().name,
-                _ => RealOutput::PreloadAxialForce.variable().name,
-            };
-            Err(SceneError::Buckled {
-                name,
-                value: axial_force,
-                limit,
-            })
-        };
+/// Springs, contacts and pusher pressed onto each other with the inputs at these places.
+struct Pressed<'a> {
+    scene: &'a Scene,
+    springs: &'a Springs,
+    law: &'a Power,
+    parallel: Option<&'a Power>,
+    pusher: Option<Pusher>,
+    /// Friction force per contact force, 1.
+    share: Option<f64>,
+    /// Overtravel with what inputs and the deflection of the fixed contact's spring alone add, m.
+    overtravel: f64,
+    /// Deflection of that spring alone, m.
+    fixed_alone: f64,
+    /// What it gives way per contact force, m/N.
+    give: f64,
+}
 
-        let share = tangential_share(scene);
-        let compliance = |n: f64| {
-            let by_force = statics.tip_compliance(n);
-            share.map_or(by_force, |share| {
-                by_force + share * scene.tip.contact_height * statics.moment_compliance(n)
-            })
-        };
-
-        // The fixed contact's spring: its deflection alone, and what the contact force bends it back.
+impl<'a> Pressed<'a> {
+    fn new(
+        scene: &'a Scene,
+        springs: &'a Springs,
+        (law, parallel): (&'a Power, Option<&'a Power>),
+        [support, _, pushed]: Ways,
+    ) -> Self {
+        let fixed = springs.fixed.as_ref();
         let fixed_alone = fixed.map_or(0.0, FixedSpring::free_deflection);
-        let give = fixed.map_or(0.0, FixedSpring::compliance);
-        let total_overtravel = total_overtravel + fixed_alone;
+        Self {
+            scene,
+            springs,
+            law,
+            parallel,
+            pusher: Pusher::of(scene, pushed),
+            share: tangential_share(scene),
+            overtravel: scene.contact.overtravel + support + fixed_alone,
+            fixed_alone,
+            give: fixed.map_or(0.0, FixedSpring::compliance),
+        }
+    }
 
-        let pusher = Pusher::of(scene, pushed);
-        let press = |force: f64, n: f64| pusher.map_or((0.0, 0.0), |pusher| pusher.press(statics, force, n));
-        // What gravity and pusher do to the tip under a contact force and an axial force (N).
-        let loaded = |force: f64, n: f64| {
-            let by_gravity = statics.gravity_compliance(n) * gravity;
-            pusher.map_or(by_gravity, |pusher| {
-                by_gravity - statics.at_pusher(n).across * pusher.press(statics, force, n).0
-            })
+    /// Axial force at a deflection of the tip (m), N.
+    fn axial(&self, y: f64) -> f64 {
+        self.springs.moving.axial_force(self.scene, y)
+    }
+
+    fn check_buckling(&self, axial_force: f64) -> Result<(), SceneError> {
+        let limit = self.springs.moving.buckling_load;
+        if axial_force < limit {
+            return Ok(());
+        }
+        let name = match self.scene.effects.axial_force {
+            AxialForceKind::Prescribed => RealParameter::BeamAxialForce.variable().name,
+            _ => RealOutput::PreloadAxialForce.variable().name,
         };
-        let alone = free_deflection(|n| loaded(0.0, n), &axial);
+        Err(SceneError::Buckled {
+            name,
+            value: axial_force,
+            limit,
+        })
+    }
+
+    /// Deflection of the tip per contact force with the friction that comes with it, m/N.
+    fn compliance(&self, n: f64) -> f64 {
+        let by_force = self.springs.tip_compliance(n);
+        self.share.map_or(by_force, |share| {
+            by_force + share * self.scene.tip.contact_height * self.springs.moving.statics.moment_compliance(n)
+        })
+    }
+
+    /// Force of the pusher (N) and its overlap (m) under the forces of both contacts and an axial force (N).
+    fn press(&self, forces: [f64; 2], n: f64) -> (f64, f64) {
+        self.pusher
+            .map_or((0.0, 0.0), |pusher| pusher.press(self.springs, forces, n))
+    }
+
+    /// What gravity, pusher and the parallel contact do to the tip under the forces of both contacts and an axial force (N), m.
+    fn loaded(&self, forces: [f64; 2], n: f64) -> f64 {
+        let statics = &self.springs.moving.statics;
+        let by_gravity = statics.gravity_compliance(n) * self.scene.environment.gravity;
+        let [_, parallel] = forces;
+        let alone = if parallel > 0.0 {
+            by_gravity + self.springs.at_parallel(n).across * parallel
+        } else {
+            by_gravity
+        };
+        match self.pusher {
+            Some(_) => alone - statics.at_pusher(n).across * self.press(forces, n).0,
+            None => alone,
+        }
+    }
+
+    /// Indentation of the parallel contact with this force (N) in an equilibrium with it, m.
+    fn parallel_indentation(&self, preload: &Preload, parallel: f64) -> f64 {
+        let by = self.springs.at_parallel(preload.axial_force);
+        let deflection = by.across * preload.force + by.own * parallel + by.sag * self.scene.environment.gravity
+            - by.pushed * preload.pusher_force;
+        self.overtravel - self.scene.parallel.offset - deflection - self.give * (preload.force + parallel)
+    }
+
+    /// The equilibrium. The more a parallel contact presses, the less it is indented by where the spring is then.
+    fn equilibrium(&self) -> Result<Preload, SceneError> {
+        let first = self.with(0.0)?;
+        let Some(law) = self.parallel else {
+            return Ok(first);
+        };
+        let open = self.parallel_indentation(&first, 0.0);
+        if open <= 0.0 {
+            return Ok(Preload {
+                parallel_indentation: open,
+                ..first
+            });
+        }
+        let excess = |d: f64| {
+            let force = law.elastic_force(d);
+            // A force that the spring cannot take is too large.
+            self.with(force)
+                .map_or(f64::MAX, |with| d - self.parallel_indentation(&with, force))
+        };
+        let Some(indentation) = roots::bracketed(excess, 0.0, open) else {
+            return Err(SceneError::NotFinite {
+                name: RealOutput::ParallelForce.variable().name,
+                value: excess(open),
+            });
+        };
+        let force = law.elastic_force(indentation);
+        Ok(Preload {
+            parallel_force: force,
+            parallel_indentation: indentation,
+            ..self.with(force)?
+        })
+    }
+
+    /// The equilibrium with a parallel contact that presses with this force, N.
+    fn with(&self, parallel: f64) -> Result<Preload, SceneError> {
+        let Self { law, give, .. } = *self;
+        let total_overtravel = self.overtravel - give * parallel;
+        let loaded = |force: f64, n: f64| self.loaded([force, parallel], n);
+        let rests = |force: f64, deflection: f64, n: f64| Preload {
+            force,
+            deflection,
+            fixed_deflection: self.fixed_alone - give * (force + parallel),
+            axial_force: n,
+            pusher_force: self.press([force, parallel], n).0,
+            pusher_overlap: self.press([force, parallel], n).1,
+            ..Preload::default()
+        };
+        let alone = free_deflection(|n| loaded(0.0, n), &|y| self.axial(y));
         if total_overtravel <= alone {
-            let axial_force = axial(alone);
-            check(axial_force)?;
-            return Ok(Self {
-                force: 0.0,
+            let axial_force = self.axial(alone);
+            self.check_buckling(axial_force)?;
+            return Ok(Preload {
                 indentation: total_overtravel - alone,
-                contact_stiffness: 0.0,
-                deflection: alone,
-                fixed_deflection: fixed_alone,
-                axial_force,
-                pusher_force: press(0.0, axial_force).0,
-                pusher_overlap: press(0.0, axial_force).1,
-                armature: AtRest::default(),
+                ..rests(0.0, alone, axial_force)
             });
         }
-        let n = axial(total_overtravel);
-        if share.is_some() && compliance(n).min(compliance(n) + give) <= 0.0 {
-            return Err(SceneError::Jams {
-                coefficient: scene.friction.coefficient,
-                height: scene.tip.contact_height,
-                limit: statics.tip_compliance(n) / statics.moment_compliance(n) / scene.friction.initial.abs(),
-                initial: scene.friction.initial,
-            });
-        }
+        self.check_jam(self.axial(total_overtravel))?;
         // Whatever the force, it does not draw the spring beyond where it is alone.
         let deflection = |d: f64| (total_overtravel - d - give * law.elastic_force(d)).max(alone);
         let residual = |d: f64| {
-            let (y, n) = (deflection(d), axial(deflection(d)));
+            let (y, n) = (deflection(d), self.axial(deflection(d)));
             let force = law.elastic_force(d);
-            force - (y - loaded(force, n)) / compliance(n)
+            force - (y - loaded(force, n)) / self.compliance(n)
         };
         // No sign change: the spring exerts no force on the contact, it has buckled under its own deflection.
         let Some(indentation) = roots::bracketed(residual, 0.0, total_overtravel - alone) else {
-            return Err(check(axial(total_overtravel)).err().unwrap_or(SceneError::NotFinite {
+            let buckled = self.check_buckling(self.axial(total_overtravel)).err();
+            return Err(buckled.unwrap_or(SceneError::NotFinite {
                 name: RealOutput::PreloadIndentation.variable().name,
                 value: residual(0.0),
             }));
         };
         let (force, deflection) = (law.elastic_force(indentation), deflection(indentation));
-        let axial_force = axial(deflection);
-        check(axial_force)?;
-        Ok(Self {
-            force,
+        let axial_force = self.axial(deflection);
+        self.check_buckling(axial_force)?;
+        Ok(Preload {
             indentation,
             contact_stiffness: law.tangent_stiffness(indentation),
-            deflection,
-            fixed_deflection: fixed_alone - give * force,
-            pusher_force: press(force, axial_force).0,
-            pusher_overlap: press(force, axial_force).1,
-            armature: AtRest::default(),
-            axial_force,
+            ..rests(force, deflection, axial_force)
+        })
+    }
+
+    /// Refuses friction under which the spring gives way more than it presses back, at an axial force (N).
+    fn check_jam(&self, n: f64) -> Result<(), SceneError> {
+        let compliance = self.compliance(n);
+        if self.share.is_none() || compliance.min(compliance + self.give) > 0.0 {
+            return Ok(());
+        }
+        let Scene { friction, tip, .. } = self.scene;
+        let statics = &self.springs.moving.statics;
+        Err(SceneError::Jams {
+            coefficient: friction.coefficient,
+            height: tip.contact_height,
+            limit: statics.tip_compliance(n) / statics.moment_compliance(n) / friction.initial.abs(),
+            initial: friction.initial,
         })
     }
 }

@@ -5,7 +5,7 @@ use crate::electrical::ElectricalContact;
 use crate::error::{SceneError, StepError};
 use crate::inputs::Inputs;
 use crate::integrator::communication_step;
-use crate::integrator::extremes::Range;
+use crate::integrator::extremes::{Extremes, Range};
 use crate::integrator::with_contact;
 use crate::integrator::workspace::Workspace;
 use crate::link::CONTACT;
@@ -166,71 +166,48 @@ impl Simulation {
     pub fn real(&self, output: RealOutput) -> f64 {
         let Self { model, motion, .. } = self;
         let (state, contact) = (motion.state(), || motion.link(model, CONTACT));
-        let force = || contact().force;
-        let core = || model.core().map(|index| motion.link(model, index));
-        let fixed = || {
-            model
-                .fixed()
-                .map_or_else(LinkNow::default, |index| motion.link(model, index))
-        };
-        let second = model.second();
-        let second_force = || second.map_or(0.0, |index| motion.link(model, index).force);
-        let electrical = |index: usize| model.links.get(index).and_then(|link| link.electrical);
-        let conductance = || electrical(CONTACT).map(|electrical| electrical.conductance(force()));
-        let second_conductance = || {
-            let electrical = second.and_then(electrical);
-            electrical.map(|electrical| electrical.conductance(second_force()))
-        };
-        let extremes = || model.scene.effects.extremes.then(|| motion.extremes(model));
-        let range = |index: usize| extremes().map_or_else(Range::default, |mut extremes| *extremes.of(index));
-        let of_second = || second.map_or_else(Range::default, range);
-        let second_event =
-            |event: fn(&LinkState) -> Option<f64>| or_not_yet(second.and_then(|index| event(state.links.get(index)?)));
+        let at = |role: Option<usize>| role.map_or_else(LinkNow::default, |index| motion.link(model, index));
+        let fixed = || at(model.fixed());
         match output {
-            RealOutput::ContactForce => force(),
+            RealOutput::ContactForce => contact().force,
             RealOutput::ContactElasticForce => motion.elastic_force(model).0,
-            RealOutput::ContactConductance => conductance().unwrap_or_default(),
-            RealOutput::ContactResistance => conductance().map_or(0.0, |conductance| 1.0 / conductance),
-            RealOutput::ContactVoltage => conductance().map_or(0.0, |conductance| {
-                let highest = model.scene.contact.open_voltage;
-                (motion.current / conductance).clamp(-highest, highest)
-            }),
-            RealOutput::ContactTemperature => match electrical(CONTACT).filter(|_| model.scene.effects.heating) {
-                Some(electrical) => electrical.temperature(&model.scene, force(), motion.current),
-                None => model.scene.environment.temperature,
-            },
-            RealOutput::StepMinimumForce => range(CONTACT).least,
-            RealOutput::StepMaximumForce => range(CONTACT).greatest,
-            RealOutput::StepMaximumResistance => match electrical(CONTACT).filter(|_| model.scene.effects.extremes) {
-                Some(electrical) => 1.0 / electrical.conductance(range(CONTACT).least),
+            RealOutput::ContactConductance
+            | RealOutput::ContactResistance
+            | RealOutput::ContactVoltage
+            | RealOutput::ContactTemperature
+            | RealOutput::StepMaximumResistance
+            | RealOutput::SecondConductance
+            | RealOutput::SecondResistance => self.electrical(output),
+            RealOutput::StepMinimumForce => self.range(Some(CONTACT)).least,
+            RealOutput::StepMaximumForce => self.range(Some(CONTACT)).greatest,
+            RealOutput::StepMinimumGap => match self.extremes().filter(|_| model.second().is_some()) {
+                Some(extremes) => -extremes.nearest,
                 None => 0.0,
             },
-            RealOutput::StepMinimumGap => extremes()
-                .filter(|_| second.is_some())
-                .map_or(0.0, |extremes| -extremes.nearest),
-            RealOutput::PusherForce => model.pusher().map_or(0.0, |index| motion.link(model, index).force),
-            RealOutput::ArmatureDisplacement => core().map_or(0.0, |at| model.preload.armature.place + at.approach),
-            RealOutput::ArmatureVelocity => core().map_or(0.0, |at| at.rate),
-            RealOutput::ArmatureGap => model.core().zip(core()).map_or(0.0, |(index, at)| {
-                let overlap = model.links.get(index).map_or(0.0, |link| link.approach);
-                -(overlap + at.approach)
-            }),
-            RealOutput::ArmatureLastRelease => {
-                or_not_yet(model.core().and_then(|index| state.links.get(index)?.last_opening))
+            RealOutput::ParallelForce => at(model.parallel()).force,
+            RealOutput::ParallelLastOpening => self.event(model.parallel(), |link| link.last_opening),
+            RealOutput::ParallelLastClosing => self.event(model.parallel(), |link| link.last_closing),
+            RealOutput::ParallelMinimumForce => self.range(model.parallel()).least,
+            RealOutput::ParallelMaximumForce => self.range(model.parallel()).greatest,
+            RealOutput::PusherForce => at(model.pusher()).force,
+            RealOutput::ArmatureDisplacement => model.preload.armature.place + at(model.core()).approach,
+            RealOutput::ArmatureVelocity => at(model.core()).rate,
+            RealOutput::ArmatureGap => {
+                let core = model.core().and_then(|index| model.links.get(index));
+                core.map_or(0.0, |core| -(core.approach + at(model.core()).approach))
             }
-            RealOutput::StepMinimumStopForce => model.core().map_or(0.0, |index| range(index).least),
-            RealOutput::StepMinimumPusherForce => model.pusher().map_or(0.0, |index| range(index).least),
-            RealOutput::SecondForce => second_force(),
-            RealOutput::SecondConductance => second_conductance().unwrap_or_default(),
-            RealOutput::SecondResistance => second_conductance().map_or(0.0, |conductance| 1.0 / conductance),
-            RealOutput::SecondLastOpening => second_event(|link| link.last_opening),
-            RealOutput::SecondLastClosing => second_event(|link| link.last_closing),
-            RealOutput::SecondMinimumForce => of_second().least,
-            RealOutput::SecondMaximumForce => of_second().greatest,
-            RealOutput::ChatterLongestFalseMake => self.makes(CONTACT).longest,
-            RealOutput::ChatterTotalFalseMake => self.makes(CONTACT).total,
-            RealOutput::SecondLongestFalseMake => self.makes_of_second().longest,
-            RealOutput::SecondTotalFalseMake => self.makes_of_second().total,
+            RealOutput::ArmatureLastRelease => self.event(model.core(), |link| link.last_opening),
+            RealOutput::StepMinimumStopForce => self.range(model.core()).least,
+            RealOutput::StepMinimumPusherForce => self.range(model.pusher()).least,
+            RealOutput::SecondForce => at(model.second()).force,
+            RealOutput::SecondLastOpening => self.event(model.second(), |link| link.last_opening),
+            RealOutput::SecondLastClosing => self.event(model.second(), |link| link.last_closing),
+            RealOutput::SecondMinimumForce => self.range(model.second()).least,
+            RealOutput::SecondMaximumForce => self.range(model.second()).greatest,
+            RealOutput::ChatterLongestFalseMake => self.makes(Some(CONTACT)).longest,
+            RealOutput::ChatterTotalFalseMake => self.makes(Some(CONTACT)).total,
+            RealOutput::SecondLongestFalseMake => self.makes(model.second()).longest,
+            RealOutput::SecondTotalFalseMake => self.makes(model.second()).total,
             RealOutput::ChatterLongestInterruption => self.interruptions().longest,
             RealOutput::ChatterTotalInterruption => self.interruptions().total,
             RealOutput::EnergyBalance => state.energy_balance,
@@ -242,8 +219,8 @@ impl Simulation {
             RealOutput::TipVelocity => motion.support().1 + fixed().rate - contact().rate,
             RealOutput::FixedDisplacement => model.preload.fixed_deflection + fixed().approach,
             RealOutput::FixedVelocity => fixed().rate,
-            RealOutput::ContactLastOpening => or_not_yet(state.links[CONTACT].last_opening),
-            RealOutput::ContactLastClosing => or_not_yet(state.links[CONTACT].last_closing),
+            RealOutput::ContactLastOpening => self.event(Some(CONTACT), |link| link.last_opening),
+            RealOutput::ContactLastClosing => self.event(Some(CONTACT), |link| link.last_closing),
             RealOutput::ContactTangentialForce => motion.friction(model).0,
             RealOutput::ContactSlip => motion.friction(model).1.way,
             RealOutput::ContactSlipDistance => motion.friction(model).1.distance,
@@ -256,6 +233,77 @@ impl Simulation {
         }
     }
 
+    /// A real output of the circuits, in its SI unit.
+    fn electrical(&self, output: RealOutput) -> f64 {
+        let Self { model, motion, .. } = self;
+        let second = || self.conducting(model.second());
+        let Some(circuit) = self.conducting(Some(CONTACT)) else {
+            return if output == RealOutput::ContactTemperature {
+                model.scene.environment.temperature
+            } else {
+                0.0
+            };
+        };
+        match output {
+            RealOutput::ContactConductance => circuit.conductance,
+            RealOutput::ContactResistance => 1.0 / circuit.conductance,
+            RealOutput::ContactVoltage => {
+                let highest = model.scene.contact.open_voltage;
+                (motion.current / circuit.conductance).clamp(-highest, highest)
+            }
+            RealOutput::ContactTemperature if model.scene.effects.heating => {
+                let force = motion.link(model, CONTACT).force;
+                let current = motion.current * circuit.share();
+                circuit.electrical.temperature(&model.scene, force, current)
+            }
+            RealOutput::ContactTemperature => model.scene.environment.temperature,
+            RealOutput::StepMaximumResistance => self.extremes().map_or(0.0, |mut extremes| {
+                1.0 / match model.parallel() {
+                    Some(_) => circuit.electrical.beside(extremes.pair),
+                    None => circuit.electrical.conductance(extremes.of(CONTACT).least),
+                }
+            }),
+            RealOutput::SecondConductance => second().map_or(0.0, |second| second.conductance),
+            RealOutput::SecondResistance => second().map_or(0.0, |second| 1.0 / second.conductance),
+            _ => 0.0,
+        }
+    }
+
+    /// What the circuit of a contact conducts; `None` without a resistance.
+    fn conducting(&self, role: Option<usize>) -> Option<Conducting> {
+        let Self { model, motion, .. } = self;
+        let index = role?;
+        let electrical = model.links.get(index)?.electrical?;
+        let spot = |index: usize| electrical.spot(motion.link(model, index).force);
+        let own = spot(index);
+        let parallel = model.parallel().filter(|_| index == CONTACT).map(spot);
+        let other = parallel.unwrap_or_default();
+        Some(Conducting {
+            electrical,
+            own,
+            other,
+            conductance: electrical.beside(own + other),
+        })
+    }
+
+    /// Extremes within the last communication step, if requested.
+    fn extremes(&self) -> Option<Extremes> {
+        let requested = self.model.scene.effects.extremes;
+        requested.then(|| self.motion.extremes(&self.model))
+    }
+
+    /// Extremes of the force of a link; 0 without it, or if they are not requested.
+    fn range(&self, role: Option<usize>) -> Range {
+        role.zip(self.extremes())
+            .map_or_else(Range::default, |(index, mut extremes)| *extremes.of(index))
+    }
+
+    /// The last instant of an event of a link, s; -1 where it has not been yet, or without the link.
+    fn event(&self, role: Option<usize>, event: fn(&LinkState) -> Option<f64>) -> f64 {
+        let link = role.and_then(|index| self.motion.state().links.get(index));
+        link.and_then(event).unwrap_or(-1.0)
+    }
+
     /// Estimate of the error of the contact force so far, relative as the tolerance is; 1 at most.
     pub fn force_error(&self) -> f64 {
         self.motion.state().force_error.relative()
@@ -265,61 +313,29 @@ impl Simulation {
     /// for outputs that are not continuous; 0 at the start.
     pub fn rate(&self, output: RealOutput) -> Option<f64> {
         let Self { model, motion, .. } = self;
-        let rates = || motion.link_rates(model, CONTACT);
+        // Of force and velocity.
+        let rates = |role: Option<usize>| role.map_or((0.0, 0.0), |index| motion.link_rates(model, index));
         let along = || motion.friction_rates(model);
-        let fixed_acceleration = || model.fixed().map_or(0.0, |index| motion.link_rates(model, index).1);
-        let electrical = |index: usize| model.links.get(index).and_then(|link| link.electrical);
-        // Conductance and its rate.
-        let conducting_at = |electrical: Option<ElectricalContact>, force, rate| {
-            electrical.map(|electrical| {
-                (
-                    electrical.conductance(force),
-                    electrical.conductance_slope(force) * rate,
-                )
-            })
-        };
-        let force = || motion.link(model, CONTACT).force;
-        let conducting = || conducting_at(electrical(CONTACT), force(), rates().0);
-        let force_rate = |index| motion.link_rates(model, index).0;
-        let second_conducting = || {
-            let index = model.second()?;
-            conducting_at(electrical(index), motion.link(model, index).force, force_rate(index))
-        };
+        let fixed_acceleration = || rates(model.fixed()).1;
         Some(match output {
-            RealOutput::SecondForce => model.second().map_or(0.0, force_rate),
-            RealOutput::PusherForce => model.pusher().map_or(0.0, force_rate),
-            RealOutput::ArmatureDisplacement => self.real(RealOutput::ArmatureVelocity),
-            RealOutput::ArmatureVelocity => model.core().map_or(0.0, |index| motion.link_rates(model, index).1),
-            RealOutput::ArmatureGap => -self.real(RealOutput::ArmatureVelocity),
-            RealOutput::SecondConductance => second_conducting().map_or(0.0, |(_, rate)| rate),
-            RealOutput::SecondResistance => {
-                second_conducting().map_or(0.0, |(conductance, rate)| -rate / conductance.powi(2))
-            }
-            RealOutput::ContactForce => rates().0,
+            RealOutput::ContactForce => rates(Some(CONTACT)).0,
+            RealOutput::ParallelForce => rates(model.parallel()).0,
+            RealOutput::SecondForce => rates(model.second()).0,
+            RealOutput::PusherForce => rates(model.pusher()).0,
             RealOutput::ContactElasticForce => motion.elastic_force(model).1,
-            RealOutput::ContactConductance => conducting().map_or(0.0, |(_, rate)| rate),
-            RealOutput::ContactResistance => {
-                conducting().map_or(0.0, |(conductance, rate)| -rate / conductance.powi(2))
-            }
-            RealOutput::ContactVoltage => conducting().map_or(0.0, |(conductance, rate)| {
-                let voltage = motion.current / conductance;
-                if voltage.abs() >= model.scene.contact.open_voltage {
-                    return 0.0;
-                }
-                (motion.current_rate - voltage * rate) / conductance
-            }),
-            RealOutput::ContactTemperature => match electrical(CONTACT).filter(|_| model.scene.effects.heating) {
-                Some(electrical) => {
-                    let force = force();
-                    let (by_force, by_current) = electrical.temperature_slopes(&model.scene, force, motion.current);
-                    by_force * rates().0 + by_current * motion.current.signum() * motion.current_rate
-                }
-                None => 0.0,
-            },
+            RealOutput::ArmatureDisplacement => self.real(RealOutput::ArmatureVelocity),
+            RealOutput::ArmatureVelocity => rates(model.core()).1,
+            RealOutput::ArmatureGap => -self.real(RealOutput::ArmatureVelocity),
+            RealOutput::ContactConductance
+            | RealOutput::ContactResistance
+            | RealOutput::ContactVoltage
+            | RealOutput::ContactTemperature
+            | RealOutput::SecondConductance
+            | RealOutput::SecondResistance => self.electrical_rate(output),
             RealOutput::ContactIndentation => motion.link(model, CONTACT).rate,
             RealOutput::TipDisplacement => self.real(RealOutput::TipVelocity),
             RealOutput::FixedDisplacement => self.real(RealOutput::FixedVelocity),
-            RealOutput::TipVelocity => fixed_acceleration() - rates().1,
+            RealOutput::TipVelocity => fixed_acceleration() - rates(Some(CONTACT)).1,
             RealOutput::FixedVelocity => fixed_acceleration(),
             RealOutput::ContactTangentialForce => along().0,
             RealOutput::ContactSlip => along().1.way,
@@ -334,6 +350,10 @@ impl Simulation {
             | RealOutput::StepMinimumPusherForce
             | RealOutput::StepMinimumStopForce
             | RealOutput::ArmatureLastRelease
+            | RealOutput::ParallelLastOpening
+            | RealOutput::ParallelLastClosing
+            | RealOutput::ParallelMinimumForce
+            | RealOutput::ParallelMaximumForce
             | RealOutput::SecondLastOpening
             | RealOutput::SecondLastClosing
             | RealOutput::SecondMinimumForce
@@ -354,27 +374,62 @@ impl Simulation {
         })
     }
 
-    /// Interruptions of the first contact up to the communication point; none if they are not counted.
+    /// Rate of a continuous output of the circuits, in its SI unit per second.
+    fn electrical_rate(&self, output: RealOutput) -> f64 {
+        let Self { model, motion, .. } = self;
+        let role = match output {
+            RealOutput::SecondConductance | RealOutput::SecondResistance => model.second(),
+            _ => Some(CONTACT),
+        };
+        let Some(circuit) = self.conducting(role) else {
+            return 0.0;
+        };
+        let of_spot = |role: Option<usize>| {
+            let force = role.map_or(0.0, |index| motion.link(model, index).force);
+            let rate = role.map_or(0.0, |index| motion.link_rates(model, index).0);
+            circuit.electrical.conductance_slope(force) * rate
+        };
+        let parallel = model.parallel().filter(|_| role == Some(CONTACT));
+        let rates = [of_spot(role), of_spot(parallel)];
+        let (conductance, rate) = (circuit.conductance, rates[0] + rates[1]);
+        match output {
+            RealOutput::ContactConductance | RealOutput::SecondConductance => rate,
+            RealOutput::ContactResistance | RealOutput::SecondResistance => -rate / conductance.powi(2),
+            RealOutput::ContactVoltage => {
+                let voltage = motion.current / conductance;
+                if voltage.abs() >= model.scene.contact.open_voltage {
+                    return 0.0;
+                }
+                (motion.current_rate - voltage * rate) / conductance
+            }
+            RealOutput::ContactTemperature if model.scene.effects.heating => {
+                let (share, share_rate) = (circuit.share(), circuit.share_rate(rates));
+                let (force, current) = (motion.link(model, CONTACT).force, motion.current * share);
+                let current_rate = motion.current_rate * share + motion.current * share_rate;
+                let (by_force, by_current) = circuit.electrical.temperature_slopes(&model.scene, force, current);
+                let force_rate = motion.link_rates(model, CONTACT).0;
+                by_force * force_rate + by_current * current.signum() * current_rate
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// Interruptions of the circuit of the first contact up to the communication point; none if they are not counted.
     pub fn interruptions(&self) -> Summary {
-        self.monitored(CONTACT, Interruptions::summary)
+        self.monitored(Some(CONTACT), Interruptions::summary)
     }
 
-    /// False makes of the second contact up to the communication point; none if they are not counted.
-    fn makes_of_second(&self) -> Summary {
-        self.model
-            .second()
-            .map_or_else(Summary::default, |index| self.makes(index))
+    /// False makes of the circuit of a contact.
+    fn makes(&self, role: Option<usize>) -> Summary {
+        self.monitored(role, Interruptions::makes)
     }
 
-    /// False makes of a contact.
-    fn makes(&self, index: usize) -> Summary {
-        self.monitored(index, Interruptions::makes)
-    }
-
-    fn monitored(&self, index: usize, summary: fn(&Interruptions, &Criterion, f64) -> Summary) -> Summary {
-        let counted = self.model.links.get(index).and_then(|link| link.criterion);
-        counted.map_or_else(Summary::default, |criterion| {
-            summary(&self.motion.interruptions(&self.model, index), &criterion, self.time())
+    fn monitored(&self, role: Option<usize>, summary: fn(&Interruptions, &Criterion, f64) -> Summary) -> Summary {
+        let link = role.and_then(|index| self.model.links.get(index));
+        let counted = link.and_then(|link| Some((link.circuit, link.criterion?)));
+        counted.map_or_else(Summary::default, |(circuit, criterion)| {
+            let circuits = self.motion.circuits(&self.model);
+            summary(&circuits.of(circuit), &criterion, self.time())
         })
     }
 
@@ -386,8 +441,8 @@ impl Simulation {
             IntegerOutput::SolverRejectedSteps => count(self.state().rejected_steps),
             IntegerOutput::SolverIterations => count(self.state().iterations),
             IntegerOutput::ChatterCount => count(self.interruptions().count),
-            IntegerOutput::ChatterFalseMakes => count(self.makes(CONTACT).count),
-            IntegerOutput::SecondFalseMakes => count(self.makes_of_second().count),
+            IntegerOutput::ChatterFalseMakes => count(self.makes(Some(CONTACT)).count),
+            IntegerOutput::SecondFalseMakes => count(self.makes(self.model.second()).count),
             IntegerOutput::SolverModesUsed => count(self.model.modes.len() as u64),
         }
     }
@@ -406,6 +461,7 @@ impl Simulation {
     pub fn boolean(&self, output: BooleanOutput) -> bool {
         let index = match output {
             BooleanOutput::ContactClosed => Some(CONTACT),
+            BooleanOutput::ParallelClosed => self.model.parallel(),
             BooleanOutput::SecondClosed => self.model.second(),
             BooleanOutput::PusherClosed => self.model.pusher(),
         };
@@ -428,7 +484,33 @@ fn on_heap(scene: &Scene, initial: &Initial) -> Result<Box<Model>, SceneError> {
         Err(SceneError::Memory(needed))
     }
 }
-/// The instant of an event (s) as outputs have it: -1 for one that has not been yet.
-fn or_not_yet(event: Option<f64>) -> f64 {
-    event.unwrap_or(-1.0)
+
+/// What a circuit conducts.
+struct Conducting {
+    electrical: ElectricalContact,
+    /// Conductance of the spot of its contact, S.
+    own: f64,
+    /// That of a parallel contact, S.
+    other: f64,
+    /// All of it, S.
+    conductance: f64,
+}
+
+impl Conducting {
+    /// Share of the current through its contact, 1.
+    fn share(&self) -> f64 {
+        if self.other == 0.0 {
+            1.0
+        } else {
+            self.own / (self.own + self.other)
+        }
+    }
+
+    /// The rate of that at these rates of both conductances (S/s), 1/s.
+    fn share_rate(&self, [own, other]: [f64; 2]) -> f64 {
+        if self.other == 0.0 {
+            return 0.0;
+        }
+        (own * self.other - self.own * other) / (self.own + self.other).powi(2)
+    }
 }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use serde_big_array::BigArray;
 
 use crate::beam::mode::{MAX_MODES, ModeState, ModeStates};
-use crate::chatter::Interruptions;
+use crate::circuits::Circuits;
 use crate::contact::friction::Slip;
 use crate::force_error::ForceError;
 use crate::integrator::step_length::StepLengths;
@@ -30,6 +30,8 @@ pub struct State {
     pub coil: f64,
     /// The links, in the order of the model.
     pub links: [LinkState; MAX_LINKS],
+    /// Interruptions so far.
+    pub circuits: Circuits,
     /// Slip of the first contact.
     pub slip: Slip,
     /// The last instant at which a force left zero or jumped, or at which slip began or ended, s: just after it, forces vary
@@ -70,8 +72,6 @@ pub struct LinkState {
     pub last_opening: Option<f64>,
     /// Time at which the force last left zero, s; `None`: not yet.
     pub last_closing: Option<f64>,
-    /// Interruptions so far.
-    pub interruptions: Interruptions,
 }
 
 impl LinkState {
@@ -89,7 +89,6 @@ impl LinkState {
             closed: _,
             last_opening,
             last_closing,
-            interruptions,
         } = self;
         [approach, rate, force]
             .into_iter()
@@ -99,7 +98,6 @@ impl LinkState {
                 .into_iter()
                 .flatten()
                 .all(|event| is_past(*event, time))
-            && interruptions.is_sound(time)
     }
 }
 
@@ -114,6 +112,7 @@ impl State {
             velocities: [0.0; INPUTS],
             coil: 0.0,
             links: [LinkState::default(); MAX_LINKS],
+            circuits: Circuits::default(),
             slip: Slip::default(),
             last_kink: 0.0,
             kink_is_closing: false,
@@ -142,6 +141,7 @@ impl State {
             velocities,
             coil,
             links,
+            circuits,
             slip,
             last_kink,
             kink_is_closing: _,
@@ -160,6 +160,7 @@ impl State {
             .all(|number| number.is_finite())
             && modes.iter().all(|mode| mode.q.is_finite() && mode.v.is_finite())
             && links.iter().all(|link| link.is_sound(*time))
+            && circuits.is_sound(*time)
             && force_error.is_sound()
             && slip.is_sound(*time)
             && lengths.is_sound()

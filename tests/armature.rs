@@ -279,8 +279,46 @@ fn a_core_before_the_rest_position_is_refused() {
     scene.armature.core_position = scene.armature.rest_position;
     let text = Model::new(&scene, 0.0).unwrap_err().to_string();
     assert!(text.contains("armature.corePosition = -0.0003 m"), "{text}");
-    let mut scene = relay();
+}
+
+/// Between elastic stops an armature alone keeps the sum of kinetic energy, that of its return spring and stops, and what the
+/// magnet stores over the gap, `F_h g / (1 + g / g_0)`: by the formulas, and by the balance of the component.
+#[test]
+fn energy_is_kept_between_magnet_return_spring_and_stops() {
+    let mut scene = alone();
     scene.effects.energy = true;
-    let text = Model::new(&scene, 0.0).unwrap_err().to_string();
-    assert!(text.contains("effects.energy = true"), "{text}");
+    scene.armature.stop_restitution = 1.0;
+    scene.armature.damping = 0.0;
+    let given = scene.armature;
+    let mut simulation = Simulation::new(&scene, &coil(0.0), 0.0).unwrap();
+    let energy = |simulation: &Simulation| {
+        let [place, velocity] =
+            [RealOutput::ArmatureDisplacement, RealOutput::ArmatureVelocity].map(|output| simulation.real(output));
+        let gap = given.core_position - place;
+        let way = place - given.rest_position;
+        let stored = if gap > 0.0 {
+            given.hold_force * gap / (1.0 + gap / given.gap_constant)
+        } else {
+            given.hold_force * gap + 0.5 * given.stop_stiffness * gap * gap
+        };
+        let rest = 0.5 * given.stop_stiffness * way.min(0.0).powi(2);
+        0.5 * given.mass * velocity * velocity
+            + given.return_force * way
+            + 0.5 * given.stiffness * way * way
+            + stored
+            + rest
+    };
+    let start = energy(&simulation);
+    let (mut seated, mut fastest) = (0, 0.0_f64);
+    for n in 0..2000 {
+        simulation.step(&coil(1.0), f64::from(n) * 1e-5, 1e-5).unwrap();
+        seated += i32::from(simulation.real(RealOutput::ArmatureGap) < 0.0);
+        fastest = fastest.max(simulation.real(RealOutput::ArmatureVelocity));
+        let kinetic = 0.5 * given.mass * fastest * fastest;
+        let lost = energy(&simulation) - start;
+        assert!(lost.abs() < 1e-4 * kinetic.max(1e-7), "{n}: {lost} of {kinetic}");
+        let balance = simulation.real(RealOutput::EnergyBalance);
+        assert!(balance.abs() < 1e-4 * kinetic.max(1e-7), "{n}: {balance} of {kinetic}");
+    }
+    assert!(seated > 10 && fastest > 0.1, "{seated} {fastest}");
 }

@@ -25,14 +25,17 @@ pub struct Space {
     pub(crate) tip_slope: DVector<f64>,
     /// Value of each function at the pusher.
     pub(crate) pusher: DVector<f64>,
+    /// Value of each function at a parallel contact.
+    pub(crate) parallel: DVector<f64>,
 }
 
 /// What functions do at the places of a spring that are asked for: deflection (m) and rotation at the tip, deflection at the
-/// pusher (m).
+/// pusher and at a parallel contact (m).
 pub(super) struct Places {
     pub(super) tip: DVector<f64>,
     pub(super) slope: DVector<f64>,
     pub(super) pusher: DVector<f64>,
+    pub(super) parallel: DVector<f64>,
 }
 
 /// One mode, normalised to a modal mass of 1 kg.
@@ -59,6 +62,7 @@ impl Space {
             geometric: DMatrix::zeros(count, count),
             load: DVector::zeros(count),
             tip: functions(1.0).0,
+            parallel: functions(1.0).0,
             tip_slope: functions(1.0).1,
             pusher: DVector::zeros(count),
         };
@@ -80,7 +84,7 @@ impl Space {
         mass: DMatrix<f64>,
         slopes: DMatrix<f64>,
         load: DVector<f64>,
-        Places { tip, slope, pusher }: Places,
+        places: Places,
     ) -> Self {
         let half_mass = section.mass_per_length * section.length / 2.0;
         let half_stiffness = 8.0 * section.bending_stiffness / section.length.powi(3);
@@ -88,9 +92,10 @@ impl Space {
             mass: mass * (half_stiffness / half_mass),
             geometric: slopes * (half_stiffness * section.length / 2.0),
             load: load * (half_stiffness.sqrt() / half_mass),
-            tip_slope: slope * (half_stiffness.sqrt() * section.length / 2.0),
-            tip: tip * half_stiffness.sqrt(),
-            pusher: pusher * half_stiffness.sqrt(),
+            tip_slope: places.slope * (half_stiffness.sqrt() * section.length / 2.0),
+            tip: places.tip * half_stiffness.sqrt(),
+            pusher: places.pusher * half_stiffness.sqrt(),
+            parallel: places.parallel * half_stiffness.sqrt(),
         }
     }
 

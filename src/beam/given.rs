@@ -30,6 +30,8 @@ pub struct Given {
     modes: Vec<GivenMode>,
     /// Static deflection of the contact per force there, m/N.
     compliance: f64,
+    /// The same of a parallel contact; 0 without one.
+    parallel_compliance: f64,
 }
 
 impl Given {
@@ -41,6 +43,7 @@ impl Given {
             modes,
             // What the modes exceed it by are digits that were not printed.
             compliance: spring.compliance.max(spring.held()),
+            parallel_compliance: spring.parallel_compliance(),
         }
     }
 
@@ -55,17 +58,21 @@ impl Given {
         }
     }
 
-    /// Their number, with the residual flexibility.
+    /// Their number, with the residual flexibility of each contact.
     pub fn count(&self) -> usize {
-        (self.modes.len() + 1).min(MAX_MODES)
+        (self.modes.len() + self.residuals()).min(MAX_MODES)
     }
 
-    /// Up to `count` modes and the residual flexibility, if there is room.
+    fn residuals(&self) -> usize {
+        if self.parallel_compliance > 0.0 { 2 } else { 1 }
+    }
+
+    /// Up to `count` modes and the residual flexibility of each contact, if there is room.
     pub fn modes(&self, count: usize, (alpha, beta): Rayleigh) -> Vec<Mode> {
         let mut modes: Vec<_> = self
             .modes
             .iter()
-            .take(count.min(MAX_MODES - 1))
+            .take(count.min(MAX_MODES - self.residuals()))
             .map(|mode| {
                 let omega_squared = mode.omega_squared();
                 let own = mode.damping.map(|ratio| 2.0 * ratio * omega_squared.sqrt());
@@ -77,27 +84,35 @@ impl Given {
                     rotation: mode.rotation.unwrap_or_default(),
                     fixed: 0.0,
                     pusher: mode.pusher.unwrap_or_default(),
+                    parallel: mode.parallel.unwrap_or_default(),
                     armature: 0.0,
                 }
             })
             .collect();
-        let held: f64 = modes.iter().map(Mode::compliance).sum();
-        let rest = self.compliance - held;
-        if let Some(highest) = modes.last().filter(|_| rest > ROUNDING * self.compliance) {
-            let omega_squared = RESIDUAL.powi(2) * highest.omega_squared;
-            // Where each mode has its own damping, that of the scene is not meant for this spring.
-            let beta = if self.modes.iter().all(|mode| mode.damping.is_some()) {
-                0.0
-            } else {
-                beta
-            };
-            modes.push(Mode {
-                omega_squared,
-                damping: beta * omega_squared + 2.0 * omega_squared.sqrt(),
-                tip: (rest * omega_squared).sqrt(),
-                ..Mode::default()
-            });
-        }
+        let Some(highest) = modes.last().map(|mode| mode.omega_squared) else {
+            return modes;
+        };
+        let omega_squared = RESIDUAL.powi(2) * highest;
+        // Where each mode has its own damping, that of the scene is not meant for this spring.
+        let beta = if self.modes.iter().all(|mode| mode.damping.is_some()) {
+            0.0
+        } else {
+            beta
+        };
+        let residual = |compliance: f64, held: f64| {
+            let rest = compliance - held;
+            (rest > ROUNDING * compliance).then(|| (rest * omega_squared).sqrt())
+        };
+        let rest = Mode {
+            omega_squared,
+            damping: beta * omega_squared + 2.0 * omega_squared.sqrt(),
+            ..Mode::default()
+        };
+        let tip = residual(self.compliance, modes.iter().map(Mode::compliance).sum());
+        let held = modes.iter().map(|mode| mode.parallel.powi(2) / mode.omega_squared);
+        let parallel = residual(self.parallel_compliance, held.sum());
+        modes.extend(tip.map(|tip| Mode { tip, ..rest }));
+        modes.extend(parallel.map(|parallel| Mode { parallel, ..rest }));
         modes
     }
 
@@ -113,6 +128,7 @@ impl Given {
                 tip: vector(&|mode| mode.tip / mode.omega_squared.sqrt()),
                 slope: vector(&|mode| mode.rotation / mode.omega_squared.sqrt()),
                 pusher: vector(&|mode| mode.pusher / mode.omega_squared.sqrt()),
+                parallel: vector(&|mode| mode.parallel / mode.omega_squared.sqrt()),
             },
         )
     }

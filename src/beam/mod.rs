@@ -15,3 +15,4 @@ pub mod section;
 pub mod spring;
 pub mod springs;
 pub mod statics;
+mod tongues;

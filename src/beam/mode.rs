@@ -26,6 +26,8 @@ pub struct Mode {
     pub fixed: f64,
     /// Displacement that closes the gap between pusher and spring, 1/sqrt(kg).
     pub pusher: f64,
+    /// Displacement that opens a parallel contact, 1/sqrt(kg).
+    pub parallel: f64,
     /// Displacement of the armature towards the contact, 1/sqrt(kg); 0 of a spring.
     pub armature: f64,
 }

@@ -129,6 +129,8 @@ fn space(mesh: &Mesh, shapes: &[Bend], section: &Section) -> Space {
             tip: vector(&|shape| mesh.at_contact(shape).0),
             slope: vector(&|shape| mesh.at_contact(shape).1),
             pusher: vector(&|shape| mesh.at_pusher(shape)),
+            // Side by side at one tip; tongues of their own come as modes of their own.
+            parallel: vector(&|shape| mesh.at_contact(shape).0),
         },
     )
 }

@@ -15,7 +15,7 @@ use crate::error::SceneError;
 use crate::math::simd::LANES;
 use crate::scene::spring::{Segments, Shape, SpringFile};
 use crate::scene::{Scene, choices};
-use crate::variables::{AxialForceKind, EnumerationParameter, RealParameter};
+use crate::variables::{AxialForceKind, EnumerationParameter, PusherKind, RealParameter};
 
 /// A spring with its rivet.
 #[derive(Clone, Debug)]
@@ -175,6 +175,7 @@ impl Spring {
                     rotation: mode.rotation,
                     fixed: 0.0,
                     pusher: mode.pusher,
+                    parallel: mode.tip,
                     armature: 0.0,
                 };
                 (mode, shape)
@@ -205,22 +206,22 @@ fn check_pusher(scene: &Scene) -> Result<(), SceneError> {
     let Some(position) = scene.pushed_at() else {
         return Ok(());
     };
-    if scene.effects.axial_force == AxialForceKind::FromDeflection {
-        return Err(SceneError::NotTogether {
-            name: "effects.axialForce",
-            choice: "FromDeflection",
-            other: "effects.pusher = Prescribed",
-            instead: "effects.pusher = None",
-            allowed: "None, FromPreload and Prescribed, which are constant",
-        });
-    }
+    let pusher = match scene.effects.pusher {
+        PusherKind::Armature => "effects.pusher = Armature",
+        PusherKind::Prescribed | PusherKind::None => "effects.pusher = Prescribed",
+    };
+    scene.keeps_axial_force(pusher, "effects.pusher = None")?;
     let length = match scene.spring.as_ref().map(|file| (file, &file.shape)) {
         None => scene.beam.length,
         Some((_, Shape::Segments(segments))) => segments.length(),
         Some((file, Shape::Modes(modes))) => {
             let touched = modes.modes.iter().all(|mode| mode.pusher.is_some());
             let file = file.name.clone();
-            return touched.then_some(()).ok_or(SceneError::NoPusher { file });
+            return touched.then_some(()).ok_or(SceneError::NoPlace {
+                effect: "effects.pusher",
+                place: "pusher",
+                file,
+            });
         }
     };
     if position <= length {

@@ -1,4 +1,4 @@
-//! The moving spring, and the one that carries the fixed contact (`fixed.file`), clamped to the frame beside it and deflecting
+//! The moving spring with its tongues, and the one that carries the fixed contact (`fixed.file`), clamped to the frame beside it and deflecting
 //! along the same axis.
 //!
 //! A deflection of the fixed contact's spring closes the contact, and the contact force bends it back: with its modes `j`,
@@ -18,9 +18,10 @@ use crate::armature::Armature;
 use crate::beam::mode::{MAX_MODES, Mode};
 use crate::beam::mode_count::Blow;
 use crate::beam::spring::{Basis, Spring};
+use crate::beam::statics::AtParallel;
+use crate::beam::tongues::Tongues;
 use crate::contact::friction::tangential_share;
 use crate::error::SceneError;
-use crate::math::roots;
 use crate::math::simd::LANES;
 use crate::scene::{Beam, Scene, Tip};
 use crate::variables::{AxialForceKind, PusherKind};
@@ -36,6 +37,8 @@ pub struct Springs {
     pub moving: Spring,
     /// That of the fixed contact, if it is not rigid.
     pub fixed: Option<FixedSpring>,
+    /// The tongues of the moving one, if it forks.
+    pub tongues: Option<Tongues>,
     /// The armature, which joins their modes.
     pub armature: Option<Armature>,
 }
@@ -47,37 +50,43 @@ pub struct Counts {
     pub moving: usize,
     /// Of that of the fixed contact.
     pub fixed: usize,
+    /// Of the tongues against each other.
+    pub tongues: usize,
 }
 
 impl Counts {
-    /// This number of both springs, where there are two; 0: as it is.
+    /// This number of each, where there are any; 0: as it is.
     #[must_use]
     pub fn or(self, asked: usize) -> Self {
-        match (asked, self.fixed) {
-            (0, _) => self,
-            (_, 0) => Self {
-                moving: asked,
-                fixed: 0,
-            },
-            _ => Self {
-                moving: asked,
-                fixed: asked,
-            },
+        let instead = |count: usize| if count == 0 || asked == 0 { count } else { asked };
+        Self {
+            moving: instead(self.moving),
+            fixed: instead(self.fixed),
+            tongues: instead(self.tongues),
         }
     }
 
     /// As many as there is room for, in the same ratio.
     #[must_use]
     pub fn within_room(self) -> Self {
-        let Self { moving, fixed } = self;
-        if moving + fixed <= MAX_MODES {
+        let Self { moving, fixed, tongues } = self;
+        let (others, sum) = (fixed + tongues, moving + fixed + tongues);
+        if sum <= MAX_MODES {
             return self;
         }
-        let share = MAX_MODES * moving / (moving + fixed) / LANES * LANES;
-        let moving = share.clamp(LANES.min(MAX_MODES - fixed.min(LANES)), MAX_MODES - fixed.min(LANES));
+        let share = |count: usize, room: usize, sum: usize| room * count / sum / LANES * LANES;
+        let most = MAX_MODES - others.min(2 * LANES);
+        let moving = share(moving, MAX_MODES, sum).clamp(LANES.min(most), most);
+        let room = MAX_MODES - moving;
+        let fixed = match (fixed, tongues) {
+            (_, 0) => room,
+            (0, _) => 0,
+            _ => share(fixed, room, others).clamp(LANES, room - LANES),
+        };
         Self {
             moving,
-            fixed: MAX_MODES - moving,
+            fixed: fixed.min(room),
+            tongues: if tongues == 0 { 0 } else { room - fixed },
         }
     }
 }
@@ -91,6 +100,7 @@ impl Springs {
         Ok(Self {
             moving: Spring::new(scene)?,
             fixed: FixedSpring::new(scene)?,
+            tongues: Tongues::new(scene)?,
             armature: Armature::new(scene)?,
         })
     }
@@ -104,6 +114,27 @@ impl Springs {
         }
     }
 
+    /// Deflection of the moving tip per force there, m/N, under an axial compression of the moving one (N).
+    pub fn tip_compliance(&self, axial_force: f64) -> f64 {
+        let whole = self.moving.statics.tip_compliance(axial_force);
+        let tongues = self.tongues.as_ref();
+        tongues.map_or(whole, |tongues| whole + tongues.compliance(axial_force))
+    }
+
+    /// Deflection of the moving spring at a parallel contact per load, under an axial compression of it (N).
+    pub(crate) fn at_parallel(&self, axial_force: f64) -> AtParallel {
+        let whole = self.moving.statics.at_parallel(axial_force);
+        let tongues = self
+            .tongues
+            .as_ref()
+            .map_or(0.0, |tongues| tongues.compliance(axial_force));
+        AtParallel {
+            own: whole.own + tongues,
+            across: whole.across - tongues,
+            ..whole
+        }
+    }
+
     /// Numbers of modes for a tolerance in blows of the contact, and of others on the moving spring.
     pub fn counts(&self, own: &Blow, others: &[Blow], tolerance: f64) -> Counts {
         let count = |most: usize, blow| self.moving.count(blow, tolerance).max(most);
@@ -113,6 +144,10 @@ impl Springs {
                 .fixed
                 .as_ref()
                 .map_or(0, |fixed| fixed.spring.count(&fixed.blow(own), tolerance)),
+            tongues: self.tongues.as_ref().map_or(0, |tongues| {
+                let blows = [own].into_iter().chain(others);
+                blows.fold(0, |most, blow| tongues.count(blow, tolerance).max(most))
+            }),
         }
     }
 
@@ -134,11 +169,13 @@ impl Springs {
     /// that of the moving one. `None` at or above the buckling load.
     pub fn modes(&self, scene: &Scene, counts: Counts, axial_force: f64) -> Option<Basis> {
         let mut basis = self.moving.modes(scene, counts.moving, axial_force)?;
-        if self.fixed.is_some() || self.armature.is_some() {
+        if self.fixed.is_some() || self.tongues.is_some() || self.armature.is_some() {
             // Modes of others have no part in the shapes of the moving spring.
             let size = basis.shapes.first().map_or(0, DVector::len);
             let shapes = basis.shapes.drain(..).chain(std::iter::repeat(DVector::zeros(size)));
-            let others = self.fixed.iter().flat_map(|fixed| fixed.modes(counts.fixed));
+            let fixed = self.fixed.iter().flat_map(|fixed| fixed.modes(counts.fixed));
+            let tongues = self.tongues.iter();
+            let others = fixed.chain(tongues.flat_map(|tongues| tongues.modes(counts.tongues, axial_force)));
             let room = MAX_MODES - usize::from(self.armature.is_some());
             let springs = basis.modes.drain(..).chain(others).take(room);
             let all = springs.chain(self.armature.as_ref().map(Armature::mode));
@@ -153,18 +190,11 @@ impl Springs {
     pub fn many_modes(&self, scene: &Scene, axial_force: f64) -> Option<Vec<Mode>> {
         let counts = Counts {
             moving: FREQUENCY_MODES,
-            fixed: FREQUENCY_MODES,
+            fixed: self.fixed.as_ref().map_or(0, |_| FREQUENCY_MODES),
+            tongues: self.tongues.as_ref().map_or(0, |_| FREQUENCY_MODES),
         };
-        self.modes(scene, counts, axial_force).map(|basis| basis.modes)
-    }
-
-    /// Lowest angular frequency with the contact as a spring of `stiffness` (N/m), rad/s, under an axial compression of the
-    /// moving one (N); without pusher and armature.
-    pub fn frequency(&self, scene: &Scene, axial_force: f64, stiffness: f64) -> Option<f64> {
-        match &self.fixed {
-            Some(fixed) => fixed.frequency(scene, &self.moving, axial_force, stiffness),
-            None => self.moving.frequency(axial_force, stiffness),
-        }
+        self.modes(scene, counts.within_room(), axial_force)
+            .map(|basis| basis.modes)
     }
 }
 
@@ -182,15 +212,7 @@ impl FixedSpring {
         let Some(file) = &scene.fixed_spring else {
             return Ok(None);
         };
-        if scene.effects.axial_force == AxialForceKind::FromDeflection {
-            return Err(SceneError::NotTogether {
-                name: "effects.axialForce",
-                choice: "FromDeflection",
-                other: "fixed.file",
-                instead: "no fixed.file",
-                allowed: "None, FromPreload and Prescribed, which are constant",
-            });
-        }
+        scene.keeps_axial_force("fixed.file", "no fixed.file")?;
         let mut own = Scene {
             spring: Some(file.clone()),
             fixed_spring: None,
@@ -209,6 +231,7 @@ impl FixedSpring {
         };
         own.effects.axial_force = AxialForceKind::None;
         own.effects.pusher = PusherKind::None;
+        own.effects.parallel_contact = false;
         let spring = Spring::new(&own)?;
         Ok(Some(Self { scene: own, spring }))
     }
@@ -241,44 +264,10 @@ impl FixedSpring {
         let basis = self.spring.modes(&self.scene, count, 0.0);
         let turned = |mode: Mode| Mode {
             tip: -mode.tip,
+            parallel: -mode.tip,
             fixed: mode.tip,
             ..mode
         };
         basis.map_or_else(Vec::new, |basis| basis.modes.into_iter().map(turned).collect())
-    }
-
-    /// Lowest angular frequency of both springs joined by the contact as a spring of `stiffness` (N/m), rad/s, with an axial
-    /// compression of the moving one (N).
-    ///
-    /// The receptance of both at the contact, with what the modes left out give statically, is `-1 / stiffness` there.
-    fn frequency(&self, scene: &Scene, moving: &Spring, axial_force: f64, stiffness: f64) -> Option<f64> {
-        let mut modes = moving.modes(scene, FREQUENCY_MODES, axial_force)?.modes;
-        modes.extend(self.modes(FREQUENCY_MODES));
-        modes.sort_by(|a, b| a.omega_squared.total_cmp(&b.omega_squared));
-        let held: f64 = modes.iter().map(Mode::compliance).sum();
-        let rest = moving.statics.tip_compliance(axial_force) + self.spring.statics.tip_compliance(0.0) - held;
-        let [first, second, ..] = modes.as_slice() else {
-            return None;
-        };
-        let (first, gap) = (first.omega_squared, second.omega_squared - first.omega_squared);
-        if stiffness <= 0.0 || gap <= 0.0 {
-            return Some(first.sqrt());
-        }
-        // Times the distances from both modes, which makes it finite there.
-        let balance = |place: f64| {
-            let square = first + place * gap;
-            let dynamic = |index: usize, mode: &Mode| {
-                let factor = match index {
-                    0 => place - 1.0,
-                    1 => place,
-                    _ => place * (1.0 - place) * gap / (mode.omega_squared - square),
-                };
-                mode.tip * mode.tip * factor
-            };
-            let modes = modes.iter().enumerate().map(|(index, mode)| dynamic(index, mode));
-            modes.sum::<f64>() + place * (1.0 - place) * gap * (rest.max(0.0) + 1.0 / stiffness)
-        };
-        let place = roots::bracketed(balance, 0.0, 1.0);
-        Some(place.map_or(first, |place| first + place * gap).sqrt())
     }
 }

@@ -26,6 +26,19 @@ pub(crate) struct AtPusher {
     pub(crate) sag: f64,
 }
 
+/// Deflection at a parallel contact per load.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AtParallel {
+    /// Per force there, m/N.
+    pub(crate) own: f64,
+    /// Per force at the tip, m/N.
+    pub(crate) across: f64,
+    /// Per force of the pusher, m/N.
+    pub(crate) pushed: f64,
+    /// Per base acceleration, m per m/s2.
+    pub(crate) sag: f64,
+}
+
 /// One of the modes of the geometric stiffness.
 #[derive(Clone, Copy, Debug)]
 struct Term {
@@ -34,6 +47,7 @@ struct Term {
     slope: f64,
     load: f64,
     pusher: f64,
+    parallel: f64,
 }
 
 impl Statics {
@@ -55,6 +69,7 @@ impl Statics {
                 slope: shape.dot(&space.tip_slope),
                 load: shape.dot(&space.load),
                 pusher: shape.dot(&space.pusher),
+                parallel: shape.dot(&space.parallel),
             })
             .collect();
         Self {
@@ -92,6 +107,16 @@ impl Statics {
             across: self.sum(axial_force, |term| term.pusher * term.tip),
             turning: self.sum(axial_force, |term| term.pusher * term.slope) * (2.0 / self.section.length),
             sag: self.under_gravity(axial_force, |term| term.pusher),
+        }
+    }
+
+    /// Of the deflection at a parallel contact.
+    pub(super) fn at_parallel(&self, axial_force: f64) -> AtParallel {
+        AtParallel {
+            own: self.sum(axial_force, |term| term.parallel * term.parallel),
+            across: self.sum(axial_force, |term| term.parallel * term.tip),
+            pushed: self.sum(axial_force, |term| term.parallel * term.pusher),
+            sag: self.under_gravity(axial_force, |term| term.parallel),
         }
     }
 

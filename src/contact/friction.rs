@@ -42,7 +42,7 @@ use crate::contact::power::Power;
 use crate::error::SceneError;
 use crate::scene::spring::Shape;
 use crate::scene::{Contact, Scene, choices};
-use crate::variables::{AxialForceKind, ContactLawKind, EnumerationParameter};
+use crate::variables::{ContactLawKind, EnumerationParameter};
 
 /// Constants of friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -238,15 +238,7 @@ pub(crate) fn check(scene: &Scene) -> Result<(), SceneError> {
             allowed: "false",
         });
     }
-    if scene.effects.axial_force == AxialForceKind::FromDeflection {
-        return Err(SceneError::NotTogether {
-            other: "effects.friction = Coulomb",
-            instead: "effects.friction = None",
-            name: "effects.axialForce",
-            choice: named(EnumerationParameter::EffectsAxialForce),
-            allowed: "None, FromPreload and Prescribed, which are constant",
-        });
-    }
+    scene.keeps_axial_force("effects.friction = Coulomb", "effects.friction = None")?;
     match &scene.spring {
         Some(file) => match &file.shape {
             Shape::Modes(modes) if modes.modes.iter().any(|mode| mode.rotation.is_none()) => {

@@ -13,7 +13,7 @@
 //! (1966) 300).
 
 use crate::contact::Branch;
-use crate::scene::{Contact, Scene};
+use crate::scene::{Contact, Parallel, Scene, Second};
 use crate::variables::ContactLawKind;
 
 /// Exponent of the indentation in the law of Hertz, 1. Powers of it are square roots.
@@ -108,16 +108,38 @@ impl Power {
 
     /// The second contact of a scene, if it has one.
     pub(crate) fn of_second(scene: &Scene) -> Option<Self> {
-        scene.effects.second_contact.then(|| {
-            let mut as_first = scene.clone();
-            as_first.contact = Contact {
-                curvature_radius: scene.second.curvature_radius,
-                stiffness: scene.second.stiffness,
-                damping: scene.second.damping,
-                ..scene.contact
-            };
-            Self::of(&as_first)
-        })
+        let Second {
+            curvature_radius,
+            damping,
+            stiffness,
+            ..
+        } = scene.second;
+        let has_one = scene.effects.second_contact;
+        has_one.then(|| Self::of_other(scene, (curvature_radius, stiffness, damping)))
+    }
+
+    /// The parallel contact of a scene, if it has one.
+    pub(crate) fn of_parallel(scene: &Scene) -> Option<Self> {
+        let Parallel {
+            curvature_radius,
+            stiffness,
+            damping,
+            ..
+        } = scene.parallel;
+        let has_one = scene.effects.parallel_contact;
+        has_one.then(|| Self::of_other(scene, (curvature_radius, stiffness, damping)))
+    }
+
+    /// A contact of the materials of the first.
+    fn of_other(scene: &Scene, (curvature_radius, stiffness, damping): (f64, f64, f64)) -> Self {
+        let mut as_first = scene.clone();
+        as_first.contact = Contact {
+            curvature_radius,
+            damping,
+            stiffness,
+            ..scene.contact
+        };
+        Self::of(&as_first)
     }
 
     /// With what counts as none of a force at this scale (N), computed to a relative tolerance. A contact softer than that of

@@ -390,6 +390,9 @@ fn take_steps(
         let until = time;
         let steps = Steps::Own { until, dense, start };
         advance(model, end, workspace, *drive, steps, None)?;
+        if motion.length() <= 0.0 {
+            motion.start = motion.end;
+        }
         note(motion);
     }
     Ok(())

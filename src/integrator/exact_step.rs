@@ -172,7 +172,7 @@ impl<'a> Start<'a> {
             return None;
         };
         let contact = &state.links[CONTACT];
-        if !(contact.closed || law.bonded) || contact.interruptions.in_progress() {
+        if !(contact.closed || law.bonded) || state.circuits.is_interrupted(CONTACT) {
             return None;
         }
         let growth = law.stiffness * drive.velocities[0];

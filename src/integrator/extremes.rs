@@ -1,8 +1,10 @@
 //! Extremes of the contact force inside steps, from the polynomials of the steps.
 
+use crate::electrical::ElectricalContact;
 use crate::integrator::course::Places;
-use crate::link::{Link, MAX_LINKS};
+use crate::link::{CONTACT, Link, MAX_LINKS};
 use crate::math::prediction::{Prediction, value_and_slope};
+use crate::model::Model;
 use serde::{Deserialize, Serialize};
 
 /// Least and greatest force of a contact, N.
@@ -34,6 +36,15 @@ impl Range {
     }
 }
 
+/// Samples of a step in which the least conductance of a pair of contacts is looked for.
+const SAMPLES: u32 = 8;
+
+/// Contact and parallel contact, where there are both, and what their spots conduct.
+fn pair(model: &Model) -> Option<[(usize, ElectricalContact); 2]> {
+    let of = |index: usize| Some((index, model.links.get(index)?.electrical?));
+    Some([of(CONTACT)?, of(model.parallel()?)?])
+}
+
 /// Extremes over an interval of time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Extremes {
@@ -41,14 +52,21 @@ pub struct Extremes {
     forces: [Range; MAX_LINKS],
     /// Greatest indentation of the second contact, m.
     pub nearest: f64,
+    /// Least conductance of the spots of contact and parallel contact together, S; 0 without one.
+    pub pair: f64,
 }
 
 impl Extremes {
     /// Of the present forces (N), and the indentation of the second contact (m).
-    pub fn at(forces: [f64; MAX_LINKS], nearest: f64) -> Self {
+    pub fn at(model: &Model, forces: [f64; MAX_LINKS], nearest: f64) -> Self {
+        let pair = pair(model).map_or(0.0, |pair| {
+            let spots = pair.map(|(index, spot)| forces.get(index).map_or(0.0, |force| spot.spot(*force)));
+            spots.iter().sum()
+        });
         Self {
             forces: forces.map(Range::at),
             nearest,
+            pair,
         }
     }
 
@@ -61,7 +79,7 @@ impl Extremes {
     /// All of them.
     pub(crate) fn numbers(&self) -> impl Iterator<Item = f64> {
         let ranges = self.forces.iter().flat_map(|range| [range.least, range.greatest]);
-        ranges.chain([self.nearest])
+        ranges.chain([self.nearest, self.pair])
     }
 
     /// Includes the force of a link over a step in which it is closed, from `from`, where it is included already, to `to`
@@ -78,6 +96,66 @@ impl Extremes {
         for y in turns.between(from, to).chain([to]) {
             let force = link.force + value_and_slope(polynomial, y).0;
             range.add(link.contact().map_or(force, |law| law.without_pull(force)));
+        }
+    }
+
+    /// Includes the conductance of contact and parallel contact together over a step, or a part of it, with these courses of the
+    /// links (N, as deviations) from `from` to `to` (relative to its end, in step lengths); `None` where a link is open.
+    pub(crate) fn add_pair<'a>(
+        &mut self,
+        model: &Model,
+        course: impl Fn(usize) -> Option<(&'a Prediction, &'a Places)>,
+        (from, to): (f64, f64),
+    ) {
+        let Some(pair) = pair(model) else {
+            return;
+        };
+        let courses = pair.map(|(index, spot)| {
+            let (polynomial, turns) = course(index)?;
+            Some((model.links.get(index)?.force, polynomial, turns, spot))
+        });
+        let conductance = |y: f64| {
+            let of_one = |(force, polynomial, _, spot): &(f64, &Prediction, &Places, ElectricalContact)| {
+                spot.spot(force + value_and_slope(polynomial, y).0)
+            };
+            courses.iter().flatten().map(of_one).sum::<f64>()
+        };
+        let turns = courses
+            .iter()
+            .flatten()
+            .flat_map(|(_, _, turns, _)| turns.between(from, to));
+        let grid = (0..=SAMPLES).map(|n| from + (to - from) * f64::from(n) / f64::from(SAMPLES));
+        let least = grid
+            .chain(turns)
+            .map(|y| (y, conductance(y)))
+            .min_by(|a, b| a.1.total_cmp(&b.1));
+        let Some((mut y, mut least)) = least else {
+            return;
+        };
+        // Between the samples a parabola, closer with each time.
+        let mut apart = (to - from) / f64::from(SAMPLES);
+        for _ in 0..3 {
+            let [before, after] = [y - apart, y + apart].map(|y| conductance(y.clamp(from, to)));
+            let bend = before - 2.0 * least + after;
+            let inside = y - apart >= from && y + apart <= to;
+            if !inside || bend <= 0.0 {
+                break;
+            }
+            let lower = y + 0.5 * apart * (before - after) / bend;
+            (y, least) = [(y, least), (lower, conductance(lower))]
+                .into_iter()
+                .min_by(|a, b| a.1.total_cmp(&b.1))
+                .unwrap_or((y, least));
+            apart *= 0.1;
+        }
+        self.pair = self.pair.min(least);
+    }
+
+    /// Includes the conductance of both together at these forces of the links, N.
+    pub(crate) fn add_pair_at(&mut self, model: &Model, force: impl Fn(usize) -> f64) {
+        if let Some(pair) = pair(model) {
+            let spots = pair.map(|(index, spot)| spot.spot(force(index)));
+            self.pair = self.pair.min(spots.iter().sum());
         }
     }
 

@@ -9,7 +9,7 @@
 use std::fmt;
 
 use crate::beam::mode::{MAX_MODES, Modal};
-use crate::chatter::Interruptions;
+use crate::circuits::Circuits;
 use crate::contact::friction::{Phase, Slip};
 use crate::excitation::drive::Drive;
 use crate::integrator::course::turning_points_between;
@@ -386,7 +386,7 @@ impl Motion {
             let link = model.links.get(index)?;
             Some(link.approach + self.link(model, index).approach)
         });
-        Extremes::at(forces, second.unwrap_or_default())
+        Extremes::at(model, forces, second.unwrap_or_default())
     }
 
     /// Ways (m) of the inputs to these displacements (m). None where nothing moves, also by rounding.
@@ -415,6 +415,10 @@ impl Motion {
     /// Adds those of the dense output between two instants (s); the first may lie before the step, and is included
     /// already.
     pub(crate) fn add_dense(&self, extremes: &mut Extremes, model: &Model, from: f64, to: f64) {
+        // Of two contacts that open together the second does in a step of no length.
+        if self.length() <= 0.0 {
+            return;
+        }
         let at = |time: f64| ((time - self.end.time) / self.length()).clamp(-1.0, 0.0);
         let (from, to) = (at(from), at(to));
         let links = model.links.iter().zip(&self.start.links).zip(&self.dense.links);
@@ -434,19 +438,21 @@ impl Motion {
                 }
             }
         }
+        let course = |index: usize| {
+            self.start.links.get(index).filter(|at| at.closed)?;
+            let dense = self.dense.links.get(index)?;
+            Some((&dense.force, &dense.turns))
+        };
+        extremes.add_pair(model, course, (from, to));
     }
 
-    /// Interruptions of a contact up to the communication point; none if they are not counted.
-    pub fn interruptions(&self, model: &Model, index: usize) -> Interruptions {
-        let Some((link, state, dense)) = self.seen(model, index) else {
-            return Interruptions::default();
-        };
-        let mut interruptions = state.interruptions;
-        if let (Some((dense, now)), Some(criterion)) = (dense, &link.criterion) {
-            for place in dense.passages.until(now) {
-                interruptions.turn(criterion, self.end.time + place * self.length());
-            }
+    /// Interruptions up to the communication point; none if they are not counted.
+    pub fn circuits(&self, model: &Model) -> Circuits {
+        let mut circuits = self.state().circuits;
+        if let Some(now) = self.inside() {
+            let passages = self.dense.links.each_ref().map(|dense| &dense.passages);
+            circuits.pass(&model.links, &passages, (self.end.time, self.length()), now);
         }
-        interruptions
+        circuits
     }
 }

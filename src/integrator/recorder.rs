@@ -7,7 +7,7 @@ use crate::integrator::dense_output::DenseOutput;
 use crate::integrator::events::interruption::Passages;
 use crate::integrator::extremes::Extremes;
 use crate::integrator::grid::Target;
-use crate::link::LinkLaw;
+use crate::link::{LinkLaw, MAX_LINKS};
 use crate::math::prediction::value_and_slope;
 use crate::model::Model;
 use crate::state::State;
@@ -32,20 +32,18 @@ impl Recorder<'_> {
 
     /// Records the present contact forces in the extremes, and interruptions that begin or end with them.
     pub(crate) fn note_forces(&mut self, model: &Model, state: &mut State) {
-        let time = state.time;
-        for (index, (link, at)) in model.links.iter().zip(&mut state.links).enumerate() {
-            if link.contact().is_none() {
-                continue;
+        if let Some(extremes) = &mut self.extremes {
+            for (index, (link, at)) in model.links.iter().zip(&state.links).enumerate() {
+                if link.contact().is_some() {
+                    extremes.of(index).add(at.force);
+                }
             }
-            if let Some(extremes) = &mut self.extremes {
-                extremes.of(index).add(at.force);
-            }
-            if let Some(criterion) = &link.criterion
-                && (at.force < criterion.force) != at.interruptions.in_progress()
-            {
-                at.interruptions.turn(criterion, time);
-            }
+            extremes.add_pair_at(model, |index| state.links.get(index).map_or(0.0, |at| at.force));
         }
+        let State {
+            links, circuits, time, ..
+        } = state;
+        circuits.note(&model.links, links.iter().map(|link| link.force), *time);
     }
 
     /// Records an accepted step from `state`, and what its forces do to the next: their courses, interruptions that begin or end
@@ -59,6 +57,7 @@ impl Recorder<'_> {
         passages: &Passages,
     ) {
         let second = model.second();
+        let mut all_turns = [Places::default(); MAX_LINKS];
         let read = self.reads_before(target.time) || self.dense.is_some() && second.is_some();
         for (index, (link, at)) in model.links.iter().zip(&mut state.links).enumerate() {
             let (Some(nodes), Some(passages)) = (trial.links.get(index), passages.get(index)) else {
@@ -73,6 +72,9 @@ impl Recorder<'_> {
             } else {
                 Places::default()
             };
+            if let Some(kept) = all_turns.get_mut(index) {
+                *kept = turns;
+            }
             let through = |start: f64, values| collocation.through(model.simd, start, values);
             if let Some(dense) = self.dense.as_mut().and_then(|dense| dense.links.get_mut(index)) {
                 (dense.force, dense.turns, dense.passages) = (at.course, turns, *passages);
@@ -97,11 +99,17 @@ impl Recorder<'_> {
                     extremes.approach(link.approach + highest);
                 }
             }
-            if let Some(criterion) = &link.criterion {
-                for place in passages.iter() {
-                    at.interruptions.turn(criterion, target.time + place * target.length);
-                }
-            }
         }
+        if let Some(extremes) = &mut self.extremes {
+            let course = |index: usize| {
+                let at = state.links.get(index).filter(|at| at.closed)?;
+                Some((&at.course, all_turns.get(index)?))
+            };
+            extremes.add_pair(model, course, (-1.0, 0.0));
+        }
+        let passages = passages.each_ref();
+        state
+            .circuits
+            .pass(&model.links, &passages, (target.time, target.length), 0.0);
     }
 }

@@ -32,10 +32,12 @@ pub(crate) fn rests_until(model: &Model, state: &State, drive: &Drive, end: f64)
         return None;
     }
     // A magnet has no convex potential; against a stop, which is far stiffer, that does not count.
-    let drawn = model.links.iter().any(|link| matches!(link.law, LinkLaw::Magnet(_)));
-    let stopped = |(link, at): (&Link, &LinkState)| at.closed && ["core", "rest stop"].contains(&link.name);
-    if drawn && !model.links.iter().zip(&state.links).any(stopped) {
-        return None;
+    let drawn = model.links.iter().find(|link| matches!(link.law, LinkLaw::Magnet(_)));
+    if let Some(magnet) = drawn {
+        let stops = |(link, at): (&Link, &LinkState)| at.closed && link.port == magnet.port;
+        if !model.links.iter().zip(&state.links).any(stops) {
+            return None;
+        }
     }
     let mut forces = [0.0; MAX_LINKS];
     let change = UNREST * model.tolerance.force;

@@ -31,6 +31,9 @@ pub struct Segments {
     pub masses: Vec<PointMass>,
     /// Distance of the contact from the clamp, m; the end without one.
     pub contact_position: Option<f64>,
+    /// Distance from the clamp at which the spring forks into two equal tongues, m, each with half the width and half of each
+    /// mass; both contacts sit at one end without one.
+    pub fork_position: Option<f64>,
     /// Stiffness of the clamp against rotation, N m/rad; rigid without one.
     pub clamp_stiffness: Option<f64>,
 }
@@ -66,6 +69,8 @@ pub struct PointMass {
 pub struct Modes {
     /// Static deflection of the contact point per force there, m/N.
     pub compliance: f64,
+    /// The same of a parallel contact; that of the contact without it.
+    pub parallel_compliance: Option<f64>,
     /// In any order.
     pub modes: Vec<GivenMode>,
 }
@@ -85,6 +90,8 @@ pub struct GivenMode {
     pub rotation: Option<f64>,
     /// Displacement where the pusher touches, 1/sqrt(kg).
     pub pusher: Option<f64>,
+    /// Displacement of a parallel contact, 1/sqrt(kg).
+    pub parallel: Option<f64>,
 }
 
 /// A key of a spring file that holds a number: its unit and range.
@@ -110,13 +117,16 @@ pub(crate) const MASS: Field = field("mass", "kg", 0.0, 0.1);
 pub(crate) const ROTARY_INERTIA: Field = field("rotary_inertia", "kg.m2", 0.0, 1e-4);
 const TOTAL: Field = field("length of all segments", "m", SHORTEST, LONGEST);
 pub(crate) const CONTACT_POSITION: Field = field("contact_position", "m", SHORTEST, LONGEST);
+pub(crate) const FORK_POSITION: Field = field("fork_position", "m", 0.0, LONGEST);
 pub(crate) const CLAMP_STIFFNESS: Field = field("clamp_stiffness", "N.m/rad", 1e-9, 1e9);
 pub(crate) const COMPLIANCE: Field = field("compliance", "m/N", 1e-9, 1e6);
+pub(crate) const PARALLEL_COMPLIANCE: Field = field("parallel_compliance", "m/N", 1e-9, 1e6);
 pub(crate) const FREQUENCY: Field = field("frequency", "Hz", 1e-3, 1e9);
 pub(crate) const CONTACT: Field = field("contact", "1/sqrt(kg)", -1e9, 1e9);
 pub(crate) const PARTICIPATION: Field = field("participation", "sqrt(kg)", -1.0, 1.0);
 pub(crate) const DAMPING: Field = field("damping", "1", 0.0, 100.0);
 pub(crate) const PUSHER: Field = field("pusher", "1/sqrt(kg)", -1e9, 1e9);
+pub(crate) const PARALLEL: Field = field("parallel", "1/sqrt(kg)", -1e9, 1e9);
 pub(crate) const ROTATION: Field = field("rotation", "1/(m sqrt(kg))", -1e12, 1e12);
 
 /// The value itself, that at the start, that at the end.
@@ -132,6 +142,9 @@ const fn ends(names: [&'static str; 3], min: f64, max: f64) -> [Field; 3] {
 /// Lengths of a spring up to its contact, m.
 const SHORTEST: f64 = 1e-3;
 const LONGEST: f64 = 0.2;
+
+/// Shortest tongue of a forked spring, m.
+const TONGUE: f64 = 1e-4;
 
 /// Largest number of entries of each kind.
 pub(crate) const MOST_ENTRIES: usize = 500;
@@ -195,6 +208,16 @@ impl Segments {
         position.up_to(self.length())
     }
 
+    /// Distance of the contact from the clamp, m.
+    pub(crate) fn contact(&self) -> f64 {
+        self.contact_position.unwrap_or(self.length())
+    }
+
+    /// Range of the place where the spring forks.
+    pub(crate) fn before_contact(&self, position: Field) -> Field {
+        position.up_to(self.contact() - TONGUE)
+    }
+
     pub(super) fn check(&self) -> Result<(), SceneError> {
         count("segment", self.segments.len(), 1)?;
         count("mass", self.masses.len(), 0)?;
@@ -207,6 +230,8 @@ impl Segments {
         }
         self.contact_position
             .map_or(Ok(()), |position| self.on_spring(CONTACT_POSITION).check(position))?;
+        self.fork_position
+            .map_or(Ok(()), |position| self.before_contact(FORK_POSITION).check(position))?;
         self.clamp_stiffness
             .map_or(Ok(()), |stiffness| CLAMP_STIFFNESS.check(stiffness))
     }
@@ -238,21 +263,38 @@ impl PointMass {
 impl Modes {
     /// The static compliance of the modes, m/N.
     pub fn held(&self) -> f64 {
-        self.modes.iter().map(GivenMode::compliance).sum()
+        self.held_by(|mode| mode.contact)
+    }
+
+    /// The static deflection of a parallel contact per force there, m/N, digits that were not printed included; 0 where it has no
+    /// part in the modes.
+    pub fn parallel_compliance(&self) -> f64 {
+        if self.modes.iter().all(|mode| mode.parallel.is_none()) {
+            return 0.0;
+        }
+        let given = self.parallel_compliance.unwrap_or(self.compliance);
+        given.max(self.held_by(|mode| mode.parallel.unwrap_or_default()))
+    }
+
+    fn held_by(&self, place: impl Fn(&GivenMode) -> f64) -> f64 {
+        let parts = self.modes.iter().map(|mode| place(mode).powi(2) / mode.omega_squared());
+        parts.sum()
     }
 
     pub(super) fn check(&self) -> Result<(), SceneError> {
         COMPLIANCE.check(self.compliance)?;
+        self.parallel_compliance
+            .map_or(Ok(()), |compliance| PARALLEL_COMPLIANCE.check(compliance))?;
         count("mode", self.modes.len(), 1)?;
         for mode in &self.modes {
             mode.check()?;
         }
-        let held = self.held();
-        if held > self.compliance * (1.0 + PRINTED) {
-            return Err(SceneError::Contradiction {
-                compliance: self.compliance,
-                held,
-            });
+        let of_parallel = self.held_by(|mode| mode.parallel.unwrap_or_default());
+        let parallel = self.parallel_compliance.map(|compliance| (compliance, of_parallel));
+        for (compliance, held) in [(self.compliance, self.held())].into_iter().chain(parallel) {
+            if held > compliance * (1.0 + PRINTED) {
+                return Err(SceneError::Contradiction { compliance, held });
+            }
         }
         Ok(())
     }
@@ -275,6 +317,7 @@ impl GivenMode {
         PARTICIPATION.check(self.participation)?;
         self.damping.map_or(Ok(()), |damping| DAMPING.check(damping))?;
         self.pusher.map_or(Ok(()), |pusher| PUSHER.check(pusher))?;
+        self.parallel.map_or(Ok(()), |parallel| PARALLEL.check(parallel))?;
         self.rotation.map_or(Ok(()), |rotation| ROTATION.check(rotation))
     }
 }

@@ -2,6 +2,7 @@
 //!
 //! ```toml
 //! contact_position = 0.018    # of the contact from the clamp; the end without it
+//! fork_position = 0.012       # where it forks into two tongues, for effects.parallelContact; not at all without it
 //! clamp_stiffness = 2.0       # N m/rad; rigid without it
 //!
 //! [[segment]]
@@ -43,9 +44,9 @@ use toml_parser::lexer::TokenKind;
 use crate::error::SceneError;
 use crate::scene::names::located;
 use crate::scene::spring::{
-    CLAMP_STIFFNESS, COMPLIANCE, CONTACT, CONTACT_POSITION, DAMPING, DENSITY, FREQUENCY, Field, GivenMode, LENGTH,
-    MASS, Modes, PARTICIPATION, POSITION, PUSHER, PointMass, ROTARY_INERTIA, ROTATION, Segment, Segments, Shape,
-    SpringFile, THICKNESS, WIDTH, YOUNGS_MODULUS, count,
+    CLAMP_STIFFNESS, COMPLIANCE, CONTACT, CONTACT_POSITION, DAMPING, DENSITY, FORK_POSITION, FREQUENCY, Field,
+    GivenMode, LENGTH, MASS, Modes, PARALLEL, PARALLEL_COMPLIANCE, PARTICIPATION, POSITION, PUSHER, PointMass,
+    ROTARY_INERTIA, ROTATION, Segment, Segments, Shape, SpringFile, THICKNESS, WIDTH, YOUNGS_MODULUS, count,
 };
 
 /// Largest file, bytes.
@@ -133,13 +134,21 @@ fn check_nesting(text: &str) -> Result<(), SceneError> {
 }
 
 fn segments(top: &Entry) -> Result<Segments, SceneError> {
-    top.knows(&["title", "segment", "mass", "contact_position", "clamp_stiffness"])?;
+    top.knows(&[
+        "title",
+        "segment",
+        "mass",
+        "contact_position",
+        "fork_position",
+        "clamp_stiffness",
+    ])?;
     let mut spring = Segments {
         segments: top.list("segment", 1, segment)?,
         clamp_stiffness: top.optional(CLAMP_STIFFNESS)?,
         ..Segments::default()
     };
     spring.contact_position = top.optional(spring.on_spring(CONTACT_POSITION))?;
+    spring.fork_position = top.optional(spring.before_contact(FORK_POSITION))?;
     spring.masses = top.list("mass", 0, |entry| point_mass(entry, spring.on_spring(POSITION)))?;
     // The sum of the lengths has no line of its own.
     spring.check().map(|()| spring)
@@ -177,9 +186,10 @@ fn point_mass(entry: &Entry, position: Field) -> Result<PointMass, SceneError> {
 }
 
 fn modes(top: &Entry) -> Result<Modes, SceneError> {
-    top.knows(&["title", "compliance", "mode"])?;
+    top.knows(&["title", "compliance", "parallel_compliance", "mode"])?;
     let spring = Modes {
         compliance: top.required(COMPLIANCE)?,
+        parallel_compliance: top.optional(PARALLEL_COMPLIANCE)?,
         modes: top.list("mode", 1, mode)?,
     };
     let place = top.value("compliance").map_or(0..0, Spanned::span);
@@ -188,7 +198,15 @@ fn modes(top: &Entry) -> Result<Modes, SceneError> {
 }
 
 fn mode(entry: &Entry) -> Result<GivenMode, SceneError> {
-    entry.knows(&["frequency", "contact", "participation", "damping", "rotation", "pusher"])?;
+    entry.knows(&[
+        "frequency",
+        "contact",
+        "participation",
+        "damping",
+        "rotation",
+        "pusher",
+        "parallel",
+    ])?;
     Ok(GivenMode {
         frequency: entry.required(FREQUENCY)?,
         contact: entry.required(CONTACT)?,
@@ -196,6 +214,7 @@ fn mode(entry: &Entry) -> Result<GivenMode, SceneError> {
         damping: entry.optional(DAMPING)?,
         rotation: entry.optional(ROTATION)?,
         pusher: entry.optional(PUSHER)?,
+        parallel: entry.optional(PARALLEL)?,
     })
 }
 

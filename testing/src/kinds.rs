@@ -8,6 +8,7 @@ use relay_contact::reference::Spring;
 use relay_contact::scene::spring::{GivenMode, Modes, Shape, SpringFile};
 use relay_contact::variables::{AxialForceKind, ContactLawKind, ExcitationKind, FrictionKind, ResistanceKind};
 
+use crate::parts;
 use crate::relays::{Relay, logarithmic, steps, uniform};
 use crate::scenes::tip_stiffness;
 
@@ -15,18 +16,22 @@ use crate::scenes::tip_stiffness;
 pub type Kind = (&'static str, u8, fn(u64) -> Relay);
 
 /// All of them.
-pub const KINDS: [Kind; 11] = [
-    ("plain", 10, Relay::draw),
-    ("held", 6, held),
-    ("knots", 16, knots),
-    ("linear", 12, linear),
+pub const KINDS: [Kind; 15] = [
+    ("plain", 8, Relay::draw),
+    ("held", 4, held),
+    ("knots", 12, knots),
+    ("linear", 8, linear),
     ("rough", 8, rough),
-    ("buckling", 8, near_buckling),
-    ("segments", 8, Relay::with_segments),
+    ("buckling", 6, near_buckling),
+    ("segments", 6, Relay::with_segments),
     ("modes", 6, with_modes),
-    ("closing", 10, closing),
-    ("changeover", 8, changeover),
-    ("friction", 8, friction),
+    ("closing", 6, closing),
+    ("changeover", 6, changeover),
+    ("friction", 6, friction),
+    ("parallel", 6, parts::parallel),
+    ("fixed", 6, parts::fixed_spring),
+    ("pusher", 6, parts::pusher),
+    ("armature", 6, parts::armature),
 ];
 
 /// The relay of a number, of any kind; a third of those that are shaken by a generator alone or by sines have inputs with
@@ -159,9 +164,11 @@ pub fn with_modes(number: u64) -> Relay {
         damping: own.then(|| (0.5 * mode.damping / mode.omega_squared.sqrt()).min(1.0)),
         rotation: None,
         pusher: None,
+        parallel: None,
     });
     let shape = Shape::Modes(Modes {
         compliance: 1.0 / tip_stiffness(scene),
+        parallel_compliance: None,
         modes: given.collect(),
     });
     let name = format!("random modes {number}");

@@ -4,6 +4,7 @@
 //! rig       a model with its state and energy, also one built from modes without a beam
 //! relays    random plausible relays, run and compared
 //! kinds     kinds of them: laws, effects and inputs that not every relay has
+//! parts     relays with more than one spring and contact
 //! springs   random springs of segments for them
 //! scenes    scenes for tests, with reference values computed without the library
 //! log       the messages of an instance
@@ -18,6 +19,7 @@ pub mod allocator;
 pub mod instance;
 pub mod kinds;
 pub mod log;
+pub mod parts;
 pub mod promise;
 pub mod relays;
 pub mod rig;

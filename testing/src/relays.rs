@@ -23,6 +23,10 @@ pub struct Relay {
     pub shake: (f64, f64),
     /// Amplitude (m) and frequency (Hz) of `support.displacement`.
     pub travel: (f64, f64),
+    /// Where a pusher stands at the start, m, and whether it moves to and fro in place of the fixed contact.
+    pub pusher: f64,
+    /// See [`Relay::pusher`].
+    pub pushes: bool,
     /// Whether inputs are held over each communication step, and jump to the next; else they change linearly.
     pub held: bool,
     /// Inputs of each communication step, in place of both and of `held`; empty: none.
@@ -38,7 +42,7 @@ pub struct Relay {
 pub struct Course {
     /// Number of contacts.
     pub contacts: usize,
-    /// Contact force, N; where there are two contacts, that of the first, then that of the second.
+    /// Contact force, N; of each contact after the other.
     pub force: Vec<f64>,
     /// Least force within the step, N.
     pub least: Vec<f64>,
@@ -51,6 +55,25 @@ pub struct Course {
     /// Force scale of the tolerance, N.
     pub scale: f64,
 }
+
+/// Force of a contact, its least and its greatest in a step.
+type Outputs = [RealOutput; 3];
+
+const CONTACT: Outputs = [
+    RealOutput::ContactForce,
+    RealOutput::StepMinimumForce,
+    RealOutput::StepMaximumForce,
+];
+const SECOND: Outputs = [
+    RealOutput::SecondForce,
+    RealOutput::SecondMinimumForce,
+    RealOutput::SecondMaximumForce,
+];
+const PARALLEL: Outputs = [
+    RealOutput::ParallelForce,
+    RealOutput::ParallelMinimumForce,
+    RealOutput::ParallelMaximumForce,
+];
 
 /// Between both, each order of magnitude as likely as the others.
 pub(crate) fn logarithmic(rng: &mut Rng, least: f64, greatest: f64) -> f64 {
@@ -95,6 +118,8 @@ impl Relay {
             scene,
             shake,
             travel,
+            pusher: 0.0,
+            pushes: false,
             held: false,
             knots: Vec::new(),
             steps: steps(step, duration),
@@ -110,7 +135,10 @@ impl Relay {
     )]
     pub fn inputs(&self, time: f64, size: f64) -> Inputs {
         if let Some(inputs) = self.knots.get((time / size).round() as usize) {
-            return *inputs;
+            return Inputs {
+                pusher_displacement: self.pusher,
+                ..*inputs
+            };
         }
         let at = |(amplitude, frequency): (f64, f64), time: f64| amplitude * (TAU * frequency * time).sin();
         let rate = |wave| {
@@ -120,13 +148,21 @@ impl Relay {
                 (at(wave, time + size) - at(wave, time)) / size
             }
         };
-        Inputs {
+        let mut inputs = Inputs {
             base_acceleration: at(self.shake, time),
             base_acceleration_rate: rate(self.shake),
-            support_displacement: at(self.travel, time),
-            support_displacement_rate: rate(self.travel),
+            pusher_displacement: self.pusher,
             ..Inputs::default()
+        };
+        let (way, rate) = (at(self.travel, time), rate(self.travel));
+        if self.pushes {
+            inputs.pusher_displacement += way;
+            inputs.pusher_displacement_rate = rate;
+        } else {
+            inputs.support_displacement = way;
+            inputs.support_displacement_rate = rate;
         }
+        inputs
     }
 
     /// Simulates with the parameters changed by `change`.
@@ -138,8 +174,19 @@ impl Relay {
         change(&mut scene);
         let (size, count) = self.steps;
         let mut simulation = Simulation::new(&scene, &self.inputs(0.0, size), 0.0)?;
+        let effects = scene.effects;
+        let contacts = [
+            (true, CONTACT),
+            (effects.second_contact, SECOND),
+            (effects.parallel_contact, PARALLEL),
+        ];
+        let contacts: Vec<_> = contacts
+            .iter()
+            .filter(|(is, _)| *is)
+            .map(|(_, outputs)| *outputs)
+            .collect();
         let mut course = Course {
-            contacts: 1 + usize::from(scene.effects.second_contact),
+            contacts: contacts.len(),
             scale: simulation.model().force_scale(),
             ..Course::default()
         };
@@ -148,18 +195,15 @@ impl Relay {
             if let Err(error) = simulation.step(&self.inputs(time, size), time, size) {
                 return Ok((course, Some(error)));
             }
-            course.force.push(simulation.real(RealOutput::ContactForce));
-            let extremes = if scene.effects.extremes {
-                [RealOutput::StepMinimumForce, RealOutput::StepMaximumForce]
-            } else {
-                [RealOutput::ContactForce; 2]
-            };
-            course.least.push(simulation.real(extremes[0]));
-            course.greatest.push(simulation.real(extremes[1]));
-            if scene.effects.second_contact {
-                course.force.push(simulation.real(RealOutput::SecondForce));
-                course.least.push(simulation.real(RealOutput::SecondMinimumForce));
-                course.greatest.push(simulation.real(RealOutput::SecondMaximumForce));
+            for [force, least, greatest] in &contacts {
+                let (least, greatest) = if effects.extremes {
+                    (least, greatest)
+                } else {
+                    (force, force)
+                };
+                course.force.push(simulation.real(*force));
+                course.least.push(simulation.real(*least));
+                course.greatest.push(simulation.real(*greatest));
             }
             course.events.extend(simulation.events().0.map(|event| event.time));
             course.estimate = simulation.real(RealOutput::SolverForceError);

@@ -30,7 +30,7 @@ impl Relay {
     }
 }
 
-fn segments(rng: &mut Rng, scene: &Scene) -> Segments {
+pub(crate) fn segments(rng: &mut Rng, scene: &Scene) -> Segments {
     let beam = &scene.beam;
     let shares: Vec<f64> = (0..=rng.usize(..4)).map(|_| uniform(rng, 0.2, 1.0)).collect();
     let whole: f64 = shares.iter().sum();
@@ -71,6 +71,7 @@ fn segments(rng: &mut Rng, scene: &Scene) -> Segments {
     Segments {
         segments,
         masses,
+        fork_position: None,
         contact_position: rng.bool().then(|| beam.length * uniform(rng, 0.7, 1.0)),
         clamp_stiffness: rng.bool().then(|| bending * logarithmic(rng, 0.02, 100.0)),
     }

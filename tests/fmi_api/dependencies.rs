@@ -26,7 +26,7 @@ const ALWAYS: Values = &[
 /// Scenes in which every known that matters at all matters somewhere: the start values with these changes. A threshold of
 /// [`CRITICAL`] is the resistance at rest, an overtravel or a pusher of it closes the
 /// contact or touches without force.
-static SCENES: [Values; 50] = [
+static SCENES: [Values; 64] = [
     &[],
     &[("effects.axialForce", 2.0)],
     &[("effects.axialForce", 3.0)],
@@ -217,7 +217,71 @@ static SCENES: [Values; 50] = [
         PULLED,
         ("contact.overtravel", CRITICAL),
     ],
+    &[BESIDE, ("parallel.offset", 1e-5), ("beam.file", 2.0)],
+    &[
+        BESIDE,
+        PULLED,
+        ALL_COUNT,
+        ("effects.contactLaw", 4.0),
+        ("effects.axialForce", 4.0),
+        ("beam.axialForce", 1.0),
+        ("chatter.resistanceThreshold", CRITICAL),
+    ],
+    &[
+        BESIDE,
+        ("parallel.damping", 1e-6),
+        ("parallel.curvatureRadius", 5.0),
+        ("solver.tolerance", 1e-9),
+        ("beam.stiffnessDamping", 3e-6),
+    ],
+    &[BESIDE, PRESSED, OPEN, PULLED, ("pusher.displacement", 3e-4), ON_SPRING],
+    &[BESIDE, MOVED, OPEN, PULLED, ON_SPRING, ("effects.contactLaw", 4.0)],
+    &[
+        BESIDE,
+        PULLED,
+        ("parallel.offset", -1e-5),
+        ("contact.overtravel", CRITICAL),
+        ("effects.contactLaw", 4.0),
+    ],
+    &[
+        BESIDE,
+        MOVED,
+        FLOATING[0],
+        FLOATING[1],
+        FLOATING[2],
+        PULLED,
+        ("effects.axialForce", 4.0),
+        ("beam.axialForce", 1.0),
+        ("contact.overtravel", CRITICAL),
+    ],
+    // Half of the force has a resistance just above.
+    &[BESIDE, ALL_COUNT, ("chatter.resistanceThreshold", 0.085)],
+    &[
+        BESIDE,
+        ALL_COUNT,
+        ("effects.contactLaw", 4.0),
+        ("chatter.resistanceThreshold", 0.085),
+    ],
+    // The parallel contact holds the first open; a softer one would not.
+    &[BESIDE, ("parallel.offset", -2e-7)],
+    &[BESIDE, PRESSED, PULLED, ("pusher.displacement", CRITICAL)],
+    &[
+        BESIDE,
+        PRESSED,
+        PULLED,
+        ("effects.contactLaw", 4.0),
+        ("pusher.displacement", CRITICAL),
+    ],
+    &[BESIDE, MOVED, PULLED, ("coil.relativeCurrent", 0.2), OPEN],
+    &[
+        BESIDE,
+        ON_SPRING,
+        ("parallel.offset", -1e-3),
+        ("contact.overtravel", 1e-5),
+        ("effects.contactLaw", 4.0),
+    ],
 ];
+const BESIDE: (&str, f64) = ("effects.parallelContact", 1.0);
 /// Between its stops.
 const FLOATING: [(&str, f64); 3] = [
     ("armature.corePosition", 1e-3),
@@ -255,7 +319,7 @@ impl Known {
                 Ok(())
             }
             Group::StringParameter(parameter) => {
-                let file = if value == 0.0 { "" } else { "tapered-cube.toml" };
+                let file = ["", "tapered-cube.toml", "forked.toml"][usize::try_from(number).unwrap()];
                 self.scene.set_string(parameter, file, Path::new("scenes/springs"))
             }
             Group::RealOutput(_) | Group::IntegerOutput(_) | Group::BooleanOutput(_) => panic!("{}", variable.name),

@@ -36,6 +36,7 @@ fn slider(amplitude: f64, frequency: f64, own: f64, ratio: f64) -> Scene {
             damping: Some(1.0),
             rotation: Some(0.0),
             pusher: None,
+            parallel: None,
         },
         GivenMode {
             frequency: own,
@@ -44,11 +45,16 @@ fn slider(amplitude: f64, frequency: f64, own: f64, ratio: f64) -> Scene {
             damping: Some(ratio),
             rotation: Some(lever / scene.tip.contact_height),
             pusher: None,
+            parallel: None,
         },
     ];
     scene.spring = Some(Arc::new(SpringFile {
         name: "slider".to_owned(),
-        shape: Shape::Modes(Modes { compliance, modes }),
+        shape: Shape::Modes(Modes {
+            compliance,
+            parallel_compliance: None,
+            modes,
+        }),
     }));
     scene
 }

@@ -40,6 +40,7 @@ fn what_cannot_be_is_refused_by_name() {
 fn modes_need_their_rotation() {
     let modes = |rotation| Modes {
         compliance: 1e-3,
+        parallel_compliance: None,
         modes: vec![GivenMode {
             frequency: 1000.0,
             contact: 150.0,
@@ -47,6 +48,7 @@ fn modes_need_their_rotation() {
             damping: None,
             rotation,
             pusher: None,
+            parallel: None,
         }],
     };
     let with = |rotation| {

@@ -40,6 +40,7 @@ fn squealing(loads: [f64; 2]) -> Scene {
         damping: Some(0.0),
         rotation: Some((contact - load) / share),
         pusher: None,
+        parallel: None,
     });
     let slide = GivenMode {
         frequency: 0.1,
@@ -48,6 +49,7 @@ fn squealing(loads: [f64; 2]) -> Scene {
         damping: Some(0.0),
         rotation: Some(1.0 / scene.tip.contact_height),
         pusher: None,
+        parallel: None,
     };
     let modes: Vec<_> = flexible.chain([slide]).collect();
     let compliance = MODES
@@ -58,7 +60,11 @@ fn squealing(loads: [f64; 2]) -> Scene {
     scene.contact.overtravel = FORCE / ((1.0 - EXPONENT) * STIFFNESS);
     scene.spring = Some(Arc::new(SpringFile {
         name: "two modes".to_owned(),
-        shape: Shape::Modes(Modes { compliance, modes }),
+        shape: Shape::Modes(Modes {
+            compliance,
+            parallel_compliance: None,
+            modes,
+        }),
     }));
     scene
 }

@@ -12,6 +12,7 @@ from scipy.linalg import block_diag
 from scipy.optimize import brentq
 
 from component import STARTS, run
+from elements import element
 from relay_contact import Array, Values
 
 ELEMENTS = 30
@@ -35,12 +36,9 @@ class Beam:
         self.mass, rigidity = np.zeros((size, size)), np.zeros((size, size))
         for k, h in enumerate(np.diff(nodes)):
             at = np.s_[2 * k : 2 * k + 4]
-            bent = [[12, 6 * h, -12, 6 * h], [6 * h, 4 * h * h, -6 * h, 2 * h * h]]
-            bent += [[-12, -6 * h, 12, -6 * h], [6 * h, 2 * h * h, -6 * h, 4 * h * h]]
-            rigidity[at, at] += bending / h**3 * np.array(bent)
-            moved = [[156, 22 * h, 54, -13 * h], [22 * h, 4 * h * h, 13 * h, -3 * h * h]]
-            moved += [[54, 13 * h, 156, -22 * h], [-13 * h, -3 * h * h, -22 * h, 4 * h * h]]
-            self.mass[at, at] += per_length * h / 420 * np.array(moved)
+            bent, moved = element(bending, per_length, h)
+            rigidity[at, at] += bent
+            self.mass[at, at] += moved
         rigid = np.tile([1.0, 0.0], len(nodes))
         self.load = (self.mass @ rigid)[2:]
         self.mass, self.rigidity = self.mass[2:, 2:], rigidity[2:, 2:]

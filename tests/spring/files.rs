@@ -99,6 +99,7 @@ fn a_scene_names_its_spring_relative_to_itself() {
         masses,
         contact_position,
         clamp_stiffness,
+        fork_position: None,
     }) = &spring.shape
     else {
         panic!("{spring:?}");

@@ -227,6 +227,7 @@ fn steps_masses_and_a_soft_clamp_have_their_exact_frequencies() {
                 .to_vec(),
             masses: vec![point(0.009, 4e-6, 0.0), point(0.007, 1e-5, 2e-11)],
             contact_position: Some(0.017),
+            fork_position: None,
             clamp_stiffness: Some(clamp).filter(|clamp| clamp.is_finite()),
         };
         let scene = made_of(scene, segments);

@@ -18,6 +18,7 @@ fn written(model: &Model) -> Modes {
         damping: None,
         rotation: None,
         pusher: None,
+        parallel: None,
     };
     let modes = model
         .modes()
@@ -25,6 +26,7 @@ fn written(model: &Model) -> Modes {
         .map(|own| mode(own.omega_squared, own.tip, own.participation));
     Modes {
         compliance: 1.0 / model.section().tip_stiffness(),
+        parallel_compliance: None,
         modes: modes.collect(),
     }
 }
@@ -90,6 +92,7 @@ fn a_single_mode_with_its_residual_is_a_mass_between_two_springs() {
     let held = contact * contact / mass / omega_squared;
     let modes = Modes {
         compliance: 1.1 * held,
+        parallel_compliance: None,
         modes: vec![GivenMode {
             frequency,
             contact: contact / mass.sqrt(),
@@ -97,6 +100,7 @@ fn a_single_mode_with_its_residual_is_a_mass_between_two_springs() {
             damping: Some(0.01),
             rotation: None,
             pusher: None,
+            parallel: None,
         }],
     };
     let mut scene = shaken(20.0, 300.0);

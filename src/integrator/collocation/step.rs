@@ -10,7 +10,7 @@ use crate::integrator::collocation::error::{Judged, estimate_in_flight};
 use crate::integrator::collocation::newton::{Linked, NodalMotion, Solution, Tangent, Unknowns};
 use crate::integrator::collocation::slip::follow;
 use crate::integrator::collocation::trial::{Estimate, FreeResponse, LinkEnd, Scratch, Source, Trial};
-use crate::link::{LinkLaw, MAX_PORTS, MAX_UNKNOWNS};
+use crate::link::{MAX_PORTS, MAX_UNKNOWNS};
 use crate::math::nodal::{Nodal, add, add_products, dot, end, scaled};
 use crate::math::simd::{Arithmetic, LANES, compiled_for};
 use crate::model::Model;
@@ -196,10 +196,8 @@ impl<const S: usize> Step<'_, S> {
             match (followed, self.source) {
                 // The share of the contact's preload; that of its deviation is unknown.
                 (Some(force), _) => nodes.forces = [force - link.force; S],
-                (None, Source::Laws(_)) if matches!(link.law, LinkLaw::Magnet(_)) => {
-                    nodes.forces = [self.state.links[index].force - link.force; S];
-                }
-                (None, Source::Laws(_)) => nodes.forces = [-link.force; S],
+                // Of an open contact zero, of a magnet that of its gap.
+                (None, Source::Laws(_)) => nodes.forces = [self.state.links[index].force - link.force; S],
                 (None, Source::Given) => {}
             }
             if nodes.forces != [0.0; S] {

@@ -98,7 +98,7 @@ where
             links[1].approach
         }
     };
-    Some(model.energy_at(&at.modes, stored) + work)
+    Some(model.energy_at(&at.modes, state.coil, stored) + work)
 }
 
 /// Power of what the forces of a motion miss of the dissipative parts of their laws, W.

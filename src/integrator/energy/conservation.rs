@@ -38,7 +38,7 @@ pub(crate) fn surplus<const S: usize>(
     length: f64,
 ) -> (f64, f64) {
     let end = |index: usize| trial.links.get(index).map_or(0.0, |nodes| nodes.end.approach);
-    let (start, finish) = (model.energy(state), model.energy_at(&trial.modes, end));
+    let (start, finish) = (model.energy(state), model.energy_at(&trial.modes, state.coil, end));
     let moved = model.modes.iter().zip(state.modes.iter().zip(&trial.modes));
     let loads = moved.map(|(mode, (start, end))| mode.participation * (end.q - start.q));
     let by_base = -drive.acceleration(state.time) * loads.sum::<f64>();

@@ -44,7 +44,7 @@ impl<const S: usize> Locator<'_, S> {
         else {
             return Some(passages);
         };
-        let mut interrupted = start.interruptions.in_progress();
+        let mut interrupted = state.circuits.is_interrupted(index);
         let excess = |force: f64| link.force + force - criterion.force;
         let at_start = start.force - link.force;
         let ahead = |force: f64| if interrupted { -excess(force) } else { excess(force) };

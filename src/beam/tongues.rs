@@ -1,0 +1,147 @@
+//! A spring that forks into two equal tongues, each with a contact (`fork_position` of a spring file).
+//!
+//! Each tongue has half the width of the segments beyond the fork and half of each mass there. Forces on both tongues together
+//! bend the spring as if it did not fork. Opposite ones bend each tongue as a cantilever from the fork on, where they leave no
+//! moment and no force: so the modes are those of the spring as a whole, in which both contacts move together, and those of the
+//! tongues, in which they move against each other. Torsion of the spring before the fork is left out.
+
+use std::sync::Arc;
+
+use crate::beam::mode::Mode;
+use crate::beam::mode_count::Blow;
+use crate::beam::spring::Spring;
+use crate::error::SceneError;
+use crate::scene::Scene;
+use crate::scene::spring::{PointMass, Segment, Segments, Shape, SpringFile};
+use crate::variables::PusherKind;
+
+/// The tongues as they move against each other.
+#[derive(Clone, Debug)]
+pub struct Tongues {
+    /// The scene with both tongues, side by side from the fork on, in the place of the spring.
+    scene: Scene,
+    spring: Spring,
+}
+
+impl Tongues {
+    /// Those of a scene, if its spring forks and both contacts are used.
+    ///
+    /// # Errors
+    /// [`SceneError::NoPlace`] for a spring given by modes that do not tell where the parallel contact is,
+    /// [`SceneError::NotTogether`] beside friction or an axial force that follows the deflection,
+    /// [`SceneError::LinearBesideOther`] for a linear contact law.
+    pub fn new(scene: &Scene) -> Result<Option<Self>, SceneError> {
+        if !scene.effects.parallel_contact {
+            return Ok(None);
+        }
+        check(scene)?;
+        let Some((name, segments)) = scene.spring.as_ref().and_then(|file| match &file.shape {
+            Shape::Segments(segments) => Some((&file.name, segments)),
+            Shape::Modes(_) => None,
+        }) else {
+            return Ok(None);
+        };
+        let Some(fork) = segments.fork_position else {
+            return Ok(None);
+        };
+        let mut own = Scene {
+            spring: Some(Arc::new(SpringFile {
+                name: name.clone(),
+                shape: Shape::Segments(beyond(segments, fork)),
+            })),
+            fixed_spring: None,
+            ..scene.clone()
+        };
+        own.effects.pusher = PusherKind::None;
+        let spring = Spring::new(&own)?;
+        Ok(Some(Self { scene: own, spring }))
+    }
+
+    /// Deflection of a contact per force on it less the same force on the other, beyond that of the spring as a whole, m/N.
+    pub fn compliance(&self, axial_force: f64) -> f64 {
+        self.spring.statics.tip_compliance(axial_force)
+    }
+
+    /// Number of modes for a tolerance.
+    pub fn count(&self, blow: &Blow, tolerance: f64) -> usize {
+        self.spring.count(blow, tolerance)
+    }
+
+    /// Their modes under an axial compression of both (N); none at or above the buckling load.
+    pub fn modes(&self, count: usize, axial_force: f64) -> Vec<Mode> {
+        let basis = self.spring.modes(&self.scene, count, axial_force);
+        let against = |mode: Mode| Mode {
+            parallel: -mode.tip,
+            participation: 0.0,
+            ..mode
+        };
+        basis.map_or_else(Vec::new, |basis| basis.modes.into_iter().map(against).collect())
+    }
+}
+
+/// Refuses what does not go with a parallel contact.
+fn check(scene: &Scene) -> Result<(), SceneError> {
+    const EFFECT: &str = "effects.parallelContact = true";
+    scene.keeps_axial_force(EFFECT, "effects.parallelContact = false")?;
+    if scene.rubs() {
+        return Err(SceneError::NotTogether {
+            name: "effects.parallelContact",
+            choice: "true",
+            other: "effects.friction = Coulomb",
+            instead: "effects.friction = None",
+            allowed: "false",
+        });
+    }
+    let Some(file) = &scene.spring else {
+        return Ok(());
+    };
+    match &file.shape {
+        Shape::Modes(modes) if modes.modes.iter().any(|mode| mode.parallel.is_none()) => Err(SceneError::NoPlace {
+            effect: EFFECT,
+            place: "parallel",
+            file: file.name.clone(),
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// What lies beyond a fork, as a spring of its own.
+fn beyond(spring: &Segments, fork: f64) -> Segments {
+    let mut start = 0.0;
+    let mut segments = Vec::new();
+    for segment in &spring.segments {
+        let end = start + segment.length;
+        if end > fork {
+            segments.push(from(segment, (fork - start).max(0.0)));
+        }
+        start = end;
+    }
+    let moved = |mass: &PointMass| PointMass {
+        position: mass.position - fork,
+        ..*mass
+    };
+    Segments {
+        segments,
+        masses: spring
+            .masses
+            .iter()
+            .filter(|mass| mass.position > fork)
+            .map(moved)
+            .collect(),
+        contact_position: spring.contact_position.map(|position| position - fork),
+        fork_position: None,
+        clamp_stiffness: None,
+    }
+}
+
+/// A segment from a distance from its start on, m.
+fn from(segment: &Segment, cut: f64) -> Segment {
+    let share = cut / segment.length;
+    let at_cut = |[start, end]: [f64; 2]| [start + share * (end - start), end];
+    Segment {
+        length: segment.length - cut,
+        width: at_cut(segment.width),
+        thickness: at_cut(segment.thickness),
+        ..*segment
+    }
+}

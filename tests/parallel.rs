@@ -1,0 +1,312 @@
+//! Contacts side by side: against one contact of twice the constant, by beam formulas, and what counts as interrupted.
+
+#![allow(clippy::unwrap_used)]
+
+use std::sync::Arc;
+
+use relay_contact::error::SceneError;
+use relay_contact::inputs::Inputs;
+use relay_contact::reference::Model;
+use relay_contact::scene::Scene;
+use relay_contact::scene::spring::{GivenMode, Modes, Segment, Segments, Shape, SpringFile};
+use relay_contact::simulation::Simulation;
+use relay_contact::variables::{
+    AxialForceKind, BooleanOutput, ContactLawKind, FrictionKind, IntegerOutput, RealOutput,
+};
+use testing::scenes::{force_scale, shaken, tip_stiffness};
+
+/// The scene with a parallel contact, equal to the first.
+fn pair(mut scene: Scene) -> Scene {
+    scene.effects.parallel_contact = true;
+    scene.parallel.curvature_radius = scene.contact.curvature_radius;
+    scene.parallel.damping = scene.contact.damping;
+    scene
+}
+
+/// With one contact of twice the constant: Hertz has the root of the radius.
+fn doubled(mut scene: Scene) -> Scene {
+    scene.contact.curvature_radius *= 4.0;
+    scene
+}
+
+/// The uniform spring forked at a share of its length.
+fn forked(mut scene: Scene, share: f64) -> Scene {
+    let beam = &scene.beam;
+    let segments = Segments {
+        segments: vec![Segment {
+            length: beam.length,
+            width: [beam.width; 2],
+            thickness: [beam.thickness; 2],
+            youngs_modulus: None,
+            density: None,
+        }],
+        fork_position: Some(share * beam.length),
+        ..Segments::default()
+    };
+    scene.spring = Some(Arc::new(SpringFile {
+        name: "forked.toml".to_owned(),
+        shape: Shape::Segments(segments),
+    }));
+    scene
+}
+
+/// Steps of 10 us for so long (s), each of which is told.
+fn run(scene: &Scene, duration: f64, mut told: impl FnMut(&Simulation)) -> Simulation {
+    let mut simulation = Simulation::new(scene, &Inputs::default(), 0.0).unwrap();
+    let step = 1e-5;
+    let mut count = 0_u32;
+    while f64::from(count) * step < duration {
+        simulation
+            .step(&Inputs::default(), f64::from(count) * step, step)
+            .unwrap();
+        told(&simulation);
+        count += 1;
+    }
+    simulation
+}
+
+#[test]
+fn two_equal_contacts_are_one_of_twice_the_constant() {
+    let tolerance = 1e-7;
+    let mut scene = shaken(400.0, 900.0);
+    scene.solver.tolerance = tolerance;
+    scene.solver.modes = 24;
+    for fork in [None, Some(0.4)] {
+        let spring = |scene: Scene| fork.map_or(scene.clone(), |share| forked(scene.clone(), share));
+        let mut expected = Vec::new();
+        let one = run(&spring(doubled(scene.clone())), 0.01, |simulation| {
+            expected.push(simulation.real(RealOutput::ContactForce));
+        });
+        let scale = force_scale(&scene).max(expected.iter().copied().fold(0.0, f64::max));
+        let mut expected = expected.into_iter();
+        let both = run(&spring(pair(scene.clone())), 0.01, |simulation| {
+            let [first, other] =
+                [RealOutput::ContactForce, RealOutput::ParallelForce].map(|output| simulation.real(output));
+            // Both simulations keep the tolerance, each of the forces of the two by itself.
+            let allowed = 3.0 * tolerance * scale;
+            let time = simulation.time();
+            assert!((first - other).abs() <= allowed, "{fork:?} {time}: {first} {other}");
+            let sum = expected.next().unwrap();
+            assert!(
+                (first + other - sum).abs() <= allowed,
+                "{fork:?} {time}: {}",
+                first + other - sum
+            );
+        });
+        assert!(one.real(RealOutput::ContactLastOpening) > 0.0);
+        let frequencies = [&one, &both].map(|simulation| simulation.real(RealOutput::PreloadFrequency));
+        assert!((frequencies[0] / frequencies[1] - 1.0).abs() < 1e-6, "{frequencies:?}");
+    }
+}
+
+#[test]
+fn a_contact_that_stays_back_further_than_the_other_is_pressed_is_not_there() {
+    let mut scene = shaken(300.0, 900.0);
+    scene.solver.modes = 16;
+    let mut expected = Vec::new();
+    run(&scene, 0.005, |simulation| {
+        expected.push(simulation.real(RealOutput::ContactForce));
+    });
+    let mut both = pair(scene);
+    both.parallel.offset = 1e-3;
+    let mut expected = expected.into_iter();
+    run(&both, 0.005, |simulation| {
+        assert_eq!(Some(simulation.real(RealOutput::ContactForce)), expected.next());
+        assert_eq!(simulation.real(RealOutput::ParallelForce), 0.0);
+        assert!(!simulation.boolean(BooleanOutput::ParallelClosed));
+    });
+}
+
+/// A tongue of half the width, clamped where the spring forks, gives way by `(L - f)^3 / (3 E I / 2)` to its own force, beside
+/// what the fork moves and turns under both.
+#[test]
+fn the_preload_of_both_follows_from_beam_formulas() {
+    let share = 0.6;
+    for offset in [0.0, 3e-5, -3e-5, 2.2e-4, -2.2e-4] {
+        let mut scene = forked(pair(Scene::default()), share);
+        scene.tip.mass = 0.0;
+        scene.effects.axial_force = AxialForceKind::None;
+        scene.parallel.offset = offset;
+        scene.parallel.curvature_radius *= 3.0;
+        let model = Model::new(&scene, 0.0).unwrap();
+        let preload = model.preload();
+        let together = 1.0 / tip_stiffness(&scene);
+        let against = together * (1.0_f64 - share).powi(3);
+        let [first, other] = [preload.force, preload.parallel_force];
+        let deflection = |own: f64, across: f64| together * (own + across) + against * (own - across);
+        let overtravel = scene.contact.overtravel;
+        let indentations = [
+            overtravel - deflection(first, other),
+            overtravel - offset - deflection(other, first),
+        ];
+        // To what the compliance of a spring of segments is rounded.
+        let rounding = 1e-12 * overtravel;
+        let found = [preload.indentation, preload.parallel_indentation];
+        for (found, expected) in found.into_iter().zip(indentations) {
+            assert!((found - expected).abs() <= rounding, "{offset}: {found} {expected}");
+        }
+        // Hertz: the force grows with the power 3/2 of the indentation and the root of the radius.
+        if first > 0.0 && other > 0.0 {
+            let ratio = (found[1] / found[0]).powf(1.5) * 3.0_f64.sqrt();
+            assert!((other / first / ratio - 1.0).abs() < 1e-9);
+        } else {
+            assert!(first > 0.0 || other > 0.0, "one of them holds the spring");
+        }
+    }
+}
+
+/// Force, resistance, and interruptions of contacts that open at different times, against what each of a million instants says.
+#[test]
+fn the_circuit_is_interrupted_while_both_are_open() {
+    let mut scene = forked(pair(shaken(600.0, 900.0)), 0.3);
+    scene.parallel.offset = 1e-5;
+    scene.parallel.curvature_radius *= 0.2;
+    scene.effects.chatter = true;
+    scene.chatter.minimum_duration = 0.0;
+    scene.solver.tolerance = 1e-7;
+    let mut fine = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
+    let (step, count) = (2e-8, 250_000_u32);
+    let (mut open, mut apart, mut begins, mut was_open) = (0.0, 0.0, 0, false);
+    let mut highest = Vec::new();
+    let mut resistance = 0.0_f64;
+    for k in 0..count {
+        let start = f64::from(k) * step;
+        fine.step(&Inputs::default(), start, step).unwrap();
+        let [first, other] = [RealOutput::ContactForce, RealOutput::ParallelForce].map(|output| fine.real(output));
+        let is_open = first == 0.0 && other == 0.0;
+        open += if is_open { step } else { 0.0 };
+        let one_is_open = !is_open && (first == 0.0 || other == 0.0);
+        apart += if one_is_open { step } else { 0.0 };
+        begins += i32::from(is_open && !was_open);
+        was_open = is_open;
+        resistance = resistance.max(fine.real(RealOutput::ContactResistance));
+        if (k + 1) % 500 == 0 {
+            highest.push(resistance);
+            resistance = fine.real(RealOutput::ContactResistance);
+        }
+    }
+    assert!(begins > 2 && apart > 2e-4, "{begins} {apart}");
+    let mut highest = highest.into_iter();
+    let coarse = run(&scene, 5e-3, |simulation| {
+        let (found, expected) = (
+            simulation.real(RealOutput::StepMaximumResistance),
+            highest.next().unwrap(),
+        );
+        // Samples 20 ns apart miss the rise at an opening, where the resistance follows the root of the time.
+        assert!(
+            expected <= found * (1.0 + 1e-4),
+            "{}: {found} {expected}",
+            simulation.time()
+        );
+        assert!(expected > 0.8 * found, "{}: {found} {expected}", simulation.time());
+    });
+    for simulation in [&fine, &coarse] {
+        assert_eq!(simulation.integer(IntegerOutput::ChatterCount), begins);
+        let total = simulation.real(RealOutput::ChatterTotalInterruption);
+        // Two samples for each interruption, and the time in which the resistance is above the threshold while a contact touches.
+        let allowed = f64::from(begins) * (2.0 * step + 1e-7);
+        assert!((total - open).abs() < allowed, "{total} {open}");
+    }
+}
+
+/// Modes with the same tongues as a forked spring give the same forces.
+#[test]
+fn modes_of_a_forked_spring_are_that_spring() {
+    let mut scene = forked(pair(shaken(300.0, 700.0)), 0.5);
+    scene.parallel.offset = 1e-6;
+    scene.solver.modes = 12;
+    scene.effects.axial_force = AxialForceKind::None;
+    let model = Model::new(&scene, 0.0).unwrap();
+    let mut given = scene.clone();
+    given.spring = Some(Arc::new(SpringFile {
+        name: "modes.toml".to_owned(),
+        shape: Shape::Modes(Modes {
+            // Of all modes: the same truncation on both sides.
+            compliance: model
+                .modes()
+                .iter()
+                .map(|mode| mode.tip.powi(2) / mode.omega_squared)
+                .sum(),
+            parallel_compliance: None,
+            modes: model
+                .modes()
+                .iter()
+                .map(|mode| GivenMode {
+                    frequency: mode.omega_squared.sqrt() / std::f64::consts::TAU,
+                    contact: mode.tip,
+                    participation: mode.participation,
+                    damping: None,
+                    rotation: None,
+                    pusher: None,
+                    parallel: Some(mode.parallel),
+                })
+                .collect(),
+        }),
+    }));
+    let mut expected = Vec::new();
+    run(&scene, 0.003, |simulation| {
+        expected.push([RealOutput::ContactForce, RealOutput::ParallelForce].map(|output| simulation.real(output)));
+    });
+    let mut expected = expected.into_iter();
+    let scale = force_scale(&scene);
+    run(&given, 0.003, |simulation| {
+        let found = [RealOutput::ContactForce, RealOutput::ParallelForce].map(|output| simulation.real(output));
+        for (found, expected) in found.into_iter().zip(expected.next().unwrap()) {
+            // The segments' static compliance is that of all modes, here that of 24.
+            assert!(
+                (found - expected).abs() < 2e-3 * scale,
+                "{}: {found} {expected}",
+                simulation.time()
+            );
+        }
+    });
+    if let Shape::Modes(modes) = &mut Arc::make_mut(given.spring.as_mut().unwrap()).shape {
+        modes.modes[3].parallel = None;
+    }
+    let refused = Simulation::new(&given, &Inputs::default(), 0.0).unwrap_err();
+    assert!(matches!(refused, SceneError::NoPlace { .. }), "{refused}");
+}
+
+/// Also where one contact alone, or the bend that it makes, is far from what both hold.
+#[test]
+fn contacts_of_all_heights_find_their_preload() {
+    for offset in [-1e-3, -1e-4, -1e-5, 0.0, 1e-5, 1e-4, 1e-3] {
+        for overtravel in [-1e-4, 1e-5, 3e-4] {
+            for axial_force in [AxialForceKind::None, AxialForceKind::FromPreload] {
+                for law in [ContactLawKind::Hertz, ContactLawKind::Rough] {
+                    for fork in [0.0, 0.5] {
+                        let mut scene = pair(Scene::default());
+                        scene.effects.axial_force = axial_force;
+                        scene.effects.contact_law = law;
+                        (scene.parallel.offset, scene.contact.overtravel) = (offset, overtravel);
+                        let scene = if fork > 0.0 { forked(scene, fork) } else { scene };
+                        let model = Model::new(&scene, 0.0).unwrap();
+                        let preload = model.preload();
+                        let closed = [preload.force > 0.0, preload.parallel_force > 0.0];
+                        let indented = [preload.indentation > 0.0, preload.parallel_indentation > 0.0];
+                        assert_eq!(closed, indented, "{offset} {overtravel}");
+                        assert_eq!(closed.contains(&true), overtravel.max(overtravel - offset) > 0.0);
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn what_a_parallel_contact_does_not_go_with_is_refused() {
+    let changes: [fn(&mut Scene); 4] = [
+        |scene| scene.effects.contact_law = ContactLawKind::Linearised,
+        |scene| scene.effects.contact_law = ContactLawKind::Bonded,
+        |scene| scene.effects.friction = FrictionKind::Coulomb,
+        |scene| scene.effects.axial_force = AxialForceKind::FromDeflection,
+    ];
+    for change in changes {
+        let mut scene = pair(Scene::default());
+        change(&mut scene);
+        let refused = Simulation::new(&scene, &Inputs::default(), 0.0)
+            .unwrap_err()
+            .to_string();
+        assert!(refused.contains("effects.parallelContact"), "{refused}");
+    }
+}

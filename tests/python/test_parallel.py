@@ -1,0 +1,127 @@
+"""A spring that forks into two tongues, by finite elements of trunk and tongues that share no code with the component."""
+
+from math import pi, sin
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import root
+
+from component import STARTS, run
+from elements import element
+from relay_contact import Array, Values
+
+ELEMENTS = 16
+"""Of trunk and of each tongue."""
+ALLOWED = 5e-4
+"""Share of the largest force: the elements' error. With 8, 16 and 24 the differences are in the notes of each case."""
+FORK = 8e-3
+"""m from the clamp."""
+NAMES = ("contact.force", "parallel.force")
+
+
+class Forked:
+    """Trunk and two tongues of half its width, clamped at the start of the trunk."""
+
+    def __init__(self) -> None:
+        """Assemble the uniform spring of the start values, forked."""
+        start = {name: float(STARTS[name]) for name in STARTS if isinstance(STARTS[name], int | float)}
+        bending = start["beam.youngsModulus"] * start["beam.width"] * start["beam.thickness"] ** 3 / 12
+        per_length = start["beam.density"] * start["beam.width"] * start["beam.thickness"]
+        n = ELEMENTS
+        nodes = 3 * n + 1
+        self.mass, self.rigidity = np.zeros((2 * nodes, 2 * nodes)), np.zeros((2 * nodes, 2 * nodes))
+        trunk = [(k, k + 1, FORK / n, 1.0) for k in range(n)]
+        tongue = (start["beam.length"] - FORK) / n
+        first = [(n + k, n + k + 1, tongue, 0.5) for k in range(n)]
+        other = [(n if k == 0 else 2 * n + k, 2 * n + k + 1, tongue, 0.5) for k in range(n)]
+        for a, b, length, share in trunk + first + other:
+            stiffness, mass = element(share * bending, share * per_length, length)
+            at = np.array([2 * a, 2 * a + 1, 2 * b, 2 * b + 1])
+            self.rigidity[np.ix_(at, at)] += stiffness
+            self.mass[np.ix_(at, at)] += mass
+        tips = [2 * 2 * n, 2 * 3 * n]
+        for tip in tips:
+            self.mass[tip, tip] += start["tip.mass"] / 2
+        rigid = np.tile([1.0, 0.0], nodes)
+        self.load = (self.mass @ rigid)[2:]
+        self.mass, self.rigidity = self.mass[2:, 2:], self.rigidity[2:, 2:]
+        self.damping = start["beam.stiffnessDamping"] * self.rigidity
+        self.opens = np.zeros((2, len(self.load)))
+        for row, tip in enumerate(tips):
+            self.opens[row, tip - 2] = 1.0
+
+
+def forces(values: Values, times: Array) -> Array:
+    """Return the forces of both contacts (N) at instants (s), a row each."""
+    known = {**STARTS, **values}
+    spring = Forked()
+    n = len(spring.load)
+    compliance = sum(
+        (1 - known[f"contact.{side}.poissonRatio"] ** 2) / known[f"contact.{side}.youngsModulus"]
+        for side in ("moving", "fixed")
+    )
+    hertz = np.array([4 / 3 / compliance * known[f"{name}.curvatureRadius"] ** 0.5 for name in ("contact", "parallel")])
+    damper = np.array([known["contact.damping"], known["parallel.damping"]])
+    reach = known["contact.overtravel"] - np.array([0.0, known["parallel.offset"]])
+
+    def contacts(w: Array, v: Array) -> tuple[Array, Array, Array]:
+        """Forces, and their slopes by indentation and by its rate."""
+        d, rate = np.maximum(reach - spring.opens @ w, 1e-30), -spring.opens @ v
+        tangent = 1.5 * hertz * d**0.5
+        force = hertz * d**1.5 + damper * tangent * rate
+        closed = (force > 0) & (d > 1e-30)
+        return closed * force, closed * (tangent + 0.5 * damper * tangent / d * rate), closed * damper * tangent
+
+    none = np.zeros(n)
+    flexible = np.linalg.inv(spring.rigidity)
+
+    def unbalance(force: Array) -> Array:
+        return contacts(flexible @ (spring.opens.T @ force), none)[0] - force
+
+    at_rest = root(unbalance, [0.05, 0.05], tol=1e-14)
+    start = flexible @ (spring.opens.T @ at_rest.x)
+    inverse = np.linalg.inv(spring.mass)
+    omega = 2 * pi * known["excitation.frequency"]
+
+    def rates(time: float, state: Array) -> Array:
+        w, v = state[:n], state[n:]
+        shaken = spring.load * known["excitation.amplitude"] * sin(omega * time)
+        pressed = spring.opens.T @ contacts(w, v)[0]
+        return np.concatenate([v, inverse @ (pressed - shaken - spring.rigidity @ w - spring.damping @ v)])
+
+    def jacobian(_: float, state: Array) -> Array:
+        _, by_d, by_rate = contacts(state[:n], state[n:])
+        across, along = (spring.opens.T @ (slope[:, None] * spring.opens) for slope in (by_d, by_rate))
+        lower = inverse @ np.hstack([-spring.rigidity - across, -spring.damping - along])
+        return np.vstack([np.hstack([np.zeros((n, n)), np.eye(n)]), lower])
+
+    solution = solve_ivp(
+        rates, (0.0, times[-1]), np.concatenate([start, none]), method="Radau", jac=jacobian, t_eval=times,
+        rtol=1e-7, atol=np.repeat([1e-13, 1e-8], n), max_step=1e-5,
+    )  # fmt: skip
+    assert solution.success, solution.message
+    return np.array([contacts(state[:n], state[n:])[0] for state in solution.y.T]).T
+
+
+@pytest.mark.parametrize(("amplitude", "offset"), [(150.0, 0.0), (150.0, 1e-6), (700.0, 3e-6)])
+def test_trunk_and_tongues_of_finite_elements_give_the_same_forces(
+    amplitude: float, offset: float, tmp_path: Path
+) -> None:
+    """Both closed, and opening one after the other."""
+    length, width, thickness = (STARTS[f"beam.{name}"] for name in ("length", "width", "thickness"))
+    text = f"fork_position = {FORK}\n[[segment]]\nlength = {length}\nwidth = {width}\nthickness = {thickness}\n"
+    (tmp_path / "forked.toml").write_text(text, encoding="utf-8")
+    values: Values = {
+        "effects.excitation": "Sine", "excitation.frequency": 800.0, "excitation.amplitude": amplitude,
+        "effects.axialForce": "None", "solver.tolerance": 1e-8, "effects.parallelContact": True,
+        "parallel.offset": offset, "parallel.curvatureRadius": 5e-3, "parallel.damping": 4e-5,
+    }  # fmt: skip
+    found = run({**values, "beam.file": str(tmp_path / "forked.toml")}, 0.003, 1e-5, list(NAMES))
+    expected = forces(values, found["time"])
+    largest = expected.max()
+    for name, force in zip(NAMES, expected, strict=True):
+        assert np.abs(found[name] - force).max() < ALLOWED * largest, name
+        assert (force.min() == 0.0) == (amplitude > 500), name
+    assert np.abs(expected[0] - expected[1]).max() > 0.02 * largest, "the contacts differ"
