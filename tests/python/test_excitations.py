@@ -274,6 +274,7 @@ def test_another_axis_by_its_participations(tmp_path: Path) -> None:
     relay = tmp_path / "relay.toml"
     text = f"parameters.beam.file = '{spring}'\nparameters.contact.overtravel = 8e-4\n"
     text += "parameters.beam.stiffnessDamping = 5e-6\nparameters.contact.damping = 2e-6\n"
+    text += "uncertainty.spring.mode.1.participation = 0.1\n"
     relay.write_text(f"{text}axes.lateral = {[-part / 2 for part in parts]}\n")
     test = Shock("shock", "", READ, 500.0, 3e-3)
     found = assessment.assess(
@@ -283,10 +284,14 @@ def test_another_axis_by_its_participations(tmp_path: Path) -> None:
     normal, lateral, other = found
     assert (lateral.first.named, lateral.first.axis) == ("shock, lateral axis", "lateral")
     assert lateral.margin.margin == pytest.approx(2 * normal.margin.margin, rel=3e-4)
+    # So is the interval, which comes from the participation itself.
+    assert lateral.margin.low == pytest.approx(2 * normal.margin.low, rel=1e-3)
+    assert lateral.margin.high == pytest.approx(2 * normal.margin.high, rel=1e-3)
+    assert normal.margin.high > 1.1 * normal.margin.low
     assert {normal.margin.weakest, lateral.margin.weakest} == {"opening direction", "closing direction"}
     assert other.verdict == "not judged"
     relay.write_text(f"{text}axes.lateral = [0.1]\n")
-    with pytest.raises(RelayContactError, match=r"relay.toml:5: axes.lateral = .*one participation for each of the"):
+    with pytest.raises(RelayContactError, match=r"relay.toml:6: axes.lateral = .*one participation for each of the"):
         Relay.read(relay, COMPONENT)
 
 
