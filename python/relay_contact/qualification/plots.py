@@ -47,7 +47,8 @@ def sketch(position: Finding, parameters: dict[str, float]) -> Figure:
     axes.add_patch(Rectangle((-0.7, -0.75), 0.7, 1.5, facecolor="0.8", edgecolor="black", hatch="//"))
     axes.plot(along, bend, color="black", linewidth=3)
     axes.plot(along, np.zeros(50), color="black", linewidth=0.8, linestyle=":")
-    axes.plot(8, 0.3, "o", color="black", markersize=9)
+    # The rivet reaches down to a closed contact.
+    axes.add_patch(Rectangle((7.75, 0.05), 0.5, 0.45, facecolor="black"))
     axes.add_patch(Rectangle((7.3, -0.75), 1.4, 0.8 if not is_open(position.margin) else 0.5, facecolor="0.8",
                              edgecolor="black", hatch="//"))  # fmt: skip
     if OPEN in position.margin.rest and not is_open(position.margin):
@@ -85,7 +86,12 @@ def margins(tests: list[Tested]) -> Figure:
         place = f", {each.position}" if several else ""
         model = f", {each.model}" if len(tested.models) > 1 else ""
         labels.append(f"{each.named}{place}{model}: {each.verdict}")
-    axes.set(yticks=range(len(judged)), yticklabels=labels, xscale="log", xlabel="level that fails / level of the test")
+    axes.set(
+        yticks=range(len(judged)),
+        yticklabels=labels,
+        xscale="log",
+        xlabel="level that fails / level of the test (logarithmic)",
+    )
     axes.set_ylim(len(judged) - 0.4, -0.6)
     axes.axvline(1.0, color=GREY, linewidth=1)
     low, high = axes.get_xlim()
