@@ -194,8 +194,9 @@ def transient(position: Position, test: Transient) -> tuple[Margin, str]:
     least = {name: float(min(rows[:, 2 + number].min() for *_, rows in runs))
              for number, name in enumerate(specimen.monitors)}  # fmt: skip
     start = test.record.time[0] if isinstance(test, History) else 0.0
+    failing: Lengths = {}
     if isinstance(test, Shock):
-        shown, failing = opening_run(specimen, runs), {}
+        shown = opening_run(specimen, runs)
     else:
         failing, shown = failing_run(specimen, piece, ways[way] * factor, start)
     where, limits, weakest = words(position, test, way, piece, start)
