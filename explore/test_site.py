@@ -36,5 +36,5 @@ def test_every_link_on_every_page_leads_to_a_file(page: Page) -> None:
 def test_the_python_interface_is_there(page: Page) -> None:
     page.goto((SITE / "python.html").as_uri())
     text = str(page.locator("article").text_content())
-    for name in ("run(", "qualify(", "identify(", "Component"):
+    for name in ("run(", "qualify(", "Assessment", "compare(", "identify(", "Component"):
         assert name in text, name

@@ -6,7 +6,7 @@
     print(result["contact.force"].min(), result.units["contact.force"])
 
 `scenes()` gives the scenes that come along, `run` runs one with changes, `qualify` tests a relay as a standard asks,
-`identify` finds parameters of a relay by measurements.
+`compare` puts a run beside a measurement, `identify` finds parameters of a relay by measurements.
 `fmu_path()` is the component itself, a file for any tool that imports FMI 2.0 for co-simulation. `Component` and
 `Contact` step it by hand.
 """
@@ -24,6 +24,10 @@ def __getattr__(name: str) -> Any:  # noqa: ANN401
         from relay_contact import qualification
 
         return getattr(qualification, name)
+    if name == "compare":
+        from relay_contact import comparison
+
+        return comparison.compare
     if name == "identify":
         from relay_contact import identification
 

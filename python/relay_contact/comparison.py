@@ -134,6 +134,11 @@ def compare(
         notes.append(f"The measurement is shifted by {shift:.6g} s, so that both begin at their first interruption."
                      if some else "The measurement is not shifted: not both are interrupted.")  # fmt: skip
     other = Interruptions(other.start + shift, other.duration, other.time + shift, other.resistance)
+    beyond = int(((other.start > own.time[-1]) | (other.start + other.duration < own.time[0])).sum())
+    if beyond:
+        notes.append(
+            f"Of the measured interruptions {beyond} are outside the time of the run, and counted all the same."
+        )
     paths = [out / name for name in FILES] if out else []
     found = Comparison(own, other, notes, paths)
     if out:
@@ -164,11 +169,16 @@ def draw(found: Comparison, threshold: float, path: Path) -> None:
     if whole:
         course.axhline(threshold, color="black", linewidth=0.6, linestyle=":")
         course.set(ylabel="resistance [Ω]", yscale="log")
-        course.legend(loc="upper right")
     else:
         course.set(yticks=[0.5, 1.5], yticklabels=[SIMULATED, MEASURED], ylim=(2, 0), ylabel="interrupted")
     durations.set(xlabel="time [ms]", ylabel="duration [µs]", ylim=(0, 1.1 * durations.get_ylim()[1]))
-    durations.legend(loc="lower right")
-    starts = np.concatenate((found.simulated.time, found.measured.start, found.measured.time))
-    course.set_xlim(1e3 * starts.min(), 1e3 * starts.max())
+    figure.legend(*durations.get_legend_handles_labels(), loc="outside upper center", ncols=2, frameon=False)
+    times = [
+        found.simulated.time,
+        found.measured.time,
+        found.measured.start,
+        found.measured.start + found.measured.duration,
+    ]
+    shown = np.concatenate(times)
+    course.set_xlim(1e3 * shown.min(), 1e3 * shown.max())
     figure.savefig(path, dpi=130)

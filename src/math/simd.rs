@@ -40,6 +40,7 @@ pub trait Arithmetic {
 pub struct Separate;
 
 /// Fused multiply-add: rounds once.
+#[cfg(any(target_arch = "x86_64", test))]
 #[derive(Clone, Copy, Debug)]
 pub struct Fused;
 
@@ -50,6 +51,7 @@ impl Arithmetic for Separate {
     }
 }
 
+#[cfg(any(target_arch = "x86_64", test))]
 impl Arithmetic for Fused {
     #[inline(always)]
     fn mul_add(a: f64, b: f64, c: f64) -> f64 {

@@ -47,7 +47,10 @@ def test_a_chatter_log(run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[
     assert (tmp_path / "comparison.png").stat().st_size > 10_000
     assert len((tmp_path / "comparison.csv").read_text().splitlines()) == 7
     # By a shift that is known.
-    assert compare(run, log, shift=-4.0).measured.start == pytest.approx(STARTS + 1, abs=1e-9)
+    moved = compare(run, log, shift=-4.0)
+    assert moved.measured.start == pytest.approx(STARTS + 1, abs=1e-9)
+    assert any("3 are outside the time of the run" in note for note in moved.notes)
+    assert not any("outside" in note for note in found.notes)
 
 
 def test_a_measured_resistance(run: Path, tmp_path: Path) -> None:

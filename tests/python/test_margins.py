@@ -291,7 +291,7 @@ def test_warnings_reach_results_and_pages(tmp_path: Path, monkeypatch: pytest.Mo
 @pytest.mark.parametrize(
     ("value", "text"),
     [(0.9914, "0.991"), (9.06, "9.06"), (0.93, "0.930"), (1195.0, "1200"), (12.345e3, "12300"), (0.99996, "0.99996"),
-     (1.0004, "1.0004"), (1.0, "1.00"), (0.0, "0"), (9.999, "10.0")],
+     (1.0004, "1.0004"), (1.0, "1.00"), (1 - 1e-15, "1.00"), (0.0, "0"), (9.999, "10.0")],
 )  # fmt: skip
 def test_three_digits_that_keep_their_side_of_1(value: float, text: str) -> None:
     assert three(value) == text

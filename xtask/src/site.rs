@@ -19,6 +19,9 @@ const FOLDERS: [&str; 2] = ["docs", "."];
 
 /// The page of the Python interface.
 const PYTHON: &str = "# Python interface\n\n::: relay_contact\n\n::: relay_contact.qualification.qualify\n\n\
+                      ::: relay_contact.qualification.Assessment\n\n::: relay_contact.qualification.Tested\n\n\
+                      ::: relay_contact.qualification.Finding\n\n::: relay_contact.qualification.results.Margin\n\n\
+                      ::: relay_contact.qualification.results.Chance\n\n::: relay_contact.comparison.compare\n\n\
                       ::: relay_contact.identification.identify\n";
 
 /// Builds the site in `out/site/html`; a dead link is an error.

@@ -14,7 +14,6 @@ from itertools import pairwise
 from typing import Annotated, Any, ClassVar, Literal, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import AfterValidator, BeforeValidator, Field, ValidationInfo, field_validator, model_validator
 from pydantic.dataclasses import dataclass
 
@@ -238,13 +237,18 @@ class Sine(Test):
         low, high = self.band
         return self.sweep_rate or 2 * float(np.log2(high / low)) * 60 / (self.sweep_time or np.inf)
 
-    def tried(self, frequency: Array, gain: Array) -> NDArray[np.intp]:
-        """Return which of the frequencies of a response (Hz), with its gain at them, it vibrates at."""
+    def tried(self, frequency: Array, gain: Array) -> Array:
+        """Return the frequencies (Hz) that it vibrates at, of a response with its gain at frequencies (Hz).
+
+        The ends of a sweep and the steps are as they are given: what a double amplitude limits grows with their square.
+        """
         if self.steps:
-            return np.unique([int(np.abs(frequency - step).argmin()) for step in self.steps])
+            return np.unique(self.steps)
         low, high = self.band
-        inside = np.flatnonzero((frequency >= low) & (frequency <= high))
-        return inside[[int(gain[inside].argmax())]] if self.dwell else inside
+        inside = (frequency > low) & (frequency < high)
+        if self.dwell:
+            return frequency[inside][[int(gain[inside].argmax())]]
+        return np.concatenate(([low], frequency[inside], [high]))
 
     def __str__(self) -> str:
         """Describe the level."""

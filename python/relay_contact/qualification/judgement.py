@@ -194,24 +194,31 @@ def transient(position: Position, test: Transient) -> tuple[Margin, str]:
     least = {name: float(min(rows[:, 2 + number].min() for *_, rows in runs))
              for number, name in enumerate(specimen.monitors)}  # fmt: skip
     start = test.record.time[0] if isinstance(test, History) else 0.0
-    shown = shown_run(test, specimen, runs, piece, start)
+    failing: Lengths = {}
+    if isinstance(test, Shock):
+        shown = opening_run(specimen, runs)
+    else:
+        failing, shown = failing_run(specimen, piece, ways[way] * factor, start)
     where, limits, weakest = words(position, test, way, piece, start)
     return found(
         position, limits, margin=factor, decides=decides, linear=own[0][1].guess, weakest=weakest, failed=failed_,
         where=dict.fromkeys(failed_, where), least=least, tolerance=tolerated(position, test),
-        curves={"time": shown[:, 0].tolist(), "course": shown[:, 1].tolist(), **excited(test)},
+        curves={"time": shown[:, 0].tolist(), "course": shown[:, 1].tolist(), "failing": failing, **excited(test)},
     )  # fmt: skip
 
 
-def shown_run(test: Transient, specimen: Specimen, runs: list[Any], piece: Piece, start: float) -> Array:
-    """Return the run that is shown: that in the direction that opens a closed contact, or around the worst dip."""
-    if isinstance(test, Shock):
-        wanted = "closing" if specimen.is_open else "opening"
-        return np.asarray(next(rows for way, *_, rows in runs if way == wanted)[:-1])
-    rows = next(rows for _, each, _, rows in runs if each is piece)
+def opening_run(specimen: Specimen, runs: list[Any]) -> Array:
+    """Return the run of a shock at its level in the direction that opens a closed contact, or closes an open one."""
+    wanted = "closing" if specimen.is_open else "opening"
+    return np.asarray(next(rows for way, *_, rows in runs if way == wanted)[:-1])
+
+
+def failing_run(specimen: Specimen, piece: Piece, level: float, start: float) -> tuple[Lengths, Array]:
+    """Run what is around the dip that fails first at the level at which it fails; return the failures and the run."""
+    lengths, rows = piece.follow(specimen, level, SHOWN)
     dip = int(rows[:, 2].argmin())
     near = np.abs(rows[:, 0] - rows[dip, 0]) < SHOWN_TIME
-    return np.asarray(np.column_stack((rows[near, 0] + piece.begin + start, rows[near, 1])))
+    return lengths, np.column_stack((rows[near, 0] + piece.begin + start, rows[near, 1]))
 
 
 def words(position: Position, test: Transient, way: str, piece: Piece, start: float) -> tuple[str, str, str]:

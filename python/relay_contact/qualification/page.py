@@ -18,6 +18,7 @@ from relay_contact.qualification.relay import Relay
 from relay_contact.qualification.results import Assessment, Tested
 from relay_contact.qualification.standards import Standard
 from relay_contact.qualification.words import HEAD, REASONS, at_rest, reasons, rows, time_text
+from relay_contact.spring import SPRING_FILES
 
 FILLS = {"pass": "#BFE5D8", "FAIL": "#F5CDB8", "undecided": "#FBE8B0", "not judged": "#E4E4E4"}
 FILES = ("qualification.html", "qualification.csv", "sweeps.csv")
@@ -63,6 +64,8 @@ UNUSED = {
     "beam.file": ("beam.length", "beam.width", "beam.thickness"),
     "effects.secondContact": ("second.",),
     "effects.friction": ("friction.", "effects.friction"),
+    "effects.pusher": ("pusher.", "armature."),
+    "fixed.file": ("fixed.",),
     "effects.contactLaw": ("contact.stiffness",),
 }
 """Parameters without effect where this one has a value, or where it has its start value."""
@@ -106,7 +109,7 @@ def inputs(component: Component, relay: Relay) -> pages.Table:
         hidden += [prefixes] if used == (name == "beam.file") else []
     found = []
     for name, variable in component.variables.items():
-        if variable.causality != "parameter" or name == "beam.file":
+        if variable.causality != "parameter" or name in SPRING_FILES:
             continue
         if name not in own and any(name.startswith(prefixes) for prefixes in hidden):
             continue

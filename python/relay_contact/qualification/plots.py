@@ -13,7 +13,7 @@ from relay_contact.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED,
 from relay_contact.figures import GRAVITY as G
 from relay_contact.qualification.results import CLOSED, OPEN, Finding, Tested
 from relay_contact.qualification.standards import Contacts
-from relay_contact.qualification.words import FAILURES, QUANTITIES, failures, is_open, time_text
+from relay_contact.qualification.words import FAILURES, QUANTITIES, failing, failures, is_open, time_text
 
 STYLES: tuple[dict[str, Any], ...] = tuple(
     {"color": colour, "marker": marker, "markersize": 3.5}
@@ -25,6 +25,9 @@ MARKERS = {"pass": "o", "FAIL": "X", "undecided": "D"}
 LINES = {"pass": GREEN, "FAIL": RED, "undecided": ORANGE}
 DASHES = {CLOSED: "-", OPEN: "--"}
 WIDTH = 8.27  # inches: a page of A4
+
+SHALLOWEST = 1e-8
+"""Part of the largest density from which on it is drawn."""
 
 
 def styled(number: int, count: int) -> dict[str, Any]:
@@ -44,7 +47,8 @@ def sketch(position: Finding, parameters: dict[str, float]) -> Figure:
     axes.add_patch(Rectangle((-0.7, -0.75), 0.7, 1.5, facecolor="0.8", edgecolor="black", hatch="//"))
     axes.plot(along, bend, color="black", linewidth=3)
     axes.plot(along, np.zeros(50), color="black", linewidth=0.8, linestyle=":")
-    axes.plot(8, 0.3, "o", color="black", markersize=9)
+    # The rivet reaches down to a closed contact.
+    axes.add_patch(Rectangle((7.75, 0.05), 0.5, 0.45, facecolor="black"))
     axes.add_patch(Rectangle((7.3, -0.75), 1.4, 0.8 if not is_open(position.margin) else 0.5, facecolor="0.8",
                              edgecolor="black", hatch="//"))  # fmt: skip
     if OPEN in position.margin.rest and not is_open(position.margin):
@@ -82,7 +86,12 @@ def margins(tests: list[Tested]) -> Figure:
         place = f", {each.position}" if several else ""
         model = f", {each.model}" if len(tested.models) > 1 else ""
         labels.append(f"{each.named}{place}{model}: {each.verdict}")
-    axes.set(yticks=range(len(judged)), yticklabels=labels, xscale="log", xlabel="level that fails / level of the test")
+    axes.set(
+        yticks=range(len(judged)),
+        yticklabels=labels,
+        xscale="log",
+        xlabel="level that fails / level of the test (logarithmic)",
+    )
     axes.set_ylim(len(judged) - 0.4, -0.6)
     axes.axvline(1.0, color=GREY, linewidth=1)
     low, high = axes.get_xlim()
@@ -197,7 +206,10 @@ def record(finding: Finding) -> Figure:
     whole.fill_between(time, least / G, greatest / G, color=GREY, linewidth=0.6, edgecolor=BLACK)
     whole.set(xlabel="time [s]", ylabel="acceleration [g]", title=f"{finding.named}: base acceleration")
     frequency, response = (np.array(each) for each in curves["srs"])
-    power.loglog(frequency, np.array(curves["spectrum"]) / G**2, color=BLUE)
+    spectrum = np.array(curves["spectrum"]) / G**2
+    power.loglog(frequency, spectrum, color=BLUE)
+    # Below is what rounding leaves.
+    power.set_ylim(bottom=SHALLOWEST * spectrum.max())
     power.set(xlabel="frequency [Hz]", ylabel="density [g²/Hz]", title="Power spectral density")
     srs.loglog(frequency, response / G, color=BLUE, label="of the acceleration")
     if "required" in curves:
@@ -212,8 +224,8 @@ def record(finding: Finding) -> Figure:
     at = np.array(curves["time"])
     near.plot(at, scale * np.array(curves["course"]), color=BLUE)
     near.axhline(scale * rest, color=GREY, linestyle=":")
-    near.set(xlabel="time [s]", ylabel=f"{QUANTITIES[name]} [{unit}]", title=f"At the level of the test, "
-             f"{failures(finding.margin)}", ylim=(-0.2 * scale * rest, 3 * scale * rest))  # fmt: skip
+    near.set(xlabel="time [s]", ylabel=f"{QUANTITIES[name]} [{unit}]", title=failing(finding.margin),
+             ylim=(-0.2 * scale * rest, 3 * scale * rest))  # fmt: skip
     for axes in (whole, power, near, srs):
         axes.title.set_fontsize(8)
     return figure

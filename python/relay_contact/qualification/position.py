@@ -56,8 +56,10 @@ class Position:
         return {**self.relay.positions[self.name], **self.model.parameters, **self.relay.axes.get(self.axis, {})}
 
     def value(self, name: str) -> float:
-        """Return the value of a parameter; that of an entry of the spring file is a factor."""
-        return 1.0 if name.startswith(PREFIX) else float(self.values.get(name, self.component.start(name)))
+        """Return the value of a parameter; that of an entry of the spring file is a factor, 1 but in further axes."""
+        if name.startswith(PREFIX):
+            return float(self.values.get(name, 1.0))
+        return float(self.values.get(name, self.component.start(name)))
 
     def response(self, changes: Values, calm: float = SETTLED) -> Response:
         """Return the response with some other values of parameters."""
@@ -116,7 +118,9 @@ class Position:
         found = {}
         for (name, distribution), score in zip(self.relay.uncertainty.items(), self.root @ scores, strict=True):
             value = self.value(name)
-            found[name] = value * float(distribution.factor(score, value)) if value else 0.0
+            # A sample of an entry of the spring file has factors of it.
+            unit = 1.0 if name.startswith(PREFIX) else value
+            found[name] = value * float(distribution.factor(score, unit)) if value else 0.0
         return found
 
     @cached_property

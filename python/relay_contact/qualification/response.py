@@ -72,11 +72,10 @@ class Response:
 
     def sine(self, test: Sine, opening: float) -> tuple[Array, Array]:
         """Return the factors of the level that fail for a time (s), at the frequencies (Hz) of a test."""
-        tried = test.tried(self.frequency, self.gain)
-        frequency = self.frequency[tried]
+        frequency = test.tried(self.frequency, self.gain)
         # Force or gap is below zero for the time where its amplitude is the reserve over this cosine.
         needed = self.reserve / np.cos(np.minimum(np.pi * frequency * opening, 1.5))
-        return frequency, needed / (test.amplitude(frequency) * self.gain[tried])
+        return frequency, needed / (test.amplitude(frequency) * np.interp(frequency, self.frequency, self.gain))
 
     def moments(self, test: Random) -> tuple[float, float]:
         """Return rms (N or m) and mean frequency (Hz) of force or gap in random vibration, without its sines."""

@@ -41,6 +41,13 @@ def failures(margin: Margin) -> str:
     return ", ".join(told) or "none fails"
 
 
+def failing(margin: Margin) -> str:
+    """Return what fails at the margin of a course, in words."""
+    failed = margin.curves["failing"].items()
+    told = [f"{name} {FAILURES[name]} for {time_text(length)}" for name, length in failed]
+    return f"At {three(margin.margin)} of the level: {', '.join(told) or 'none fails'}"
+
+
 def at_rest(margin: Margin) -> str:
     """Return force and gap at rest, in words."""
     texts = {CLOSED: ("force of the closed contact {} cN", 100), OPEN: ("gap of the open contact {} mm", 1e3)}

@@ -23,8 +23,9 @@ pub use self::report::declared;
 use self::report::{Report, processor};
 use super::platform::Platform;
 
-/// Size limit of a library, in bytes; of each part of a universal library.
-const SIZE: usize = 1_250_000;
+/// Size limit of a library, in bytes; of each part of a universal library. The step is compiled for each number of stages, on x86
+/// for two instruction sets.
+const SIZE: usize = 3_000_000;
 
 /// Checks the library of a platform. `private` are folders of this machine whose paths must not be inside, see
 /// [`private_folders`]. An error if the file is not of the platform's format.
