@@ -22,8 +22,11 @@ from frictional import Frictional
 from own_spring_elements import CUBE, Drawing, Elements, missing, segments
 from reference import Reference, crossings
 from relay_contact import Array, Component, Scene, Values, fmu_path, read_table
+from whole_relay import Coil, Relay
 
 FOLDER, FMU = Path(__file__).parent, fmu_path()
+# Accuracy of an instant in the component, s.
+LOCATED = 1e-9
 # The circuit of the examples once more: V, Ohm, H, Ohm, F.
 SOURCE, LOAD, COIL, QUENCH, CAPACITOR = 6.0, 60.0, 1e-3, 47.0, 220e-9
 # Instants of opening and closing at 400 m/s2 and 1 kHz from rest, converged by two other methods; the component locates
@@ -229,6 +232,64 @@ def test_two_coupled_fmus_obey_the_circuit_and_converge_with_first_order(run: Ru
     # Each of 7 jumps of the voltage is late by h/2, and by anything up to h until the next point: h with a standard
     # deviation of 0.11 h. Over a factor of 4 in h that makes an order of 1 +- 0.11; twice this.
     assert abs(order(steps, difference) - 1) < 0.22
+
+
+@pytest.mark.skipif(not FmuBuilder.has_binary(), reason="PythonFMU has no binary for this machine")
+def test_a_magnet_makes_and_breaks_the_contact_as_in_one_solution_of_both(run: Run, tmp_path: Path) -> None:
+    run("actuator")
+    assert validate_fmu(str(tmp_path / "Actuator.fmu")) == []
+    coupled = read_table(tmp_path / "actuator.csv")
+    time, place, current = (coupled[name] for name in ("time", "pusher.displacement", "coil.current"))
+    on, off = 1e-3, 21e-3
+    contact: Values = {"effects.pusher": "Armature", "contact.overtravel": -5e-5, "contact.damping": 1e-6}
+    relay = Relay(contact, coil=Coil(12.0, on, off, 240.0, 1.92, 3e-4))
+    course = relay.solve(time)
+    made, left = (course.changes["contact", what] for what in ("closes", "leaves"))
+    assert (len(made), len(left)) == (2, 2)
+    steps, *found = read_table(tmp_path / "actuator-steps.csv").values()
+    for own, exact in zip(found, (made[0] - on, made[1] - made[0], left[1] - off, 0.0), strict=True):
+        errors = np.abs(own - exact)
+        # The force is late by a step, and the release of a slow armature by more; half the step, half the error.
+        assert np.all(errors < 3 * steps)
+        assert errors[0] < 0.6 * errors[1] + LOCATED
+    assert np.abs(place - course.place).max() < 3 * steps[0] * np.abs(np.gradient(place, time)).max()
+    # While it is held, nothing moves fast: the force is late by a step.
+    held = (time > on + 12e-3) & (time < off)
+    rate = np.abs(np.gradient(course.force[held], time[held])).max()
+    assert np.abs(coupled["contact.force"] - course.force)[held].max() < 2 * steps[0] * rate + 1e-5
+    assert course.force[held].min() > 0.7
+
+    # Until the pusher meets the spring there is no coupling, and its closing waits for the spring to bend by the gap.
+    magnet, start = relay.get, place[0]
+    spring, mass = (magnet(f"armature.{name}") for name in ("stiffness", "mass"))
+    beam = magnet("beam.youngsModulus") * magnet("beam.width") * magnet("beam.thickness") ** 3 / 12
+    length, lever = magnet("beam.length"), magnet("pusher.position")
+    bent = 5e-5 * 6 * beam / (lever**2 * (3 * length - lever))
+
+    def slopes(_time: float, state: Array) -> list[float]:
+        flux, at, speed = state
+        gap, depth = 1e-4 - at, -3e-4 - at
+        force = flux**2 / (2 * 1.92 * 3e-4) - 0.5 - spring * (at + 3e-4) - magnet("armature.damping") * speed
+        force -= max(0.0, at) / (lever**3 / (3 * beam) + 1e-5)
+        force += max(0.0, 1e6 * depth - 31.708 * speed) if depth > 0 else 0.0
+        return [12.0 - 240.0 * flux * (1 + gap / 3e-4) / 1.92, speed, force / mass]
+
+    def touched(_time: float, state: Array) -> float:
+        return float(state[1])
+
+    def closed(_time: float, state: Array) -> float:
+        return float(state[1] - bent * (lever**3 / (3 * beam) + 1e-5))
+
+    closed.terminal = True  # type: ignore[attr-defined]
+    slow = solve_ivp(slopes, (0, 0.02), [0.0, start, 0.0], "Radau", events=[touched, closed], dense_output=True,
+                     rtol=1e-10, atol=1e-13)  # fmt: skip
+    touch, closing = (times[0] for times in slow.t_events)
+    free = (time > on) & (time < on + touch)
+    flux, at, _ = slow.sol(time[free] - on)
+    assert np.abs(at - place[free]).max() < 1e-10
+    assert np.abs(flux * (1 + (1e-4 - at) / 3e-4) / 1.92 - current[free]).max() < 1e-8
+    # The spring lags by up to a quarter of its period.
+    assert 0 < found[0][0] - closing < 0.5 * math.pi / math.sqrt(relay.squares[0])
 
 
 def test_the_bounce_of_a_closing_contact_is_that_of_a_second_solution(run: Run, tmp_path: Path) -> None:

@@ -41,7 +41,7 @@ WIRES = [
     ("contact", "contact.conductance", "bench", "contact.conductance"),
     ("bench", "contact.current", "contact", "contact.current"),
 ]
-BENCH, CIRCUIT = (Path(__file__).with_name(f"{name}.py") for name in ("two_fmus_bench", "circuit"))
+BENCH, *PARTS = (Path(__file__).with_name(f"{name}.py") for name in ("two_fmus_bench", "circuit", "fmu_slave"))
 FINER = 8  # steps of the reference in a communication step
 
 RECORDED = [("bench", each) for each in ("table.acceleration", "contact.voltage", "contact.current")]
@@ -176,7 +176,7 @@ def main() -> int:
 
     fmus = {
         "contact": given.fmu.resolve(),
-        "bench": FmuBuilder.build_FMU(BENCH, dest=given.out, project_files=[CIRCUIT]).resolve(),
+        "bench": FmuBuilder.build_FMU(BENCH, dest=given.out, project_files=PARTS).resolve(),
     }
     bench = {name: start for name, _, start, _ in PARAMETERS}
     bench |= {"supply.voltage": given.voltage, "table.amplitude": given.amplitude, "table.frequency": given.frequency}

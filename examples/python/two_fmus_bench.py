@@ -1,28 +1,16 @@
 """The partner of the contact in two_fmus.py: a circuit and a vibration table, made an FMU by PythonFMU.
 
-The tool that loads the FMU runs this file, which PythonFMU packs together with circuit.py. Both need only Python
-itself; a file that also imported FMPy, libcosim and matplotlib would make every user of the FMU install them.
+The tool that loads the FMU runs this file, which PythonFMU packs together with circuit.py and fmu_slave.py. They need
+only Python itself; a file that also imported FMPy, libcosim and matplotlib would make every user of the FMU install
+them.
 """
 
 import math
-from functools import partial
 from typing import Any
-from xml.etree.ElementTree import Element, SubElement
-
-from pythonfmu import Fmi2Causality, Fmi2Initial, Fmi2Slave, Fmi2Variability, Real
 
 from circuit import Circuit
+from fmu_slave import Slave
 
-UNITS = {
-    "V": {"kg": 1, "m": 2, "s": -3, "A": -1},
-    "A": {"A": 1},
-    "Ohm": {"kg": 1, "m": 2, "s": -3, "A": -2},
-    "S": {"kg": -1, "m": -2, "s": 3, "A": 2},
-    "H": {"kg": 1, "m": 2, "s": -2, "A": -2},
-    "F": {"kg": -1, "m": -2, "s": 4, "A": 2},
-    "m/s2": {"m": 1, "s": -2},
-    "Hz": {"s": -1},
-}
 # Name, unit, start value, meaning; the first five in the order of `Circuit`.
 PARAMETERS = [
     ("supply.voltage", "V", Circuit.supply, "Voltage of the source"),
@@ -41,43 +29,15 @@ OUTPUTS = [
 ]
 
 
-class TestBench(Fmi2Slave):  # type: ignore[misc]
+class TestBench(Slave):
     """A source, a load and a quench around a contact, and a table that vibrates it."""
 
-    author = "The relay-contact developers"
     description = "Inductive circuit with an RC quench around a contact, and a vibration table"
 
     def __init__(self, **kwargs: Any) -> None:  # noqa: ANN401
         """Declare the variables."""
         super().__init__(**kwargs)
-        self.values: dict[str, float] = {}
-        self.units: dict[str, str] = {}
-        continuous, fixed = Fmi2Variability.continuous, Fmi2Variability.fixed
-        self._declare(PARAMETERS, causality=Fmi2Causality.parameter, variability=fixed)
-        self._declare(INPUTS, causality=Fmi2Causality.input, variability=continuous)
-        calculated = Fmi2Initial.calculated
-        self._declare(OUTPUTS, causality=Fmi2Causality.output, variability=continuous, initial=calculated)
-
-    def _declare(self, variables: list[tuple[str, str, float, str]], **kwargs: Any) -> None:  # noqa: ANN401
-        for name, unit, start, description in variables:
-            self.values[name], self.units[name] = start, unit
-            get, put = partial(self.values.__getitem__, name), partial(self.values.__setitem__, name)
-            self.register_variable(Real(name, description=description, getter=get, setter=put, **kwargs))
-
-    def to_xml(self, *options: Any) -> Element:  # noqa: ANN401
-        """Add what PythonFMU omits from the model description: the units and the initial unknowns."""
-        root: Element = super().to_xml(*options)
-        definitions = Element("UnitDefinitions")
-        for name, exponents in UNITS.items():
-            base = {each: str(exponent) for each, exponent in exponents.items()}
-            SubElement(SubElement(definitions, "Unit", name=name), "BaseUnit", base)
-        root.insert(1, definitions)
-        for variable in root.iter("ScalarVariable"):
-            variable[0].set("unit", self.units[variable.attrib["name"]])
-        structure = next(root.iter("ModelStructure"))
-        unknowns = SubElement(structure, "InitialUnknowns")
-        unknowns.extend(list(structure[0]))
-        return root
+        self.declare(PARAMETERS, INPUTS, OUTPUTS)
 
     def exit_initialization_mode(self) -> None:
         """Start in the steady state of the closed contact."""

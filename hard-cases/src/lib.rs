@@ -1,11 +1,12 @@
 //! Scenes that are hard for integrators, with the properties that must hold: one list, run by the tests of this crate
 //! and printed with margins by the report. [`case`]: a case, and a measured value with its bound;   [`ride`]: a scene
 //! with prescribed motions, and the properties that hold in every scene;   [`energy_balance`]: the energy balance of
-//! the component.   Cases: [`contact`], [`spring`], [`excitation`], [`support`] (a fixed contact that moves),
+//! the component.   Cases: [`contact`], [`spring`], [`excitation`], [`support`] (a fixed contact that moves), [`armature`],
 //! [`instants`] (of opening and closing), [`solver`] (tolerances, numbers of modes, communication steps),
 //! [`endurance`]. The bounds follow from theory: a force error of the tolerance generates at most that force times the
 //! path of the tip in energy, and two runs within the tolerance differ by at most twice the tolerance.
 
+mod armature;
 pub mod case;
 mod contact;
 mod endurance;
@@ -25,6 +26,7 @@ pub const CASES: &[&[Case]] = &[
     spring::CASES,
     excitation::CASES,
     support::CASES,
+    armature::CASES,
     instants::CASES,
     solver::CASES,
     endurance::CASES,

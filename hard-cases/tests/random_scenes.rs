@@ -9,6 +9,7 @@
 use hard_cases::ride::{Ride, Segment};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
+use relay_contact::error::Remark;
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::{Scene, choices};
 use relay_contact::simulation::Simulation;
@@ -150,6 +151,14 @@ fn is_refused(scene: &Scene) -> bool {
     Simulation::new(scene, &Inputs::default(), 0.0).is_err()
 }
 
+/// Whether a scene is told at initialisation that its slip is unstable: what grows by itself, in picoseconds in some foils, may
+/// take more steps than there are.
+fn slips_by_itself(scene: &Scene) -> bool {
+    let simulation = Simulation::new(scene, &Inputs::default(), 0.0).unwrap();
+    let mut remarks = simulation.model().remarks().into_iter();
+    remarks.any(|remark| matches!(remark, Remark::UnstableSlip { .. }))
+}
+
 proptest! {
     #![proptest_config(config())]
 
@@ -163,7 +172,7 @@ proptest! {
                     let rubs = ride.scene.effects.friction != FrictionKind::None;
                     prop_assert!(rubs || energy.is_kept(), "{energy}: {}", summary(&ride));
                 }
-                Err(error) => prop_assert!(false, "{error:#}: {}", summary(&ride)),
+                Err(error) => prop_assert!(slips_by_itself(&ride.scene), "{error:#}: {}", summary(&ride)),
             }
         }
     }
@@ -171,7 +180,7 @@ proptest! {
     #[test]
     fn every_scene_at_any_tolerance_is_refused_or_runs(ride in ride(0.0)) {
         if !is_refused(&ride.scene) && let Err(error) = ride.run(4) {
-            prop_assert!(false, "{error:#}: {}", summary(&ride));
+            prop_assert!(slips_by_itself(&ride.scene), "{error:#}: {}", summary(&ride));
         }
     }
 

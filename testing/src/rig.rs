@@ -108,7 +108,7 @@ impl Rig {
         if model.scene().effects.pusher == PusherKind::None {
             return bent;
         }
-        // The spring between it and the pusher, which does not move: what the modes do there.
+        // Between the spring and the pusher, prescribed ones of which do not move: what the modes do there.
         let moved: f64 = model
             .modes()
             .iter()
@@ -116,7 +116,39 @@ impl Rig {
             .map(|(mode, at)| mode.pusher * at.q)
             .sum();
         let spring = |d: f64| 0.5 * model.scene().pusher.stiffness * d.max(0.0).powi(2);
-        bent + spring(pusher_overlap + moved) - spring(pusher_overlap) - pusher_force * moved
+        bent + spring(pusher_overlap + moved) - spring(pusher_overlap) - pusher_force * moved + self.magnetic()
+    }
+
+    /// Displacement of the armature since the preload, m.
+    pub fn armature(&self, state: &State) -> f64 {
+        let pairs = self.model.modes().iter().zip(&state.modes);
+        pairs.map(|(mode, at)| mode.armature * at.q).sum()
+    }
+
+    /// Energy of the armature's stops and of its magnet, whose current is held, above their tangents at the preload, J.
+    fn magnetic(&self) -> f64 {
+        if self.model.scene().effects.pusher != PusherKind::Armature {
+            return 0.0;
+        }
+        let (given, rest) = (&self.model.scene().armature, self.model.preload().armature);
+        let potential = |place: f64| {
+            let gap = given.core_position - place;
+            let overlaps = [-gap, given.rest_position - place];
+            let stops: f64 = overlaps
+                .iter()
+                .map(|d| 0.5 * given.stop_stiffness * d.max(0.0).powi(2))
+                .sum();
+            let reach = given.hold_force * self.state.coil.powi(2) * given.gap_constant;
+            let magnet = if gap > 0.0 {
+                -reach / (1.0 + gap / given.gap_constant)
+            } else {
+                reach * (gap / given.gap_constant - 1.0)
+            };
+            stops + magnet
+        };
+        let moved = self.armature(&self.state);
+        let slope = rest.core_force - rest.rest_force - rest.magnet_force;
+        potential(rest.place + moved) - potential(rest.place) - slope * moved
     }
 }
 

@@ -16,6 +16,8 @@ const OLDEST: (u32, u32) = (3, 11);
 pub fn test(tests: &[&str], component: &Path) -> Result<()> {
     run(python()
         .args(["-m", "pytest", "--quiet", "-rs"])
+        // On all cores; the tests of a file on one, as they share what takes long to make.
+        .args(["--numprocesses=logical", "--dist=loadfile"])
         .args(tests)
         // Their matrices are small: two threads wait for each other longer than one computes.
         .env("OPENBLAS_NUM_THREADS", "1")

@@ -1,0 +1,431 @@
+"""The whole relay once more: springs, contact, pusher, armature and coil, from the equations, by other means.
+
+The springs are finite elements in their own modes. Each one-sided law is open, closed, or loose: overlapping with a
+force that its damper has taken to zero. SUNDIALS' CVODE integrates between the instants at which one of them changes,
+which it finds as roots. Nothing is shared with the component but names and units.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from math import atan2, exp, pi, sin, sqrt
+from typing import Any
+
+import numpy as np
+from scipy.linalg import block_diag, eigh
+from scipy.optimize import brentq
+from sksundae.cvode import CVODE
+
+from component import STARTS
+from elements import element
+from relay_contact import Array, Values
+
+ELEMENTS = 40
+"""Of each spring."""
+RELATIVE, ABSOLUTE = 1e-9, 1e-16
+"""Of CVODE, the absolute one of modal displacements, m sqrt(kg): with 1e-11 and 1e-17 forces
+change by 8e-6 of the largest."""
+FASTEST = 1e4
+"""Angular frequency (1/s) by which the absolute tolerance of velocities follows from that of displacements."""
+
+
+class Beam:
+    """A uniform cantilever of Hermite's elements, and the degrees of freedom of its tip and of a place on it."""
+
+    def __init__(self, length: float, width: float, thickness: float, damping: float, place: float) -> None:
+        """Assemble it, with a node at the place (m)."""
+        modulus, density = float(STARTS["beam.youngsModulus"]), float(STARTS["beam.density"])
+        bending, per_length = modulus * width * thickness**3 / 12, density * width * thickness
+        before = max(1, round(ELEMENTS * place / length))
+        nodes = np.concatenate(
+            [np.linspace(0, place, before + 1), np.linspace(place, length, ELEMENTS - before + 1)[1:]]
+        )
+        size = 2 * len(nodes)
+        self.mass, rigidity = np.zeros((size, size)), np.zeros((size, size))
+        for k, h in enumerate(np.diff(nodes)):
+            at = np.s_[2 * k : 2 * k + 4]
+            bent, moved = element(bending, per_length, h)
+            rigidity[at, at] += bent
+            self.mass[at, at] += moved
+        rigid = np.tile([1.0, 0.0], len(nodes))
+        self.load = (self.mass @ rigid)[2:]
+        self.mass, self.rigidity = self.mass[2:, 2:], rigidity[2:, 2:]
+        self.damping = damping
+        self.tip, self.place = np.zeros(size - 2), np.zeros(size - 2)
+        self.tip[-2], self.place[2 * before - 2] = 1.0, 1.0
+
+
+@dataclass(frozen=True)
+class Law:
+    """A one-sided force k d^n + b n k d^(n-1) d' of the overlap d, which is an offset with a row of the motion."""
+
+    name: str
+    row: Array
+    stiffness: float
+    damping: float
+    power: float = 1.0
+    offset: float = 0.0
+    speed: float = 0.0
+    """Of the offset, from `start` on."""
+    start: float = 0.0
+
+    def overlap(self, time: float, q: Array) -> float:
+        """Return the overlap, m."""
+        return float(self.offset + self.speed * max(time - self.start, 0.0) + self.row @ q)
+
+    def rate(self, time: float, v: Array) -> float:
+        """Return its derivative, m/s."""
+        return float((self.speed if time >= self.start else 0.0) + self.row @ v)
+
+    def sign(self, d: float, rate: float) -> float:
+        """Return a length with the sign of the force of the closed law."""
+        return d + self.damping * self.power * rate
+
+    def force(self, d: float, rate: float) -> float:
+        """Return the force of the closed law, N."""
+        return float(self.stiffness * max(d, 0.0) ** (self.power - 1) * self.sign(d, rate))
+
+    def slopes(self, d: float, rate: float) -> tuple[float, float]:
+        """Return the derivatives of the force of the closed law by overlap and rate."""
+        if self.power == 1.0:
+            return self.stiffness, self.stiffness * self.damping
+        d = max(d, 1e-16)
+        tangent = self.power * self.stiffness * d ** (self.power - 1)
+        return tangent * (1 + self.damping * (self.power - 1) * rate / d), tangent * self.damping
+
+    def elastic(self, d: float) -> float:
+        """Return the force without damping, N."""
+        return float(self.stiffness * max(d, 0.0) ** self.power)
+
+    def energy(self, d: float) -> float:
+        """Return the energy stored, J."""
+        return float(self.stiffness * max(d, 0.0) ** (self.power + 1) / (self.power + 1))
+
+
+@dataclass(frozen=True)
+class Coil:
+    """A coil under a voltage (V) from an instant to another (s), without current before."""
+
+    voltage: float
+    on: float
+    off: float
+    resistance: float
+    inductance: float
+    constant: float
+
+    def slope(self, flux: float, gap: float, voltage: float) -> float:
+        """Return the derivative of the flux linkage, V."""
+        return voltage - self.resistance * flux * (1 + max(gap, 0.0) / self.constant) / self.inductance
+
+
+@dataclass
+class Course:
+    """What a relay did."""
+
+    force: Array
+    """Contact force at the instants asked for, N."""
+    place: Array
+    """Position of the armature, m."""
+    energy: dict[str, Array]
+    """J: kinetic, strain (also of the touches and the return spring), magnet, dissipated, and put in by the base."""
+    changes: dict[tuple[str, str], list[float]] = field(default_factory=dict)
+    """Instants at which a law closes and leaves, by its name."""
+
+
+OPEN, CLOSED, LOOSE = range(3)
+
+
+class Relay:
+    """Springs, contact, pusher, and if there is one the armature."""
+
+    def __init__(
+        self,
+        values: Values,
+        fixed: tuple[float, float] | None = None,
+        pushed: tuple[float, float, float] = (0.0, 0.0, 0.0),
+        coil: Coil | None = None,
+    ) -> None:
+        """Build it from parameters of the component.
+
+        `fixed` is the width and thickness (m) of the fixed contact's spring; `pushed` where a prescribed pusher is
+        (m), its speed (m/s) and from when on (s); without a coil the current is that of the hold force.
+        """
+        known: dict[str, Any] = {**STARTS, **values}
+        self.get, self.coil = known.__getitem__, coil
+        get = self.get
+        length, beta = get("beam.length"), get("beam.stiffnessDamping")
+        self.has_pusher, self.moves = get("effects.pusher") != "None", get("effects.pusher") == "Armature"
+        place = get("pusher.position") if self.has_pusher else length / 2
+        moving = Beam(length, get("beam.width"), get("beam.thickness"), beta, place)
+        moving.mass[-2, -2] += get("tip.mass")
+        moving.load[-2] += get("tip.mass")
+        beams = [moving] + ([Beam(length, *fixed, get("fixed.stiffnessDamping"), length / 2)] if fixed else [])
+        parts = [eigh(beam.rigidity, beam.mass) for beam in beams]
+        squares = np.concatenate([each for each, _ in parts])
+        damping = np.concatenate([beam.damping * each for beam, (each, _) in zip(beams, parts, strict=True)])
+        shapes = block_diag(*(shape for _, shape in parts))
+        sides = (1.0, -1.0)[: len(beams)]
+        opens = np.concatenate([side * beam.tip for side, beam in zip(sides, beams, strict=True)]) @ shapes
+        touched = np.concatenate([moving.place, *(0 * beam.place for beam in beams[1:])]) @ shapes
+        load = np.concatenate([beam.load for beam in beams]) @ shapes
+        if self.moves:
+            mass = self.mass = get("armature.mass")
+            squares = np.append(squares, get("armature.stiffness") / mass)
+            damping = np.append(damping, get("armature.damping") / mass)
+            load = np.append(load, -get("armature.unbalance") * sqrt(mass))
+            opens, touched = np.append(opens, 0.0), np.append(touched, 1 / sqrt(mass))
+        self.squares, self.damping, self.load, self.count = squares, damping, load, len(squares)
+        self.laws = [self.contact(-opens)]
+        if self.has_pusher:
+            at, speed, start = pushed
+            stiffness = get("pusher.stiffness")
+            self.laws.append(
+                Law("pusher", touched, stiffness, get("pusher.damping") / stiffness, 1.0, at, speed, start)
+            )
+        if self.moves:
+            self.laws += self.stops()
+        self.frequency = 2 * pi * get("excitation.frequency")
+        self.amplitude, self.duration = get("excitation.amplitude"), np.inf
+        if get("effects.excitation") == "HalfSine":
+            self.duration = get("excitation.duration")
+            self.frequency = pi / self.duration
+        elif get("effects.excitation") == "None":
+            self.amplitude = 0.0
+
+    def contact(self, row: Array) -> Law:
+        """Return the law of the contact."""
+        get = self.get
+        compliance = sum(
+            (1 - get(f"contact.{side}.poissonRatio") ** 2) / get(f"contact.{side}.youngsModulus")
+            for side in ("moving", "fixed")
+        )
+        hertz = 4 / 3 / compliance * get("contact.curvatureRadius") ** 0.5
+        return Law("contact", row, hertz, get("contact.damping"), 1.5, get("contact.overtravel"))
+
+    def stops(self) -> list[Law]:
+        """Return the laws of both stops."""
+        get, wanted = self.get, self.get("armature.stopRestitution")
+
+        def left(ratio: float) -> float:
+            swing = sqrt(1 - ratio**2)
+            return exp(-ratio / swing * atan2(2 * ratio * swing, 2 * ratio**2 - 1))
+
+        ratio = brentq(lambda ratio: left(ratio) - wanted, 1e-9, 1 - 1e-9) if wanted < 1 else 0.0
+        stiffness, row = get("armature.stopStiffness"), np.zeros(self.count)
+        row[-1] = 1 / sqrt(self.mass)
+        damping = 2 * ratio * sqrt(self.mass / stiffness)
+        core, rest = get("armature.corePosition"), get("armature.restPosition")
+        return [
+            Law("core", row, stiffness, damping, offset=-core),
+            Law("rest", -row, stiffness, damping, offset=rest),
+        ]
+
+    def place(self, q: Array) -> float:
+        """Return the position of the armature, m."""
+        return float(q[-1]) / sqrt(self.mass) if self.moves else 0.0
+
+    def magnet(self, place: float, flux: float) -> tuple[float, float, float]:
+        """Return force towards the core (N), its derivative by the place, and potential (J) of a held current."""
+        if self.coil:
+            return flux**2 / (2 * self.coil.inductance * self.coil.constant), 0.0, 0.0
+        hold, constant = self.get("armature.holdForce"), self.get("armature.gapConstant")
+        gap = self.get("armature.corePosition") - place
+        if gap <= 0:
+            return hold, 0.0, hold * (gap - constant)
+        share = 1 / (1 + gap / constant)
+        return hold * share**2, 2 * hold * share**3 / constant, -hold * constant * share
+
+    def preload(self, place: float) -> Array:
+        """Return the springs at rest, with the pusher at a place (m)."""
+        springs = self.count - 1 if self.moves else self.count
+        flexible = 1 / self.squares[:springs]
+        contact = self.laws[0]
+        opens = -contact.row[:springs]
+        touched = self.laws[1].row[:springs] if self.has_pusher else 0 * opens
+
+        def bent(force: float) -> Array:
+            pressed = 0.0
+            if self.has_pusher:
+                soft = 1 / self.laws[1].stiffness + float(touched**2 @ flexible)
+                pressed = max(place + float((touched * flexible) @ opens) * force, 0.0) / soft
+            return np.asarray(flexible * (opens * force - touched * pressed))
+
+        def unbalance(force: float) -> float:
+            return contact.elastic(contact.offset - float(opens @ bent(force))) - force
+
+        # Of a closed contact; more than a rigid one has in no case.
+        q = bent(brentq(unbalance, 0.0, 10.0, xtol=1e-16) if unbalance(0.0) > 0 else 0.0)
+        return np.append(q, place * sqrt(self.mass)) if self.moves else q
+
+    def at_rest(self) -> Array:
+        """Return the equilibrium: of an armature that is held, or of one without current."""
+        if not self.moves:
+            return self.preload(self.laws[1].offset if self.has_pusher else 0.0)
+
+        def balance(place: float) -> float:
+            q = self.preload(place)
+            return float(
+                self.forces(0.0, q, np.zeros(self.count), self.states(0.0, q), 0.0)[-1] - self.squares[-1] * q[-1]
+            )
+
+        stop = self.get("armature.restPosition" if self.coil else "armature.corePosition")
+        return self.preload(brentq(balance, stop - 1e-4, stop + 1e-4, xtol=1e-18))
+
+    def states(self, time: float, q: Array) -> list[int]:
+        """Return the states of the laws at rest."""
+        return [CLOSED if law.overlap(time, q) > 0 else OPEN for law in self.laws]
+
+    def forces(self, time: float, q: Array, v: Array, states: Sequence[int], flux: float) -> Array:
+        """Return the forces on the modes but those of springs, dampers and base."""
+        total = np.zeros(self.count)
+        for law, state in zip(self.laws, states, strict=True):
+            if state == CLOSED:
+                total -= law.row * law.force(law.overlap(time, q), law.rate(time, v))
+        if self.moves:
+            get = self.get
+            back = get("armature.returnForce") - get("armature.stiffness") * get("armature.restPosition")
+            total[-1] += (self.magnet(self.place(q), flux)[0] - back) / sqrt(self.mass)
+        return total
+
+    def base(self, time: float) -> float:
+        """Return the acceleration of the base, m/s2."""
+        return self.amplitude * sin(self.frequency * time) if time < self.duration else 0.0
+
+    def rates(self, time: float, state: Array, states: Sequence[int], voltage: float) -> Array:
+        """Return the derivatives of displacements, velocities, energies dissipated and put in, and flux linkage."""
+        n = self.count
+        q, v, flux = state[:n], state[n : 2 * n], state[-1]
+        base = self.base(time)
+        rates = np.empty(2 * n + 3)
+        rates[:n] = v
+        rates[n : 2 * n] = (
+            self.forces(time, q, v, states, flux) - self.squares * q - self.damping * v - self.load * base
+        )
+        lost = self.damping @ (v * v)
+        for law, each in zip(self.laws, states, strict=True):
+            if each != OPEN:
+                d, rate = law.overlap(time, q), law.rate(time, v)
+                lost += ((law.force(d, rate) if each == CLOSED else 0.0) - law.elastic(d)) * rate
+        rates[2 * n :] = lost, -base * (self.load @ v), 0.0
+        if self.coil:
+            rates[-1] = self.coil.slope(flux, self.get("armature.corePosition") - self.place(q), voltage)
+        return rates
+
+    def jacobian(self, time: float, state: Array, states: Sequence[int]) -> Array:
+        """Return the derivatives of the rates but those of the energies, on which nothing depends."""
+        n = self.count
+        q, v, flux = state[:n], state[n : 2 * n], state[-1]
+        matrix = np.zeros((2 * n + 3, 2 * n + 3))
+        matrix[:n, n : 2 * n] = np.eye(n)
+        matrix[n : 2 * n, :n], matrix[n : 2 * n, n : 2 * n] = np.diag(-self.squares), np.diag(-self.damping)
+        for law, each in zip(self.laws, states, strict=True):
+            if each == CLOSED:
+                by_overlap, by_rate = law.slopes(law.overlap(time, q), law.rate(time, v))
+                across = np.outer(law.row, law.row)
+                matrix[n : 2 * n, :n] -= by_overlap * across
+                matrix[n : 2 * n, n : 2 * n] -= by_rate * across
+        if self.moves:
+            matrix[2 * n - 1, n - 1] += self.magnet(self.place(q), flux)[1] / self.mass
+        if self.coil:
+            coil, root = self.coil, sqrt(self.mass)
+            gap = self.get("armature.corePosition") - self.place(q)
+            matrix[2 * n - 1, -1] = flux / coil.inductance / coil.constant / root
+            matrix[-1, -1] = -coil.resistance * (1 + max(gap, 0.0) / coil.constant) / coil.inductance
+            matrix[-1, n - 1] = coil.resistance * flux / coil.inductance / coil.constant / root if gap > 0 else 0.0
+        return matrix
+
+    def stored(self, time: float, state: Array) -> dict[str, float]:
+        """Return the energies."""
+        n = self.count
+        q, v = state[:n], state[n : 2 * n]
+        strain = 0.5 * self.squares @ q**2 + sum(law.energy(law.overlap(time, q)) for law in self.laws)
+        magnet = 0.0
+        if self.moves:
+            get = self.get
+            back = get("armature.returnForce") - get("armature.stiffness") * get("armature.restPosition")
+            strain += back * self.place(q)
+            magnet = self.magnet(self.place(q), state[-1])[2]
+        lost, put = state[2 * n], state[2 * n + 1]
+        return {"kinetic": 0.5 * v @ v, "strain": strain, "magnet": magnet, "dissipated": lost, "put in": put}
+
+    def integrate(self, states: list[int], voltage: float) -> Any:  # noqa: ANN401
+        """Return a solver of the motion while no law changes and the voltage stays."""
+        n = self.count
+
+        def rates(time: float, state: Array, rates: Array) -> None:
+            rates[:] = self.rates(time, state, states, voltage)
+
+        def jacobian(time: float, state: Array, _: Array, matrix: Array) -> None:
+            matrix[:] = self.jacobian(time, state, states)
+
+        def changes(time: float, state: Array, values: Array) -> None:
+            for k, law in enumerate(self.laws):
+                d, rate = law.overlap(time, state[:n]), law.rate(time, state[n : 2 * n])
+                values[2 * k : 2 * k + 2] = d, law.sign(d, rate)
+
+        # What does not matter in a state is watched in no direction: by a constant.
+        watched = {OPEN: (1, 0), CLOSED: (0, -1), LOOSE: (-1, 1)}
+        directions = [each for state in states for each in watched[state]]
+
+        def events(time: float, state: Array, values: Array) -> None:
+            changes(time, state, values)
+            values[np.array(directions) == 0] = 1.0
+
+        events.direction, events.terminal = directions, [True] * len(directions)  # type: ignore[attr-defined]
+        absolute = np.concatenate([np.full(n, ABSOLUTE), np.full(n, FASTEST * ABSOLUTE), [1e-15, 1e-15, 1e-12]])
+        return CVODE(
+            rates, jacfn=jacobian, eventsfn=events, num_events=len(directions), rtol=RELATIVE, atol=absolute,
+            max_num_steps=500_000,
+        )  # fmt: skip
+
+    def solve(self, times: Array) -> Course:
+        """Return the course at instants (s) from the first, where it is at rest, on."""
+        n, coil = self.count, self.coil
+        start = self.at_rest()
+        states = self.states(float(times[0]), start)
+        state = np.concatenate([start, np.zeros(n + 3)])
+        kinks = [self.duration] + [law.start for law in self.laws] + ([coil.on, coil.off] if coil else [])
+        rows: list[Array] = []
+        course = Course(np.zeros(0), np.zeros(0), {})
+        now, solver, force = float(times[0]), None, []
+        names = list(self.stored(now, state))
+        for time in times.tolist():
+            while now < time:
+                stop = min([time, *(kink for kink in kinks if now < kink < time)])
+                if solver is None:
+                    voltage = coil.voltage if coil and coil.on <= now < coil.off else 0.0
+                    solver = self.integrate(states, voltage)
+                    solver.init_step(now, state)
+                found = solver.step(stop, tstop=min([np.inf, *(kink for kink in kinks if kink > now)]))
+                assert found.success, found.message
+                now, state = float(found.t), np.array(found.y)
+                if now < stop or found.i_events is not None:
+                    states = self.changed(now, state, states, found, course)
+                    solver = None
+                elif stop in kinks:
+                    solver = None
+            rows.append(np.array([self.place(state[:n]), *self.stored(time, state).values()]))
+            contact = self.laws[0]
+            closed = states[0] == CLOSED
+            force.append(
+                contact.force(contact.overlap(time, state[:n]), contact.rate(time, state[n : 2 * n])) if closed else 0.0
+            )
+        course.force = np.array(force)
+        course.place, *energies = np.array(rows).T
+        course.energy = dict(zip(names, energies, strict=True))
+        return course
+
+    def changed(self, time: float, state: Array, states: list[int], found: Any, course: Course) -> list[int]:  # noqa: ANN401
+        """Return the states of the laws after those changes that were found, and note them."""
+        n, after = self.count, list(states)
+        for k in np.flatnonzero(np.atleast_2d(found.i_events)[-1]):
+            law, old, by_force = self.laws[k // 2], states[k // 2], k % 2 == 1
+            loose = law.overlap(time, state[:n]) > 0 and law.damping > 0
+            new = (
+                (CLOSED if old == LOOSE else LOOSE if loose else OPEN)
+                if by_force
+                else (CLOSED if old == OPEN else OPEN)
+            )
+            after[k // 2] = new
+            if CLOSED in (old, new):
+                course.changes.setdefault((law.name, "closes" if new == CLOSED else "leaves"), []).append(time)
+        return after
