@@ -23,7 +23,7 @@ from fmpy.fmi1 import FMICallException
 from numpy.typing import NDArray
 
 from relay_contact.files import RelayContactError, RelayContactWarning, fmu_path, shown
-from relay_contact.spring import PREFIX, applied
+from relay_contact.spring import OF_FILES, applied
 from relay_contact.stepping import drive
 
 DIFFERENCE = re.compile(r"\S*[/\\]\S*|\d[\d.e+-]*")
@@ -212,14 +212,14 @@ class Contact:
         self.warnings: list[str] = []
         """Those messages that are warnings, whatever the status of the call that logged them."""
         self.told = 0
-        self.changed_file = "", ""
-        """A temporary spring file with changed entries, and that of the user, which messages name."""
+        self.changed_files: dict[str, str] = {}
+        """Files of the user, which messages name, by the temporary ones with changed entries."""
 
         def keep(_environment: int, _instance: bytes, status: int, _category: bytes, message: bytes) -> None:
             # A format without arguments: FMI doubles these two.
             text = message.decode().replace("%%", "%").replace("##", "#")
-            temporary, own = self.changed_file
-            text = text.replace(temporary, own) if temporary else text
+            for temporary, own in self.changed_files.items():
+                text = text.replace(temporary, own)
             self.messages.append(text)
             if status == fmi2.fmi2Warning:
                 self.warnings.append(text)
@@ -328,11 +328,14 @@ class Contact:
         """Set parameters, inputs and entries of the spring file, and go through the initialisation."""
         start = float(self.component.start("beam.youngsModulus"))
         with self.explained():
-            if "beam.file" in values and any(name.startswith(PREFIX) for name in values):
-                # Its entries are changed only once the component has accepted it.
-                self.set("beam.file", values["beam.file"])
+            for parameter, prefix in OF_FILES.items():
+                if parameter in values and any(name.startswith(prefix) for name in values):
+                    # Its entries are changed only once the component has accepted it.
+                    self.set(parameter, values[parameter])
             own = applied(values, start, Path(self.component.folder))
-            self.changed_file = str(own.get("beam.file", "")), str(values.get("beam.file", ""))
+            self.changed_files = {
+                str(own[name]): str(values[name]) for name in OF_FILES if own.get(name) and own[name] != values[name]
+            }
             for name, value in own.items():
                 self.set(self.component.settable(name), value)
             self.initialise()

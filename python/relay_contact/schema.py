@@ -2,7 +2,7 @@
 
 import re
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Container, Iterator, Mapping
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_args
@@ -154,11 +154,12 @@ def leaves(table: Mapping[str, Any], *above: str) -> Iterator[tuple[str, Place, 
 
 
 def variables(
-    path: Path, table: Mapping[str, Any], place: Place, component: Component | None, kind: str = "parameter"
-) -> dict[str, Value]:
+    path: Path, table: Mapping[str, Any], place: Place, component: Component | None, kind: str = "parameter",
+    inputs: Container[str] = (),
+) -> dict[str, Value]:  # fmt: skip
     """Return variables of one kind in a table of a file, by name, each accepted by the component, if there is one.
 
-    The path of a spring file is relative to the file.
+    `inputs` are allowed beside those of the kind. The path of a spring file is relative to the file.
     """
     values = {}
     with Contact(component) if component else nullcontext() as contact:
@@ -169,7 +170,7 @@ def variables(
                 value = str(path.resolve().parent / value)
             if contact:
                 with at(path, *place, *keys), contact.explained():
-                    contact.set(exact(contact.component, name, kind), value)
+                    contact.set(exact(contact.component, name, "" if name in inputs else kind), value)
             values[name] = value
     return values
 

@@ -168,6 +168,18 @@ def test_lines_are_those_of_the_entry(tmp_path: Path, place: tuple[str | int, ..
 
 
 PAPER = 'title = "own"\n'
+HELD = """[pusher]
+position = 1e-2
+[armature]
+mass = 2e-3
+stiffness = 300.0
+returnForce = 0.5
+unbalance = 0.2
+holdForce = 40.0
+gapConstant = 1.5e-4
+restPosition = -3e-4
+corePosition = 1e-4
+"""
 
 
 @pytest.mark.parametrize(
@@ -198,6 +210,22 @@ PAPER = 'title = "own"\n'
         ("parameters.tip_mass = 1e-5\n", "2: tip_mass: no such variable; did you mean tip.mass"),
         ("uncertainty.tip_mass = 0.1\n", "2: tip_mass: no such variable; did you mean tip.mass"),
         ("uncertainty.tip.mass = 0.1\nuncertainty.'tip.mass' = 0.2\n", "3: uncertainty.tip.mass = 0.2: .* given twice"),
+        ("[armature]\nmas = 1e-3\n[pusher]\nposition = 1e-2\n", "3: armature.mas: .*did you mean armature.mass"),
+        ("[pusher]\nposition = '10 mm'\n", '3: pusher.position = "10 mm": not allowed, allowed is a finite number'),
+        ("[pusher]\nposition = 3e-1\n", "3: pusher.position = 0.3"),
+        ("[pusher]\nposition = 1e-2\nforce = 1.0\n", "4: pusher.force: an output, which cannot be set"),
+        ("[pusher]\nstiffness = 1e5\n", "2: pusher.position: missing"),
+        ("[armature]\nmass = 1e-3\n", "2: pusher: missing"),
+        ("[armature]\nmass = 1e-3\n[pusher]\nposition = 1e-2\n", "2: armature.stiffness: missing"),
+        ("parameters.armature.mass = 1e-3\n", "2: parameters.armature.mass = .*its place is the table .armature"),
+        ("parameters.effects.pusher = 'Armature'\n", "2: parameters.effects.pusher = .*the tables .pusher., .arm"),
+        (HELD + "[[position]]\nname = 'on'\n", "13: position.1.parameters.coil.relativeCurrent: missing, allowed is 1"),
+        (HELD.replace("40.0", "0.6") + "[[position]]\nparameters.coil.relativeCurrent = 1.0\n",
+         "13: coil.relativeCurrent = 1: not allowed, the magnet does not hold the armature, which rests 0.4 mm from"),
+        (HELD + "[[position]]\nparameters.coil.relativeCurrent = 1.0\n[uncertainty]\narmature.holdForc = 0.1\n",
+         "16: armature.holdForc: no such variable; did you mean armature.holdForce"),
+        ("[pusher]\nposition = 1e-2\n[axes]\nlateral = [1.0]\n", "5: axes.lateral = .*without other parts"),
+        ("[uncertainty]\nfixed.spring.thickness = 0.1\n", "3: uncertainty.fixed.spring.thickness: no such entry in"),
         ("a = 1\na = 2\n", "3: not TOML: "),
         ("a = [1,\n", "3: not TOML: "),
         ("a = " + 5000 * "[", " not TOML: nested too deeply"),

@@ -117,7 +117,7 @@ def several(relay: Relay, test: Asked, count: int) -> None:
     position = positions.Position(COMPONENT, relay, "closed", CONTACTS, (test,), relay.models[0])
     part = judgement.judged(position, test, FEW).margin
     shares = (0.025, 0.16, 0.5, 0.84, 0.975)
-    levels = np.quantile(position.margins(test, part.margin)[0], shares, method="hazen")
+    levels = np.quantile(position.margins(test, part.margin).margins, shares, method="hazen")
     assert (part.low, part.high) == (levels[0], levels[-1])
 
     def first(values: Values) -> int:

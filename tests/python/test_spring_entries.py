@@ -68,7 +68,8 @@ def test_uncertain_entries_make_margins_uncertain(tmp_path: Path) -> None:
     (name,) = relay.positions
     test = Shock("slow", "", "from memory", 20.0, 0.1)
     position = Position(COMPONENT, relay, name, Standard.read("MIL-PRF-28776").contacts, (test,), relay.models[0])
-    _, chance = position.margins(test, margin(position.specimen.response, test, position.specimen.lasting))
+    own = margin(position.specimen.response, test, position.specimen.lasting)
+    chance = position.chance(test, position.margins(test, own), own)
     effects = chance.effects
     # The mass that the spring carries beside its own is not as thick.
     assert 2 * 0.02 < effects["spring.thickness"] < 3 * 0.02
@@ -92,3 +93,28 @@ def test_what_is_refused_of_a_changed_spring_names_the_file_of_the_user() -> Non
         COMPONENT.started({"beam.file": str(SEGMENTS), "spring.thickness": 1e3})
     assert f"{SEGMENTS}:" in str(refused.value)
     assert str(COMPONENT.folder) not in str(refused.value)
+
+
+def test_the_spring_of_the_fixed_contact_has_entries_of_its_own(tmp_path: Path) -> None:
+    """Neither spring changes with the other, although both have their modulus from the same parameter."""
+    strip = tmp_path / "strip.toml"
+    strip.write_text("[[segment]]\nlength = 0.01\nwidth = 4e-3\nthickness = 3e-4\n")
+
+    def compliances(changes: dict[str, float]) -> tuple[float, float]:
+        """Return those of the moving and of the fixed contact's spring, m/N."""
+        with COMPONENT.started({"contact.overtravel": 1e-3, "fixed.file": str(strip), **changes}) as contact:
+            force, moving, fixed = contact.real("contact.force", "tip.displacement", "fixed.displacement")
+        return moving / force, -fixed / force
+
+    moving, fixed = compliances({})
+    for name, factor, of_moving, of_fixed in (
+        ("fixed.spring.thickness", 1.1, 1.0, 1.1**-3),
+        ("fixed.spring.segment.1.width", 1.3, 1.0, 1 / 1.3),
+        ("fixed.spring.stiffness", 1.2, 1.0, 1 / 1.2),
+        ("spring.stiffness", 1.2, 1 / 1.2, 1.0),
+    ):
+        assert compliances({name: factor}) == pytest.approx((of_moving * moving, of_fixed * fixed), rel=1e-9), name
+    both = compliances({"spring.stiffness": 1.2, "fixed.spring.stiffness": 0.9})
+    assert both == pytest.approx((moving / 1.2, fixed / 0.9), rel=1e-9)
+    with pytest.raises(RelayContactError, match=r"fixed\.spring\.thickness: no such entry"):
+        COMPONENT.started({"fixed.spring.thickness": 1.1})

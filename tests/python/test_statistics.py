@@ -75,7 +75,8 @@ def test_a_correlation_changes_the_interval_as_it_should(tmp_path: Path, monkeyp
     text += "names = ['beam.youngsModulus', 'contact.overtravel']\nmatrix = [[1.0, {0}], [{0}, 1.0]]\n"
     for coefficient in (-0.9, 0.0, 0.9):
         position, margin = slow_shock(tmp_path, text.format(coefficient))
-        margins, told = position.margins(SLOW, margin)
+        drawn = position.margins(SLOW, margin)
+        margins, told = drawn.margins, position.chance(SLOW, drawn, margin)
         # Of 10,000 draws the deviation is known to 0.7 %.
         part = 0.05 * np.sqrt(2 + 2 * coefficient) / 1.96
         assert np.std(margins) / margin == pytest.approx(part, rel=0.03)
@@ -94,7 +95,7 @@ def test_a_chance_in_ppm_with_its_interval(tmp_path: Path, monkeypatch: pytest.M
         own = 1 + sigmas * 0.05 / 1.96
         test = replace(SLOW, acceleration=SLOW.acceleration * margin / own)
         position = replace(position, tests=(test,))
-        _, told = position.margins(test, own)
+        told = position.chance(test, position.margins(test, own), own)
         expected = norm.cdf(-sigmas / own)
         assert told.low <= expected <= told.high, sigmas
         # By the number of draws, and an error of the margin of up to 0.05 %.

@@ -1,6 +1,6 @@
 """A test in a position of the coil, by one of the models: its margin, its verdict, and what the figures show."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -23,11 +23,13 @@ from relay_contact.qualification.excitation import (  # fmt: skip
     Transient,
     straight,
 )
-from relay_contact.qualification.position import WORN, Position
+from relay_contact.qualification.parts import CLOSED, CONTACT, CORE, MOVED, NONE, OPEN, STOP, pusher_of
+from relay_contact.qualification.position import MOST, WORN, Drawn, Position
 from relay_contact.qualification.relay import NORMAL
-from relay_contact.qualification.response import Response, open_at_rest
-from relay_contact.qualification.results import CLOSED, OPEN, Finding, Margin, Verdict
+from relay_contact.qualification.response import Response
+from relay_contact.qualification.results import Finding, Margin, PartMargin, Verdict
 from relay_contact.qualification.trials import (
+    RESOLUTION,
     SAMPLE,
     SHORT,
     SHOWN,
@@ -37,6 +39,7 @@ from relay_contact.qualification.trials import (
     middle_dip,
     sine_least,
     sine_threshold,
+    steady,
     sweep,
 )
 
@@ -46,6 +49,8 @@ QUALITY = 10.0
 """Of the oscillators whose shock response spectrum is shown."""
 SHOWN_TIME = 10e-3  # s around a dip
 POINTS = 1500  # of a course that is shown as a whole
+BEYOND = 2.0
+"""Factor of the least margin from which on another part does not matter for that of the relay."""
 
 
 def verdict(low: float, high: float) -> Verdict:
@@ -75,49 +80,101 @@ def passes(wear: dict[str, list[float]], least: float) -> float | None:
     return float(np.interp(1.0, ends[[low, high]], [over[low], over[high]]))
 
 
+@dataclass(frozen=True)
+class Level:
+    """The level that fails a part, relative to that of the test."""
+
+    factor: float
+    decides: list[str]
+    """What of the part fails there."""
+    linear: float
+    weakest: str
+    limits: str
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What happened at the level of the test itself, by what may fail."""
+
+    failed: Lengths
+    where: dict[str, str]
+    least: dict[str, float]
+    curves: dict[str, Any]
+    """Of the contact."""
+
+
+ENDLESS = Level(MOST, [], MOST, "", "the test hardly shakes it")
+Found = tuple[dict[str, Level], Seen]
+"""The levels that fail, by part, and what happened at that of the test."""
+
+
 def rested(position: Position) -> dict[str, float]:
-    """Return force (N) and gap (m) at rest."""
+    """Return force (N) and gap (m) at rest, by what may fail."""
     specimen = position.specimen
     second = {OPEN: position.value("second.gap")} if position.value("effects.secondContact") else {}
-    return {OPEN if specimen.is_open else CLOSED: specimen.response.reserve} | second
+    held = {each.part: each.specimen.response.reserve for each in position.parts[1:]}
+    return {OPEN if specimen.is_open else CLOSED: specimen.response.reserve} | second | held
 
 
-def found(position: Position, limits: str, **more: Any) -> tuple[Margin, str]:  # noqa: ANN401
-    """Return a margin with what all kinds of tests have in common, and what limits it."""
-    rest, natural = rested(position), position.specimen.response.natural
-    return Margin(rest=rest, natural=natural, overtravel=abs(position.value("contact.overtravel")), **more), limits
-
-
-def vibration(position: Position, test: Sine, points: int) -> tuple[Margin, str]:
-    """Vibrate steadily at frequencies of the sweep, and seek the level that fails where it is least."""
-    specimen = position.specimen
-    response = specimen.response
-    known, factors = response.sine(test, specimen.lasting)
+def searched(position: Position, test: Sine) -> tuple[float, float, list[str]]:
+    """Return the frequency (Hz) at which a part fails at the least level, its factor of the level, and what fails."""
+    known, factors = position.specimen.response.sine(test, position.specimen.lasting)
     at = int(factors.argmin())
-    weakest, factor, decides = sine_least(specimen, test)
+    if factors[at] >= MOST:
+        return float(known[at]), MOST, []
+    return sine_least(position.specimen, test)
+
+
+def vibration(position: Position, test: Sine, points: int) -> Found:
+    """Vibrate steadily at frequencies of the sweep, and seek the levels that fail each part where they are least."""
+    specimen = position.specimen
+    parts = {each.part: each for each in position.parts}
+    weakest = {name: searched(each, test) for name, each in parts.items()}
     low, high = test.band
-    near = weakest * np.linspace(0.9, 1.1, points // 4)
+    near = weakest[CONTACT][0] * np.linspace(0.9, 1.1, points // 4)
     around = (np.geomspace(low, high, points), near[(near > low) & (near < high)])
     own = [np.array(test.steps)] if test.steps else [] if test.dwell else around
-    chosen = np.unique(np.concatenate((*own, [weakest])))
-    rows = sweep(specimen, test, chosen)
-    lengths = {name: [length.get(name, 0.0) for length, _ in rows] for name in specimen.monitors}
-    worst = int(np.argmax([max(length.values(), default=0.0) for length, _ in rows]))
-    elsewhere = factor > 1 and bool(rows[worst][0])
-    if elsewhere:
-        weakest = float(chosen[worst])
-        factor, decides = sine_threshold(specimen, test, weakest, 1.0, rows[worst][0])
-    least = {name: [left[number] for _, left in rows] for number, name in enumerate(specimen.monitors)}
-    reason = "fails at the level of the test where linear theory does not expect it"
-    return found(
-        position, reason if elsewhere else bound(response, test, at, len(known), weakest),
-        margin=factor, decides=decides, linear=float(factors[at]), weakest=f"{three(weakest)} Hz",
+    chosen = np.unique(np.concatenate((*own, [frequency for frequency, *_ in weakest.values()])))
+    rows = sweep(specimen, test, chosen, [each.specimen.response for each in parts.values()])
+    lengths = {name: [length.get(name, 0.0) for length, _ in rows] for name in specimen.names}
+    expected = dict(weakest)
+    for name, each in parts.items():
+        failures = [each.specimen.own(length) for length, _ in rows]
+        worst = int(np.argmax([max(length.values(), default=0.0) for length in failures]))
+        if weakest[name][1] > 1 and failures[worst]:
+            frequency = float(chosen[worst])
+            weakest[name] = frequency, *sine_threshold(each.specimen, test, frequency, 1.0, failures[worst])
+    beside(parts, test, weakest)
+    least = {name: [left[number] for _, left in rows] for number, name in enumerate(specimen.names)}
+    levels = {}
+    for name, (frequency, factor, decides) in weakest.items():
+        response = parts[name].specimen.response
+        known, factors = response.sine(test, parts[name].specimen.lasting)
+        at = int(factors.argmin())
+        limits = bound(response, test, at, len(known), frequency)
+        if weakest[name] != expected[name]:
+            limits = "fails at the level of the test where linear theory does not expect it"
+            limits = limits if factor <= 1 else "fails once another part has failed"
+        levels[name] = Level(factor, decides, float(factors[at]), f"{three(frequency)} Hz", limits)
+    seen = Seen(
         failed={name: max(each) for name, each in lengths.items() if any(each)},
         where={name: f"at {three(chosen[int(np.argmax(each))])} Hz" for name, each in lengths.items() if any(each)},
         least={name: min(each) for name, each in least.items()},
         curves={"frequency": chosen.tolist(), "level": test.amplitude(chosen).tolist(),
                 "length": lengths, "least": least},
     )  # fmt: skip
+    return levels, seen
+
+
+def beside(parts: dict[str, Position], test: Sine, weakest: dict[str, tuple[float, float, list[str]]]) -> None:
+    """Replace the levels of parts that fail below what linear theory says, where another part has failed first."""
+    first = min(weakest, key=lambda name: weakest[name][1])
+    frequency, level, _ = weakest[first]
+    for name in weakest.keys() - {first}:
+        specimen, factor = parts[name].specimen, min(weakest[name][1], BEYOND * level)
+        amplitude = factor * float(test.amplitude(np.array(frequency)))
+        if failing := specimen.own(steady(specimen, frequency, amplitude, gently=True)[0]):
+            weakest[name] = frequency, *sine_threshold(specimen, test, frequency, factor, failing)
 
 
 def bound(response: Response, test: Sine, at: int, count: int, weakest: float) -> str:
@@ -137,11 +194,22 @@ def bound(response: Response, test: Sine, at: int, count: int, weakest: float) -
     return limits + (f"{three(decays)} decay times" if decays < MANY else f"over {MANY} decay times")
 
 
-def random(position: Position, test: Random) -> tuple[Margin, str]:
-    """Seek the level at which the largest dips of a record fail; for the time of the test by Rice's rate.
+def random(position: Position, test: Random) -> Found:
+    """Seek the levels at which the largest dips of a record fail; for the time of the test by Rice's rate.
 
     What happens in the test is that around a dip of the record, raised to the size of the largest in the test.
     """
+    shaken = [each for each in position.parts if each.part == CONTACT or not each.is_endless(test)]
+    found = {each.part: random_level(each, test) for each in shaken}
+    levels = {each.part: found[each.part][0] if each.part in found else ENDLESS for each in position.parts}
+    failed, least = merged(position, [own[1:] for own in found.values()])
+    shown = found[CONTACT][2][-round(SHOWN_TIME / SAMPLE) :]
+    curves = {"time": (shown[:, 0] - shown[0, 0]).tolist(), "course": shown[:, 1].tolist()}
+    return levels, Seen(failed, dict.fromkeys(failed, f"in {three(test.duration / 60)} min"), least, curves)
+
+
+def random_level(position: Position, test: Random) -> tuple[Level, Lengths, Array]:
+    """Return the level of noise that fails a part, and failures and rows around a dip at the level of the test."""
     specimen = position.specimen
     response = specimen.response
     linear = response.random(test, specimen.lasting)
@@ -149,29 +217,70 @@ def random(position: Position, test: Random) -> tuple[Margin, str]:
     part, decides, piece = middle_dip(specimen, dips)
     raised = piece.guess / (linear * eased)
     lengths, rows = piece.follow(specimen, raised, points=1)
-    if lengths and part * linear * eased > 1:
-        level, decides = piece.threshold(specimen, 1.0, lengths, raised)
+    own = specimen.own(lengths)
+    if own and part * linear * eased > 1:
+        level, decides = piece.threshold(specimen, 1.0, own, raised)
         part = level / piece.guess
     rms, _ = response.moments(test)
     density = test.spectrum(response.frequency) * response.gain**2
     share = np.cumsum(density) / density.sum()
     half = response.frequency[np.searchsorted(share, [0.25, 0.75])]
     moving, rest = ("motion", "gap") if specimen.is_open else ("force", "preload")
+    rest = rest if position.part == CONTACT else "force at rest"
     limits = f"half of the power of the {moving} is there; {three(rms / response.reserve)} of the {rest} rms"
     if eased > 1:
         limits += f"; clipping raises the level by {three(100 * (eased - 1))} %"
-    shown = rows[-round(SHOWN_TIME / SAMPLE) :]
-    return found(
-        position, limits, margin=linear * part * eased, decides=decides, linear=linear * eased,
-        weakest=f"{three(half[0])} to {three(half[1])} Hz",
-        failed=lengths, where=dict.fromkeys(lengths, f"in {three(test.duration / 60)} min"),
-        least=dict(zip(specimen.monitors, rows[:, 2:].min(axis=0).tolist(), strict=True)),
-        curves={"time": (shown[:, 0] - shown[0, 0]).tolist(), "course": shown[:, 1].tolist()},
-    )  # fmt: skip
+    weakest = f"{three(half[0])} to {three(half[1])} Hz"
+    return Level(linear * part * eased, decides, linear * eased, weakest, limits), lengths, rows
 
 
-def transient(position: Position, test: Transient) -> tuple[Margin, str]:
-    """Run a course in its directions, or what is around its largest dips, and seek the levels that fail."""
+def merged(position: Position, runs: list[tuple[Lengths, Array]]) -> tuple[Lengths, dict[str, float]]:
+    """Return the longest failures in several runs, and what was left at least."""
+    names = position.specimen.names
+    failed = {name: max(lengths.get(name, 0.0) for lengths, _ in runs) for name in names
+              if any(name in lengths for lengths, _ in runs)}  # fmt: skip
+    least = {name: float(min(rows[:, 2 + number].min() for _, rows in runs)) for number, name in enumerate(names)}
+    return failed, least
+
+
+Run = tuple[str, Piece, Lengths, Array]
+"""A direction, a piece of a course, the failures, and rows of what was observed."""
+
+
+def transient(position: Position, test: Transient) -> Found:
+    """Run a course in its directions, or what is around its largest dips, and seek the levels that fail each part."""
+    specimen = position.specimen
+    levels: dict[str, Level] = {}
+    every: list[Run] = []
+    told: dict[str, str] = {}
+    shown: list[Run] = []
+    piece: Piece | None = None
+    level = 1.0
+    for each in position.parts:
+        if each.is_endless(test) and each.part != CONTACT:
+            levels[each.part] = ENDLESS
+            continue
+        levels[each.part], runs, first, where, fails = transient_level(each, test)
+        told |= {name: where for name in specimen.names if each.part in (name, CONTACT)}
+        every += runs
+        if each.part == CONTACT:
+            shown, piece, level = runs, first, fails
+    failed, least = merged(position, [(lengths, rows) for *_, lengths, rows in every])
+    assert piece is not None
+    start = test.record.time[0] if isinstance(test, History) else 0.0
+    failing: Lengths = {}
+    if isinstance(test, Shock):
+        course = opening_run(specimen, shown)
+    else:
+        failing, course = failing_run(specimen, piece, level, start)
+    curves = {"time": course[:, 0].tolist(), "course": course[:, 1].tolist(), "failing": failing, **excited(test)}
+    return levels, Seen(failed, {name: told[name] for name in failed}, least, curves)
+
+
+def transient_level(position: Position, test: Transient) -> tuple[Level, list[Run], Piece, str, float]:
+    """Return the level of a course that fails a part, its runs at the level of the test, the worst piece, where, and the factor
+    at which that piece fails, with the sign of its direction.
+    """
     specimen = position.specimen
     ways = test.directions
     own = sorted(((way, piece) for way, each in position.pieces[test.name].items() for piece in each),
@@ -181,30 +290,17 @@ def transient(position: Position, test: Transient) -> tuple[Margin, str]:
     factor, decides = piece.threshold(specimen, ways[way])
     for other, each, lengths, _ in runs:
         known: Lengths = {}
-        if factor > 1 and lengths:
-            known, level = lengths, 1.0
+        if factor > 1 and specimen.own(lengths):
+            known, level = specimen.own(lengths), 1.0
         elif each is not piece:
-            known, level = each.follow(specimen, ways[other] * factor)[0], factor
+            known, level = specimen.own(each.follow(specimen, ways[other] * factor)[0]), factor
         if known:
             lower, failed = each.threshold(specimen, ways[other], known, level)
             if lower < factor:
                 way, piece, factor, decides = other, each, lower, failed
-    failed_ = {name: max(lengths.get(name, 0.0) for *_, lengths, _ in runs) for name in specimen.monitors
-               if any(name in lengths for *_, lengths, _ in runs)}  # fmt: skip
-    least = {name: float(min(rows[:, 2 + number].min() for *_, rows in runs))
-             for number, name in enumerate(specimen.monitors)}  # fmt: skip
     start = test.record.time[0] if isinstance(test, History) else 0.0
-    failing: Lengths = {}
-    if isinstance(test, Shock):
-        shown = opening_run(specimen, runs)
-    else:
-        failing, shown = failing_run(specimen, piece, ways[way] * factor, start)
     where, limits, weakest = words(position, test, way, piece, start)
-    return found(
-        position, limits, margin=factor, decides=decides, linear=own[0][1].guess, weakest=weakest, failed=failed_,
-        where=dict.fromkeys(failed_, where), least=least, tolerance=tolerated(position, test),
-        curves={"time": shown[:, 0].tolist(), "course": shown[:, 1].tolist(), "failing": failing, **excited(test)},
-    )  # fmt: skip
+    return Level(factor, decides, own[0][1].guess, weakest, limits), runs, piece, where, ways[way] * factor
 
 
 def opening_run(specimen: Specimen, runs: list[Any]) -> Array:
@@ -225,8 +321,9 @@ def words(position: Position, test: Transient, way: str, piece: Piece, start: fl
     """Return where a course fails, what limits its margin, and where it is weakest."""
     response = position.specimen.response
     if isinstance(test, Shock):
-        slow = response.reserve / (response.gain[0] * G * test.acceleration) / piece.guess
-        return "", f"inertia of the spring, {three(slow)} times that of a slow shock", f"{way} direction"
+        slow = response.reserve / max(response.gain[0] * G * test.acceleration, 1e-300) / piece.guess
+        of = " of the spring" if position.part == CONTACT else ""
+        return "", f"inertia{of}, {three(slow)} times that of a slow shock", f"{way} direction"
     change = test.directions[way] * response.change(piece.course.sampled())
     dip = STEP * int(change.argmin()) + piece.begin + start
     share = float(np.abs(change).max() / max(response.gain[0] * np.abs(piece.course.acceleration).max(), 1e-300))
@@ -235,7 +332,7 @@ def words(position: Position, test: Transient, way: str, piece: Piece, start: fl
     return f"near {dip:.6g} s", limits, f"{told}, at {dip:.6g} s"
 
 
-def tolerated(position: Position, test: Transient) -> tuple[float, float] | None:
+def tolerated(position: Position, test: Test) -> tuple[float, float] | None:
     """Return the margins by linear theory at the ends of the tolerance of a pulse."""
     if not isinstance(test, Shock) or not (test.tolerance.peak or test.tolerance.duration):
         return None
@@ -292,7 +389,7 @@ def tested(position: Position, test: Test, points: int) -> Finding:
 def judged(position: Position, test: Test, points: int) -> Finding:
     """Run a test in a position of the coil, by one of the models."""
     notes = list(test.record.notes) if isinstance(test, History) else []
-    evidence, second = test.weakest_evidence, bool(position.value("effects.secondContact"))
+    evidence = test.weakest_evidence
 
     def finding(verdict: Verdict, limits: str, own: Margin | None = None) -> Finding:
         return Finding(
@@ -300,29 +397,80 @@ def judged(position: Position, test: Test, points: int) -> Finding:
             verdict, limits, own, notes,
         )  # fmt: skip
 
-    if position.axis not in (NORMAL, *position.relay.axes):
-        reason = f"the relay's file has no participations of the modes in the axis {position.axis}"
-        return finding("not judged", reason)
-    if position.value("contact.overtravel") == 0:
-        return finding("not judged", "the contact just touches: neither closed nor open")
-    if second and open_at_rest(position.component, position.values):
-        reason = "both contacts open: closings on both sides are not judged; give each side as a position of its own"
+    if reason := not_held(position):
+        return finding("FAIL", reason)
+    if reason := not_judged(position):
         return finding("not judged", reason)
     if position.specimen.response.reserve <= 0:
         reason = f"interrupted at rest: more than {position.contacts.threshold:g} Ω of contact resistance"
         return finding("FAIL", reason)
     match test:
         case Sine():
-            own, limits = vibration(position, test, points)
+            levels, seen = vibration(position, test, points)
         case Random():
-            own, limits = random(position, test)
+            levels, seen = random(position, test)
         case Transient():
-            own, limits = transient(position, test)
+            levels, seen = transient(position, test)
         case _:
             raise TypeError(test)
-    margins, chance = position.margins(test, own.margin)
-    low, high = np.quantile(margins, LIMITS, method="hazen").tolist()
-    low, high = min(low, own.margin), max(high, own.margin)
-    wear = position.wear(test, own.margin)
-    own = replace(own, low=low, high=high, chance=chance, wear=wear, passes=passes(wear, low / own.margin))
-    return finding(verdict(low, high), limits, own)
+    own = whole(position, test, levels, seen)
+    return finding(verdict(own.low, own.high), levels[first_of(levels)].limits, own)
+
+
+def not_held(position: Position) -> str:
+    """Return why the armature is not held at all, if it is not."""
+    moved = pusher_of(position.component, position.values) == MOVED
+    return "the armature rests at neither of its stops" if moved and not {CORE, STOP} & {*position.rest.held} else ""
+
+
+def not_judged(position: Position) -> str:
+    """Return why a position is not judged, if it is not."""
+    if position.axis not in (NORMAL, *position.relay.axes):
+        return f"the relay's file has no participations of the modes in the axis {position.axis}"
+    if position.value("contact.overtravel") == 0 and pusher_of(position.component, position.values) == NONE:
+        return "the contact just touches: neither closed nor open"
+    if position.value("effects.secondContact") and position.rest.is_open:
+        return "both contacts open: closings on both sides are not judged; give each side as a position of its own"
+    return ""
+
+
+def first_of(levels: dict[str, Level]) -> str:
+    """Return the part that fails first.
+
+    Others that fail by its failure do so at the same level: of those that the search cannot tell apart it is the one
+    that fails first by linear theory.
+    """
+    least = min(level.factor for level in levels.values())
+    tied = [name for name, level in levels.items() if level.factor <= least * (1 + 3 * RESOLUTION)]
+    return min(tied, key=lambda name: levels[name].linear)
+
+
+def whole(position: Position, test: Test, levels: dict[str, Level], seen: Seen) -> Margin:
+    """Return the margin of the relay, which is that of the part that fails first, with what it comes from."""
+    first = first_of(levels)
+    level = replace(levels[first], factor=min(each.factor for each in levels.values()))
+    drawn = {
+        each.part: each.margins(test, levels[each.part].factor, levels[each.part].factor < BEYOND * level.factor)
+        for each in position.parts
+    }
+    least = Drawn.least(list(drawn.values()))
+    low, high = ends(least, level.factor)
+    wears = [each.wear(test, levels[each.part].factor) for each in position.parts]
+    wear = {"overtravel": wears[0]["overtravel"], "margin": np.min([each["margin"] for each in wears], axis=0).tolist()}
+    own = {
+        name: PartMargin(each.factor, *ends(drawn[name], each.factor), each.weakest, each.limits, each.factor >= MOST)
+        for name, each in levels.items()
+    }  # fmt: skip
+    return Margin(
+        margin=level.factor, linear=level.linear, decides=level.decides, weakest=level.weakest, failed=seen.failed,
+        where=seen.where, least=seen.least, rest=rested(position), natural=position.specimen.response.natural,
+        curves=seen.curves, overtravel=abs(position.overtravel), wear=wear, passes=passes(wear, low / level.factor),
+        low=low, high=high, chance=position.chance(test, least, level.factor), parts=own if len(own) > 1 else {},
+        tolerance=tolerated(next(each for each in position.parts if each.part == first), test),
+    )  # fmt: skip
+
+
+def ends(drawn: Drawn, factor: float) -> tuple[float, float]:
+    """Return the ends of the interval of a margin; what the component found is within."""
+    low, high = np.quantile(drawn.margins, LIMITS, method="hazen").tolist()
+    return min(low, factor), max(high, factor)

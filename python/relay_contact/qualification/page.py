@@ -13,6 +13,7 @@ from relay_contact.figures import three
 from relay_contact.qualification import plots, statistics
 from relay_contact.qualification.assessment import springs_of
 from relay_contact.qualification.excitation import LEVELS, evidence_told
+from relay_contact.qualification.parts import MOVED, NONE, PUSHER
 from relay_contact.qualification.position import DRAWS, FEWEST
 from relay_contact.qualification.relay import Relay
 from relay_contact.qualification.results import Assessment, Tested
@@ -46,6 +47,10 @@ parameter once it is known (first-order Sobol index). Passes from: the overtrave
 one that is open alone, from which on the whole interval is above 1, if that is as wide as here.""",
     "Open contact": """that of a changeover relay is reached only after the closed one has opened, so that an
 interruption comes first, unless the gap is crossed within the time allowed for one.""",
+    "Parts": """of a relay whose file describes a pusher or an armature, each part that is held at rest is judged: the
+armature fails where the force of the core, or of the stop, that it rests on is gone for an instant, the spring where
+that of its pusher is; the contacts as above. The margin of the relay is the least. Up to it all parts are held; the
+margins of the others are searched with the component, at their own weakest place and where the first part fails.""",
     "Sine": """steady vibration, its level raised gently; the slow sweep of a test is close to it. A contact at rest
 that is vibrated suddenly may fail at a lower level.""",
     "Random": """the level at which the largest dip of force or gap in the time of the test fails with a chance of one
@@ -58,15 +63,21 @@ Another pulse that meets the spectrum may be more severe for the contact.""",
     "Record": """the margin is a factor on the whole record. The component is run around its largest dips of force or
 gap by linear theory, with the times and values of the file.""",
 }
+PUSHERS = {
+    "Prescribed": "pusher that stays where it is",
+    MOVED: "armature that moves a pusher",
+}
+"""By effects.pusher."""
 SETTINGS = ("excitation.", "chatter.", "solver.")
 """Parameters that are not the relay's."""
 UNUSED = {
     "beam.file": ("beam.length", "beam.width", "beam.thickness"),
     "effects.secondContact": ("second.",),
     "effects.friction": ("friction.", "effects.friction"),
-    "effects.pusher": ("pusher.", "armature."),
-    "fixed.file": ("fixed.",),
     "effects.contactLaw": ("contact.stiffness",),
+    "effects.parallelContact": ("parallel.",),
+    "effects.pusher": ("pusher.", "armature.", "effects.pusher"),
+    "fixed.file": ("fixed.",),
 }
 """Parameters without effect where this one has a value, or where it has its start value."""
 
@@ -81,6 +92,8 @@ def form(component: Component, values: Values) -> str:
     axial = {"None": "no axial force", "Prescribed": "a given axial force"}
     parts = [
         "slender spring with Rayleigh damping",
+        *(["fixed contact on a spring"] if values.get("fixed.file") else []),
+        *([PUSHERS[has("pusher")]] if has("pusher") != NONE else []),
         f"{law} {'with' if has('contactDamping') else 'without'} viscoelastic damping",
         axial.get(str(has("axialForce")), "the axial force of the preload"),
         "no friction" if has("friction") == "None" else f"friction of {has('coefficient', 'friction'):g}",
@@ -109,7 +122,7 @@ def inputs(component: Component, relay: Relay) -> pages.Table:
         hidden += [prefixes] if used == (name == "beam.file") else []
     found = []
     for name, variable in component.variables.items():
-        if variable.causality != "parameter" or name in SPRING_FILES:
+        if name in SPRING_FILES or (variable.causality != "parameter" and name not in own):
             continue
         if name not in own and any(name.startswith(prefixes) for prefixes in hidden):
             continue
@@ -174,10 +187,13 @@ def position_context(assessment: Assessment, component: Component, name: str, va
     }  # fmt: skip
     if known:
         own = known.margin
-        context["rest"] = f"{at_rest(own)}; first resonance {three(own.natural)} Hz"
+        moved = values.get("effects.pusher", NONE) != NONE
+        clear = "; the pusher does not touch the spring" if moved and PUSHER not in own.rest else ""
+        context["rest"] = f"{at_rest(own)}; first resonance {three(own.natural)} Hz{clear}"
         lengths = {} if values.get("beam.file") else {"length": "beam.length"}
-        shown = {**lengths, "tip": "tip.mass", "overtravel": "contact.overtravel"}
+        shown = {**lengths, "tip": "tip.mass"}
         given = {key: float(values.get(name, component.start(name))) for key, name in shown.items()}
+        given["overtravel"] = own.overtravel
         context["sketch"] = pages.svg(plots.sketch(known, given))
     return context
 
@@ -185,18 +201,29 @@ def position_context(assessment: Assessment, component: Component, name: str, va
 def scope(relay: Relay, standard: Standard) -> tuple[list[str], list[str]]:
     """Return what was judged and what was not."""
     axes = ", ".join(["normal to the contact", *relay.axes])
+    every = [{**values, **model.parameters} for values in relay.positions.values() for model in relay.models]
+    pushers = {str(values.get("effects.pusher", NONE)) for values in every}
+    sprung = any(values.get("fixed.file") for values in every)
+    moved = MOVED in pushers
+    with_ = {NONE: "The contact springs as in a rigid relay", "Prescribed": "The contact springs with their pusher"}
+    first = with_["Prescribed" if pushers != {NONE} else NONE]
+    shaken = "the clamps of both springs" if sprung else "the clamp of the spring and the fixed contacts"
+    if pushers != {NONE}:
+        shaken += " and the pusher"
+    if moved:
+        first = "The relay with its contacts, its armature and the pusher between them"
+        shaken = shaken.replace("the pusher", "pivot and core of the armature")
+    first += f": base vibration moves {shaken} alike."
+    if pushers != {NONE}:
+        first += " A verdict is that of the part that fails first."
     judged = [
-        "The contact springs as in a rigid relay: base vibration moves the clamp of the spring and the fixed contacts "
-        "alike.",
+        first,
         f"Base acceleration along: {axes}.",
         f"{len(standard.tests)} tests, in the positions of the coil: {', '.join(relay.positions)}.",
     ]
-    moved = all(values.get("effects.pusher") == "Armature" for values in relay.positions.values())
-    absent = "Actuator, coil and case" if moved else "Armature, actuator, coil and case"
+    absent = "Circuit of the coil, and case," if moved else "Armature, actuator, coil and case"
     left = [f"{absent} are not in the model: what they do to the contact is not in any verdict here.",
             "Bounce after switching, and wear beyond the loss of overtravel."]  # fmt: skip
-    if moved:
-        left.append("Whether the armature leaves its core without opening the contact.")
     if not relay.axes:
         left.append("The other two axes of the relay: only the normal one is judged, as the relay's file has no "
                     "participations of the modes in others.")  # fmt: skip

@@ -11,7 +11,8 @@ from matplotlib.patches import Rectangle
 from relay_contact.component import Array
 from relay_contact.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, three
 from relay_contact.figures import GRAVITY as G
-from relay_contact.qualification.results import CLOSED, OPEN, Finding, Tested
+from relay_contact.qualification.parts import CLOSED, CONTACT, CORE, OPEN, PUSHER, STOP
+from relay_contact.qualification.results import Finding, Tested
 from relay_contact.qualification.standards import Contacts
 from relay_contact.qualification.words import FAILURES, QUANTITIES, failing, failures, is_open, time_text
 
@@ -23,7 +24,8 @@ STYLES: tuple[dict[str, Any], ...] = tuple(
 MARKS = 9  # on a curve
 MARKERS = {"pass": "o", "FAIL": "X", "undecided": "D"}
 LINES = {"pass": GREEN, "FAIL": RED, "undecided": ORANGE}
-DASHES = {CLOSED: "-", OPEN: "--"}
+DASHES = {CLOSED: "-", OPEN: "--", CORE: ":", STOP: ":", PUSHER: "-."}
+PARTS = {CONTACT: "s", CORE: "^", STOP: "^", PUSHER: "v"}
 WIDTH = 8.27  # inches: a page of A4
 
 SHALLOWEST = 1e-8
@@ -65,10 +67,24 @@ def sketch(position: Finding, parameters: dict[str, float]) -> Figure:
         axes.text(8.9, -0.5, f"preload {three(100 * rest[CLOSED])} cN", fontsize=8)
     if OPEN in rest and CLOSED in rest:
         axes.text(8.9, 1.1, f"gap {three(1e3 * rest[OPEN])} mm", fontsize=8)
+    held(axes, rest)
     axes.annotate("", (3.5, -0.55), (3.5, -1.25), arrowprops={"arrowstyle": "<->"})
     axes.text(3.7, -1.0, "base acceleration of clamp and fixed contacts alike", fontsize=8)
     axes.text(-0.7, 0.9, "clamp", fontsize=8)
     return figure
+
+
+def held(axes: Axes, rest: dict[str, float]) -> None:
+    """Draw pusher and armature above the spring, with the forces that hold them."""
+    texts = {PUSHER: "pusher, {} cN", CORE: "armature, {} cN at its core", STOP: "armature, {} cN at its stop"}
+    told = [texts[name].format(three(100 * value)) for name, value in rest.items() if name in texts]
+    if not told:
+        return
+    if PUSHER in rest:
+        axes.add_patch(Rectangle((5.2, 0.27), 0.25, 0.6, facecolor="0.6", edgecolor="black"))
+    if CORE in rest or STOP in rest:
+        axes.add_patch(Rectangle((4.6, 0.87), 1.45, 0.22, facecolor="0.6", edgecolor="black"))
+    axes.text(5.3, 1.18, "; ".join(told), fontsize=8, ha="center")
 
 
 def margins(tests: list[Tested]) -> Figure:
@@ -78,11 +94,16 @@ def margins(tests: list[Tested]) -> Figure:
     axes = figure.subplots()
     several = len({tested.first.position for tested in tests}) > 1
     labels = []
+    parts: dict[str, None] = {}
     for row, (tested, each) in enumerate(judged):
         colour, own = LINES[each.verdict], each.margin
         axes.plot([max(own.low, 1e-3), own.high], [row, row], color=colour, linewidth=4, solid_capstyle="butt",
                   alpha=0.5)  # fmt: skip
         axes.plot(own.margin, row, MARKERS[each.verdict], color=colour, markeredgecolor="black", markersize=5)
+        for name, part in own.parts.items():
+            if not part.endless:
+                axes.plot(part.margin, row, PARTS[name], color="none", markeredgecolor=GREY, markersize=7)
+        parts |= dict.fromkeys(own.parts)
         place = f", {each.position}" if several else ""
         model = f", {each.model}" if len(tested.models) > 1 else ""
         labels.append(f"{each.named}{place}{model}: {each.verdict}")
@@ -92,6 +113,10 @@ def margins(tests: list[Tested]) -> Figure:
         xscale="log",
         xlabel="level that fails / level of the test (logarithmic)",
     )
+    for name in parts:
+        axes.plot([], [], PARTS[name], color="none", markeredgecolor=GREY, markersize=7, label=name)
+    if parts:
+        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=4, borderaxespad=0.2)
     axes.set_ylim(len(judged) - 0.4, -0.6)
     axes.axvline(1.0, color=GREY, linewidth=1)
     low, high = axes.get_xlim()
@@ -125,6 +150,8 @@ def sweeps(panels: list[Axes], findings: list[Finding], contacts: Contacts) -> N
         level.plot(frequency, np.array(own.curves["level"]) / G, label=finding.named, **style)
         for name, values in own.curves["least"].items():
             left.plot(frequency, 100 * np.array(values) / own.rest[name], linestyle=DASHES[name], **style)
+            if name not in limits:
+                continue
             lengths = 1e6 * np.array(own.curves["length"][name])
             length.plot(frequency, lengths, linestyle=DASHES[name], **style)
             if name in own.failed:
@@ -132,12 +159,19 @@ def sweeps(panels: list[Axes], findings: list[Finding], contacts: Contacts) -> N
                 longest(length, frequency, lengths, style["color"])
     above(level, "Sine: amplitude of the base acceleration")
     level.set(ylabel="acceleration [g]", ylim=(0, None))
+    within: dict[str, Any] = {}
     for name in findings[0].margin.rest:
         left.plot([], [], DASHES[name], color=GREY, label=f"{QUANTITIES[name]} of the {name}")
+        if name not in limits:
+            # More than fits above the panel.
+            within = {"loc": "lower left", "ncols": 2}
+            continue
         told = f"{name} {FAILURES[name]}, limit {1e6 * limits[name]:g} µs"
         length.plot([], [], DASHES[name], color=GREY, label=told)
         length.axhline(1e6 * limits[name], color=GREY, linestyle=DASHES[name], linewidth=0.6)
     above(left, "What is left at least in steady vibration")
+    if within:
+        left.legend(**within)
     left.set(ylabel="part of rest [%]", ylim=(-5, 105))
     above(length, "Longest failure")
     length.set(ylim=(0, max(1.5e6 * limits[next(iter(findings[0].margin.rest))], 1.25 * most)))

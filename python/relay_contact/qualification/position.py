@@ -1,11 +1,11 @@
-"""A position of the coil by one of the models, shaken along an axis: its contacts, and how uncertain their margins are.
+"""A position of the coil by one of the models, shaken along an axis: its parts, and how uncertain their margins are.
 
 The margin of a test follows from the response to a pulse; in draws of the uncertain parameters too
 (`relay_contact.qualification.statistics`). Where linear theory is off, and by how much, the component tells: as the
 relay is, at both ends of the interval, and at the limit between failing and passing.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -15,12 +15,13 @@ from relay_contact.component import Array, Component, Values
 from relay_contact.qualification import statistics
 from relay_contact.qualification.distributions import LEAST, LIMITS, TWO_SIDED
 from relay_contact.qualification.excitation import Random, Sine, Test, Transient
+from relay_contact.qualification.parts import CONTACT, Rest, at_rest
 from relay_contact.qualification.relay import NORMAL, Model, Relay
-from relay_contact.qualification.response import Response, margin, respond
+from relay_contact.qualification.response import CALM, Response, answers, margin
 from relay_contact.qualification.results import Chance
 from relay_contact.qualification.standards import Contacts
 from relay_contact.qualification.trials import Piece, Specimen, middle_dip, noise_dips, pieces, sine_least
-from relay_contact.spring import PREFIX
+from relay_contact.spring import is_entry
 
 MODEL = "model"
 CHANCE = "chance of the largest dip"
@@ -34,13 +35,48 @@ SETTLED = 1e-3
 """Part of its largest answer below which that of a drawn contact is cut off."""
 GRID = np.linspace(-5.0, 5.0, 41)
 """Scores of the chance of the largest dip."""
+MOST = 1e3
+"""Margin from which on a part counts as one that does not fail: what a test does not shake has an endless one."""
+LOWEST = 1e-3
+"""Margin of a draw that fails at rest, whose logarithm would be endless."""
+FAR = -9e-3
+"""Overtravel (m) of a contact that is out of reach."""
 NEAR = 0.05
 """Of 1, within which draws are at the limit: others would tell of another level."""
 
 
+@dataclass(frozen=True)
+class Drawn:
+    """A margin in many draws of the uncertain parameters."""
+
+    margins: Array
+    error: float
+    """Largest part by which the component found it to be another than drawn."""
+    confirmed: int
+    """Draws in which the component sought the level itself."""
+
+    @classmethod
+    def least(cls, each: list["Drawn"]) -> "Drawn":
+        """Return the least margin of several parts in each draw."""
+        margins = np.min([own.margins for own in each], axis=0)
+        return cls(margins, max(own.error for own in each), sum(own.confirmed for own in each))
+
+
+@dataclass
+class Shared:
+    """What all parts of a position have in common: the component answers for all of them at once."""
+
+    nominal: dict[str, Response] = field(default_factory=dict)
+    """Responses of the relay as its file says, by part."""
+    surfaces: dict[str, dict[str, statistics.Surface]] = field(default_factory=dict)
+    """Logarithm of the margin of each test over the scores, by linear theory, by part."""
+    worn: dict[float, dict[str, Response]] = field(default_factory=dict)
+    """Responses over the overtravel (m), which the wear of the contacts takes away, or over the gap, by part."""
+
+
 @dataclass
 class Position:
-    """A position of the coil by one of the models, along an axis."""
+    """A position of the coil by one of the models, along an axis, and a part of it that is judged."""
 
     component: Component
     relay: Relay
@@ -49,6 +85,8 @@ class Position:
     tests: tuple[Test, ...]
     model: Model
     axis: str = NORMAL
+    part: str = CONTACT
+    shared: Shared = field(default_factory=Shared, init=False, repr=False)
 
     @cached_property
     def values(self) -> Values:
@@ -56,20 +94,34 @@ class Position:
         return {**self.relay.positions[self.name], **self.model.parameters, **self.relay.axes.get(self.axis, {})}
 
     def value(self, name: str) -> float:
-        """Return the value of a parameter; that of an entry of the spring file is a factor, 1 but in further axes."""
-        if name.startswith(PREFIX):
+        """Return the value of a parameter; that of an entry of a spring file is a factor, 1 but in further axes."""
+        if is_entry(name):
             return float(self.values.get(name, 1.0))
         return float(self.values.get(name, self.component.start(name)))
 
-    def response(self, changes: Values, calm: float = SETTLED) -> Response:
-        """Return the response with some other values of parameters."""
-        return respond(self.component, {**self.values, **changes}, self.contacts.threshold, calm)
+    @cached_property
+    def rest(self) -> Rest:
+        """What is judged, by the state at rest."""
+        return at_rest(self.component, self.values)
+
+    @cached_property
+    def parts(self) -> list["Position"]:
+        """The same position for each of its parts, the contact first."""
+        others = [replace(self, part=name) for name in self.rest.held]
+        for each in others:
+            each.shared = self.shared
+        return [self, *others]
+
+    def responses(self, changes: Values, calm: float = SETTLED) -> dict[str, Response]:
+        """Return the responses with some other values of parameters, by part."""
+        return answers(self.component, {**self.values, **changes}, self.contacts.threshold, self.rest, calm)
 
     @cached_property
     def specimen(self) -> Specimen:
-        """The contacts as the file says."""
-        response = respond(self.component, self.values, self.contacts.threshold)
-        return Specimen(self.component, self.values, self.contacts, response)
+        """The relay as the file says, to judge the part."""
+        if not self.shared.nominal:
+            self.shared.nominal |= self.responses({}, CALM)
+        return Specimen(self.component, self.values, self.contacts, self.shared.nominal[self.part], self.part)
 
     @cached_property
     def pieces(self) -> dict[str, dict[str, list[Piece]]]:
@@ -84,16 +136,22 @@ class Position:
         """Of each noise, by the test's name: what is around its largest dips, and what clipping makes of its level."""
         return {test.name: noise_dips(self.specimen, test) for test in self.tests if isinstance(test, Random)}
 
+    def is_endless(self, test: Test) -> bool:
+        """Return whether a test hardly shakes the part."""
+        return self.linear(self.specimen.response, test) >= MOST
+
     def linear(self, response: Response, test: Test) -> float:
-        """Return the margin by linear theory, of a course by its pieces."""
+        """Return the margin by linear theory, of a course by its pieces; MOST at most."""
+        if response.reserve <= 0:
+            return 0.0
         lasting = self.specimen.lasting
         if isinstance(test, Transient):
             found = [
                 response.course(piece.course, test.directions[way], lasting)
                 for way, own in self.pieces[test.name].items() for piece in own
             ]  # fmt: skip
-            return max(min(found), 0.0)
-        return max(margin(response, test, lasting), 0.0)
+            return min(*found, MOST)
+        return min(margin(response, test, lasting), MOST)
 
     @cached_property
     def scores(self) -> Array:
@@ -119,26 +177,51 @@ class Position:
         for (name, distribution), score in zip(self.relay.uncertainty.items(), self.root @ scores, strict=True):
             value = self.value(name)
             # A sample of an entry of the spring file has factors of it.
-            unit = 1.0 if name.startswith(PREFIX) else value
+            unit = 1.0 if is_entry(name) else value
             found[name] = value * float(distribution.factor(score, unit)) if value else 0.0
         return found
 
-    @cached_property
+    @property
     def surfaces(self) -> dict[str, statistics.Surface]:
         """Logarithm of the margin of each test over the scores, by linear theory."""
-        found: dict[str, list[float]] = {test.name: [] for test in self.tests}
-        for row in self.scores:
-            response = self.response(self.drawn(row)) if len(row) else self.specimen.response
-            for test in self.tests:
-                found[test.name].append(np.log(max(self.linear(response, test), 1e-9)))
-        return {name: statistics.Surface(self.scores, np.array(values)) for name, values in found.items()}
+        if not self.shared.surfaces:
+            found: dict[str, dict[str, list[float]]] = {
+                each.part: {test.name: [] for test in self.tests} for each in self.parts
+            }
+            for row in self.scores:
+                responses = self.responses(self.drawn(row)) if len(row) else self.shared.nominal
+                for each in self.parts:
+                    for test in self.tests:
+                        own = each.linear(responses[each.part], test)
+                        found[each.part][test.name].append(np.log(max(own, LOWEST)))
+            self.shared.surfaces |= {
+                part: {name: statistics.Surface(self.scores, np.array(values)) for name, values in own.items()}
+                for part, own in found.items()
+            }
+        return self.shared.surfaces[self.part]
 
     @cached_property
+    def lifted(self) -> float:
+        """How far (m) a pusher holds the contact point from where it would be without a contact; 0 without one."""
+        if not self.rest.held:
+            return 0.0
+        with self.component.started({**self.values, "contact.overtravel": FAR}) as contact, contact.explained():
+            return -contact.get("tip.displacement")
+
+    @property
+    def overtravel(self) -> float:
+        """The overtravel (m) that wear takes away, that of the pusher included; negative: the gap."""
+        return self.value("contact.overtravel") + self.lifted
+
+    @property
     def worn(self) -> dict[float, Response]:
         """The responses over the overtravel (m), which the wear of the contacts takes away, or over the gap."""
-        name = "contact.overtravel"
-        nominal = self.value(name)
-        return {abs(part * nominal): self.response({name: part * nominal}) for part in WORN}
+        if not self.shared.worn:
+            whole, lifted = self.overtravel, self.lifted
+            self.shared.worn |= {
+                abs(part * whole): self.responses({"contact.overtravel": part * whole - lifted}) for part in WORN
+            }
+        return {over: responses[self.part] for over, responses in self.shared.worn.items()}
 
     def wear(self, test: Test, factor: float) -> dict[str, list[float]]:
         """Return the margin over overtravel or gap, for a margin that the component found as it is."""
@@ -149,6 +232,8 @@ class Position:
     def ratio(self, values: Values, response: Response, test: Test) -> float:
         """Return the level that fails in the component, with other parameters, by that of linear theory."""
         specimen = replace(self.specimen, values={**self.values, **values}, response=response)
+        if self.linear(response, test) >= MOST:
+            return 1.0
         match test:
             case Sine():
                 return sine_least(specimen, test)[1] / self.linear(response, test)
@@ -174,14 +259,19 @@ class Position:
         found = np.array([response.random(test, lasting, float(each)) for each in norm.cdf(GRID)])
         return np.interp(scores, GRID, found / response.random(test, lasting))
 
-    def margins(self, test: Test, factor: float) -> tuple[Array, Chance]:
-        """Return the margin in many draws, for that which the component found as it is, and what comes of them.
+    @cached_property
+    def independent(self) -> Array:
+        """Many independent scores of the uncertain parameters, of what the model leaves out, and of the largest dip."""
+        return statistics.drawn(len(self.relay.uncertainty) + 2)
+
+    def margins(self, test: Test, factor: float, confirmed: bool = True) -> Drawn:
+        """Return the margin in many draws, for that which the component found as it is; `confirmed` by it in some.
 
         What the component found in place of linear theory lies on straight lines between the draws where it is known.
         """
         surface = self.surfaces[test.name]
         count = len(self.relay.uncertainty)
-        independent = statistics.drawn(count + 2)
+        independent = self.independent
         linear = np.exp(surface(independent[:, :count]))
         nominal = self.linear(self.specimen.response, test)
         known = {nominal: factor / nominal}
@@ -195,10 +285,10 @@ class Position:
 
         errors = [surface.error if count else 0.0]
         chosen = [int(np.argsort(linear)[int(limit * len(linear))]) for limit in LIMITS] if count else []
-        for round_ in range(2 if count else 0):
+        for round_ in range(2 if count and confirmed else 0):
             for number in chosen:
                 values = self.drawn(independent[number, :count])
-                response = self.response(values)
+                response = self.responses(values)[self.part]
                 own = self.linear(response, test)
                 if own <= 0:
                     continue
@@ -210,14 +300,11 @@ class Position:
             if not round_:
                 away = np.abs(np.log(whole()))
                 chosen = [int(each) for each in np.argsort(away)[:AT_LIMIT] if away[each] < NEAR]
-        margins = whole()
-        return margins, self.chance(test, margins, factor, independent, float(max(errors)), len(known) - 1)
+        return Drawn(whole(), float(max(errors)), len(known) - 1)
 
-    def chance(
-        self, test: Test, margins: Array, factor: float, independent: Array, error: float, confirmed: int
-    ) -> Chance:
+    def chance(self, test: Test, drawn: Drawn, factor: float) -> Chance:
         """Return the chance of failing and what contributes to it, from the margins in many draws."""
-        count = len(self.relay.uncertainty)
+        count, independent, margins = len(self.relay.uncertainty), self.independent, drawn.margins
         correlated = np.column_stack((independent[:, :count] @ self.root.T, independent[:, count:]))
         names = [*self.relay.uncertainty, MODEL, CHANCE]
         used = [name != MODEL or self.model.uncertainty > 0 for name in names]
@@ -226,6 +313,6 @@ class Position:
         plane = np.column_stack((np.ones(len(margins)), correlated))
         slopes = np.linalg.lstsq(plane, margins / factor)[0][1:]
         effects = {name: float(TWO_SIDED * abs(slope)) for name, slope in zip(names, slopes, strict=True)}
-        failing, low, high = statistics.chance(margins, error)
+        failing, low, high = statistics.chance(margins, drawn.error)
         indices = statistics.first_order(correlated, margins, names)
-        return Chance(failing, low, high, effects, indices, confirmed, error)
+        return Chance(failing, low, high, effects, indices, drawn.confirmed, drawn.error)

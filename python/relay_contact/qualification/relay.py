@@ -9,10 +9,11 @@ import numpy as np
 from pydantic import Field
 from scipy.stats import norm
 
-from relay_contact.component import Component, Values, nearest
+from relay_contact.component import Component, Value, Values, nearest
 from relay_contact.files import RelayContactError, by_name, found, named, read_toml
 from relay_contact.qualification import distributions
 from relay_contact.qualification.distributions import Correlation, Distribution
+from relay_contact.qualification.parts import check_held
 from relay_contact.qualification.standards import Contacts, Monitor
 from relay_contact.schema import (
     Nested,
@@ -24,14 +25,25 @@ from relay_contact.schema import (
     dotted,
     exact,
     leaves,
+    line,
     read,
     refused,
     variables,
 )
-from relay_contact.spring import PREFIX, known
+from relay_contact.spring import PREFIX, is_entry, known_of
 
 OF_THE_TEST = ("excitation.", "effects.excitation", "chatter.", "effects.chatter", "effects.extremes", "second.minimum")
 """Beginnings of the names of parameters that the tests set: in the file of a relay they would contradict them."""
+NEEDED = {
+    "pusher": ("position",),
+    "armature": ("mass", "stiffness", "returnForce", "unbalance", "holdForce", "gapConstant", "restPosition",
+                 "corePosition"),
+}  # fmt: skip
+"""Parameters that the tables of parts that hold the contact have to have, by table."""
+TABLES = tuple(NEEDED)
+"""These tables, each named as the group of parameters in it; a table that is there is in the model."""
+OF_THE_POSITION = ("coil.relativeCurrent", "pusher.displacement")
+"""Inputs that say where the parts are, and stay as they are in all tests."""
 HALF, STEP, FURTHER = 10, 1e-5, 1e-4
 """Steps of a blow either way, their length (s), and how far (m) a mass without a spring moves beyond the contacts."""
 
@@ -66,6 +78,8 @@ class Content(Table):
 
     title: str | None = None
     parameters: Nested
+    pusher: dict[str, Any] | None = None
+    armature: dict[str, Any] | None = None
     position: Annotated[list[CoilPosition], Field(min_length=1, default_factory=lambda: [CoilPosition(parameters={})])]
     uncertainty: Nested
     correlation: Correlation = Correlation()
@@ -110,7 +124,7 @@ class Relay:
     def value(self, component: Component, name: str, position: str | None = None) -> float:
         """Return the value of a parameter, in the first position unless another is named; of an entry a factor of 1."""
         values = self.positions[position or next(iter(self.positions))]
-        return 1.0 if name.startswith(PREFIX) else value_of(component, values, name)
+        return 1.0 if is_entry(name) else value_of(component, values, name)
 
     def parts(self, component: Component) -> dict[str, float]:
         """Return half of each interval of 95 %, as a part of the value."""
@@ -121,7 +135,7 @@ class Relay:
         """Read a relay by its name, such as "paper", or a file of one's own by its path."""
         path = named("relay", relay, relays())
         content = read(path, Content)
-        shared = parameters(path, content.parameters, ("parameters",), component)
+        shared = {**parameters(path, content.parameters, ("parameters",), component), **moved(path, content, component)}
         positions: dict[str, Values] = {}
         for number, each in enumerate(content.position):
             place: Place = ("position", number)
@@ -132,6 +146,11 @@ class Relay:
             with at(path, *place):
                 # Parameters that do not fit together.
                 blow(component, positions[name])
+                check_held(component, positions[name])
+            needed = OF_THE_POSITION[0]
+            if content.armature is not None and needed not in positions[name]:
+                text = f"parameters.{needed}: missing, allowed is 1 at nominal current, 0 without current"
+                raise RelayContactError(f"{path}:{line(path, place)}: {dotted(place)}.{text}")
         uncertainty = uncertainties(path, content.uncertainty, positions, component)
         for number, name in enumerate(content.correlation.names):
             if name not in uncertainty:
@@ -150,6 +169,7 @@ class Relay:
             with at(path, *place):
                 for values in positions.values():
                     blow(component, {**values, **changed})
+                    check_held(component, {**values, **changed})
         title, roughness = content.title or path.stem, content.contact.roughness
         axes = {name: participations(path, name, own, positions) for name, own in content.axes.items()}
         digest = hashlib.sha256(path.read_bytes()).hexdigest()[:16]
@@ -173,17 +193,47 @@ def check_monitor(component: Component, relay: Relay, contacts: Contacts) -> Non
 
 
 def parameters(path: Path, table: dict[str, Any], place: Place, component: Component) -> Values:
-    """Return the parameters in a table of a relay's file."""
+    """Return the parameters in a table of a relay's file, and the inputs that belong to it."""
     for name, keys, value in leaves(table):
         if name.startswith(OF_THE_TEST):
             raise refused(path, (*place, *keys), value, "the tests of a standard set it, not the relay")
-    return variables(path, table, place, component)
+        group = name.partition(".")[0]
+        if place == ("parameters",) and (group in TABLES or name == "effects.pusher"):
+            where = f"its place is the table [{group}]" if group in TABLES else "the tables [pusher], [armature] say it"
+            raise refused(path, (*place, *keys), value, where)
+    return variables(path, table, place, component, inputs=OF_THE_POSITION)
+
+
+def moved(path: Path, content: Content, component: Component) -> dict[str, Value]:
+    """Return the parameters of pusher and armature, and what their tables say of the model."""
+    tables: dict[str, dict[str, Any]] = {}
+    for name in TABLES:
+        own = getattr(content, name)
+        if own is not None:
+            tables[name] = own
+    if not tables:
+        return {}
+    found = variables(path, tables, (), component, inputs=OF_THE_POSITION)
+    if "armature" in tables and "pusher" not in tables:
+        raise RelayContactError(f"{path}:{line(path, ('armature',))}: pusher: missing, by which the armature moves it")
+    file = {name: value for name, _, value in leaves(content.parameters)}.get("beam.file", "")
+    by_modes = bool(file) and "mode" in read_toml(path.resolve().parent / str(file))
+    for name, own in tables.items():
+        # With start values that nobody chose a verdict would be that of another relay.
+        for entry in NEEDED[name]:
+            if entry not in own and not (by_modes and name == "pusher"):
+                raise RelayContactError(f"{path}:{line(path, (name,))}: {name}.{entry}: missing")
+    kind = "Armature" if "armature" in tables else "Prescribed"
+    return {"effects.pusher": kind} | found
 
 
 def participations(path: Path, axis: str, own: list[float], positions: dict[str, Values]) -> Values:
     """Return the participations of the modes in an axis as factors of those in the spring file."""
     found: dict[str, float] = {}
     for values in positions.values():
+        if values.get("fixed.file") or values.get("effects.pusher", "None") != "None":
+            text = "further axes are those of the moving contact's spring alone, without other parts"
+            raise refused(path, ("axes", axis), own, text)
         file = str(values.get("beam.file", ""))
         modes = read_toml(Path(file)).get("mode", []) if file else []
         if axis == NORMAL or len(modes) != len(own):
@@ -205,12 +255,14 @@ def uncertainties(
     for name, keys, part in leaves(table):
         place = ("uncertainty", *keys)
         with at(path, *place):
-            if name.startswith(PREFIX):
+            if is_entry(name):
                 for values in positions.values():
-                    allowed = known(str(values.get("beam.file", "")))
+                    allowed = known_of(values)
                     if name not in allowed:
                         text = f"no such entry in the spring file{nearest(name, allowed)}"
                         raise RelayContactError(f"{dotted(place)}: {text}")
+            elif name in OF_THE_POSITION:
+                pass
             elif component.variables[exact(component, name, "parameter")].type != "Real":
                 raise RelayContactError(f"{dotted(place)}: not a real parameter")
         if name in found:
@@ -224,7 +276,7 @@ def uncertainties(
         with at(path, *place):
             used = [distribution.part == 0]
             for position, values in positions.items():
-                start = 1.0 if name.startswith(PREFIX) else value_of(component, values, name)
+                start = 1.0 if is_entry(name) else value_of(component, values, name)
                 ends = (
                     [start, start] if not start else start * distribution.factor(norm.ppf(distributions.LIMITS), start)
                 )
@@ -237,7 +289,8 @@ def uncertainties(
 
 def blow(component: Component, values: Values, changed: Values | None = None) -> list[float]:
     """Return what the contacts do after a blow that closes the first and one that opens it, with other parameters."""
-    watched = ("contact.force", "contact.resistance", "tip.displacement", "second.force", "second.resistance")
+    watched = ("contact.force", "contact.resistance", "tip.displacement", "second.force", "second.resistance",
+               "fixed.displacement", "pusher.force", "armature.displacement")  # fmt: skip
     travel = FURTHER + sum(abs(value_of(component, values, name)) for name in ("contact.overtravel", "second.gap"))
     size = 2 * travel / (HALF * STEP) ** 2
     # The middle twice: there it turns around.

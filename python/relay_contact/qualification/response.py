@@ -1,10 +1,14 @@
-"""The contact as a linear system: the force of a closed contact, or the gap of an open one, under base acceleration.
+"""The relay as a linear system: the force of a closed contact, or the gap of an open one, under base acceleration.
 
 The component answers a short pulse of the base acceleration, so weak that a closed contact of any law stays closed and
 is linear about its preload, and an open one stays open. The Fourier transform of the answer over that of the pulse is
 the response to any vibration below the level at which the contact opens, or closes; the margins of the tests follow
 from it. At that level a closed contact has just not opened, so that only the stiffness of the contact, which changes
 with the force, is missing. A contact with friction has the response of one that slips freely.
+
+The same answer has the forces that hold an armature at its core or stop and a spring at its pusher
+(`relay_contact.qualification.parts`). Up to the level at which the first part fails all are held, and the relay is
+linear: whatever fails first does so at its own level.
 """
 
 from dataclasses import dataclass
@@ -16,10 +20,11 @@ from scipy.optimize import brentq
 from scipy.signal import oaconvolve, zoom_fft
 from scipy.stats import norm, qmc
 
-from relay_contact.component import Array, Component, Values
+from relay_contact.component import Array, Component, Contact, Values
 from relay_contact.figures import GRAVITY as G
 from relay_contact.files import RelayContactError
 from relay_contact.qualification.excitation import BAND, STEP, Course, Random, Sine, Test, Transient
+from relay_contact.qualification.parts import CONTACT, Part, Rest, at_rest, parts
 
 PHASES = 1024
 """Combinations of the phases of sines on noise, over which the rate of crossings is averaged."""
@@ -29,6 +34,13 @@ POINTS = 2**18  # of the transform at least, every 0.38 Hz
 WEAK = 3e-6
 """Velocity that a pulse brings, of that of a vibration by the overtravel at the frequency of the closed contact: the
 force changes by some 3e-4 of the preload, and the response is linear to 1e-5 of its largest value."""
+SHALLOW, LINEAR = 1e-5, 1e-3
+"""Overtravel (m) that the pulse goes by at least, where a pusher closes the contact, and the largest change of a force
+by it, as a part of the force, in which all that is held is linear."""
+ROUNDED = 1e-3
+"""Least share of the force of a stop that a contact's is taken to be, for the tolerance."""
+STILL = 1e-9
+"""Part of a force, or gap, below which its change is calm: a balanced armature does not feel the pulse at all."""
 EXACT = 1e-11
 """solver.tolerance of motions that are so small a part of the preload."""
 FREE: Values = {
@@ -39,10 +51,10 @@ FREE: Values = {
 
 @dataclass(frozen=True)
 class Response:
-    """Force (N) of a contact that is closed at rest, or gap (m) of an open one, by base acceleration over frequency."""
+    """Force (N) of a part that is held at rest, or gap (m) of an open contact, by base acceleration over frequency."""
 
     reserve: float
-    """Force that vibration has to take off the contact for an interruption, or the gap at rest."""
+    """Force that vibration has to take off the part, of a contact for an interruption; or the gap at rest."""
     natural: float
     """Lowest frequency (Hz) of the contact at rest by its stiffness."""
     frequency: Array
@@ -50,16 +62,17 @@ class Response:
     """Force or gap over base acceleration, N or m per m/s2."""
     answer: Array
     """Change of force or gap after a pulse of one step that brings a velocity of 1 m/s, at every step."""
+    slowest: float = 0.0
+    """Time (s) after which all of the relay has settled."""
 
     @property
     def gain(self) -> Array:
         """Magnitude of the transfer function, N per m/s2."""
         return np.abs(self.transfer)
 
-    def settling(self, part: float = 1e-3) -> float:
-        """Return the time (s) after which less than a part of a vibration is left."""
-        left = np.maximum.accumulate(np.abs(self.answer[::-1]))[::-1]
-        return STEP * int(np.argmax(left < part * left[0]))
+    def settling(self) -> float:
+        """Return the time (s) after which less than a thousandth of a vibration is left, in all of the relay."""
+        return max(settled(self.answer), self.slowest)
 
     def bandwidth(self, frequency: float) -> float:
         """Return the width (Hz) of a resonance at half of its power."""
@@ -75,7 +88,8 @@ class Response:
         frequency = test.tried(self.frequency, self.gain)
         # Force or gap is below zero for the time where its amplitude is the reserve over this cosine.
         needed = self.reserve / np.cos(np.minimum(np.pi * frequency * opening, 1.5))
-        return frequency, needed / (test.amplitude(frequency) * np.interp(frequency, self.frequency, self.gain))
+        gain = np.interp(frequency, self.frequency, self.gain)
+        return frequency, needed / np.maximum(test.amplitude(frequency) * gain, 1e-300)
 
     def moments(self, test: Random) -> tuple[float, float]:
         """Return rms (N or m) and mean frequency (Hz) of force or gap in random vibration, without its sines."""
@@ -86,6 +100,8 @@ class Response:
 
     def random(self, test: Random, opening: float, chance: float = 0.5) -> float:
         """Return the factor of the level that fails within the test with a chance, by Rice's rate of crossings."""
+        if not self.gain.any():
+            return np.inf
         rms, mean = self.moments(test)
         needed = self.reserve * (1 + (np.pi * mean * opening) ** 2 / 2)
         crossings = -np.log1p(-chance) / test.duration
@@ -127,51 +143,107 @@ def stays(change: Array, opening: float) -> Array:
     return np.asarray(maximum_filter1d(change, dwell + 1, origin=-((dwell + 1) // 2)))[: len(change) - dwell]
 
 
-def open_at_rest(component: Component, values: Values) -> bool:
-    """Return whether the first contact of a position is open: a gap in place of overtravel."""
-    return float(values.get("contact.overtravel", component.start("contact.overtravel"))) < 0
+def settled(answer: Array, part: float = 1e-3) -> float:
+    """Return the time (s) after which less than a part of an answer is left."""
+    left = np.maximum.accumulate(np.abs(answer[::-1]))[::-1]
+    return STEP * int(np.argmax(left < part * left[0]))
 
 
 def respond(component: Component, values: Values, threshold: float, calm: float = CALM) -> Response:
-    """Have the component answer a pulse, until only the part `calm` of its largest answer is left.
+    """Return the response of the first contact; `answers` says more."""
+    return answers(component, values, threshold, at_rest(component, values), calm)[CONTACT]
 
-    `threshold` is the resistance (Ohm) above which the contact is interrupted.
+
+def answers(
+    component: Component, values: Values, threshold: float, rest: Rest, calm: float = CALM
+) -> dict[str, Response]:
+    """Have the component answer a pulse, until only the part `calm` of it is left; return the responses of all parts.
+
+    `threshold` is the resistance (Ohm) above which the contact is interrupted; `rest` says what is judged.
     """
-    is_open = open_at_rest(component, values)
+    held = parts(component, values, rest)
     with component.started({**values, **FREE, "solver.tolerance": EXACT}) as contact, contact.explained():
-        name = "tip.displacement" if is_open else "contact.force"
-        (rest,) = contact.real(name)
-        natural = contact.get("preload.frequency")
-        if is_open:
-            reserve = -contact.get("preload.indentation")
-            # A velocity (m/s) that moves a contact of more than 10 Hz by less than a third of its gap.
-            size = 10 * reserve
-        else:
-            lost = interrupting_force(contact.real("resistance.coefficient", "resistance.exponent"), threshold)
-            overtravel = float(values.get("contact.overtravel", component.start("contact.overtravel")))
-            reserve, size = rest - lost, WEAK * overtravel * 2 * np.pi * natural
-        # Up within a step and down within the next.
-        time, pulse = STEP * np.arange(WATCHED + 1.0), np.zeros(WATCHED + 1)
-        pulse[1] = size / STEP
-        answer = np.zeros(0)
-        largest = left = 1.0
-        while left >= calm * largest:
-            if len(answer) >= LONGEST:
-                raise RelayContactError(
-                    f"the contact still vibrates {STEP * LONGEST:g} s after a blow: too little damping"
-                )
-            watched = contact.drive(time + STEP * len(answer), {"base.acceleration": pulse}, [name])
-            new = (watched[name] - rest) / size
-            answer = np.concatenate((answer, new))
-            pulse = np.zeros(WATCHED + 1)
-            left, largest = np.abs(new).max(), np.abs(answer).max()
+        natural, reserves, size = reserved(contact, values, threshold, rest, held)
+    if any(reserves[part.name] <= 0 for part in held):
+        # Another relay, in which not all is held: it fails at rest.
+        return dict.fromkeys(reserves, transformed(0.0, natural, np.zeros(WATCHED), 0.0))
+    tolerance = EXACT
+    if held and not rest.is_open:
+        # Relative to the force of the contact; that of a stop may be a thousand times larger, and is rounded.
+        largest = max(reserves[part.name] for part in held)
+        tolerance *= max(1.0, largest / max(reserves[CONTACT], ROUNDED * largest))
+    while True:
+        with component.started({**values, **FREE, "solver.tolerance": tolerance}) as contact, contact.explained():
+            still = {name: STILL * abs(own) for name, own in reserves.items()}
+            found = answered(contact, rest, held, size, calm, still)
+        # Held by a force, all is linear only while the force is there.
+        shares = [size * np.abs(found[part.name]).max() / reserves[part.name] for part in held]
+        if held and not rest.is_open and reserves[CONTACT] > 0:
+            shares.append(size * np.abs(found[CONTACT]).max() / reserves[CONTACT])
+        if max(shares, default=0.0) <= LINEAR:
+            break
+        size *= 0.5 * LINEAR / max(shares)
+    slowest = max(settled(answer) for answer in found.values()) if held else 0.0
+    return {name: transformed(reserves[name], natural, answer, slowest) for name, answer in found.items()}
+
+
+def reserved(
+    contact: Contact, values: Values, threshold: float, rest: Rest, held: tuple[Part, ...]
+) -> tuple[float, dict[str, float], float]:
+    """Return the lowest frequency (Hz) at rest, the reserves of all parts, and the usual velocity of a pulse (m/s)."""
+    natural = contact.get("preload.frequency")
+    if rest.is_open:
+        reserve = -contact.get("preload.indentation")
+        # A velocity (m/s) that moves a contact of more than 10 Hz by less than a third of its gap.
+        size = 10 * reserve
+    else:
+        lost = interrupting_force(contact.real("resistance.coefficient", "resistance.exponent"), threshold)
+        overtravel = float(values.get("contact.overtravel", contact.component.start("contact.overtravel")))
+        overtravel = max(abs(overtravel), SHALLOW) if held else overtravel
+        (force,) = contact.real("contact.force")
+        reserve, size = force - lost, WEAK * overtravel * 2 * np.pi * natural
+    return natural, {CONTACT: reserve} | {part.name: part.now(contact) for part in held}, size
+
+
+def answered(
+    contact: Contact, rest: Rest, held: tuple[Part, ...], size: float, calm: float, still: dict[str, float]
+) -> dict[str, Array]:
+    """Return the changes of force or gap after a pulse that brings a velocity (m/s), by part, in parts of it.
+
+    What changes by less than `still` (N or m) is calm, whatever its largest change.
+    """
+    first = Part(CONTACT, (("contact.indentation", -1.0) if rest.is_open else ("contact.force", 1.0),))
+    every = (first, *held)
+    before = {part.name: part.now(contact) for part in every}
+    names = list(dict.fromkeys(name for part in every for name in part.outputs))
+    # Up within a step and down within the next.
+    time, pulse = STEP * np.arange(WATCHED + 1.0), np.zeros(WATCHED + 1)
+    pulse[1] = size / STEP
+    found = {part.name: np.zeros(0) for part in every}
+    while True:
+        count = len(found[CONTACT])
+        if count >= LONGEST:
+            raise RelayContactError(f"the contact still vibrates {STEP * LONGEST:g} s after a blow: too little damping")
+        watched = contact.drive(time + STEP * count, {"base.acceleration": pulse}, names)
+        new = {part.name: (part.force(watched) - before[part.name]) / size for part in every}
+        found = {name: np.concatenate((answer, new[name])) for name, answer in found.items()}
+        pulse = np.zeros(WATCHED + 1)
+        left = {name: np.abs(each).max() for name, each in new.items()}
+        if all(left[name] < max(calm * np.abs(answer).max(), still[name] / size if held else 0.0)
+               for name, answer in found.items()):  # fmt: skip
+            return found
+
+
+def transformed(reserve: float, natural: float, answer: Array, slowest: float) -> Response:
+    """Return the response by the answer to a pulse."""
     # The triangle begins one step before its peak, which the first of these is at. Lines are close enough for the
     # narrowest resonance, which the answer just shows, and end where its aliases begin.
     count = max(POINTS, 4 * len(answer))
     lines = int(count * BAND[1] * STEP) + 1
     frequency = np.arange(lines) / (count * STEP)
     spectrum = zoom_fft(answer, lines / (count * STEP), lines, fs=1 / STEP)
-    return Response(reserve, natural, frequency, spectrum * STEP / np.sinc(frequency * STEP) ** 2, answer)
+    transfer = spectrum * STEP / np.sinc(frequency * STEP) ** 2
+    return Response(reserve, natural, frequency, transfer, answer, slowest)
 
 
 def interrupting_force(law: list[float], threshold: float) -> float:

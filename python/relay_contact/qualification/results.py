@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from pydantic import TypeAdapter
 from pydantic.dataclasses import dataclass
 
+from relay_contact.qualification.parts import CLOSED, CONTACT, CORE, OPEN, PUSHER, STOP
 from relay_contact.qualification.relay import NORMAL, Relay
 from relay_contact.qualification.standards import Standard
 
@@ -17,11 +18,13 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Verdict = Literal["pass", "FAIL", "undecided", "not judged"]
-CLOSED, OPEN = "closed contact", "open contact"
-"""What may fail, by its state at rest: by an interruption and by a false make."""
 TIMES = {CLOSED: "closed contact interrupted", OPEN: "open contact makes"}
-LEAST = {CLOSED: "closed contact least force", OPEN: "open contact least gap"}
-UNITS = {CLOSED: "N", OPEN: "m"}
+LEAST = {OPEN: "open contact least gap"} | {name: f"{name} least force" for name in (CLOSED, CORE, STOP, PUSHER)}
+UNITS = dict.fromkeys(LEAST, "N") | {OPEN: "m"}
+MARGINS = {name: f"{name} margin" for name in (CONTACT, CORE, STOP, PUSHER)}
+"""Columns of tables, by what may fail."""
+CONTACTS = [LEAST[CLOSED], LEAST[OPEN]]
+"""Those that are there for every relay."""
 
 
 @dataclass(frozen=True)
@@ -44,20 +47,34 @@ class Chance:
 
 
 @dataclass(frozen=True)
+class PartMargin:
+    """The level that fails a part of the relay relative to that of the test."""
+
+    margin: float
+    low: float
+    high: float
+    weakest: str
+    limits: str
+    """What limits it."""
+    endless: bool = False
+    """Whether the test hardly shakes the part; the margin is the largest that is told."""
+
+
+@dataclass(frozen=True)
 class Margin:
-    """The level that fails relative to that of the test, and what happens at that of the test."""
+    """The level that fails the relay relative to that of the test, and what happens at that of the test."""
 
     margin: float
     linear: float
     """By linear theory."""
     decides: list[str]
-    """The contacts that fail at the margin."""
+    """What fails at the margin."""
     weakest: str
     failed: dict[str, float]
-    """Longest failure (s) at the level of the test, by contact."""
+    """Longest failure (s) at the level of the test, by what fails."""
     where: dict[str, str]
     least: dict[str, float]
-    """What is left at least of force (N) or gap (m), by contact."""
+    """What is left at least of force (N) or gap (m), by what may fail."""
     rest: dict[str, float]
     """The same at rest."""
     natural: float
@@ -72,6 +89,8 @@ class Margin:
     low: float = 0.0
     high: float = 0.0
     chance: Chance | None = None
+    parts: dict[str, PartMargin] = field(default_factory=dict)
+    """The margins of each part, of a relay that has others than its contacts; the least is that of the relay."""
     tolerance: tuple[float, float] | None = None
     """Margins by linear theory at the ends of the tolerance of a pulse."""
 
@@ -176,11 +195,14 @@ class Assessment:
                         chance = judged.chance
                         row |= {"chance": chance.failing, "chance low": chance.low, "chance high": chance.high}
                     row |= {"fails first": " and ".join(judged.decides), "resonance": judged.natural}
-                    row |= {TIMES[name]: value for name, value in judged.failed.items()}
+                    row |= {TIMES[name]: value for name, value in judged.failed.items() if name in TIMES}
+                    row |= {MARGINS[name]: own.margin for name, own in judged.parts.items()}
                     row |= {LEAST[name]: value for name, value in judged.least.items()}
                     units |= {LEAST[name]: UNITS[name] for name in judged.least}
                 rows.append(row)
-        table = pd.DataFrame(rows, columns=[*FIELDS, *NUMBERS])
+        # Columns of parts that no relay here has would be empty.
+        others = [name for name in (*MARGINS.values(), *LEAST.values()) if any(name in row for row in rows)]
+        table = pd.DataFrame(rows, columns=[*FIELDS, *NUMBERS, *(name for name in others if name not in NUMBERS)])
         table.attrs["units"] = units | dict.fromkeys(TIMES.values(), "s") | {"resonance": "Hz"}
         return table
 
@@ -195,10 +217,12 @@ class Assessment:
                 curves = each.judged.curves
                 columns = {"frequency": curves["frequency"], "acceleration": curves["level"]}
                 for key, names in (("length", TIMES), ("least", LEAST)):
-                    columns |= {names[name]: values for name, values in curves[key].items()}
+                    columns |= {names[name]: values for name, values in curves[key].items() if name in names}
                 own = pd.DataFrame(columns)
                 tables.append(own.assign(position=each.position, test=each.test, model=each.model))
-        keys = ["position", "test", "model", "frequency", "acceleration", *TIMES.values(), *LEAST.values()]
+        known = {name for own in tables for name in own.columns}
+        others = [name for name in LEAST.values() if name in known and name not in CONTACTS]
+        keys = ["position", "test", "model", "frequency", "acceleration", *TIMES.values(), *CONTACTS, *others]
         table = pd.concat(tables, ignore_index=True) if tables else pd.DataFrame()
         table = table.reindex(columns=keys)
         table.attrs["units"] = {"frequency": "Hz", "acceleration": "m/s2", **dict.fromkeys(TIMES.values(), "s"),
@@ -220,5 +244,5 @@ class Assessment:
 
 FIELDS = ["position", "test", "axis", "model", "clause", "evidence", "level", "verdict"]
 NUMBERS = ["margin", "low", "high", "chance", "chance low", "chance high", "weakest", "limits", "verdict of all models",
-           "fails first", "resonance", *TIMES.values(), *LEAST.values()]  # fmt: skip
+           "fails first", "resonance", *TIMES.values(), *CONTACTS]  # fmt: skip
 """Columns of the table of results."""

@@ -10,8 +10,8 @@ from scipy.signal import find_peaks
 from relay_contact.component import Array, Component, Contact, Values
 from relay_contact.figures import GRAVITY as G
 from relay_contact.qualification.excitation import STEP, Course, Random, Sine, overall
-from relay_contact.qualification.response import Response, open_at_rest, stays
-from relay_contact.qualification.results import CLOSED, OPEN
+from relay_contact.qualification.parts import CLOSED, CONTACT, OPEN, Part, Rest, at_rest, parts
+from relay_contact.qualification.response import Response, stays
 from relay_contact.qualification.standards import Contacts
 
 RESOLUTION = 1e-4  # of levels
@@ -40,26 +40,40 @@ MAKES = ("chatter.falseMakes", "chatter.totalFalseMake", "chatter.longestFalseMa
 OTHER_MAKES = ("second.falseMakes", "second.totalFalseMake", "second.longestFalseMake")
 
 Lengths = dict[str, float]
-"""Length (s) of interruptions or makes that count, by contact, of those contacts that failed."""
+"""Length (s) of the failures that count, by what failed; of a part that is held, of the steps in which it was left."""
 
 
 @dataclass(frozen=True)
 class Specimen:
-    """The contacts in a position of the coil, monitored as a standard asks."""
+    """The relay in a position of the coil, monitored as a standard asks, and one of its parts to judge."""
 
     component: Component
     values: Values
     contacts: Contacts
     response: Response
+    """Of the part."""
+    part: str = CONTACT
 
     @cached_property
+    def rest(self) -> Rest:
+        """What is judged, by the state at rest."""
+        return at_rest(self.component, self.values)
+
+    @cached_property
+    def held(self) -> tuple[Part, ...]:
+        """The parts beside the contacts."""
+        return parts(self.component, self.values, self.rest)
+
+    @property
     def is_open(self) -> bool:
         """Whether the first contact is open at rest."""
-        return open_at_rest(self.component, self.values)
+        return self.rest.is_open
 
     @property
     def lasting(self) -> float:
-        """The shortest failure of the first contact (s)."""
+        """The shortest failure of the part (s): of one that is held, none."""
+        if self.part != CONTACT:
+            return 0.0
         return self.contacts.false_make if self.is_open else self.contacts.opening
 
     @cached_property
@@ -69,6 +83,21 @@ class Specimen:
             return {OPEN: MAKES}
         second = self.values.get("effects.secondContact", False)
         return {CLOSED: INTERRUPTIONS} | ({OPEN: OTHER_MAKES} if second else {})
+
+    @cached_property
+    def names(self) -> list[str]:
+        """What is observed, in the order of its columns: the contacts, and the parts that are held."""
+        return [*self.monitors, *(part.name for part in self.held)]
+
+    def own(self, lengths: Lengths) -> Lengths:
+        """Return those failures that are of the part to judge."""
+        names = self.monitors if self.part == CONTACT else [self.part]
+        return {name: length for name, length in lengths.items() if name in names}
+
+    @cached_property
+    def sampled(self) -> bool:
+        """Whether a gap or a force is known at the ends of steps alone, which have to be short then."""
+        return self.is_open or any(not part.least for part in self.held)
 
     def start(self, values: Values) -> Contact:
         """Return the contacts at rest, with further parameters."""
@@ -82,33 +111,46 @@ class Specimen:
     @cached_property
     def watched(self) -> list[str]:
         """The outputs that tell force and gap, and what was left of them in a step."""
-        if self.is_open:
-            return ["tip.displacement"]
         least = ["step.minimumForce", "step.minimumGap"][: len(self.monitors)]
-        return ["contact.force", "second.force", *least]
+        first = ["contact.indentation"] if self.is_open else ["contact.force", "second.force", *least]
+        return list(dict.fromkeys([*first, *self.watched_of_held]))
+
+    @cached_property
+    def watched_of_held(self) -> list[str]:
+        """The outputs that tell what was left of the forces that hold parts."""
+        return [name for part in self.held for name in ([part.least] if part.least else part.outputs)]
 
     def observed(self, rows: dict[str, Array]) -> Array:
         """Return columns of the force (N) of the closed contact less that of the open one, and what is left of each.
 
-        Left are the least force of the closed contact in each step, and gap (m) of the open one. Of an open first
-        contact its gap at the end of a step stands for all.
+        Left are the least force of the closed contact in each step, and gap (m) of the open one, and the least forces
+        that hold parts. Of an open first contact its gap at the end of a step stands for all.
         """
-        columns = [rows[name] for name in self.watched]
+        held = [self.left(part, rows) for part in self.held]
         if self.is_open:
-            gap = self.values.get("contact.overtravel", self.component.start("contact.overtravel"))
-            apart = columns[0] - float(gap)
-            return np.column_stack((apart, apart))
-        return np.column_stack((columns[0] - columns[1], *columns[2:]))
+            apart = -rows["contact.indentation"]
+            return np.column_stack((apart, apart, *held))
+        own = [rows[name] for name in self.watched[: 2 + len(self.monitors)]]
+        return np.column_stack((own[0] - own[1], *own[2:], *held))
+
+    def left(self, part: Part, rows: dict[str, Array]) -> Array:
+        """Return the force (N) that is left of a part in each step."""
+        return np.maximum(rows[part.least] if part.least else part.force(rows), 0.0)
 
     def longest(self, contact: Contact) -> Lengths:
         """Return the longest failure so far, by contact."""
         return {name: contact.get(each[2]) for name, each in self.monitors.items() if contact.get(each[0])}
 
+    def leaving(self, lengths: Array, rows: dict[str, Array]) -> Lengths:
+        """Return how long parts were left, at the lengths (s) of the steps in which they were."""
+        away = {part.name: float(lengths[self.left(part, rows) <= 0].sum()) for part in self.held}
+        return {name: length for name, length in away.items() if length}
+
 
 def threshold(
     fails: Callable[[float], Lengths], guess: float, failing: Lengths | None = None
 ) -> tuple[float, list[str]]:
-    """Return a factor of a level that fails, just above one that does not, and which contacts fail there.
+    """Return a factor of a level that fails, just above one that does not, and what fails there.
 
     From a guess outwards, then by bisection; `failing` is what is known to fail at the guess itself.
     """
@@ -151,21 +193,23 @@ def steady(specimen: Specimen, frequency: float, amplitude: float, gently: bool)
 
         before = totals()
         time += periods / frequency
-        pieces = WATCHED * (SAMPLES if specimen.is_open else 1)
+        pieces = WATCHED * (SAMPLES if specimen.sampled else 1)
         step = 1 / frequency * WATCHED / pieces
         rows = contact.drive(time + step * np.arange(pieces + 1.0), {}, specimen.watched)
         left = specimen.observed(rows)[:, 1:]
         # Of failures that last long enough; also of one without an end.
         still = [name for name, total in totals().items() if total > before[name]]
         lengths = {name: length for name, length in specimen.longest(contact).items() if name in still}
-        return lengths, left.min(axis=0).tolist()
+        return lengths | specimen.leaving(np.full(pieces, step), rows), left.min(axis=0).tolist()
 
 
-def sweep(specimen: Specimen, test: Sine, frequencies: Array) -> list[tuple[Lengths, list[float]]]:
-    """Vibrate at frequencies (Hz) of a sweep; return what `steady` gives at each."""
-    known, factors = specimen.response.sine(test, specimen.lasting)
+def sweep(
+    specimen: Specimen, test: Sine, frequencies: Array, responses: list[Response]
+) -> list[tuple[Lengths, list[float]]]:
+    """Vibrate at frequencies (Hz) of a sweep; return what `steady` gives at each. The responses are of all parts."""
+    least = [np.interp(frequencies, *response.sine(test, specimen.lasting)) for response in responses]
     rows = []
-    for frequency, factor in zip(frequencies, np.interp(frequencies, known, factors), strict=True):
+    for frequency, factor in zip(frequencies, np.min(least, axis=0), strict=True):
         amplitude = float(test.amplitude(np.array(frequency)))
         rows.append(steady(specimen, float(frequency), amplitude, factor < SUDDEN))
     return rows
@@ -174,9 +218,13 @@ def sweep(specimen: Specimen, test: Sine, frequencies: Array) -> list[tuple[Leng
 def sine_threshold(
     specimen: Specimen, test: Sine, frequency: float, guess: float, failing: Lengths | None = None
 ) -> tuple[float, list[str]]:
-    """Return the factor of the level that fails in steady vibration at a frequency (Hz), and which contacts."""
+    """Return the factor of the level that fails in steady vibration at a frequency (Hz), and what of the part."""
     amplitude = float(test.amplitude(np.array(frequency)))
-    return threshold(lambda factor: steady(specimen, frequency, factor * amplitude, True)[0], guess, failing)
+
+    def fails(factor: float) -> Lengths:
+        return specimen.own(steady(specimen, frequency, factor * amplitude, True)[0])
+
+    return threshold(fails, guess, failing)
 
 
 def sine_least(specimen: Specimen, test: Sine) -> tuple[float, float, list[str]]:
@@ -189,6 +237,9 @@ def sine_least(specimen: Specimen, test: Sine) -> tuple[float, float, list[str]]
     known, factors = specimen.response.sine(test, specimen.lasting)
     at = int(factors.argmin())
     first, guess = float(known[at]), float(factors[at])
+    if test.steps:
+        # The response is known beside it.
+        first = min(test.steps, key=lambda each: abs(each - first))
     step = 1 + min(BESIDE, specimen.response.bandwidth(first) / first / 2)
 
     low, high = test.band
@@ -229,7 +280,8 @@ class Piece:
     def follow(self, specimen: Specimen, factor: float, points: int = 0) -> tuple[Lengths, Array]:
         """Run it at a factor of its level; return the longest failures, and rows of time (s) and what is observed.
 
-        There are so many points at least, if any. A course that ends at 0 is observed until calm.
+        There are so many points at least, if any; of parts that are held always. A course that ends at 0 is observed
+        until calm.
         """
         course = self.course
         values = {**course.generator, **({"excitation.amplitude": factor * course.acceleration.max()}
@@ -238,8 +290,15 @@ class Piece:
         if not acceleration[-1]:
             end = max(3 * course.end, course.end + specimen.response.settling())
             time, acceleration = np.append(time, end), np.append(acceleration, 0.0)
+        points = points or (1 if specimen.held else 0)
         if points:
-            dense = np.setdiff1d(np.linspace(0.0, min(3 * course.end, time[-1]), points + 1), time)
+            dense = np.linspace(0.0, min(3 * course.end, time[-1]), points + 1)
+            if specimen.held and specimen.sampled:
+                every = STEP * np.arange(1, time[-1] / STEP)
+                # Not beside points of the course that rounding alone sets apart.
+                near = np.searchsorted(time, every - STEP / 4) < np.searchsorted(time, every + STEP / 4)
+                dense = np.union1d(dense, every[~near])
+            dense = np.setdiff1d(dense, time)
             at = np.searchsorted(time, dense)
             acceleration = np.insert(acceleration, at, np.interp(dense, time, acceleration))
             time = np.insert(time, at, dense)
@@ -249,13 +308,19 @@ class Piece:
             lengths = specimen.longest(contact)
         if not points:
             return lengths, np.zeros((0, 0))
-        return lengths, np.column_stack((time[1:][np.diff(time) > 0], specimen.observed(rows)))
+        taken = np.diff(time) > 0
+        lengths |= specimen.leaving(np.diff(time)[taken], rows)
+        return lengths, np.column_stack((time[1:][taken], specimen.observed(rows)))
 
     def threshold(self, specimen: Specimen, sign: float, failing: Lengths | None = None, guess: float = 0.0) -> (
         tuple[float, list[str]]
     ):  # fmt: skip
-        """Return the factor of its level that fails with a sign, and which contacts."""
-        return threshold(lambda factor: self.follow(specimen, sign * factor)[0], guess or self.guess, failing)
+        """Return the factor of its level that fails with a sign, and what of the part."""
+
+        def fails(factor: float) -> Lengths:
+            return specimen.own(self.follow(specimen, sign * factor)[0])
+
+        return threshold(fails, guess or self.guess, failing)
 
 
 def pieces(specimen: Specimen, course: Course, sign: float, count: int = DIPS) -> list[Piece]:

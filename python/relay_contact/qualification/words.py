@@ -2,8 +2,10 @@
 
 from relay_contact.figures import three
 from relay_contact.qualification.excitation import LEVELS
-from relay_contact.qualification.position import CHANCE, MODEL, WORN
-from relay_contact.qualification.results import CLOSED, OPEN, Chance, Finding, Margin, Tested
+from relay_contact.qualification.judgement import verdict
+from relay_contact.qualification.parts import CLOSED, CONTACT, CORE, OPEN, PUSHER, STOP
+from relay_contact.qualification.position import CHANCE, MODEL, MOST, WORN
+from relay_contact.qualification.results import Chance, Finding, Margin, PartMargin, Tested
 
 HEAD = (
     "test", "level", "verdict", "margin", "95 % interval of the parameters", "weakest at", "fails first", "in the test",
@@ -11,8 +13,9 @@ HEAD = (
 )  # fmt: skip
 REASONS = ("test", "what limits", "what the interval comes from", "to measure or tighten", "chance of failing",
            "passes from")  # fmt: skip
-QUANTITIES = {CLOSED: "force", OPEN: "gap"}
+QUANTITIES = dict.fromkeys((CLOSED, CORE, STOP, PUSHER), "force") | {OPEN: "gap"}
 FAILURES = {CLOSED: "interrupted", OPEN: "makes"}
+LEAVES = {CORE: "armature leaves its core", STOP: "armature leaves its stop", PUSHER: "spring leaves its pusher"}
 MARKS: dict[str, str] = dict(zip(LEVELS, ("", "", " †", " *"), strict=True))
 """Of tests with numbers that were not read in the standard."""
 UNREAD = "† Read in a quotation of the standard. * From memory: not, or not all, read in the standard's text."
@@ -31,11 +34,8 @@ def is_open(margin: Margin) -> bool:
 
 
 def failures(margin: Margin) -> str:
-    """Return which contacts fail at the level of the test, and the longest failure, in words."""
-    told = [
-        f"{name} {FAILURES[name]} for {time_text(length)} {margin.where[name]}".rstrip()
-        for name, length in margin.failed.items()
-    ]
+    """Return what fails at the level of the test, and the longest failure of contacts, in words."""
+    told = [failure(margin, name) for name in margin.failed]
     if not told and margin.margin <= 1:
         return f"none fails at this level itself, but at {three(margin.margin)} of it"
     return ", ".join(told) or "none fails"
@@ -44,14 +44,27 @@ def failures(margin: Margin) -> str:
 def failing(margin: Margin) -> str:
     """Return what fails at the margin of a course, in words."""
     failed = margin.curves["failing"].items()
-    told = [f"{name} {FAILURES[name]} for {time_text(length)}" for name, length in failed]
+    told = [LEAVES.get(name) or f"{name} {FAILURES[name]} for {time_text(length)}" for name, length in failed]
     return f"At {three(margin.margin)} of the level: {', '.join(told) or 'none fails'}"
 
 
+def failure(margin: Margin, name: str) -> str:
+    """Return how something fails at the level of the test, in words."""
+    if name in LEAVES:
+        return f"{LEAVES[name]} {margin.where[name]}".rstrip()
+    return f"{name} {FAILURES[name]} for {time_text(margin.failed[name])} {margin.where[name]}".rstrip()
+
+
 def at_rest(margin: Margin) -> str:
-    """Return force and gap at rest, in words."""
-    texts = {CLOSED: ("force of the closed contact {} cN", 100), OPEN: ("gap of the open contact {} mm", 1e3)}
+    """Return forces and gap at rest, in words."""
+    texts: dict[str, tuple[str, float]] = {name: (f"force of the {name} {{}} cN", 100) for name in QUANTITIES}
+    texts[OPEN] = ("gap of the open contact {} mm", 1e3)
     return ", ".join(texts[name][0].format(three(texts[name][1] * value)) for name, value in margin.rest.items())
+
+
+def left_of(margin: Margin, name: str) -> str:
+    """Return what is left of force or gap at the level of the test, as a part of that at rest."""
+    return f"{QUANTITIES[name]} {three(100 * max(margin.least[name], 0.0) / margin.rest[name])} %"
 
 
 def own_cells(finding: Finding) -> list[str]:
@@ -59,23 +72,44 @@ def own_cells(finding: Finding) -> list[str]:
     if finding.judged is None:
         return [finding.verdict, "", "", finding.limits, "", "", ""]
     own = finding.judged
-    left = [
-        f"{QUANTITIES[name]} {three(100 * max(least, 0.0) / own.rest[name])} %" for name, least in own.least.items()
-    ]
+    # Of parts that are held in their own rows.
+    left = [left_of(own, name) for name in own.least if name not in LEAVES]
     first = " and ".join(own.decides) or "none"
     interval = f"{three(own.low)} to {three(own.high)}"
     return [finding.verdict, three(own.margin), interval, own.weakest, first, failures(own), ", ".join(left)]
+
+
+def part_rows(finding: Finding) -> list[list[str]]:
+    """Return a row for each part of a relay that has others than its contacts."""
+    own = finding.judged
+    return [] if own is None else [part_row(own, name, part) for name, part in own.parts.items()]
+
+
+def part_row(margin: Margin, name: str, part: PartMargin) -> list[str]:
+    """Return the row of a part in the table."""
+    names = [each for each in (CLOSED, OPEN) if each in margin.least] if name == CONTACT else [name]
+    told = [failure(margin, each) for each in names if each in margin.failed]
+    left = [left_of(margin, each) for each in names]
+    shown, interval = three(part.margin), f"{three(part.low)} to {three(part.high)}"
+    if part.endless:
+        shown, interval = f"> {MOST:g}", ""
+    label = names[0] if name == CONTACT and len(names) == 1 else "contacts" if name == CONTACT else name
+    cells = [verdict(part.low, part.high), shown, interval, part.weakest, "", ", ".join(told) or "holds"]
+    return [f"· {label}", "", *cells, ", ".join(left)]
 
 
 def rows(tested: Tested) -> list[list[str]]:
     """Return the rows of a test in the table: one, or the verdict of all models and a row for each of them."""
     first = tested.first
     if len(tested.models) == 1:
-        return [[first.named, first.level, *own_cells(first)]]
+        return [[first.named, first.level, *own_cells(first)], *part_rows(first)]
     known = [each.judged.margin for each in tested.models if each.judged]
     spread = f"{three(min(known))} to {three(max(known))}" if known else ""
     whole = [first.named, first.level, tested.verdict, spread, "by model", *[""] * 4]
-    return [whole, *([f"- {each.model}", "", *own_cells(each)] for each in tested.models)]
+    found = [whole]
+    for each in tested.models:
+        found += [[f"- {each.model}", "", *own_cells(each)], *part_rows(each)]
+    return found
 
 
 def contributions(chance: Chance) -> str:
@@ -134,4 +168,7 @@ def reasons(tested: Tested) -> list[list[str]]:
             chance = each.judged.chance
             told = [contributions(chance), tighten(chance), chance_text(chance), passes_text(each.judged)]
         found.append([test, limits(each), *told])
+        if each.judged:
+            others = {name: own.limits for name, own in each.judged.parts.items() if own.limits != each.limits}
+            found += [[f"· {name}", limit, *[""] * 4] for name, limit in others.items()]
     return found
