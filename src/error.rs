@@ -304,10 +304,10 @@ pub enum Remark {
     },
     /// An armature, with which the tolerance is not promised.
     #[error(
-        "effects.pusher = Armature: solver.tolerance is kept by the cases in docs/relay.md, but has not been tried on relays at \
-         random, as it has without an armature; compare with a tolerance ten times smaller"
+        "effects.pusher = Armature: where the armature is thrown about, one relay in ten exceeds solver.tolerance, most without a \
+         word from solver.forceError; compare with a tolerance ten times smaller"
     )]
-    NotTried,
+    ThrownArmature,
     /// Friction with which slip is unstable.
     #[error(
         "effects.friction = Coulomb: slip {} the clamp is unstable with friction.coefficient = {} and tip.contactHeight = {} m: at \

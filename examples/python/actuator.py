@@ -9,7 +9,7 @@ FMPy also hands over the velocity of the pusher, as the derivative of the contac
 moves on in a straight line, and only the force is late, by the step. libcosim hands over no derivatives of inputs: the
 pusher is late by a step, too. With --libcosim the coupled FMUs run there as well, and in FMPy without derivatives,
 which has to be the same. It needs libcosimpy, and the component with choices as numbers
-(`cargo xtask fmu --plain`).
+(`cargo xtask fmu --plain`). What a tool that is not a Python program needs for Actuator.fmu: two_fmus.py.
 
 Operate time: from switching on to the first touch. Bounce at make: from there to the last closing before switching off.
 Release time: from switching off to the first opening. Bounce at break: from there to the last opening.

@@ -49,6 +49,8 @@ QUALITY = 10.0
 """Of the oscillators whose shock response spectrum is shown."""
 SHOWN_TIME = 10e-3  # s around a dip
 POINTS = 1500  # of a course that is shown as a whole
+FOLLOWS = 0.9
+"""Part of its level by linear theory below which another part than the first fails because that has failed."""
 BEYOND = 2.0
 """Factor of the least margin from which on another part does not matter for that of the relay."""
 
@@ -154,7 +156,6 @@ def vibration(position: Position, test: Sine, points: int) -> Found:
         limits = bound(response, test, at, len(known), frequency)
         if weakest[name] != expected[name]:
             limits = "fails at the level of the test where linear theory does not expect it"
-            limits = limits if factor <= 1 else "fails once another part has failed"
         levels[name] = Level(factor, decides, float(factors[at]), f"{three(frequency)} Hz", limits)
     seen = Seen(
         failed={name: max(each) for name, each in lengths.items() if any(each)},
@@ -449,10 +450,15 @@ def whole(position: Position, test: Test, levels: dict[str, Level], seen: Seen) 
     """Return the margin of the relay, which is that of the part that fails first, with what it comes from."""
     first = first_of(levels)
     level = replace(levels[first], factor=min(each.factor for each in levels.values()))
-    drawn = {
-        each.part: each.margins(test, levels[each.part].factor, levels[each.part].factor < BEYOND * level.factor)
-        for each in position.parts
-    }
+    parts = {each.part: each for each in position.parts}
+    drawn = {first: parts[first].margins(test, levels[first].factor)}
+    for name, each in [item for item in levels.items() if item[0] != first]:
+        if each.factor < FOLLOWS * each.linear:
+            # It fails as the first part has failed, and by as much with what is uncertain of that.
+            levels[name] = replace(each, limits=f"fails once another part has failed: {first}")
+            drawn[name] = drawn[first].scaled(each.factor / levels[first].factor)
+        else:
+            drawn[name] = parts[name].margins(test, each.factor, each.factor < BEYOND * level.factor)
     least = Drawn.least(list(drawn.values()))
     low, high = ends(least, level.factor)
     wears = [each.wear(test, levels[each.part].factor) for each in position.parts]
@@ -466,7 +472,7 @@ def whole(position: Position, test: Test, levels: dict[str, Level], seen: Seen) 
         where=seen.where, least=seen.least, rest=rested(position), natural=position.specimen.response.natural,
         curves=seen.curves, overtravel=abs(position.overtravel), wear=wear, passes=passes(wear, low / level.factor),
         low=low, high=high, chance=position.chance(test, least, level.factor), parts=own if len(own) > 1 else {},
-        tolerance=tolerated(next(each for each in position.parts if each.part == first), test),
+        tolerance=tolerated(parts[first], test),
     )  # fmt: skip
 
 

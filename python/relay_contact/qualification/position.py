@@ -55,6 +55,10 @@ class Drawn:
     confirmed: int
     """Draws in which the component sought the level itself."""
 
+    def scaled(self, factor: float) -> "Drawn":
+        """Return the margin of what fails at this factor of it."""
+        return replace(self, margins=factor * self.margins, confirmed=0)
+
     @classmethod
     def least(cls, each: list["Drawn"]) -> "Drawn":
         """Return the least margin of several parts in each draw."""
