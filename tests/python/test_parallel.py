@@ -1,4 +1,4 @@
-"""A spring that forks into two tongues, by finite elements of trunk and tongues that share no code with the component."""
+"""A spring that forks into two tongues, by finite elements that share no code with the component."""
 
 from math import pi, sin
 from pathlib import Path
@@ -14,8 +14,8 @@ from relay_contact import Array, Values
 
 ELEMENTS = 16
 """Of trunk and of each tongue."""
-ALLOWED = 5e-4
-"""Share of the largest force: the elements' error. With 8, 16 and 24 the differences are in the notes of each case."""
+ALLOWED = 2e-4
+"""Share of the largest force: the error of the elements. With 8, 16 and 32 the differences are 1.2e-3, 7.7e-5, 2.8e-6."""
 FORK = 8e-3
 """m from the clamp."""
 NAMES = ("contact.force", "parallel.force")
@@ -67,7 +67,7 @@ def forces(values: Values, times: Array) -> Array:
     reach = known["contact.overtravel"] - np.array([0.0, known["parallel.offset"]])
 
     def contacts(w: Array, v: Array) -> tuple[Array, Array, Array]:
-        """Forces, and their slopes by indentation and by its rate."""
+        """Return forces, and their slopes by indentation and by its rate."""
         d, rate = np.maximum(reach - spring.opens @ w, 1e-30), -spring.opens @ v
         tangent = 1.5 * hertz * d**0.5
         force = hertz * d**1.5 + damper * tangent * rate
@@ -105,7 +105,7 @@ def forces(values: Values, times: Array) -> Array:
     return np.array([contacts(state[:n], state[n:])[0] for state in solution.y.T]).T
 
 
-@pytest.mark.parametrize(("amplitude", "offset"), [(150.0, 0.0), (150.0, 1e-6), (700.0, 3e-6)])
+@pytest.mark.parametrize(("amplitude", "offset"), [(150.0, 0.0), (150.0, 2e-5), (700.0, 4e-5)])
 def test_trunk_and_tongues_of_finite_elements_give_the_same_forces(
     amplitude: float, offset: float, tmp_path: Path
 ) -> None:
@@ -124,4 +124,4 @@ def test_trunk_and_tongues_of_finite_elements_give_the_same_forces(
     for name, force in zip(NAMES, expected, strict=True):
         assert np.abs(found[name] - force).max() < ALLOWED * largest, name
         assert (force.min() == 0.0) == (amplitude > 500), name
-    assert np.abs(expected[0] - expected[1]).max() > 0.02 * largest, "the contacts differ"
+    assert (np.abs(expected[0] - expected[1]).max() > 0.02 * largest) == (offset > 0)

@@ -279,8 +279,9 @@ def transient(position: Position, test: Transient) -> Found:
 
 
 def transient_level(position: Position, test: Transient) -> tuple[Level, list[Run], Piece, str, float]:
-    """Return the level of a course that fails a part, its runs at the level of the test, the worst piece, where, and the factor
-    at which that piece fails, with the sign of its direction.
+    """Return the level of a course that fails a part, its runs at the level of the test, the worst piece, and where.
+
+    Last is the factor at which that piece fails, with the sign of its direction.
     """
     specimen = position.specimen
     ways = test.directions
