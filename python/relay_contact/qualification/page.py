@@ -216,6 +216,8 @@ def scope(relay: Relay, standard: Standard) -> tuple[list[str], list[str]]:
     first += f": base vibration moves {shaken} alike."
     if pushers != {NONE}:
         first += " A verdict is that of the part that fails first."
+    if any(values.get("effects.parallelContact") for values in every):
+        first += " Twin contacts fail where both are open at once; forces at rest are those of the first."
     judged = [
         first,
         f"Base acceleration along: {axes}.",
