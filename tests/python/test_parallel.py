@@ -15,7 +15,7 @@ from relay_contact import Array, Values
 ELEMENTS = 16
 """Of trunk and of each tongue."""
 ALLOWED = 2e-4
-"""Share of the largest force: the error of the elements. With 8, 16 and 32 the differences are 1.2e-3, 7.7e-5, 2.8e-6."""
+"""Share of the largest force: the error of the elements. With 8, 16, 32 the differences are 1.2e-3, 7.7e-5, 2.8e-6."""
 FORK = 8e-3
 """m from the clamp."""
 NAMES = ("contact.force", "parallel.force")
