@@ -272,8 +272,11 @@ impl Stepper<'_> {
             // Not `max`, which would hide NaN.
             if ratio < inside { inside } else { ratio }
         });
-        let rounding =
-            ratio > 1.0 && (closed || inside < 1.0) && is_rounding::<S>(model, self.state, trial, trial.error.total);
+        let fails = ratio > 1.0 && (closed || inside < 1.0);
+        // What does not shrink with the step keeps one that is far too short from growing to the next length of the grid.
+        let stays = closed && ratio == inside && ratio <= 1.0 && growth::<S>(ratio) < 2.0;
+        let error = if stays { trial.start_defect } else { trial.error.total };
+        let rounding = (fails || stays) && is_rounding::<S>(model, self.state, trial, error);
         if rounding { [ROUNDED; 2] } else { [ratio, own] }
     }
 
