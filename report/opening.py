@@ -124,7 +124,8 @@ def thresholds(frequency: float) -> Thresholds:
 
 def level(task: tuple[Sine, list[float]]) -> list[tuple[Lengths, list[float]]]:
     """Run a level of a standard at frequencies (Hz)."""
-    return sweep(subject(), task[0], np.array(task[1]))
+    own = subject()
+    return sweep(own, task[0], np.array(task[1]), [own.response])
 
 
 def verdict(margin: float, uncertainty: float) -> str:

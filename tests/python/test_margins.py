@@ -28,9 +28,9 @@ from relay_contact.qualification.distributions import Distribution
 from relay_contact.qualification.excitation import Random, Shock, Sine
 from relay_contact.qualification.excitation import Test as Asked
 from relay_contact.qualification.page import write
+from relay_contact.qualification.parts import CLOSED
 from relay_contact.qualification.relay import Model
 from relay_contact.qualification.response import margin, respond
-from relay_contact.qualification.results import CLOSED
 from relay_contact.qualification.standards import Monitor
 from relay_contact.qualification.trials import Specimen, pieces, steady
 from relay_contact.qualification.words import failures, passes_text

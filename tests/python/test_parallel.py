@@ -2,6 +2,7 @@
 
 from math import pi, sin
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -55,7 +56,7 @@ class Forked:
 
 def forces(values: Values, times: Array) -> Array:
     """Return the forces of both contacts (N) at instants (s), a row each."""
-    known = {**STARTS, **values}
+    known: dict[str, Any] = {**STARTS, **values}
     spring = Forked()
     n = len(spring.load)
     compliance = sum(
@@ -92,8 +93,8 @@ def forces(values: Values, times: Array) -> Array:
         return np.concatenate([v, inverse @ (pressed - shaken - spring.rigidity @ w - spring.damping @ v)])
 
     def jacobian(_: float, state: Array) -> Array:
-        _, by_d, by_rate = contacts(state[:n], state[n:])
-        across, along = (spring.opens.T @ (slope[:, None] * spring.opens) for slope in (by_d, by_rate))
+        _, by_depth, by_rate = contacts(state[:n], state[n:])
+        across, along = (spring.opens.T @ (slope[:, None] * spring.opens) for slope in (by_depth, by_rate))
         lower = inverse @ np.hstack([-spring.rigidity - across, -spring.damping - along])
         return np.vstack([np.hstack([np.zeros((n, n)), np.eye(n)]), lower])
 
