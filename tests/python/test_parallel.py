@@ -92,7 +92,7 @@ def forces(values: Values, times: Array) -> Array:
         pressed = spring.opens.T @ contacts(w, v)[0]
         return np.concatenate([v, inverse @ (pressed - shaken - spring.rigidity @ w - spring.damping @ v)])
 
-    def jacobian(_: float, state: Array) -> Array:
+    def jacobian(_time: float, state: Array) -> Array:
         _, by_depth, by_rate = contacts(state[:n], state[n:])
         across, along = (spring.opens.T @ (slope[:, None] * spring.opens) for slope in (by_depth, by_rate))
         lower = inverse @ np.hstack([-spring.rigidity - across, -spring.damping - along])
