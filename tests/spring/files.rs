@@ -51,7 +51,7 @@ fn what_is_wrong_is_told_with_its_line_entry_and_range() {
         (with("width_start = 1e-3\n"), "3: segment 1: width: given twice, allowed is either one value, or one at the start and one at the end"),
         (with(&SEGMENT.replace("2e-4", "0")), "8: segment 2: thickness = 0 m: not allowed, allowed is 1e-6 to 0.005"),
         (with("thicknes = 1e-4\n"), "5: segment 1: thicknes: no such key, allowed are length, width, width_start, width_end, thickness, thickness_start, thickness_end, youngs_modulus, density; did you mean thickness?"),
-        ("[[segmnt]]\nlength = 0.01\n".to_owned(), "1: segmnt: no such key, allowed are title, segment, mass, contact_position, clamp_stiffness; did you mean segment?"),
+        ("[[segmnt]]\nlength = 0.01\n".to_owned(), "1: segmnt: no such key, allowed are title, segment, mass, contact_position, fork_position, clamp_stiffness; did you mean segment?"),
         (with("[[segment]]\nlength = 1e-3\nwidth_start = 1e-3\nthickness = 1e-4\n"), "5: segment 2: width_end: missing; expected a number"),
         (with("density = \"light\"\n"), "5: segment 1: density = \"light\": wrong type, allowed is a number"),
         (with("density = nan\n"), "5: segment 1: density = NaN kg/m3: not allowed, allowed is 1 to 100000"),
@@ -63,7 +63,7 @@ fn what_is_wrong_is_told_with_its_line_entry_and_range() {
         (with("density = [[[1]]]\n"), "5: brackets inside each other: not allowed, allowed are 2"),
         ("compliance = 1e-3\n[[mode]]\nfrequency = 100\ncontact = 50\nparticipation = 0.01\n".to_owned(), "1: compliance = 0.001 m/N: not allowed, allowed is 0.006332573977646111 m/N or more, which the modes hold alone (sum of contact^2/omega^2); modes and compliance contradict each other"),
         ("compliance = 1\n[[mode]]\nfrequency = 100\nparticipation = 0.01\n".to_owned(), "2: mode 1: contact: missing; expected a number"),
-        ("compliance = 1\n[[segment]]\nlength = 3\n".to_owned(), "2: segment: no such key, allowed are title, compliance, mode"),
+        ("compliance = 1\n[[segment]]\nlength = 3\n".to_owned(), "2: segment: no such key, allowed are title, compliance, parallel_compliance, mode"),
     ]
     .iter()
     .enumerate()
