@@ -111,10 +111,11 @@ class Position:
     @cached_property
     def parts(self) -> list["Position"]:
         """The same position for each of its parts, the contact first."""
-        others = [replace(self, part=name) for name in self.rest.held]
-        for each in others:
-            each.shared = self.shared
-        return [self, *others]
+        every = [self, *(replace(self, part=name) for name in self.rest.held)]
+        for each in every[1:]:
+            # They know the same parts, and what is known of them.
+            each.shared, each.parts = self.shared, every
+        return every
 
     def responses(self, changes: Values, calm: float = SETTLED) -> dict[str, Response]:
         """Return the responses with some other values of parameters, by part."""
