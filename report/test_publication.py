@@ -47,7 +47,7 @@ def test_amplitudes_of_the_component_are_those_of_the_closed_form_but_for_the_sq
     # The force amplitude is a third of the static force; what its square adds is below a thousandth of it.
     assert period.amplitude == pytest.approx(spring.force(frequency)[0], rel=1e-3)
     assert period.elastic_amplitude == pytest.approx(spring.elastic(frequency)[0], rel=1e-3)
-    # At the clamp it moves with the base: a sum in which that of a free mass, 1/omega^2, is the largest term, to its rounding.
+    # At the clamp it moves with the base, to the rounding of the largest term of the sum, a free mass: 1/omega^2.
     assert abs(spring.deflection(frequency, 0.0)[0]) < 1e-14 / (2 * np.pi * frequency) ** 2
 
 

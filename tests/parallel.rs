@@ -155,7 +155,7 @@ fn the_preload_of_both_follows_from_beam_formulas() {
     }
 }
 
-/// Force, resistance, and interruptions of contacts that open at different times, against what each of a million instants says.
+/// Force, resistance, and interruptions of contacts that open at different times, against what each of 250,000 instants says.
 #[test]
 fn the_circuit_is_interrupted_while_both_are_open() {
     let mut scene = forked(pair(shaken(600.0, 900.0)), 0.3);
