@@ -14,7 +14,7 @@
 //! integrator  Model, State, inputs -> State after a communication step: "The method" at its head
 //! closed_loop the same where spring and contact are linear: exact steps
 //! chatter, circuits  interruptions of the current;   force_error  the error of the contact force so far
-//! electrical  contact force -> resistance;   harmonic  the same contact in the frequency domain
+//! electrical  contact force -> resistance;   conduction  what the circuits conduct;   harmonic  the same contact in the frequency domain
 //! simulation  Model and State together, read by output;   reference  the model's parts, for reference solutions
 //! fmi2        all of it behind the C interface of FMI 2.0
 //! ```
@@ -54,6 +54,7 @@ mod beam;
 mod chatter;
 mod circuits;
 mod closed_loop;
+mod conduction;
 mod contact;
 mod electrical;
 pub mod error;

@@ -1,7 +1,7 @@
 //! A running simulation: model, state, and workspace of the steps.
 
 use crate::chatter::{Criterion, Interruptions, Summary};
-use crate::electrical::ElectricalContact;
+use crate::conduction;
 use crate::error::{SceneError, StepError};
 use crate::inputs::Inputs;
 use crate::integrator::communication_step;
@@ -177,7 +177,7 @@ impl Simulation {
             | RealOutput::ContactTemperature
             | RealOutput::StepMaximumResistance
             | RealOutput::SecondConductance
-            | RealOutput::SecondResistance => self.electrical(output),
+            | RealOutput::SecondResistance => conduction::output(model, motion, output),
             RealOutput::StepMinimumForce => self.range(Some(CONTACT)).least,
             RealOutput::StepMaximumForce => self.range(Some(CONTACT)).greatest,
             RealOutput::StepMinimumGap => match self.extremes().filter(|_| model.second().is_some()) {
@@ -233,59 +233,6 @@ impl Simulation {
         }
     }
 
-    /// A real output of the circuits, in its SI unit.
-    fn electrical(&self, output: RealOutput) -> f64 {
-        let Self { model, motion, .. } = self;
-        let second = || self.conducting(model.second());
-        let Some(circuit) = self.conducting(Some(CONTACT)) else {
-            return if output == RealOutput::ContactTemperature {
-                model.scene.environment.temperature
-            } else {
-                0.0
-            };
-        };
-        match output {
-            RealOutput::ContactConductance => circuit.conductance,
-            RealOutput::ContactResistance => 1.0 / circuit.conductance,
-            RealOutput::ContactVoltage => {
-                let highest = model.scene.contact.open_voltage;
-                (motion.current / circuit.conductance).clamp(-highest, highest)
-            }
-            RealOutput::ContactTemperature if model.scene.effects.heating => {
-                let force = motion.link(model, CONTACT).force;
-                let current = motion.current * circuit.share();
-                circuit.electrical.temperature(&model.scene, force, current)
-            }
-            RealOutput::ContactTemperature => model.scene.environment.temperature,
-            RealOutput::StepMaximumResistance => self.extremes().map_or(0.0, |mut extremes| {
-                1.0 / match model.parallel() {
-                    Some(_) => circuit.electrical.beside(extremes.pair),
-                    None => circuit.electrical.conductance(extremes.of(CONTACT).least),
-                }
-            }),
-            RealOutput::SecondConductance => second().map_or(0.0, |second| second.conductance),
-            RealOutput::SecondResistance => second().map_or(0.0, |second| 1.0 / second.conductance),
-            _ => 0.0,
-        }
-    }
-
-    /// What the circuit of a contact conducts; `None` without a resistance.
-    fn conducting(&self, role: Option<usize>) -> Option<Conducting> {
-        let Self { model, motion, .. } = self;
-        let index = role?;
-        let electrical = model.links.get(index)?.electrical?;
-        let spot = |index: usize| electrical.spot(motion.link(model, index).force);
-        let own = spot(index);
-        let parallel = model.parallel().filter(|_| index == CONTACT).map(spot);
-        let other = parallel.unwrap_or_default();
-        Some(Conducting {
-            electrical,
-            own,
-            other,
-            conductance: electrical.beside(own + other),
-        })
-    }
-
     /// Extremes within the last communication step, if requested.
     fn extremes(&self) -> Option<Extremes> {
         let requested = self.model.scene.effects.extremes;
@@ -331,7 +278,7 @@ impl Simulation {
             | RealOutput::ContactVoltage
             | RealOutput::ContactTemperature
             | RealOutput::SecondConductance
-            | RealOutput::SecondResistance => self.electrical_rate(output),
+            | RealOutput::SecondResistance => conduction::rate(model, motion, output),
             RealOutput::ContactIndentation => motion.link(model, CONTACT).rate,
             RealOutput::TipDisplacement => self.real(RealOutput::TipVelocity),
             RealOutput::FixedDisplacement => self.real(RealOutput::FixedVelocity),
@@ -372,46 +319,6 @@ impl Simulation {
             | RealOutput::PreloadAxialForce
             | RealOutput::PreloadFrequency => return None,
         })
-    }
-
-    /// Rate of a continuous output of the circuits, in its SI unit per second.
-    fn electrical_rate(&self, output: RealOutput) -> f64 {
-        let Self { model, motion, .. } = self;
-        let role = match output {
-            RealOutput::SecondConductance | RealOutput::SecondResistance => model.second(),
-            _ => Some(CONTACT),
-        };
-        let Some(circuit) = self.conducting(role) else {
-            return 0.0;
-        };
-        let of_spot = |role: Option<usize>| {
-            let force = role.map_or(0.0, |index| motion.link(model, index).force);
-            let rate = role.map_or(0.0, |index| motion.link_rates(model, index).0);
-            circuit.electrical.conductance_slope(force) * rate
-        };
-        let parallel = model.parallel().filter(|_| role == Some(CONTACT));
-        let rates = [of_spot(role), of_spot(parallel)];
-        let (conductance, rate) = (circuit.conductance, rates[0] + rates[1]);
-        match output {
-            RealOutput::ContactConductance | RealOutput::SecondConductance => rate,
-            RealOutput::ContactResistance | RealOutput::SecondResistance => -rate / conductance.powi(2),
-            RealOutput::ContactVoltage => {
-                let voltage = motion.current / conductance;
-                if voltage.abs() >= model.scene.contact.open_voltage {
-                    return 0.0;
-                }
-                (motion.current_rate - voltage * rate) / conductance
-            }
-            RealOutput::ContactTemperature if model.scene.effects.heating => {
-                let (share, share_rate) = (circuit.share(), circuit.share_rate(rates));
-                let (force, current) = (motion.link(model, CONTACT).force, motion.current * share);
-                let current_rate = motion.current_rate * share + motion.current * share_rate;
-                let (by_force, by_current) = circuit.electrical.temperature_slopes(&model.scene, force, current);
-                let force_rate = motion.link_rates(model, CONTACT).0;
-                by_force * force_rate + by_current * current.signum() * current_rate
-            }
-            _ => 0.0,
-        }
     }
 
     /// Interruptions of the circuit of the first contact up to the communication point; none if they are not counted.
@@ -482,35 +389,5 @@ fn on_heap(scene: &Scene, initial: &Initial) -> Result<Box<Model>, SceneError> {
         Ok(Box::new(model))
     } else {
         Err(SceneError::Memory(needed))
-    }
-}
-
-/// What a circuit conducts.
-struct Conducting {
-    electrical: ElectricalContact,
-    /// Conductance of the spot of its contact, S.
-    own: f64,
-    /// That of a parallel contact, S.
-    other: f64,
-    /// All of it, S.
-    conductance: f64,
-}
-
-impl Conducting {
-    /// Share of the current through its contact, 1.
-    fn share(&self) -> f64 {
-        if self.other == 0.0 {
-            1.0
-        } else {
-            self.own / (self.own + self.other)
-        }
-    }
-
-    /// The rate of that at these rates of both conductances (S/s), 1/s.
-    fn share_rate(&self, [own, other]: [f64; 2]) -> f64 {
-        if self.other == 0.0 {
-            return 0.0;
-        }
-        (own * self.other - self.own * other) / (self.own + self.other).powi(2)
     }
 }

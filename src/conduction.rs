@@ -1,0 +1,133 @@
+//! What the circuits conduct at a communication point: that of the contact with its parallel one, and that of the second contact.
+
+use crate::electrical::ElectricalContact;
+use crate::integrator::motion::Motion;
+use crate::link::CONTACT;
+use crate::model::Model;
+use crate::variables::RealOutput;
+
+/// What a circuit conducts.
+struct Conducting {
+    electrical: ElectricalContact,
+    /// Its contact, and one parallel to it.
+    contacts: [Option<usize>; 2],
+    /// Conductance of the spot of each, S.
+    spots: [f64; 2],
+    /// All of it, S.
+    conductance: f64,
+}
+
+impl Conducting {
+    /// The circuit of a contact; `None` without the contact or a resistance.
+    fn of(model: &Model, motion: &Motion, role: Option<usize>) -> Option<Self> {
+        let electrical = model.links.get(role?)?.electrical?;
+        let contacts = [role, model.parallel().filter(|_| role == Some(CONTACT))];
+        let spots =
+            contacts.map(|contact| contact.map_or(0.0, |index| electrical.spot(motion.link(model, index).force)));
+        Some(Self {
+            electrical,
+            contacts,
+            spots,
+            conductance: electrical.beside(spots.iter().sum()),
+        })
+    }
+
+    /// Rates of the conductances of both spots, S/s.
+    fn rates(&self, model: &Model, motion: &Motion) -> [f64; 2] {
+        self.contacts.map(|contact| {
+            contact.map_or(0.0, |index| {
+                let force = motion.link(model, index).force;
+                self.electrical.conductance_slope(force) * motion.link_rates(model, index).0
+            })
+        })
+    }
+
+    /// Share of the current through its contact, 1.
+    fn share(&self) -> f64 {
+        let [own, other] = self.spots;
+        if other == 0.0 { 1.0 } else { own / (own + other) }
+    }
+
+    /// The rate of that at these rates of both conductances (S/s), 1/s.
+    fn share_rate(&self, [own_rate, other_rate]: [f64; 2]) -> f64 {
+        let [own, other] = self.spots;
+        if other == 0.0 {
+            return 0.0;
+        }
+        (own_rate * other - own * other_rate) / (own + other).powi(2)
+    }
+}
+
+/// The contact of the circuit that an output is of.
+fn role(model: &Model, output: RealOutput) -> Option<usize> {
+    match output {
+        RealOutput::SecondConductance | RealOutput::SecondResistance => model.second(),
+        _ => Some(CONTACT),
+    }
+}
+
+/// A real output of the circuits, in its SI unit.
+pub(crate) fn output(model: &Model, motion: &Motion, output: RealOutput) -> f64 {
+    let Some(circuit) = Conducting::of(model, motion, role(model, output)) else {
+        return if output == RealOutput::ContactTemperature {
+            model.scene.environment.temperature
+        } else {
+            0.0
+        };
+    };
+    let Conducting {
+        electrical,
+        conductance,
+        ..
+    } = circuit;
+    match output {
+        RealOutput::ContactConductance | RealOutput::SecondConductance => conductance,
+        RealOutput::ContactResistance | RealOutput::SecondResistance => 1.0 / conductance,
+        RealOutput::ContactVoltage => {
+            let highest = model.scene.contact.open_voltage;
+            (motion.current / conductance).clamp(-highest, highest)
+        }
+        RealOutput::ContactTemperature if model.scene.effects.heating => {
+            let force = motion.link(model, CONTACT).force;
+            electrical.temperature(&model.scene, force, motion.current * circuit.share())
+        }
+        RealOutput::ContactTemperature => model.scene.environment.temperature,
+        RealOutput::StepMaximumResistance if model.scene.effects.extremes => {
+            let mut extremes = motion.extremes(model);
+            1.0 / match model.parallel() {
+                Some(_) => electrical.beside(extremes.pair),
+                None => electrical.conductance(extremes.of(CONTACT).least),
+            }
+        }
+        _ => 0.0,
+    }
+}
+
+/// Rate of a continuous output of the circuits, in its SI unit per second.
+pub(crate) fn rate(model: &Model, motion: &Motion, output: RealOutput) -> f64 {
+    let Some(circuit) = Conducting::of(model, motion, role(model, output)) else {
+        return 0.0;
+    };
+    let rates = circuit.rates(model, motion);
+    let (conductance, rate) = (circuit.conductance, rates.iter().sum::<f64>());
+    match output {
+        RealOutput::ContactConductance | RealOutput::SecondConductance => rate,
+        RealOutput::ContactResistance | RealOutput::SecondResistance => -rate / conductance.powi(2),
+        RealOutput::ContactVoltage => {
+            let voltage = motion.current / conductance;
+            if voltage.abs() >= model.scene.contact.open_voltage {
+                return 0.0;
+            }
+            (motion.current_rate - voltage * rate) / conductance
+        }
+        RealOutput::ContactTemperature if model.scene.effects.heating => {
+            let (share, share_rate) = (circuit.share(), circuit.share_rate(rates));
+            let (force, current) = (motion.link(model, CONTACT).force, motion.current * share);
+            let current_rate = motion.current_rate * share + motion.current * share_rate;
+            let (by_force, by_current) = circuit.electrical.temperature_slopes(&model.scene, force, current);
+            let force_rate = motion.link_rates(model, CONTACT).0;
+            by_force * force_rate + by_current * current.signum() * current_rate
+        }
+        _ => 0.0,
+    }
+}
