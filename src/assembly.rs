@@ -54,58 +54,9 @@ pub struct Roles {
 
 impl Assembly {
     /// That of a scene with these modes and this preload, and these laws of the contacts.
-    pub fn new(
-        (scene, modes, preload): (&Scene, &[Mode], &Preload),
-        Laws {
-            contact: law,
-            parallel,
-            second,
-        }: Laws,
-        armature: Option<&Armature>,
-    ) -> Self {
+    pub fn new((scene, modes, preload): (&Scene, &[Mode], &Preload), laws: Laws, armature: Option<&Armature>) -> Self {
         let mut all = Self::default();
-        let port = all.port(Port::new(modes, |mode| mode.tip));
-        let contact = |law: Law| {
-            let electrical = ElectricalContact::new(scene, &law);
-            let criterion = electrical.as_ref();
-            Link {
-                electrical,
-                criterion: criterion.and_then(|electrical| Criterion::new(scene, electrical)),
-                force: preload.force,
-                approach: preload.indentation,
-                driven: [1.0, 0.0, 0.0],
-                ..Link::passive("contact", LinkLaw::Contact(law), port)
-            }
-        };
-        all.link(contact(law));
-        if let Some(law) = parallel {
-            let port = all.port(Port::new(modes, |mode| mode.parallel));
-            all.roles.parallel = Some(all.link(Link {
-                name: "parallel contact",
-                port,
-                force: preload.parallel_force,
-                approach: preload.parallel_indentation,
-                ..contact(law)
-            }));
-        }
-        if let Some(law) = second {
-            // Its fixed contact is rigid.
-            let port = match scene.fixed_spring {
-                Some(_) => all.port(Port::new(modes, |mode| mode.tip + mode.fixed)),
-                None => port,
-            };
-            // At the distance of the gap; the second input moves it relative to the first.
-            all.roles.second = Some(all.link(Link {
-                name: "second contact",
-                port,
-                sense: -1.0,
-                driven: [-1.0, 1.0, 0.0],
-                force: 0.0,
-                approach: -scene.second.gap,
-                circuit: 1,
-                ..contact(law)
-            }));
-        }
+        all.contacts((scene, modes, preload), laws);
         if scene.pushed_at().is_some() {
             let port = all.port(Port::new(modes, |mode| mode.pusher));
             let law = Law::Power(Power::linear(scene.pusher.stiffness, scene.pusher.damping));
@@ -136,6 +87,52 @@ impl Assembly {
             }));
         }
         all
+    }
+
+    /// Adds the contacts.
+    fn contacts(&mut self, (scene, modes, preload): (&Scene, &[Mode], &Preload), laws: Laws) {
+        let port = self.port(Port::new(modes, |mode| mode.tip));
+        let contact = |law: Law| {
+            let electrical = ElectricalContact::new(scene, &law);
+            let criterion = electrical.as_ref();
+            Link {
+                electrical,
+                criterion: criterion.and_then(|electrical| Criterion::new(scene, electrical)),
+                force: preload.force,
+                approach: preload.indentation,
+                driven: [1.0, 0.0, 0.0],
+                ..Link::passive("contact", LinkLaw::Contact(law), port)
+            }
+        };
+        self.link(contact(laws.contact));
+        if let Some(law) = laws.parallel {
+            let port = self.port(Port::new(modes, |mode| mode.parallel));
+            self.roles.parallel = Some(self.link(Link {
+                name: "parallel contact",
+                port,
+                force: preload.parallel_force,
+                approach: preload.parallel_indentation,
+                ..contact(law)
+            }));
+        }
+        if let Some(law) = laws.second {
+            // Its fixed contact is rigid.
+            let port = match scene.fixed_spring {
+                Some(_) => self.port(Port::new(modes, |mode| mode.tip + mode.fixed)),
+                None => port,
+            };
+            // At the distance of the gap; the second input moves it relative to the first.
+            self.roles.second = Some(self.link(Link {
+                name: "second contact",
+                port,
+                sense: -1.0,
+                driven: [-1.0, 1.0, 0.0],
+                force: 0.0,
+                approach: -scene.second.gap,
+                circuit: 1,
+                ..contact(law)
+            }));
+        }
     }
 
     /// Adds the stops of the armature and its magnet.

@@ -1,5 +1,5 @@
-//! The moving spring with its tongues, and the one that carries the fixed contact (`fixed.file`), clamped to the frame beside it and deflecting
-//! along the same axis.
+//! The moving spring with its tongues, and the one that carries the fixed contact (`fixed.file`), clamped to the frame beside it
+//! and deflecting along the same axis.
 //!
 //! A deflection of the fixed contact's spring closes the contact, and the contact force bends it back: with its modes `j`,
 //! shapes `T_j` and participations `g_j`,
@@ -18,7 +18,7 @@ use crate::armature::Armature;
 use crate::beam::mode::{MAX_MODES, Mode};
 use crate::beam::mode_count::Blow;
 use crate::beam::spring::{Basis, Spring};
-use crate::beam::statics::AtParallel;
+use crate::beam::statics::AtPlace;
 use crate::beam::tongues::Tongues;
 use crate::contact::friction::tangential_share;
 use crate::error::SceneError;
@@ -122,13 +122,13 @@ impl Springs {
     }
 
     /// Deflection of the moving spring at a parallel contact per load, under an axial compression of it (N).
-    pub(crate) fn at_parallel(&self, axial_force: f64) -> AtParallel {
+    pub(crate) fn at_parallel(&self, axial_force: f64) -> AtPlace {
         let whole = self.moving.statics.at_parallel(axial_force);
         let tongues = self
             .tongues
             .as_ref()
             .map_or(0.0, |tongues| tongues.compliance(axial_force));
-        AtParallel {
+        AtPlace {
             own: whole.own + tongues,
             across: whole.across - tongues,
             ..whole

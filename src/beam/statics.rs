@@ -17,25 +17,18 @@ pub struct Statics {
     terms: Vec<Term>,
 }
 
-/// Deflection at the pusher per load.
+/// Deflection at a place of the spring per load.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct AtPusher {
-    pub(crate) own: f64,
-    pub(crate) across: f64,
-    pub(crate) turning: f64,
-    pub(crate) sag: f64,
-}
-
-/// Deflection at a parallel contact per load.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct AtParallel {
+pub(crate) struct AtPlace {
     /// Per force there, m/N.
     pub(crate) own: f64,
     /// Per force at the tip, m/N.
     pub(crate) across: f64,
-    /// Per force of the pusher, m/N.
+    /// Per moment at the tip, 1/N.
+    pub(crate) turning: f64,
+    /// Per force of a pusher, m/N.
     pub(crate) pushed: f64,
-    /// Per base acceleration, m per m/s2.
+    /// Per constant base acceleration, m per m/s2.
     pub(crate) sag: f64,
 }
 
@@ -99,24 +92,23 @@ impl Statics {
         self.under_gravity(axial_force, |term| term.tip)
     }
 
-    /// Of the deflection at the pusher: per force there and per tip force (m/N), per moment at the tip (1/N), and per constant
-    /// base acceleration (m per m/s2).
-    pub(crate) fn at_pusher(&self, axial_force: f64) -> AtPusher {
-        AtPusher {
-            own: self.sum(axial_force, |term| term.pusher * term.pusher),
-            across: self.sum(axial_force, |term| term.pusher * term.tip),
-            turning: self.sum(axial_force, |term| term.pusher * term.slope) * (2.0 / self.section.length),
-            sag: self.under_gravity(axial_force, |term| term.pusher),
-        }
+    /// Of the deflection at the pusher.
+    pub(crate) fn at_pusher(&self, axial_force: f64) -> AtPlace {
+        self.at(axial_force, |term| term.pusher)
     }
 
     /// Of the deflection at a parallel contact.
-    pub(super) fn at_parallel(&self, axial_force: f64) -> AtParallel {
-        AtParallel {
-            own: self.sum(axial_force, |term| term.parallel * term.parallel),
-            across: self.sum(axial_force, |term| term.parallel * term.tip),
-            pushed: self.sum(axial_force, |term| term.parallel * term.pusher),
-            sag: self.under_gravity(axial_force, |term| term.parallel),
+    pub(super) fn at_parallel(&self, axial_force: f64) -> AtPlace {
+        self.at(axial_force, |term| term.parallel)
+    }
+
+    fn at(&self, axial_force: f64, place: impl Fn(&Term) -> f64) -> AtPlace {
+        AtPlace {
+            own: self.sum(axial_force, |term| place(term) * place(term)),
+            across: self.sum(axial_force, |term| place(term) * term.tip),
+            turning: self.sum(axial_force, |term| place(term) * term.slope) * (2.0 / self.section.length),
+            pushed: self.sum(axial_force, |term| place(term) * term.pusher),
+            sag: self.under_gravity(axial_force, place),
         }
     }
 

@@ -28,8 +28,7 @@ impl Tongues {
     ///
     /// # Errors
     /// [`SceneError::NoPlace`] for a spring given by modes that do not tell where the parallel contact is,
-    /// [`SceneError::NotTogether`] beside friction or an axial force that follows the deflection,
-    /// [`SceneError::LinearBesideOther`] for a linear contact law.
+    /// [`SceneError::NotTogether`] beside friction or an axial force that follows the deflection.
     pub fn new(scene: &Scene) -> Result<Option<Self>, SceneError> {
         if !scene.effects.parallel_contact {
             return Ok(None);

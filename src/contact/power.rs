@@ -13,7 +13,7 @@
 //! (1966) 300).
 
 use crate::contact::Branch;
-use crate::scene::{Contact, Parallel, Scene, Second};
+use crate::scene::{Contact, Scene};
 use crate::variables::ContactLawKind;
 
 /// Exponent of the indentation in the law of Hertz, 1. Powers of it are square roots.
@@ -108,29 +108,19 @@ impl Power {
 
     /// The second contact of a scene, if it has one.
     pub(crate) fn of_second(scene: &Scene) -> Option<Self> {
-        let Second {
-            curvature_radius,
-            damping,
-            stiffness,
-            ..
-        } = scene.second;
-        let has_one = scene.effects.second_contact;
-        has_one.then(|| Self::of_other(scene, (curvature_radius, stiffness, damping)))
+        let second = &scene.second;
+        let own = (second.curvature_radius, second.stiffness, second.damping);
+        scene.effects.second_contact.then(|| Self::of_other(scene, own))
     }
 
     /// The parallel contact of a scene, if it has one.
     pub(crate) fn of_parallel(scene: &Scene) -> Option<Self> {
-        let Parallel {
-            curvature_radius,
-            stiffness,
-            damping,
-            ..
-        } = scene.parallel;
-        let has_one = scene.effects.parallel_contact;
-        has_one.then(|| Self::of_other(scene, (curvature_radius, stiffness, damping)))
+        let parallel = &scene.parallel;
+        let own = (parallel.curvature_radius, parallel.stiffness, parallel.damping);
+        scene.effects.parallel_contact.then(|| Self::of_other(scene, own))
     }
 
-    /// A contact of the materials of the first.
+    /// A contact of the materials of the first, with this radius (m), stiffness (N/m) and damping time (s).
     fn of_other(scene: &Scene, (curvature_radius, stiffness, damping): (f64, f64, f64)) -> Self {
         let mut as_first = scene.clone();
         as_first.contact = Contact {
