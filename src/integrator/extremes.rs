@@ -41,8 +41,15 @@ const SAMPLES: u32 = 8;
 
 /// Contact and parallel contact, where there are both, and what their spots conduct.
 fn pair(model: &Model) -> Option<[(usize, ElectricalContact); 2]> {
+    let parallel = model.parallel()?;
     let of = |index: usize| Some((index, model.links.get(index)?.electrical?));
-    Some([of(CONTACT)?, of(model.parallel()?)?])
+    Some([of(CONTACT)?, of(parallel)?])
+}
+
+/// What both conduct at these forces of the links (N), S; `None` without a parallel contact.
+fn together(model: &Model, force: impl Fn(usize) -> f64) -> Option<f64> {
+    let spots = pair(model)?.map(|(index, spot)| spot.spot(force(index)));
+    Some(spots.iter().sum())
 }
 
 /// Extremes over an interval of time.
@@ -59,14 +66,10 @@ pub struct Extremes {
 impl Extremes {
     /// Of the present forces (N), and the indentation of the second contact (m).
     pub fn at(model: &Model, forces: [f64; MAX_LINKS], nearest: f64) -> Self {
-        let pair = pair(model).map_or(0.0, |pair| {
-            let spots = pair.map(|(index, spot)| forces.get(index).map_or(0.0, |force| spot.spot(*force)));
-            spots.iter().sum()
-        });
         Self {
             forces: forces.map(Range::at),
             nearest,
-            pair,
+            pair: together(model, |index| forces.get(index).copied().unwrap_or_default()).unwrap_or_default(),
         }
     }
 
@@ -104,7 +107,7 @@ impl Extremes {
     pub(crate) fn add_pair<'a>(
         &mut self,
         model: &Model,
-        course: impl Fn(usize) -> Option<(&'a Prediction, &'a Places)>,
+        course: impl Fn(usize) -> Option<(&'a Prediction, Places)>,
         (from, to): (f64, f64),
     ) {
         let Some(pair) = pair(model) else {
@@ -115,7 +118,7 @@ impl Extremes {
             Some((model.links.get(index)?.force, polynomial, turns, spot))
         });
         let conductance = |y: f64| {
-            let of_one = |(force, polynomial, _, spot): &(f64, &Prediction, &Places, ElectricalContact)| {
+            let of_one = |(force, polynomial, _, spot): &(f64, &Prediction, Places, ElectricalContact)| {
                 spot.spot(force + value_and_slope(polynomial, y).0)
             };
             courses.iter().flatten().map(of_one).sum::<f64>()
@@ -153,9 +156,8 @@ impl Extremes {
 
     /// Includes the conductance of both together at these forces of the links, N.
     pub(crate) fn add_pair_at(&mut self, model: &Model, force: impl Fn(usize) -> f64) {
-        if let Some(pair) = pair(model) {
-            let spots = pair.map(|(index, spot)| spot.spot(force(index)));
-            self.pair = self.pair.min(spots.iter().sum());
+        if let Some(together) = together(model, force) {
+            self.pair = self.pair.min(together);
         }
     }
 

@@ -441,7 +441,7 @@ impl Motion {
         let course = |index: usize| {
             self.start.links.get(index).filter(|at| at.closed)?;
             let dense = self.dense.links.get(index)?;
-            Some((&dense.force, &dense.turns))
+            Some((&dense.force, dense.turns))
         };
         extremes.add_pair(model, course, (from, to));
     }

@@ -7,7 +7,7 @@ use crate::integrator::dense_output::DenseOutput;
 use crate::integrator::events::interruption::Passages;
 use crate::integrator::extremes::Extremes;
 use crate::integrator::grid::Target;
-use crate::link::{LinkLaw, MAX_LINKS};
+use crate::link::LinkLaw;
 use crate::math::prediction::value_and_slope;
 use crate::model::Model;
 use crate::state::State;
@@ -57,7 +57,6 @@ impl Recorder<'_> {
         passages: &Passages,
     ) {
         let second = model.second();
-        let mut all_turns = [Places::default(); MAX_LINKS];
         let read = self.reads_before(target.time) || self.dense.is_some() && second.is_some();
         for (index, (link, at)) in model.links.iter().zip(&mut state.links).enumerate() {
             let (Some(nodes), Some(passages)) = (trial.links.get(index), passages.get(index)) else {
@@ -72,9 +71,6 @@ impl Recorder<'_> {
             } else {
                 Places::default()
             };
-            if let Some(kept) = all_turns.get_mut(index) {
-                *kept = turns;
-            }
             let through = |start: f64, values| collocation.through(model.simd, start, values);
             if let Some(dense) = self.dense.as_mut().and_then(|dense| dense.links.get_mut(index)) {
                 (dense.force, dense.turns, dense.passages) = (at.course, turns, *passages);
@@ -103,7 +99,7 @@ impl Recorder<'_> {
         if let Some(extremes) = &mut self.extremes {
             let course = |index: usize| {
                 let at = state.links.get(index).filter(|at| at.closed)?;
-                Some((&at.course, all_turns.get(index)?))
+                Some((&at.course, turning_points(&at.course)))
             };
             extremes.add_pair(model, course, (-1.0, 0.0));
         }
