@@ -15,7 +15,6 @@ Operate time: from switching on to the first touch. Bounce at make: from there t
 Release time: from switching off to the first opening. Bounce at break: from there to the last opening.
 """
 
-import os
 import platform
 import sys
 from contextlib import ExitStack
@@ -28,7 +27,7 @@ from pythonfmu import FmuBuilder
 from tqdm import tqdm
 
 from actuator_magnet import PARAMETERS
-from common import parser, read_arguments, save, within
+from common import leave, parser, read_arguments, save, within
 from relay_contact import Array, Component, Contact, write_table
 from relay_contact.figures import BLUE, GREEN, ORANGE, PURPLE, RED
 
@@ -236,7 +235,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    code = main()
-    sys.stdout.flush()
-    # Without the exit functions: that of PythonFMU 0.7.0 frees its state a second time, which may end in an abort.
-    os._exit(code)
+    leave(main())

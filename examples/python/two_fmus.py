@@ -18,7 +18,6 @@ the FMU is not linked to any), on Windows by python3.dll in the PATH. PythonFMU 
 Windows.
 """
 
-import os
 import platform
 import sys
 from contextlib import ExitStack
@@ -30,7 +29,7 @@ import numpy as np
 from pythonfmu import FmuBuilder
 from tqdm import tqdm
 
-from common import parser, read_arguments, save, within
+from common import leave, parser, read_arguments, save, within
 from relay_contact import Array, Component, Contact, write_table
 from relay_contact.figures import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED
 from two_fmus_bench import PARAMETERS
@@ -199,7 +198,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    code = main()
-    sys.stdout.flush()
-    # Without the exit functions: that of PythonFMU 0.7.0 frees its state a second time, which may end in an abort.
-    os._exit(code)
+    leave(main())
