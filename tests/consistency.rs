@@ -9,9 +9,9 @@ use relay_contact::scene::Scene;
 use relay_contact::scene::file::SceneFile;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{BooleanOutput, ContactLawKind, IntegerOutput, RealOutput};
-use testing::kinds;
 use testing::relays::Relay;
 use testing::scenes;
+use testing::{kinds, parts};
 
 /// A contact's outputs that have to agree.
 #[derive(Clone, Copy, Debug)]
@@ -25,30 +25,42 @@ struct Outputs {
     closed: bool,
 }
 
-fn outputs(simulation: &Simulation, second: bool) -> Outputs {
-    let names = if second {
-        [
-            RealOutput::SecondForce,
-            RealOutput::SecondMinimumForce,
-            RealOutput::SecondMaximumForce,
-            RealOutput::SecondLastOpening,
-            RealOutput::SecondLastClosing,
-        ]
-    } else {
-        [
-            RealOutput::ContactForce,
-            RealOutput::StepMinimumForce,
-            RealOutput::StepMaximumForce,
-            RealOutput::ContactLastOpening,
-            RealOutput::ContactLastClosing,
-        ]
-    };
+/// What is read of a contact: force, extremes, instants, and whether it is closed.
+type Names = ([RealOutput; 5], BooleanOutput);
+
+const CONTACT: Names = (
+    [
+        RealOutput::ContactForce,
+        RealOutput::StepMinimumForce,
+        RealOutput::StepMaximumForce,
+        RealOutput::ContactLastOpening,
+        RealOutput::ContactLastClosing,
+    ],
+    BooleanOutput::ContactClosed,
+);
+const SECOND: Names = (
+    [
+        RealOutput::SecondForce,
+        RealOutput::SecondMinimumForce,
+        RealOutput::SecondMaximumForce,
+        RealOutput::SecondLastOpening,
+        RealOutput::SecondLastClosing,
+    ],
+    BooleanOutput::SecondClosed,
+);
+const PARALLEL: Names = (
+    [
+        RealOutput::ParallelForce,
+        RealOutput::ParallelMinimumForce,
+        RealOutput::ParallelMaximumForce,
+        RealOutput::ParallelLastOpening,
+        RealOutput::ParallelLastClosing,
+    ],
+    BooleanOutput::ParallelClosed,
+);
+
+fn outputs(simulation: &Simulation, (names, closed): Names) -> Outputs {
     let [force, least, greatest, last_opening, last_closing] = names.map(|name| simulation.real(name));
-    let closed = if second {
-        BooleanOutput::SecondClosed
-    } else {
-        BooleanOutput::ContactClosed
-    };
     Outputs {
         time: simulation.time(),
         force,
@@ -106,8 +118,18 @@ fn ride(case: &str, scene: &Scene, rng: &mut Rng, duration: f64, inputs: impl Fn
         return;
     };
     let bonded = scene.effects.contact_law == ContactLawKind::Bonded;
-    let contacts = if scene.effects.second_contact { 2 } else { 1 };
-    let mut before = [false, true].map(|second| outputs(&simulation, second));
+    let effects = &scene.effects;
+    let contacts = [
+        (true, CONTACT),
+        (effects.second_contact, SECOND),
+        (effects.parallel_contact, PARALLEL),
+    ];
+    let contacts: Vec<_> = contacts.iter().filter(|(is, _)| *is).map(|(_, names)| *names).collect();
+    let read =
+        |simulation: &Simulation| -> Vec<_> { contacts.iter().map(|names| outputs(simulation, *names)).collect() };
+    // Two in parallel are interrupted while each has more than the threshold.
+    let threshold = scene.chatter.resistance_threshold / if effects.parallel_contact { 2.0 } else { 1.0 };
+    let mut before = read(&simulation);
     let count = |simulation: &Simulation| {
         let [longest, total] = [
             RealOutput::ChatterLongestInterruption,
@@ -138,8 +160,8 @@ fn ride(case: &str, scene: &Scene, rng: &mut Rng, duration: f64, inputs: impl Fn
         if simulation.step(&inputs(time, size), time, size).is_err() {
             return;
         }
-        let after = [false, true].map(|second| outputs(&simulation, second));
-        for (before, after) in before.iter().zip(&after).take(contacts) {
+        let after = read(&simulation);
+        for (before, after) in before.iter().zip(&after) {
             let what = disagreement(before, after, bonded);
             assert!(
                 what.is_none(),
@@ -149,7 +171,7 @@ fn ride(case: &str, scene: &Scene, rng: &mut Rng, duration: f64, inputs: impl Fn
         let now = count(&simulation);
         let (times, longest, total) = now;
         let in_all = longest < scene.chatter.minimum_duration || longest <= total * (1.0 + 1e-12);
-        let interrupted = simulation.real(RealOutput::StepMaximumResistance) >= scene.chatter.resistance_threshold;
+        let interrupted = simulation.real(RealOutput::StepMaximumResistance) >= threshold;
         assert!(
             times >= counted.0
                 && longest >= counted.1
@@ -164,7 +186,16 @@ fn ride(case: &str, scene: &Scene, rng: &mut Rng, duration: f64, inputs: impl Fn
 
 #[test]
 fn outputs_of_random_relays_agree_with_each_other() {
-    let kinds = [Relay::draw, kinds::changeover, kinds::friction, kinds::held];
+    let kinds = [
+        Relay::draw,
+        kinds::changeover,
+        kinds::friction,
+        kinds::held,
+        parts::parallel,
+        parts::fixed_spring,
+        parts::pusher,
+        parts::armature,
+    ];
     for (kind, draw) in kinds.into_iter().enumerate() {
         for number in 50_000..50_050 {
             let relay = draw(number);
