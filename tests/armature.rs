@@ -1,8 +1,6 @@
 //! The armature between magnet, return spring and stops: its two positions, what takes it from the core, and its bounces, by
 //! closed forms and by Runge and Kutta's method in small steps.
 
-#![allow(clippy::unwrap_used)]
-
 use std::f64::consts::PI;
 
 use relay_contact::inputs::Inputs;

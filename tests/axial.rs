@@ -2,8 +2,6 @@
 //! is stepped. The force under vibration is compared with another solution in `tests/python/test_effects_mechanics.py` and
 //! `random_relays.py`.
 
-#![allow(clippy::unwrap_used)]
-
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;

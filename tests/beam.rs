@@ -1,7 +1,5 @@
 //! The beam against closed forms: exact frequencies against Galerkin's, published eigenvalues, static compliance.
 
-#![allow(clippy::unwrap_used)]
-
 use relay_contact::error::Remark;
 use relay_contact::reference::{self, Model, Section, Space, Statics};
 use relay_contact::scene::Scene;

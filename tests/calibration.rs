@@ -5,8 +5,6 @@
 //! force scale and the largest force so far, as `solver.tolerance` promises. The reference has more modes and much shorter steps than the tightest run; a second reference with other modes and steps
 //! shows its own error. Costs are counts of integration steps, which are the same on every machine.
 
-#![allow(clippy::unwrap_used)]
-
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;

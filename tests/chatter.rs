@@ -1,7 +1,5 @@
 //! Interruptions and extremes inside communication steps.
 
-#![allow(clippy::unwrap_used)]
-
 use relay_contact::error::SceneError;
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;

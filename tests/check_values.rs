@@ -1,7 +1,5 @@
 //! Published check values of the specimen: two independent implementations agree on every digit given.
 
-#![allow(clippy::unwrap_used)]
-
 use std::f64::consts::TAU;
 
 use relay_contact::inputs::Inputs;

@@ -1,7 +1,5 @@
 //! Communication points: what is read there does not depend on how many there are, or where the integrator's own steps end.
 
-#![allow(clippy::unwrap_used)]
-
 use relay_contact::error::StepErrorCause;
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;

@@ -1,8 +1,6 @@
 //! What is read after a communication step agrees with itself: extremes, instants of events, force, resistance and counts,
 //! in any scene and with steps of any lengths.
 
-#![allow(clippy::unwrap_used)]
-
 use fastrand::Rng;
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;

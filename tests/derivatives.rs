@@ -1,7 +1,5 @@
 //! Derivatives of inputs and outputs over communication steps.
 
-#![allow(clippy::unwrap_used)]
-
 use std::f64::consts::TAU;
 
 use relay_contact::inputs::Inputs;

@@ -3,8 +3,6 @@
 //! A force wrong by `e` along a way `s` of the tip changes the energy by at most `e s`: the balance has to stay below the
 //! tolerance times the force scale times the way.
 
-#![allow(clippy::unwrap_used)]
-
 use std::f64::consts::TAU;
 
 use relay_contact::inputs::Inputs;

@@ -1,7 +1,5 @@
 //! A fixed contact on a spring of its own: against a rigid one, against its mirror image, and its statics.
 
-#![allow(clippy::unwrap_used)]
-
 use std::f64::consts::TAU;
 use std::sync::Arc;
 

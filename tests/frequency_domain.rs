@@ -1,8 +1,6 @@
 //! The frequency domain against the transient of the linear contact, against the superposition of the modes of beam and
 //! contact spring together, and against published peaks.
 
-#![allow(clippy::unwrap_used)]
-
 use std::f64::consts::TAU;
 
 use nalgebra::Complex;

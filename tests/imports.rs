@@ -1,7 +1,5 @@
 //! No files import each other in a circle: each can be read with only those below it in mind.
 
-#![allow(clippy::unwrap_used)]
-
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::{fs, iter};

@@ -1,7 +1,5 @@
 //! Contacts side by side: against one contact of twice the constant, by beam formulas, and what counts as interrupted.
 
-#![allow(clippy::unwrap_used)]
-
 use std::sync::Arc;
 
 use relay_contact::error::SceneError;

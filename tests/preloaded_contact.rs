@@ -5,8 +5,6 @@
 //! doi:10.1115/1.2190230. Equation, units and digits are those of `tests/python/preloaded_contact.py`, which integrates
 //! nothing in time: harmonic balance, quadrature, and the stationary solution of the Fokker-Planck equation.
 
-#![allow(clippy::unwrap_used)]
-
 use std::f64::consts::TAU;
 
 use relay_contact::inputs::Inputs;

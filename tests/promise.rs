@@ -3,8 +3,6 @@
 //! relay at the tightest tolerance with the most modes. `cargo run --release --package benches --bin promise` judges 2,000
 //! others.
 
-#![allow(clippy::unwrap_used)]
-
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::{Scene, Solver};
 use relay_contact::simulation::Simulation;

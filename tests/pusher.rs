@@ -1,7 +1,5 @@
 //! A pusher between clamp and contact: statics, against the second contact that it is at the tip, and energy.
 
-#![allow(clippy::unwrap_used)]
-
 use relay_contact::inputs::Inputs;
 use relay_contact::reference::Model;
 use relay_contact::scene::Scene;

@@ -7,7 +7,7 @@
 #![allow(clippy::undocumented_unsafe_blocks)] // every block calls a C function with what it needs
 
 use std::ffi::{CString, c_void};
-use std::{fs, panic, ptr, slice};
+use std::{fs, panic, ptr, slice, thread};
 
 use relay_contact::fmi2::*;
 use relay_contact::variables::{AxialForceKind, ContactLawKind, ExcitationKind, GUID, guid_carrying};
@@ -124,7 +124,7 @@ fn begin(contact: &Instance, choices: &Choices) {
 }
 
 /// Steps of all sizes with inputs that are held, jump, or change linearly; every output and its derivative is read.
-fn steps(contact: &Instance, choices: &Choices, mut time: f64, note: &mut dyn FnMut(f64)) {
+fn steps(contact: &Instance, choices: &Choices, mut time: f64) {
     for n in 0..48 {
         let size = [1e-6, 1e-6, 1e-6, 2.5e-5, 1e-5, 1e-5][n % 6];
         if n % 12 < 6 {
@@ -169,11 +169,7 @@ fn steps(contact: &Instance, choices: &Choices, mut time: f64, note: &mut dyn Fn
                 rates.as_mut_ptr(),
             )
         };
-        contact
-            .reals_of(references)
-            .into_iter()
-            .chain(rates)
-            .for_each(&mut *note);
+        contact.reals_of(references);
     }
 }
 
@@ -200,7 +196,7 @@ fn save_and_restore(contact: &Instance) {
 
 /// The life of an instance that logs all: run, saved, restored, run on; reset, restored as it was, run on; failed, reset, run
 /// anew.
-fn live(choices: &Choices, note: &mut dyn FnMut(f64)) {
+fn live(choices: &Choices) {
     let contact = Instance::with(&Arguments {
         logging_on: true,
         ..Arguments::default()
@@ -211,15 +207,15 @@ fn live(choices: &Choices, note: &mut dyn FnMut(f64)) {
         fmi2OK
     );
     begin(&contact, choices);
-    steps(&contact, choices, 0.0, note);
+    steps(&contact, choices, 0.0);
     save_and_restore(&contact);
     let mut state = ptr::null_mut();
     assert_eq!(unsafe { fmi2GetFMUstate(component, &raw mut state) }, fmi2OK);
     let time = contact.last_successful_time().1;
-    steps(&contact, choices, time, note);
+    steps(&contact, choices, time);
     assert_eq!(contact.reset(), fmi2OK);
     assert_eq!(unsafe { fmi2SetFMUstate(component, state) }, fmi2OK);
-    steps(&contact, choices, time, note);
+    steps(&contact, choices, time);
     assert_eq!(contact.step(0.0, -1.0), fmi2Error);
     assert_eq!(contact.reset(), fmi2OK);
     begin(&contact, choices);
@@ -283,9 +279,19 @@ fn touched(body: &mut (dyn FnMut() + Send)) -> usize {
 
 #[test]
 fn whole_lives_take_less_than_the_bar() {
-    let lives = all().map(|choices| (touched(&mut || live(&choices, &mut |_| ())), format!("{choices:?}")));
+    let most_of = |first: usize| {
+        let lives = all().skip(first).step_by(2);
+        lives
+            .map(|choices| (touched(&mut || live(&choices)), format!("{choices:?}")))
+            .max()
+    };
+    // On both processors.
+    let halves = thread::scope(|scope| {
+        let threads = [0, 1].map(|first| scope.spawn(move || most_of(first)));
+        threads.map(|half| half.join().unwrap().unwrap())
+    });
     let files = (touched(&mut read_files), "files".to_owned());
-    let (most, choices) = lives.chain([files]).max().unwrap();
+    let (most, choices) = halves.into_iter().chain([files]).max().unwrap();
     println!("{most} bytes at most, by {choices}");
     assert!(most < BAR, "{most} bytes by {choices}");
 }

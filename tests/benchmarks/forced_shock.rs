@@ -3,7 +3,7 @@
 //! m = 156 kg, k = 2e6 N/m, stop 1e10 N/m, gap 1 mm, force 3000 sin(2 pi 5 t) N, from rest. The instants were computed from
 //! the closed form between switchings.
 
-use crate::digits;
+use super::digits;
 use relay_contact::inputs::Inputs;
 use testing::rig::{Rig, compose, oscillator, stop};
 

@@ -3,7 +3,7 @@
 //! Closed form (K. L. Johnson, Contact Mechanics, 1985, section 11.4): greatest indentation `(5 m v^2 / (4 k))^0.4`, duration
 //! 2.9432751843 times that over v.
 
-use crate::digits;
+use super::digits;
 use relay_contact::inputs::Inputs;
 use testing::rig::{Rig, compose, hertz, oscillator};
 

@@ -5,7 +5,7 @@
 //! stiffness and speed, computed by a Runge-Kutta method with the square root of the indentation as unknown, in which
 //! the equation is smooth.
 
-use crate::digits;
+use super::digits;
 use relay_contact::inputs::Inputs;
 use testing::rig::{Rig, compose, hertz, oscillator};
 

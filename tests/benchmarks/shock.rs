@@ -4,7 +4,7 @@
 //! `omega^2 = (1e4 + 1e6) / 100`: contact `pi / omega` = 31.2600 ms, force `1e6 v / omega` = 9950.3719 N, impulse
 //! `2e6 v / omega^2` = 198.0198 N s.
 
-use crate::digits;
+use super::digits;
 use relay_contact::inputs::Inputs;
 use testing::rig::{Rig, compose, oscillator, stop};
 

@@ -6,7 +6,7 @@
 
 use std::f64::consts::PI;
 
-use crate::digits;
+use super::digits;
 use relay_contact::inputs::Inputs;
 use relay_contact::reference::Mode;
 use testing::rig::{Rig, compose, hertz, oscillator};

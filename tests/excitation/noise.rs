@@ -6,7 +6,7 @@ use relay_contact::error::SceneError;
 use relay_contact::inputs::Inputs;
 use relay_contact::simulation::Simulation;
 
-use crate::{equal_steps, forces, generator, random, undriven};
+use super::{equal_steps, forces, generator, random, undriven};
 
 #[test]
 fn random_acceleration_has_the_power_asked_for() {

@@ -5,7 +5,7 @@ use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ContactLawKind, ExcitationKind, IntegerOutput, RealOutput};
 use testing::scenes::{at_rest, force_scale, propped_mass};
 
-use crate::{
+use super::{
     G, closed_form, equal_steps, every_waveform, excited, forces, generator, half_sine, limited, phased, random, sweep,
     undriven,
 };

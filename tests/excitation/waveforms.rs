@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use relay_contact::variables::ExcitationKind;
 
-use crate::{G, closed_form, every_waveform, excited, generator, half_sine, limited, phased, sweep};
+use super::{G, closed_form, every_waveform, excited, generator, half_sine, limited, phased, sweep};
 
 #[test]
 fn waveforms_are_those_of_their_closed_forms() {

@@ -8,7 +8,7 @@ use relay_contact::variables::{GUID, PLAIN_GUID, guid_carrying};
 use testing::instance::{Arguments, Instance, vr};
 use testing::log::{Log, callbacks};
 
-use crate::fmu_state::{from_bytes, restore, save, to_bytes, trace};
+use super::fmu_state::{from_bytes, restore, save, to_bytes, trace};
 
 const FILE: &str = "springs/tapered-cube.toml";
 

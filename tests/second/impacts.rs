@@ -7,7 +7,7 @@ use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ExcitationKind, RealOutput};
 use testing::rig::{Rig, oscillator};
 
-use crate::changeover;
+use super::changeover;
 
 /// Coefficients (N/m^1.5) and damping times (s) of both contacts.
 fn laws(scene: &Scene, model: &Model) -> [(f64, f64); 2] {

@@ -5,7 +5,7 @@ use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ExcitationKind, IntegerOutput, RealOutput};
 
-use crate::changeover;
+use super::changeover;
 
 /// What is read every `EVERY` seconds.
 const EVERY: f64 = 2e-7;

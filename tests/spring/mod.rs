@@ -1,8 +1,6 @@
 //! Springs of segments and of modes: against closed forms, against the uniform spring that they contain, and what is wrong
 //! in their files.
 
-#![allow(clippy::unwrap_used)]
-
 mod files;
 mod modes;
 mod reference;

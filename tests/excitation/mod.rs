@@ -1,8 +1,6 @@
 //! The generated base acceleration. [`waveforms`]: against closed forms; [`noise`]: the random one; [`response`]: what
 //! they do to the contact.
 
-#![allow(clippy::unwrap_used)]
-
 mod noise;
 mod response;
 mod waveforms;

@@ -1,7 +1,5 @@
 //! Friction between the contacts: closed forms, its absence, the tolerance, energy, and hard cases.
 
-#![allow(clippy::unwrap_used)]
-
 mod closed_forms;
 mod refused;
 mod unstable_slip;

@@ -3,8 +3,6 @@
 //! A contact force wrong by `e` (N) for a time `t` moves a free mass `m` by at most `e t^2 / (2 m)` and its velocity by
 //! `e t / m`: from this and the tolerance asked follow the tolerances here.
 
-#![allow(clippy::unwrap_used)]
-
 mod energy;
 mod forced_shock;
 mod hertz_impact;

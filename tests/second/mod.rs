@@ -1,7 +1,5 @@
 //! The second contact of a changeover relay: its mirror image, its absence, and solutions of its own.
 
-#![allow(clippy::unwrap_used)]
-
 mod impacts;
 mod monitor;
 mod refused;

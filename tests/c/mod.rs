@@ -1,8 +1,6 @@
 //! The library from C, through the generated header: programs have to compile without a warning, link and run. The examples
 //! `embed.rs` and `embed.c` give the same numbers, those of the linear response where the vibration is small.
 
-#![allow(clippy::unwrap_used)]
-
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX, EXE_SUFFIX};
 use std::f64::consts::TAU;
 use std::fs;

@@ -1,0 +1,31 @@
+//! Physics and numerics, each problem with its source, and the component's interfaces: one program, as each would be linked
+//! anew.
+#![allow(clippy::unwrap_used)]
+
+mod armature;
+mod axial;
+mod beam;
+mod benchmarks;
+mod c;
+mod calibration;
+mod chatter;
+mod check_values;
+mod communication;
+mod consistency;
+mod derivatives;
+mod energy_balance;
+mod excitation;
+mod fixed_spring;
+mod fmi_api;
+mod frequency_domain;
+mod friction;
+mod imports;
+mod input_table;
+mod parallel;
+mod preloaded_contact;
+mod promise;
+mod pusher;
+mod scene_file;
+mod second;
+mod spring;
+mod stack;
