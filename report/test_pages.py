@@ -5,44 +5,26 @@
 
 import itertools
 import re
-import shutil
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Page
 
+from conftest import empty_page
 from relay_contact import fmu_path
 from report.files import DOCS, OUT
 
 QUICK = OUT / "report-quick/index.html"
-PATIENCE = 300_000  # ms, of a machine however busy
-# Width of the window, its colours, whether it is touched. Each width and each colour once.
-WINDOWS = {"desktop": (1280, "light", False), "phone": (390, "dark", True)}
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    names = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
-    path = next(filter(None, map(shutil.which, names)), None)
-    assert path, "Chromium is missing (on Debian: apt-get install chromium)"
-    with sync_playwright() as playwright:
-        # Root cannot have Chromium's sandbox.
-        browser = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"], timeout=PATIENCE)
-        yield browser
-        browser.close()
+# Width of the window, whether it is dark, and touched. Each width and each colour once.
+WINDOWS = {"desktop": (1280, False), "phone": (390, True)}
 
 
 def opened(browser: Browser, window: str) -> Page:
-    width, colours, touch = WINDOWS[window]
-    page = browser.new_page(
-        viewport={"width": width, "height": 900}, color_scheme="dark" if colours == "dark" else "light",
-        has_touch=touch, is_mobile=touch,
-    )  # fmt: skip
-    page.set_default_timeout(PATIENCE)
-    return page
+    width, phone = WINDOWS[window]
+    return empty_page(browser, width, dark=phone, touch=phone)
 
 
 @pytest.fixture(scope="module", params=WINDOWS)

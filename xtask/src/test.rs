@@ -10,7 +10,8 @@ use crate::stage::stage;
 use crate::{fmu, importers, python, report, valgrind, wheel};
 
 /// Folders and files with Python in them.
-const PYTHON: [&str; 7] = [
+const PYTHON: [&str; 8] = [
+    "conftest.py",
     "python",
     "examples/python",
     "tests/python",
@@ -40,8 +41,8 @@ pub fn run(arguments: Arguments) -> Result<()> {
     }
     stage("cargo xtask test", || {
         stage("format", || run_command(cargo().args(["fmt", "--all", "--check"])))?;
-        stage("lint", || run_command(cargo().arg("clippy").args(LINT)))?;
         if arguments.quick {
+            stage("lint", || run_command(cargo().arg("clippy").args(LINT)))?;
             return rust();
         }
         // A program of its own, so that its output stays together.
@@ -80,14 +81,19 @@ fn rust() -> Result<()> {
     stage("Rust tests", || run_command(cargo().arg("test")))
 }
 
-/// The stages with the library only; the last two use the Python environment.
+/// The stages with the library only. The lint is of all packages at once, which are then checked once, and needs the Python
+/// environment: what takes as long to make as the tests to compile.
 fn library() -> Result<()> {
-    rust()?;
-    if_installed("valgrind", valgrind::is_installed(), valgrind::MISSING, valgrind::run)?;
+    stage("Rust tests compile", || run_command(cargo().args(["test", "--no-run"])))?;
     python::prepare()?;
-    stage("conformance lint", || {
-        run_command(importers::conformance("clippy")?.arg("--features=types").args(LINT))
-    })
+    stage("lint", || {
+        let mut lint = importers::conformance("clippy")?;
+        // But benches, whose integrators take long to compile.
+        lint.args(["--workspace", "--exclude=benches", "--features=conformance/types"]);
+        run_command(lint.args(LINT))
+    })?;
+    rust()?;
+    if_installed("valgrind", valgrind::is_installed(), valgrind::MISSING, valgrind::run)
 }
 
 /// A stage with a program that a machine may lack.

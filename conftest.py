@@ -1,4 +1,4 @@
-"""Headless Chromium for the page that runs the simulation, and for the documentation site."""
+"""Headless Chromium for the tests of all pages: the report, the component's documentation, the simulation, the site."""
 
 import shutil
 from collections.abc import Iterator
@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parent
 # Of a machine however busy, ms.
 PATIENCE = 300_000
 
@@ -25,10 +25,19 @@ def browser() -> Iterator[Browser]:
         started.close()
 
 
+def empty_page(browser: Browser, width: int = 1280, *, dark: bool = False, touch: bool = False) -> Page:
+    """Open a page of this width, colour and device that waits for a busy machine."""
+    page = browser.new_page(
+        viewport={"width": width, "height": 900}, color_scheme="dark" if dark else "light",
+        has_touch=touch, is_mobile=touch,
+    )  # fmt: skip
+    page.set_default_timeout(PATIENCE)
+    return page
+
+
 @pytest.fixture
 def page(browser: Browser) -> Iterator[Page]:
     """Open an empty page."""
-    page = browser.new_page(viewport={"width": 1280, "height": 900})
-    page.set_default_timeout(PATIENCE)
+    page = empty_page(browser)
     yield page
     page.close()
