@@ -256,7 +256,7 @@ fn derivatives_of_outputs_are_the_slopes_of_their_courses() {
 }
 
 #[test]
-fn what_does_not_change_continuously_has_no_derivative() {
+fn outputs_that_jump_have_no_derivative() {
     let simulation = Simulation::new(&Scene::default(), &Inputs::default(), 0.0).unwrap();
     for output in [RealOutput::ContactLastOpening, RealOutput::PreloadForce] {
         assert_eq!(simulation.rate(output), None);

@@ -86,7 +86,7 @@ fn the_transient_of_the_linear_contact_settles_to_it() {
 }
 
 #[test]
-fn it_is_the_superposition_of_the_modes_of_beam_and_contact_spring() {
+fn the_response_is_the_superposition_of_the_modes_of_beam_and_contact_spring() {
     // These are coupled where beam and contact are damped differently.
     for [alpha, beta] in [[0.0, 8.063e-5], [5125.0, 0.0]] {
         for frequency in FREQUENCIES {

@@ -163,7 +163,7 @@ fn none_above_in_silence(judged: &[Judged], count: u64) {
 /// random acceleration in flight, and where the error estimate of a step passes through zero; with friction, where the
 /// contact begins or ceases to slip.
 #[test]
-fn former_excesses_are_within_the_tolerance() {
+fn relays_that_once_exceeded_the_tolerance_keep_it() {
     for number in [10_144, 10_769, 10_244, 11_223, 11_483, 11_458, 11_976] {
         assert_eq!(judge(number, Relay::draw).outcome, Outcome::Kept, "{number}");
     }

@@ -68,6 +68,6 @@ def test_a_parameter_set_says_what_the_scene_file_changes(tmp_path: Path, name: 
     assert read_set(tmp_path, name, plain=True) == numbers
 
 
-def test_all_scenes_ran() -> None:
+def test_every_scene_was_compared() -> None:
     assert sorted(DIFFERENCES) == sorted(SCENES)
     record("FMPy", fmpy.__version__, "scenes", max(DIFFERENCES.values()))

@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_said_with_its_line() {
+    fn a_value_out_of_range_is_refused_by_its_name() {
         let failure = curves(&SCENE.replace("400", "-1e99"))
             .map(|_| ())
             .map_err(|failure| failure.to_string());

@@ -161,7 +161,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_no_number_or_too_much_is_not_kept() {
+    fn a_measured_value_that_is_no_number_or_too_large_violates_its_property() {
         let check = |measured| Check::new("", (measured, 1e-9), "s", "");
         assert!(check(0.0).is_kept() && check(1e-9).is_kept());
         assert!(!check(1.1e-9).is_kept() && !check(f64::NAN).is_kept());

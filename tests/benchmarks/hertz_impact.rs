@@ -41,7 +41,7 @@ fn greatest_force_and_duration() {
 }
 
 #[test]
-fn digits_of_the_unit_problem() {
+fn a_mass_on_a_hertzian_contact_has_the_published_digits() {
     let model = compose(&[oscillator(1.0, 0.0)], hertz(1.0, 0.0), 1.0, 1e-10, 1.0);
     let mut rig = Rig::new(model);
     rig.launch(&[-1.0]);

@@ -67,7 +67,7 @@ fn scene(law: ContactLawKind) -> Scene {
 }
 
 #[test]
-fn within_the_tolerance_of_the_closed_form() {
+fn linear_scenes_keep_the_tolerance_of_the_closed_form() {
     for law in [ContactLawKind::Bonded, ContactLawKind::Linearised] {
         for tolerance in [1e-2, 1e-4, 1e-6, 1e-8, 1e-10] {
             let mut scene = scene(law);
@@ -92,7 +92,7 @@ fn within_the_tolerance_of_the_closed_form() {
 /// integrator may take them. Rounding: the sum of the modes' displacements loses some two digits, the phase at `t` some
 /// more.
 #[test]
-fn machine_precision_in_single_steps() {
+fn exact_steps_of_a_bonded_contact_are_right_to_1e_12() {
     for size in [1e-7, 1.3e-5, 1e-3, 0.7] {
         for single in [true, false] {
             let mut scene = scene(ContactLawKind::Bonded);
@@ -289,7 +289,7 @@ fn every_damping_and_load_against_the_matrix_exponential() {
 
 /// Two equal eigenvalues, which have one eigenvector: with one damping for beam and contact, and with two.
 #[test]
-fn through_critical_damping() {
+fn exact_steps_hold_through_critical_damping() {
     let model = Model::new(&damped(ContactLawKind::Bonded, 1, (0.0, 0.0, 0.0)), 0.0).unwrap();
     let mode = model.modes()[0];
     let contact = model.preload().contact_stiffness * mode.tip * mode.tip;
@@ -318,7 +318,7 @@ fn through_critical_damping() {
 /// of steps add up as a random walk where nothing is damped. Without damping the phase of a mode of frequency w is uncertain by
 /// w t units of the last place whatever the method, so the time is short.
 #[test]
-fn one_step_or_many() {
+fn one_long_step_is_many_short_ones() {
     for damping in DAMPINGS {
         for modes in [1, 2, 8, 22, 40] {
             let (size, parts) = (1e-4, 100);

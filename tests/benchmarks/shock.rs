@@ -54,7 +54,7 @@ fn duration_force_and_impulse_of_the_shock() {
 
 /// With no gap the surfaces touch at the start, without overlap.
 #[test]
-fn a_touch_at_the_start() {
+fn a_mass_thrown_from_touch_returns_at_the_published_instant() {
     let mut rig = thrown(0.0, 1e-6);
     rig.run_to(&Inputs::default(), 0.1).unwrap();
     digits(rig.state.contact().last_closing.unwrap(), 0.0, 1e-12, 0.0);

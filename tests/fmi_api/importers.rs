@@ -80,7 +80,7 @@ fn a_million_steps_reach_the_stop_time_however_they_are_counted() {
 }
 
 #[test]
-fn any_place_of_the_resources_will_do() {
+fn the_location_of_the_resources_is_free() {
     let places: [Option<&[u8]>; 12] = [
         None,
         Some(b""),

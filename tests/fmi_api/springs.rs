@@ -77,7 +77,7 @@ fn a_state_keeps_the_spring() {
 }
 
 #[test]
-fn what_is_no_spring_is_discarded_and_changes_nothing() {
+fn a_file_that_is_no_spring_is_discarded_and_changes_nothing() {
     let fmu = in_scenes();
     assert_eq!(fmu.set_string("beam.file", FILE), fmi2OK);
     let long = "a".repeat(5000);

@@ -57,7 +57,7 @@ const WATCHED: [RealOutput; 7] = [
 
 /// At the limit of no friction, and where the contact point lies on the neutral axis, the contact moves as without.
 #[test]
-fn without_a_coefficient_or_a_height_it_moves_as_without_friction() {
+fn a_contact_without_coefficient_or_height_moves_as_without_friction() {
     for amplitude in [98.0, 400.0] {
         let plain = shaken(amplitude, 1000.0);
         let tolerance = plain.solver.effective_tolerance();
@@ -229,7 +229,7 @@ fn derivatives_are_the_slopes_of_the_courses() {
 /// Extreme coefficients and heights, an opening at the limit, blows, and a contact released and closed by its support: all
 /// run, within few steps, and the friction force keeps to its limit.
 #[test]
-fn hard_cases_run_and_keep_to_the_limit() {
+fn friction_never_exceeds_its_limit_in_hard_cases() {
     for coefficient in [0.0, 0.2, 10.0] {
         for height in [0.0, 1e-3, 1e-2] {
             for (amplitude, damping) in [(30.0, 8e-5), (400.0, 8e-5), (1000.0, 1e-6), (400.0, 0.0)] {

@@ -18,7 +18,7 @@ fn said(change: impl FnOnce(&mut Scene)) -> String {
 }
 
 #[test]
-fn what_cannot_be_is_refused_by_name() {
+fn friction_with_linear_laws_a_second_contact_or_without_height_is_refused() {
     assert_eq!(said(|_| ()), "");
     for (law, name) in [
         (ContactLawKind::Linearised, "effects.contactLaw = Linearised"),

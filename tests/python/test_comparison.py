@@ -62,7 +62,7 @@ def test_a_measured_resistance(run: Path, tmp_path: Path) -> None:
     assert found.rows[3][3] == "1.11"
 
 
-def test_what_a_comparison_needs(run: Path, tmp_path: Path) -> None:
+def test_a_comparison_without_its_columns_is_refused(run: Path, tmp_path: Path) -> None:
     log = tmp_path / "log.csv"
     log.write_text("start [ms],length [us]\n1,2\n")
     with pytest.raises(RelayContactError, match=r"log.csv:1: columns: not allowed, allowed are start and duration"):

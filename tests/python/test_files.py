@@ -87,7 +87,7 @@ def written(path: Path, content: dict[str, Any]) -> Path:
 
 
 @pytest.mark.parametrize(("kind", "shipped"), SHIPPED, ids=lambda each: getattr(each, "stem", each))
-def test_what_is_wrong_is_told_or_in_the_result(kind: str, shipped: Path, tmp_path: Path) -> None:
+def test_every_changed_entry_of_a_file_is_refused_or_in_the_result(kind: str, shipped: Path, tmp_path: Path) -> None:
     content = read_toml(shipped)
     for tests in (each for each in content.values() if isinstance(each, list)):
         # Of many that are alike.
@@ -159,7 +159,9 @@ last = 1
     ],
 )
 @pytest.mark.parametrize("end", ["\n", "\r\n"])
-def test_lines_are_those_of_the_entry(tmp_path: Path, place: tuple[str | int, ...], expected: int, end: str) -> None:
+def test_an_entry_of_a_file_is_found_on_its_line(
+    tmp_path: Path, place: tuple[str | int, ...], expected: int, end: str
+) -> None:
     path = tmp_path / "nested.toml"
     path.write_bytes(NESTED.replace("\n", end).encode())
     assert line(path, place) == expected
@@ -232,7 +234,7 @@ corePosition = 1e-4
         ("a = '\udcff'\n", "2: not TOML: not text in UTF-8"),
     ],
 )  # fmt: skip
-def test_wrong_relays(tmp_path: Path, text: str, message: str) -> None:
+def test_errors_in_a_relay_file_have_their_line(tmp_path: Path, text: str, message: str) -> None:
     path = tmp_path / "relay.toml"
     path.write_bytes((PAPER + text).encode(errors="surrogateescape"))
     with pytest.raises(RelayContactError, match=f"^{re.escape(str(path))}:{message}"):
@@ -258,7 +260,7 @@ def test_wrong_relays(tmp_path: Path, text: str, message: str) -> None:
         ('name = "shock on the body"', 'name = "random, test IV"', "21: shock.1.name = .* given twice"),
     ],
 )
-def test_wrong_standards(tmp_path: Path, old: str, new: str, message: str) -> None:
+def test_errors_in_a_standard_have_their_line(tmp_path: Path, old: str, new: str, message: str) -> None:
     path, text = tmp_path / "standard.toml", standards()["ISO-16750-3"].read_text()
     assert text.count(old) == 1
     path.write_text(text.replace(old, new))
@@ -322,7 +324,7 @@ SCENE = 'title = "own"\nstop = 1e-3\ncommunicationStep = 1e-5\noutputs = ["conta
         (SCENE.replace("stop = 1e-3\n", ""), "1: stop: missing"),
     ],
 )
-def test_wrong_scenes(tmp_path: Path, text: str, message: str) -> None:
+def test_errors_in_a_scene_have_their_line(tmp_path: Path, text: str, message: str) -> None:
     path = tmp_path / "scene.toml"
     (tmp_path / "moved").mkdir()
     (tmp_path / "moved/in.csv").write_text("time,support.displacement\n0,0\n1e-3,1e-6\n")
@@ -368,7 +370,7 @@ def test_a_table_in_a_folder_beside_the_scene_and_a_change_of_its_input(tmp_path
         ),
     ],
 )
-def test_wrong_runs(given: Any, message: str) -> None:  # noqa: ANN401
+def test_arguments_of_a_run_that_do_not_fit_are_refused(given: Any, message: str) -> None:  # noqa: ANN401
     with pytest.raises(RelayContactError, match=message):
         run("paper-1khz", component=COMPONENT, **given)
 
@@ -414,7 +416,9 @@ def test_a_spring_file_is_refused_before_its_entries_are_changed(tmp_path: Path)
         ),
     ],
 )
-def test_wrong_arguments(arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_arguments_of_the_command_that_do_not_fit_are_refused(
+    arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     try:
         code = main(["run", "paper-1khz", *arguments])
     except SystemExit as end:
@@ -423,7 +427,9 @@ def test_wrong_arguments(arguments: list[str], message: str, capsys: pytest.Capt
     assert message in capsys.readouterr().err
 
 
-def test_wrong_sweeps(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_sweep_needs_two_frequencies_and_a_duration_above_zero(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     for sweep in ("0 100 0 1", "10 -1 0 1", "10 100 0 0"):
         assert main(["plot", str(tmp_path / "none.csv"), "--sweep", *sweep.split()]) == 1
         assert "FIRST, LAST and DURATION have to be greater than 0" in capsys.readouterr().err

@@ -403,14 +403,14 @@ ROWS = "0,1\n1,2\n2,3\n3,4\n"
         ("", "csv: no line with the names of the columns"),
     ],
 )
-def test_wrong_files_are_explained(tmp_path: Path, text: str, message: str) -> None:
+def test_errors_in_measured_data_have_line_and_column(tmp_path: Path, text: str, message: str) -> None:
     path = tmp_path / "data.csv"
     path.write_text(text)
     with pytest.raises(RelayContactError, match=message):
         read(path, COMPONENT, ["a"])
 
 
-def test_wrong_questions_are_explained(tmp_path: Path) -> None:
+def test_an_identification_of_unknown_parameters_is_refused(tmp_path: Path) -> None:
     data = files(tmp_path, CLEAN)["force"]
     for asked, message in (
         ({"parameters": ["tip.mas"]}, "tip.mas: no such variable; did you mean tip.mass"),

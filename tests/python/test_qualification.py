@@ -277,7 +277,7 @@ def test_margins_over_the_overtravel(paper: tuple[dict[str, Tested], Path]) -> N
     assert sine.chance.failing == pytest.approx(norm.cdf(1, sine.margin, sigma), abs=0.012)
 
 
-def test_page_and_tables(paper: tuple[dict[str, Tested], Path]) -> None:
+def test_page_and_tables_show_verdict_and_margins(paper: tuple[dict[str, Tested], Path]) -> None:
     parts, out = paper
     page = (out / "qualification.html").read_text(encoding="utf-8")
     assert "<b>2 FAIL, 1 undecided</b>" in page
@@ -495,7 +495,7 @@ def test_two_open_contacts_are_not_judged(tmp_path: Path) -> None:
     assert "both contacts open" in (tmp_path / "qualification.html").read_text(encoding="utf-8")
 
 
-def test_files_of_ones_own_are_checked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_errors_in_files_of_ones_own_name_the_entry(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     relay, standard = tmp_path / "relay.toml", tmp_path / "standard.toml"
     relay.write_text("[parameters]\ntip.mas = 1e-5\n")
     with pytest.raises(RelayContactError, match=r"relay.toml:2: tip.mas: no such variable; did you mean tip.mass"):

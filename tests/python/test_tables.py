@@ -73,7 +73,7 @@ def test_exports_are_read_as_they_are(tmp_path: Path, name: str, encoding: str, 
         ("force 12\nno table\n", "csv: no line with the names of the columns"),
     ],
 )
-def test_what_is_wrong_is_told_by_line_and_column(tmp_path: Path, text: str, message: str) -> None:
+def test_errors_in_an_export_have_line_and_column(tmp_path: Path, text: str, message: str) -> None:
     path = tmp_path / "export.csv"
     path.write_text(text, encoding="utf-8")
     with pytest.raises(RelayContactError, match=message):
@@ -137,7 +137,7 @@ def test_a_scene_takes_ones_own_measured_acceleration(tmp_path: Path) -> None:
         ("time [ms],base.acceleration [g]\n0,1\n0.2,1\n0.1,1\n", ":4: column time: 0.1 ms: not allowed"),
     ],
 )
-def test_wrong_inputs_of_a_scene_are_told(tmp_path: Path, text: str, message: str) -> None:
+def test_errors_in_an_input_table_have_line_and_column(tmp_path: Path, text: str, message: str) -> None:
     (tmp_path / "measured.csv").write_text(text, encoding="utf-8")
     with pytest.raises(RelayContactError, match=message):
         input_table(tmp_path / "measured.csv")

@@ -16,7 +16,7 @@ fn said(change: impl FnOnce(&mut Scene, &mut Inputs)) -> String {
 }
 
 #[test]
-fn what_cannot_be_is_refused() {
+fn a_second_contact_with_linear_laws_or_that_touches_at_rest_is_refused() {
     assert_eq!(said(|_, _| ()), "");
     for law in [ContactLawKind::Linearised, ContactLawKind::Bonded] {
         let text = said(|scene, _| scene.effects.contact_law = law);

@@ -44,7 +44,7 @@ fn message(name: &str, text: &str) -> String {
 const SEGMENT: &str = "[[segment]]\nlength = 0.01\nwidth = 4e-3\nthickness = 2e-4\n";
 
 #[test]
-fn what_is_wrong_is_told_with_its_line_entry_and_range() {
+fn errors_in_a_spring_file_have_line_entry_and_range() {
     let with = |more: &str| format!("{SEGMENT}{more}");
     for (n, (text, expected)) in [
         (String::new(), "segment = 0 entries: not allowed, allowed are 1 to 500"),
@@ -73,7 +73,7 @@ fn what_is_wrong_is_told_with_its_line_entry_and_range() {
 }
 
 #[test]
-fn what_is_no_file_is_told() {
+fn a_spring_file_that_cannot_be_read_is_refused() {
     let read = |name: &str| SpringFile::read(Path::new(""), name).unwrap_err().to_string();
     assert!(read("/no/such/spring.toml").starts_with("/no/such/spring.toml: cannot be read: "));
     for name in ["/dev/zero", "/", "scenes"] {

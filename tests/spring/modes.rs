@@ -59,7 +59,7 @@ fn modes_written_by_our_own_beam_and_read_again_are_the_beam() {
 }
 
 #[test]
-fn what_the_modes_lack_is_a_spring_in_series() {
+fn the_compliance_of_modes_left_out_acts_as_a_spring_in_series() {
     // The eigenvectors of a beam, cut off. Below them the series is exact but for the square of the ratio of frequencies.
     let mut scene = shaken(98.0, 500.0);
     scene.beam.stiffness_damping = 2e-6;
