@@ -113,7 +113,6 @@ static SCENES: [Values; 54] = [
         ("fixed.stiffnessDamping", 3e-6),
     ],
     &[
-        FEW,
         PRESSED,
         OPEN,
         ("pusher.displacement", 3e-4),
@@ -125,7 +124,6 @@ static SCENES: [Values; 54] = [
         ("chatter.resistanceThreshold", CRITICAL),
     ],
     &[
-        FEW,
         PRESSED,
         PULLED,
         RUBBING,
@@ -192,15 +190,7 @@ static SCENES: [Values; 54] = [
         ("solver.tolerance", 1e-9),
         ("beam.stiffnessDamping", 3e-6),
     ],
-    &[
-        FEW,
-        BESIDE,
-        PRESSED,
-        OPEN,
-        PULLED,
-        ("pusher.displacement", 3e-4),
-        ON_SPRING,
-    ],
+    &[BESIDE, PRESSED, OPEN, PULLED, ("pusher.displacement", 3e-4), ON_SPRING],
     &[FEW, BESIDE, MOVED, OPEN, PULLED, ON_SPRING, ("effects.contactLaw", 4.0)],
     &[
         BESIDE,
@@ -231,9 +221,8 @@ static SCENES: [Values; 54] = [
     ],
     // The parallel contact holds the first open; a softer one would not.
     &[BESIDE, ("parallel.offset", -2e-7)],
-    &[FEW, BESIDE, PRESSED, PULLED, ("pusher.displacement", CRITICAL)],
+    &[BESIDE, PRESSED, PULLED, ("pusher.displacement", CRITICAL)],
     &[
-        FEW,
         BESIDE,
         PRESSED,
         PULLED,
