@@ -62,7 +62,7 @@ pub struct Ride {
 pub struct Outcome {
     /// Force at the end of each segment, N.
     pub(crate) forces: Vec<f64>,
-    /// Largest contact force at communication points, N.
+    /// Largest contact force at communication points, a bonded one pulling too, N.
     largest: f64,
     /// Largest excess of the energy over that supplied, J.
     made: f64,
@@ -143,7 +143,7 @@ impl Ride {
                 rig.run_to(&inputs, time + size * f64::from(part))
                     .with_context(|| format!("after {} integration steps", before.steps))?;
                 self.inspect(rig)?;
-                outcome.largest = outcome.largest.max(rig.state.contact().force);
+                outcome.largest = outcome.largest.max(rig.state.contact().force.abs());
                 let base = segment.acceleration * (base_work(rig) - base_before);
                 let held = rate * (meter(rig) - meter_before);
                 work += base + held;

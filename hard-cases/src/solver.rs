@@ -32,6 +32,9 @@ cases! { CASES:
     "Bonded contact, 1 to 2 s in one communication step, tolerance 0.1 to 1e-11, 1 to 40 modes",
         "a thousand periods in one step, with one or forty modes"
         => linear();
+    "Bonded contact after jumps of 3 000 g, tolerance 1e-6 to 1e-11",
+        "rounding of the force of a stiff contact does not shrink with the step"
+        => closest([1e-6, 1e-8, 1e-10, 1e-11].map(bonded_after_jumps));
     "An hour at rest, in one communication step and in 3600", "rounding errors accumulate; nothing moves, so no integration step should be taken"
         => hour_at_rest();
     "5000 g for 50 µs in two communication steps, and in steps around a nanosecond",
@@ -50,6 +53,25 @@ fn with_tolerance(tolerance: f64) -> Result<Vec<Check>> {
     let mut scene = Scene::default();
     scene.solver.tolerance = tolerance;
     Ride::shaken(scene).checks()
+}
+
+fn bonded_after_jumps(tolerance: f64) -> Result<Vec<Check>> {
+    let mut scene = Scene::default();
+    scene.effects.contact_law = ContactLawKind::Bonded;
+    scene.contact.moving.youngs_modulus = 2.1e11;
+    scene.solver.tolerance = tolerance;
+    let segments = [
+        (1.05e-5, 27_658.0, 0.0),
+        (1.62e-4, -16_475.0, 1.08e-6),
+        (1.1e-7, -32_393.0, 0.0),
+        (2.06e-4, 0.0, 0.0),
+    ];
+    let segments = segments.map(|(duration, acceleration, support)| Segment {
+        duration,
+        acceleration,
+        support,
+    });
+    Ride::new(scene, segments).checks_of_large_forces()
 }
 
 fn with_modes(modes: i32) -> Result<Vec<Check>> {
