@@ -243,6 +243,37 @@ fn extremes_are_those_of_the_course_inside_the_step() {
     }
 }
 
+/// The force of a damped contact of rough surfaces grows as `t^(n/(1-n))` when it closes, nearly a jump for small `n`. A polynomial
+/// through the instant of closing overshoots it by a tenth.
+#[test]
+fn the_greatest_force_of_a_blow_on_a_contact_of_nearly_constant_stiffness_is_within_the_tolerance() {
+    let greatest = |exponent: f64, tolerance: f64| {
+        let mut scene = shaken(400.0);
+        scene.effects.contact_law = ContactLawKind::Rough;
+        scene.contact.stiffness_exponent = exponent;
+        scene.contact.damping = 1e-4;
+        scene.solver.tolerance = tolerance;
+        let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
+        let mut greatest = 0.0_f64;
+        // Up to the first blow.
+        while simulation.interruptions().count == 0 || simulation.real(RealOutput::ContactForce) == 0.0 {
+            simulation.step(&Inputs::default(), simulation.time(), 1e-5).unwrap();
+            greatest = simulation.real(RealOutput::StepMaximumForce);
+        }
+        greatest
+    };
+    for exponent in [0.02, 0.05, 0.1, 0.2] {
+        let exact = greatest(exponent, 1e-8);
+        for tolerance in [1e-2, 1e-3, 1e-4, 1e-6] {
+            let error = (greatest(exponent, tolerance) - exact).abs() / exact;
+            assert!(
+                error <= tolerance,
+                "n = {exponent}, {tolerance}: {error:.1e} of {exact} N"
+            );
+        }
+    }
+}
+
 #[test]
 fn a_step_that_ends_with_the_integrators_own_has_the_extremes_of_it() {
     let mut scene = shaken(400.0);

@@ -107,6 +107,12 @@ impl Law {
         self.power().map_or(0.0, |power| power.traces)
     }
 
+    /// Whether the force of its damper grows more steeply at first touch than a root of time, `d^(p-1)` with `1 < p < 3/2`: nearly
+    /// a jump, which no polynomial follows.
+    pub(crate) fn is_steep_at_touch(&self) -> bool {
+        self.power().is_some_and(Power::is_steep_at_touch)
+    }
+
     /// Static indentation beyond first touch under `force` (N), m.
     pub fn overlap(&self, force: f64) -> f64 {
         match self {

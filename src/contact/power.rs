@@ -181,6 +181,11 @@ impl Power {
         }
     }
 
+    /// See [`Law::is_steep_at_touch`](super::law::Law::is_steep_at_touch).
+    pub(crate) fn is_steep_at_touch(&self) -> bool {
+        self.damping > 0.0 && self.exponent > 1.0 && self.exponent < HERTZ
+    }
+
     /// Indentation at which the elastic force is `force` (N), m.
     pub fn indentation(&self, force: f64) -> f64 {
         (force / self.coefficient).powf(1.0 / self.exponent)

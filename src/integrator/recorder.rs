@@ -1,5 +1,6 @@
 //! What is kept of each step for those who read: dense output, extremes, interruptions.
 
+use crate::contact::law::Law;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::trial::Trial;
 use crate::integrator::course::{Places, turning_points};
@@ -57,6 +58,7 @@ impl Recorder<'_> {
         passages: &Passages,
     ) {
         let second = model.second();
+        let touches = state.kink_is_closing && state.last_kink == state.time;
         let read = self.reads_before(target.time) || self.dense.is_some() && second.is_some();
         for (index, (link, at)) in model.links.iter().zip(&mut state.links).enumerate() {
             let (Some(nodes), Some(passages)) = (trial.links.get(index), passages.get(index)) else {
@@ -64,7 +66,14 @@ impl Recorder<'_> {
             };
             // Of an open contact nobody reads the force.
             if at.closed || link.contact().is_none() {
-                at.course = collocation.through(model.simd, at.force - link.force, &nodes.forces);
+                // Through an instant at which the force all but jumps a polynomial would overshoot.
+                let jumps = touches && link.contact().is_some_and(Law::is_steep_at_touch);
+                let start = if jumps {
+                    collocation.interpolate(&nodes.forces, 0.0)
+                } else {
+                    at.force - link.force
+                };
+                at.course = collocation.through(model.simd, start, &nodes.forces);
             }
             let turns = if model.scene.effects.extremes && at.closed {
                 turning_points(&at.course)
