@@ -7,6 +7,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::beam::mode::ModeState;
+use crate::link::MAX_LINKS;
 
 /// Modes of the deviation: the lowest ones, which decay least.
 pub const MODES: usize = 8;
@@ -27,8 +28,8 @@ pub struct ForceError {
     pub largest: f64,
     /// The deviation, of size 1; zero until the contact first opens or closes.
     pub deviation: [ModeState; MODES],
-    /// Contact force that it causes.
-    pub force: f64,
+    /// Forces that it causes in the links.
+    pub forces: [f64; MAX_LINKS],
     /// Logarithm of its size, were it not brought back to 1.
     pub growth: f64,
     /// The largest growth of it in flight.
@@ -65,13 +66,13 @@ impl ForceError {
             greatest,
             largest,
             deviation,
-            force,
+            forces,
             growth,
             largest_growth,
             unresolved,
         } = self;
         deviation.iter().all(|mode| mode.q.is_finite() && mode.v.is_finite())
-            && force.is_finite()
+            && forces.iter().all(|force| force.is_finite())
             && growth.is_finite()
             && (0.0..f64::INFINITY).contains(greatest)
             && (0.0..f64::INFINITY).contains(largest)

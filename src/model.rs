@@ -58,6 +58,8 @@ pub struct Model {
     pub(crate) preload: Preload,
     /// The modes, frequency ascending.
     pub(crate) modes: Vec<Mode>,
+    /// The modes by frequency, the lowest first: those of a second spring and of an armature come after those of the first.
+    by_frequency: Vec<usize>,
     /// The axial force, if it follows the deflection continuously.
     pub(crate) axial: Option<Box<Feedback>>,
     /// Modes and contact as one linear system, if the scene is linear, the generator harmonic, and nothing within a
@@ -178,6 +180,7 @@ impl Model {
             links: Vec::new(),
             roles: Roles::default(),
             participations: [0.0; MAX_MODES],
+            by_frequency: Vec::new(),
             resolution,
             inertia: inertia(&modes),
             memory,
@@ -207,6 +210,9 @@ impl Model {
         for (participation, mode) in self.participations.iter_mut().zip(&self.modes) {
             *participation = mode.participation;
         }
+        self.by_frequency = (0..self.modes.len()).collect();
+        let square = |i: &usize| self.modes.get(*i).map_or(f64::INFINITY, |mode| mode.omega_squared);
+        self.by_frequency.sort_by(|a, b| square(a).total_cmp(&square(b)));
         let Assembly { ports, links, roles } =
             Assembly::new((&self.scene, &self.modes, &self.preload), laws, self.armature.as_ref());
         (self.law, self.ports, self.links, self.roles) = (laws.contact, ports, links, roles);
@@ -239,6 +245,11 @@ impl Model {
             second,
         });
         self
+    }
+
+    /// The modes with their indices, the slowest first.
+    pub(crate) fn slowest(&self) -> impl Iterator<Item = (usize, &Mode)> {
+        self.by_frequency.iter().filter_map(|i| Some((*i, self.modes.get(*i)?)))
     }
 
     /// What a user should know of the scene.

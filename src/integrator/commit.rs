@@ -1,5 +1,6 @@
 //! An accepted step as the new state.
 
+use crate::beam::mode::Mode;
 use crate::contact::friction::Slip;
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::coefficients::Cache;
@@ -64,16 +65,17 @@ fn advance_deviation<const S: usize>(
     if !state.force_error.deviates() {
         return;
     }
-    let mut links = model.links.iter().zip(&state.links).zip(&trial.links);
-    let closed = links.find(|((_, at), _)| at.closed);
-    let tangent = closed.and_then(|((link, _), nodes)| Some((&model.ports.get(link.port)?.shape, nodes.tangent)));
-    if let Some(step) = cache.known(target.length, target.recurring) {
-        state.force_error.advance(&model.modes, step.end.free(), tangent);
-    } else {
-        let modes = model.modes.iter();
-        let free = modes.map(|mode| FreeMotion::new(mode.omega_squared, mode.damping, target.length));
-        state.force_error.advance(&model.modes, free, tangent);
-    }
+    // Without a tangent are contacts that are open, and what slips.
+    let links = model.links.iter().zip(&trial.links).enumerate();
+    let at_work = links.filter(|(_, (_, nodes))| nodes.tangent.stiffness != 0.0);
+    let at_work =
+        at_work.filter_map(|(index, (link, nodes))| Some((index, &model.ports.get(link.port)?.shape, nodes.tangent)));
+    let known = cache.known(target.length, target.recurring);
+    let free = |i: usize, mode: &Mode| {
+        let known = known.and_then(|step| step.end.free(i));
+        known.unwrap_or_else(|| FreeMotion::new(mode.omega_squared, mode.damping, target.length))
+    };
+    state.force_error.advance(model, free, at_work);
 }
 
 /// Slip at the end of an accepted step of `length` seconds, which began with a `start`: distance and energy; and the courses of slip

@@ -16,7 +16,9 @@ pub(crate) fn switch(model: &Model, state: &mut State, index: usize, log: &mut E
     let (Some(link), time) = (model.links.get(index), state.time) else {
         return;
     };
-    state.force_error.begin(&model.modes);
+    if let Some(port) = model.ports.get(link.port) {
+        state.force_error.begin(model, &port.shape);
+    }
     let Some(at) = state.links.get_mut(index) else {
         return;
     };

@@ -71,16 +71,14 @@ impl<const S: usize> NodeRows<S> {
 }
 
 impl<const S: usize> EndRows<S> {
-    /// The free motion of each mode.
-    pub fn free(&self) -> impl Iterator<Item = FreeMotion> {
-        let rows = self.q_from_q.iter().zip(&self.q_from_v).zip(&self.v_from_q);
-        rows.zip(&self.v_from_v)
-            .map(|(((q_from_q, q_from_v), v_from_q), v_from_v)| FreeMotion {
-                q_from_q: *q_from_q,
-                q_from_v: *q_from_v,
-                v_from_q: *v_from_q,
-                v_from_v: *v_from_v,
-            })
+    /// The free motion of a mode.
+    pub fn free(&self, i: usize) -> Option<FreeMotion> {
+        Some(FreeMotion {
+            q_from_q: *self.q_from_q.get(i)?,
+            q_from_v: *self.q_from_v.get(i)?,
+            v_from_q: *self.v_from_q.get(i)?,
+            v_from_v: *self.v_from_v.get(i)?,
+        })
     }
 
     #[expect(clippy::indexing_slicing, reason = "no model has more modes than there is room for")]

@@ -412,6 +412,9 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
             let start = law.stiffness(link.approach + self.state.links[index].approach);
             (stiffness, damping) = (stiffness.max(start), damping.max(law.damping() * start));
         }
+        if let LinkLaw::Magnet(_) = link.law {
+            stiffness = -stiffness;
+        }
         let (d, rate) = self.responses[a][a].columns.at_end(&[1.0; S]);
         Tangent {
             stiffness,
