@@ -27,7 +27,7 @@ pub(super) struct Rounds<'a, const S: usize> {
     model: &'a Model,
     axial: &'a Feedback,
     state: &'a State,
-    step: &'a StepCoefficients<S>,
+    step: StepCoefficients<'a, S>,
     collocation: &'a Collocation<S>,
     /// Loads at the start.
     start: Modal,
@@ -42,7 +42,7 @@ impl<'a, const S: usize> Rounds<'a, S> {
     #[inline(always)]
     pub(super) fn new(
         (model, axial, state): (&'a Model, &'a Feedback, &'a State),
-        (step, collocation): (&'a StepCoefficients<S>, &'a Collocation<S>),
+        (step, collocation): (StepCoefficients<'a, S>, &'a Collocation<S>),
         room: &'a mut AxialLoads<S>,
     ) -> Self {
         let start = axial.loads(&model.modes, &state.modes);
@@ -93,10 +93,10 @@ impl<'a, const S: usize> Rounds<'a, S> {
     #[inline(always)]
     fn error<A: Arithmetic>(&self, free: &FreeResponse<S>) -> ErrorColumn<S> {
         let mut error = ErrorColumn::zeroed();
-        for port in self.step.ports.iter().take(1) {
+        for port in self.step.ports().take(1) {
             error.add::<A>(free.start_defect, &port.acceleration.defect);
         }
-        let modes = self.model.modes.iter().zip(&self.step.columns);
+        let modes = self.model.modes.iter().zip(self.step.columns);
         for (((mode, columns), start), load) in modes.zip(&self.start).zip(&self.room.loads) {
             let ModeColumns { load: response, .. } = columns;
             let start_defect = -mode.tip * (start - dot::<S, A>(load, &self.collocation.at_start));
@@ -110,12 +110,12 @@ impl<'a, const S: usize> Rounds<'a, S> {
 #[inline(always)]
 fn set_motion<const S: usize, A: Arithmetic>(
     (model, state): (&Model, &State),
-    step: &StepCoefficients<S>,
+    step: StepCoefficients<'_, S>,
     trial: &Trial<S>,
     loads: &NodalModes<S>,
     motion: &mut NodalModes<S>,
 ) {
-    let modes = model.modes.iter().zip(&state.modes).zip(&step.columns);
+    let modes = model.modes.iter().zip(&state.modes).zip(step.columns);
     for (i, ((moved, ((mode, at), columns)), load)) in motion.iter_mut().zip(modes).zip(loads).enumerate() {
         let mut load = *load;
         let mut q = [0.0; S];
@@ -194,12 +194,12 @@ fn force_of_change<const S: usize>(model: &Model, loads: &NodalModes<S>, next: &
 fn with_loads<const S: usize, A: Arithmetic>(
     model: &Model,
     free: &FreeResponse<S>,
-    step: &StepCoefficients<S>,
+    step: StepCoefficients<'_, S>,
     loads: &NodalModes<S>,
 ) -> FreeResponse<S> {
     let mut with = free.clone();
     for (port, motion) in model.ports.iter().zip(&mut with.ports) {
-        for ((b, columns), load) in port.shape.iter().zip(&step.columns).zip(loads) {
+        for ((b, columns), load) in port.shape.iter().zip(step.columns).zip(loads) {
             motion.respond::<A>(&columns.load.columns, &load.map(|load| b * load));
         }
     }

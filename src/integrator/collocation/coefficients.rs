@@ -1,9 +1,11 @@
 //! The coefficients of a step, which depend on its length only, and a cache of them.
 
-use bytemuck::{Zeroable, write_zeroes, zeroed_box};
+use std::ops::Range;
+
+use bytemuck::{Zeroable, write_zeroes};
 
 use crate::beam::mode::{Modal, Mode};
-use crate::excitation::generator::Turns;
+use crate::excitation::generator::{Generator, Turns};
 use crate::excitation::random::Piece;
 use crate::excitation::waveform::Accelerations;
 use crate::integrator::collocation::elimination::solve;
@@ -21,7 +23,7 @@ use crate::model::Model;
 pub const SLOTS: usize = 64;
 
 /// Free motion of a port at the nodes due to one mode; includes the displacement of the port per coordinate of the mode.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Zeroable)]
 pub struct NodeRows<const S: usize> {
     /// Displacement per initial q, and per initial v.
     pub from_q: Nodal<S>,
@@ -51,13 +53,6 @@ pub struct EndRows<const S: usize> {
 }
 
 impl<const S: usize> NodeRows<S> {
-    const ZERO: Self = Self {
-        from_q: [0.0; S],
-        from_v: [0.0; S],
-        rate_from_q: [0.0; S],
-        rate_from_v: [0.0; S],
-    };
-
     /// Sets them to a multiple of the free motion of a mode over a step of `h` seconds.
     #[inline(always)]
     fn set<A: Arithmetic>(&mut self, factor: f64, mode: &Mode, response: &superposition::Response<S>, h: f64) {
@@ -115,7 +110,7 @@ pub struct ErrorColumn<const S: usize> {
 }
 
 /// Motion of one mode at the nodes.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Zeroable)]
 pub struct ModeColumns<const S: usize> {
     /// Displacement per initial q, and per initial v.
     pub q_from_q: Nodal<S>,
@@ -126,14 +121,12 @@ pub struct ModeColumns<const S: usize> {
 }
 
 /// The coefficients of a port.
-#[derive(Clone, Debug)]
-pub struct PortCoefficients<const S: usize> {
+#[derive(Clone, Copy, Debug)]
+pub struct PortCoefficients<'a, const S: usize> {
     /// Free motion, mode by mode, of the modes that it has a part in.
-    pub modes: Vec<NodeRows<S>>,
+    pub modes: &'a [NodeRows<S>],
     /// Motion per base acceleration that loads the modes with `participation`, and per defect of it.
-    pub acceleration: Response<S>,
-    /// Motion per force at each port up to this one, and per defect of it.
-    pub forces: Vec<Response<S>>,
+    pub acceleration: &'a Response<S>,
 }
 
 impl<const S: usize> ErrorColumn<S> {
@@ -167,50 +160,58 @@ pub struct Response<const S: usize> {
 }
 
 /// The coefficients of a step of one length.
-#[derive(Clone, Debug)]
-pub struct StepCoefficients<const S: usize> {
+#[derive(Clone, Copy, Debug)]
+pub struct StepCoefficients<'a, const S: usize> {
     /// The length, s.
     pub length: f64,
-    /// Port by port.
-    pub ports: Vec<PortCoefficients<S>>,
     /// Motion of each mode, for an axial force that follows the deflection; else empty.
-    pub columns: Vec<ModeColumns<S>>,
+    pub columns: &'a [ModeColumns<S>],
     /// With friction: velocity of a deflection z that follows another with the contact's damping time, `beta_c z' + z = z_1`,
     /// per difference of the two from the start, 1/s; else empty.
-    pub following: Vec<Nodal<S>>,
+    pub following: &'a [Nodal<S>],
     /// The modes at the end.
-    pub end: Box<EndRows<S>>,
+    pub end: &'a EndRows<S>,
     /// Phase advance of the generator.
-    pub turns: Turns<S>,
+    pub turns: &'a Turns<S>,
+    /// Port by port the motion per base acceleration, and per force at each port up to that one.
+    responses: &'a [Response<S>],
+    /// Free motion, port by port and mode by mode.
+    rows: &'a [NodeRows<S>],
+    /// Where those of each port begin and end.
+    of_port: &'a [Range<usize>],
 }
 
-impl<const S: usize> StepCoefficients<S> {
-    /// Allocates for the model; no length yet.
-    fn empty(model: &Model) -> Self {
-        let ports = model.ports.iter().enumerate();
-        let following = if model.friction().is_some() { S } else { 0 };
-        let axial = if model.axial().is_some() { model.modes.len() } else { 0 };
-        Self {
-            length: 0.0,
-            ports: ports
-                .map(|(p, port)| PortCoefficients {
-                    modes: vec![NodeRows::ZERO; port.modes.len()],
-                    acceleration: Response::zeroed(),
-                    forces: vec![Response::zeroed(); p + 1],
-                })
-                .collect(),
-            columns: vec![
-                ModeColumns {
-                    q_from_q: [0.0; S],
-                    q_from_v: [0.0; S],
-                    load: Response::zeroed(),
-                };
-                axial
-            ],
-            following: vec![[0.0; S]; following],
-            end: zeroed_box(),
-            turns: Turns::room(&model.generator),
-        }
+/// Where the responses of a port begin: after those of the ports before it.
+const fn responses_before(port: usize) -> usize {
+    port * (port + 3) / 2
+}
+
+impl<'a, const S: usize> StepCoefficients<'a, S> {
+    /// Those of the ports, one after the other.
+    #[inline(always)]
+    pub fn ports(&self) -> impl Iterator<Item = PortCoefficients<'a, S>> {
+        let Self {
+            responses,
+            rows,
+            of_port,
+            ..
+        } = *self;
+        of_port.iter().enumerate().filter_map(move |(p, range)| {
+            Some(PortCoefficients {
+                modes: rows.get(range.clone())?,
+                acceleration: responses.get(responses_before(p))?,
+            })
+        })
+    }
+
+    /// The response of a port to the base acceleration.
+    #[inline(always)]
+    #[expect(
+        clippy::indexing_slicing,
+        reason = "there are coefficients for every port of the model"
+    )]
+    pub fn acceleration(&self, port: usize) -> &'a Response<S> {
+        &self.responses[responses_before(port)]
     }
 
     /// The response of one port to forces at another, or at itself.
@@ -219,38 +220,185 @@ impl<const S: usize> StepCoefficients<S> {
         clippy::indexing_slicing,
         reason = "there are coefficients for every port of the model"
     )]
-    pub fn response(&self, a: usize, b: usize) -> &Response<S> {
-        &self.ports[a.max(b)].forces[a.min(b)]
+    pub fn response(&self, a: usize, b: usize) -> &'a Response<S> {
+        &self.responses[responses_before(a.max(b)) + 1 + a.min(b)]
+    }
+}
+
+/// Coefficients of steps of several lengths, in places that are made as they are needed: room for all of them is reserved, but
+/// not touched before.
+#[derive(Debug)]
+struct Places<const S: usize> {
+    lengths: Vec<f64>,
+    rows: Vec<NodeRows<S>>,
+    responses: Vec<Response<S>>,
+    columns: Vec<ModeColumns<S>>,
+    following: Vec<Nodal<S>>,
+    ends: Vec<EndRows<S>>,
+    turns: Vec<Turns<S>>,
+    sizes: Sizes,
+}
+
+/// How many there are of each in a place.
+#[derive(Clone, Debug)]
+struct Sizes {
+    rows: usize,
+    responses: usize,
+    columns: usize,
+    following: usize,
+    /// Where the rows of each port begin and end.
+    of_port: Vec<Range<usize>>,
+}
+
+/// The part of a place of this size.
+#[inline(always)]
+#[expect(clippy::indexing_slicing, reason = "places that are there")]
+fn part<T>(all: &[T], place: usize, size: usize) -> &[T] {
+    &all[place * size..(place + 1) * size]
+}
+
+/// The same to be written.
+#[expect(clippy::indexing_slicing, reason = "places that are there")]
+fn part_mut<T>(all: &mut [T], place: usize, size: usize) -> &mut [T] {
+    &mut all[place * size..(place + 1) * size]
+}
+
+impl Sizes {
+    fn of<const S: usize>(model: &Model) -> Self {
+        let mut rows = 0;
+        let of_port = model.ports.iter().map(|port| {
+            let first = rows;
+            rows += port.modes.len();
+            first..rows
+        });
+        let of_port = of_port.collect();
+        Self {
+            rows,
+            responses: responses_before(model.ports.len()),
+            columns: if model.axial().is_some() { model.modes.len() } else { 0 },
+            following: if model.friction().is_some() { S } else { 0 },
+            of_port,
+        }
+    }
+
+    /// What a place takes of memory, bytes.
+    fn bytes<const S: usize>(&self) -> usize {
+        size_of::<f64>()
+            + self.rows * size_of::<NodeRows<S>>()
+            + self.responses * size_of::<Response<S>>()
+            + self.columns * size_of::<ModeColumns<S>>()
+            + self.following * size_of::<Nodal<S>>()
+            + size_of::<EndRows<S>>()
+            + size_of::<Turns<S>>()
+    }
+}
+
+impl<const S: usize> Places<S> {
+    /// Reserves room for this many places.
+    fn reserved(sizes: Sizes, places: usize) -> Self {
+        Self {
+            lengths: Vec::with_capacity(places),
+            rows: Vec::with_capacity(places * sizes.rows),
+            responses: Vec::with_capacity(places * sizes.responses),
+            columns: Vec::with_capacity(places * sizes.columns),
+            following: Vec::with_capacity(places * sizes.following),
+            ends: Vec::with_capacity(places),
+            turns: Vec::with_capacity(places),
+            sizes,
+        }
+    }
+
+    /// Makes a place, for no length yet; returns its index.
+    fn add(&mut self, generator: &Generator) -> usize {
+        let place = self.lengths.len();
+        let (sizes, places) = (&self.sizes, place + 1);
+        self.rows.resize_with(places * sizes.rows, NodeRows::zeroed);
+        self.responses.resize_with(places * sizes.responses, Response::zeroed);
+        self.columns.resize_with(places * sizes.columns, ModeColumns::zeroed);
+        self.following.resize(places * sizes.following, [0.0; S]);
+        self.ends.push(EndRows::zeroed());
+        self.turns.push(Turns::room(generator));
+        self.lengths.push(0.0);
+        place
+    }
+
+    /// The length of a place, s; 0: none.
+    fn length(&self, place: usize) -> f64 {
+        self.lengths.get(place).copied().unwrap_or_default()
+    }
+
+    /// What is in a place.
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "a place that is there")]
+    fn view(&self, place: usize) -> StepCoefficients<'_, S> {
+        let sizes = &self.sizes;
+        StepCoefficients {
+            length: self.lengths[place],
+            columns: part(&self.columns, place, sizes.columns),
+            following: part(&self.following, place, sizes.following),
+            end: &self.ends[place],
+            turns: &self.turns[place],
+            responses: part(&self.responses, place, sizes.responses),
+            rows: part(&self.rows, place, sizes.rows),
+            of_port: &sizes.of_port,
+        }
     }
 
     /// Computes the coefficients for a length in place.
-    fn fill(&mut self, length: f64, model: &Model, collocation: &Collocation<S>, sums: &mut [Sum<S>]) {
+    #[expect(clippy::indexing_slicing, reason = "a place that is there")]
+    fn fill(&mut self, place: usize, length: f64, model: &Model, collocation: &Collocation<S>, sums: &mut [Sum<S>]) {
         let (h, shapes, simd) = (length, &collocation.shapes, model.simd);
-        self.length = length;
-        self.turns.fill(&model.generator, length, &collocation.nodes);
+        let sizes = &self.sizes;
+        self.lengths[place] = length;
+        self.turns[place].fill(&model.generator, length, &collocation.nodes);
+        let mut modes = Modes {
+            rows: part_mut(&mut self.rows, place, sizes.rows),
+            of_port: &sizes.of_port,
+            columns: part_mut(&mut self.columns, place, sizes.columns),
+            end: &mut self.ends[place],
+        };
         sums.iter_mut().for_each(write_zeroes);
-        compiled_for!(simd, A => self.add_modes::<A>(model, collocation, sums));
-        let mut sums = sums.iter();
-        for port in &mut self.ports {
-            for (response, sum) in [&mut port.acceleration]
-                .into_iter()
-                .chain(&mut port.forces)
-                .zip(&mut sums)
-            {
-                response.set(sum, simd, shapes, h);
-            }
+        compiled_for!(simd, A => modes.set::<A>(h, model, collocation, sums));
+        let responses = part_mut(&mut self.responses, place, sizes.responses);
+        for (response, sum) in responses.iter_mut().zip(&*sums) {
+            response.set(sum, simd, shapes, h);
         }
-        if !self.following.is_empty() {
+        if sizes.following > 0 {
             let following = compiled_for!(simd, A => following::<S, A>(model.law().damping(), h, shapes));
-            self.following.copy_from_slice(&following);
+            part_mut(&mut self.following, place, sizes.following).copy_from_slice(&following);
         }
     }
+}
 
-    /// Sets what there is of each mode, and adds up the modes: `sums` has for each port that of the base acceleration, then
-    /// those of the ports up to it, and at the end room for one mode.
+impl<const S: usize> Clone for Places<S> {
+    /// With the same room, as steps do not allocate.
+    fn clone(&self) -> Self {
+        let mut same = Self::reserved(self.sizes.clone(), self.lengths.capacity());
+        same.lengths.extend_from_slice(&self.lengths);
+        same.rows.extend_from_slice(&self.rows);
+        same.responses.extend_from_slice(&self.responses);
+        same.columns.extend_from_slice(&self.columns);
+        same.following.extend_from_slice(&self.following);
+        same.ends.extend_from_slice(&self.ends);
+        same.turns.extend_from_slice(&self.turns);
+        same
+    }
+}
+
+/// What there is of each mode in a place.
+struct Modes<'a, const S: usize> {
+    rows: &'a mut [NodeRows<S>],
+    of_port: &'a [Range<usize>],
+    columns: &'a mut [ModeColumns<S>],
+    end: &'a mut EndRows<S>,
+}
+
+impl<const S: usize> Modes<'_, S> {
+    /// Sets it for the length `h` (s), and adds up the modes: `sums` has for each port that of the base acceleration, then those
+    /// of the ports up to it, and at the end room for one mode.
     #[inline(always)]
-    fn add_modes<A: Arithmetic>(&mut self, model: &Model, collocation: &Collocation<S>, sums: &mut [Sum<S>]) {
-        let (h, shapes) = (self.length, &collocation.shapes);
+    fn set<A: Arithmetic>(&mut self, h: f64, model: &Model, collocation: &Collocation<S>, sums: &mut [Sum<S>]) {
+        let shapes = &collocation.shapes;
         for (i, mode) in model.modes.iter().enumerate() {
             let mode_over_step = ModeOverStep::new(mode.omega_squared, mode.damping, h);
             let response = mode_over_step.response::<S, A>(&collocation.nodes, shapes);
@@ -259,7 +407,7 @@ impl<const S: usize> StepCoefficients<S> {
                 port.and_then(|port| port.shape.get(i)).copied().unwrap_or_default()
             };
             let mut of_port = sums.iter_mut();
-            for (p, (port, step)) in model.ports.iter().zip(&mut self.ports).enumerate() {
+            for (p, (port, range)) in model.ports.iter().zip(self.of_port).enumerate() {
                 let b = displacement(p);
                 for (q, sum) in of_port.by_ref().take(p + 2).enumerate() {
                     let weight = b * if q == 0 {
@@ -271,8 +419,9 @@ impl<const S: usize> StepCoefficients<S> {
                         sum.add::<A>(weight, &response);
                     }
                 }
-                let own = i.checked_sub(port.modes.start).and_then(|own| step.modes.get_mut(own));
-                if let Some(rows) = own {
+                if port.modes.contains(&i)
+                    && let Some(rows) = self.rows.get_mut(range.start + i - port.modes.start)
+                {
                     rows.set::<A>(b, mode, &response, h);
                 }
             }
@@ -360,21 +509,15 @@ fn slot(length: f64) -> usize {
     usize::try_from(octave + elsewhere).unwrap_or_default() % SLOTS
 }
 
-/// Sums over the modes that a step needs: of each port under the base acceleration and under forces at the ports up to it, and
-/// room for one mode.
-fn sums(model: &Model) -> usize {
-    (1..=model.ports.len()).map(|p| p + 1).sum::<usize>() + 1
-}
-
 /// Cache of coefficients by step length. Its content never affects results, only the time they take.
 #[derive(Clone, Debug)]
 pub struct Cache<const S: usize> {
     collocation: Shared<S>,
-    /// For recurring lengths, each in the slot of its hash.
-    slots: Vec<StepCoefficients<S>>,
-    /// For the last other length.
-    other: Box<StepCoefficients<S>>,
-    /// While coefficients are computed.
+    /// For recurring lengths, and first for the last other one.
+    places: Places<S>,
+    /// The place of each slot that a recurring length may have by its hash; 0: none yet.
+    of_slot: [u8; SLOTS],
+    /// While coefficients are computed: for each response, and for one mode.
     sums: Vec<Sum<S>>,
     /// Piece of a random acceleration.
     piece: Piece,
@@ -384,7 +527,7 @@ pub struct Cache<const S: usize> {
 #[derive(Clone, Copy, Debug)]
 pub struct Prepared<'a, const S: usize> {
     /// The coefficients of its length.
-    pub step: &'a StepCoefficients<S>,
+    pub step: StepCoefficients<'a, S>,
     /// The polynomials.
     pub collocation: &'a Collocation<S>,
     /// Accelerations of the generator.
@@ -394,29 +537,23 @@ pub struct Prepared<'a, const S: usize> {
 impl<const S: usize> Cache<S> {
     /// Allocates for the model.
     pub fn new(model: &Model, home: &'static Home<S>) -> Self {
+        let sizes = Sizes::of::<S>(model);
+        let sums = vec![Sum::zeroed(); sizes.responses + 1];
+        let mut places = Places::reserved(sizes, SLOTS + 1);
+        places.add(&model.generator);
         Self {
             collocation: Shared::of(home),
-            slots: (0..SLOTS).map(|_| StepCoefficients::empty(model)).collect(),
-            other: Box::new(StepCoefficients::empty(model)),
-            sums: vec![Sum::zeroed(); sums(model)],
+            places,
+            of_slot: [0; SLOTS],
+            sums,
             piece: Piece::default(),
         }
     }
 
-    /// What it takes of memory for the model, bytes.
+    /// What it takes of memory for the model at most, bytes.
     pub fn size(model: &Model) -> usize {
-        let axial = model
-            .axial()
-            .map_or(0, |_| model.modes.len() * size_of::<ModeColumns<S>>());
-        let following = model.friction().map_or(0, |_| S * size_of::<Nodal<S>>());
-        let rows: usize = model
-            .ports
-            .iter()
-            .map(|port| port.modes.len() * size_of::<NodeRows<S>>())
-            .sum();
-        let fixed = size_of::<StepCoefficients<S>>() + size_of::<EndRows<S>>() + axial + following + rows;
-        let sums = sums(model);
-        sums * size_of::<Sum<S>>() + (SLOTS + 1) * (fixed + sums * size_of::<Response<S>>())
+        let sizes = Sizes::of::<S>(model);
+        (sizes.responses + 1) * size_of::<Sum<S>>() + (SLOTS + 1) * sizes.bytes::<S>()
     }
 
     /// The polynomials.
@@ -426,42 +563,35 @@ impl<const S: usize> Cache<S> {
 
     /// The coefficients for a length, with the base acceleration of a step from `time` (s) on.
     pub fn prepare(&mut self, time: f64, length: f64, recurring: bool, model: &Model) -> Prepared<'_, S> {
-        let (step, collocation, piece) = self.entry(length, recurring, model);
+        let place = self.place(length, recurring, model);
+        if self.places.length(place).to_bits() != length.to_bits() {
+            self.places
+                .fill(place, length, model, &self.collocation, &mut self.sums);
+        }
+        let step = self.places.view(place);
         Prepared {
             step,
-            collocation,
-            generated: model.generator.over_step(model.simd, time, &step.turns, piece),
+            collocation: &self.collocation,
+            generated: model.generator.over_step(model.simd, time, step.turns, &mut self.piece),
         }
     }
 
     /// The coefficients for a length, if they are known.
-    pub fn known(&self, length: f64, recurring: bool) -> Option<&StepCoefficients<S>> {
-        let entry = self
-            .slots
-            .get(slot(length))
-            .filter(|_| recurring)
-            .unwrap_or(&self.other);
-        (entry.length.to_bits() == length.to_bits()).then_some(entry)
+    pub fn known(&self, length: f64, recurring: bool) -> Option<StepCoefficients<'_, S>> {
+        let slot = self.of_slot.get(slot(length)).filter(|_| recurring);
+        let place = slot.map_or(0, |place| usize::from(*place));
+        (self.places.length(place).to_bits() == length.to_bits()).then(|| self.places.view(place))
     }
 
-    /// The coefficients for a length, `recurring`: kept in a slot; and the piece of a random acceleration.
-    fn entry(
-        &mut self,
-        length: f64,
-        recurring: bool,
-        model: &Model,
-    ) -> (&StepCoefficients<S>, &Collocation<S>, &mut Piece) {
-        let Self {
-            collocation,
-            slots,
-            other,
-            sums,
-            piece,
-        } = self;
-        let entry = slots.get_mut(slot(length)).filter(|_| recurring).unwrap_or(other);
-        if entry.length.to_bits() != length.to_bits() {
-            entry.fill(length, model, collocation, sums);
+    /// The place for the coefficients of a length, `recurring`: one that is kept.
+    fn place(&mut self, length: f64, recurring: bool, model: &Model) -> usize {
+        let Some(place) = self.of_slot.get_mut(slot(length)).filter(|_| recurring) else {
+            return 0;
+        };
+        if *place == 0 {
+            // There is one for each slot.
+            *place = u8::try_from(self.places.add(&model.generator)).unwrap_or_default();
         }
-        (entry, collocation, piece)
+        usize::from(*place)
     }
 }

@@ -24,7 +24,7 @@ struct Defects([f64; MAX_LINKS]);
 /// What a step is estimated from: its links, its coefficients, and what moves it beside the unknown forces.
 pub(super) struct Judged<'a, const S: usize, const L: usize> {
     pub(super) linked: &'a Linked<'a, S, L>,
-    pub(super) step: &'a StepCoefficients<S>,
+    pub(super) step: StepCoefficients<'a, S>,
     pub(super) collocation: &'a Collocation<S>,
     pub(super) free: &'a FreeResponse<S>,
     /// Whether inputs, or their slopes, may just have changed: forces then bend, and a defect that passes through zero shows
@@ -161,7 +161,7 @@ impl<const S: usize, const L: usize> Judged<'_, S, L> {
         if let Some(of_loads) = &free.axial {
             motion.add_defect::<A>(of_loads, link.sense);
         } else {
-            let of_base = &step.ports[link.port].acceleration.defect;
+            let of_base = &step.acceleration(link.port).defect;
             motion.add_defect::<A>(of_base, link.sense * free.start_defect);
         }
         for (other, defect) in links.iter().zip(&defects.0) {
@@ -204,17 +204,17 @@ impl<const S: usize, const L: usize> Judged<'_, S, L> {
 #[inline(always)]
 pub(super) fn estimate_in_flight<const S: usize>(
     model: &Model,
-    step: &StepCoefficients<S>,
+    step: StepCoefficients<'_, S>,
     free: &FreeResponse<S>,
     trial: &mut Trial<S>,
 ) {
     let missed_velocity = free.missed_mean * step.length;
     let (mut at_end, mut inside) = (0.0_f64, 0.0_f64);
     for link in &model.links {
-        let (Some(law), Some(port)) = (link.contact(), step.ports.get(link.port)) else {
+        let Some(law) = link.contact() else {
             continue;
         };
-        let rows = free.axial.as_ref().unwrap_or(&port.acceleration.defect);
+        let rows = free.axial.as_ref().unwrap_or(&step.acceleration(link.port).defect);
         let defect = if free.axial.is_some() {
             1.0
         } else {

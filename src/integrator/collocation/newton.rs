@@ -190,7 +190,7 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
     )]
     pub(crate) fn new<A: Arithmetic>(
         (model, state): (&'a Model, &'a State),
-        step: &'a StepCoefficients<S>,
+        step: StepCoefficients<'a, S>,
         unknowns: &'a Unknowns,
         joined: &'a mut Joined<S>,
     ) -> Self {

@@ -134,28 +134,42 @@ impl<const S: usize> Shapes<S> {
 /// `n`-fold integrals by Cauchy's formula, the integral of `(x - s)^(n-1) / (n-1)!` times the shape, by Gauss
 /// quadrature.
 fn integrals<const S: usize>(nodes: &Nodal<S>) -> Vec<Table<S>> {
-    let mut tables = vec![(Table::<S>::ZERO, Table::<S>::ZERO); TERMS];
+    let mut tables = vec![Table::<S>::ZERO; TERMS];
     let points: Vec<_> = legendre::gauss(POINTS).collect();
+    // Of each shape, and of its magnitude.
+    let mut sums = vec![[[0.0; MAX_SHAPES]; 2]; TERMS];
     for (i, &x) in nodes.iter().enumerate() {
+        sums.fill([[0.0; MAX_SHAPES]; 2]);
         for (point, weight) in &points {
             let s = x * f64::midpoint(1.0, *point);
-            let values: Vec<f64> = shape_values(nodes, s).collect();
+            let mut values = [[0.0; MAX_SHAPES]; 2];
+            let [signed, sizes] = &mut values;
+            for ((value, size), shape) in signed.iter_mut().zip(sizes).zip(shape_values(nodes, s)) {
+                (*value, *size) = (shape, shape.abs());
+            }
             let mut kernel = 0.5 * weight * x;
-            for (n, (table, sizes)) in tables.iter_mut().enumerate() {
-                for ((column, size), value) in table.columns_mut().zip(sizes.columns_mut()).zip(&values) {
-                    if let (Some(sum), Some(size)) = (column.get_mut(i), size.get_mut(i)) {
+            for (n, sums) in sums.iter_mut().enumerate() {
+                for (sums, values) in sums.iter_mut().zip(&values) {
+                    for (sum, value) in sums.iter_mut().zip(values) {
                         *sum += kernel * value;
-                        *size += (kernel * value).abs();
                     }
                 }
                 kernel *= (x - s) / (n + 1) as f64;
             }
         }
+        for (table, [sums, sizes]) in tables.iter_mut().zip(&sums) {
+            for ((column, sum), size) in table.columns_mut().zip(sums).zip(sizes) {
+                // What is mere rounding is zero.
+                let sum = if sum.abs() <= 16.0 * f64::EPSILON * size {
+                    0.0
+                } else {
+                    *sum
+                };
+                column.iter_mut().skip(i).take(1).for_each(|entry| *entry = sum);
+            }
+        }
     }
     tables
-        .into_iter()
-        .map(|(table, sizes)| significant(table, sizes))
-        .collect()
 }
 
 /// The shapes at `s`.
@@ -187,18 +201,6 @@ fn table<const S: usize>(at_nodes: &[Vec<Row<S>>; S], m: usize) -> Table<S> {
         let values = row.nodal.iter().chain([&row.error]);
         for (column, value) in table.columns_mut().zip(values) {
             column.iter_mut().skip(i).take(1).for_each(|entry| *entry = *value);
-        }
-    }
-    table
-}
-
-/// Sets values that are mere rounding to zero.
-fn significant<const S: usize>(mut table: Table<S>, mut sizes: Table<S>) -> Table<S> {
-    for (column, sizes) in table.columns_mut().zip(sizes.columns_mut()) {
-        for (value, size) in column.iter_mut().zip(sizes) {
-            if value.abs() <= 16.0 * f64::EPSILON * *size {
-                *value = 0.0;
-            }
         }
     }
     table

@@ -17,7 +17,7 @@ use crate::state::State;
 pub(super) fn follow<const S: usize, A: Arithmetic>(
     model: &Model,
     state: &State,
-    (step, collocation): (&StepCoefficients<S>, &Collocation<S>),
+    (step, collocation): (StepCoefficients<'_, S>, &Collocation<S>),
     (rubbing, friction): (usize, &Friction),
     trial: &mut Trial<S>,
 ) {

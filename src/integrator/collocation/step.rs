@@ -151,11 +151,11 @@ impl<const S: usize> Step<'_, S> {
 
         let pushed = scaled(accelerations, -1.0);
         let mut ports = [NodalMotion::ZERO; MAX_PORTS];
-        for ((port, coefficients), motion) in model.ports.iter().zip(&step.ports).zip(&mut ports) {
+        for ((port, coefficients), motion) in model.ports.iter().zip(step.ports()).zip(&mut ports) {
             // Separate sums for q and v, which the processor computes in parallel.
             let [mut d, mut rate, mut from_v, mut rate_from_v] = [[0.0; S]; 4];
             let states = &state.modes[port.modes.clone()];
-            for (mode, row) in states.iter().zip(&coefficients.modes) {
+            for (mode, row) in states.iter().zip(coefficients.modes) {
                 add::<S, A>(&mut d, mode.q, &row.from_q);
                 add::<S, A>(&mut from_v, mode.v, &row.from_v);
                 add::<S, A>(&mut rate, mode.q, &row.rate_from_q);
@@ -395,7 +395,7 @@ impl<const S: usize> Step<'_, S> {
 )]
 fn end_of_lanes<const S: usize, A: Arithmetic>(
     state: &State,
-    step: &StepCoefficients<S>,
+    step: StepCoefficients<'_, S>,
     first: usize,
     loads: &LaneLoads<S>,
 ) -> ([f64; LANES], [f64; LANES]) {
