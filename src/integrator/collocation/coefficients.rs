@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use bytemuck::{Zeroable, write_zeroes};
 
-use crate::beam::mode::{Modal, Mode};
+use crate::beam::mode::{MAX_MODES, Modal, Mode};
 use crate::excitation::generator::{Generator, Turns};
 use crate::excitation::random::Piece;
 use crate::excitation::waveform::Accelerations;
@@ -36,20 +36,25 @@ pub struct NodeRows<const S: usize> {
 }
 
 /// State of the modes at the end of the step; arrays over the modes, for vector arithmetic.
-#[derive(Clone, Copy, Debug, Zeroable)]
-pub struct EndRows<const S: usize> {
+#[derive(Clone, Copy, Debug)]
+pub struct EndRows<'a> {
     /// q and v at the end per initial q and v, and per load at each node.
-    pub q_from_q: Modal,
+    pub q_from_q: &'a Modal,
     /// See [`EndRows::q_from_q`].
-    pub q_from_v: Modal,
+    pub q_from_v: &'a Modal,
     /// See [`EndRows::q_from_q`].
-    pub v_from_q: Modal,
+    pub v_from_q: &'a Modal,
     /// See [`EndRows::q_from_q`].
-    pub v_from_v: Modal,
+    pub v_from_v: &'a Modal,
     /// See [`EndRows::q_from_q`].
-    pub q_from_load: [Modal; S],
+    pub q_from_load: &'a [Modal],
     /// See [`EndRows::q_from_q`].
-    pub v_from_load: [Modal; S],
+    pub v_from_load: &'a [Modal],
+}
+
+/// How many arrays [`EndRows`] are, with `nodes` nodes.
+const fn end_rows(nodes: usize) -> usize {
+    4 + 2 * nodes
 }
 
 impl<const S: usize> NodeRows<S> {
@@ -65,7 +70,22 @@ impl<const S: usize> NodeRows<S> {
     }
 }
 
-impl<const S: usize> EndRows<S> {
+impl<'a> EndRows<'a> {
+    /// From the arrays, one after the other.
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "as many as there are")]
+    fn of(rows: &'a [Modal]) -> Self {
+        let (q_from_load, v_from_load) = rows[4..].split_at(rows.len() / 2 - 2);
+        Self {
+            q_from_q: &rows[0],
+            q_from_v: &rows[1],
+            v_from_q: &rows[2],
+            v_from_v: &rows[3],
+            q_from_load,
+            v_from_load,
+        }
+    }
+
     /// The free motion of a mode.
     pub fn free(&self, i: usize) -> Option<FreeMotion> {
         Some(FreeMotion {
@@ -74,20 +94,6 @@ impl<const S: usize> EndRows<S> {
             v_from_q: *self.v_from_q.get(i)?,
             v_from_v: *self.v_from_v.get(i)?,
         })
-    }
-
-    #[expect(clippy::indexing_slicing, reason = "no model has more modes than there is room for")]
-    fn set(&mut self, i: usize, free: &FreeMotion, q_from_load: &Nodal<S>, v_from_load: &Nodal<S>) {
-        self.q_from_q[i] = free.q_from_q;
-        self.q_from_v[i] = free.q_from_v;
-        self.v_from_q[i] = free.v_from_q;
-        self.v_from_v[i] = free.v_from_v;
-        for (row, load) in self.q_from_load.iter_mut().zip(q_from_load) {
-            row[i] = *load;
-        }
-        for (row, load) in self.v_from_load.iter_mut().zip(v_from_load) {
-            row[i] = *load;
-        }
     }
 }
 
@@ -170,7 +176,7 @@ pub struct StepCoefficients<'a, const S: usize> {
     /// per difference of the two from the start, 1/s; else empty.
     pub following: &'a [Nodal<S>],
     /// The modes at the end.
-    pub end: &'a EndRows<S>,
+    pub end: EndRows<'a>,
     /// Phase advance of the generator.
     pub turns: &'a Turns<S>,
     /// Port by port the motion per base acceleration, and per force at each port up to that one.
@@ -234,7 +240,7 @@ struct Places<const S: usize> {
     responses: Vec<Response<S>>,
     columns: Vec<ModeColumns<S>>,
     following: Vec<Nodal<S>>,
-    ends: Vec<EndRows<S>>,
+    ends: Vec<Modal>,
     turns: Vec<Turns<S>>,
     sizes: Sizes,
 }
@@ -288,7 +294,7 @@ impl Sizes {
             + self.responses * size_of::<Response<S>>()
             + self.columns * size_of::<ModeColumns<S>>()
             + self.following * size_of::<Nodal<S>>()
-            + size_of::<EndRows<S>>()
+            + end_rows(S) * size_of::<Modal>()
             + size_of::<Turns<S>>()
     }
 }
@@ -302,13 +308,14 @@ impl<const S: usize> Places<S> {
             responses: Vec::with_capacity(places * sizes.responses),
             columns: Vec::with_capacity(places * sizes.columns),
             following: Vec::with_capacity(places * sizes.following),
-            ends: Vec::with_capacity(places),
+            ends: Vec::with_capacity(places * end_rows(S)),
             turns: Vec::with_capacity(places),
             sizes,
         }
     }
 
-    /// Makes a place, for no length yet; returns its index.
+    /// Makes a place, for no length yet; returns its index. Out of line, for the sake of the stack.
+    #[inline(never)]
     fn add(&mut self, generator: &Generator) -> usize {
         let place = self.lengths.len();
         let (sizes, places) = (&self.sizes, place + 1);
@@ -316,7 +323,7 @@ impl<const S: usize> Places<S> {
         self.responses.resize_with(places * sizes.responses, Response::zeroed);
         self.columns.resize_with(places * sizes.columns, ModeColumns::zeroed);
         self.following.resize(places * sizes.following, [0.0; S]);
-        self.ends.push(EndRows::zeroed());
+        self.ends.resize(places * end_rows(S), [0.0; MAX_MODES]);
         self.turns.push(Turns::room(generator));
         self.lengths.push(0.0);
         place
@@ -336,7 +343,7 @@ impl<const S: usize> Places<S> {
             length: self.lengths[place],
             columns: part(&self.columns, place, sizes.columns),
             following: part(&self.following, place, sizes.following),
-            end: &self.ends[place],
+            end: EndRows::of(part(&self.ends, place, end_rows(S))),
             turns: &self.turns[place],
             responses: part(&self.responses, place, sizes.responses),
             rows: part(&self.rows, place, sizes.rows),
@@ -345,6 +352,7 @@ impl<const S: usize> Places<S> {
     }
 
     /// Computes the coefficients for a length in place.
+    #[inline(never)]
     #[expect(clippy::indexing_slicing, reason = "a place that is there")]
     fn fill(&mut self, place: usize, length: f64, model: &Model, collocation: &Collocation<S>, sums: &mut [Sum<S>]) {
         let (h, shapes, simd) = (length, &collocation.shapes, model.simd);
@@ -355,7 +363,7 @@ impl<const S: usize> Places<S> {
             rows: part_mut(&mut self.rows, place, sizes.rows),
             of_port: &sizes.of_port,
             columns: part_mut(&mut self.columns, place, sizes.columns),
-            end: &mut self.ends[place],
+            end: part_mut(&mut self.ends, place, end_rows(S)),
         };
         sums.iter_mut().for_each(write_zeroes);
         compiled_for!(simd, A => modes.set::<A>(h, model, collocation, sums));
@@ -390,7 +398,7 @@ struct Modes<'a, const S: usize> {
     rows: &'a mut [NodeRows<S>],
     of_port: &'a [Range<usize>],
     columns: &'a mut [ModeColumns<S>],
-    end: &'a mut EndRows<S>,
+    end: &'a mut [Modal],
 }
 
 impl<const S: usize> Modes<'_, S> {
@@ -427,7 +435,12 @@ impl<const S: usize> Modes<'_, S> {
             }
             let end = FreeMotion::new(mode.omega_squared, mode.damping, h);
             let loads = response.at_end::<A>(shapes);
-            self.end.set(i, &end, &scaled(&loads.q, h * h), &scaled(&loads.v, h));
+            let (q_from_load, v_from_load) = (scaled(&loads.q, h * h), scaled(&loads.v, h));
+            let free = [end.q_from_q, end.q_from_v, end.v_from_q, end.v_from_v];
+            let entries = free.iter().chain(&q_from_load).chain(&v_from_load);
+            for (row, entry) in self.end.iter_mut().zip(entries) {
+                row.iter_mut().skip(i).take(1).for_each(|own| *own = *entry);
+            }
             if let (Some(columns), Some(alone)) = (self.columns.get_mut(i), of_port.next()) {
                 let Pair { q, v } = &response.impulse;
                 columns.q_from_v = scaled(q, h);

@@ -247,7 +247,7 @@ pub(crate) fn is_rounding<const S: usize>(model: &Model, state: &State, trial: &
         } = nodes.tangent;
         // The force at the first node feeds back only over the time up to it, some 1 / S^2 of the step.
         let reaction = 1.0 + gain / (S * S) as f64;
-        Some((stiffness * displacement + damping * velocity) / reaction)
+        Some((stiffness.abs() * displacement + damping * velocity) / reaction)
     });
     error <= of_links.sum()
 }

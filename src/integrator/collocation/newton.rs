@@ -130,11 +130,11 @@ pub(crate) struct Joined<const S: usize>([[Response<S>; MAX_UNKNOWNS]; MAX_UNKNO
 /// Tangent of the law of a link within a step; zero if its force does not depend on the motion.
 #[derive(Clone, Copy, Debug, Default, Zeroable)]
 pub struct Tangent {
-    /// Greatest stiffness at start and nodes, N/m.
+    /// Greatest stiffness at start and nodes, N/m; that of a magnet is negative.
     pub stiffness: f64,
     /// Greatest damping there, N s/m.
     pub damping: f64,
-    /// Loop gain: change of the force at the end, at this tangent, per constant force of the link over the step.
+    /// Loop gain: change of the force at the end, at this tangent, per constant force of the link over the step; its magnitude.
     pub gain: f64,
 }
 
@@ -412,14 +412,15 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
             let start = law.stiffness(link.approach + self.state.links[index].approach);
             (stiffness, damping) = (stiffness.max(start), damping.max(law.damping() * start));
         }
+        let (d, rate) = self.responses[a][a].columns.at_end(&[1.0; S]);
+        let gain = (stiffness * d + damping * rate).max(0.0);
         if let LinkLaw::Magnet(_) = link.law {
             stiffness = -stiffness;
         }
-        let (d, rate) = self.responses[a][a].columns.at_end(&[1.0; S]);
         Tangent {
             stiffness,
             damping,
-            gain: (stiffness * d + damping * rate).max(0.0),
+            gain,
         }
     }
 }

@@ -409,9 +409,9 @@ fn end_of_lanes<const S: usize, A: Arithmetic>(
     add_products::<LANES, A>(&mut q, &lanes(&rows.q_from_v), &start_v);
     add_products::<LANES, A>(&mut v, &lanes(&rows.v_from_q), &start_q);
     add_products::<LANES, A>(&mut v, &lanes(&rows.v_from_v), &start_v);
-    for (node, load) in loads.iter().enumerate() {
-        add_products::<LANES, A>(&mut q, &lanes(&rows.q_from_load[node]), load);
-        add_products::<LANES, A>(&mut v, &lanes(&rows.v_from_load[node]), load);
+    for ((load, of_q), of_v) in loads.iter().zip(rows.q_from_load).zip(rows.v_from_load) {
+        add_products::<LANES, A>(&mut q, &lanes(of_q), load);
+        add_products::<LANES, A>(&mut v, &lanes(of_v), load);
     }
     (q, v)
 }
