@@ -317,7 +317,7 @@ fn header(out: &Path, constants: &str) -> Result<(), Box<dyn Error>> {
     let include = out.join("include");
     fs::create_dir_all(&include)?;
     println!("cargo:rustc-env=RELAY_CONTACT_INCLUDE={}", include.display());
-    let sources = ["types", "common", "values", "fmu_state", "co_simulation"];
+    let sources = ["types", "common", "values", "fmu_state", "co_simulation", "course"];
     sources
         .iter()
         .fold(cbindgen::Builder::new(), |builder, source| {

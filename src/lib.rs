@@ -16,6 +16,7 @@
 //! chatter, circuits  interruptions of the current;   force_error  the error of the contact force so far
 //! electrical  contact force -> resistance;   conduction  what the circuits conduct;   harmonic  the same contact in the frequency domain
 //! simulation  Model and State together, read by output;   reference  the model's parts, for reference solutions
+//! many        many scenes at once, on all cores
 //! fmi2        all of it behind the C interface of FMI 2.0
 //! ```
 //!
@@ -69,6 +70,7 @@ pub mod inputs;
 mod integrator;
 mod link;
 mod magnet;
+pub mod many;
 mod math;
 mod memory;
 mod model;

@@ -5,7 +5,8 @@
     result = relay_contact.run("chatter-41g", excitation_amplitude=300.0, progress=True)
     print(result["contact.force"].min(), result.units["contact.force"])
 
-`scenes()` gives the scenes that come along, `run` runs one with changes, `qualify` tests a relay as a standard asks,
+`scenes()` gives the scenes that come along, `run` runs one with changes, `run_many` many on all cores, with a row of a
+table for each; `side_by_side` does so with work of your own. `qualify` tests a relay as a standard asks,
 `compare` puts a run beside a measurement, `identify` finds parameters of a relay by measurements.
 `fmu_path()` is the component itself, a file for any tool that imports FMI 2.0 for co-simulation. `Component` and
 `Contact` step it by hand.
@@ -15,6 +16,7 @@ from typing import Any
 
 from relay_contact.component import Array, Component, Contact, Unit, Value, Values, units
 from relay_contact.files import RelayContactError, RelayContactWarning, fmu_path, scenes
+from relay_contact.many import run_many, side_by_side
 from relay_contact.scene import Result, Scene, read_table, run, write_table
 
 
@@ -37,5 +39,5 @@ def __getattr__(name: str) -> Any:  # noqa: ANN401
 
 __all__ = [
     "Array", "Component", "Contact", "RelayContactError", "RelayContactWarning", "Result", "Scene", "Unit", "Value",
-    "Values", "fmu_path", "read_table", "run", "scenes", "units", "write_table",
+    "Values", "fmu_path", "read_table", "run", "run_many", "scenes", "side_by_side", "units", "write_table",
 ]  # fmt: skip

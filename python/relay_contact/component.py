@@ -8,6 +8,7 @@ import warnings
 import weakref
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from contextvars import ContextVar
 from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
@@ -20,7 +21,7 @@ from typing import Any, Self
 import numpy as np
 from fmpy import extract, fmi2, platform, read_model_description, supported_platforms
 from fmpy.fmi1 import FMICallException
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from relay_contact.files import RelayContactError, RelayContactWarning, fmu_path, shown
 from relay_contact.spring import OF_FILES, applied
@@ -29,6 +30,9 @@ from relay_contact.stepping import drive
 DIFFERENCE = re.compile(r"\S*[/\\]\S*|\d[\d.e+-]*")
 """Paths and numbers, by which two warnings may differ that say the same."""
 SIGNS = {"Ohm": "Ω", "mOhm": "mΩ", "um": "µm", "us": "µs", "degC": "°C", "m/s2": "m/s²", "kg/m3": "kg/m³", "1": ""}
+
+KEPT: ContextVar[dict[str, str] | None] = ContextVar("warnings", default=None)
+"""Where warnings are kept of what runs beside others, by their kind; those of the rest are with the component."""
 
 SETTABLE = ("parameter", "input")
 LARGEST_REAL = sys.float_info.max
@@ -119,7 +123,8 @@ class Component:
         """Keep a warning, and tell it as a Python warning, once for all instances."""
         message = re.sub(r"^fmi2\w+: ", "", message)
         kind = DIFFERENCE.sub("", message)
-        self.warnings.setdefault(kind, message)
+        kept = KEPT.get()
+        (self.warnings if kept is None else kept).setdefault(kind, message)
         if kind not in self.told:
             self.told.add(kind)
             warnings.warn(message, RelayContactWarning, stacklevel=3)
@@ -282,7 +287,7 @@ class Contact:
         self.fmu.setReal(references, [begin])
         self.fmu.setRealInputDerivatives(references, [1], [(end - begin) / length])
 
-    def drive(self, time: Array, courses: Mapping[str, Array], watched: Sequence[str] = ()) -> dict[str, Array]:
+    def drive(self, time: ArrayLike, courses: Mapping[str, ArrayLike], watched: Sequence[str] = ()) -> dict[str, Array]:
         """Have inputs follow straight lines between points of time, a communication step each.
 
         Return what is watched after each step. A time given twice is a jump; the first is that already reached.

@@ -11,6 +11,7 @@ import hashlib
 import math
 from collections.abc import Mapping
 from pathlib import Path
+from threading import get_ident
 from typing import Any
 
 import tomlkit
@@ -116,6 +117,10 @@ def applied(values: Mapping[str, Any], start: float, folder: Path) -> dict[str, 
         if file and (mine or shared):
             text = text_of(file, mine, modulus if shared else None, prefix)
             path = folder / f"spring-{hashlib.sha256(text.encode()).hexdigest()[:16]}.toml"
-            path.write_text(text, encoding="utf-8")
+            if not path.exists():
+                # At once, as another thread may look for it now.
+                part = path.with_suffix(f".{get_ident()}")
+                part.write_text(text, encoding="utf-8")
+                part.replace(path)
             own[parameter] = str(path)
     return own

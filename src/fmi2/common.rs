@@ -9,7 +9,7 @@ use std::ptr;
 
 use libc::{c_char, size_t};
 
-use super::entry::{array, call, hand_out, panic_text, take_back, text};
+use super::entry::{array, call, hand_out, take_back, text};
 use super::environment::with_default;
 use super::failure::Failure;
 use super::instance::Instance;
@@ -20,6 +20,7 @@ use super::types::{
     fmi2Boolean, fmi2CallbackFunctions, fmi2CoSimulation, fmi2Component, fmi2Error, fmi2False, fmi2Real, fmi2Status,
     fmi2String, fmi2Type,
 };
+use crate::many::panic_text;
 use crate::variables::{GUID, PLAIN_GUID};
 
 /// The platform types the functions use: "default".

@@ -1,7 +1,6 @@
 //! Entry and exit of every function: checks that the component is an instance and that the call is allowed now,
 //! handles failures and panics. Also the checks of pointers.
 
-use std::any::Any;
 use std::cell::UnsafeCell;
 use std::ffi::CStr;
 use std::mem::MaybeUninit;
@@ -13,6 +12,7 @@ use super::failure::Failure;
 use super::instance::Instance;
 use super::states::Function;
 use super::types::{fmi2Component, fmi2Error, fmi2OK, fmi2Status, fmi2String};
+use crate::many::panic_text;
 
 /// What a component points to. The guard comes first: it distinguishes an instance from other memory, and rejects a
 /// second call during a call, from another thread or from the importer's log callback.
@@ -99,15 +99,6 @@ pub(super) unsafe fn call(
     });
     guard.store(IDLE, Ordering::Release);
     status
-}
-
-/// The message of a panic.
-pub(super) fn panic_text(panic: &(dyn Any + Send)) -> String {
-    panic
-        .downcast_ref::<&str>()
-        .map(ToString::to_string)
-        .or_else(|| panic.downcast_ref::<String>().cloned())
-        .unwrap_or_default()
 }
 
 fn usable<T>(pointer: *const T, length: usize) -> bool {

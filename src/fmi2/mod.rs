@@ -15,6 +15,7 @@
 
 mod co_simulation;
 mod common;
+mod course;
 mod entry;
 mod environment;
 mod failure;
@@ -31,6 +32,7 @@ mod values;
 
 pub use co_simulation::*;
 pub use common::*;
+pub use course::*;
 pub use fmu_state::*;
 pub use logger::Category;
 pub use types::*;

@@ -11,9 +11,11 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from threading import Lock
 
 from relay_contact.component import Component, Values
 from relay_contact.files import HERE, RelayContactError
+from relay_contact.many import side_by_side
 from relay_contact.qualification.excitation import Test
 from relay_contact.qualification.judgement import tested, together
 from relay_contact.qualification.position import Position
@@ -70,8 +72,8 @@ def text_of(finding: Finding) -> str:
     return FINDING.dump_json(finding, indent=1).decode()
 
 
-def on_cluster(address: str, component: Component, jobs: list[Job]) -> Iterator[tuple[Path, str]]:
-    """Run tests on a Dask cluster; return the path and text of each finding as it is finished."""
+def on_cluster(address: str, component: Component, jobs: list[Job], keep: Callable[[Path, str], object]) -> None:
+    """Run tests on a Dask cluster; pass on the path and text of each finding as it is finished."""
     try:
         from distributed import Client, as_completed
     except ImportError as error:
@@ -85,7 +87,7 @@ def on_cluster(address: str, component: Component, jobs: list[Job]) -> Iterator[
             bare = replace(position, component=None)  # type: ignore[arg-type]
             paths[client.submit(on_worker, fmu, springs, bare, test, points, pure=False)] = path
         for future, text in as_completed(list(paths), with_results=True):
-            yield paths[future], text
+            keep(paths[future], text)
 
 
 def assess(
@@ -104,11 +106,22 @@ def assess(
     todo = [job for job in jobs if not job[0].exists()]
     for _ in range(len(jobs) - len(todo)):
         tell("")
-    for path, text in on_cluster(cluster, component, todo) if cluster else here(todo, tell):
+    telling = Lock()
+
+    def told(label: str) -> None:
+        with telling:
+            tell(label)
+
+    def keep(path: Path, text: str) -> None:
         part = path.with_name(f"{path.name}.{os.getpid()}.part")
         part.write_text(text, encoding="utf-8")
         part.replace(path)
-        tell("")
+        told("")
+
+    if cluster:
+        on_cluster(cluster, component, todo, keep)
+    else:
+        here(todo, keep, told)
     found = [FINDING.validate_json(path.read_bytes()) for path, *_ in jobs]
     for warning in (warning for finding in found for warning in finding.warnings):
         component.warn(warning)
@@ -129,13 +142,23 @@ def positions(component: Component, relay: Relay, standard: Standard) -> Iterato
                 yield Position(component, relay, name, standard.contacts, tuple(tests), model, axis), tests
 
 
-def here(jobs: list[Job], tell: Callable[[str], object]) -> Iterator[tuple[Path, str]]:
-    """Run tests one after another; return the path and text of each finding."""
-    for path, position, test, points in jobs:
-        several = f", {position.model.name}" if len(position.relay.models) > 1 else ""
-        along = "" if position.axis == NORMAL else f", {position.axis} axis"
-        tell(f"{test.name}, {position.name}{along}{several}")
-        yield path, text_of(tested(position, test, points))
+def here(jobs: list[Job], keep: Callable[[Path, str], object], tell: Callable[[str], object]) -> None:
+    """Run tests on all cores; pass on the path and text of each finding as it is finished.
+
+    Those of a position one after another, as they have in common what its draws answer.
+    """
+    grouped: dict[int, list[Job]] = {}
+    for job in jobs:
+        grouped.setdefault(id(job[1]), []).append(job)
+
+    def run(group: list[Job]) -> None:
+        for path, position, test, points in group:
+            several = f", {position.model.name}" if len(position.relay.models) > 1 else ""
+            along = "" if position.axis == NORMAL else f", {position.axis} axis"
+            tell(f"{test.name}, {position.name}{along}{several}")
+            keep(path, text_of(tested(position, test, points)))
+
+    side_by_side(run, list(grouped.values()))
 
 
 def chosen(standard: Standard, texts: list[str]) -> Standard:

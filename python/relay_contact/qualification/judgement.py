@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from relay_contact.component import Array
+from relay_contact.component import KEPT, Array
 from relay_contact.figures import GRAVITY as G
 from relay_contact.figures import three
 from relay_contact.qualification import synthesis
@@ -383,9 +383,13 @@ def density(sampled: Array, frequency: Array, spacing: float) -> list[float]:
 
 def tested(position: Position, test: Test, points: int) -> Finding:
     """Run a test in a position of the coil, by one of the models; with what the component warned of."""
-    position.component.warnings.clear()
-    finding = judged(position, test, points)
-    return replace(finding, warnings=list(position.component.warnings.values()))
+    warnings: dict[str, str] = {}
+    before = KEPT.set(warnings)
+    try:
+        finding = judged(position, test, points)
+    finally:
+        KEPT.reset(before)
+    return replace(finding, warnings=list(warnings.values()))
 
 
 def judged(position: Position, test: Test, points: int) -> Finding:

@@ -12,6 +12,7 @@ import numpy as np
 from scipy.stats import norm, qmc
 
 from relay_contact.component import Array, Component, Values
+from relay_contact.many import side_by_side
 from relay_contact.qualification import statistics
 from relay_contact.qualification.distributions import LEAST, LIMITS, TWO_SIDED
 from relay_contact.qualification.excitation import Random, Sine, Test, Transient
@@ -190,18 +191,25 @@ class Position:
     def surfaces(self) -> dict[str, statistics.Surface]:
         """Logarithm of the margin of each test over the scores, by linear theory."""
         if not self.shared.surfaces:
-            found: dict[str, dict[str, list[float]]] = {
-                each.part: {test.name: [] for test in self.tests} for each in self.parts
-            }
-            for row in self.scores:
-                responses = self.responses(self.drawn(row)) if len(row) else self.shared.nominal
-                for each in self.parts:
-                    for test in self.tests:
-                        own = each.linear(responses[each.part], test)
-                        found[each.part][test.name].append(np.log(max(own, LOWEST)))
+            # Known to all draws, which run beside each other.
+            nominal = {each.part: each.specimen.response for each in self.parts}
+
+            def margins(row: Array) -> dict[str, dict[str, float]]:
+                responses = self.responses(self.drawn(row)) if len(row) else nominal
+                return {
+                    each.part: {test.name: each.linear(responses[each.part], test) for test in self.tests}
+                    for each in self.parts
+                }
+
+            found = side_by_side(margins, list(self.scores))
             self.shared.surfaces |= {
-                part: {name: statistics.Surface(self.scores, np.array(values)) for name, values in own.items()}
-                for part, own in found.items()
+                each.part: {
+                    test.name: statistics.Surface(
+                        self.scores, np.log([max(own[each.part][test.name], LOWEST) for own in found])
+                    )
+                    for test in self.tests
+                }
+                for each in self.parts
             }
         return self.shared.surfaces[self.part]
 
@@ -223,9 +231,8 @@ class Position:
         """The responses over the overtravel (m), which the wear of the contacts takes away, or over the gap."""
         if not self.shared.worn:
             whole, lifted = self.overtravel, self.lifted
-            self.shared.worn |= {
-                abs(part * whole): self.responses({"contact.overtravel": part * whole - lifted}) for part in WORN
-            }
+            found = side_by_side(lambda part: self.responses({"contact.overtravel": part * whole - lifted}), WORN)
+            self.shared.worn |= {abs(part * whole): own for part, own in zip(WORN, found, strict=True)}
         return {over: responses[self.part] for over, responses in self.shared.worn.items()}
 
     def wear(self, test: Test, factor: float) -> dict[str, list[float]]:

@@ -9,6 +9,7 @@ from scipy.signal import find_peaks
 
 from relay_contact.component import Array, Component, Contact, Values
 from relay_contact.figures import GRAVITY as G
+from relay_contact.many import side_by_side
 from relay_contact.qualification.excitation import STEP, Course, Random, Sine, overall
 from relay_contact.qualification.parts import CLOSED, CONTACT, OPEN, Part, Rest, at_rest, parts
 from relay_contact.qualification.response import Response, stays
@@ -208,11 +209,12 @@ def sweep(
 ) -> list[tuple[Lengths, list[float]]]:
     """Vibrate at frequencies (Hz) of a sweep; return what `steady` gives at each. The responses are of all parts."""
     least = [np.interp(frequencies, *response.sine(test, specimen.lasting)) for response in responses]
-    rows = []
-    for frequency, factor in zip(frequencies, np.min(least, axis=0), strict=True):
-        amplitude = float(test.amplitude(np.array(frequency)))
-        rows.append(steady(specimen, float(frequency), amplitude, factor < SUDDEN))
-    return rows
+
+    def at(point: tuple[float, float]) -> tuple[Lengths, list[float]]:
+        frequency, factor = point
+        return steady(specimen, float(frequency), float(test.amplitude(np.array(frequency))), factor < SUDDEN)
+
+    return side_by_side(at, list(zip(frequencies, np.min(least, axis=0), strict=True)))
 
 
 def sine_threshold(

@@ -27,10 +27,19 @@ impl Instance {
     pub(in crate::fmi2) fn real(&mut self, reference: u32) -> Result<f64, Failure> {
         let variable = find("Real", reference)?;
         match variable.group {
+            Group::RealOutput(_) | Group::RealInput(_) | Group::RealParameter(_) => self.number(reference),
+            _ if self.plain => self.number(reference),
+            _ => Err(wrong_type("Real", variable)),
+        }
+    }
+
+    /// The value of a variable as a real: a choice by its number, true as 1.
+    pub(in crate::fmi2) fn number(&mut self, reference: u32) -> Result<f64, Failure> {
+        let variable = find("Real", reference)?;
+        match variable.group {
             Group::RealOutput(output) => Ok(self.computed(variable)?.real(output)),
             Group::RealInput(input) => Ok(self.inputs.real(input)),
             Group::RealParameter(parameter) => Ok(self.scene.real(parameter)),
-            _ if !self.plain => Err(wrong_type("Real", variable)),
             Group::BooleanOutput(_) | Group::BooleanParameter(_) => {
                 self.boolean(reference).map(|value| f64::from(u8::from(value)))
             }

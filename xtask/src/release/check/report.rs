@@ -89,7 +89,7 @@ pub fn declared() -> BTreeSet<String> {
     code.filter_map(|line| {
         let (before, _) = line.split_once('(')?;
         let name = before.rsplit([' ', '*']).next()?;
-        name.starts_with("fmi2").then(|| name.to_owned())
+        (name.starts_with("fmi2") || name.starts_with("relayContact")).then(|| name.to_owned())
     })
     .collect()
 }

@@ -1,0 +1,172 @@
+"""Many simulations at once, by threads of this process: while the component steps, Python is free for others."""
+
+import contextvars
+import os
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor, as_completed
+from contextvars import ContextVar
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
+
+from relay_contact.component import KEPT, Component, Contact, Value, Values, units
+from relay_contact.files import RelayContactError
+from relay_contact.scene import Scene, progress_bar
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Item = TypeVar("Item")
+Found = TypeVar("Found")
+
+Case = Scene | str | Path | tuple[Scene | str | Path, Values]
+"""A scene, its name or its file; with changes of its parameters and constant inputs."""
+SHARE: ContextVar[int | None] = ContextVar("workers", default=None)
+"""Of what runs beside others: the workers that are left for each."""
+
+
+def cores() -> int:
+    """Return the number of cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def checked(workers: int | None) -> int:
+    """Return the number of workers that is asked for; without one that of the cores, or what others leave of them."""
+    if workers is None:
+        return SHARE.get() or cores()
+    if isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
+        raise RelayContactError(f"workers = {workers!r}: not allowed, allowed is a whole number greater than 0")
+    return workers
+
+
+def side_by_side(
+    work: Callable[[Item], Found], items: Sequence[Item], workers: int | None = None,
+    tell: Callable[[], object] = lambda: None,
+) -> list[Found]:  # fmt: skip
+    """Return what work makes of each item, in their order, by so many threads; those of all cores, if not given.
+
+    Work within work shares them. Warnings of the component are kept in the order of the items. `tell` is called by
+    this thread whenever an item is done. An error ends it, once what runs is done.
+    """
+    workers = checked(workers)
+    used = max(1, min(workers, len(items)))
+    kept: list[dict[str, str]] = [{} for _ in items]
+
+    def own(item: Item, warnings: dict[str, str]) -> Found:
+        SHARE.set(max(1, workers // used))
+        if KEPT.get() is not None:
+            KEPT.set(warnings)
+        return work(item)
+
+    def begun(item: Item, warnings: dict[str, str]) -> Future[Found]:
+        return pool.submit(contextvars.copy_context().run, lambda: own(item, warnings))
+
+    with ThreadPoolExecutor(used) as pool:
+        futures = [begun(item, warnings) for item, warnings in zip(items, kept, strict=True)]
+        try:
+            for future in as_completed(futures):
+                future.result()
+                tell()
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+    for each in kept:
+        for kind, message in each.items():
+            KEPT.get({}).setdefault(kind, message)  # type: ignore[union-attr]
+    return [future.result() for future in futures]
+
+
+def run_many(
+    scenes: Iterable[Case],
+    *,
+    workers: int | None = None,
+    outputs: list[str] | None = None,
+    component: Component | None = None,
+    progress: bool | Callable[[int], object] = False,
+) -> "pd.DataFrame":
+    """Run scenes from their begin to their stop, on all cores; return a table with a row for each, in their order.
+
+    A scene is given by its name, its file or as a `Scene`, alone or with changes of parameters and constant inputs:
+    ("chatter-41g", {"excitation.frequency": 500.0}). The row has what is changed and, at the stop, the outputs of the
+    scene, or those of `outputs`, in the SI units that `attrs["units"]` says; a choice has its number. The values are
+    those of `run`, bit by bit, whatever the number of workers. The column "warning" has what the component warned of.
+    A scene that cannot be run has no outputs, and the column "error" says why; the others are run. `progress=True`
+    shows a bar; a function is called after each scene with the number of those that are done.
+    """
+    # It takes half a second to import.
+    import pandas as pd
+
+    component, cases = component or Component(), list(scenes)
+    names = [component.name(name) for name in outputs or []]
+    idle: list[Contact] = []
+
+    def row(case: Case) -> Row:
+        given, changes = case if isinstance(case, tuple) else (case, {})
+        row = Row(given.title if isinstance(given, Scene) else str(given))
+        try:
+            row.changes |= {component.settable(name): value for name, value in changes.items()}
+            scene = given if isinstance(given, Scene) else Scene.read(given)
+            at_stop(component, scene.changed(component, changes), names, idle, row)
+        except (RelayContactError, OSError) as error:
+            row.error = str(error)
+        return row
+
+    done = 0
+
+    def tell() -> None:
+        nonlocal done
+        done += 1
+        bar.update()
+        if callable(progress):
+            progress(done)
+
+    form = "{desc} {percentage:3.0f} %|{bar}| {n} of {total} scenes"
+    with progress_bar(len(cases), form, progress is True, desc="simulated") as bar:
+        try:
+            rows = side_by_side(row, cases, workers, tell)
+        finally:
+            for contact in idle:
+                contact.fmu.freeInstance()
+    columns = dict.fromkeys([
+        "scene", *(name for each in rows for name in each.changes), *(name for each in rows for name in each.outputs),
+        "warning", "error",
+    ])  # fmt: skip
+    table = pd.DataFrame([each.cells for each in rows], columns=list(columns))
+    shown = units(component.description)
+    table.attrs["units"] = {name: shown[name].si for name in columns if name in shown}
+    return table
+
+
+@dataclass
+class Row:
+    """A row of a table of many scenes."""
+
+    scene: str
+    changes: dict[str, Value] = field(default_factory=dict)
+    outputs: dict[str, float] = field(default_factory=dict)
+    warning: str = ""
+    error: str = ""
+
+    @property
+    def cells(self) -> dict[str, Value]:
+        """The cells by column."""
+        told: dict[str, Value] = {"scene": self.scene, "warning": self.warning, "error": self.error}
+        return {**self.changes, **self.outputs, **told}
+
+
+def at_stop(component: Component, scene: Scene, outputs: list[str], idle: list[Contact], row: Row) -> None:
+    """Run a scene by an instance that is idle, or a new one; fill in its outputs at the stop, and warnings."""
+    points = scene.points()
+    inputs = scene.inputs(points)
+    try:
+        contact = idle.pop()
+    except IndexError:
+        contact = Contact(component)
+    try:
+        contact.begin_anew(scene.values | {name: float(course[0]) for name, course in inputs.items()})
+        with contact.explained():
+            contact.drive(points, inputs)
+            row.outputs |= {name: contact.get(name) for name in outputs or map(component.name, scene.outputs)}
+    finally:
+        row.warning = " ".join(contact.warnings)
+        idle.append(contact)

@@ -1,0 +1,97 @@
+//! Many communication steps in one call, for languages in which a call takes longer than a step. Not a function of FMI.
+// Names as in C; unused arguments keep theirs for the header.
+#![allow(unused_variables)]
+
+use std::mem::MaybeUninit;
+
+use libc::size_t;
+
+use super::entry::{array, array_mut, call};
+use super::failure::Failure;
+use super::instance::Instance;
+use super::states;
+use super::types::{fmi2Component, fmi2Real, fmi2Status, fmi2ValueReference, fmi2Warning};
+
+/// Advances from the first of `times` to the last, a communication step from each to the next. `courses` has a row for
+/// each time, with the value of each input, which changes linearly over a step; at a time given twice there is no step, and
+/// the inputs jump. `values` takes a row for each step, with outputs (also parameters and inputs) at its end as reals: a
+/// choice by its number, true as one. It does what `fmi2SetReal`, `fmi2SetRealInputDerivatives`, `fmi2DoStep` and the
+/// functions that read do in turn, bit by bit, with the messages of `fmi2DoStep`, and is allowed where that is;
+/// `stepFinished` is not called. The first failure ends it: the rows before are those of the steps that were done.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn relayContactFollow(
+    c: fmi2Component,
+    times: *const fmi2Real,
+    nTimes: size_t,
+    inputs: *const fmi2ValueReference,
+    nInputs: size_t,
+    courses: *const fmi2Real,
+    outputs: *const fmi2ValueReference,
+    nOutputs: size_t,
+    values: *mut fmi2Real,
+) -> fmi2Status {
+    let size = |rows: size_t, columns: size_t, name| rows.checked_mul(columns).ok_or(Failure::Pointer(name));
+    let body = |instance: &mut Instance| {
+        let (given, taken) = (
+            size(nTimes, nInputs, "courses")?,
+            size(nTimes.saturating_sub(1), nOutputs, "values")?,
+        );
+        // SAFETY: the contract of the module.
+        let (times, inputs) = unsafe { (array(times, nTimes, "times")?, array(inputs, nInputs, "inputs")?) };
+        // SAFETY: the contract of the module.
+        let (courses, outputs) = unsafe { (array(courses, given, "courses")?, array(outputs, nOutputs, "outputs")?) };
+        // SAFETY: the contract of the module.
+        let values = unsafe { array_mut(values, taken, "values") }?;
+        follow(instance, times, (inputs, courses), (outputs, values))
+    };
+    // SAFETY: the contract of the module.
+    unsafe { call(c, states::DO_STEP, body) }
+}
+
+/// Does the steps; inputs and outputs come with their rows.
+fn follow(
+    instance: &mut Instance,
+    times: &[f64],
+    (inputs, courses): (&[u32], &[f64]),
+    (outputs, values): (&[u32], &mut [MaybeUninit<f64>]),
+) -> Result<(), Failure> {
+    let orders = vec![1; inputs.len()];
+    let mut rates = vec![0.0; inputs.len()];
+    let mut values = values.iter_mut();
+    let row = |number: usize| {
+        courses
+            .get(number * inputs.len()..(number + 1) * inputs.len())
+            .unwrap_or_default()
+    };
+    for (number, (&now, &next)) in times.iter().zip(times.iter().skip(1)).enumerate() {
+        let length = next - now;
+        // A jump. What is not a number fails as a step.
+        if length == 0.0 {
+            continue;
+        }
+        let (begin, end) = (row(number), row(number + 1));
+        if !inputs.is_empty() {
+            for ((rate, begin), end) in rates.iter_mut().zip(begin).zip(end) {
+                *rate = (end - begin) / length;
+            }
+            instance.set_reals(inputs, begin)?;
+            instance.set_input_derivatives(inputs, &orders, &rates)?;
+        }
+        done(instance, |instance| instance.step(now, length))?;
+        for (&output, value) in outputs.iter().zip(values.by_ref()) {
+            value.write(instance.number(output)?);
+        }
+    }
+    Ok(())
+}
+
+/// A step; what is only a warning is logged.
+fn done(instance: &mut Instance, step: impl FnOnce(&mut Instance) -> Result<(), Failure>) -> Result<(), Failure> {
+    match step(instance) {
+        Err(failure) if failure.status() == fmi2Warning => {
+            instance.fail(states::DO_STEP, &failure);
+            Ok(())
+        }
+        result => result,
+    }
+}
