@@ -6,7 +6,7 @@ import shutil
 import sys
 import warnings
 import weakref
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from copy import copy
@@ -109,6 +109,9 @@ class Component:
         self.warnings: dict[str, str] = {}
         """The first warning of each kind since this was cleared, of all instances."""
         self.told: set[str] = set()
+        self.idle: list[Reused] = []
+        """Instances that no contact has at present."""
+        weakref.finalize(self, free, self.idle)
 
     @cached_property
     def functions(self) -> FMU2Functions:
@@ -202,16 +205,45 @@ class Component:
         try:
             contact.begin(values or {})
         except BaseException:
-            contact.fmu.freeInstance()
+            contact.give_back()
             raise
         return contact
 
 
+class Reused:
+    """An instance that one contact has after another; what it logs is told to the one that has it now."""
+
+    def __init__(self, functions: FMU2Functions) -> None:
+        """Instantiate the component."""
+        self.log: Callable[[int, str], object] = silent
+
+        def told(_environment: int, _instance: bytes, status: int, _category: bytes, message: bytes) -> None:
+            # A format without arguments: FMI doubles these two.
+            self.log(status, message.decode().replace("%%", "%").replace("##", "#"))
+
+        # Not by FMPy's instantiate_fmu: its loggers share a single place, so that messages go to the last instance that
+        # was made, and crash the process when that is gone.
+        callbacks = fmi2.fmi2CallbackFunctions()
+        callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(told)
+        self.fmu = copy(functions)
+        self.fmu.instantiate(callbacks=callbacks)
+
+
+def silent(_status: int, _message: str) -> None:
+    """Tell nobody."""
+
+
+def free(instances: list[Reused]) -> None:
+    """Free instances."""
+    for each in instances:
+        each.fmu.freeInstance()
+
+
 class Contact:
-    """An instance of the component, its variables known by name, for a `with` block that frees it."""
+    """An instance of the component, its variables known by name, for a `with` block that gives it back."""
 
     def __init__(self, component: Component, messages: list[str] | None = None) -> None:
-        """Instantiate the component; errors and warnings are appended to the messages."""
+        """Take an instance that is idle, or a new one; errors and warnings are appended to the messages."""
         self.component = component
         self.messages = [] if messages is None else messages
         self.warnings: list[str] = []
@@ -220,22 +252,28 @@ class Contact:
         self.changed_files: dict[str, str] = {}
         """Files of the user, which messages name, by the temporary ones with changed entries."""
 
-        def keep(_environment: int, _instance: bytes, status: int, _category: bytes, message: bytes) -> None:
-            # A format without arguments: FMI doubles these two.
-            text = message.decode().replace("%%", "%").replace("##", "#")
-            for temporary, own in self.changed_files.items():
-                text = text.replace(temporary, own)
-            self.messages.append(text)
-            if status == fmi2.fmi2Warning:
-                self.warnings.append(text)
+        try:
+            self.own = component.idle.pop()
+        except IndexError:
+            self.own = Reused(component.functions)
+        self.own.log = self.keep
+        self.fmu = self.own.fmu
 
-        # Not by FMPy's instantiate_fmu: its loggers share a single place, so that messages go to the last instance that
-        # was made, and crash the process when that is gone.
-        callbacks = fmi2.fmi2CallbackFunctions()
-        callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(keep)
-        self.fmu = copy(component.functions)
-        self.fmu.instantiate(callbacks=callbacks)
-        self.initialised = False
+    def keep(self, status: int, message: str) -> None:
+        """Keep a message of the instance."""
+        for temporary, own in self.changed_files.items():
+            message = message.replace(temporary, own)
+        self.messages.append(message)
+        if status == fmi2.fmi2Warning:
+            self.warnings.append(message)
+
+    def give_back(self) -> None:
+        """End the simulation, and leave the instance to others."""
+        self.own.fmu.reset()
+        self.own.log = silent
+        # What is called from now on would be called of another's.
+        del self.fmu
+        self.component.idle.append(self.own)
 
     def __enter__(self) -> Self:
         """Use the instance until the end of the block."""
@@ -244,10 +282,8 @@ class Contact:
     def __exit__(
         self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """End the simulation, unless something went wrong, and free the instance."""
-        if self.initialised and kind is None:
-            self.fmu.terminate()
-        self.fmu.freeInstance()
+        """Give the instance back."""
+        self.give_back()
 
     @contextmanager
     def explained(self) -> Iterator[None]:
@@ -327,7 +363,6 @@ class Contact:
         self.fmu.setupExperiment(tolerance=tolerance, startTime=0.0)
         self.fmu.enterInitializationMode()
         self.fmu.exitInitializationMode()
-        self.initialised = True
 
     def begin(self, values: Values) -> None:
         """Set parameters, inputs and entries of the spring file, and go through the initialisation."""

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from relay_contact.component import KEPT, Component, Contact, Value, Values, units
+from relay_contact.component import KEPT, Component, Value, Values, units
 from relay_contact.files import RelayContactError
 from relay_contact.scene import Scene, progress_bar
 
@@ -98,7 +98,6 @@ def run_many(
 
     component, cases = component or Component(), list(scenes)
     names = [component.name(name) for name in outputs or []]
-    idle: list[Contact] = []
 
     def row(case: Case) -> Row:
         given, changes = case if isinstance(case, tuple) else (case, {})
@@ -106,7 +105,7 @@ def run_many(
         try:
             row.changes |= {component.settable(name): value for name, value in changes.items()}
             scene = given if isinstance(given, Scene) else Scene.read(given)
-            at_stop(component, scene.changed(component, changes), names, idle, row)
+            at_stop(component, scene.changed(component, changes), names, row)
         except (RelayContactError, OSError) as error:
             row.error = str(error)
         return row
@@ -122,11 +121,7 @@ def run_many(
 
     form = "{desc} {percentage:3.0f} %|{bar}| {n} of {total} scenes"
     with progress_bar(len(cases), form, progress is True, desc="simulated") as bar:
-        try:
-            rows = side_by_side(row, cases, workers, tell)
-        finally:
-            for contact in idle:
-                contact.fmu.freeInstance()
+        rows = side_by_side(row, cases, workers, tell)
     columns = dict.fromkeys([
         "scene", *(name for each in rows for name in each.changes), *(name for each in rows for name in each.outputs),
         "warning", "error",
@@ -154,19 +149,12 @@ class Row:
         return {**self.changes, **self.outputs, **told}
 
 
-def at_stop(component: Component, scene: Scene, outputs: list[str], idle: list[Contact], row: Row) -> None:
-    """Run a scene by an instance that is idle, or a new one; fill in its outputs at the stop, and warnings."""
+def at_stop(component: Component, scene: Scene, outputs: list[str], row: Row) -> None:
+    """Run a scene; fill in its outputs at the stop, and warnings."""
     points = scene.points()
     inputs = scene.inputs(points)
-    try:
-        contact = idle.pop()
-    except IndexError:
-        contact = Contact(component)
-    try:
-        contact.begin_anew(scene.values | {name: float(course[0]) for name, course in inputs.items()})
-        with contact.explained():
-            contact.drive(points, inputs)
-            row.outputs |= {name: contact.get(name) for name in outputs or map(component.name, scene.outputs)}
-    finally:
+    first = {name: float(course[0]) for name, course in inputs.items()}
+    with component.started(scene.values | first) as contact, contact.explained():
+        contact.drive(points, inputs)
+        row.outputs |= {name: contact.get(name) for name in outputs or map(component.name, scene.outputs)}
         row.warning = " ".join(contact.warnings)
-        idle.append(contact)

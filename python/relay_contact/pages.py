@@ -26,6 +26,10 @@ Table = tuple[Sequence[str], Iterable[Sequence[str]]]
 
 def svg(figure: Figure) -> str:
     """Return a figure as a picture for a page."""
+    if engine := figure.get_layout_engine():
+        # Alone: matplotlib draws a figure with a layout twice, the first time for nothing else.
+        engine.execute(figure)
+        figure.set_layout_engine("none")
     text = io.StringIO()
     figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
     return text.getvalue()[text.getvalue().index("<svg") :]

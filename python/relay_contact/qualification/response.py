@@ -12,12 +12,13 @@ linear: whatever fails first does so at its own level.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d
 from scipy.optimize import brentq
-from scipy.signal import oaconvolve, zoom_fft
+from scipy.signal import ZoomFFT, oaconvolve
 from scipy.stats import norm, qmc
 
 from relay_contact.component import Array, Component, Contact, Values
@@ -164,26 +165,29 @@ def answers(
     held = parts(component, values, rest)
     with component.started({**values, **FREE, "solver.tolerance": EXACT}) as contact, contact.explained():
         natural, reserves, size = reserved(contact, values, threshold, rest, held)
+        if not held:
+            answer = answered(contact, rest, held, size, calm, {CONTACT: 0.0})[CONTACT]
+            return {CONTACT: transformed(reserves[CONTACT], natural, answer, 0.0)}
     if any(reserves[part.name] <= 0 for part in held):
         # Another relay, in which not all is held: it fails at rest.
         return dict.fromkeys(reserves, transformed(0.0, natural, np.zeros(WATCHED), 0.0))
     tolerance = EXACT
-    if held and not rest.is_open:
+    if not rest.is_open:
         # Relative to the force of the contact; that of a stop may be a thousand times larger, and is rounded.
         largest = max(reserves[part.name] for part in held)
         tolerance *= max(1.0, largest / max(reserves[CONTACT], ROUNDED * largest))
+    still = {name: STILL * abs(own) for name, own in reserves.items()}
     while True:
         with component.started({**values, **FREE, "solver.tolerance": tolerance}) as contact, contact.explained():
-            still = {name: STILL * abs(own) for name, own in reserves.items()}
             found = answered(contact, rest, held, size, calm, still)
         # Held by a force, all is linear only while the force is there.
         shares = [size * np.abs(found[part.name]).max() / reserves[part.name] for part in held]
-        if held and not rest.is_open and reserves[CONTACT] > 0:
+        if not rest.is_open and reserves[CONTACT] > 0:
             shares.append(size * np.abs(found[CONTACT]).max() / reserves[CONTACT])
-        if max(shares, default=0.0) <= LINEAR:
+        if max(shares) <= LINEAR:
             break
         size *= 0.5 * LINEAR / max(shares)
-    slowest = max(settled(answer) for answer in found.values()) if held else 0.0
+    slowest = max(settled(answer) for answer in found.values())
     return {name: transformed(reserves[name], natural, answer, slowest) for name, answer in found.items()}
 
 
@@ -229,21 +233,30 @@ def answered(
         found = {name: np.concatenate((answer, new[name])) for name, answer in found.items()}
         pulse = np.zeros(WATCHED + 1)
         left = {name: np.abs(each).max() for name, each in new.items()}
-        if all(left[name] < max(calm * np.abs(answer).max(), still[name] / size if held else 0.0)
-               for name, answer in found.items()):  # fmt: skip
+        if all(left[name] < max(calm * np.abs(answer).max(), still[name] / size) for name, answer in found.items()):
             return found
 
 
 def transformed(reserve: float, natural: float, answer: Array, slowest: float) -> Response:
     """Return the response by the answer to a pulse."""
-    # The triangle begins one step before its peak, which the first of these is at. Lines are close enough for the
-    # narrowest resonance, which the answer just shows, and end where its aliases begin.
-    count = max(POINTS, 4 * len(answer))
+    # The triangle begins one step before its peak, which the first of these is at.
+    frequency, share, transform = transformation(len(answer))
+    return Response(reserve, natural, frequency, transform(answer) * STEP / share, answer, slowest)
+
+
+@lru_cache(maxsize=4)
+def transformation(length: int) -> tuple[Array, Array, ZoomFFT]:
+    """Return the frequencies (Hz) of the response by an answer of so many steps, and its Fourier transform there.
+
+    Between them is the share of a sine that a triangle of a step has.
+    """
+    # Lines are close enough for the narrowest resonance, which the answer just shows, and end where its aliases begin.
+    count = max(POINTS, 4 * length)
     lines = int(count * BAND[1] * STEP) + 1
     frequency = np.arange(lines) / (count * STEP)
-    spectrum = zoom_fft(answer, lines / (count * STEP), lines, fs=1 / STEP)
-    transfer = spectrum * STEP / np.sinc(frequency * STEP) ** 2
-    return Response(reserve, natural, frequency, transfer, answer, slowest)
+    return (
+        frequency, np.sinc(frequency * STEP) ** 2, ZoomFFT(length, lines / (count * STEP), lines, fs=1 / STEP)
+    )  # fmt: skip
 
 
 def interrupting_force(law: list[float], threshold: float) -> float:
