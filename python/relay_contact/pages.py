@@ -29,7 +29,7 @@ def svg(figure: Figure) -> str:
     if engine := figure.get_layout_engine():
         # Alone: matplotlib draws a figure with a layout twice, the first time for nothing else.
         engine.execute(figure)
-        figure.set_layout_engine("none")
+        figure.set_layout_engine(None)
     text = io.StringIO()
     figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
     return text.getvalue()[text.getvalue().index("<svg") :]

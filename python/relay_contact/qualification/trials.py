@@ -2,7 +2,8 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
+from threading import Lock
 
 import numpy as np
 from scipy.signal import find_peaks
@@ -10,7 +11,7 @@ from scipy.signal import find_peaks
 from relay_contact.component import Array, Component, Contact, Values
 from relay_contact.figures import GRAVITY as G
 from relay_contact.many import side_by_side
-from relay_contact.qualification.excitation import STEP, Course, Random, Sine, overall
+from relay_contact.qualification.excitation import STEP, Breakpoint, Course, Random, Sine, overall, straight
 from relay_contact.qualification.parts import CLOSED, CONTACT, OPEN, Part, Rest, at_rest, parts
 from relay_contact.qualification.response import Response, stays
 from relay_contact.qualification.standards import Contacts
@@ -348,6 +349,19 @@ def pieces(specimen: Specimen, course: Course, sign: float, count: int = DIPS) -
 
 
 def noise(test: Random) -> tuple[Course, Course]:
+    """Return a record of random acceleration as it is before and after clipping; the same for all positions."""
+    with MAKING:
+        return record(test.density, test.clipping, test.sines)
+
+
+MAKING = Lock()
+"""One position makes the record that all others wait for."""
+
+
+@lru_cache(maxsize=1)
+def record(
+    density: tuple[Breakpoint, ...], clipping: float | None, sines: tuple[tuple[float, float], ...]
+) -> tuple[Course, Course]:
     """Return a record of random acceleration as it is before and after clipping.
 
     It is the sum of sines a sixtieth of a Hz apart with normally distributed amplitudes, and of the sines of the test
@@ -357,13 +371,13 @@ def noise(test: Random) -> tuple[Course, Course]:
     frequency: Array = np.fft.rfftfreq(count, SAMPLE).astype(np.float64)
     generator = np.random.default_rng(SEED)
     normal = generator.standard_normal((2, len(frequency)))
-    amplitude = np.sqrt(test.spectrum(frequency) / (4 * RECORD)) * (count * SAMPLE) / SAMPLE
+    amplitude = np.sqrt(G**2 * straight(density, frequency) / (4 * RECORD)) * (count * SAMPLE) / SAMPLE
     spectrum = amplitude * (normal[0] + 1j * normal[1])
     time = SAMPLE * np.arange(count)
     acceleration = np.fft.irfft(spectrum / np.sinc(frequency * SAMPLE) ** 2, count)
-    most = G * overall(test.density) * (test.clipping or np.inf)
+    most = G * overall(density) * (clipping or np.inf)
     tones = np.zeros(count)
-    for (tone, level), phase in zip(test.sines, generator.uniform(0, 2 * np.pi, len(test.sines)), strict=True):
+    for (tone, level), phase in zip(sines, generator.uniform(0, 2 * np.pi, len(sines)), strict=True):
         tones += G * level / np.sinc(tone * SAMPLE) ** 2 * np.sin(2 * np.pi * tone * time + phase)
     return Course(time, acceleration + tones), Course(time, np.clip(acceleration, -most, most) + tones)
 

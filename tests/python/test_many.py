@@ -1,0 +1,196 @@
+"""Many scenes at once: what each gives alone, in their order, whatever the others do."""
+
+import re
+import threading
+import time
+import warnings
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from component import COMPONENT
+from relay_contact import RelayContactError, RelayContactWarning, Scene, Values, run, run_many, side_by_side
+from relay_contact.component import KEPT
+from relay_contact.many import SHARE, Case, cores
+
+CHATTER = "chatter-41g"
+FREQUENCIES = [300.0, 500.0, 700.0, 1000.0]
+
+
+def levels() -> list[tuple[str, Values]]:
+    return [(CHATTER, {"excitation.frequency": each, "excitation.amplitude": 900.0}) for each in FREQUENCIES]
+
+
+@pytest.mark.parametrize("workers", [None, 1, 2, 7])
+def test_rows_are_in_order_and_those_of_each_alone(workers: int | None) -> None:
+    """Bit by bit; scenes of different length and with inputs over time do not end in their order."""
+    cases: list[tuple[str, Values]] = [
+        *levels(),
+        ("closing-bounce", {}),
+        ("paper-1khz", {"excitation_amplitude": 50.0}),
+    ]
+    told: list[int] = []
+    table = run_many(cases, workers=workers, component=COMPONENT, progress=told.append)
+    assert told == [1, 2, 3, 4, 5, 6]
+    assert not table["error"].any()
+    assert table["scene"].tolist() == [name for name, _ in cases]
+    for (name, changes), (_, row) in zip(cases, table.iterrows(), strict=True):
+        alone = run(name, component=COMPONENT, **dict[str, Any](changes))
+        columns = list(alone.columns)[1:]
+        assert len(columns) > 1
+        for column in columns:
+            assert row[column] == alone[column][-1], (name, column)
+    assert table["excitation.amplitude"].tolist()[-1] == 50.0
+    # Rows that could be confused would prove no order.
+    assert len(set(table["chatter.longestInterruption"][:4])) == 4
+
+
+def test_units_and_chosen_outputs() -> None:
+    table = run_many(levels()[:1], outputs=["chatter_totalInterruption", "contact.closed"], component=COMPONENT)
+    assert list(table) == ["scene", "excitation.frequency", "excitation.amplitude", "chatter.totalInterruption",
+                           "contact.closed", "warning", "error"]  # fmt: skip
+    units = {"excitation.frequency": "Hz", "excitation.amplitude": "m/s²", "chatter.totalInterruption": "s"}
+    assert table.attrs["units"] == units
+    assert table["contact.closed"][0] in (0.0, 1.0)
+
+
+def test_a_bad_scene_is_an_error_of_its_row_alone(tmp_path: Path) -> None:
+    wrong = tmp_path / "wrong.toml"
+    wrong.write_text("stop = -1\n")
+    bad: dict[Any, tuple[Case, str]] = {
+        1: (("chatter-41", {}), r"chatter-41: no such file, and no scene"),
+        2: ((CHATTER, {"excitation.frequenzy": 1.0}), r"did you mean excitation.frequency\?"),
+        3: ((CHATTER, {"beam.length": -1.0}), r"^beam.length = -1 m: not allowed, allowed is"),
+        # Found as it is initialised, and as it steps.
+        5: ((CHATTER, {"effects.axialForce": "Prescribed", "beam.axialForce": 500.0}), r"buckles"),
+        6: (("closing-bounce", {"solver.tolerance": "small"}), r"solver.tolerance = \"small\": not allowed"),
+        7: ((wrong, {}), r"wrong.toml:1: communicationStep: missing"),
+        8: (Scene("endless", 1e30, 1e30, ["contact.force"], {"effects.excitation": "Sine"}, {}), r"spacing of time"),
+    }  # fmt: skip
+    cases = [bad[n][0] if n in bad else (CHATTER, {}) for n in range(10)]
+    alone = run(CHATTER, component=COMPONENT)["contact.resistance"][-1]
+    for workers in (1, 3):
+        told: list[int] = []
+        table = run_many(cases, workers=workers, component=COMPONENT, progress=told.append)
+        assert told[-1] == len(told) == 10
+        for n, row in table.iterrows():
+            if n in bad:
+                assert pytest.approx(np.nan, nan_ok=True) == row["contact.resistance"]
+                assert re.search(bad[n][1], row["error"]), (n, row["error"])
+            else:
+                assert (row["contact.resistance"], row["error"]) == (alone, "")
+
+
+def test_none_are_an_empty_table() -> None:
+    table = run_many([], component=COMPONENT)
+    assert list(table) == ["scene", "warning", "error"]
+    assert len(table) == 0
+
+
+@pytest.mark.parametrize("workers", [0, -1, 1.5, True, "2"])
+def test_other_numbers_of_workers_are_refused(workers: int) -> None:
+    with pytest.raises(RelayContactError, match=r"workers = .*: not allowed, allowed is a whole number greater than 0"):
+        run_many([CHATTER], workers=workers, component=COMPONENT)
+
+
+def test_an_unknown_output_is_refused_before_anything_runs() -> None:
+    with pytest.raises(RelayContactError, match=r"contact.forze: no such variable; did you mean contact.force\?"):
+        run_many([CHATTER], outputs=["contact.forze"], component=COMPONENT)
+
+
+def test_a_warning_stands_in_its_row() -> None:
+    unused: Values = {"beam.thickness": 1.23e-4}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RelayContactWarning)
+        table = run_many(["tapered-spring", ("tapered-spring", unused)], component=COMPONENT)
+    assert ["beam.thickness = 0.000123 m: not used" in text for text in table["warning"]] == [False, True]
+    assert not table["error"].any()
+
+
+def test_the_lock_of_the_interpreter_is_released_while_the_component_steps() -> None:
+    """Python counts on while a run is within its one call."""
+    contact = COMPONENT.started({"effects.excitation": "Sine", "excitation.amplitude": 900.0})
+    with contact:
+        stop, counted = threading.Event(), 0
+
+        def follow() -> None:
+            contact.drive(np.linspace(0, 0.5, 50_001), {})
+            stop.set()
+
+        thread = threading.Thread(target=follow)
+        thread.start()
+        while not stop.is_set():
+            counted += 1
+            time.sleep(1e-3)
+        thread.join()
+    # Of a call that holds it there would be one, or two.
+    assert counted > 10
+
+
+def test_instances_serve_one_run_after_another() -> None:
+    run_many([CHATTER] * 6, workers=2, component=COMPONENT)
+    idle = len(COMPONENT.idle)
+    run_many([CHATTER, (CHATTER, {"beam.length": -1.0})] * 6, workers=2, component=COMPONENT)
+    assert len(COMPONENT.idle) == max(idle, 2)
+    contact = COMPONENT.started()
+    with contact:
+        assert contact.get("contact.force") > 0
+    with pytest.raises(AttributeError):
+        contact.get("contact.force")
+
+
+def test_work_within_work_shares_the_cores() -> None:
+    def shares(_: int) -> list[int | None]:
+        return [SHARE.get(), *side_by_side(lambda _: SHARE.get(), range(2))]
+
+    assert side_by_side(shares, range(2), 8) == [[4, 2, 2]] * 2
+    assert side_by_side(shares, range(3), 2) == [[1, 1, 1]] * 3
+    assert SHARE.get() is None
+    assert cores() >= 1
+
+
+def test_an_error_of_own_work_ends_it() -> None:
+    begun: list[int] = []
+
+    def work(item: int) -> int:
+        begun.append(item)
+        time.sleep(1e-3)
+        if item == 3:
+            raise RelayContactError("the third")
+        return item
+
+    for workers in (1, 2):
+        begun.clear()
+        with pytest.raises(RelayContactError, match="the third"):
+            side_by_side(work, range(1000), workers)
+        assert len(begun) < 900
+
+
+def test_warnings_are_kept_in_the_order_of_the_items() -> None:
+    """Of a kind the first item's, though the second is done before."""
+    kept: dict[str, str] = {}
+    before = KEPT.set(kept)
+
+    def work(item: float) -> None:
+        time.sleep(item)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RelayContactWarning)
+            COMPONENT.warn(f"slept {item} s")
+
+    try:
+        side_by_side(work, [0.05, 0.0], 2)
+    finally:
+        KEPT.reset(before)
+    assert list(kept.values()) == ["slept 0.05 s"]
+
+
+@pytest.mark.parametrize("end", [lambda: None, lambda: 1 / 0])
+def test_the_cores_are_free_again_after_it(end: Callable[[], object]) -> None:
+    threads = threading.active_count()
+    with suppress(ZeroDivisionError):
+        side_by_side(lambda _: end(), range(4), 2)
+    assert threading.active_count() == threads
