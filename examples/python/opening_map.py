@@ -1,11 +1,11 @@
 """Steady vibration that opens the contact: the longest interruption over frequency and acceleration.
 
-A program to start from for studies of one's own: it runs each point on the next free core. The uncertainty of a relay's
-parameters, what it is worth against a standard, and many machines: `relay-contact qualify`, docs/qualification.md.
+A program to start from for studies of one's own: each point is run on the next free core, by threads of this process
+(`side_by_side`; scenes alone have `run_many`). The uncertainty of a relay's parameters, what it is worth against a
+standard, and many machines: `relay-contact qualify`, docs/qualification.md.
 """
 
-from concurrent.futures import ProcessPoolExecutor
-from functools import cache, partial
+import time
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -14,7 +14,7 @@ from matplotlib.colors import LogNorm
 from tqdm import tqdm
 
 from common import parser, read_arguments, save
-from relay_contact import Array, Component, write_table
+from relay_contact import Array, Component, side_by_side, write_table
 from relay_contact.figures import GRAVITY
 from relay_contact.qualification.response import respond
 from relay_contact.qualification.standards import Contacts
@@ -23,16 +23,9 @@ from relay_contact.qualification.trials import Specimen, steady
 MONITOR = Contacts(opening=0.0, false_make=0.0, voltage=6.0, current=10e-3, clause="", evidence={})
 
 
-@cache
-def specimen(fmu: Path) -> Specimen:
-    """Give the contact with its start values, once in each process."""
-    component = Component(fmu)
-    return Specimen(component, {}, MONITOR, respond(component, {}, MONITOR.threshold))
-
-
-def interruption(fmu: Path, point: tuple[float, float]) -> float:
+def interruption(specimen: Specimen, point: tuple[float, float]) -> float:
     """Give the longest interruption (s) in steady vibration at a frequency (Hz) and an acceleration (m/s2)."""
-    lengths, _ = steady(specimen(fmu), *point, gently=True)
+    lengths, _ = steady(specimen, *point, gently=True)
     return max(lengths.values(), default=0.0)
 
 
@@ -53,12 +46,19 @@ def main() -> None:
     """Run the map."""
     line = parser(str(__doc__).splitlines()[0], epilog="Takes about half a minute on two cores.")
     line.add_argument("--quick", action="store_true", help="fewer points")
+    line.add_argument("--workers", type=int, help="threads (one for each core)")
+    line.add_argument("--tolerance", type=float, default=0.0, help="solver.tolerance (the component's)")
     given = read_arguments(line)
     frequencies = np.geomspace(100, 3000, 8 if given.quick else 40)
     accelerations = np.linspace(100, 1000, 5 if given.quick else 31)
     points = [(float(f), float(a)) for f in frequencies for a in accelerations]
-    with ProcessPoolExecutor() as pool:
-        found = list(tqdm(pool.map(partial(interruption, given.fmu), points, chunksize=5), total=len(points)))
+    component = Component(given.fmu)
+    values = {"solver.tolerance": given.tolerance}
+    specimen = Specimen(component, values, MONITOR, respond(component, values, MONITOR.threshold))
+    begun = time.perf_counter()
+    with tqdm(total=len(points)) as bar:
+        found = side_by_side(lambda point: interruption(specimen, point), points, given.workers, bar.update)
+    print(f"{len(points) / (time.perf_counter() - begun):.0f} simulations a second")
     lengths = np.array(found).reshape(len(frequencies), len(accelerations))
     table, picture = given.out / "opening-map.csv", given.out / "opening-map.png"
     write_table(table, "frequency [Hz],acceleration [m/s2],longest interruption [s]", np.column_stack([points, found]))

@@ -138,8 +138,8 @@ def qualify_relay(given: argparse.Namespace) -> None:
     folder = given.out or Path(f"qualification-{Path(given.relay).stem}-{asked}")
     found = qualify(
         given.relay, given.standard, out=folder, tests=given.test, history=given.history, unit=given.unit,
-        rate=given.rate, quick=given.quick, cluster=given.cluster, component=Component(given.fmu), progress=True,
-        date=given.date, pdf=given.pdf,
+        rate=given.rate, quick=given.quick, workers=given.workers, cluster=given.cluster,
+        component=Component(given.fmu), progress=True, date=given.date, pdf=given.pdf,
     )  # fmt: skip
     marks = [MARKS[tested.first.evidence] for tested in found]
     lines = [
@@ -266,6 +266,7 @@ def line() -> argparse.ArgumentParser:
     text = "only tests with TEXT in their names; may be repeated"
     add("--test", action="append", default=[], metavar="TEXT", help=text)
     add("--quick", action="store_true", help="fewer frequencies in the figures; the margins are the same")
+    add("--workers", type=int, metavar="COUNT", help="threads that run tests side by side (one for each core)")
     add(
         "--cluster",
         metavar="ADDRESS",

@@ -3,9 +3,10 @@
 import contextvars
 import os
 from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor, as_completed
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextvars import ContextVar
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -58,11 +59,27 @@ def side_by_side(
             KEPT.set(warnings)
         return work(item)
 
-    def begun(item: Item, warnings: dict[str, str]) -> Future[Found]:
-        return pool.submit(contextvars.copy_context().run, lambda: own(item, warnings))
+    jobs = [partial(contextvars.copy_context().run, own, *each) for each in zip(items, kept, strict=True)]
+    found = one_by_one(jobs, tell) if used == 1 else on_threads(jobs, used, tell)
+    if (whole := KEPT.get()) is not None:
+        for kind, message in (pair for each in kept for pair in each.items()):
+            whole.setdefault(kind, message)
+    return found
 
-    with ThreadPoolExecutor(used) as pool:
-        futures = [begun(item, warnings) for item, warnings in zip(items, kept, strict=True)]
+
+def one_by_one(jobs: Sequence[Callable[[], Found]], tell: Callable[[], object]) -> list[Found]:
+    """Return what jobs give, done by this thread."""
+    found = []
+    for job in jobs:
+        found.append(job())
+        tell()
+    return found
+
+
+def on_threads(jobs: Sequence[Callable[[], Found]], count: int, tell: Callable[[], object]) -> list[Found]:
+    """Return what jobs give, done by so many threads."""
+    with ThreadPoolExecutor(count) as pool:
+        futures = [pool.submit(job) for job in jobs]
         try:
             for future in as_completed(futures):
                 future.result()
@@ -70,9 +87,6 @@ def side_by_side(
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise
-    for each in kept:
-        for kind, message in each.items():
-            KEPT.get({}).setdefault(kind, message)  # type: ignore[union-attr]
     return [future.result() for future in futures]
 
 

@@ -128,7 +128,7 @@ fn a_failure_leaves_what_was_done_before() {
     );
     assert_eq!(bits(&rows[..2]), bits(&one_by_one(&other, &times[..3], &inputs[..3])));
     assert!(rows[2..].iter().flatten().all(|value| value.is_nan()));
-    assert_eq!(fmu.last_successful_time(), (fmi2OK, 3e-5));
+    assert_eq!(fmu.last_successful_time(), other.last_successful_time());
 }
 
 #[test]

@@ -28,6 +28,7 @@ def qualify(
     quick: bool = False,
     component: Component | None = None,
     progress: bool = False,
+    workers: int | None = None,
     cluster: str | None = None,
     date: str = "",
     pdf: bool = False,
@@ -37,9 +38,9 @@ def qualify(
     `tests` are parts of the names of those wanted, without it all. `history` are files of measured accelerations, each
     of whose channels is a further test (without a standard the only ones, with the limits of MIL-PRF-28776); `unit` and
     `rate` (samples a second) are those of files that do not tell. What an interrupted assessment has finished is not
-    run again. `quick` vibrates at fewer frequencies; margins are the same. `cluster` is the address of a Dask cluster
-    whose workers have this package. `date` stands on the page, without which its bytes are the same for each run;
-    `pdf` writes it as PDF, too.
+    run again. `quick` vibrates at fewer frequencies; margins are the same. Tests run side by side on all cores,
+    or by so many threads as `workers` says. `cluster` is the address of a Dask cluster whose workers have this package.
+    `date` stands on the page, without which its bytes are the same for each run; `pdf` writes it as PDF, too.
     """
     # Workers and lists of relays import this package, too, and draw nothing.
     from relay_contact.qualification.page import write
@@ -58,7 +59,7 @@ def qualify(
         def tell(label: str) -> None:
             bar.set_description_str(label) if label else bar.update()
 
-        found = assess(component, described, asked, out, FEW if quick else POINTS, tell, cluster)
+        found = assess(component, described, asked, out, FEW if quick else POINTS, tell, cluster, workers)
     assessment = Assessment(described, asked, found, out)
     write(assessment, component, date, pdf)
     return assessment

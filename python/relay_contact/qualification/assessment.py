@@ -92,11 +92,12 @@ def on_cluster(address: str, component: Component, jobs: list[Job], keep: Callab
 
 def assess(
     component: Component, relay: Relay, standard: Standard, folder: Path, points: int,
-    tell: Callable[[str], object] = lambda _: None, cluster: str | None = None,
+    tell: Callable[[str], object] = lambda _: None, cluster: str | None = None, workers: int | None = None,
 ) -> list[Tested]:  # fmt: skip
     """Run every test in every position, along every axis, by every model, or what is left of it.
 
-    `tell` is called with what begins, and with nothing once it is finished; `cluster` is the address of a Dask cluster.
+    `tell` is called with what begins, and with nothing once it is finished; `cluster` is the address of a Dask cluster,
+    `workers` the number of threads without one, by default one for each core.
     """
     (folder / "parts").mkdir(parents=True, exist_ok=True)
     jobs: list[Job] = []
@@ -121,7 +122,7 @@ def assess(
     if cluster:
         on_cluster(cluster, component, todo, keep)
     else:
-        here(todo, keep, told)
+        here(todo, keep, told, workers)
     found = [FINDING.validate_json(path.read_bytes()) for path, *_ in jobs]
     for warning in (warning for finding in found for warning in finding.warnings):
         component.warn(warning)
@@ -142,7 +143,9 @@ def positions(component: Component, relay: Relay, standard: Standard) -> Iterato
                 yield Position(component, relay, name, standard.contacts, tuple(tests), model, axis), tests
 
 
-def here(jobs: list[Job], keep: Callable[[Path, str], object], tell: Callable[[str], object]) -> None:
+def here(
+    jobs: list[Job], keep: Callable[[Path, str], object], tell: Callable[[str], object], workers: int | None
+) -> None:
     """Run tests on all cores; pass on the path and text of each finding as it is finished.
 
     Those of a position one after another, as they have in common what its draws answer.
@@ -158,7 +161,7 @@ def here(jobs: list[Job], keep: Callable[[Path, str], object], tell: Callable[[s
             tell(f"{test.name}, {position.name}{along}{several}")
             keep(path, text_of(tested(position, test, points)))
 
-    side_by_side(run, list(grouped.values()))
+    side_by_side(run, list(grouped.values()), workers)
 
 
 def chosen(standard: Standard, texts: list[str]) -> Standard:
