@@ -131,7 +131,7 @@ mod tests {
         for workers in [1, 2, 7] {
             let mut counts = Vec::new();
             let rows = side_by_side(&[0, 1, 2, 3], NonZero::new(workers).unwrap(), odd, |count| {
-                counts.push(count)
+                counts.push(count);
             });
             let wrong = |item: u32| Err(RunError::Panic(format!("odd: {item}")));
             assert_eq!(rows, [Ok(0), wrong(1), Ok(2), wrong(3)]);

@@ -21,6 +21,7 @@ mod frequency_domain;
 mod friction;
 mod imports;
 mod input_table;
+mod many;
 mod parallel;
 mod preloaded_contact;
 mod promise;
