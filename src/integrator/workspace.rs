@@ -47,7 +47,7 @@ pub struct Workspace {
 /// For steps with `S` nodes.
 #[derive(Clone, Debug)]
 pub(crate) struct Room<const S: usize> {
-    pub(crate) cache: Cache<S>,
+    pub(crate) cache: Box<Cache<S>>,
     pub(crate) scratch: Box<Scratch<S>>,
     /// The trial step; none while it is looked at.
     pub(crate) trial: Option<Box<Trial<S>>>,
@@ -69,7 +69,7 @@ pub(crate) struct Search {
 impl<const S: usize> Room<S> {
     fn new(model: &Model, home: &'static Home<S>) -> Self {
         Self {
-            cache: Cache::new(model, home),
+            cache: Box::new(Cache::new(model, home)),
             scratch: zeroed_box(),
             trial: Some(zeroed_box()),
         }

@@ -20,7 +20,7 @@ fn next(n: usize, x: f64, previous: f64, current: f64) -> f64 {
 }
 
 /// Points computed side by side, as each step of the recursion waits for the one before.
-const LANES: usize = 8;
+const LANES: usize = 4;
 
 /// P_degree(x) and its derivative at several |x| < 1.
 fn values_and_slopes(degree: usize, x: &[f64; LANES]) -> [(f64, f64); LANES] {

@@ -243,6 +243,8 @@ struct Places<const S: usize> {
     ends: Vec<Modal>,
     turns: Vec<Turns<S>>,
     sizes: Sizes,
+    /// The place of each slot that a recurring length may have by its hash; 0: none yet.
+    of_slot: [u8; SLOTS],
 }
 
 /// How many there are of each in a place.
@@ -311,6 +313,7 @@ impl<const S: usize> Places<S> {
             ends: Vec::with_capacity(places * end_rows(S)),
             turns: Vec::with_capacity(places),
             sizes,
+            of_slot: [0; SLOTS],
         }
     }
 
@@ -389,6 +392,7 @@ impl<const S: usize> Clone for Places<S> {
         same.following.extend_from_slice(&self.following);
         same.ends.extend_from_slice(&self.ends);
         same.turns.extend_from_slice(&self.turns);
+        same.of_slot = self.of_slot;
         same
     }
 }
@@ -527,9 +531,7 @@ fn slot(length: f64) -> usize {
 pub struct Cache<const S: usize> {
     collocation: Shared<S>,
     /// For recurring lengths, and first for the last other one.
-    places: Places<S>,
-    /// The place of each slot that a recurring length may have by its hash; 0: none yet.
-    of_slot: [u8; SLOTS],
+    places: Box<Places<S>>,
     /// While coefficients are computed: for each response, and for one mode.
     sums: Vec<Sum<S>>,
     /// Piece of a random acceleration.
@@ -552,12 +554,11 @@ impl<const S: usize> Cache<S> {
     pub fn new(model: &Model, home: &'static Home<S>) -> Self {
         let sizes = Sizes::of::<S>(model);
         let sums = vec![Sum::zeroed(); sizes.responses + 1];
-        let mut places = Places::reserved(sizes, SLOTS + 1);
+        let mut places = Box::new(Places::reserved(sizes, SLOTS + 1));
         places.add(&model.generator);
         Self {
             collocation: Shared::of(home),
             places,
-            of_slot: [0; SLOTS],
             sums,
             piece: Piece::default(),
         }
@@ -591,20 +592,25 @@ impl<const S: usize> Cache<S> {
 
     /// The coefficients for a length, if they are known.
     pub fn known(&self, length: f64, recurring: bool) -> Option<StepCoefficients<'_, S>> {
-        let slot = self.of_slot.get(slot(length)).filter(|_| recurring);
+        let slot = self.places.of_slot.get(slot(length)).filter(|_| recurring);
         let place = slot.map_or(0, |place| usize::from(*place));
         (self.places.length(place).to_bits() == length.to_bits()).then(|| self.places.view(place))
     }
 
     /// The place for the coefficients of a length, `recurring`: one that is kept.
     fn place(&mut self, length: f64, recurring: bool, model: &Model) -> usize {
-        let Some(place) = self.of_slot.get_mut(slot(length)).filter(|_| recurring) else {
+        let slot = slot(length);
+        let Some(place) = self.places.of_slot.get(slot).filter(|_| recurring) else {
             return 0;
         };
-        if *place == 0 {
-            // There is one for each slot.
-            *place = u8::try_from(self.places.add(&model.generator)).unwrap_or_default();
+        if *place > 0 {
+            return usize::from(*place);
         }
-        usize::from(*place)
+        // There is one for each slot.
+        let place = self.places.add(&model.generator);
+        if let (Some(entry), Ok(place)) = (self.places.of_slot.get_mut(slot), u8::try_from(place)) {
+            *entry = place;
+        }
+        place
     }
 }
