@@ -405,10 +405,10 @@ fn end_of_lanes<const S: usize, A: Arithmetic>(
     let start_q: [f64; LANES] = std::array::from_fn(|i| starts[i].q);
     let start_v: [f64; LANES] = std::array::from_fn(|i| starts[i].v);
     let (mut q, mut v) = ([0.0; LANES], [0.0; LANES]);
-    add_products::<LANES, A>(&mut q, &lanes(&rows.q_from_q), &start_q);
-    add_products::<LANES, A>(&mut q, &lanes(&rows.q_from_v), &start_v);
-    add_products::<LANES, A>(&mut v, &lanes(&rows.v_from_q), &start_q);
-    add_products::<LANES, A>(&mut v, &lanes(&rows.v_from_v), &start_v);
+    add_products::<LANES, A>(&mut q, &lanes(rows.q_from_q), &start_q);
+    add_products::<LANES, A>(&mut q, &lanes(rows.q_from_v), &start_v);
+    add_products::<LANES, A>(&mut v, &lanes(rows.v_from_q), &start_q);
+    add_products::<LANES, A>(&mut v, &lanes(rows.v_from_v), &start_v);
     for ((load, of_q), of_v) in loads.iter().zip(rows.q_from_load).zip(rows.v_from_load) {
         add_products::<LANES, A>(&mut q, &lanes(of_q), load);
         add_products::<LANES, A>(&mut v, &lanes(of_v), load);
