@@ -8,6 +8,7 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 use std::thread;
 
 use crate::error::{SceneError, StepError};
+use crate::integrator::collocation::polynomial::{OF_LONG, OF_SHORT, Shared};
 use crate::scene::file::SceneFile;
 use crate::simulation::Simulation;
 
@@ -53,6 +54,8 @@ pub fn run_many(
     workers: NonZero<usize>,
     progress: impl FnMut(usize) + Send,
 ) -> Vec<Result<Vec<f64>, RunError>> {
+    // Else computed anew for each scene that is alone at a time.
+    let _kept = (Shared::of(&OF_SHORT), Shared::of(&OF_LONG));
     side_by_side(scenes, workers, run, progress)
 }
 
