@@ -304,8 +304,8 @@ pub enum Remark {
     },
     /// An armature, with which the tolerance is not promised.
     #[error(
-        "effects.pusher = Armature: where the armature is thrown about, one relay in ten exceeds solver.tolerance, most without a \
-         word from solver.forceError; compare with a tolerance ten times smaller"
+        "effects.pusher = Armature: where the armature is thrown about, one relay in ten exceeds solver.tolerance, a third of \
+         these without a word from solver.forceError; compare with a tolerance ten times smaller"
     )]
     ThrownArmature,
     /// Friction with which slip is unstable.

@@ -139,7 +139,7 @@ fn amplitude_of_a_coulomb_damped_oscillator() {
 }
 
 /// Many slips to and fro: what the friction dissipates is what the drive puts in, no more and no less. A million with
-/// `CYCLES=1000000 cargo test --release --test friction over_many -- --nocapture`; the figure is in `docs/friction.md`.
+/// `CYCLES=1000000 cargo test --release --test component over_many -- --nocapture`; the figure is in `docs/friction.md`.
 #[test]
 fn no_energy_is_made_over_many_cycles() {
     let cycles = env::var("CYCLES").map_or(60, |cycles| cycles.parse::<u32>().unwrap());

@@ -130,7 +130,7 @@ fn table(run: &[&Judged]) -> String {
                 percentile(parts(), 0.95),
                 count(|judged| judged.outcome != Outcome::Kept),
                 count(|judged| judged.outcome == Outcome::IllConditioned),
-                count(|judged| judged.error > judged.tolerance.max(judged.estimate)),
+                count(|judged| judged.error > judged.tolerance && judged.estimate <= judged.tolerance),
             );
         }
     }
