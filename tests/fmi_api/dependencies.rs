@@ -26,7 +26,7 @@ const ALWAYS: Values = &[
 /// Scenes in which every known that matters at all matters somewhere: the start values with these changes. A threshold of
 /// [`CRITICAL`] is the resistance at rest, an overtravel or a pusher of it closes the
 /// contact or touches without force.
-static SCENES: [Values; 54] = [
+static SCENES: [Values; 64] = [
     &[],
     &[("effects.axialForce", 2.0)],
     &[("effects.axialForce", 3.0)],
@@ -97,7 +97,6 @@ static SCENES: [Values; 54] = [
     &[RUBBING, PULLED, ("effects.axialForce", 4.0)],
     &[RUBBING, ("solver.tolerance", 1e-9), ("beam.stiffnessDamping", 3e-6)],
     &[
-        FEW,
         ON_SPRING,
         RUBBING,
         PULLED,
@@ -112,6 +111,7 @@ static SCENES: [Values; 54] = [
         ("solver.tolerance", 1e-9),
         ("fixed.stiffnessDamping", 3e-6),
     ],
+    &[ON_SPRING, PULLED, ("contact.overtravel", CRITICAL)],
     &[
         PRESSED,
         OPEN,
@@ -125,6 +125,26 @@ static SCENES: [Values; 54] = [
     ],
     &[
         PRESSED,
+        OPEN,
+        ("pusher.displacement", 3e-4),
+        ON_SPRING,
+        ("solver.tolerance", 1e-9),
+    ],
+    &[
+        PRESSED,
+        ("pusher.stiffness", 1e9),
+        ("pusher.damping", 1e3),
+        ("solver.tolerance", 1e-9),
+        ("beam.stiffnessDamping", 3e-6),
+    ],
+    &[
+        PRESSED,
+        PULLED,
+        ("pusher.displacement", 1e-5),
+        ("contact.overtravel", CRITICAL),
+    ],
+    &[
+        PRESSED,
         PULLED,
         RUBBING,
         ("effects.axialForce", 4.0),
@@ -132,7 +152,15 @@ static SCENES: [Values; 54] = [
         ("pusher.displacement", CRITICAL),
     ],
     &[
-        FEW,
+        PRESSED,
+        PULLED,
+        ON_SPRING,
+        ("effects.contactLaw", 4.0),
+        ("pusher.displacement", CRITICAL),
+    ],
+    &[PRESSED, OPEN, PULLED, ("pusher.displacement", CRITICAL)],
+    &[MOVED, OPEN],
+    &[
         MOVED,
         OPEN,
         PULLED,
@@ -142,8 +170,9 @@ static SCENES: [Values; 54] = [
         ("beam.axialForce", 1.0),
         ("chatter.resistanceThreshold", CRITICAL),
     ],
+    &[MOVED, OPEN, ("coil.relativeCurrent", 0.0)],
+    &[MOVED, OPEN, ON_SPRING, PULLED, ("effects.contactLaw", 4.0)],
     &[
-        FEW,
         MOVED,
         OPEN,
         FLOATING[0],
@@ -154,7 +183,15 @@ static SCENES: [Values; 54] = [
         ("chatter.resistanceThreshold", CRITICAL),
     ],
     &[
-        FEW,
+        MOVED,
+        OPEN,
+        FLOATING[0],
+        FLOATING[1],
+        FLOATING[2],
+        PULLED,
+        ("effects.axialForce", 1.0),
+    ],
+    &[
         MOVED,
         OPEN,
         ("armature.holdForce", 2.0),
@@ -164,7 +201,6 @@ static SCENES: [Values; 54] = [
         ON_SPRING,
     ],
     &[
-        FEW,
         MOVED,
         OPEN,
         PULLED,
@@ -172,6 +208,14 @@ static SCENES: [Values; 54] = [
         ("armature.mass", 0.5),
         ("armature.restPosition", -1e-5),
         ("armature.corePosition", 1e-3),
+    ],
+    &[
+        MOVED,
+        FLOATING[0],
+        FLOATING[1],
+        FLOATING[2],
+        PULLED,
+        ("contact.overtravel", CRITICAL),
     ],
     &[BESIDE, ("parallel.offset", 1e-5), ("beam.file", 2.0)],
     &[
@@ -191,7 +235,7 @@ static SCENES: [Values; 54] = [
         ("beam.stiffnessDamping", 3e-6),
     ],
     &[BESIDE, PRESSED, OPEN, PULLED, ("pusher.displacement", 3e-4), ON_SPRING],
-    &[FEW, BESIDE, MOVED, OPEN, PULLED, ON_SPRING, ("effects.contactLaw", 4.0)],
+    &[BESIDE, MOVED, OPEN, PULLED, ON_SPRING, ("effects.contactLaw", 4.0)],
     &[
         BESIDE,
         PULLED,
@@ -200,7 +244,6 @@ static SCENES: [Values; 54] = [
         ("effects.contactLaw", 4.0),
     ],
     &[
-        FEW,
         BESIDE,
         MOVED,
         FLOATING[0],
@@ -229,25 +272,15 @@ static SCENES: [Values; 54] = [
         ("effects.contactLaw", 4.0),
         ("pusher.displacement", CRITICAL),
     ],
-    &[FEW, BESIDE, MOVED, PULLED, ("coil.relativeCurrent", 0.2), OPEN],
+    &[BESIDE, MOVED, PULLED, ("coil.relativeCurrent", 0.2), OPEN],
     &[
-        FEW,
         BESIDE,
         ON_SPRING,
         ("parallel.offset", -1e-3),
         ("contact.overtravel", 1e-5),
         ("effects.contactLaw", 4.0),
     ],
-    &[
-        PRESSED,
-        ("pusher.stiffness", 1e9),
-        ("pusher.damping", 1e3),
-        ("solver.tolerance", 1e-9),
-        ("beam.stiffnessDamping", 3e-6),
-    ],
 ];
-/// Where their number is not what is looked for: springs of segments take their time to find them.
-const FEW: (&str, f64) = ("solver.modes", 3.0);
 const BESIDE: (&str, f64) = ("effects.parallelContact", 1.0);
 /// Between its stops.
 const FLOATING: [(&str, f64); 3] = [
