@@ -1,6 +1,7 @@
 //! Errors of setting up a scene and of integrating it. Every message names the variable, its value and what is
 //! allowed, so that it can be shown to the user unchanged.
 
+use std::any::Any;
 use std::ops::Range;
 
 use crate::variables::Variable;
@@ -436,4 +437,13 @@ pub enum StepErrorCause {
     /// A number in the state is no longer finite.
     #[error("the state is no longer finite")]
     NotFinite,
+}
+
+/// The message of a panic.
+pub(crate) fn panic_text(panic: &(dyn Any + Send)) -> String {
+    panic
+        .downcast_ref::<&str>()
+        .map(ToString::to_string)
+        .or_else(|| panic.downcast_ref::<String>().cloned())
+        .unwrap_or_else(|| "panic".to_owned())
 }

@@ -1,13 +1,12 @@
 //! Many scenes at once, on all cores of a machine.
 
-use std::any::Any;
 use std::num::NonZero;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, OnceLock, PoisonError};
 use std::thread;
 
-use crate::error::{SceneError, StepError};
+use crate::error::{SceneError, StepError, panic_text};
 use crate::integrator::collocation::polynomial::{OF_LONG, OF_SHORT, Shared};
 use crate::scene::file::SceneFile;
 use crate::simulation::Simulation;
@@ -106,15 +105,6 @@ fn side_by_side<T: Sync, R: Send + Sync>(
     rows.into_iter()
         .map(|row| row.into_inner().unwrap_or_else(missing))
         .collect()
-}
-
-/// The message of a panic.
-pub(crate) fn panic_text(panic: &(dyn Any + Send)) -> String {
-    panic
-        .downcast_ref::<&str>()
-        .map(ToString::to_string)
-        .or_else(|| panic.downcast_ref::<String>().cloned())
-        .unwrap_or_else(|| "panic".to_owned())
 }
 
 #[cfg(test)]

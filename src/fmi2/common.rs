@@ -20,7 +20,7 @@ use super::types::{
     fmi2Boolean, fmi2CallbackFunctions, fmi2CoSimulation, fmi2Component, fmi2Error, fmi2False, fmi2Real, fmi2Status,
     fmi2String, fmi2Type,
 };
-use crate::many::panic_text;
+use crate::error::panic_text;
 use crate::variables::{GUID, PLAIN_GUID};
 
 /// The platform types the functions use: "default".

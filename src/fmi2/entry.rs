@@ -12,7 +12,7 @@ use super::failure::Failure;
 use super::instance::Instance;
 use super::states::Function;
 use super::types::{fmi2Component, fmi2Error, fmi2OK, fmi2Status, fmi2String};
-use crate::many::panic_text;
+use crate::error::panic_text;
 
 /// What a component points to. The guard comes first: it distinguishes an instance from other memory, and rejects a
 /// second call during a call, from another thread or from the importer's log callback.
