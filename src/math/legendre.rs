@@ -43,11 +43,9 @@ fn values_and_slopes(degree: usize, x: &[f64; LANES]) -> [(f64, f64); LANES] {
 /// polynomials up to degree 2 `count` - 1.
 pub fn gauss(count: usize) -> impl Iterator<Item = (f64, f64)> {
     (0..count.div_ceil(LANES)).flat_map(move |group| {
-        let mut k = group * LANES;
         // Tricomi's estimate of the k-th root from above, then Newton's iteration, which converges quadratically from there.
-        let mut roots = [0.0; LANES].map(|_: f64| {
-            k += 1;
-            let k = count as f64 - k.min(count) as f64;
+        let mut roots: [f64; LANES] = std::array::from_fn(|lane| {
+            let k = count.saturating_sub(group * LANES + lane + 1) as f64;
             (std::f64::consts::PI * (k + 0.75) / (count as f64 + 0.5)).cos()
         });
         for _ in 0..6 {
