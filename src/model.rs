@@ -56,9 +56,9 @@ pub struct Model {
     pub(crate) participations: Modal,
     /// The static equilibrium, the reference of the motion.
     pub(crate) preload: Preload,
-    /// The modes, frequency ascending.
+    /// The modes of one body after the other, frequency ascending in each.
     pub(crate) modes: Vec<Mode>,
-    /// The modes by frequency, the lowest first: those of a second spring and of an armature come after those of the first.
+    /// Their indices by frequency, the lowest first.
     by_frequency: Vec<usize>,
     /// The axial force, if it follows the deflection continuously.
     pub(crate) axial: Option<Box<Feedback>>,

@@ -3,7 +3,7 @@
 use crate::beam::mode::Mode;
 use crate::contact::friction::Slip;
 use crate::excitation::drive::Drive;
-use crate::integrator::collocation::coefficients::Cache;
+use crate::integrator::collocation::cache::Cache;
 use crate::integrator::collocation::trial::Trial;
 use crate::integrator::grid::Target;
 use crate::link::{CONTACT, LinkLaw};

@@ -68,6 +68,7 @@ impl ForceError {
                 damping,
                 gain,
             } = tangent;
+            // A magnet draws more the further it has moved; bounded, as the rule fails at -2.
             let gain = if stiffness < 0.0 { -gain.min(1.0) } else { gain };
             *force = -(stiffness * y + damping * rate + 0.5 * gain * before) / (1.0 + 0.5 * gain);
             let mean = 0.5 * (before + *force);

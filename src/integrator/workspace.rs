@@ -6,7 +6,7 @@ use crate::beam::mode::ModeStates;
 use crate::closed_loop::dense::{DensePropagator, TipAtNodes};
 use crate::closed_loop::propagator::{ByLength, Propagator};
 use crate::error::{StepError, StepErrorCause};
-use crate::integrator::collocation::coefficients::Cache;
+use crate::integrator::collocation::cache::Cache;
 use crate::integrator::collocation::part::Instant;
 use crate::integrator::collocation::polynomial::{Collocation, Home, OF_LONG, OF_SHORT};
 use crate::integrator::collocation::trial::{Scratch, Trial};

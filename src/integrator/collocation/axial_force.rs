@@ -210,7 +210,7 @@ fn with_loads<const S: usize, A: Arithmetic>(
 mod tests {
     use super::*;
     use crate::excitation::drive::Drive;
-    use crate::integrator::collocation::coefficients::Cache;
+    use crate::integrator::collocation::cache::Cache;
     use crate::integrator::collocation::polynomial::{Collocation, OF_LONG};
     use crate::integrator::collocation::step::compute;
     use crate::integrator::collocation::trial::Scratch;

@@ -1,6 +1,7 @@
 //! One step, in which the forces of the links are polynomials through Radau nodes.
 
 pub mod axial_force;
+pub mod cache;
 pub mod coefficients;
 pub(crate) mod elimination;
 pub mod error;

@@ -4,7 +4,8 @@
 use crate::beam::mode::Modal;
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::axial_force::Rounds;
-use crate::integrator::collocation::coefficients::{Prepared, StepCoefficients};
+use crate::integrator::collocation::cache::Prepared;
+use crate::integrator::collocation::coefficients::StepCoefficients;
 use crate::integrator::collocation::elimination::{Stacked, in_use};
 use crate::integrator::collocation::error::{Judged, estimate_in_flight};
 use crate::integrator::collocation::newton::{Linked, NodalMotion, Solution, Tangent, Unknowns};
