@@ -268,12 +268,18 @@ class Contact:
             self.warnings.append(message)
 
     def give_back(self) -> None:
-        """End the simulation, and leave the instance to others."""
-        self.own.fmu.reset()
+        """End the simulation, and leave the instance to others; one that has failed for good is freed."""
+        try:
+            self.own.fmu.reset()
+            usable = True
+        except FMICallException:
+            self.own.fmu.freeInstance()
+            usable = False
         self.own.log = silent
         # What is called from now on would be called of another's.
         del self.fmu
-        self.component.idle.append(self.own)
+        if usable:
+            self.component.idle.append(self.own)
 
     def __enter__(self) -> Self:
         """Use the instance until the end of the block."""

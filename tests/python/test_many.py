@@ -11,10 +11,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fmpy.fmi1 import FMICallException
 
 from component import COMPONENT
 from relay_contact import RelayContactError, RelayContactWarning, Scene, Values, run, run_many, side_by_side
-from relay_contact.component import KEPT
+from relay_contact.component import KEPT, Component, FMU2Functions
 from relay_contact.many import SHARE, Case, cores
 
 CHATTER = "chatter-41g"
@@ -83,6 +84,27 @@ def test_a_bad_scene_is_an_error_of_its_row_alone(tmp_path: Path) -> None:
                 assert re.search(bad[n][1], row["error"]), (n, row["error"])
             else:
                 assert (row["contact.resistance"], row["error"]) == (alone, "")
+
+
+def test_an_instance_that_cannot_be_reset_is_freed_and_has_its_row(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As after a fatal error: the others are run, by instances of their own."""
+    component = Component(COMPONENT.path)
+    freed: list[object] = []
+    free = FMU2Functions.freeInstance
+
+    def fails(_self: FMU2Functions) -> None:
+        raise FMICallException(function="fmi2Reset", status=4)
+
+    def counted(self: FMU2Functions) -> None:
+        freed.append(self)
+        free(self)
+
+    monkeypatch.setattr(FMU2Functions, "reset", fails)
+    monkeypatch.setattr(FMU2Functions, "freeInstance", counted)
+    table = run_many([CHATTER, "no-scene", CHATTER], workers=1, component=component)
+    assert [bool(error) for error in table["error"]] == [False, True, False]
+    assert len(freed) == len(set(map(id, freed))) == 2
+    assert not component.idle
 
 
 def test_none_are_an_empty_table() -> None:
