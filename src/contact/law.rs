@@ -1,8 +1,9 @@
 //! The contact law of a scene.
 
-use crate::contact::Branch;
 use crate::contact::linear::Linear;
 use crate::contact::power::Power;
+use crate::contact::{Branch, Branches};
+use crate::math::nodal::Nodal;
 
 /// A contact law.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,6 +32,28 @@ impl Law {
         }
     }
 
+    /// Time (s) by which the velocity counts in the engagement.
+    pub(crate) fn by_rate(&self) -> f64 {
+        match self {
+            Self::Power(power) => power.by_rate(),
+            Self::Linear(linear) => linear.damping,
+        }
+    }
+
+    /// The part of the engagement that the damper resists, m; the engagement is no more than that.
+    pub(crate) fn resisted(&self, d: f64, rate: f64) -> f64 {
+        match self {
+            Self::Power(power) => d + power.by_rate() * rate,
+            Self::Linear(linear) => linear.engagement(d, rate),
+        }
+    }
+
+    /// Whether it is all of the engagement at this indentation (m): bodies without a force that are still indented, as their
+    /// damper holds what they would push.
+    pub(crate) fn is_indented(&self, d: f64) -> bool {
+        self.power().is_none_or(|power| d > power.least)
+    }
+
     /// Contact force at the indentation `d` (m) growing at `rate` (m/s), N.
     pub fn force(&self, d: f64, rate: f64) -> f64 {
         if self.engagement(d, rate) > 0.0 {
@@ -46,6 +69,15 @@ impl Law {
         match self {
             Self::Power(power) => power.closed_branch(d, rate),
             Self::Linear(linear) => linear.closed_branch(d, rate),
+        }
+    }
+
+    /// The same at several indentations (m) and velocities (m/s).
+    #[inline(always)]
+    pub(crate) fn closed_branches<const S: usize>(&self, d: &Nodal<S>, rate: &Nodal<S>) -> Branches<S> {
+        match self {
+            Self::Power(power) => power.closed_branches(d, rate),
+            Self::Linear(linear) => linear.closed_branches(d, rate),
         }
     }
 

@@ -3,7 +3,8 @@
 //! `F = max(0, F_0 + k_j0 (d - d_0) + beta_c k_j0 d')`, which the modal and frequency-domain analyses of Machines 2025,
 //! 13(1), 52 use; bonded: the same without `max`.
 
-use crate::contact::Branch;
+use crate::contact::{Branch, Branches};
+use crate::math::nodal::Nodal;
 
 /// Constants of the linear law.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,6 +36,20 @@ impl Linear {
             force: self.stiffness * self.branch_engagement(d, rate),
             stiffness: self.stiffness,
             damping: self.damping * self.stiffness,
+        }
+    }
+
+    /// The same at several indentations (m) and velocities (m/s).
+    #[inline(always)]
+    pub(crate) fn closed_branches<const S: usize>(&self, d: &Nodal<S>, rate: &Nodal<S>) -> Branches<S> {
+        let mut forces = *d;
+        for (force, rate) in forces.iter_mut().zip(rate) {
+            *force = self.stiffness * self.branch_engagement(*force, *rate);
+        }
+        Branches {
+            forces,
+            stiffness: [self.stiffness; S],
+            damping: [self.damping * self.stiffness; S],
         }
     }
 

@@ -5,6 +5,8 @@ pub mod law;
 pub mod linear;
 pub mod power;
 
+use crate::math::nodal::Nodal;
+
 /// Force on the closed branch of a law, with its partial derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Branch {
@@ -14,4 +16,15 @@ pub struct Branch {
     pub stiffness: f64,
     /// dF/dd', N s/m.
     pub damping: f64,
+}
+
+/// The same at several motions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Branches<const S: usize> {
+    /// See [`Branch::force`].
+    pub(crate) forces: Nodal<S>,
+    /// See [`Branch::stiffness`].
+    pub(crate) stiffness: Nodal<S>,
+    /// See [`Branch::damping`].
+    pub(crate) damping: Nodal<S>,
 }

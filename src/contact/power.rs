@@ -12,7 +12,8 @@
 //! open, `n = 1/3` Hertz, `n` towards 1 the exponential law of J. A. Greenwood and J. B. P. Williamson (Proc. R. Soc. A 295
 //! (1966) 300).
 
-use crate::contact::Branch;
+use crate::contact::{Branch, Branches};
+use crate::math::nodal::Nodal;
 use crate::scene::{Contact, Scene};
 use crate::variables::ContactLawKind;
 
@@ -280,30 +281,69 @@ impl Power {
         self.coefficient * ((high + low + x * y) / (x + y))
     }
 
+    /// Time (s) by which the velocity counts in `g`.
+    #[inline(always)]
+    pub(crate) fn by_rate(&self) -> f64 {
+        self.exponent * self.damping
+    }
+
     /// The lesser of `d`, above the least, and `g`, m: positive while the contact is closed.
     pub fn engagement(&self, d: f64, rate: f64) -> f64 {
-        (d - self.least).min(d + self.exponent * self.damping * rate)
+        (d - self.least).min(d + self.by_rate() * rate)
     }
 
     /// The closed branch, continued smoothly beyond opening (the force may be negative), for steps in which the contact
     /// opens.
     #[inline(always)]
     pub fn closed_branch(&self, d: f64, rate: f64) -> Branch {
-        if d <= 0.0 {
-            return Branch {
-                force: 0.0,
-                stiffness: 0.0,
-                damping: 0.0,
-            };
-        }
-        let slope = self.coefficient * self.slope(d);
-        let g = d + self.exponent * self.damping * rate;
+        let Branches {
+            forces: [force],
+            stiffness: [stiffness],
+            damping: [damping],
+        } = self.closed_branches(&[d], &[rate]);
         Branch {
-            force: slope * g,
-            stiffness: slope * (1.0 + (self.exponent - 1.0) * g / d),
-            damping: self.exponent * self.damping * slope,
+            force,
+            stiffness,
+            damping,
         }
     }
+
+    /// The same at several indentations (m) and velocities (m/s), which the processor computes in parallel.
+    #[inline(always)]
+    #[expect(
+        clippy::indexing_slicing,
+        reason = "every index runs over the fixed size of the arrays"
+    )]
+    pub(crate) fn closed_branches<const S: usize>(&self, d: &Nodal<S>, rate: &Nodal<S>) -> Branches<S> {
+        // Chosen rather than branched to; NaN is none of those that are open.
+        let held = d.map(|d| if d <= 0.0 { f64::MIN_POSITIVE } else { d });
+        let slopes = if self.exponent == HERTZ {
+            held.map(f64::sqrt)
+        } else {
+            powers(&held, self.exponent - 1.0)
+        };
+        let (coefficient, exponent, by_rate) = (self.coefficient, self.exponent, self.by_rate());
+        let [mut forces, mut stiffness, mut damping] = [[0.0; S]; 3];
+        for k in 0..S {
+            let slope = coefficient * slopes[k];
+            let slope = if d[k] <= 0.0 { 0.0 } else { slope };
+            let g = d[k] + by_rate * rate[k];
+            forces[k] = slope * g;
+            stiffness[k] = slope * (1.0 + (exponent - 1.0) * g / held[k]);
+            damping[k] = by_rate * slope;
+        }
+        Branches {
+            forces,
+            stiffness,
+            damping,
+        }
+    }
+}
+
+/// Powers of several numbers, out of the way of the law of Hertz.
+#[inline(never)]
+fn powers<const S: usize>(values: &Nodal<S>, exponent: f64) -> Nodal<S> {
+    values.map(|value| value.powf(exponent))
 }
 
 /// `(b^power - a^power) / (b - a)` of two lengths (m) in ascending order, of which negative ones count as powers of zero.

@@ -12,6 +12,33 @@ pub const LONG: usize = 8;
 /// A value at each node.
 pub type Nodal<const S: usize> = [f64; S];
 
+/// Nodal values that are one at one of them.
+struct Units<const S: usize>;
+
+impl<const S: usize> Units<S> {
+    #[expect(
+        clippy::indexing_slicing,
+        reason = "every index runs over the fixed size of the arrays"
+    )]
+    const TABLE: [Nodal<S>; S] = {
+        let mut units = [[0.0; S]; S];
+        let mut node = 0;
+        while node < S {
+            units[node][node] = 1.0;
+            node += 1;
+        }
+        units
+    };
+}
+
+/// One at a node of the `S`, zero at all others.
+#[inline(always)]
+#[expect(clippy::indexing_slicing, reason = "a node of the step")]
+pub fn unit<const S: usize>(node: usize) -> &'static Nodal<S> {
+    let units: &'static [Nodal<S>; S] = &Units::<S>::TABLE;
+    &units[node]
+}
+
 /// The values times `factor`.
 #[inline(always)]
 pub fn scaled<const S: usize>(values: &Nodal<S>, factor: f64) -> Nodal<S> {

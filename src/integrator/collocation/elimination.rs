@@ -1,14 +1,14 @@
 //! Gauss-Jordan elimination of the few equations of a step: a block of unknowns for each link, a value at each node.
 
 use crate::integrator::constants::SMALL_PIVOT;
-use crate::math::nodal::Nodal;
-use crate::math::simd::Arithmetic;
+use crate::math::nodal::{Nodal, add, scaled, unit};
+use crate::math::simd::{Arithmetic, Separate};
 
 /// A value at the nodes for each unknown link.
 pub(super) type Stacked<const S: usize, const L: usize> = [Nodal<S>; L];
 
-/// A square matrix by columns, of which the first `count` blocks are in use; once factorised, what [`Equations::solve`] needs
-/// of it.
+/// A square matrix by columns, of which the first `count` blocks are in use; once factorised, the multipliers of the
+/// elimination.
 #[derive(Clone, Debug)]
 pub(super) struct Equations<const S: usize, const L: usize> {
     pub(super) columns: [[Stacked<S, L>; S]; L],
@@ -49,32 +49,28 @@ impl<const S: usize, const L: usize> Equations<S, L> {
         } = self;
         for b in 0..in_use::<L>(*count) {
             for p in 0..S {
-                exchanges[b][p] = p;
-                if columns[b][p][b][p].abs() < SMALL_PIVOT {
-                    let pivot = |i: &usize| columns[b][p][b][*i].abs();
-                    let largest = (p..S).max_by(|i, j| pivot(i).total_cmp(&pivot(j)))?;
-                    exchanges[b][p] = largest;
-                    for column in &mut columns[b][p..] {
-                        column[b].swap(p, largest);
-                    }
-                    for column in columns[b + 1..].as_flattened_mut() {
-                        column[b].swap(p, largest);
-                    }
-                    right[b].swap(p, largest);
+                exchanges[b][p] = if columns[b][p][b][p].abs() < SMALL_PIVOT {
+                    exchange(columns, right, (b, p))?
+                } else {
+                    p
+                };
+                let multiplier = &mut columns[b][p];
+                let inverse = 1.0 / multiplier[b][p];
+                add::<S, Separate>(&mut multiplier[b], -1.0, unit(p));
+                for block in multiplier.iter_mut().take(in_use::<L>(*count)) {
+                    *block = scaled(block, -inverse);
                 }
-                let pivot = columns[b][p];
-                let inverse = 1.0 / pivot[b][p];
+                let multiplier = columns[b][p];
                 // Loops, as a chained iterator may not be inlined and would then be compiled for the generic processor.
                 for column in &mut columns[b][p + 1..] {
-                    eliminate::<S, L, A>(column, (b, p), &pivot, inverse, *count);
+                    eliminate::<S, L, A>(column, (b, p), &multiplier, *count);
                 }
                 for block in &mut columns[b + 1..] {
                     for column in block {
-                        eliminate::<S, L, A>(column, (b, p), &pivot, inverse, *count);
+                        eliminate::<S, L, A>(column, (b, p), &multiplier, *count);
                     }
                 }
-                eliminate::<S, L, A>(right, (b, p), &pivot, inverse, *count);
-                columns[b][p][b][p] = inverse;
+                eliminate::<S, L, A>(right, (b, p), &multiplier, *count);
             }
         }
         Some(())
@@ -89,15 +85,42 @@ impl<const S: usize, const L: usize> Equations<S, L> {
     pub(super) fn solve<A: Arithmetic>(&self, right: &mut Stacked<S, L>) {
         for b in 0..in_use::<L>(self.count) {
             for p in 0..S {
-                right[b].swap(p, self.exchanges[b][p]);
-                let pivot = &self.columns[b][p];
-                eliminate::<S, L, A>(right, (b, p), pivot, pivot[b][p], self.count);
+                let other = self.exchanges[b][p];
+                if other != p {
+                    right[b].swap(p, other);
+                }
+                eliminate::<S, L, A>(right, (b, p), &self.columns[b][p], self.count);
             }
         }
     }
 }
 
-/// Eliminates row `p` of block `b` of a column from all other rows, and divides it by the pivot.
+/// Exchanges row `p` of block `b` with that of the largest pivot in the block, and returns which it is.
+#[cold]
+#[inline(never)]
+#[expect(
+    clippy::indexing_slicing,
+    reason = "every index runs over the fixed size of the arrays"
+)]
+fn exchange<const S: usize, const L: usize>(
+    columns: &mut [[Stacked<S, L>; S]; L],
+    right: &mut Stacked<S, L>,
+    (b, p): (usize, usize),
+) -> Option<usize> {
+    let pivot = |i: &usize| columns[b][p][b][*i].abs();
+    let largest = (p..S).max_by(|i, j| pivot(i).total_cmp(&pivot(j)))?;
+    for column in &mut columns[b][p..] {
+        column[b].swap(p, largest);
+    }
+    for column in columns[b + 1..].as_flattened_mut() {
+        column[b].swap(p, largest);
+    }
+    right[b].swap(p, largest);
+    Some(largest)
+}
+
+/// Eliminates row `p` of block `b` of a column from all other rows, and divides it by the pivot: what the multiplier has there
+/// does that too, so that no single number is stored into what is read as a vector next.
 #[expect(
     clippy::indexing_slicing,
     reason = "every index runs over the fixed size of the arrays"
@@ -106,17 +129,15 @@ impl<const S: usize, const L: usize> Equations<S, L> {
 fn eliminate<const S: usize, const L: usize, A: Arithmetic>(
     column: &mut Stacked<S, L>,
     (b, p): (usize, usize),
-    pivot: &Stacked<S, L>,
-    inverse: f64,
+    multiplier: &Stacked<S, L>,
     count: usize,
 ) {
-    let share = column[b][p] * inverse;
+    let share = column[b][p];
     for c in 0..in_use::<L>(count) {
         for k in 0..S {
-            column[c][k] = A::mul_add(-pivot[c][k], share, column[c][k]);
+            column[c][k] = A::mul_add(multiplier[c][k], share, column[c][k]);
         }
     }
-    column[b][p] = share;
 }
 
 /// Solves `A x = b` for several `b`, `A` by columns. `None` if the matrix is singular.

@@ -125,29 +125,36 @@ impl<const S: usize, const L: usize> Judged<'_, S, L> {
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "links of the model")]
     fn defects<A: Arithmetic>(&self, trial: &mut Trial<S>) -> Defects {
-        let Linked { model, state, .. } = *self.linked;
         let mut defects = Defects::default();
         (trial.start_defect, trial.next_terms) = (0.0, 0.0);
-        let mut add = |index: usize| {
-            let start = state.links[index].force - model.links[index].force;
-            let forces = &trial.links[index].forces;
-            let mut defect = start - dot::<S, A>(forces, &self.collocation.at_start);
-            let (last, decay) = self.collocation.last_terms::<A>(start, forces);
-            if self.bent {
-                defect = defect.abs().max(last * decay).copysign(defect);
-            }
-            trial.start_defect = trial.start_defect.max(defect.abs());
-            trial.next_terms = trial.next_terms.max(last * decay * decay);
-            defects.0[index] = defect;
-        };
         for a in 0..in_use::<L>(self.linked.unknowns.count) {
             let unknown = self.linked.unknowns.get(a);
-            add(unknown.link);
+            defects.0[unknown.link] = self.defect::<A>(unknown.link, trial);
             if let Some((follower, _)) = unknown.follower {
-                add(follower);
+                defects.0[follower] = self.defect::<A>(follower, trial);
             }
         }
         defects
+    }
+
+    /// The defect of the force of a link, N; noted in the trial. Not a closure, which may not be inlined and would then be
+    /// compiled for the generic processor.
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "links of the model")]
+    fn defect<A: Arithmetic>(&self, index: usize, trial: &mut Trial<S>) -> f64 {
+        let Linked { model, state, .. } = *self.linked;
+        let start = state.links[index].force - model.links[index].force;
+        let forces = &trial.links[index].forces;
+        let defect = start - dot::<S, A>(forces, &self.collocation.at_start);
+        let (last, decay) = self.collocation.last_terms::<A>(start, forces);
+        trial.start_defect = trial.start_defect.max(defect.abs());
+        trial.next_terms = trial.next_terms.max(last * decay * decay);
+        if self.bent {
+            let defect = defect.abs().max(last * decay).copysign(defect);
+            trial.start_defect = trial.start_defect.max(defect.abs());
+            return defect;
+        }
+        defect
     }
 
     /// Motion of a link at the nodes that the defects make, with nodal forces as they are.

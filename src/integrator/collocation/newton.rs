@@ -22,8 +22,8 @@ use crate::integrator::collocation::coefficients::{Columns, ErrorColumn, Respons
 use crate::integrator::collocation::elimination::{Equations, Stacked, in_use};
 use crate::integrator::constants::{ITERATIONS, MOTION_ROUNDING, STALE};
 use crate::link::{CONTACT, LinkLaw, MAX_UNKNOWNS};
-use crate::math::nodal::{Nodal, add, add_columns, add_products, end, greatest, scaled};
-use crate::math::simd::Arithmetic;
+use crate::math::nodal::{Nodal, add, add_columns, add_products, end, greatest, scaled, unit};
+use crate::math::simd::{Arithmetic, Separate};
 use crate::model::Model;
 use crate::state::State;
 
@@ -271,11 +271,12 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
             let motion = &motions[a];
             match &link.law {
                 LinkLaw::Contact(law) => {
-                    for k in 0..S {
-                        let branch = law.closed_branch(link.approach + motion.d[k], motion.rate[k]);
-                        residuals[a][k] -= branch.force - link.force;
-                        (laws.stiffness[a][k], laws.damping[a][k]) = (branch.stiffness, branch.damping);
+                    let d = motion.d.map(|d| link.approach + d);
+                    let branches = law.closed_branches(&d, &motion.rate);
+                    for (residual, force) in residuals[a].iter_mut().zip(&branches.forces) {
+                        *residual -= force - link.force;
                     }
+                    (laws.stiffness[a], laws.damping[a]) = (branches.stiffness, branches.damping);
                 }
                 // It comes after its contact.
                 LinkLaw::Friction(friction) if L > 1 && a > 0 => {
@@ -315,8 +316,8 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
         mut forces: Stacked<S, L>,
         newton: f64,
     ) -> Option<Solution<S, L>> {
-        let mut factors: Option<Equations<S, L>> = None;
-        let mut before = 0.0;
+        let mut factors = Equations::new(self.unknowns.count);
+        let (mut factorised, mut before) = (false, 0.0);
         for iterations in 0..=ITERATIONS {
             let motions = self.under::<A>(free, &forces);
             let (mut residuals, laws) = self.residuals(&forces, &motions);
@@ -328,7 +329,7 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
                 rounding += greatest(&laws.stiffness[a]) * greatest(&free[a].d)
                     + greatest(&laws.damping[a]) * greatest(&free[a].rate);
             }
-            if let Some(factors) = factors.take_if(|_| wrong <= newton.max(MOTION_ROUNDING * rounding)) {
+            if factorised && wrong <= newton.max(MOTION_ROUNDING * rounding) {
                 return Some(Solution {
                     forces,
                     motions,
@@ -337,16 +338,17 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
                     factors,
                 });
             }
-            let stale = factors.as_ref().filter(|_| L > 1 && wrong <= STALE * before);
-            if let Some(factors) = stale {
+            if L > 1 && factorised && wrong <= STALE * before {
                 factors.solve::<A>(&mut residuals);
             } else {
-                let equations = factors.insert(self.equations::<A>(&laws));
-                equations.factorise::<A>(&mut residuals)?;
+                self.equate::<A>(&laws, &mut factors);
+                factors.factorise::<A>(&mut residuals)?;
+                factorised = true;
             }
             before = wrong;
             for a in 0..in_use::<L>(self.unknowns.count) {
-                if !residuals[a].iter().all(|force| force.is_finite()) {
+                let finite = residuals[a].iter().fold(true, |all, force| all & force.is_finite());
+                if !finite {
                     return None;
                 }
                 add::<S, A>(&mut forces[a], -1.0, &residuals[a]);
@@ -355,11 +357,10 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
         None
     }
 
-    /// Derivatives of the residuals by each nodal force.
+    /// Sets the derivatives of the residuals by each nodal force.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "unknowns in use")]
-    fn equations<A: Arithmetic>(&self, laws: &Laws<S, L>) -> Equations<S, L> {
-        let mut equations = Equations::new(self.unknowns.count);
+    fn equate<A: Arithmetic>(&self, laws: &Laws<S, L>, equations: &mut Equations<S, L>) {
         for b in 0..in_use::<L>(self.unknowns.count) {
             for j in 0..S {
                 for a in 0..in_use::<L>(self.unknowns.count) {
@@ -371,10 +372,9 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
                         }
                     });
                 }
-                equations.columns[b][j][b][j] += 1.0;
+                add::<S, Separate>(&mut equations.columns[b][j][b], 1.0, unit(j));
             }
         }
-        equations
     }
 
     /// What defects of the loads at the start do to the forces at the nodes, and to the motion at the end, from the motion that

@@ -58,9 +58,10 @@ impl<const S: usize> Whole<'_, S> {
             ..
         } = *self;
         let shapes = &collocation.shapes;
-        let rows = collocation
-            .nodes
-            .map(|node| collocation.lagrange(node * (at / self.length)));
+        let mut rows = [[0.0; S]; S];
+        for (row, node) in rows.iter_mut().zip(&collocation.nodes) {
+            *row = collocation.lagrange(node * (at / self.length));
+        }
         let base = load_on::<S, A>(shapes, &rows, &trial.accelerations);
         if let ([link], [port]) = (&*model.links, &*model.ports) {
             let force = load_on::<S, A>(shapes, &rows, &scaled(&trial.links[0].forces, link.sense));

@@ -1,7 +1,7 @@
 //! A trial step: the nodal forces of the links ([`newton`](crate::integrator::collocation::newton)), the motion they cause, and
 //! its error ([`error`](crate::integrator::collocation::error)).
 
-use crate::beam::mode::Modal;
+use crate::beam::mode::{Modal, ModeState};
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::axial_force::Rounds;
 use crate::integrator::collocation::cache::Prepared;
@@ -16,9 +16,6 @@ use crate::math::nodal::{Nodal, add, add_products, dot, end, scaled};
 use crate::math::simd::{Arithmetic, LANES, compiled_for};
 use crate::model::Model;
 use crate::state::State;
-
-/// Loads on [`LANES`] modes at the nodes.
-pub(super) type LaneLoads<const S: usize> = [[f64; LANES]; S];
 
 /// Computes the prepared step from `state`, contacts closed or open as in `state`. `None` if the iteration for the forces does
 /// not converge.
@@ -332,10 +329,7 @@ impl<const S: usize> Step<'_, S> {
     /// Moves the modes to the end of the step, with the loads of an axial force on each where there are such; and sets the links
     /// there.
     #[inline(always)]
-    #[expect(
-        clippy::indexing_slicing,
-        reason = "links and ports of the model, and whole numbers of lanes"
-    )]
+    #[expect(clippy::indexing_slicing, reason = "links and ports of the model")]
     fn set_end<A: Arithmetic>(&self, trial: &mut Trial<S>, on_modes: Option<&[Nodal<S>]>) {
         let Self { model, state, .. } = *self;
         let Prepared { step, .. } = self.prepared;
@@ -343,34 +337,29 @@ impl<const S: usize> Step<'_, S> {
         for (link, nodes) in model.links.iter().zip(&trial.links) {
             add::<S, A>(&mut loads[link.port], link.sense, &nodes.forces);
         }
+        let pushed = scaled(&trial.accelerations, -1.0);
         let mut ends = [([0.0; LANES], [0.0; LANES]); MAX_PORTS];
-        let lanes = |values: &Modal, first: usize| -> [f64; LANES] { std::array::from_fn(|i| values[first + i]) };
-        for first in (0..model.modes.len()).step_by(LANES) {
-            let mut on_lanes: LaneLoads<S> = [[0.0; LANES]; S];
-            let participations = lanes(&model.participations, first);
-            for (load, acceleration) in on_lanes.iter_mut().zip(&trial.accelerations) {
-                add::<LANES, A>(load, -acceleration, &participations);
-            }
+        let groups = model.modes.len().div_ceil(LANES);
+        let (starts, modes) = (
+            state.modes.as_chunks::<LANES>().0,
+            trial.modes.as_chunks_mut::<LANES>().0,
+        );
+        for (group, (starts, modes)) in starts.iter().zip(modes).take(groups).enumerate() {
+            let mut end = LaneEnd::free::<S, A>(step, group, starts);
+            end.add::<S, A>(step, group, (&model.participations, &pushed));
             for (port, forces) in model.ports.iter().zip(&loads) {
-                let shape = lanes(&port.shape, first);
-                for (load, force) in on_lanes.iter_mut().zip(forces) {
-                    add::<LANES, A>(load, *force, &shape);
-                }
+                end.add::<S, A>(step, group, (&port.shape, forces));
             }
             if let Some(on_modes) = on_modes {
-                for (i, of_mode) in on_modes[first..first + LANES].iter().enumerate() {
-                    for (load, value) in on_lanes.iter_mut().zip(of_mode) {
-                        load[i] += value;
-                    }
-                }
+                end.add_each::<S, A>(step, group, on_modes);
             }
-            let (q, v) = end_of_lanes::<S, A>(state, step, first, &on_lanes);
+            let LaneEnd { q, v } = end;
             for (port, (y, rate)) in model.ports.iter().zip(&mut ends) {
-                let shape = lanes(&port.shape, first);
-                add_products::<LANES, A>(y, &shape, &q);
-                add_products::<LANES, A>(rate, &shape, &v);
+                let shape = lanes(&port.shape, group);
+                add_products::<LANES, A>(y, shape, &q);
+                add_products::<LANES, A>(rate, shape, &v);
             }
-            for (mode, (q, v)) in trial.modes[first..first + LANES].iter_mut().zip(q.iter().zip(&v)) {
+            for (mode, (q, v)) in modes.iter_mut().zip(q.iter().zip(&v)) {
                 (mode.q, mode.v) = (*q, *v);
             }
         }
@@ -388,31 +377,82 @@ impl<const S: usize> Step<'_, S> {
     }
 }
 
-/// Displacements and velocities of [`LANES`] modes at the end of a step, under loads at the nodes.
+/// [`LANES`] modes at the end of a step.
+#[derive(Clone, Copy)]
+struct LaneEnd {
+    /// Displacements.
+    q: [f64; LANES],
+    /// Velocities.
+    v: [f64; LANES],
+}
+
+impl LaneEnd {
+    /// A group of modes from these starts, without loads.
+    #[inline(always)]
+    fn free<const S: usize, A: Arithmetic>(
+        step: StepCoefficients<'_, S>,
+        group: usize,
+        starts: &[ModeState; LANES],
+    ) -> Self {
+        let rows = &step.end;
+        let (mut start_q, mut start_v) = ([0.0; LANES], [0.0; LANES]);
+        for ((q, v), start) in start_q.iter_mut().zip(&mut start_v).zip(starts) {
+            (*q, *v) = (start.q, start.v);
+        }
+        let (mut q, mut v) = ([0.0; LANES], [0.0; LANES]);
+        add_products::<LANES, A>(&mut q, lanes(rows.q_from_q, group), &start_q);
+        add_products::<LANES, A>(&mut q, lanes(rows.q_from_v, group), &start_v);
+        add_products::<LANES, A>(&mut v, lanes(rows.v_from_q, group), &start_q);
+        add_products::<LANES, A>(&mut v, lanes(rows.v_from_v, group), &start_v);
+        Self { q, v }
+    }
+
+    /// Adds what a load does that acts on each mode with its part, and has these nodal values.
+    #[inline(always)]
+    fn add<const S: usize, A: Arithmetic>(
+        &mut self,
+        step: StepCoefficients<'_, S>,
+        group: usize,
+        (parts, values): (&Modal, &Nodal<S>),
+    ) {
+        let rows = &step.end;
+        let (mut q, mut v) = ([0.0; LANES], [0.0; LANES]);
+        for (value, (of_q, of_v)) in values.iter().zip(rows.q_from_load.iter().zip(rows.v_from_load)) {
+            add::<LANES, A>(&mut q, *value, lanes(of_q, group));
+            add::<LANES, A>(&mut v, *value, lanes(of_v, group));
+        }
+        let parts = lanes(parts, group);
+        add_products::<LANES, A>(&mut self.q, parts, &q);
+        add_products::<LANES, A>(&mut self.v, parts, &v);
+    }
+
+    /// Adds what loads of their own do to each mode.
+    #[inline(always)]
+    fn add_each<const S: usize, A: Arithmetic>(
+        &mut self,
+        step: StepCoefficients<'_, S>,
+        group: usize,
+        on_modes: &[Nodal<S>],
+    ) {
+        let rows = &step.end;
+        let of_group = on_modes.as_chunks::<LANES>().0.get(group);
+        for (k, (of_q, of_v)) in rows.q_from_load.iter().zip(rows.v_from_load).enumerate() {
+            let mut load = [0.0; LANES];
+            for (load, values) in load.iter_mut().zip(of_group.into_iter().flatten()) {
+                *load = values.get(k).copied().unwrap_or_default();
+            }
+            add_products::<LANES, A>(&mut self.q, lanes(of_q, group), &load);
+            add_products::<LANES, A>(&mut self.v, lanes(of_v, group), &load);
+        }
+    }
+}
+
+/// The values of a group of modes.
 #[inline(always)]
 #[expect(
     clippy::indexing_slicing,
     reason = "the room for the modes is a whole number of lanes"
 )]
-fn end_of_lanes<const S: usize, A: Arithmetic>(
-    state: &State,
-    step: StepCoefficients<'_, S>,
-    first: usize,
-    loads: &LaneLoads<S>,
-) -> ([f64; LANES], [f64; LANES]) {
-    let rows = &step.end;
-    let lanes = |values: &Modal| -> [f64; LANES] { std::array::from_fn(|i| values[first + i]) };
-    let starts = &state.modes[first..first + LANES];
-    let start_q: [f64; LANES] = std::array::from_fn(|i| starts[i].q);
-    let start_v: [f64; LANES] = std::array::from_fn(|i| starts[i].v);
-    let (mut q, mut v) = ([0.0; LANES], [0.0; LANES]);
-    add_products::<LANES, A>(&mut q, &lanes(rows.q_from_q), &start_q);
-    add_products::<LANES, A>(&mut q, &lanes(rows.q_from_v), &start_v);
-    add_products::<LANES, A>(&mut v, &lanes(rows.v_from_q), &start_q);
-    add_products::<LANES, A>(&mut v, &lanes(rows.v_from_v), &start_v);
-    for ((load, of_q), of_v) in loads.iter().zip(rows.q_from_load).zip(rows.v_from_load) {
-        add_products::<LANES, A>(&mut q, &lanes(of_q), load);
-        add_products::<LANES, A>(&mut v, &lanes(of_v), load);
-    }
-    (q, v)
+fn lanes(values: &Modal, group: usize) -> &[f64; LANES] {
+    &values.as_chunks::<LANES>().0[group]
 }
