@@ -4,10 +4,13 @@
 //! the contact first opened or closed ([`crate::integrator::deviation`]); and what the modes left out do
 //! ([`crate::beam::resolution`]). With the factor more than nine of ten random relays have a smaller error (`tests/promise.rs`).
 
+use std::array;
+
 use serde::{Deserialize, Serialize};
 
-use crate::beam::mode::ModeState;
-use crate::link::MAX_LINKS;
+use crate::beam::mode::Mode;
+use crate::link::{MAX_LINKS, MAX_PORTS, Port};
+use crate::math::free_motion::FreeMotion;
 
 /// Modes of the deviation: the lowest ones, which decay least.
 pub const MODES: usize = 8;
@@ -27,7 +30,7 @@ pub struct ForceError {
     /// Largest estimate of the error that a step has added, relative to the larger of force scale and greatest force so far.
     pub largest: f64,
     /// The deviation, of size 1; zero until the contact first opens or closes.
-    pub deviation: [ModeState; MODES],
+    pub deviation: Deviation,
     /// Forces that it causes in the links.
     pub forces: [f64; MAX_LINKS],
     /// Logarithm of its size, were it not brought back to 1.
@@ -36,6 +39,79 @@ pub struct ForceError {
     pub largest_growth: f64,
     /// Largest estimate of what modes left out would do ([`crate::beam::resolution`]), likewise.
     pub unresolved: f64,
+}
+
+/// A number for each mode of a deviation.
+type Lanes = [f64; MODES];
+
+/// A deviation of the motion: its modes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Deviation {
+    /// Displacements.
+    pub q: Lanes,
+    /// Velocities.
+    pub v: Lanes,
+}
+
+/// The modes of a deviation, the slowest of a model first.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Slowest {
+    /// Which they are, and the modes themselves.
+    modes: Vec<(usize, Mode)>,
+    /// Their natural angular frequencies, squared, 1/s2; zero where there is no mode.
+    pub(crate) omega_squared: Lanes,
+    /// Displacement of each port per mode.
+    pub(crate) shapes: [Lanes; MAX_PORTS],
+}
+
+/// Free motion of the modes of a deviation over a step.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct FreeMotions {
+    pub(crate) q_from_q: Lanes,
+    pub(crate) q_from_v: Lanes,
+    pub(crate) v_from_q: Lanes,
+    pub(crate) v_from_v: Lanes,
+}
+
+impl Slowest {
+    /// Those of these modes, seen at these ports.
+    pub(crate) fn of(modes: &[Mode], ports: &[Port]) -> Self {
+        let mut modes: Vec<_> = modes.iter().copied().enumerate().collect();
+        modes.sort_by(|(_, a), (_, b)| a.omega_squared.total_cmp(&b.omega_squared));
+        modes.truncate(MODES);
+        let lanes = |of: &dyn Fn(usize, &Mode) -> f64| -> Lanes {
+            array::from_fn(|k| modes.get(k).map_or(0.0, |(i, mode)| of(*i, mode)))
+        };
+        let shape = |port: &Port| lanes(&|i, _| port.shape.get(i).copied().unwrap_or_default());
+        let mut shapes = [[0.0; MODES]; MAX_PORTS];
+        for (lanes, port) in shapes.iter_mut().zip(ports) {
+            *lanes = shape(port);
+        }
+        let omega_squared = lanes(&|_, mode| mode.omega_squared);
+        Self {
+            modes,
+            omega_squared,
+            shapes,
+        }
+    }
+
+    /// Their free motion, of each by its index and itself.
+    pub(crate) fn free(&self, of: impl Fn(usize, &Mode) -> FreeMotion) -> FreeMotions {
+        let mut motions = FreeMotions::default();
+        let FreeMotions {
+            q_from_q,
+            q_from_v,
+            v_from_q,
+            v_from_v,
+        } = &mut motions;
+        let lanes = q_from_q.iter_mut().zip(q_from_v).zip(v_from_q).zip(v_from_v);
+        for ((i, mode), (((q_from_q, q_from_v), v_from_q), v_from_v)) in self.modes.iter().zip(lanes) {
+            let free = of(*i, mode);
+            (*q_from_q, *q_from_v) = (free.q_from_q, free.q_from_v);
+            (*v_from_q, *v_from_v) = (free.v_from_q, free.v_from_v);
+        }
+        motions
+    }
 }
 
 impl ForceError {
@@ -57,7 +133,7 @@ impl ForceError {
 
     /// Whether there is a deviation, as the contact has opened or closed.
     pub fn deviates(&self) -> bool {
-        self.deviation != [ModeState::default(); MODES]
+        self.deviation != Deviation::default()
     }
 
     /// Whether a simulation can reach these numbers.
@@ -71,7 +147,7 @@ impl ForceError {
             largest_growth,
             unresolved,
         } = self;
-        deviation.iter().all(|mode| mode.q.is_finite() && mode.v.is_finite())
+        deviation.q.iter().chain(&deviation.v).all(|number| number.is_finite())
             && forces.iter().all(|force| force.is_finite())
             && growth.is_finite()
             && (0.0..f64::INFINITY).contains(greatest)

@@ -19,6 +19,7 @@ use crate::contact::power::Power;
 use crate::electrical::ElectricalContact;
 use crate::error::{Remark, SceneError};
 use crate::excitation::generator::Generator;
+use crate::force_error::Slowest;
 use crate::integrator::step_length::StepLengths;
 use crate::integrator::tolerance::Tolerance;
 use crate::link::{Link, LinkLaw, MAX_LINKS, Port};
@@ -58,8 +59,8 @@ pub struct Model {
     pub(crate) preload: Preload,
     /// The modes of one body after the other, frequency ascending in each.
     pub(crate) modes: Vec<Mode>,
-    /// Their indices by frequency, the lowest first.
-    by_frequency: Vec<usize>,
+    /// Those of the deviation that shows how errors grow.
+    pub(crate) slowest: Slowest,
     /// The axial force, if it follows the deflection continuously.
     pub(crate) axial: Option<Box<Feedback>>,
     /// Modes and contact as one linear system, if the scene is linear, the generator harmonic, and nothing within a
@@ -180,7 +181,7 @@ impl Model {
             links: Vec::new(),
             roles: Roles::default(),
             participations: [0.0; MAX_MODES],
-            by_frequency: Vec::new(),
+            slowest: Slowest::default(),
             resolution,
             inertia: inertia(&modes),
             memory,
@@ -210,11 +211,9 @@ impl Model {
         for (participation, mode) in self.participations.iter_mut().zip(&self.modes) {
             *participation = mode.participation;
         }
-        self.by_frequency = (0..self.modes.len()).collect();
-        let square = |i: &usize| self.modes.get(*i).map_or(f64::INFINITY, |mode| mode.omega_squared);
-        self.by_frequency.sort_by(|a, b| square(a).total_cmp(&square(b)));
         let Assembly { ports, links, roles } =
             Assembly::new((&self.scene, &self.modes, &self.preload), laws, self.armature.as_ref());
+        self.slowest = Slowest::of(&self.modes, &ports);
         (self.law, self.ports, self.links, self.roles) = (laws.contact, ports, links, roles);
     }
 
@@ -245,11 +244,6 @@ impl Model {
             second,
         });
         self
-    }
-
-    /// The modes with their indices, the slowest first.
-    pub(crate) fn slowest(&self) -> impl Iterator<Item = (usize, &Mode)> {
-        self.by_frequency.iter().filter_map(|i| Some((*i, self.modes.get(*i)?)))
     }
 
     /// What a user should know of the scene.

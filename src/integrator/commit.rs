@@ -1,6 +1,5 @@
 //! An accepted step as the new state.
 
-use crate::beam::mode::Mode;
 use crate::contact::friction::Slip;
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::cache::Cache;
@@ -10,7 +9,7 @@ use crate::link::{CONTACT, LinkLaw};
 use crate::math::free_motion::FreeMotion;
 use crate::math::nodal::{Nodal, add_columns, end};
 use crate::math::prediction::Prediction;
-use crate::math::simd::Separate;
+use crate::math::simd::{Separate, compiled_for};
 use crate::model::Model;
 use crate::state::State;
 
@@ -68,14 +67,13 @@ fn advance_deviation<const S: usize>(
     // Without a tangent are contacts that are open, and what slips.
     let links = model.links.iter().zip(&trial.links).enumerate();
     let at_work = links.filter(|(_, (_, nodes))| nodes.tangent.stiffness != 0.0);
-    let at_work =
-        at_work.filter_map(|(index, (link, nodes))| Some((index, &model.ports.get(link.port)?.shape, nodes.tangent)));
+    let at_work = at_work.map(|(index, (link, nodes))| (index, link.port, nodes.tangent));
     let known = cache.known(target.length, target.recurring);
-    let free = |i: usize, mode: &Mode| {
+    let free = model.slowest.free(|i, mode| {
         let known = known.and_then(|step| step.end.free(i));
         known.unwrap_or_else(|| FreeMotion::new(mode.omega_squared, mode.damping, target.length))
-    };
-    state.force_error.advance(model, free, at_work);
+    });
+    compiled_for!(model.simd, A => state.force_error.advance::<A>(&model.slowest, &free, at_work));
 }
 
 /// Slip at the end of an accepted step of `length` seconds, which began with a `start`: distance and energy; and the courses of slip

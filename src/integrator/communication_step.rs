@@ -337,9 +337,11 @@ fn go_ahead(
     time: f64,
     extremes: Option<&mut Extremes>,
 ) -> Result<(), StepError> {
-    *workspace.former = *motion;
+    let former = &mut *workspace.former;
+    (former.start, former.end, former.dense) = (motion.start, motion.end, motion.dense);
     take_steps(model, motion, workspace, time, extremes).inspect_err(|_| {
-        *motion = *workspace.former;
+        let former = &*workspace.former;
+        (motion.start, motion.end, motion.dense) = (former.start, former.end, former.dense);
         workspace.events.forget_after(motion.end.time);
     })
 }

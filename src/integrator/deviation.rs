@@ -7,61 +7,56 @@
 
 use std::mem;
 
-use crate::beam::mode::{Modal, Mode, ModeState};
-use crate::force_error::{ForceError, MODES};
+use crate::force_error::{Deviation, ForceError, FreeMotions, MODES, Slowest};
 use crate::integrator::collocation::newton::Tangent;
 use crate::link::{CONTACT, MAX_LINKS};
-use crate::math::free_motion::FreeMotion;
-use crate::model::Model;
+use crate::math::nodal::{add_products, dot, scaled};
+use crate::math::simd::Arithmetic;
 
 impl ForceError {
-    /// Begins with a blow where a contact with this displacement per mode opens or closes, unless there is a deviation already.
-    pub(crate) fn begin(&mut self, model: &Model, shape: &Modal) {
+    /// Begins with a blow where a contact at this port opens or closes, unless there is a deviation already.
+    pub(crate) fn begin(&mut self, slowest: &Slowest, port: usize) {
         if !self.deviates() {
-            for (at, (i, _)) in self.deviation.iter_mut().zip(model.slowest()) {
-                at.v = shape.get(i).copied().unwrap_or_default();
-            }
-            self.normalise(model);
+            self.deviation.v = slowest.shapes.get(port).copied().unwrap_or_default();
+            self.normalise(slowest);
         }
     }
 
-    /// Over a step with the given free motion of each mode; of each law at work its index among the links, the displacement
-    /// per mode and the tangent.
-    pub(crate) fn advance<'a>(
+    /// Over a step with the given free motion; of each law at work its index among the links, its port and the tangent.
+    #[inline(always)]
+    pub(crate) fn advance<A: Arithmetic>(
         &mut self,
-        model: &Model,
-        free: impl Fn(usize, &Mode) -> FreeMotion,
-        at_work: impl Iterator<Item = (usize, &'a Modal, Tangent)>,
+        slowest: &Slowest,
+        free: &FreeMotions,
+        at_work: impl Iterator<Item = (usize, usize, Tangent)>,
     ) {
+        let Deviation { q, v } = self.deviation;
+        let (mut next_q, mut next_v) = ([0.0; MODES], [0.0; MODES]);
+        add_products::<MODES, A>(&mut next_q, &free.q_from_q, &q);
+        add_products::<MODES, A>(&mut next_q, &free.q_from_v, &v);
+        add_products::<MODES, A>(&mut next_v, &free.v_from_q, &q);
+        add_products::<MODES, A>(&mut next_v, &free.v_from_v, &v);
         // What a constant force does to a mode in which it has part 1.
-        let mut by_force = [ModeState::default(); MODES];
-        for ((at, by_force), (i, mode)) in self.deviation.iter_mut().zip(&mut by_force).zip(model.slowest()) {
-            let ModeState { q, v } = *at;
-            let free = free(i, mode);
-            at.q = free.q_from_q * q + free.q_from_v * v;
-            at.v = free.v_from_q * q + free.v_from_v * v;
-            by_force.q = if mode.omega_squared > 0.0 {
-                (1.0 - free.q_from_q) / mode.omega_squared
+        let lanes = free.q_from_q.iter().zip(&free.q_from_v).zip(&slowest.omega_squared);
+        let mut by_force = [0.0; MODES];
+        for (by_force, ((q_from_q, q_from_v), omega_squared)) in by_force.iter_mut().zip(lanes) {
+            *by_force = if *omega_squared > 0.0 {
+                (1.0 - q_from_q) / omega_squared
             } else {
-                0.5 * free.q_from_v * free.q_from_v
+                0.5 * q_from_v * q_from_v
             };
-            by_force.v = free.q_from_v;
         }
         let before = mem::replace(&mut self.forces, [0.0; MAX_LINKS]);
         let (mut closed, mut drawn) = (false, false);
         // One after the other: each at the motion that those before it have left.
-        for (index, shape, tangent) in at_work {
+        for (index, port, tangent) in at_work {
             closed |= index == CONTACT;
             drawn |= tangent.stiffness < 0.0;
-            let Some((force, before)) = self.forces.get_mut(index).zip(before.get(index)) else {
+            let links = self.forces.get_mut(index).zip(before.get(index));
+            let Some(((force, before), shape)) = links.zip(slowest.shapes.get(port)) else {
                 continue;
             };
-            let (mut y, mut rate) = (0.0, 0.0);
-            let part = |i: usize| shape.get(i).copied().unwrap_or_default();
-            for ((i, _), at) in model.slowest().zip(&self.deviation) {
-                y += part(i) * at.q;
-                rate += part(i) * at.v;
-            }
+            let (y, rate) = (dot::<MODES, A>(shape, &next_q), dot::<MODES, A>(shape, &next_v));
             // The force at the end is that of the law at the motion that the mean force causes.
             let Tangent {
                 stiffness,
@@ -71,13 +66,12 @@ impl ForceError {
             // A magnet draws more the further it has moved; bounded, as the rule fails at -2.
             let gain = if stiffness < 0.0 { -gain.min(1.0) } else { gain };
             *force = -(stiffness * y + damping * rate + 0.5 * gain * before) / (1.0 + 0.5 * gain);
-            let mean = 0.5 * (before + *force);
-            for (((i, _), at), by_force) in model.slowest().zip(&mut self.deviation).zip(&by_force) {
-                at.q += part(i) * by_force.q * mean;
-                at.v += part(i) * by_force.v * mean;
-            }
+            let pushed = scaled(shape, 0.5 * (before + *force));
+            add_products::<MODES, A>(&mut next_q, &pushed, &by_force);
+            add_products::<MODES, A>(&mut next_v, &pushed, &free.q_from_v);
         }
-        let size = self.normalise(model);
+        self.deviation = Deviation { q: next_q, v: next_v };
+        let size = self.normalise(slowest);
         self.growth += size.ln();
         // Else part of its energy is in the contact.
         if !closed || drawn {
@@ -85,25 +79,16 @@ impl ForceError {
         }
     }
 
-    /// The root of the energy.
-    fn size(&self, model: &Model) -> f64 {
-        let pairs = model.slowest().zip(&self.deviation);
-        pairs
-            .map(|((_, mode), at)| mode.omega_squared * at.q * at.q + at.v * at.v)
-            .sum::<f64>()
-            .sqrt()
-    }
-
-    /// Brings it back to size 1; returns what it was.
-    fn normalise(&mut self, model: &Model) -> f64 {
-        let size = self.size(model).max(f64::MIN_POSITIVE);
-        for at in &mut self.deviation {
-            at.q /= size;
-            at.v /= size;
-        }
-        for force in &mut self.forces {
-            *force /= size;
-        }
+    /// Brings it back to size 1, the root of its energy; returns what it was.
+    #[inline(always)]
+    fn normalise(&mut self, slowest: &Slowest) -> f64 {
+        let Deviation { q, v } = &mut self.deviation;
+        let modes = q.iter().zip(&*v).zip(&slowest.omega_squared);
+        let energy: f64 = modes.map(|((q, v), omega_squared)| omega_squared * q * q + v * v).sum();
+        let size = energy.sqrt().max(f64::MIN_POSITIVE);
+        let inverse = 1.0 / size;
+        (*q, *v) = (scaled(q, inverse), scaled(v, inverse));
+        self.forces = scaled(&self.forces, inverse);
         size
     }
 }

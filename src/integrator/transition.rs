@@ -16,9 +16,7 @@ pub(crate) fn switch(model: &Model, state: &mut State, index: usize, log: &mut E
     let (Some(link), time) = (model.links.get(index), state.time) else {
         return;
     };
-    if let Some(port) = model.ports.get(link.port) {
-        state.force_error.begin(model, &port.shape);
-    }
+    state.force_error.begin(&model.slowest, link.port);
     let Some(at) = state.links.get_mut(index) else {
         return;
     };
@@ -39,8 +37,11 @@ pub(crate) fn switch(model: &Model, state: &mut State, index: usize, log: &mut E
         at.last_opening = Some(time);
     }
     state.lengths.last = 0.0;
+    let before = Some(at.first_step).filter(|length| *length > 0.0);
     state.lengths.short = if closed {
-        first_closed_step(model, state, index)
+        before
+            .unwrap_or(f64::INFINITY)
+            .min(first_closed_step(model, state, index))
     } else {
         step_after_jump(model, state)
     };

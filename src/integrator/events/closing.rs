@@ -9,9 +9,11 @@ use crate::beam::mode::Mode;
 use crate::contact::law::Law;
 use crate::integrator::collocation::part::{Instant, Whole};
 use crate::integrator::constants::{DISTANT, HALVINGS, SHORTEST_FLIGHT, UNSEEN};
+use crate::integrator::events::cubic::Cubic;
 use crate::integrator::events::{Cut, Event, Locator, motion_rounding};
 use crate::link::Link;
 use crate::math::nodal::LONG;
+use crate::math::roots;
 use crate::state::LinkState;
 
 /// Halvings of the cubic between two samples before the motion in their middle is computed.
@@ -26,6 +28,26 @@ struct Sought<'a> {
     start: &'a LinkState,
     /// Engagement that does not count as contact, m.
     unsure: f64,
+}
+
+impl Sought<'_> {
+    /// Engagement at a sample, m.
+    fn engagement(&self, sample: &Instant) -> f64 {
+        self.link.engagement(sample.d, sample.rate)
+    }
+
+    /// Its part that the damper resists, m: no less than the engagement.
+    fn resisted(&self, sample: &Instant) -> f64 {
+        self.law.resisted(self.link.approach + sample.d, sample.rate)
+    }
+}
+
+/// Bound of what fast modes do: displacement (m), velocity (m/s) and acceleration (m/s2).
+#[derive(Clone, Copy, Debug, Default)]
+struct Ripple {
+    displacement: f64,
+    velocity: f64,
+    acceleration: f64,
 }
 
 impl<const S: usize> Locator<'_, S> {
@@ -48,14 +70,14 @@ impl<const S: usize> Locator<'_, S> {
         let mut errors = [0.0_f64; LONG + 1];
         for (k, triple) in samples.windows(3).enumerate() {
             if let [a, b, c] = triple {
-                let error = (b.d - cubic(a, c, b.at)).abs();
+                let error = (b.d - Cubic { a: *a, b: *c }.at(b.at).d).abs();
                 for entry in errors.iter_mut().skip(k).take(2) {
                     *entry = entry.max(error);
                 }
             }
         }
         let touch = samples.windows(2).zip(errors).find_map(|(pair, error)| match pair {
-            [a, b] => self.touch_between(&sought, (*a, *b), error),
+            [a, b] => self.touch_between(&sought, Cubic { a: *a, b: *b }, error),
             _ => None,
         })?;
         Some(Cut {
@@ -102,15 +124,26 @@ impl<const S: usize> Locator<'_, S> {
     }
 
     /// Whether the contact certainly stays open between two open samples, whose cubic is wrong by `error` (m).
-    fn is_clear(&self, sought: &Sought, a: &Instant, b: &Instant, error: f64) -> bool {
+    fn is_clear(&self, sought: &Sought, cubic: &Cubic, error: f64) -> bool {
         // A contact whose force is far below the tolerance need not be found.
         let negligible = sought.law.overlap(self.tolerance.located);
-        let (ripple, ripple_rate) = self.ripple(sought, b.at - a.at);
-        let (least, unseen) = (negligible.max(sought.unsure), (error + ripple, ripple_rate));
+        let (ripple, length) = (self.ripple(sought, cubic.length()), cubic.length());
+        let (least, unseen) = (
+            negligible.max(sought.unsure),
+            (error + ripple.displacement, ripple.velocity),
+        );
         // A cubic wrong by this much in the middle has a slope wrong by four times that over its length at most.
-        let steeper = 4.0 * error / (b.at - a.at);
-        is_clear_along(sought.link, a, b, unseen, least, 0)
-            || is_clear_along(sought.link, a, b, (unseen.0, unseen.1 + steeper), least, ON_CUBIC)
+        let steeper = 4.0 * error / length;
+        is_clear_along(sought.link, cubic, unseen, least, 0)
+            || is_clear_along(sought.link, cubic, (unseen.0, unseen.1 + steeper), least, ON_CUBIC)
+            || {
+                // It parts faster than all that is unseen could bring it back: by the motion that the damper resists, whose
+                // curvature is wrong by 32 times the error at most.
+                let time = sought.law.by_rate();
+                let bent = ripple.acceleration + 32.0 * error / (length * length);
+                let unseen = ripple.velocity + steeper + time * bent;
+                sought.resisted(&cubic.a) <= sought.unsure && cubic.rates(time).1 + unseen < 0.0
+            }
     }
 
     /// Engagement that does not count as contact, m. Just after an opening: what the resolution of time has left of it
@@ -124,22 +157,33 @@ impl<const S: usize> Locator<'_, S> {
         left + motion_rounding(model, link, state)
     }
 
-    /// Whether oscillations faster than the interval between two samples are negligible.
-    fn is_resolved(&self, sought: &Sought, a: &Instant, b: &Instant) -> bool {
-        let (ripple, ripple_rate) = self.ripple(sought, b.at - a.at);
-        let [from, to] = [a, b].map(|sample| sought.link.engagement(sample.d, sample.rate));
-        ripple + sought.law.damping() * ripple_rate <= UNSEEN * (to - from).abs()
+    /// Whether the engagement rises throughout between an open and a closed sample, so that it is found where it passes zero
+    /// once: as the bodies approach, or while they are indented and the damper lets go of them.
+    fn rises(&self, sought: &Sought, cubic: &Cubic) -> bool {
+        let Cubic { a, b } = cubic;
+        let approaches = a.rate >= 0.0 && cubic.highest() <= b.d;
+        let is_held = || {
+            sought.law.is_indented(sought.link.approach + cubic.lowest()) && cubic.rates(sought.law.by_rate()).0 >= 0.0
+        };
+        (approaches || is_held()) && self.is_resolved(sought, cubic)
     }
 
-    /// Bound of displacement (m) and velocity (m/s) of a contact by the modes that oscillate within `interval` seconds or less.
-    fn ripple(&self, sought: &Sought, interval: f64) -> (f64, f64) {
+    /// Whether oscillations faster than the interval between two samples are negligible.
+    fn is_resolved(&self, sought: &Sought, cubic: &Cubic) -> bool {
+        let ripple = self.ripple(sought, cubic.length());
+        let [from, to] = [&cubic.a, &cubic.b].map(|sample| sought.engagement(sample));
+        ripple.displacement + sought.law.damping() * ripple.velocity <= UNSEEN * (to - from).abs()
+    }
+
+    /// Bound of the motion of a contact by the modes that oscillate within `interval` seconds or less.
+    fn ripple(&self, sought: &Sought, interval: f64) -> Ripple {
         let Whole {
             model, state, drive, ..
         } = self.whole;
         let swings = |mode: &Mode| mode.damping * mode.damping < 4.0 * mode.omega_squared;
         let fast = |mode: &Mode| mode.omega_squared * interval * interval > 1.0 && swings(mode);
         let acceleration = drive.acceleration(state.time);
-        let (mut displacement, mut velocity) = (0.0, 0.0);
+        let mut ripple = Ripple::default();
         let modes = model.modes.iter().zip(&state.modes).enumerate();
         for (i, (mode, at)) in modes.filter(|(_, (mode, _))| fast(mode)) {
             let factor = |port: usize| {
@@ -151,28 +195,32 @@ impl<const S: usize> Locator<'_, S> {
             let load = links.fold(-mode.participation * acceleration, |load, (link, at)| {
                 load + link.sense * factor(link.port) * (at.force - link.force)
             });
-            let swing = factor(sought.link.port).abs() * (at.q - load / mode.omega_squared).hypot(at.v / omega);
-            displacement += swing;
-            velocity += omega * swing;
+            let (q, v) = (at.q - load / mode.omega_squared, at.v / omega);
+            let swing = factor(sought.link.port).abs() * (q * q + v * v).sqrt();
+            ripple.displacement += swing;
+            ripple.velocity += omega * swing;
+            ripple.acceleration += mode.omega_squared * swing;
         }
-        (displacement, velocity)
+        ripple
     }
 
     /// The first instant of closing between two samples; `error` (m) is the error of their cubic. Where that cannot tell, the
     /// interval is bisected, and the second half waits.
-    fn touch_between(&mut self, sought: &Sought, (mut a, b): (Instant, Instant), error: f64) -> Option<Instant> {
+    fn touch_between(&mut self, sought: &Sought, mut cubic: Cubic, mut error: f64) -> Option<Instant> {
         let released = sought.start.last_opening == Some(self.whole.state.time);
         self.search.halves.clear();
-        let (mut b, mut error, mut depth) = (b, error, 0);
+        let mut depth = 0;
         while !self.budget.is_exhausted(self.search) {
-            if sought.link.engagement(b.d, b.rate) <= sought.unsure {
-                if self.is_clear(sought, &a, &b, error) || depth > HALVINGS {
-                    a = b;
-                    (b, error, depth) = self.search.halves.pop()?;
+            let Cubic { a, b } = cubic;
+            if sought.engagement(&b) <= sought.unsure {
+                if self.is_clear(sought, &cubic, error) || depth > HALVINGS {
+                    let later;
+                    (later, error, depth) = self.search.halves.pop()?;
+                    cubic = Cubic { a: b, b: later };
                     continue;
                 }
-            } else if a.rate >= 0.0 && highest(&a, &b) <= b.d && self.is_resolved(sought, &a, &b) || depth > HALVINGS {
-                let touch = self.crossing(sought, &a, &b);
+            } else if self.rises(sought, &cubic) || depth > HALVINGS {
+                let touch = self.crossing(sought, cubic);
                 // A contact that closes at the instant of opening still gets a short flight, so that time advances.
                 let shortest = SHORTEST_FLIGHT * b.at;
                 return Some(if released && touch.at < shortest {
@@ -182,73 +230,50 @@ impl<const S: usize> Locator<'_, S> {
                 });
             }
             let middle = self.inside(sought.index, f64::midpoint(a.at, b.at));
-            error = (middle.d - cubic(&a, &b, middle.at)).abs();
+            error = (middle.d - cubic.at(middle.at).d).abs();
             depth += 1;
             self.search.halves.push((b, error, depth));
-            b = middle;
+            cubic.b = middle;
         }
         None
     }
 
-    /// The instant of closing between an open and a closed sample.
-    fn crossing(&mut self, sought: &Sought, a: &Instant, b: &Instant) -> Instant {
-        let Whole { model, state, .. } = self.whole;
-        let link = sought.link;
+    /// The instant of closing between an open and a closed sample: where their cubic closes, which then has a sample there.
+    fn crossing(&mut self, sought: &Sought, mut cubic: Cubic) -> Instant {
         // Not before the touch: from there a step as short as rounding would find the contact open once more.
-        let rounding = motion_rounding(model, link, state);
-        let engagement = |d, rate| link.engagement(d, rate) - rounding;
-        // A flight starts at the opening itself, where rounding may give a positive engagement.
-        let start = engagement(a.d, a.rate).min(-f64::MIN_POSITIVE);
-        self.instant(sought.index, engagement, (a.at, start), b.at, rounding)
+        let aim = motion_rounding(self.whole.model, sought.link, self.whole.state);
+        for iteration in 0..2 * HALVINGS {
+            let Cubic { a, b } = cubic;
+            // A flight starts at the opening itself, where rounding may give a positive engagement.
+            let start = (sought.engagement(&a) - aim).min(-f64::MIN_POSITIVE);
+            let end = sought.engagement(&b) - aim;
+            if end <= aim || cubic.length() <= self.resolution {
+                break;
+            }
+            let value = |at: f64| sought.engagement(&cubic.at(at)) - aim;
+            let found = roots::between(value, (a.at, start), (b.at, end), 0.0);
+            let found = found.filter(|at| iteration < HALVINGS && a.at < *at && *at < b.at);
+            let now = self.inside(sought.index, found.unwrap_or(f64::midpoint(a.at, b.at)));
+            let value = sought.engagement(&now) - aim;
+            if value.abs() <= aim {
+                return now;
+            }
+            *(if value > 0.0 { &mut cubic.b } else { &mut cubic.a }) = now;
+        }
+        cubic.b
     }
 }
 
-/// Whether the engagement of a contact stays below `least` (m) along the cubic of two samples, with `unseen` displacement (m) and
-/// velocity (m/s) beside it.
-fn is_clear_along(link: &Link, a: &Instant, b: &Instant, unseen: (f64, f64), least: f64, halvings: u32) -> bool {
-    let (d, rate) = (highest(a, b) + unseen.0, a.rate.max(b.rate) + unseen.1);
+/// Whether the engagement of a contact stays below `least` (m) along a cubic, with `unseen` displacement (m) and velocity (m/s)
+/// beside it.
+fn is_clear_along(link: &Link, cubic: &Cubic, unseen: (f64, f64), least: f64, halvings: u32) -> bool {
+    let (d, rate) = (cubic.highest() + unseen.0, cubic.a.rate.max(cubic.b.rate) + unseen.1);
     if link.engagement(d, rate) < least {
         return true;
     }
-    let middle = halfway(a, b);
     halvings > 0
-        && is_clear_along(link, a, &middle, unseen, least, halvings - 1)
-        && is_clear_along(link, &middle, b, unseen, least, halvings - 1)
-}
-
-/// The Hermite cubic of two samples at an instant, m.
-fn cubic(a: &Instant, b: &Instant, at: f64) -> f64 {
-    let h = b.at - a.at;
-    let x = (at - a.at) / h;
-    let y = 1.0 - x;
-    a.d * (y * y * (1.0 + 2.0 * x))
-        + b.d * (x * x * (1.0 + 2.0 * y))
-        + h * (a.rate * (x * y * y) - b.rate * (x * x * y))
-}
-
-/// The Hermite cubic of two samples halfway.
-fn halfway(a: &Instant, b: &Instant) -> Instant {
-    let at = f64::midpoint(a.at, b.at);
-    Instant {
-        at,
-        d: cubic(a, b, at),
-        rate: 1.5 * (b.d - a.d) / (b.at - a.at) - 0.25 * (a.rate + b.rate),
-    }
-}
-
-/// Maximum of the Hermite cubic between the two samples, m.
-fn highest(a: &Instant, b: &Instant) -> f64 {
-    let h = b.at - a.at;
-    let ends = a.d.max(b.d);
-    // Slope of the cubic: h d' = p x^2 + q x + r.
-    let rise = b.d - a.d;
-    let p = 3.0 * (h * (a.rate + b.rate) - 2.0 * rise);
-    let q = 6.0 * rise - 2.0 * h * (2.0 * a.rate + b.rate);
-    let r = h * a.rate;
-    let root = (q * q - 4.0 * p * r).max(0.0).sqrt();
-    let larger = -0.5 * (q + root.copysign(q));
-    [larger / p, r / larger]
-        .into_iter()
-        .filter(|x| 0.0 < *x && *x < 1.0)
-        .fold(ends, |high, x| high.max(cubic(a, b, a.at + x * h)))
+        && cubic
+            .halves()
+            .iter()
+            .all(|half| is_clear_along(link, half, unseen, least, halvings - 1))
 }

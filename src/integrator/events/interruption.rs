@@ -4,6 +4,7 @@
 use crate::integrator::accuracy::inaccuracy;
 use crate::integrator::collocation::part::Whole;
 use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::constants::BRIEF;
 use crate::integrator::course::{Places, turning_points};
 use crate::integrator::events::Locator;
 use crate::link::MAX_LINKS;
@@ -56,6 +57,8 @@ impl<const S: usize> Locator<'_, S> {
         let turns = turning_points(&polynomial);
         let inaccuracy = inaccuracy((model, state), collocation, trial, length);
         let is_accurate = inaccuracy <= 1.0;
+        let is_brief =
+            length <= BRIEF * model.scene.solver.effective_tolerance() * model.scene.chatter.minimum_duration;
         let unsure = inaccuracy * self.tolerance.force;
         if !is_accurate && !must && turns.iter().any(|y| value(y).abs() < unsure) {
             return None;
@@ -66,7 +69,7 @@ impl<const S: usize> Locator<'_, S> {
             let now = (y, value(y));
             let below = if is_end { end } else { now.1 < 0.0 };
             if below != interrupted {
-                let place = if is_accurate {
+                let place = if is_accurate || is_brief {
                     // Only rounding leaves both on one side.
                     let on_this_side = if (before.1 < 0.0) == below { before.0 } else { y };
                     roots::between(value, before, now, 1e-12).unwrap_or(on_this_side)
