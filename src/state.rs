@@ -72,8 +72,6 @@ pub struct LinkState {
     pub last_opening: Option<f64>,
     /// Time at which the force last left zero, s; `None`: not yet.
     pub last_closing: Option<f64>,
-    /// Length that the first step after the last closing could have had, s; 0: there was none.
-    pub first_step: f64,
 }
 
 impl LinkState {
@@ -91,9 +89,8 @@ impl LinkState {
             closed: _,
             last_opening,
             last_closing,
-            first_step,
         } = self;
-        [approach, rate, force, first_step]
+        [approach, rate, force]
             .into_iter()
             .chain(course)
             .all(|number| number.is_finite())

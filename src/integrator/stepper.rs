@@ -709,16 +709,12 @@ impl Stepper<'_> {
         self.model.friction().is_some() && self.state.slip.last_change == Some(self.state.time)
     }
 
-    /// Keeps the length (s) of a step about to be taken, if it is the first one after a closing, or after a change between stick
-    /// and slip, with the factor that its error would have allowed.
+    /// Keeps the length (s) of a step about to be taken, if it is the first one after a change between stick and slip, with the
+    /// factor that its error would have allowed.
     fn keep_first_step<const S: usize>(&mut self, length: f64, ratio: f64) {
-        let next = || length * growth::<S>(ratio).clamp(MOST_SHRINK, 1.0 / MOST_SHRINK);
         if self.changes_now() {
-            *self.state.lengths.after_change(self.state.slip.phase) = next();
-        }
-        let now = Some(self.state.time);
-        for at in self.state.links.iter_mut().filter(|at| at.last_closing == now) {
-            at.first_step = next();
+            let factor = growth::<S>(ratio).clamp(MOST_SHRINK, 1.0 / MOST_SHRINK);
+            *self.state.lengths.after_change(self.state.slip.phase) = length * factor;
         }
     }
 }

@@ -37,11 +37,8 @@ pub(crate) fn switch(model: &Model, state: &mut State, index: usize, log: &mut E
         at.last_opening = Some(time);
     }
     state.lengths.last = 0.0;
-    let before = Some(at.first_step).filter(|length| *length > 0.0);
     state.lengths.short = if closed {
-        before
-            .unwrap_or(f64::INFINITY)
-            .min(first_closed_step(model, state, index))
+        first_closed_step(model, state, index)
     } else {
         step_after_jump(model, state)
     };
