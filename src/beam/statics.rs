@@ -1,5 +1,9 @@
 //! Static compliance of the cantilever at its tip, under axial compression.
 
+use std::sync::OnceLock;
+
+use nalgebra::DVectorView;
+
 use crate::beam::galerkin::Space;
 use crate::beam::section::Section;
 
@@ -33,7 +37,7 @@ pub(crate) struct AtPlace {
 }
 
 /// One of the modes of the geometric stiffness.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Term {
     sigma: f64,
     tip: f64,
@@ -43,31 +47,46 @@ struct Term {
     parallel: f64,
 }
 
+impl Term {
+    /// All of a space.
+    fn of(space: Space) -> Vec<Self> {
+        let eigen = space.geometric.symmetric_eigen();
+        let shapes = eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter());
+        let term = |(&sigma, shape): (&f64, DVectorView<f64>)| Self {
+            sigma,
+            tip: shape.dot(&space.tip),
+            slope: shape.dot(&space.tip_slope),
+            load: shape.dot(&space.load),
+            pusher: shape.dot(&space.pusher),
+            parallel: shape.dot(&space.parallel),
+        };
+        shapes.map(term).collect()
+    }
+}
+
 impl Statics {
     /// For the section.
     pub fn new(section: &Section) -> Self {
-        Self::of(section, Space::new(TERMS))
+        // The same numbers for every section: found once in a process, and nothing that would have to be freed.
+        static TERMS_OF_ALL: OnceLock<[Term; TERMS]> = OnceLock::new();
+        let terms = TERMS_OF_ALL.get_or_init(|| {
+            let mut terms = [Term::default(); TERMS];
+            for (entry, term) in terms.iter_mut().zip(Term::of(Space::new(TERMS))) {
+                *entry = term;
+            }
+            terms
+        });
+        Self {
+            section: *section,
+            terms: terms.to_vec(),
+        }
     }
 
     /// For a space in units of the section.
     pub(super) fn of(section: &Section, space: Space) -> Self {
-        let eigen = space.geometric.symmetric_eigen();
-        let terms = eigen
-            .eigenvalues
-            .iter()
-            .zip(eigen.eigenvectors.column_iter())
-            .map(|(&sigma, shape)| Term {
-                sigma,
-                tip: shape.dot(&space.tip),
-                slope: shape.dot(&space.tip_slope),
-                load: shape.dot(&space.load),
-                pusher: shape.dot(&space.pusher),
-                parallel: shape.dot(&space.parallel),
-            })
-            .collect();
         Self {
             section: *section,
-            terms,
+            terms: Term::of(space),
         }
     }
 

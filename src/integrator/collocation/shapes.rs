@@ -5,7 +5,7 @@ use bytemuck::Zeroable;
 
 use crate::math::legendre;
 use crate::math::nodal::{LONG, Nodal, add, dot, end};
-use crate::math::simd::Arithmetic;
+use crate::math::simd::{Arithmetic, Simd, compiled_for};
 
 /// Most terms of a power series: `7^n / n!` is below rounding from there on. Pinned: ÷ 4,
 /// `responses_agree_with_quadrature_in_every_regime`.
@@ -134,6 +134,11 @@ impl<const S: usize> Shapes<S> {
 /// `n`-fold integrals by Cauchy's formula, the integral of `(x - s)^(n-1) / (n-1)!` times the shape, by Gauss
 /// quadrature.
 fn integrals<const S: usize>(nodes: &Nodal<S>) -> Vec<Table<S>> {
+    compiled_for!(Simd::detect(), A => integrals_by::<S, A>(nodes))
+}
+
+#[inline(always)]
+fn integrals_by<const S: usize, A: Arithmetic>(nodes: &Nodal<S>) -> Vec<Table<S>> {
     let mut tables = vec![Table::<S>::ZERO; TERMS];
     let points: Vec<_> = legendre::gauss(POINTS).collect();
     // Of each shape, and of its magnitude.
@@ -150,9 +155,7 @@ fn integrals<const S: usize>(nodes: &Nodal<S>) -> Vec<Table<S>> {
             let mut kernel = 0.5 * weight * x;
             for (n, sums) in sums.iter_mut().enumerate() {
                 for (sums, values) in sums.iter_mut().zip(&values) {
-                    for (sum, value) in sums.iter_mut().zip(values) {
-                        *sum += kernel * value;
-                    }
+                    add::<MAX_SHAPES, A>(sums, kernel, values);
                 }
                 kernel *= (x - s) / (n + 1) as f64;
             }
