@@ -187,7 +187,7 @@ def verdict(measured: list[Row]) -> str:
             f"{number(100 * max(kept.values()), 0)} % of `solver.tolerance`")  # fmt: skip
     if limit:
         most = max(most for tolerance, most in worst.items() if tolerance <= limit)
-        text += f"; from {short(limit)} on rounding shows, and it is up to {short(most)}"
+        text += f". From {short(limit)} on rounding shows, and the error is up to {short(most)}"
     return f"{text}."
 
 

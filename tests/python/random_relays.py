@@ -168,9 +168,9 @@ def table(compared: list[Compared]) -> str:
     """Return median and largest of the deviations, by damping."""
     found = [each for each in compared if each.resolved]
     lines = [
-        f"{len(found)} relays with {sum(each.events for each in found)} openings and closings. Left out are "
-        f"{len(compared) - len(found)} more, of which the second solution itself is not known to 0.4 of the tolerance "
-        "asked: so much it changes with more functions of Galerkin's method.",
+        f"{len(found)} relays with {sum(each.events for each in found)} openings and closings. "
+        f"{len(compared) - len(found)} more are left out: with more functions of Galerkin's method their second "
+        "solution changes by more than 0.4 of the tolerance, so it cannot judge.",
         "",
         "| damping of the first mode | relays | deviation over tolerance, median | largest | at 1e-11 | largest |",
         "|---|---:|---:|---:|---:|---:|",

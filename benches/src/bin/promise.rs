@@ -86,7 +86,7 @@ fn report(judged: &[Judged]) -> String {
     let instants: Vec<_> = run.iter().filter(kept).filter_map(|judged| judged.instants).collect();
     let _ = write!(
         text,
-        "\nOpening relays that keep their tolerance: {} of {} have the right number of openings and closings; the largest error \
+        "\nOpening relays that keep their tolerance: {} of {} have the right number of openings and closings. The largest error \
          of an instant is {:.0e} ns in the median, below {:.0e} ns for 95 %.\n",
         instants.len(),
         run.iter().filter(kept).count(),
@@ -97,9 +97,9 @@ fn report(judged: &[Judged]) -> String {
         |is: fn(&Judged) -> bool| 100.0 * run.iter().filter(|judged| is(judged)).count() as f64 / run.len() as f64;
     let _ = write!(
         text,
-        "\n`solver.forceError` is above the error for {:.1} % of the relays, and less than 30 times it for {:.0} %. It announces an \
-         error above the tolerance for {:.0} % that have none. {} of {} relays did not run: refused for a physical reason, or \
-         more work at the tightest tolerance than a communication step may take.\n",
+        "\n`solver.forceError` is above the error for {:.1} % of the relays, and less than 30 times it for {:.0} %. For {:.0} % \
+         it announces an error above the tolerance that they do not have. {} of {} relays did not run: they are refused for a \
+         physical reason, or need more work at the tightest tolerance than a communication step may take.\n",
         share(|judged| judged.error <= judged.estimate),
         // Errors below 1e-7 of the tolerance are rounding.
         share(|judged| judged.estimate <= 30.0 * judged.error.max(1e-7 * judged.tolerance)),
