@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Callable
 from pathlib import Path
 
-from report import accuracy, callgrind, effects, hard_cases, importers, opening, plots, validation
+from report import accuracy, callgrind, effects, hard_cases, importers, opening, plots, promise, validation
 from report.figure import Figure
 from report.files import DOCS, PICTURES
 from report.page import Section, folder, sections, whole, write
@@ -49,6 +49,7 @@ def main() -> None:
     tasks: dict[str, Callable[[], object]] = {
         "effects": effects.write,
         "accuracy": accuracy.write,
+        "promise": promise.write,
         "instructions": callgrind.show,
         "importers": importers.show,
     }

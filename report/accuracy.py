@@ -1,17 +1,15 @@
 """Accuracy and cost: docs/accuracy.md, its tables and figures from what the package `benches` measured."""
 
-import csv
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from report.figure import Curve, Figure
-from report.files import DOCS, OUT, PICTURES
+from report.files import DOCS, OUT, PICTURES, Row, rewrite, rows
 from report.page import Section, whole
-from report.text import number, rendered, short, table
+from report.text import number, rendered, short, table, two_digits
 
 MEASURED = OUT / "accuracy/accuracy.csv"
-RELAYS = DOCS / "promise.csv"
 SCENES = ("paper", "linear", "chatter", "chatter 3 %", "chatter 0.3 %", "closing bounce")
 COMPARED = (
     ("accuracy-instants", "chatter", True),
@@ -29,21 +27,10 @@ FORCE, INSTANTS = (
 )
 USELESS = {True: 10.0, False: 1.0}
 """Larger errors are not drawn, us and relative to the preload: such a run is of no use."""
-TABLES = "<!-- tables: written by cargo xtask accuracy -->", "<!-- end of tables -->"
 VERDICT = "From tolerances of"
 """Begin of the line among the tables that says down to which one the error stays below it."""
 OK = "ok"
 TIMES = "\N{MULTIPLICATION SIGN}"
-LEAST = 1e-14
-"""Smaller errors, from rounding alone, are drawn at this."""
-
-Row = dict[str, str]
-
-
-def rows(path: Path) -> list[Row]:
-    """Return a table that was measured."""
-    with path.open(newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
 
 
 def error(row: Row, instants: bool) -> float:
@@ -89,48 +76,21 @@ def integrators(measured: list[Row], id: str, scene: str, instants: bool) -> Fig
     return Figure(id, title, TIME, label, curves, "xy")
 
 
-def promise(relays: list[Row]) -> Figure:
-    """Draw delivered over asked, for random relays."""
-    kinds: tuple[tuple[str, int, Callable[[Row], bool]], ...] = (
-        ("closed", 0, lambda row: row["opens"] == "false" and row["outcome"] != "IllConditioned"),
-        ("opening", 1, lambda row: row["opens"] == "true" and row["outcome"] != "IllConditioned"),
-        ("ill-conditioned", 3, lambda row: row["outcome"] == "IllConditioned"),
-    )
-    curves = []
-    for name, colour, is_one in kinds:
-        own = [row for row in relays if row["outcome"] != "NotRun" and is_one(row)]
-        errors = [max(float(row["error"]), LEAST) for row in own]
-        curves.append(Curve(name, [float(row["tolerance"]) for row in own], errors, "points", colour))
-    curves.append(Curve("error = tolerance", [1e-8, 1e-2], [1e-8, 1e-2], "dashed", 6))
-    label = "error of the contact force, relative as the tolerance"
-    return Figure("accuracy-promise", "Error against tolerance, random relays", TOLERANCE, label, curves, "xy")
-
-
-def figures() -> list[Figure]:
-    """Return the figures of what was measured here."""
-    found = []
-    if MEASURED.exists():
-        measured = rows(MEASURED)
-        found += [integrators(measured, *each) for each in COMPARED]
-        curves = list(over(measured, "delivered", "tolerance"))
-        asked = sorted({float(row["tolerance"]) for row in measured if row["part"] == "delivered"})
-        curves.append(Curve("error = tolerance", asked, asked, "dashed", 6))
-        found.append(Figure("accuracy-tolerance", "Error against tolerance", TOLERANCE, FORCE, curves, "xy"))
-        modes = list(over(measured, "modes", "modes"))
-        found.append(Figure("accuracy-modes", "Error against number of modes", "number of modes", FORCE, modes, "y"))
-    if RELAYS.exists():
-        found.append(promise(rows(RELAYS)))
+def figures(measured: list[Row]) -> list[Figure]:
+    """Return the figures of what was measured."""
+    found = [integrators(measured, *each) for each in COMPARED]
+    curves = list(over(measured, "delivered", "tolerance"))
+    asked = sorted({float(row["tolerance"]) for row in measured if row["part"] == "delivered"})
+    curves.append(Curve("error = tolerance", asked, asked, "dashed", 6))
+    found.append(Figure("accuracy-tolerance", "Error against tolerance", TOLERANCE, FORCE, curves, "xy"))
+    modes = list(over(measured, "modes", "modes"))
+    found.append(Figure("accuracy-modes", "Error against number of modes", "number of modes", FORCE, modes, "y"))
     return found
 
 
 def time(seconds: float) -> str:
     """Return a time in s or ms."""
-    return f"{digits(seconds)} s" if seconds >= 1 else f"{digits(1e3 * seconds)} ms"
-
-
-def digits(value: float) -> str:
-    """Return a number with two digits, or all before the point."""
-    return f"{value:.1f}" if value < 9.95 else f"{value:.0f}"
+    return f"{two_digits(seconds)} s" if seconds >= 1 else f"{two_digits(1e3 * seconds)} ms"
 
 
 def envelope(measured: list[Row], scene: str, levels: tuple[float, ...], instants: bool) -> str:
@@ -152,7 +112,7 @@ def envelope(measured: list[Row], scene: str, levels: tuple[float, ...], instant
                 least = cost
                 cells.append(f"{time(cost)}, {tolerance}, delivers {short(scale * error(run, instants))}{unit}")
             else:
-                cells.append(f"**{digits(cost / least)}{TIMES}** {time(cost)}, {run['modes']} modes, {tolerance}")
+                cells.append(f"**{two_digits(cost / least)}{TIMES}** {time(cost)}, {run['modes']} modes, {tolerance}")
         lines.append(cells)
     return table(["allowed", *names], lines)
 
@@ -193,10 +153,9 @@ def verdict(measured: list[Row]) -> str:
 
 def write() -> Path:
     """Write the tables of docs/accuracy.md, and the figures of what was measured."""
-    for figure in figures():
+    page, measured = DOCS / "accuracy.md", rows(MEASURED)
+    for figure in figures(measured):
         figure.write(PICTURES)
-    page = DOCS / "accuracy.md"
-    measured = rows(MEASURED)
     timed = [row for row in measured if row["part"] != "modes" and row["seconds_per_second"]]
     parts = [float(row["seconds_per_second"]) / float(row["least_seconds_per_second"]) for row in timed]
     costs = {(row["scene"], short(float(row["tolerance"]))): float(row["seconds_per_second"])
@@ -218,9 +177,7 @@ def write() -> Path:
             f"{row['scene']}, {row['integrator']}: {row['outcome']}" for row in measured if row["outcome"] != OK
         ],
     })  # fmt: skip
-    whole_page = page.read_text(encoding="utf-8")
-    before, rest = whole_page.split(TABLES[0])
-    page.write_text(f"{before}{TABLES[0]}\n\n{text}\n{TABLES[1]}{rest.split(TABLES[1])[1]}", encoding="utf-8")
+    rewrite(page, "tables", text)
     return page
 
 

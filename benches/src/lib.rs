@@ -7,7 +7,7 @@
 //! component, cvode, diffsol    the integrators
 //! radau       the reference, with its own error estimate
 //! study       runs them against the reference, interleaved
-//! machine     processor and versions;   page   writes into docs/
+//! machine     processor and versions
 //! ```
 
 pub mod component;
@@ -15,7 +15,6 @@ pub mod cvode;
 pub mod diffsol;
 pub mod integrator;
 pub mod machine;
-pub mod page;
 pub mod problem;
 pub mod radau;
 pub mod scenes;
