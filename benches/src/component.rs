@@ -19,15 +19,19 @@ impl Integrator for Component {
     fn run(&self, problem: &Problem, tolerance: f64) -> Result<Run, Failure> {
         let mut scene = problem.model.scene().clone();
         scene.solver.tolerance = tolerance;
+        let start = ThreadTime::now();
         let contact = Instance::new();
+        let instantiated = start.elapsed();
         contact.set_scene(&scene);
         let check = |status: fmi2Status| {
             (status == fmi2OK)
                 .then_some(())
                 .ok_or_else(|| Failure::Stopped(format!("{:?}", contact.messages())))
         };
+        let start = ThreadTime::now();
         check(contact.setup(None, 0.0, None))?;
         contact.initialize();
+        let initialized = start.elapsed();
         let read = ["contact.force", "contact.lastOpening", "contact.lastClosing"].map(vr);
         let support = [vr("support.displacement")];
         let mut forces = Vec::with_capacity(problem.cells as usize + 1);
@@ -47,7 +51,11 @@ impl Integrator for Component {
             let last = [opening.min(closing), opening.max(closing)];
             events.extend(last.into_iter().filter(|event| *event > seen));
         }
-        let time = start.elapsed().as_secs_f64();
-        Ok(Run { forces, events, time })
+        Ok(Run {
+            forces,
+            events,
+            time: start.elapsed().as_secs_f64(),
+            start: (instantiated + initialized).as_secs_f64(),
+        })
     }
 }

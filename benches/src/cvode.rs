@@ -10,7 +10,7 @@ use std::process::{Command, Stdio};
 
 use relay_contact::reference::Law;
 
-use crate::integrator::{BUDGET, Failure, Integrator, Run};
+use crate::integrator::{BUDGET, Failure, Integrator, Run, SHORT};
 use crate::problem::Problem;
 
 /// The program, if it could be compiled.
@@ -47,7 +47,7 @@ impl Cvode {
     pub fn version(&self) -> Option<String> {
         let problem = crate::scenes::paper().ok()?;
         let answer = self.ask(&question(&problem, 1e-2).ok()?).ok()?;
-        line(&answer, "version").map(ToOwned::to_owned)
+        line(&answer, "version ").map(ToOwned::to_owned)
     }
 }
 
@@ -72,6 +72,7 @@ impl Integrator for Cvode {
             forces: numbers("forces")?,
             events: numbers("events")?,
             time: numbers("time")?.first().copied().unwrap_or(f64::NAN),
+            start: problem.start(),
         })
     }
 }
@@ -104,7 +105,7 @@ fn question(problem: &Problem, tolerance: f64) -> Result<String, Failure> {
     let absolute: Vec<f64> = problem.scales().iter().map(|scale| tolerance * scale).collect();
     line(&[problem.relative * tolerance]);
     line(&absolute);
-    line(&[problem.end, f64::from(problem.cells), BUDGET]);
+    line(&[problem.end, f64::from(problem.cells), BUDGET, SHORT]);
     Ok(text)
 }
 

@@ -49,6 +49,7 @@ impl Integrator for Diffsol {
             }
         }
         run.time = start.elapsed().as_secs_f64();
+        run.start = problem.start();
         Ok(run)
     }
 }

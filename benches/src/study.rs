@@ -12,19 +12,18 @@ use relay_contact::scene::Solver;
 use crate::component::Component;
 use crate::cvode::Cvode;
 use crate::diffsol::Diffsol;
-use crate::integrator::{Failure, Integrator, Run};
+use crate::integrator::{Failure, Integrator, Run, SHORT};
 use crate::problem::Problem;
 use crate::radau::Reference;
 use crate::scenes;
 
 /// Numbers of modes tried with each peer.
-const MODES: [i32; 11] = [3, 4, 5, 6, 7, 8, 10, 12, 16, 20, 24];
+const MODES: [i32; 14] = [2, 3, 4, 5, 6, 7, 8, 10, 12, 16, 20, 24, 32, 40];
 
 /// Runs of one search that cost up to this much more than another at equal or better error are timed again.
 const NEARLY: f64 = 1.3;
 
-/// Runs shorter than this, s, are repeated within a round; those longer than the second are timed once.
-const SHORT: f64 = 2e-3;
+/// Runs longer than this, s, are timed once.
 const LONG: f64 = 0.5;
 
 /// The integrators that the component is compared with.
@@ -49,6 +48,9 @@ struct Measured {
     /// Processor time per simulated time, median of all rounds, and the least.
     cost: f64,
     least_cost: f64,
+    /// Processor time of the start, and of start and simulation together, medians of all rounds, s.
+    start: f64,
+    total: f64,
     /// Largest deviation of the contact force on the grid, relative to the force scale.
     force_error: f64,
     /// Openings and closings found.
@@ -59,10 +61,11 @@ struct Measured {
 }
 
 impl Measured {
-    /// Whether it is as accurate as another one in force and instants, and cheaper by this factor.
+    /// Whether it is as accurate as another one in force and instants, and cheaper by this factor, with its start too.
     fn beats(&self, other: &Self, factor: f64) -> bool {
         let errors = |run: &Self| [run.force_error, run.event_error.unwrap_or(f64::INFINITY)];
-        factor * self.cost < other.cost && errors(self).iter().zip(errors(other)).all(|(own, error)| *own <= error)
+        let cheaper = factor * self.cost < other.cost && factor * self.total < other.total;
+        cheaper && errors(self).iter().zip(errors(other)).all(|(own, error)| *own <= error)
     }
 }
 
@@ -81,8 +84,8 @@ pub fn measure(quick: bool, turns: usize) -> Result<String> {
             })
     };
     let mut text = String::from(
-        "part,scene,integrator,tolerance,modes,seconds_per_second,least_seconds_per_second,force_error,event_error_us,\
-         opening_duration_error_us,events,reference_force_error,reference_event_error_us,outcome\n",
+        "part,scene,integrator,tolerance,modes,seconds_per_second,least_seconds_per_second,start_seconds,total_seconds,\
+         force_error,event_error_us,opening_duration_error_us,events,reference_force_error,reference_event_error_us,outcome\n",
     );
     let micro = |seconds: Option<f64>| seconds.map_or(String::new(), |seconds| format!("{:.4e}", 1e6 * seconds));
     for (case, row) in cases.iter().zip(&rows) {
@@ -90,15 +93,17 @@ pub fn measure(quick: bool, turns: usize) -> Result<String> {
         let measured = match row {
             Ok(run) if beaten(case, run) => continue,
             Ok(run) => format!(
-                "{:.4e},{:.4e},{:.4e},{},{},{}",
+                "{:.4e},{:.4e},{:.4e},{:.4e},{:.4e},{},{},{}",
                 run.cost,
                 run.least_cost,
+                run.start,
+                run.total,
                 run.force_error,
                 micro(run.event_error),
                 micro(run.duration_error),
                 run.events
             ),
-            Err(_) => ",,,,,".to_owned(),
+            Err(_) => ",,,,,,,".to_owned(),
         };
         let outcome = row.as_ref().map_or_else(
             |failure| failure.to_string().replace([',', '\n'], " "),
@@ -149,7 +154,7 @@ fn own(problem: &Problem, reference: &Rc<Reference>, quick: bool) -> Result<Vec<
         tolerance,
     };
     let mut cases = Vec::new();
-    for tolerance in tolerances(quick) {
+    for tolerance in tolerances(quick, 1) {
         let used = problem.with(|scene| scene.solver.tolerance = tolerance)?;
         cases.push(case("delivered", used, tolerance));
     }
@@ -176,7 +181,7 @@ fn best(
             });
             let mut least = [f64::INFINITY; 2];
             let mut idle = 0;
-            for tolerance in tolerances(quick) {
+            for tolerance in tolerances(quick, 2) {
                 let case = Case {
                     part: "peers",
                     problem: Rc::clone(&problem),
@@ -186,7 +191,7 @@ fn best(
                 };
                 let run = match integrator
                     .run(&problem, tolerance)
-                    .and_then(|run| judge(&case, &run, &[run.time]))
+                    .and_then(|run| judge(&case, &run, vec![(run.time, run.start)]))
                 {
                     Ok(run) => run,
                     // Named once, by its row.
@@ -199,7 +204,8 @@ fn best(
                 idle = if gains { 0 } else { idle + 1 };
                 least = [errors[0].min(least[0]), errors[1].min(least[1])];
                 found.push((case, run));
-                if idle == 3 {
+                // Three decades.
+                if idle == 6 {
                     break;
                 }
             }
@@ -213,10 +219,12 @@ fn best(
         .collect())
 }
 
-fn tolerances(quick: bool) -> impl Iterator<Item = f64> {
-    (1..=11)
-        .step_by(if quick { 3 } else { 1 })
-        .map(|digits| 10_f64.powi(-digits))
+/// So many in a decade, from 1e-1 to 1e-11.
+fn tolerances(quick: bool, parts: u32) -> impl Iterator<Item = f64> {
+    let digits = move |step: u32| f64::from(step) / f64::from(parts);
+    (parts..=11 * parts)
+        .step_by(if quick { 3 * parts as usize } else { 1 })
+        .map(move |step| 10_f64.powf(-digits(step)))
 }
 
 /// Runs all cases in rounds.
@@ -238,33 +246,38 @@ fn rounds(cases: &[Case], turns: usize) -> Vec<Result<Measured, Failure>> {
             while spent < SHORT {
                 let outcome = case.integrator.run(&case.problem, case.tolerance);
                 spent += outcome.as_ref().map_or(f64::INFINITY, |run| run.time);
-                times.extend(outcome.as_ref().ok().map(|run| run.time));
+                times.extend(outcome.as_ref().ok().map(|run| (run.time, run.start)));
                 first.get_or_insert(outcome);
             }
         }
     }
     progress.finish_and_clear();
     let rows = cases.iter().zip(times).zip(first);
-    rows.map(|((case, mut times), first)| {
-        times.sort_by(f64::total_cmp);
+    rows.map(|((case, times), first)| {
         first
             .unwrap_or_else(|| Err(Failure::Stopped("not run".to_owned())))
-            .and_then(|run| judge(case, &run, &times))
+            .and_then(|run| judge(case, &run, times))
     })
     .collect()
 }
 
-/// A run, and what it took in all rounds, s, in ascending order.
-fn judge(case: &Case, run: &Run, times: &[f64]) -> Result<Measured, Failure> {
-    let time = |place: usize| times.get(place).copied().unwrap_or(f64::NAN);
+/// A run, and what simulation and start took in all rounds, s.
+fn judge(case: &Case, run: &Run, times: Vec<(f64, f64)>) -> Result<Measured, Failure> {
+    let (mut times, mut starts): (Vec<f64>, Vec<f64>) = times.into_iter().unzip();
+    times.sort_by(f64::total_cmp);
+    starts.sort_by(f64::total_cmp);
+    let median = |sorted: &[f64]| sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN);
+    let (time, start) = (median(&times), median(&starts));
     let Case { problem, reference, .. } = case;
     if run.forces.len() != reference.forces.len() || run.forces.iter().any(|force| !force.is_finite()) {
         return Err(Failure::Stopped("the force is not finite at every time".to_owned()));
     }
     let found = (run.events.len() == reference.events.len()).then_some(run.events.as_slice());
     Ok(Measured {
-        cost: time(times.len() / 2) / problem.end,
-        least_cost: time(0) / problem.end,
+        cost: time / problem.end,
+        least_cost: times.first().copied().unwrap_or(f64::NAN) / problem.end,
+        start,
+        total: start + time,
         force_error: largest_difference(&run.forces, &reference.forces) / problem.model.force_scale(),
         events: run.events.len(),
         event_error: found.map(|events| largest_difference(events, &reference.events)),

@@ -11,6 +11,8 @@
 #include <sunmatrix/sunmatrix_dense.h>
 #include <time.h>
 
+enum { MOST_EVENTS = 10000, OUT_OF_TIME = -100, TOO_MANY_EVENTS = -101 }; /* the last two beside the flags of CVODE */
+
 typedef struct {
     int modes, closed;
     double factor, contact_damping, power; /* F = factor d^power (1 + power contact_damping d' / d) */
@@ -114,6 +116,71 @@ static int roots(realtype t, N_Vector yv, realtype *g, void *data) {
     return 0;
 }
 
+typedef struct {
+    double relative, *absolute, end;
+    int cells;
+    double budget; /* s of processor time */
+} task;
+
+typedef struct {
+    double *forces, *events, reached, time;
+    int event_count, flag;
+} result;
+
+/* Sets up the library and integrates, from the state of rest to the last force. */
+static void integrate(problem *p, const task *of, result *r) {
+    double start = seconds();
+    int n = p->modes;
+    p->closed = p->preload_force > 0.0;
+    SUNContext context;
+    if (SUNContext_Create(NULL, &context)) exit(2);
+    N_Vector y = N_VNew_Serial(2 * n, context), tolerances = N_VMake_Serial(2 * n, of->absolute, context);
+    N_VConst(0.0, y);
+    void *cvode = CVodeCreate(CV_BDF, context);
+    SUNMatrix matrix = SUNDenseMatrix(2 * n, 2 * n, context);
+    SUNLinearSolver linear = SUNLinSol_Dense(y, matrix, context);
+    CVodeInit(cvode, right_hand_side, 0.0, y);
+    CVodeSetErrHandlerFn(cvode, silent, NULL);
+    CVodeSVtolerances(cvode, of->relative, tolerances);
+    CVodeSetUserData(cvode, p);
+    CVodeSetMaxNumSteps(cvode, 500000);
+    CVodeSetLinearSolver(cvode, linear, matrix);
+    CVodeSetJacFn(cvode, jacobian);
+    CVodeRootInit(cvode, 1, roots);
+    CVodeSetNoInactiveRootWarn(cvode);
+
+    int direction = p->closed ? -1 : 1;
+    double d, rate, t = 0.0;
+    CVodeSetRootDirection(cvode, &direction);
+    r->event_count = 0;
+    r->flag = CV_SUCCESS;
+    r->forces[0] = p->preload_force;
+    for (int cell = 1; cell <= of->cells; cell++) {
+        double target = of->end * cell / of->cells;
+        while ((r->flag = CVode(cvode, target, y, &t, CV_NORMAL)) == CV_ROOT_RETURN && r->event_count < MOST_EVENTS) {
+            r->events[r->event_count++] = t;
+            p->closed = !p->closed;
+            direction = p->closed ? -1 : 1;
+            CVodeReInit(cvode, t, y);
+            CVodeSetRootDirection(cvode, &direction);
+            if (target - t < 1e-12 * of->end) break; /* too close for a step */
+        }
+        if (r->event_count == MOST_EVENTS) r->flag = TOO_MANY_EVENTS;
+        if (seconds() - start > of->budget) r->flag = OUT_OF_TIME;
+        if (r->flag < 0) break;
+        indentation(p, t, N_VGetArrayPointer(y), &d, &rate);
+        r->forces[cell] = p->closed ? fmax(closed_branch(p, d, rate).force, 0.0) : 0.0;
+    }
+    r->reached = t;
+    r->time = seconds() - start;
+    CVodeFree(&cvode);
+    SUNLinSolFree(linear);
+    SUNMatDestroy(matrix);
+    N_VDestroy(y);
+    N_VDestroy(tolerances);
+    SUNContext_Free(&context);
+}
+
 int main(void) {
     problem p;
     p.modes = (int)number();
@@ -125,70 +192,30 @@ int main(void) {
     p.factor = number(), p.contact_damping = number(), p.power = number();
     p.preload_force = number(), p.preload_indentation = number();
     p.amplitude = number(), p.angular_frequency = number(), p.phase = number(), p.support_rate = number();
-    p.closed = p.preload_force > 0.0;
-    double relative = number();
-    double *absolute = array(2 * n);
-    for (int i = 0; i < 2 * n; i++) absolute[i] = number();
-    double end = number();
-    int cells = (int)number();
-    double budget = number(); /* s of processor time */
+    task of = {.relative = number(), .absolute = array(2 * n)};
+    for (int i = 0; i < 2 * n; i++) of.absolute[i] = number();
+    of.end = number(), of.cells = (int)number(), of.budget = number();
+    double short_run = number(); /* s; shorter ones are repeated, as the first of a process is slower */
 
-    SUNContext context;
-    if (SUNContext_Create(NULL, &context)) return 2;
-    N_Vector y = N_VNew_Serial(2 * n, context), tolerances = N_VMake_Serial(2 * n, absolute, context);
-    N_VConst(0.0, y);
-    void *cvode = CVodeCreate(CV_BDF, context);
-    SUNMatrix matrix = SUNDenseMatrix(2 * n, 2 * n, context);
-    SUNLinearSolver linear = SUNLinSol_Dense(y, matrix, context);
-    CVodeInit(cvode, right_hand_side, 0.0, y);
-    CVodeSetErrHandlerFn(cvode, silent, NULL);
-    CVodeSVtolerances(cvode, relative, tolerances);
-    CVodeSetUserData(cvode, &p);
-    CVodeSetMaxNumSteps(cvode, 500000);
-    CVodeSetLinearSolver(cvode, linear, matrix);
-    CVodeSetJacFn(cvode, jacobian);
-    CVodeRootInit(cvode, 1, roots);
-    CVodeSetNoInactiveRootWarn(cvode);
-
-    double *forces = array(cells + 1), *events = array(10000);
-    int event_count = 0, direction = p.closed ? -1 : 1, flag = CV_SUCCESS;
-    double d, rate, t = 0.0;
-    CVodeSetRootDirection(cvode, &direction);
-    double start = seconds();
-    forces[0] = p.preload_force;
-    for (int cell = 1; cell <= cells; cell++) {
-        double target = end * cell / cells;
-        while ((flag = CVode(cvode, target, y, &t, CV_NORMAL)) == CV_ROOT_RETURN && event_count < 10000) {
-            events[event_count++] = t;
-            p.closed = !p.closed;
-            direction = p.closed ? -1 : 1;
-            CVodeReInit(cvode, t, y);
-            CVodeSetRootDirection(cvode, &direction);
-            if (target - t < 1e-12 * end) break; /* too close for a step */
-        }
-        if (flag < 0 || event_count == 10000) break;
-        if (seconds() - start > budget) {
-            flag = -100;
-            break;
-        }
-        indentation(&p, t, N_VGetArrayPointer(y), &d, &rate);
-        forces[cell] = p.closed ? fmax(closed_branch(&p, d, rate).force, 0.0) : 0.0;
+    result r = {.forces = array(of.cells + 1), .events = array(MOST_EVENTS)};
+    double spent = 0.0;
+    while (spent < short_run) {
+        integrate(&p, &of, &r);
+        spent += r.time;
     }
-    double spent = seconds() - start;
     printf("version %s\n", SUNDIALS_VERSION);
-    if (event_count == 10000) flag = -101;
-    if (flag < 0) {
-        const char *cause = flag == -100   ? "out of its time budget"
-                            : flag == -101 ? "openings and closings without end"
-                                           : CVodeGetReturnFlagName(flag);
-        printf("failure %.17g %s\n", t, cause);
+    if (r.flag < 0) {
+        const char *cause = r.flag == OUT_OF_TIME       ? "out of its time budget"
+                            : r.flag == TOO_MANY_EVENTS ? "openings and closings without end"
+                                                        : CVodeGetReturnFlagName(r.flag);
+        printf("failure %.17g %s\n", r.reached, cause);
         return 0;
     }
-    printf("time %.9g\n", spent);
+    printf("time %.9g\n", r.time);
     printf("events");
-    for (int i = 0; i < event_count; i++) printf(" %.17g", events[i]);
+    for (int i = 0; i < r.event_count; i++) printf(" %.17g", r.events[i]);
     printf("\nforces");
-    for (int i = 0; i <= cells; i++) printf(" %.17g", forces[i]);
+    for (int i = 0; i <= of.cells; i++) printf(" %.17g", r.forces[i]);
     printf("\n");
     return 0;
 }
