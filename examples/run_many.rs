@@ -1,14 +1,11 @@
-//! Runs a scene file with many values of a parameter, on all cores; prints the outputs at the end, and how many simulations that
-//! is a second with one worker and with more.
+//! Runs a scene file with many values of a parameter, on all cores; prints the outputs at the end.
 //!
 //!     cargo run --release --example run_many -- scenes/chatter-41g.toml excitation.frequency 100 3000 1000 solver.tolerance=1e-2
 
 use std::env;
 use std::error::Error;
-use std::num::NonZero;
 use std::path::Path;
 use std::thread;
-use std::time::Instant;
 
 use relay_contact::many::run_many;
 use relay_contact::scene::file::SceneFile;
@@ -32,14 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     });
     let scenes = scenes.collect::<Result<Vec<_>, _>>()?;
 
-    let all = thread::available_parallelism()?;
-    let mut rows = Vec::new();
-    for workers in [NonZero::<usize>::MIN, all] {
-        let begun = Instant::now();
-        rows = run_many(&scenes, workers, |_| ());
-        let rate = f64::from(count) / begun.elapsed().as_secs_f64();
-        eprintln!("{workers} workers: {rate:.0} simulations a second");
-    }
+    let rows = run_many(&scenes, thread::available_parallelism()?, |_| ());
     let names: Vec<_> = scene.outputs.iter().map(|variable| variable.name).collect();
     println!("{parameter},{},error", names.join(","));
     for (n, row) in (0..count).zip(rows) {

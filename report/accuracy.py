@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from report import many
 from report.figure import Curve, Figure
 from report.files import DOCS, OUT, PICTURES, Row, rewrite, rows
 from report.page import Section, whole
@@ -184,6 +185,7 @@ def write() -> Path:
         ],
     })  # fmt: skip
     rewrite(page, "tables", text)
+    rewrite(page, "many", f"{many.rates()}\n\n{many.instances()}\n")
     return page
 
 

@@ -7,12 +7,14 @@
 //! component, cvode, diffsol    the integrators
 //! radau       the reference, with its own error estimate
 //! study       runs them against the reference, interleaved
+//! instances   start, end and memory of an instance; many of them
 //! machine     processor and versions
 //! ```
 
 pub mod component;
 pub mod cvode;
 pub mod diffsol;
+pub mod instances;
 pub mod integrator;
 pub mod machine;
 pub mod problem;

@@ -51,7 +51,7 @@ pub fn effects() -> Result<()> {
     python::report("effects", &[""; 0])
 }
 
-/// Measures time over accuracy, and draws the figures of `docs/accuracy.md`.
+/// Measures time over accuracy and what instances cost, and writes tables and figures of `docs/accuracy.md`.
 pub fn accuracy(arguments: &Arguments) -> Result<()> {
     let mut run = cargo();
     run.args(["run", "--release", "--package=benches", "--bin=accuracy"])
@@ -62,6 +62,7 @@ pub fn accuracy(arguments: &Arguments) -> Result<()> {
         return Ok(());
     }
     python::prepare()?;
+    fmu::build()?;
     python::report("accuracy", &[""; 0])
 }
 

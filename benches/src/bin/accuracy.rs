@@ -5,7 +5,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use anyhow::Result;
-use benches::{machine, study};
+use benches::{instances, machine, study};
 use clap::Parser;
 
 #[derive(Parser)]
@@ -24,8 +24,10 @@ struct Arguments {
 
 fn main() -> Result<()> {
     let Arguments { folder, quick, turns } = Arguments::parse();
-    let rows = study::measure(quick, if quick { 1 } else { turns })?;
     fs::create_dir_all(&folder)?;
+    fs::write(folder.join("instances.csv"), instances::costs(quick)?)?;
+    fs::write(folder.join("many.csv"), instances::rates(quick)?)?;
+    let rows = study::measure(quick, if quick { 1 } else { turns })?;
     fs::write(folder.join("accuracy.csv"), rows)?;
     Ok(fs::write(folder.join("machine.txt"), machine::description())?)
 }
