@@ -337,11 +337,16 @@ fn go_ahead(
     time: f64,
     extremes: Option<&mut Extremes>,
 ) -> Result<(), StepError> {
+    // One after the other: together they would lie on the stack in between.
     let former = &mut *workspace.former;
-    (former.start, former.end, former.dense) = (motion.start, motion.end, motion.dense);
+    former.start = motion.start;
+    former.end = motion.end;
+    former.dense = motion.dense;
     take_steps(model, motion, workspace, time, extremes).inspect_err(|_| {
         let former = &*workspace.former;
-        (motion.start, motion.end, motion.dense) = (former.start, former.end, former.dense);
+        motion.start = former.start;
+        motion.end = former.end;
+        motion.dense = former.dense;
         workspace.events.forget_after(motion.end.time);
     })
 }
