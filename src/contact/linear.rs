@@ -32,11 +32,7 @@ impl Linear {
     /// The force, also where tensile.
     #[inline(always)]
     pub fn closed_branch(&self, d: f64, rate: f64) -> Branch {
-        Branch {
-            force: self.stiffness * self.branch_engagement(d, rate),
-            stiffness: self.stiffness,
-            damping: self.damping * self.stiffness,
-        }
+        self.closed_branches(&[d], &[rate]).into()
     }
 
     /// The same at several indentations (m) and velocities (m/s).

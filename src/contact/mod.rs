@@ -28,3 +28,19 @@ pub(crate) struct Branches<const S: usize> {
     /// See [`Branch::damping`].
     pub(crate) damping: Nodal<S>,
 }
+
+impl From<Branches<1>> for Branch {
+    #[inline(always)]
+    fn from(branches: Branches<1>) -> Self {
+        let Branches {
+            forces: [force],
+            stiffness: [stiffness],
+            damping: [damping],
+        } = branches;
+        Self {
+            force,
+            stiffness,
+            damping,
+        }
+    }
+}

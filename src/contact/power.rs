@@ -296,16 +296,7 @@ impl Power {
     /// opens.
     #[inline(always)]
     pub fn closed_branch(&self, d: f64, rate: f64) -> Branch {
-        let Branches {
-            forces: [force],
-            stiffness: [stiffness],
-            damping: [damping],
-        } = self.closed_branches(&[d], &[rate]);
-        Branch {
-            force,
-            stiffness,
-            damping,
-        }
+        self.closed_branches(&[d], &[rate]).into()
     }
 
     /// The same at several indentations (m) and velocities (m/s), which the processor computes in parallel.
@@ -315,8 +306,8 @@ impl Power {
         reason = "every index runs over the fixed size of the arrays"
     )]
     pub(crate) fn closed_branches<const S: usize>(&self, d: &Nodal<S>, rate: &Nodal<S>) -> Branches<S> {
-        // Chosen rather than branched to; NaN is none of those that are open.
-        let held = d.map(|d| if d <= 0.0 { f64::MIN_POSITIVE } else { d });
+        // Chosen rather than branched to, and anything where it is open; NaN is not.
+        let held = d.map(|d| if d <= 0.0 { 1.0 } else { d });
         let slopes = if self.exponent == HERTZ {
             held.map(f64::sqrt)
         } else {
@@ -366,6 +357,24 @@ fn divided_power(power: f64, a: f64, b: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::scene::Scene;
+
+    #[test]
+    fn an_open_contact_has_no_force_however_fast_it_moves() {
+        for law in [
+            Power::hertz(&Scene::default().contact),
+            Power::rough(&Scene::default().contact),
+            Power::linear(1e5, 1.0),
+        ] {
+            for (d, rate) in [(0.0, -1e20), (-1e-9, 1e20), (-1.0, 0.0)] {
+                let none = Branch {
+                    force: 0.0,
+                    stiffness: 0.0,
+                    damping: 0.0,
+                };
+                assert_eq!(law.closed_branch(d, rate), none, "{law:?} {d} {rate}");
+            }
+        }
+    }
 
     /// Laws of several exponents through the same point: 1e5 N/m at 0.1 N.
     fn laws() -> impl Iterator<Item = (f64, Power)> {
