@@ -78,6 +78,7 @@ mod preload;
 pub mod reference;
 pub mod scene;
 mod settle;
+mod shared;
 pub mod simulation;
 mod slip_stability;
 mod state;

@@ -45,7 +45,7 @@ pub type Ways = [f64; INPUTS];
 pub const CONTACT: usize = 0;
 
 /// A linear functional of the modal coordinates.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Port {
     /// Displacement per modal coordinate and load on the mode per force, b_i, 1/sqrt(kg).
     pub shape: Modal,

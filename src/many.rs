@@ -7,9 +7,8 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 use std::thread;
 
 use crate::error::{SceneError, StepError, panic_text};
-use crate::integrator::collocation::polynomial::{OF_LONG, OF_SHORT, Shared};
 use crate::scene::file::SceneFile;
-use crate::simulation::Simulation;
+use crate::simulation::{Kept, Simulation};
 
 /// Why one of many scenes has no results; the others have theirs.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -54,7 +53,7 @@ pub fn run_many(
     progress: impl FnMut(usize) + Send,
 ) -> Vec<Result<Vec<f64>, RunError>> {
     // Else computed anew for each scene that is alone at a time.
-    let _kept = (Shared::of(&OF_SHORT), Shared::of(&OF_LONG));
+    let _kept = Kept::default();
     side_by_side(scenes, workers, run, progress)
 }
 

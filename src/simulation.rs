@@ -1,18 +1,22 @@
 //! A running simulation: model, state, and workspace of the steps.
 
+use crate::beam::spring::{self, Known};
 use crate::chatter::{Criterion, Interruptions, Summary};
 use crate::conduction;
 use crate::error::{SceneError, StepError};
 use crate::inputs::Inputs;
+use crate::integrator::collocation::cache::{Common, OF_LONG, OF_SHORT};
 use crate::integrator::communication_step;
 use crate::integrator::extremes::{Extremes, Range};
 use crate::integrator::with_contact;
 use crate::integrator::workspace::Workspace;
 use crate::link::CONTACT;
+use crate::math::nodal::{LONG, SHORT};
 use crate::memory;
 use crate::model::Model;
 use crate::preload::Initial;
 use crate::scene::Scene;
+use crate::shared::Shared;
 use crate::state::{LinkState, State};
 use crate::variables::{BooleanOutput, Group, IntegerOutput, RealOutput, Variable};
 
@@ -26,6 +30,25 @@ pub struct Simulation {
     model: Box<Model>,
     motion: Box<Motion>,
     workspace: Workspace,
+    _springs: Shared<Known>,
+}
+
+/// Keeps what simulations find of springs and steps for the next ones, also while there is none.
+#[derive(Clone, Debug)]
+pub struct Kept {
+    _springs: Shared<Known>,
+    _short: Shared<Common<SHORT>>,
+    _long: Shared<Common<LONG>>,
+}
+
+impl Default for Kept {
+    fn default() -> Self {
+        Self {
+            _springs: spring::kept(),
+            _short: Shared::of(&OF_SHORT),
+            _long: Shared::of(&OF_LONG),
+        }
+    }
 }
 
 impl Simulation {
@@ -34,6 +57,7 @@ impl Simulation {
     /// # Errors
     /// A [`SceneError`] if the scene cannot be simulated.
     pub fn new(scene: &Scene, inputs: &Inputs, start_time: f64) -> Result<Self, SceneError> {
+        let springs = spring::kept();
         let [support, displacement, pusher] = inputs.displacements_after(0.0);
         let initial = Initial {
             displacements: [support, 0.0, pusher],
@@ -63,6 +87,7 @@ impl Simulation {
             model,
             motion,
             workspace,
+            _springs: springs,
         })
     }
 
@@ -73,6 +98,7 @@ impl Simulation {
             model: Box::new(model),
             motion: Box::new(Motion::new(*state)),
             workspace,
+            _springs: spring::kept(),
         }
     }
 
@@ -109,12 +135,14 @@ impl Simulation {
     /// # Errors
     /// A [`SceneError`] if the scene cannot be simulated.
     pub fn resume(scene: &Scene, initial: &Initial, motion: &Motion) -> Result<Self, SceneError> {
+        let springs = spring::kept();
         let model = on_heap(scene, initial)?;
         let workspace = Workspace::new(&model);
         let mut simulation = Self {
             motion: Motion::at_rest(&model, 0.0),
             model,
             workspace,
+            _springs: springs,
         };
         simulation.go_on_from(motion);
         Ok(simulation)

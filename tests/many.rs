@@ -6,7 +6,7 @@ use std::path::Path;
 use relay_contact::error::SceneError;
 use relay_contact::many::{RunError, run_many};
 use relay_contact::scene::file::SceneFile;
-use relay_contact::simulation::Simulation;
+use relay_contact::simulation::{Kept, Simulation};
 
 fn scene(name: &str, changes: &[(&str, &str)]) -> SceneFile {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name);
@@ -66,6 +66,36 @@ fn each_has_the_bits_and_the_place_that_it_has_alone() {
                 (Err(RunError::Scene(error)), Err(expected)) => assert_eq!(error, expected),
                 other => panic!("{other:?}"),
             }
+        }
+    }
+}
+
+#[test]
+fn what_others_have_left_changes_no_bit() {
+    // Scenes that share modes but not the generator, the preload or the lengths of steps; and such that share no modes.
+    let chatter = |changes: &[(&str, &str)]| scene("chatter-41g.toml", changes);
+    let scenes = [
+        chatter(&[]),
+        chatter(&[("excitation.frequency", "700"), ("excitation.amplitude", "450")]),
+        chatter(&[("effects.excitation", "LogSweep"), ("excitation.endFrequency", "3000")]),
+        chatter(&[("effects.excitation", "HalfSine"), ("contact.overtravel", "5e-5")]),
+        chatter(&[("effects.friction", "Coulomb")]),
+        chatter(&[("effects.friction", "Coulomb"), ("contact.damping", "2e-5")]),
+        chatter(&[("beam.thickness", "1.1e-4")]),
+        chatter(&[("communicationStep", "7e-5")]),
+        scene("tapered-spring.toml", &[("stop", "2e-3")]),
+        scene(
+            "tapered-spring.toml",
+            &[("stop", "2e-3"), ("excitation.frequency", "300")],
+        ),
+        scene("tapered-spring.toml", &[("stop", "2e-3"), ("tip.mass", "2e-6")]),
+    ];
+    let expected: Vec<_> = scenes.iter().map(|scene| bits(&alone(scene).unwrap())).collect();
+    let _kept = Kept::default();
+    for (n, before) in scenes.iter().enumerate() {
+        for (m, (scene, expected)) in scenes.iter().zip(&expected).enumerate() {
+            alone(before).unwrap();
+            assert_eq!(bits(&alone(scene).unwrap()), *expected, "{m} after {n}");
         }
     }
 }

@@ -25,7 +25,7 @@ const ROUNDING: f64 = 1e-7;
 pub type Rayleigh = (f64, f64);
 
 /// The modes of a file, frequency ascending.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Given {
     modes: Vec<GivenMode>,
     /// Static deflection of the contact per force there, m/N.

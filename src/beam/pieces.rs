@@ -16,7 +16,7 @@ const SPARE_NODES: usize = 18;
 const SAME: f64 = 1e-9;
 
 /// A stretch without mass or contact inside.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece {
     pub length: f64,
     /// At start and end.
@@ -95,7 +95,7 @@ impl Piece {
 }
 
 /// A spring of segments, cut into pieces.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Pieces {
     /// From the clamp on.
     pub parts: Vec<Piece>,

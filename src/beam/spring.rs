@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 
 use crate::beam::characteristic;
-use crate::beam::galerkin::Space;
+use crate::beam::galerkin::{self, Space};
 use crate::beam::given::Given;
 use crate::beam::mode::{MAX_MODES, Mode};
 use crate::beam::mode_count::Blow;
@@ -15,6 +15,7 @@ use crate::error::SceneError;
 use crate::math::simd::LANES;
 use crate::scene::spring::{Segments, Shape, SpringFile};
 use crate::scene::{Scene, choices};
+use crate::shared::{Found, Home, Shared};
 use crate::variables::{AxialForceKind, EnumerationParameter, PusherKind, RealParameter};
 
 /// A spring with its rivet.
@@ -29,7 +30,7 @@ pub struct Spring {
     form: Form,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 enum Form {
     Uniform,
     Segments(Pieces),
@@ -87,8 +88,10 @@ impl Spring {
 
     fn of_segments(segments: &Segments, scene: &Scene) -> Self {
         let pieces = Pieces::new(segments, scene);
-        let section = ritz::equivalent(&pieces);
-        let statics = Statics::of(&section, ritz::static_space(&pieces, &section));
+        let (section, statics) = kept().statics.of(pieces.clone(), |pieces| {
+            let section = ritz::equivalent(pieces);
+            (section, Statics::of(&section, ritz::static_space(pieces, &section)))
+        });
         Self {
             section,
             buckling_load: statics.buckling_load(),
@@ -151,20 +154,20 @@ impl Spring {
     /// The damped modes under an axial compression (N); `None` at or above the buckling load.
     pub fn modes(&self, scene: &Scene, count: usize, axial_force: f64) -> Option<Basis> {
         let (alpha, beta) = (scene.beam.mass_damping, scene.beam.stiffness_damping);
-        let space = match &self.form {
-            Form::Uniform => Space::new(count),
-            Form::Segments(pieces) => ritz::dynamic_space(pieces, &self.section, count, axial_force, scene.rubs())?,
-            Form::Modes(given) => {
-                let modes = given.modes(count, (alpha, beta));
-                return Some(Basis {
-                    space: given.space(&modes),
-                    shapes: Vec::new(),
-                    modes,
-                });
-            }
-        };
-        let (modes, shapes) = space
-            .modes_with_shapes(&self.section, axial_force, 0.0)?
+        if let Form::Modes(given) = &self.form {
+            let modes = given.modes(count, (alpha, beta));
+            return Some(Basis {
+                space: given.space(&modes),
+                shapes: Vec::new(),
+                modes,
+            });
+        }
+        let asked = (self.form.clone(), self.section, (count, axial_force, scene.rubs()));
+        let (undamped, space) = kept().modes.of(asked, |(form, section, (count, axial_force, rubs))| {
+            let space = form.space(section, *count, *axial_force, *rubs)?;
+            Some((space.modes_with_shapes(section, *axial_force, 0.0)?, space))
+        })?;
+        let (modes, shapes) = undamped
             .into_iter()
             .map(|(mode, shape)| {
                 let mode = Mode {
@@ -187,18 +190,52 @@ impl Spring {
     /// Lowest angular frequency under an axial compression (N) with an elastic support of `stiffness` (N/m) at the tip,
     /// rad/s.
     pub fn frequency(&self, axial_force: f64, stiffness: f64) -> Option<f64> {
-        let space = match &self.form {
-            Form::Uniform => {
-                return characteristic::frequencies(&self.section, axial_force, stiffness, 1)
-                    .first()
-                    .copied();
-            }
-            Form::Segments(pieces) => ritz::dynamic_space(pieces, &self.section, FREQUENCY_TERMS, axial_force, false)?,
-            Form::Modes(given) => given.space(&given.modes(MAX_MODES, (0.0, 0.0))),
-        };
-        let modes = space.modes(&self.section, axial_force, stiffness)?;
-        modes.first().map(|mode| mode.omega_squared.sqrt())
+        let asked = (self.form.clone(), self.section, (axial_force, stiffness));
+        kept()
+            .frequencies
+            .of(asked, |(form, section, (axial_force, stiffness))| {
+                if let Form::Uniform = form {
+                    let frequencies = characteristic::frequencies(section, *axial_force, *stiffness, 1);
+                    return frequencies.first().copied();
+                }
+                let space = form.space(section, FREQUENCY_TERMS, *axial_force, false)?;
+                let modes = space.modes(section, *axial_force, *stiffness)?;
+                modes.first().map(|mode| mode.omega_squared.sqrt())
+            })
     }
+}
+
+impl Form {
+    /// A space of `count` functions for the modes under an axial compression (N), where `rubs` with a moment at the contact; that of
+    /// all modes where they are given. `None` if it buckles.
+    fn space(&self, section: &Section, count: usize, axial_force: f64, rubs: bool) -> Option<Space> {
+        match self {
+            Self::Uniform => Some(Space::new(count)),
+            Self::Segments(pieces) => ritz::dynamic_space(pieces, section, count, axial_force, rubs),
+            Self::Modes(given) => Some(given.space(&given.modes(MAX_MODES, (0.0, 0.0)))),
+        }
+    }
+}
+
+/// What was found of springs, for all simulations of a process.
+#[derive(Debug, Default)]
+pub struct Known {
+    /// The equivalent section and its statics.
+    statics: Found<Pieces, (Section, Statics)>,
+    /// Modes without damping with their shapes, by their number, axial compression (N), and whether the contact rubs.
+    modes: Found<(Form, Section, (usize, f64, bool)), Option<(Shaped, Space)>>,
+    /// Lowest angular frequency (rad/s) under an axial compression (N) on an elastic support (N/m).
+    frequencies: Found<(Form, Section, (f64, f64)), Option<f64>>,
+}
+
+/// Modes with their shapes.
+type Shaped = Vec<(galerkin::Mode, DVector<f64>)>;
+
+static KNOWN: Home<Known> = Home::new();
+
+/// A share in what was found: it is not forgotten while there is one.
+pub fn kept() -> Shared<Known> {
+    Shared::of(&KNOWN)
 }
 
 /// A pusher touches the spring somewhere, and leaves the axial force as it is.

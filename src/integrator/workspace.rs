@@ -6,15 +6,16 @@ use crate::beam::mode::ModeStates;
 use crate::closed_loop::dense::{DensePropagator, TipAtNodes};
 use crate::closed_loop::propagator::{ByLength, Propagator};
 use crate::error::{StepError, StepErrorCause};
-use crate::integrator::collocation::cache::Cache;
+use crate::integrator::collocation::cache::{Cache, Common, OF_LONG, OF_SHORT};
 use crate::integrator::collocation::part::Instant;
-use crate::integrator::collocation::polynomial::{Collocation, Home, OF_LONG, OF_SHORT};
+use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::trial::{Scratch, Trial};
 use crate::integrator::constants::HALVINGS;
 use crate::integrator::events::log::Events;
 use crate::integrator::motion::Motion;
 use crate::math::nodal::{LONG, SHORT};
 use crate::model::Model;
+use crate::shared::Home;
 
 /// Work that a communication step may take, however long it is, in modes at nodes: each takes some forty instructions, all
 /// together one to three seconds on processors of 2026. Pinned: ÷ 1e5 and × 100, `tests/fmi_api`.
@@ -67,7 +68,7 @@ pub(crate) struct Search {
 }
 
 impl<const S: usize> Room<S> {
-    fn new(model: &Model, home: &'static Home<S>) -> Self {
+    fn new(model: &Model, home: &'static Home<Common<S>>) -> Self {
         Self {
             cache: Box::new(Cache::new(model, home)),
             scratch: zeroed_box(),

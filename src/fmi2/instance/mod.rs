@@ -18,7 +18,7 @@ use super::types::{fmi2ComponentEnvironment, fmi2OK, fmi2Status, fmi2StepFinishe
 use crate::error::{SceneError, number};
 use crate::inputs::Inputs;
 use crate::scene::Scene;
-use crate::simulation::Simulation;
+use crate::simulation::{Kept, Simulation};
 use crate::variables::StringParameter;
 
 #[derive(Debug)]
@@ -29,6 +29,8 @@ pub(super) struct Instance {
     experiment: Experiment,
     /// In Initialization Mode: created when an output is read, dropped when a value is set.
     simulation: Option<Box<Simulation>>,
+    /// For the next one after a reset.
+    _kept: Kept,
     /// The last successful time, s.
     time: f64,
     logger: Logger,
@@ -76,6 +78,7 @@ impl Instance {
             inputs: Inputs::default(),
             experiment: Experiment::default(),
             simulation: None,
+            _kept: Kept::default(),
             time: 0.0,
             logger,
             resources,

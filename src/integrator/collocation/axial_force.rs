@@ -210,8 +210,8 @@ fn with_loads<const S: usize, A: Arithmetic>(
 mod tests {
     use super::*;
     use crate::excitation::drive::Drive;
-    use crate::integrator::collocation::cache::Cache;
-    use crate::integrator::collocation::polynomial::{Collocation, OF_LONG};
+    use crate::integrator::collocation::cache::{Cache, OF_LONG};
+    use crate::integrator::collocation::polynomial::Collocation;
     use crate::integrator::collocation::step::compute;
     use crate::integrator::collocation::trial::Scratch;
     use crate::link::CONTACT;

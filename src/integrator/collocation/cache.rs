@@ -1,10 +1,11 @@
 //! The coefficients of the steps taken so far, kept by the length of the step.
 
+use std::mem;
 use std::ops::Range;
 
 use bytemuck::{Zeroable, write_zeroes};
 
-use crate::beam::mode::{MAX_MODES, Modal};
+use crate::beam::mode::{MAX_MODES, Modal, Mode};
 use crate::excitation::generator::{Generator, Turns};
 use crate::excitation::random::Piece;
 use crate::excitation::waveform::Accelerations;
@@ -13,13 +14,15 @@ use crate::integrator::collocation::coefficients::{
 };
 use crate::integrator::collocation::elimination::solve;
 use crate::integrator::collocation::modal_response::ModeOverStep;
-use crate::integrator::collocation::polynomial::{Collocation, Home, Shared};
+use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::Shapes;
 use crate::integrator::collocation::superposition::{Pair, Sum};
+use crate::link::Port;
 use crate::math::free_motion::FreeMotion;
-use crate::math::nodal::{Nodal, add, scaled};
-use crate::math::simd::{Arithmetic, compiled_for};
+use crate::math::nodal::{LONG, Nodal, SHORT, add, scaled};
+use crate::math::simd::{Arithmetic, Simd, compiled_for};
 use crate::model::Model;
+use crate::shared::{Home, Shared, Shelf};
 
 /// Step lengths whose coefficients are kept, a power of two: those of 32 octaves with and without half of their own, as
 /// free steps have them, from nanoseconds after a blow to seconds. Cost.
@@ -34,10 +37,24 @@ fn slot(length: f64) -> usize {
     usize::try_from(octave + elsewhere).unwrap_or_default() % SLOTS
 }
 
+/// What all simulations share of steps with `S` nodes.
+#[derive(Debug, Default)]
+pub struct Common<const S: usize> {
+    collocation: Collocation<S>,
+    /// Coefficients that simulations have left.
+    left: Shelf<Store<S>>,
+}
+
+/// That of short steps.
+pub static OF_SHORT: Home<Common<SHORT>> = Home::new();
+
+/// That of long steps.
+pub static OF_LONG: Home<Common<LONG>> = Home::new();
+
 /// Cache of coefficients by step length. Its content never affects results, only the time they take.
 #[derive(Clone, Debug)]
 pub struct Cache<const S: usize> {
-    collocation: Shared<S>,
+    common: Shared<Common<S>>,
     /// For recurring lengths, and first for the last other one.
     places: Store<S>,
     /// While coefficients are computed: for each response, and for one mode.
@@ -58,16 +75,24 @@ pub struct Prepared<'a, const S: usize> {
 }
 
 impl<const S: usize> Cache<S> {
-    /// Allocates for the model.
-    pub fn new(model: &Model, home: &'static Home<S>) -> Self {
-        let sizes = Sizes::of::<S>(model);
-        let sums = vec![Sum::zeroed(); sizes.responses + 1];
-        let mut places = Store::reserved(sizes, SLOTS + 1);
-        places.add(&model.generator);
+    /// With what another simulation of the same modes has left, or allocated for the model.
+    pub fn new(model: &Model, home: &'static Home<Common<S>>) -> Self {
+        let (common, basis) = (Shared::of(home), Basis::of(model));
+        let places = match common.left.take(|places| places.basis == basis) {
+            Some(mut places) => {
+                places.turn(&model.generator, &common.collocation.nodes);
+                places
+            }
+            None => {
+                let mut places = Store::reserved(basis, Sizes::of::<S>(model), SLOTS + 1);
+                places.add(&model.generator);
+                places
+            }
+        };
         Self {
-            collocation: Shared::of(home),
+            sums: vec![Sum::zeroed(); places.sizes.responses + 1],
+            common,
             places,
-            sums,
             piece: Piece::default(),
         }
     }
@@ -80,7 +105,7 @@ impl<const S: usize> Cache<S> {
 
     /// The polynomials.
     pub fn collocation(&self) -> &Collocation<S> {
-        &self.collocation
+        &self.common.collocation
     }
 
     /// The coefficients for a length, with the base acceleration of a step from `time` (s) on.
@@ -88,12 +113,12 @@ impl<const S: usize> Cache<S> {
         let place = self.place(length, recurring, model);
         if self.places.length(place).to_bits() != length.to_bits() {
             self.places
-                .fill(place, length, model, &self.collocation, &mut self.sums);
+                .fill(place, length, model, &self.common.collocation, &mut self.sums);
         }
         let step = self.places.view(place);
         Prepared {
             step,
-            collocation: &self.collocation,
+            collocation: &self.common.collocation,
             generated: model.generator.over_step(model.simd, time, step.turns, &mut self.piece),
         }
     }
@@ -123,10 +148,42 @@ impl<const S: usize> Cache<S> {
     }
 }
 
+impl<const S: usize> Drop for Cache<S> {
+    fn drop(&mut self) {
+        let places = mem::take(&mut self.places);
+        self.common.left.leave(places, &self.common);
+    }
+}
+
+/// All that the coefficients of a length depend on, but for the generator.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Basis {
+    modes: Vec<Mode>,
+    ports: Vec<Port>,
+    /// Whether an axial force loads each mode.
+    axial: bool,
+    /// Damping time of the contact, s, where it rubs.
+    rubbing: Option<f64>,
+    portable: bool,
+}
+
+impl Basis {
+    fn of(model: &Model) -> Self {
+        Self {
+            modes: model.modes.clone(),
+            ports: model.ports.clone(),
+            axial: model.axial().is_some(),
+            rubbing: model.friction().map(|_| model.law().damping()),
+            portable: matches!(model.simd, Simd::Portable),
+        }
+    }
+}
+
 /// Coefficients of steps of several lengths, in places that are made as they are needed: room for all of them is reserved, but
 /// not touched before.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Store<const S: usize> {
+    basis: Basis,
     lengths: Vec<f64>,
     rows: Vec<NodeRows<S>>,
     responses: Vec<Response<S>>,
@@ -136,11 +193,11 @@ struct Store<const S: usize> {
     turns: Vec<Turns<S>>,
     sizes: Sizes,
     /// The place of each slot that a recurring length may have by its hash; 0: none yet.
-    of_slot: [u8; SLOTS],
+    of_slot: Vec<u8>,
 }
 
 /// How many there are of each in a place.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 struct Sizes {
     rows: usize,
     responses: usize,
@@ -195,8 +252,9 @@ impl Sizes {
 
 impl<const S: usize> Store<S> {
     /// Reserves room for this many places.
-    fn reserved(sizes: Sizes, places: usize) -> Self {
+    fn reserved(basis: Basis, sizes: Sizes, places: usize) -> Self {
         Self {
+            basis,
             lengths: Vec::with_capacity(places),
             rows: Vec::with_capacity(places * sizes.rows),
             responses: Vec::with_capacity(places * sizes.responses),
@@ -205,7 +263,15 @@ impl<const S: usize> Store<S> {
             ends: Vec::with_capacity(places * end_rows(S)),
             turns: Vec::with_capacity(places),
             sizes,
-            of_slot: [0; SLOTS],
+            of_slot: vec![0; SLOTS],
+        }
+    }
+
+    /// Makes it one for steps with this generator.
+    fn turn(&mut self, generator: &Generator, nodes: &Nodal<S>) {
+        for (turns, length) in self.turns.iter_mut().zip(&self.lengths) {
+            *turns = Turns::room(generator);
+            turns.fill(generator, *length, nodes);
         }
     }
 
@@ -276,7 +342,7 @@ impl<const S: usize> Store<S> {
 impl<const S: usize> Clone for Store<S> {
     /// With the same room, as steps do not allocate.
     fn clone(&self) -> Self {
-        let mut same = Self::reserved(self.sizes.clone(), self.lengths.capacity());
+        let mut same = Self::reserved(self.basis.clone(), self.sizes.clone(), SLOTS + 1);
         same.lengths.extend_from_slice(&self.lengths);
         same.rows.extend_from_slice(&self.rows);
         same.responses.extend_from_slice(&self.responses);
@@ -284,7 +350,7 @@ impl<const S: usize> Clone for Store<S> {
         same.following.extend_from_slice(&self.following);
         same.ends.extend_from_slice(&self.ends);
         same.turns.extend_from_slice(&self.turns);
-        same.of_slot = self.of_slot;
+        same.of_slot.clone_from(&self.of_slot);
         same
     }
 }

@@ -4,64 +4,13 @@
 //! however stiff its damping (Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.5): eight for long
 //! steps, four for short ones (communication steps of a microsecond, the time just after an impact).
 
-use std::ops::Deref;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-
 use crate::integrator::collocation::shapes::{MAX_SHAPES, Shapes};
 use crate::integrator::constants::{FAR_AHEAD, NEAR, SLOWEST_DECAY};
 use crate::integrator::course::turning_points;
 use crate::math::legendre;
-use crate::math::nodal::{LONG, Nodal, SHORT, add, dot, scaled};
+use crate::math::nodal::{LONG, Nodal, add, dot, scaled};
 use crate::math::prediction::{Prediction, centred, parabola_at_end, value_and_slope};
 use crate::math::simd::{Arithmetic, Separate, Simd, compiled_for};
-
-/// Where polynomials are found that somebody uses.
-pub type Home<const S: usize> = Mutex<Option<Arc<Collocation<S>>>>;
-
-/// The polynomials of a short step.
-pub static OF_SHORT: Home<SHORT> = Mutex::new(None);
-
-/// The polynomials of a long step.
-pub static OF_LONG: Home<LONG> = Mutex::new(None);
-
-/// The polynomials of a step, computed by the first who needs them and freed with the last: hosts load and unload the
-/// library thousands of times in a process.
-#[derive(Clone, Debug)]
-pub struct Shared<const S: usize> {
-    polynomials: Arc<Collocation<S>>,
-    home: &'static Home<S>,
-}
-
-impl<const S: usize> Shared<S> {
-    /// Those in use, or new ones.
-    pub fn of(home: &'static Home<S>) -> Self {
-        let polynomials = open(home).get_or_insert_with(|| Arc::new(Collocation::new())).clone();
-        Self { polynomials, home }
-    }
-}
-
-impl<const S: usize> Deref for Shared<S> {
-    type Target = Collocation<S>;
-
-    fn deref(&self) -> &Collocation<S> {
-        &self.polynomials
-    }
-}
-
-impl<const S: usize> Drop for Shared<S> {
-    fn drop(&mut self) {
-        let mut home = open(self.home);
-        // One here, one at home.
-        if Arc::strong_count(&self.polynomials) <= 2 {
-            *home = None;
-        }
-    }
-}
-
-/// A home is whole whenever its lock is free.
-fn open<const S: usize>(home: &'static Home<S>) -> MutexGuard<'static, Option<Arc<Collocation<S>>>> {
-    home.lock().unwrap_or_else(PoisonError::into_inner)
-}
 
 /// The polynomials of a step with `S` nodes.
 #[derive(Debug)]
@@ -91,6 +40,12 @@ pub struct Collocation<const S: usize> {
     with_start: Vec<Prediction>,
     /// The same for the nodes without the start.
     nodal: Vec<Prediction>,
+}
+
+impl<const S: usize> Default for Collocation<S> {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 impl<const S: usize> Collocation<S> {

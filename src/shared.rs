@@ -1,0 +1,182 @@
+//! What simulations of a process share: made by the first that needs it, freed with the last, as hosts load and unload the
+//! library thousands of times in a process. It never affects results, only the time they take.
+
+use std::collections::VecDeque;
+use std::ops::Deref;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// Where something is found that somebody uses.
+#[derive(Debug)]
+pub struct Home<T>(Mutex<Option<Arc<T>>>);
+
+impl<T> Home<T> {
+    /// With nothing in it yet.
+    pub const fn new() -> Self {
+        Self(Mutex::new(None))
+    }
+}
+
+/// A share in it: it stays as long as there is one.
+#[derive(Debug)]
+pub struct Shared<T: 'static> {
+    value: Arc<T>,
+    home: &'static Home<T>,
+}
+
+impl<T> Shared<T> {
+    /// A share in what others use, or in a new one.
+    pub fn of(home: &'static Home<T>) -> Self
+    where
+        T: Default,
+    {
+        let value = open(&home.0).get_or_insert_with(Arc::default).clone();
+        Self { value, home }
+    }
+
+    /// How many shares there are.
+    fn count(&self) -> usize {
+        // One more is at home.
+        Arc::strong_count(&self.value) - 1
+    }
+}
+
+impl<T> Clone for Shared<T> {
+    fn clone(&self) -> Self {
+        let Self { value, home } = self;
+        Self {
+            value: value.clone(),
+            home,
+        }
+    }
+}
+
+impl<T> Deref for Shared<T> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        &self.value
+    }
+}
+
+impl<T> Drop for Shared<T> {
+    fn drop(&mut self) {
+        let mut home = open(&self.home.0);
+        if self.count() <= 1 {
+            *home = None;
+        }
+    }
+}
+
+/// Things that simulations leave for others.
+#[derive(Debug)]
+pub struct Shelf<T>(Mutex<Vec<T>>);
+
+impl<T> Default for Shelf<T> {
+    fn default() -> Self {
+        Self(Mutex::new(Vec::new()))
+    }
+}
+
+impl<T> Shelf<T> {
+    /// Takes the last one that is such.
+    pub fn take(&self, is_such: impl FnMut(&T) -> bool) -> Option<T> {
+        let mut things = open(&self.0);
+        let found = things.iter().rposition(is_such)?;
+        Some(things.remove(found))
+    }
+
+    /// Leaves one, in the place of the oldest where there are as many as there are shares in `common`, to which the shelf belongs.
+    pub fn leave<C>(&self, thing: T, common: &Shared<C>) {
+        let mut things = open(&self.0);
+        let oldest = (things.len() >= common.count()).then(|| things.remove(0));
+        things.push(thing);
+        drop(things);
+        drop(oldest);
+    }
+}
+
+/// Values found so far, each with what it was found for.
+#[derive(Debug)]
+pub struct Found<K, V>(Mutex<VecDeque<(K, V)>>);
+
+/// How many are kept. Cost.
+const KEPT: usize = 16;
+
+impl<K, V> Default for Found<K, V> {
+    fn default() -> Self {
+        Self(Mutex::new(VecDeque::new()))
+    }
+}
+
+impl<K: PartialEq, V: Clone> Found<K, V> {
+    /// The value for a key, if need be found now.
+    pub fn of(&self, key: K, find: impl FnOnce(&K) -> V) -> V {
+        let known = open(&self.0)
+            .iter()
+            .find(|(of, _)| *of == key)
+            .map(|(_, value)| value.clone());
+        known.unwrap_or_else(|| {
+            // Others may go on meanwhile.
+            let value = find(&key);
+            let mut all = open(&self.0);
+            all.truncate(KEPT - 1);
+            all.push_front((key, value.clone()));
+            value
+        })
+    }
+}
+
+/// What a lock holds is whole whenever it is free.
+fn open<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
+    lock.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_share_frees_it() {
+        static HOME: Home<Shelf<u32>> = Home::new();
+        let (first, second) = (Shared::of(&HOME), Shared::of(&HOME));
+        first.leave(7, &first);
+        drop(first);
+        assert_eq!(second.take(|number| *number == 7), Some(7));
+        second.leave(8, &second);
+        drop(second.clone());
+        drop(second);
+        assert_eq!(Shared::of(&HOME).take(|_| true), None);
+    }
+
+    #[test]
+    fn a_shelf_has_no_more_than_there_are_shares() {
+        static HOME: Home<Shelf<u32>> = Home::new();
+        let shares = [Shared::of(&HOME), Shared::of(&HOME)];
+        for number in 1..=5 {
+            shares[0].leave(number, &shares[0]);
+        }
+        assert_eq!([(); 3].map(|()| shares[1].take(|_| true)), [Some(5), Some(4), None]);
+    }
+
+    #[test]
+    fn what_is_found_is_found_once() {
+        let (found, mut calls) = (Found::default(), 0);
+        for key in (0..KEPT).chain(0..KEPT) {
+            assert_eq!(
+                found.of(key, |key| {
+                    calls += 1;
+                    2 * key
+                }),
+                2 * key
+            );
+        }
+        assert_eq!(calls, KEPT);
+        // The oldest makes room.
+        found.of(KEPT, |key| 2 * key);
+        found.of(0, |_| {
+            calls += 1;
+            0
+        });
+        assert_eq!(calls, KEPT + 1);
+    }
+}
