@@ -74,13 +74,16 @@ fn each_has_the_bits_and_the_place_that_it_has_alone() {
 fn what_others_have_left_changes_no_bit() {
     // Scenes that share modes but not the generator, the preload or the lengths of steps; and such that share no modes.
     let chatter = |changes: &[(&str, &str)]| scene("chatter-41g.toml", changes);
+    let rubbing = |name, value| chatter(&[("effects.friction", "Coulomb"), ("solver.modes", "16"), (name, value)]);
     let scenes = [
         chatter(&[]),
         chatter(&[("excitation.frequency", "700"), ("excitation.amplitude", "450")]),
         chatter(&[("effects.excitation", "LogSweep"), ("excitation.endFrequency", "3000")]),
         chatter(&[("effects.excitation", "HalfSine"), ("contact.overtravel", "5e-5")]),
-        chatter(&[("effects.friction", "Coulomb")]),
-        chatter(&[("effects.friction", "Coulomb"), ("contact.damping", "2e-5")]),
+        rubbing("tip.contactHeight", "1e-3"),
+        rubbing("tip.contactHeight", "7e-4"),
+        rubbing("contact.damping", "2e-5"),
+        rubbing("beam.massDamping", "3"),
         chatter(&[("beam.thickness", "1.1e-4")]),
         chatter(&[("communicationStep", "7e-5")]),
         scene("tapered-spring.toml", &[("stop", "2e-3")]),
