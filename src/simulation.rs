@@ -17,6 +17,7 @@ use crate::model::Model;
 use crate::preload::Initial;
 use crate::scene::Scene;
 use crate::shared::Shared;
+use crate::slip_stability;
 use crate::state::{LinkState, State};
 use crate::variables::{BooleanOutput, Group, IntegerOutput, RealOutput, Variable};
 
@@ -37,6 +38,7 @@ pub struct Simulation {
 #[derive(Clone, Debug)]
 pub struct Kept {
     _springs: Shared<Known>,
+    _slip: Shared<slip_stability::Known>,
     _short: Shared<Common<SHORT>>,
     _long: Shared<Common<LONG>>,
 }
@@ -45,6 +47,7 @@ impl Default for Kept {
     fn default() -> Self {
         Self {
             _springs: spring::kept(),
+            _slip: slip_stability::kept(),
             _short: Shared::of(&OF_SHORT),
             _long: Shared::of(&OF_LONG),
         }

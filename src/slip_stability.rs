@@ -18,6 +18,7 @@ use crate::beam::mode::Mode;
 use crate::contact::friction::{Friction, Phase};
 use crate::contact::power::Power;
 use crate::error::Remark;
+use crate::shared::{Found, Home, Shared};
 
 /// Contact forces looked at, in the preload force, 1: at rest, and the largest of a contact shaken until it nearly opens.
 const FORCES: [f64; 2] = [1.0, 2.0];
@@ -29,8 +30,23 @@ const ROUNDING: f64 = 1e-12;
 /// are known with which it never ends (its issues 611 and 764).
 const ITERATIONS: usize = 30;
 
+/// What was found, by modes, friction, law and usual force (N).
+pub(crate) type Known = Found<(Vec<Mode>, Friction, Power, f64), Vec<Remark>>;
+
+static KNOWN: Home<Known> = Home::new();
+
+/// A share in what was found: it is not forgotten while there is one.
+pub(crate) fn kept() -> Shared<Known> {
+    Shared::of(&KNOWN)
+}
+
 /// Unstable slip, in each direction in which it is: where it grows fastest, about the usual contact force (N).
 pub(crate) fn remarks(modes: &[Mode], friction: &Friction, law: &Power, usual: f64) -> Vec<Remark> {
+    let of = (modes.to_vec(), *friction, *law, usual);
+    kept().of(of, |(modes, friction, law, usual)| found(modes, friction, law, *usual))
+}
+
+fn found(modes: &[Mode], friction: &Friction, law: &Power, usual: f64) -> Vec<Remark> {
     let worst = |slip: Phase| {
         let loads = loads(modes, friction, slip)?;
         let at = |force: f64| Some((force, fastest(modes, &loads, law, force)?));
