@@ -12,31 +12,42 @@ pub const LONG: usize = 8;
 /// A value at each node.
 pub type Nodal<const S: usize> = [f64; S];
 
-/// Nodal values that are one at one of them.
-struct Units<const S: usize>;
+/// Nodal values of which one differs from the others.
+struct Singled<const S: usize>;
 
-impl<const S: usize> Units<S> {
+impl<const S: usize> Singled<S> {
+    const ONES: [Nodal<S>; S] = Self::table(1.0, 0.0);
+    const ZEROES: [Nodal<S>; S] = Self::table(0.0, 1.0);
+
     #[expect(
         clippy::indexing_slicing,
         reason = "every index runs over the fixed size of the arrays"
     )]
-    const TABLE: [Nodal<S>; S] = {
-        let mut units = [[0.0; S]; S];
+    const fn table(one: f64, others: f64) -> [Nodal<S>; S] {
+        let mut table = [[others; S]; S];
         let mut node = 0;
         while node < S {
-            units[node][node] = 1.0;
+            table[node][node] = one;
             node += 1;
         }
-        units
-    };
+        table
+    }
 }
 
 /// One at a node of the `S`, zero at all others.
 #[inline(always)]
 #[expect(clippy::indexing_slicing, reason = "a node of the step")]
 pub fn unit<const S: usize>(node: usize) -> &'static Nodal<S> {
-    let units: &'static [Nodal<S>; S] = &Units::<S>::TABLE;
+    let units: &'static [Nodal<S>; S] = &Singled::<S>::ONES;
     &units[node]
+}
+
+/// Zero at a node of the `S`, one at all others.
+#[inline(always)]
+#[expect(clippy::indexing_slicing, reason = "a node of the step")]
+pub fn others<const S: usize>(node: usize) -> &'static Nodal<S> {
+    let zeroes: &'static [Nodal<S>; S] = &Singled::<S>::ZEROES;
+    &zeroes[node]
 }
 
 /// The values times `factor`.

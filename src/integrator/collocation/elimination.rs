@@ -1,7 +1,7 @@
 //! Gauss-Jordan elimination of the few equations of a step: a block of unknowns for each link, a value at each node.
 
 use crate::integrator::constants::SMALL_PIVOT;
-use crate::math::nodal::{Nodal, add, scaled, unit};
+use crate::math::nodal::{Nodal, add, others, scaled, unit};
 use crate::math::simd::{Arithmetic, Separate};
 
 /// A value at the nodes for each unknown link.
@@ -56,7 +56,7 @@ impl<const S: usize, const L: usize> Equations<S, L> {
                 };
                 let multiplier = &mut columns[b][p];
                 let pivot = multiplier[b][p];
-                set_zero(&mut multiplier[b], pivot, p);
+                set_zero(&mut multiplier[b], p);
                 add::<S, Separate>(&mut multiplier[b], -1.0, unit(p));
                 for block in multiplier.iter_mut().take(in_use::<L>(*count)) {
                     *block = scaled(block, -1.0 / pivot);
@@ -122,8 +122,10 @@ fn exchange<const S: usize, const L: usize>(
 
 /// Makes zero of the value at a node, exactly, without storing a single number into what is read as a vector next.
 #[inline(always)]
-fn set_zero<const S: usize>(values: &mut Nodal<S>, value: f64, node: usize) {
-    add::<S, Separate>(values, -value, unit(node));
+fn set_zero<const S: usize>(values: &mut Nodal<S>, node: usize) {
+    for (value, kept) in values.iter_mut().zip(others::<S>(node)) {
+        *value *= kept;
+    }
 }
 
 /// Eliminates row `p` of block `b` of a column from all other rows, and divides it by the pivot, whose inverse the multiplier has
@@ -140,7 +142,7 @@ fn eliminate<const S: usize, const L: usize, A: Arithmetic>(
     count: usize,
 ) {
     let share = column[b][p];
-    set_zero(&mut column[b], share, p);
+    set_zero(&mut column[b], p);
     for c in 0..in_use::<L>(count) {
         for k in 0..S {
             column[c][k] = A::mul_add(multiplier[c][k], share, column[c][k]);
