@@ -1,6 +1,6 @@
 //! A running simulation: model, state, and workspace of the steps.
 
-use crate::beam::spring::{self, Known};
+use crate::beam::spring;
 use crate::chatter::{Criterion, Interruptions, Summary};
 use crate::conduction;
 use crate::error::{SceneError, StepError};
@@ -31,13 +31,13 @@ pub struct Simulation {
     model: Box<Model>,
     motion: Box<Motion>,
     workspace: Workspace,
-    _springs: Shared<Known>,
+    _springs: Shared<spring::Known>,
 }
 
 /// Keeps what simulations find of springs and steps for the next ones, also while there is none.
 #[derive(Clone, Debug)]
 pub struct Kept {
-    _springs: Shared<Known>,
+    _springs: Shared<spring::Known>,
     _slip: Shared<slip_stability::Known>,
     _short: Shared<Common<SHORT>>,
     _long: Shared<Common<LONG>>,

@@ -40,7 +40,8 @@
 //!
 //! where *free* is the motion under the initial modal state, the base acceleration, moving bodies, and forces that are known
 //! ([`collocation::step`]). There is one matrix `D` for each pair of ports, however many modes there are. It depends on `h` alone;
-//! matrices are kept by step length ([`collocation::coefficients`]), and step lengths are chosen so that they recur ([`grid`]).
+//! matrices are kept by step length ([`collocation::coefficients`]), also for the next simulation of the same modes, and step
+//! lengths are chosen so that they recur ([`grid`]).
 //!
 //! *Response of one mode* ([`collocation::modal_response`]). Integrated by parts, the response to `l_j` is either a series of the
 //! repeated integrals of `l_j` (power series of the impulse response), or a finite sum of its derivatives (the motion that follows

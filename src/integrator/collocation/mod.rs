@@ -13,5 +13,6 @@ pub mod shapes;
 pub(crate) mod side_by_side;
 pub mod slip;
 pub mod step;
+mod store;
 pub mod superposition;
 pub mod trial;

@@ -1,0 +1,367 @@
+//! Coefficients of steps of several lengths for one set of modes.
+
+use std::ops::Range;
+
+use bytemuck::{Zeroable, write_zeroes};
+
+use crate::beam::mode::{MAX_MODES, Modal, Mode};
+use crate::excitation::generator::{Generator, Turns};
+use crate::integrator::collocation::coefficients::{
+    EndRows, ModeColumns, NodeRows, Response, StepCoefficients, end_rows, responses_before,
+};
+use crate::integrator::collocation::elimination::solve;
+use crate::integrator::collocation::modal_response::ModeOverStep;
+use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::collocation::shapes::Shapes;
+use crate::integrator::collocation::superposition::{Pair, Sum};
+use crate::link::Port;
+use crate::math::free_motion::FreeMotion;
+use crate::math::nodal::{Nodal, add, scaled};
+use crate::math::simd::{Arithmetic, Simd, compiled_for};
+use crate::model::Model;
+
+/// Step lengths whose coefficients are kept, a power of two: those of 32 octaves with and without half of their own, as
+/// free steps have them, from nanoseconds after a blow to seconds. Cost.
+pub const SLOTS: usize = 64;
+
+/// The slot of a length: dyadic fractions of one, and one and a half times them, occupy neighbouring slots; those of another
+/// start elsewhere (Fibonacci hashing).
+fn slot(length: f64) -> usize {
+    let bits = length.to_bits();
+    let (octave, mantissa) = (bits >> 51, bits << 13);
+    let elsewhere = mantissa.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> (64 - SLOTS.ilog2());
+    usize::try_from(octave + elsewhere).unwrap_or_default() % SLOTS
+}
+
+/// All that the coefficients of a length depend on, but for the generator.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Basis {
+    modes: Vec<Mode>,
+    ports: Vec<Port>,
+    /// Whether an axial force loads each mode.
+    axial: bool,
+    /// Damping time of the contact, s, where it rubs.
+    rubbing: Option<f64>,
+    portable: bool,
+}
+
+impl Basis {
+    pub(super) fn of(model: &Model) -> Self {
+        Self {
+            modes: model.modes.clone(),
+            ports: model.ports.clone(),
+            axial: model.axial().is_some(),
+            rubbing: model.friction().map(|_| model.law().damping()),
+            portable: matches!(model.simd, Simd::Portable),
+        }
+    }
+}
+
+/// Coefficients of steps of several lengths, in places that are made as they are needed: room for all of them is reserved, but
+/// not touched before.
+#[derive(Debug, Default)]
+pub(super) struct Store<const S: usize> {
+    basis: Basis,
+    lengths: Vec<f64>,
+    rows: Vec<NodeRows<S>>,
+    responses: Vec<Response<S>>,
+    columns: Vec<ModeColumns<S>>,
+    following: Vec<Nodal<S>>,
+    ends: Vec<Modal>,
+    turns: Vec<Turns<S>>,
+    sizes: Sizes,
+    /// The place of each slot that a recurring length may have by its hash; 0: none yet.
+    of_slot: Vec<u8>,
+}
+
+/// How many there are of each in a place.
+#[derive(Clone, Debug, Default)]
+struct Sizes {
+    rows: usize,
+    responses: usize,
+    columns: usize,
+    following: usize,
+    /// Where the rows of each port begin and end.
+    of_port: Vec<Range<usize>>,
+}
+
+/// The part of a place of this size.
+#[inline(always)]
+#[expect(clippy::indexing_slicing, reason = "places that are there")]
+fn part<T>(all: &[T], place: usize, size: usize) -> &[T] {
+    &all[place * size..(place + 1) * size]
+}
+
+/// The same to be written.
+#[expect(clippy::indexing_slicing, reason = "places that are there")]
+fn part_mut<T>(all: &mut [T], place: usize, size: usize) -> &mut [T] {
+    &mut all[place * size..(place + 1) * size]
+}
+
+impl Sizes {
+    fn of<const S: usize>(model: &Model) -> Self {
+        let mut rows = 0;
+        let of_port = model.ports.iter().map(|port| {
+            let first = rows;
+            rows += port.modes.len();
+            first..rows
+        });
+        let of_port = of_port.collect();
+        Self {
+            rows,
+            responses: responses_before(model.ports.len()),
+            columns: if model.axial().is_some() { model.modes.len() } else { 0 },
+            following: if model.friction().is_some() { S } else { 0 },
+            of_port,
+        }
+    }
+
+    /// What a place takes of memory, bytes.
+    fn bytes<const S: usize>(&self) -> usize {
+        size_of::<f64>()
+            + self.rows * size_of::<NodeRows<S>>()
+            + self.responses * size_of::<Response<S>>()
+            + self.columns * size_of::<ModeColumns<S>>()
+            + self.following * size_of::<Nodal<S>>()
+            + end_rows(S) * size_of::<Modal>()
+            + size_of::<Turns<S>>()
+    }
+}
+
+impl<const S: usize> Store<S> {
+    /// With room for all lengths of a model, of which this is the basis.
+    pub(super) fn for_model(basis: Basis, model: &Model) -> Self {
+        let mut store = Self::reserved(basis, Sizes::of::<S>(model));
+        store.add(&model.generator);
+        store
+    }
+
+    /// How many sums [`Store::fill`] takes for a model: for each response, and for one mode.
+    pub(super) fn sums(model: &Model) -> usize {
+        responses_before(model.ports.len()) + 1
+    }
+
+    /// What it takes of memory for a model at most, bytes.
+    pub(super) fn size(model: &Model) -> usize {
+        (SLOTS + 1) * Sizes::of::<S>(model).bytes::<S>()
+    }
+
+    /// Whether its coefficients are those of a basis.
+    pub(super) fn is_of(&self, basis: &Basis) -> bool {
+        self.basis == *basis
+    }
+
+    /// The coefficients for a length, if they are known.
+    pub(super) fn known(&self, length: f64, recurring: bool) -> Option<StepCoefficients<'_, S>> {
+        let slot = self.of_slot.get(slot(length)).filter(|_| recurring);
+        let place = slot.map_or(0, |place| usize::from(*place));
+        (self.length(place).to_bits() == length.to_bits()).then(|| self.view(place))
+    }
+
+    /// The place for the coefficients of a length, `recurring`: one that is kept.
+    pub(super) fn place(&mut self, length: f64, recurring: bool, generator: &Generator) -> usize {
+        let slot = slot(length);
+        let Some(place) = self.of_slot.get(slot).filter(|_| recurring) else {
+            return 0;
+        };
+        if *place > 0 {
+            return usize::from(*place);
+        }
+        // There is one for each slot.
+        let place = self.add(generator);
+        if let (Some(entry), Ok(place)) = (self.of_slot.get_mut(slot), u8::try_from(place)) {
+            *entry = place;
+        }
+        place
+    }
+
+    /// Reserves room for a place for each slot, and one more.
+    fn reserved(basis: Basis, sizes: Sizes) -> Self {
+        let places = SLOTS + 1;
+        Self {
+            basis,
+            lengths: Vec::with_capacity(places),
+            rows: Vec::with_capacity(places * sizes.rows),
+            responses: Vec::with_capacity(places * sizes.responses),
+            columns: Vec::with_capacity(places * sizes.columns),
+            following: Vec::with_capacity(places * sizes.following),
+            ends: Vec::with_capacity(places * end_rows(S)),
+            turns: Vec::with_capacity(places),
+            sizes,
+            of_slot: vec![0; SLOTS],
+        }
+    }
+
+    /// Makes it one for steps with this generator.
+    pub(super) fn turn(&mut self, generator: &Generator, nodes: &Nodal<S>) {
+        for (turns, length) in self.turns.iter_mut().zip(&self.lengths) {
+            *turns = Turns::room(generator);
+            turns.fill(generator, *length, nodes);
+        }
+    }
+
+    /// Makes a place, for no length yet; returns its index. Out of line, for the sake of the stack.
+    #[inline(never)]
+    fn add(&mut self, generator: &Generator) -> usize {
+        let place = self.lengths.len();
+        let (sizes, places) = (&self.sizes, place + 1);
+        self.rows.resize_with(places * sizes.rows, NodeRows::zeroed);
+        self.responses.resize_with(places * sizes.responses, Response::zeroed);
+        self.columns.resize_with(places * sizes.columns, ModeColumns::zeroed);
+        self.following.resize(places * sizes.following, [0.0; S]);
+        self.ends.resize(places * end_rows(S), [0.0; MAX_MODES]);
+        self.turns.push(Turns::room(generator));
+        self.lengths.push(0.0);
+        place
+    }
+
+    /// The length of a place, s; 0: none.
+    pub(super) fn length(&self, place: usize) -> f64 {
+        self.lengths.get(place).copied().unwrap_or_default()
+    }
+
+    /// What is in a place.
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "a place that is there")]
+    pub(super) fn view(&self, place: usize) -> StepCoefficients<'_, S> {
+        let sizes = &self.sizes;
+        StepCoefficients {
+            length: self.lengths[place],
+            columns: part(&self.columns, place, sizes.columns),
+            following: part(&self.following, place, sizes.following),
+            end: EndRows::of(part(&self.ends, place, end_rows(S))),
+            turns: &self.turns[place],
+            responses: part(&self.responses, place, sizes.responses),
+            rows: part(&self.rows, place, sizes.rows),
+            of_port: &sizes.of_port,
+        }
+    }
+
+    /// Computes the coefficients for a length in place.
+    #[inline(never)]
+    #[expect(clippy::indexing_slicing, reason = "a place that is there")]
+    pub(super) fn fill(
+        &mut self,
+        place: usize,
+        length: f64,
+        model: &Model,
+        collocation: &Collocation<S>,
+        sums: &mut [Sum<S>],
+    ) {
+        let (h, shapes, simd) = (length, &collocation.shapes, model.simd);
+        let sizes = &self.sizes;
+        self.lengths[place] = length;
+        self.turns[place].fill(&model.generator, length, &collocation.nodes);
+        let mut modes = Modes {
+            rows: part_mut(&mut self.rows, place, sizes.rows),
+            of_port: &sizes.of_port,
+            columns: part_mut(&mut self.columns, place, sizes.columns),
+            end: part_mut(&mut self.ends, place, end_rows(S)),
+        };
+        sums.iter_mut().for_each(write_zeroes);
+        compiled_for!(simd, A => modes.set::<A>(h, model, collocation, sums));
+        let responses = part_mut(&mut self.responses, place, sizes.responses);
+        for (response, sum) in responses.iter_mut().zip(&*sums) {
+            response.set(sum, simd, shapes, h);
+        }
+        if sizes.following > 0 {
+            let following = compiled_for!(simd, A => following::<S, A>(model.law().damping(), h, shapes));
+            part_mut(&mut self.following, place, sizes.following).copy_from_slice(&following);
+        }
+    }
+}
+
+impl<const S: usize> Clone for Store<S> {
+    /// With the same room, as steps do not allocate.
+    fn clone(&self) -> Self {
+        let mut same = Self::reserved(self.basis.clone(), self.sizes.clone());
+        same.lengths.extend_from_slice(&self.lengths);
+        same.rows.extend_from_slice(&self.rows);
+        same.responses.extend_from_slice(&self.responses);
+        same.columns.extend_from_slice(&self.columns);
+        same.following.extend_from_slice(&self.following);
+        same.ends.extend_from_slice(&self.ends);
+        same.turns.extend_from_slice(&self.turns);
+        same.of_slot.clone_from(&self.of_slot);
+        same
+    }
+}
+
+/// What there is of each mode in a place.
+struct Modes<'a, const S: usize> {
+    rows: &'a mut [NodeRows<S>],
+    of_port: &'a [Range<usize>],
+    columns: &'a mut [ModeColumns<S>],
+    end: &'a mut [Modal],
+}
+
+impl<const S: usize> Modes<'_, S> {
+    /// Sets it for the length `h` (s), and adds up the modes: `sums` has for each port that of the base acceleration, then those
+    /// of the ports up to it, and at the end room for one mode.
+    #[inline(always)]
+    fn set<A: Arithmetic>(&mut self, h: f64, model: &Model, collocation: &Collocation<S>, sums: &mut [Sum<S>]) {
+        let shapes = &collocation.shapes;
+        for (i, mode) in model.modes.iter().enumerate() {
+            let mode_over_step = ModeOverStep::new(mode.omega_squared, mode.damping, h);
+            let response = mode_over_step.response::<S, A>(&collocation.nodes, shapes);
+            let displacement = |p: usize| {
+                let port = model.ports.get(p);
+                port.and_then(|port| port.shape.get(i)).copied().unwrap_or_default()
+            };
+            let mut of_port = sums.iter_mut();
+            for (p, (port, range)) in model.ports.iter().zip(self.of_port).enumerate() {
+                let b = displacement(p);
+                for (q, sum) in of_port.by_ref().take(p + 2).enumerate() {
+                    let weight = b * if q == 0 {
+                        mode.participation
+                    } else {
+                        displacement(q - 1)
+                    };
+                    if weight != 0.0 {
+                        sum.add::<A>(weight, &response);
+                    }
+                }
+                if port.modes.contains(&i)
+                    && let Some(rows) = self.rows.get_mut(range.start + i - port.modes.start)
+                {
+                    rows.set::<A>(b, mode, &response, h);
+                }
+            }
+            let end = FreeMotion::new(mode.omega_squared, mode.damping, h);
+            let loads = response.at_end::<A>(shapes);
+            let (q_from_load, v_from_load) = (scaled(&loads.q, h * h), scaled(&loads.v, h));
+            let free = [end.q_from_q, end.q_from_v, end.v_from_q, end.v_from_v];
+            let entries = free.iter().chain(&q_from_load).chain(&v_from_load);
+            for (row, entry) in self.end.iter_mut().zip(entries) {
+                row.iter_mut().skip(i).take(1).for_each(|own| *own = *entry);
+            }
+            if let (Some(columns), Some(alone)) = (self.columns.get_mut(i), of_port.next()) {
+                let Pair { q, v } = &response.impulse;
+                columns.q_from_v = scaled(q, h);
+                columns.q_from_q = *v;
+                add::<S, A>(&mut columns.q_from_q, mode.damping * h, q);
+                write_zeroes(alone);
+                alone.add::<A>(1.0, &response);
+                columns.load.set(alone, model.simd, shapes, h);
+            }
+        }
+    }
+}
+
+/// See [`StepCoefficients::following`]; `damping`: the damping time, s.
+#[inline(always)]
+fn following<const S: usize, A: Arithmetic>(damping: f64, h: f64, shapes: &Shapes<S>) -> [Nodal<S>; S] {
+    let mut matrix = shapes.integrals.first().map_or([[0.0; S]; S], |table| table.nodal);
+    let mut right = [[0.0; S]; S];
+    let scale = 1.0 / (damping + h);
+    for (j, (column, right)) in matrix.iter_mut().zip(&mut right).enumerate() {
+        *column = scaled(column, h * scale);
+        column
+            .iter_mut()
+            .skip(j)
+            .take(1)
+            .for_each(|entry| *entry += damping * scale);
+        right.iter_mut().skip(j).take(1).for_each(|entry| *entry = scale);
+    }
+    solve::<S, S, A>(matrix, right).unwrap_or([[0.0; S]; S])
+}
