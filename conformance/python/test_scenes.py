@@ -58,7 +58,7 @@ def test_a_scene_from_its_parameter_set_has_the_force_of_the_library(tmp_path: P
 @pytest.mark.parametrize("name", sorted(SCENES))
 def test_a_parameter_set_says_what_the_scene_file_changes(tmp_path: Path, name: str) -> None:
     values, scene = read_set(tmp_path, name), SCENES[name]
-    wanted = scene.values | {each: course[0] for each, course in scene.inputs([0.0]).items()}
+    wanted = scene.values | {each: course[0] for each, course in scene.inputs(np.zeros(1)).items()}
     for file in {"beam.file", "fixed.file"} & wanted.keys():
         wanted[file] = Path(str(wanted[file])).name
     assert values == {each: value for each, value in wanted.items() if value != COMPONENT.start(each)}

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextvars import ContextVar
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -111,6 +111,7 @@ def run_many(
     import pandas as pd
 
     component, cases = component or Component(), list(scenes)
+    read = cache(Scene.read)
     names = [component.name(name) for name in outputs or []]
 
     def row(case: Case) -> Row:
@@ -118,7 +119,7 @@ def run_many(
         row = Row(given.title if isinstance(given, Scene) else str(given))
         try:
             row.changes |= {component.settable(name): value for name, value in changes.items()}
-            scene = given if isinstance(given, Scene) else Scene.read(given)
+            scene = given if isinstance(given, Scene) else read(given)
             at_stop(component, scene.changed(component, changes), names, row)
         except (RelayContactError, OSError) as error:
             row.error = str(error)

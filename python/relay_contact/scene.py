@@ -107,7 +107,7 @@ class Scene:
                     component.name(name)
         return cls(content.title, content.stop, content.communication_step, content.outputs, values, table)
 
-    def points(self) -> list[float]:
+    def points(self) -> Array:
         """Return the communication points; the last is the stop."""
         for name, value in (("stop", self.stop), ("communication step", self.step)):
             if not 0 < value < math.inf:
@@ -116,9 +116,10 @@ class Scene:
             text = f"allowed are {MOST:.0e} communication steps: an earlier stop, or longer steps"
             raise RelayContactError(f"stop = {self.stop:g} s with steps of {self.step:g} s: not allowed, {text}")
         count = max(1, math.ceil(self.stop / self.step - 1e-9))
-        return [min(n * self.step, self.stop) for n in range(count + 1)]
+        points: Array = np.minimum(np.arange(count + 1) * self.step, self.stop)
+        return points
 
-    def inputs(self, points: list[float]) -> dict[str, Array]:
+    def inputs(self, points: Array) -> dict[str, Array]:
         """Give the inputs that change, at the communication points."""
         return {
             name: np.interp(points, self.table["time"], column) for name, column in self.table.items() if name != "time"
@@ -189,12 +190,11 @@ def run(
     names = [component.name(name) for name in (scene.outputs if outputs is None else outputs)]
     stop, step = scene.stop if stop is None else stop, scene.step if step is None else step
     scene = replace(scene, outputs=names, table=course, stop=stop, step=step)
-    points = scene.points()
     form = "{desc} {percentage:3.0f} %|{bar}| {n:.3g} of {total:.3g} ms"
     component.warnings.clear()
     with progress_bar(1e3 * scene.stop, form, progress is True, desc="simulated") as bar:
         tell = progress if callable(progress) else lambda time: bar.update(1e3 * time - bar.n)
-        result = simulated(scene, points, component, tell)
+        result = simulated(scene, scene.points(), component, tell)
     fields = np.dtype([(name, np.float64) for name in ["time", *names]])
     table = unstructured_to_structured(result, fields).view(Result)
     shown = units(component.description)
@@ -238,13 +238,13 @@ def courses(component: Component, given: Mapping[str, ArrayLike]) -> dict[str, A
     return found
 
 
-def simulated(scene: Scene, points: list[float], component: Component, tell: Callable[[float], object]) -> Array:
+def simulated(scene: Scene, time: Array, component: Component, tell: Callable[[float], object]) -> Array:
     """Run a scene; return a row of time and outputs for each communication point."""
-    inputs, time = scene.inputs(points), np.array(points)
+    inputs = scene.inputs(time)
     first = {name: float(course[0]) for name, course in inputs.items()}
     with component.started(scene.values | first) as contact, contact.explained():
         rows = [np.array([[0.0, *(contact.get(name) for name in scene.outputs)]])]
-        for begin in range(0, len(points) - 1, SHOWN):
+        for begin in range(0, len(time) - 1, SHOWN):
             part = slice(begin, begin + SHOWN + 1)
             own = contact.drive(time[part], {name: course[part] for name, course in inputs.items()}, scene.outputs)
             rows.append(np.column_stack((time[part][1:], *(own[name] for name in scene.outputs))))

@@ -3,6 +3,8 @@
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, indent, register_namespace, tostring
 
+import numpy as np
+
 from relay_contact.component import Component
 from relay_contact.scene import Scene
 
@@ -18,7 +20,7 @@ def parameter_set(name: str, scene: Scene, component: Component, plain: bool = F
     register_namespace("ssv", NAMESPACE)
     root = Element(f"{{{NAMESPACE}}}ParameterSet", version="1.0", name=name, description=scene.title)
     parameters = SubElement(root, f"{{{NAMESPACE}}}Parameters")
-    values = scene.values | {each: float(course[0]) for each, course in scene.inputs([0.0]).items()}
+    values = scene.values | {each: float(course[0]) for each, course in scene.inputs(np.zeros(1)).items()}
     for each, variable in component.variables.items():
         if each not in values or values[each] == component.start(each):
             continue
