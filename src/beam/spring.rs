@@ -222,14 +222,17 @@ impl Form {
 pub struct Known {
     /// The equivalent section and its statics.
     statics: Found<Pieces, (Section, Statics)>,
-    /// Modes without damping with their shapes, by their number, axial compression (N), and whether the contact rubs.
-    modes: Found<(Form, Section, (usize, f64, bool)), Option<(Shaped, Space)>>,
+    /// Modes without damping.
+    modes: Found<(Form, Section, Asked), Option<Undamped>>,
     /// Lowest angular frequency (rad/s) under an axial compression (N) on an elastic support (N/m).
     frequencies: Found<(Form, Section, (f64, f64)), Option<f64>>,
 }
 
-/// Modes with their shapes.
-type Shaped = Vec<(galerkin::Mode, DVector<f64>)>;
+/// Number of modes, axial compression (N), and whether the contact rubs.
+type Asked = (usize, f64, bool);
+
+/// Modes with their shapes in a space.
+type Undamped = (Vec<(galerkin::Mode, DVector<f64>)>, Space);
 
 static KNOWN: Home<Known> = Home::new();
 
