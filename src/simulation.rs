@@ -46,8 +46,8 @@ pub struct Kept {
 impl Default for Kept {
     fn default() -> Self {
         Self {
-            _springs: spring::kept(),
-            _slip: slip_stability::kept(),
+            _springs: Shared::of(&spring::KNOWN),
+            _slip: Shared::of(&slip_stability::KNOWN),
             _short: Shared::of(&OF_SHORT),
             _long: Shared::of(&OF_LONG),
         }
@@ -60,7 +60,7 @@ impl Simulation {
     /// # Errors
     /// A [`SceneError`] if the scene cannot be simulated.
     pub fn new(scene: &Scene, inputs: &Inputs, start_time: f64) -> Result<Self, SceneError> {
-        let springs = spring::kept();
+        let springs = Shared::of(&spring::KNOWN);
         let [support, displacement, pusher] = inputs.displacements_after(0.0);
         let initial = Initial {
             displacements: [support, 0.0, pusher],
@@ -101,7 +101,7 @@ impl Simulation {
             model: Box::new(model),
             motion: Box::new(Motion::new(*state)),
             workspace,
-            _springs: spring::kept(),
+            _springs: Shared::of(&spring::KNOWN),
         }
     }
 
@@ -138,7 +138,7 @@ impl Simulation {
     /// # Errors
     /// A [`SceneError`] if the scene cannot be simulated.
     pub fn resume(scene: &Scene, initial: &Initial, motion: &Motion) -> Result<Self, SceneError> {
-        let springs = spring::kept();
+        let springs = Shared::of(&spring::KNOWN);
         let model = on_heap(scene, initial)?;
         let workspace = Workspace::new(&model);
         let mut simulation = Self {

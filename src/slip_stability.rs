@@ -33,17 +33,13 @@ const ITERATIONS: usize = 30;
 /// What was found, by modes, friction, law and usual force (N).
 pub(crate) type Known = Found<(Vec<Mode>, Friction, Power, f64), Vec<Remark>>;
 
-static KNOWN: Home<Known> = Home::new();
-
-/// A share in what was found: it is not forgotten while there is one.
-pub(crate) fn kept() -> Shared<Known> {
-    Shared::of(&KNOWN)
-}
+/// Where that is.
+pub(crate) static KNOWN: Home<Known> = Home::new();
 
 /// Unstable slip, in each direction in which it is: where it grows fastest, about the usual contact force (N).
 pub(crate) fn remarks(modes: &[Mode], friction: &Friction, law: &Power, usual: f64) -> Vec<Remark> {
     let of = (modes.to_vec(), *friction, *law, usual);
-    kept().of(of, |(modes, friction, law, usual)| found(modes, friction, law, *usual))
+    Shared::of(&KNOWN).of(of, |(modes, friction, law, usual)| found(modes, friction, law, *usual))
 }
 
 fn found(modes: &[Mode], friction: &Friction, law: &Power, usual: f64) -> Vec<Remark> {

@@ -88,7 +88,7 @@ impl Spring {
 
     fn of_segments(segments: &Segments, scene: &Scene) -> Self {
         let pieces = Pieces::new(segments, scene);
-        let (section, statics) = kept().statics.of(pieces.clone(), |pieces| {
+        let (section, statics) = Shared::of(&KNOWN).statics.of(pieces.clone(), |pieces| {
             let section = ritz::equivalent(pieces);
             (section, Statics::of(&section, ritz::static_space(pieces, &section)))
         });
@@ -163,10 +163,12 @@ impl Spring {
             });
         }
         let asked = (self.form.clone(), self.section, (count, axial_force, scene.rubs()));
-        let (undamped, space) = kept().modes.of(asked, |(form, section, (count, axial_force, rubs))| {
-            let space = form.space(section, *count, *axial_force, *rubs)?;
-            Some((space.modes_with_shapes(section, *axial_force, 0.0)?, space))
-        })?;
+        let (undamped, space) = Shared::of(&KNOWN)
+            .modes
+            .of(asked, |(form, section, (count, axial_force, rubs))| {
+                let space = form.space(section, *count, *axial_force, *rubs)?;
+                Some((space.modes_with_shapes(section, *axial_force, 0.0)?, space))
+            })?;
         let (modes, shapes) = undamped
             .into_iter()
             .map(|(mode, shape)| {
@@ -191,7 +193,7 @@ impl Spring {
     /// rad/s.
     pub fn frequency(&self, axial_force: f64, stiffness: f64) -> Option<f64> {
         let asked = (self.form.clone(), self.section, (axial_force, stiffness));
-        kept()
+        Shared::of(&KNOWN)
             .frequencies
             .of(asked, |(form, section, (axial_force, stiffness))| {
                 if let Form::Uniform = form {
@@ -234,12 +236,8 @@ type Asked = (usize, f64, bool);
 /// Modes with their shapes in a space.
 type Undamped = (Vec<(galerkin::Mode, DVector<f64>)>, Space);
 
-static KNOWN: Home<Known> = Home::new();
-
-/// A share in what was found: it is not forgotten while there is one.
-pub fn kept() -> Shared<Known> {
-    Shared::of(&KNOWN)
-}
+/// Where that is.
+pub static KNOWN: Home<Known> = Home::new();
 
 /// A pusher touches the spring somewhere, and leaves the axial force as it is.
 fn check_pusher(scene: &Scene) -> Result<(), SceneError> {
