@@ -65,6 +65,7 @@ mod fingerprint;
 #[cfg(not(target_family = "wasm"))]
 pub mod fmi2;
 mod force_error;
+mod foundation;
 mod harmonic;
 pub mod inputs;
 mod integrator;

@@ -6,20 +6,16 @@ use crate::armature::Armature;
 use crate::assembly::{Assembly, Laws, Roles};
 use crate::beam::axial::Feedback;
 use crate::beam::mode::{MAX_MODES, Modal, Mode, ModeStates};
-use crate::beam::mode_count::Blow;
 use crate::beam::resolution::Resolution;
 use crate::beam::section::Section;
-use crate::beam::spring::Basis;
-use crate::beam::springs::{Counts, Springs};
 use crate::closed_loop::system::ClosedLoop;
-use crate::contact::friction::{self, Friction, Slip};
+use crate::contact::friction::{Friction, Slip};
 use crate::contact::law::Law;
-use crate::contact::linear::Linear;
-use crate::contact::power::Power;
 use crate::electrical::ElectricalContact;
 use crate::error::{Remark, SceneError};
 use crate::excitation::generator::Generator;
 use crate::force_error::Slowest;
+use crate::foundation::Foundation;
 use crate::integrator::step_length::StepLengths;
 use crate::integrator::tolerance::Tolerance;
 use crate::link::{Link, LinkLaw, MAX_LINKS, Port};
@@ -120,90 +116,68 @@ impl Model {
             displacements: [support, 0.0, 0.0],
             ..Initial::default()
         };
-        Self::starting(scene, &initial)
+        Ok(*Self::starting(scene, &initial)?)
     }
 
     /// The model of a scene, with these inputs at the start.
     ///
     /// # Errors
     /// A [`SceneError`] if the scene cannot be simulated.
-    pub fn starting(scene: &Scene, initial: &Initial) -> Result<Self, SceneError> {
-        scene.validate()?;
-        friction::check(scene)?;
-        let springs = Springs::new(scene)?;
-        let (spring, section) = (&springs.moving, springs.moving.section);
-        let power = Power::of(scene);
-        let (parallel, second) = (Power::of_parallel(scene), Power::of_second(scene));
-        let preload = Preload::new(scene, &springs, (&power, parallel.as_ref()), initial)?;
-        let tolerance = scene.solver.effective_tolerance();
-        let bending_force = bending_force(scene, &springs);
-        let force_scale = preload.force.max(bending_force);
-        let other = |power: Power| Law::Power(power).parting(tolerance, force_scale);
-        let laws = Laws {
-            contact: law(scene, power, &preload)?.parting(tolerance, force_scale),
-            parallel: parallel.map(other),
-            second: second.map(other),
-        };
-        let law = laws.contact;
-        let own = blow(scene, bending_force, &power);
-        let counts = counts(scene, &springs, (&own, [parallel, second], bending_force));
-        let Some(basis) = springs.modes(scene, counts, preload.axial_force) else {
-            return Err(SceneError::Buckled {
-                name: RealParameter::BeamAxialForce.variable().name,
-                value: preload.axial_force,
-                limit: spring.buckling_load,
-            });
-        };
-        let resolution = Resolution::new(&section, &basis, &own);
-        let Basis { modes, shapes, space } = basis;
-        let axial = (scene.effects.axial_force == AxialForceKind::FromDeflection)
-            .then(|| Feedback::new(&section, &preload, scene.environment.gravity, &space, &modes, &shapes))
-            .map(Box::new);
-        let frequency = axial
-            .as_ref()
-            .and_then(|axial| axial.frequency(&modes, preload.contact_stiffness))
-            .or_else(|| frequency((scene, &springs, &preload), laws, initial.coil));
+    pub fn starting(scene: &Scene, initial: &Initial) -> Result<Box<Self>, SceneError> {
+        let foundation = Foundation::of(scene, initial)?;
         let generator = Generator::new(scene)?;
+        let (law, modes) = (foundation.laws.contact, &foundation.modes);
         if scene.effects.chatter && ElectricalContact::new(scene, &law).is_none() {
             return Err(SceneError::NoResistance);
         }
         let closed_loop = match law {
-            Law::Linear(contact) if generator.is_harmonic() && is_linear(scene) && is_rayleigh(scene, &modes) => {
-                ClosedLoop::new(scene, (&modes, &resolution), contact, &generator).map(Box::new)
+            Law::Linear(contact) if generator.is_harmonic() && is_linear(scene) && is_rayleigh(scene, modes) => {
+                ClosedLoop::new(scene, (modes, &foundation.resolution), contact, &generator).map(Box::new)
             }
             _ => None,
         };
+        Ok(Self::on(*foundation, (scene, initial), generator, closed_loop))
+    }
+
+    /// The model on this foundation: out of line, since it is large on the stack.
+    #[inline(never)]
+    fn on(
+        foundation: Foundation,
+        (scene, initial): (&Scene, &Initial),
+        generator: Generator,
+        closed_loop: Option<Box<ClosedLoop>>,
+    ) -> Box<Self> {
+        let Foundation { modes, laws, .. } = foundation;
         let at_contact = modes.iter().find(|mode| mode.tip != 0.0);
-        let memory = at_contact.map_or(0.0, |mode| 1.0 / mode.omega_squared.sqrt());
-        let mut model = Self {
-            law,
+        let mut model = Box::new(Self {
+            law: laws.contact,
             ports: Vec::new(),
             links: Vec::new(),
             roles: Roles::default(),
             participations: [0.0; MAX_MODES],
             slowest: Slowest::default(),
-            resolution,
+            resolution: foundation.resolution,
             inertia: inertia(&modes),
-            memory,
+            memory: at_contact.map_or(0.0, |mode| 1.0 / mode.omega_squared.sqrt()),
             compliance: modes.iter().map(Mode::compliance).sum(),
             scene: scene.clone(),
-            section,
-            preload,
+            section: foundation.section,
+            preload: foundation.preload,
             modes,
-            axial,
+            axial: foundation.axial,
             closed_loop,
             generator,
             initial: *initial,
-            armature: springs.armature,
-            force_scale,
-            tolerance: Tolerance::new(tolerance, force_scale),
-            frequency: frequency.map_or(0.0, |omega| omega / std::f64::consts::TAU),
-            missed: springs.missed(&own),
-            spring_length: spring.length(),
+            armature: foundation.armature,
+            force_scale: foundation.force_scale,
+            tolerance: Tolerance::new(scene.solver.effective_tolerance(), foundation.force_scale),
+            frequency: foundation.frequency.map_or(0.0, |omega| omega / std::f64::consts::TAU),
+            missed: foundation.missed,
+            spring_length: foundation.spring_length,
             simd: Simd::detect(),
-        };
+        });
         model.link(laws);
-        Ok(model)
+        model
     }
 
     /// Sets ports and links, with these laws of the contacts.
@@ -506,54 +480,6 @@ fn inertia(modes: &[Mode]) -> f64 {
     (tip(|mode| mode.participation) / tip(|mode| mode.tip)).abs()
 }
 
-/// The law of the first contact.
-fn law(scene: &Scene, power: Power, preload: &Preload) -> Result<Law, SceneError> {
-    match scene.effects.contact_law {
-        ContactLawKind::Hertz | ContactLawKind::Rough => Ok(Law::Power(power)),
-        ContactLawKind::Linearised | ContactLawKind::Bonded if scene.effects.second_contact => {
-            Err(SceneError::LinearBesideOther("effects.secondContact"))
-        }
-        ContactLawKind::Linearised | ContactLawKind::Bonded if scene.effects.parallel_contact => {
-            Err(SceneError::LinearBesideOther("effects.parallelContact"))
-        }
-        ContactLawKind::Linearised | ContactLawKind::Bonded if preload.force <= 0.0 => Err(SceneError::NoPreload),
-        kind @ (ContactLawKind::Linearised | ContactLawKind::Bonded) => Ok(Law::Linear(Linear {
-            stiffness: preload.contact_stiffness,
-            damping: power.damping,
-            offset: preload.indentation - preload.force / preload.contact_stiffness,
-            bonded: kind == ContactLawKind::Bonded,
-        })),
-    }
-}
-
-/// Lowest angular frequency about the preload with every closed link as a spring, rad/s: of one spring with one contact exact.
-fn frequency((scene, springs, preload): (&Scene, &Springs, &Preload), laws: Laws, coil: f64) -> Option<f64> {
-    let (axial_force, stiffness) = (preload.axial_force, preload.contact_stiffness);
-    if scene.pushed_at().is_none() && springs.fixed.is_none() && laws.parallel.is_none() {
-        return springs.moving.frequency(axial_force, stiffness);
-    }
-    let modes = springs.many_modes(scene, axial_force)?;
-    let parts = (scene, modes.as_slice(), preload);
-    Assembly::new(parts, laws, springs.armature.as_ref()).frequency(&modes, coil)
-}
-
-/// Numbers of modes for blows of the contact (`own`) and of all others: as many as the tolerance needs, or as the scene asks for.
-fn counts(
-    scene: &Scene,
-    springs: &Springs,
-    (own, [parallel, second], bending_force): (&Blow, [Option<Power>; 2], f64),
-) -> Counts {
-    let pusher = scene
-        .pushed_at()
-        .map(|_| Power::linear(scene.pusher.stiffness, scene.pusher.damping));
-    let blow = |power: Power| blow(scene, bending_force, &power);
-    let others = [parallel, second, pusher].map(|power| power.map_or(*own, blow));
-    springs
-        .counts(own, &others, scene.solver.effective_tolerance())
-        .or(usize::try_from(scene.solver.modes).unwrap_or_default())
-        .within_room()
-}
-
 /// Whether nothing but the contact law can keep the scene from being linear, and nothing within a step is requested.
 fn is_linear(scene: &Scene) -> bool {
     scene.effects.axial_force != AxialForceKind::FromDeflection
@@ -562,31 +488,10 @@ fn is_linear(scene: &Scene) -> bool {
         && !scene.effects.extremes
 }
 
-/// A blow as the scene may have it.
-fn blow(scene: &Scene, bending_force: f64, power: &Power) -> Blow {
-    // A blow fifty times the force of the bent spring; with Hertz the number of modes follows it by the 18th root.
-    let force = match scene.effects.contact_law {
-        ContactLawKind::Hertz | ContactLawKind::Rough => 50.0 * bending_force,
-        ContactLawKind::Linearised | ContactLawKind::Bonded => bending_force,
-    };
-    Blow {
-        mass_damping: scene.beam.mass_damping,
-        stiffness_damping: scene.beam.stiffness_damping,
-        contact_stiffness: power.tangent_stiffness(power.indentation(force)),
-        contact_damping: power.damping,
-        steep: scene.rubs() || power.exponent < 1.4,
-    }
-}
-
 /// Whether all damping is Rayleigh's, as exact steps need it.
 fn is_rayleigh(scene: &Scene, modes: &[Mode]) -> bool {
     let (alpha, beta) = (scene.beam.mass_damping, scene.beam.stiffness_damping);
     modes
         .iter()
         .all(|mode| mode.damping == alpha + beta * mode.omega_squared)
-}
-
-/// Force of the springs bent by the overtravel, at least by 0.1 mm, N: of one of them 3 E I max(|s|, 0.1 mm) / L^3.
-fn bending_force(scene: &Scene, springs: &Springs) -> f64 {
-    springs.stiffness() * scene.contact.overtravel.abs().max(1e-4)
 }

@@ -66,7 +66,7 @@ impl Simulation {
             displacements: [support, 0.0, pusher],
             coil: inputs.coil_relative_current,
         };
-        let model = on_heap(scene, &initial)?;
+        let model = with_room(scene, &initial)?;
         let room = model.room(displacement);
         if room.min(room + model.preload.indentation) <= 0.0 {
             return Err(SceneError::NoGap {
@@ -139,7 +139,7 @@ impl Simulation {
     /// A [`SceneError`] if the scene cannot be simulated.
     pub fn resume(scene: &Scene, initial: &Initial, motion: &Motion) -> Result<Self, SceneError> {
         let springs = Shared::of(&spring::KNOWN);
-        let model = on_heap(scene, initial)?;
+        let model = with_room(scene, initial)?;
         let workspace = Workspace::new(&model);
         let mut simulation = Self {
             motion: Motion::at_rest(&model, 0.0),
@@ -411,13 +411,12 @@ impl Simulation {
     }
 }
 
-/// The model of a scene, made out of line, as it is large; refused where there is no memory to simulate it.
-#[inline(never)]
-fn on_heap(scene: &Scene, initial: &Initial) -> Result<Box<Model>, SceneError> {
+/// The model of a scene; refused where there is no memory to simulate it.
+fn with_room(scene: &Scene, initial: &Initial) -> Result<Box<Model>, SceneError> {
     let model = Model::starting(scene, initial)?;
     let needed = Workspace::size(&model);
     if memory::has(needed) {
-        Ok(Box::new(model))
+        Ok(model)
     } else {
         Err(SceneError::Memory(needed))
     }
