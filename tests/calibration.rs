@@ -172,3 +172,18 @@ fn a_digit_costs_less_than_half_as_much_again() {
     }
     assert!(failures.is_empty(), "{failures:#?}");
 }
+
+/// After a closing a leap by the root of time takes the place of steps that begin with a fraction of a nanosecond: without it there
+/// are 27 in each period, rejected ones included.
+#[test]
+fn a_blow_takes_few_steps() {
+    let mut scene = shaken(400.0, 1000.0);
+    scene.solver.tolerance = 1e-2;
+    let mut contact = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
+    for k in 0..20 {
+        contact.step(&Inputs::default(), f64::from(k) * 1e-3, 1e-3).unwrap();
+    }
+    let of = |output| contact.integer(output);
+    let steps = of(IntegerOutput::SolverSteps) + of(IntegerOutput::SolverRejectedSteps);
+    assert!(of(IntegerOutput::ChatterCount) > 15 && steps < 20 * 20, "{steps}");
+}

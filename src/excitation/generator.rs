@@ -225,7 +225,7 @@ mod tests {
     fn nodes_agree_with_direct_evaluation() {
         fn check<const S: usize>(scene: &Scene, time: f64, length: f64) {
             let generator = Generator::new(scene).unwrap();
-            let nodes = Collocation::<S>::new().nodes;
+            let nodes = Collocation::<S>::default().nodes;
             let mut turns = Turns::<S>::room(&generator);
             let e = &scene.excitation;
             let highest = match scene.effects.excitation {

@@ -1,6 +1,7 @@
 //! How accurate a trial is where it is read inside.
 
 use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::collocation::shapes::Variable;
 use crate::integrator::collocation::trial::Trial;
 use crate::integrator::constants::FORCE_ROUNDING;
 use crate::link::CONTACT;
@@ -19,8 +20,9 @@ pub(crate) fn inaccuracy<const S: usize>(
     let tolerance = model.tolerance.force;
     if !state.is_closed() {
         misread((model, state), collocation, trial, length)
-    } else if trial.next_terms > tolerance {
-        // Only rejects: a length chosen by it would be too short by a twentieth.
+    } else if trial.next_terms > tolerance || collocation.variable == Variable::Root {
+        // Only rejects: a length chosen by it would be too short by a twentieth. By the root of time the polynomial goes through
+        // the force at the start.
         trial.next_terms / tolerance
     } else {
         trial.start_defect / tolerance

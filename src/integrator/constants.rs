@@ -35,6 +35,10 @@ pub const GROWING: f64 = 1.5;
 /// Pinned: × 500, `a_digit_costs_less_than_half_as_much_again`.
 pub const WORTH: f64 = 2.0;
 
+/// Length of a leap, in first steps after a closing, from which it costs less than the steps that it spares, 1. Pinned: × 1e6,
+/// `a_blow_takes_few_steps`.
+pub const LEAST_LEAP: f64 = 16.0;
+
 /// Length that a long step reaches at most, in short ones, 1. Observed. Cost.
 pub const LONGER: f64 = 16.0;
 

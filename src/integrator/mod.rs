@@ -57,6 +57,15 @@
 //! after a closing, where the force is not smooth, and eight in flight and where they reach [`constants::WORTH`] times as far
 //! ([`step_length`]).
 //!
+//! *Leaps.* Just after a closing the dissipative part of the force is like the root of the time since, `c k d^(1/2) d'`, which no
+//! polynomial of time follows: steps would have to start at a thousandth of a nanosecond. The first step after a closing therefore
+//! uses polynomials of the root of time ([`collocation::shapes::Variable`]), eight nodes of Radau IIA in that variable, and reaches
+//! as far as its error allows, tens of nanoseconds. Only the integrals of the shapes differ: those of `t^(m/2)` are known, and for a
+//! root of a mode that is fast against the step so are the convolutions ([`collocation::fading_load`]). Modes that swing fast against
+//! the step limit its length ([`collocation::modal_response::ModeOverStep::longest_by_root`]). A leap ends at no event: where
+//! anything may happen inside, where a contact law is no polynomial of the root (exponents other than 1 and 3/2), with friction or
+//! an axial force that follows the deflection, there is none, and short steps do it.
+//!
 //! *Newton's method* ([`collocation::newton`]). The unknowns are the nodal forces of the links that are closed. The residual is
 //! `F_k - F(d_k, d'_k)` on the closed branch of the law, continued smoothly beyond opening. With stiffness `k` and damping `c` of the
 //! laws the Jacobian is `1 + diag(k) D + diag(c) D'`. It is compiled for one link, the common case, and for several. The first guess
@@ -121,8 +130,8 @@
 //! - *Interruption* ([`events::interruption`]): the step goes on where the force passes that of the threshold resistance. Between the
 //!   places where it turns the force polynomial is monotone, so that no dip is missed.
 //!
-//! After a closing the dissipative part of the force starts like the root of time, which no polynomial follows: the first step is so
-//! short that missing this part moves the force by less than the error allowed. After a change between stick and slip the slope
+//! After a closing there is a leap, where it can be taken. Else the first step is so short that missing the dissipative part of the
+//! force moves the force by less than the error allowed. After a change between stick and slip the slope
 //! of the friction force jumps, and the spring answers as steeply as its highest modes do: the first step is about as long as the
 //! last one after such a change. What an event makes of the state: [`transition`].
 //!

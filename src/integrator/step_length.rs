@@ -14,6 +14,8 @@ pub struct StepLengths {
     pub long: f64,
     /// Longest step in flight.
     pub flight: f64,
+    /// Longest leap after a closing.
+    pub leap: f64,
     /// Length of the last step; 0: none from which the next one could be guessed.
     pub last: f64,
     /// Length of the first step after slip has begun, and after it has ended: as long as the last of them that was taken;
@@ -68,6 +70,7 @@ impl StepLengths {
             short: length,
             long: length,
             flight: length,
+            leap: length,
             last: 0.0,
             after_change: [0.0; 2],
         }
@@ -79,10 +82,11 @@ impl StepLengths {
             short,
             long,
             flight,
+            leap,
             last,
             after_change,
         } = self;
-        [short, flight]
+        [short, flight, leap]
             .into_iter()
             .all(|length| *length > 0.0 && length.is_finite())
             && [long, last]

@@ -11,15 +11,15 @@ use crate::integrator::collocation::step::compute;
 use crate::integrator::collocation::trial::{LinkNodes, Source, Trial};
 use crate::integrator::commit::{commit, follow_slip};
 use crate::integrator::constants::{
-    AFTER_BLOW, DRIVEN, HALVINGS, INHERITED, ITERATIONS, LEAST_SHRINK, MOST_CHANGES, MOST_SHRINK, NEAR_BLOW, ROUNDED,
-    SAFETY, STEP_GROWTH,
+    AFTER_BLOW, DRIVEN, HALVINGS, INHERITED, ITERATIONS, LEAST_LEAP, LEAST_SHRINK, MOST_CHANGES, MOST_SHRINK,
+    NEAR_BLOW, ROUNDED, SAFETY, STEP_GROWTH,
 };
 use crate::integrator::dense_output::DenseSlip;
 use crate::integrator::discrete_gradient;
 use crate::integrator::energy::{balance, conservation};
 use crate::integrator::events::interruption::Passages;
 use crate::integrator::events::{Cut, Event, Locator};
-use crate::integrator::grid::{Grid, Target};
+use crate::integrator::grid::{Grid, Target, round_down};
 use crate::integrator::recorder::Recorder;
 use crate::integrator::rest::rests_until;
 use crate::integrator::step_length::{Proposal, StepOutcome, growth, shrinkage};
@@ -28,6 +28,7 @@ use crate::integrator::workspace::{Budget, Room, Rooms, Workspace, work};
 use crate::link::{CONTACT, MAX_LINKS};
 use crate::math::nodal;
 use crate::math::nodal::{LONG, SHORT};
+use crate::math::prediction::parabola_in_time;
 use crate::model::Model;
 use crate::state::State;
 
@@ -109,6 +110,9 @@ impl Stepper<'_> {
 
     /// One integration step, accepted or rejected: with 4 nodes where they suffice, else with 8.
     fn advance(&mut self) -> Result<(), StepError> {
+        if let Some(length) = self.leap_length() {
+            return self.leap(length);
+        }
         let remaining = self.grid.remaining();
         let closed = self.state.is_closed();
         let closing = self.state.last_closing();
@@ -121,6 +125,79 @@ impl Stepper<'_> {
         let situation = (self.progress.driven, self.state.last_closing().is_some());
         let lengths = &mut self.state.lengths;
         lengths.keep(proposal, &outcome, closed, remaining, situation);
+        Ok(())
+    }
+
+    /// The length of a leap from here, s: where a contact has just closed, and nothing that is known ends it.
+    fn leap_length(&mut self) -> Option<f64> {
+        let longest = self.workspace.leaps.as_ref()?.longest;
+        let State {
+            time, links, lengths, ..
+        } = &mut *self.state;
+        let has_closed = links.iter().any(|at| at.closed && at.last_closing == Some(*time));
+        if !has_closed || self.progress.conserves {
+            return None;
+        }
+        let least = LEAST_LEAP * lengths.short;
+        if lengths.leap < least {
+            // The next closing may be gentler.
+            lengths.leap *= 2.0;
+            return None;
+        }
+        let corner = self.model.generator.next_break(*time).unwrap_or(f64::INFINITY);
+        let remaining = self.recorder.read.unwrap_or(self.grid.end()) - *time;
+        let possible = longest.min(self.model.longest_step(*time)).min(remaining);
+        let length = round_down(lengths.leap.min(possible));
+        (length >= least && *time + length < corner).then_some(length)
+    }
+
+    /// One step over `length` (s) after a closing, by the root of the time since: accepted, or to be tried again with another length.
+    fn leap(&mut self, length: f64) -> Result<(), StepError> {
+        let target = Target {
+            recurring: true,
+            ..self.grid.cut(length, self.state.time + length)
+        };
+        self.workspace.exchange();
+        let mut trial = self.parts::<LONG>().trial.take().unwrap_or_else(bytemuck::zeroed_box);
+        let done = self.try_leap(&mut trial, &target);
+        self.parts::<LONG>().trial = Some(trial);
+        self.workspace.exchange();
+        done
+    }
+
+    fn try_leap(&mut self, trial: &mut Trial<LONG>, target: &Target) -> Result<(), StepError> {
+        let length = target.length;
+        let [ratio, _] = match self.compute(trial, target) {
+            Some(()) => self.relative_errors(trial, target),
+            None => [f64::INFINITY; 2],
+        };
+        let count = self.model.links.len();
+        let mut locator = self.locator(trial, length);
+        let mut links = locator.whole.state.links.iter().take(count).enumerate();
+        let stays = links.all(|(index, at)| {
+            if at.closed {
+                locator.first_open(index).is_none()
+            } else {
+                locator.is_far(index)
+            }
+        });
+        let passages = if ratio <= 1.0 && stays {
+            locator.passages(false)
+        } else {
+            None
+        };
+        let Some(passages) = passages else {
+            self.state.rejected_steps += 1;
+            self.state.lengths.leap = length * shrinkage::<LONG>(ratio.max(1.0));
+            return Ok(());
+        };
+        self.commit(trial, target, &passages)?;
+        for at in &mut self.state.links {
+            at.course = parabola_in_time(&at.course);
+        }
+        let lengths = &mut self.state.lengths;
+        lengths.leap = StepOutcome::accepted(length, lengths.leap, growth::<LONG>(ratio)).length;
+        lengths.short = length;
         Ok(())
     }
 

@@ -1,14 +1,19 @@
 //! Preallocated memory of the integrator, so that no step allocates, and the limit of steps.
 
+use std::mem;
+
 use bytemuck::zeroed_box;
 
 use crate::beam::mode::ModeStates;
 use crate::closed_loop::dense::{DensePropagator, TipAtNodes};
 use crate::closed_loop::propagator::{ByLength, Propagator};
+use crate::contact::power::Power;
 use crate::error::{StepError, StepErrorCause};
 use crate::integrator::collocation::cache::{Cache, Common, OF_LONG, OF_SHORT};
+use crate::integrator::collocation::modal_response::ModeOverStep;
 use crate::integrator::collocation::part::Instant;
 use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::collocation::shapes::Variable;
 use crate::integrator::collocation::trial::{Scratch, Trial};
 use crate::integrator::constants::HALVINGS;
 use crate::integrator::events::log::Events;
@@ -32,6 +37,8 @@ pub const LENGTHS: usize = 8;
 pub struct Workspace {
     short: Room<SHORT>,
     long: Room<LONG>,
+    /// For leaps, where the model allows them.
+    pub(crate) leaps: Option<Leaps>,
     /// The half steps of the energy balance.
     pub(crate) half: Box<Trial<LONG>>,
     pub(crate) search: Search,
@@ -43,6 +50,34 @@ pub struct Workspace {
     pub(crate) former: Box<Motion>,
     /// Openings and closings of the last communication step.
     pub events: Events,
+}
+
+/// First steps after a closing by the root of time.
+#[derive(Clone, Debug)]
+pub(crate) struct Leaps {
+    cache: Box<Cache<LONG>>,
+    /// The longest one, s.
+    pub(crate) longest: f64,
+}
+
+impl Leaps {
+    /// For a model whose contact force is smooth by the root of the time since a closing, and all that happens after it.
+    fn new(model: &Model) -> Option<Self> {
+        let is_smooth = |law: &Power| (2.0 * law.exponent).fract() == 0.0;
+        let mut laws = model.links.iter().filter_map(|link| link.contact()?.power());
+        if !laws.all(is_smooth) || model.axial().is_some() || model.friction().is_some() {
+            return None;
+        }
+        let longest = model
+            .modes
+            .iter()
+            .map(ModeOverStep::longest_by_root)
+            .fold(f64::INFINITY, f64::min);
+        Some(Self {
+            cache: Box::new(Cache::new(model, &OF_LONG, Variable::Root)),
+            longest,
+        })
+    }
 }
 
 /// For steps with `S` nodes.
@@ -70,7 +105,7 @@ pub(crate) struct Search {
 impl<const S: usize> Room<S> {
     fn new(model: &Model, home: &'static Home<Common<S>>) -> Self {
         Self {
-            cache: Box::new(Cache::new(model, home)),
+            cache: Box::new(Cache::new(model, home, Variable::Time)),
             scratch: zeroed_box(),
             trial: Some(zeroed_box()),
         }
@@ -84,7 +119,7 @@ impl Workspace {
         let propagators = lengths * (size_of::<Propagator>() + model.modes.len() * size_of::<[TipAtNodes; 2]>());
         let trials = size_of::<Trial<SHORT>>() + 2 * size_of::<Trial<LONG>>();
         let scratch = size_of::<Scratch<SHORT>>() + size_of::<Scratch<LONG>>();
-        Cache::<SHORT>::size(model) + Cache::<LONG>::size(model) + propagators + trials + scratch
+        Cache::<SHORT>::size(model) + 2 * Cache::<LONG>::size(model) + propagators + trials + scratch
     }
 
     /// Allocates for the model.
@@ -97,6 +132,7 @@ impl Workspace {
         Self {
             short: Room::new(model, &OF_SHORT),
             long: Room::new(model, &OF_LONG),
+            leaps: Leaps::new(model),
             half: zeroed_box(),
             search: Search {
                 modes: zeroed_box(),
@@ -114,6 +150,13 @@ impl Workspace {
     /// For exact steps with dense output.
     pub(crate) fn for_exact_steps(&mut self) -> (&mut ByLength<DensePropagator>, &Collocation<LONG>) {
         (&mut self.dense_propagators, self.long.cache.collocation())
+    }
+
+    /// Exchanges the coefficients of long steps with those of leaps.
+    pub(crate) fn exchange(&mut self) {
+        if let Some(leaps) = &mut self.leaps {
+            mem::swap(&mut leaps.cache, &mut self.long.cache);
+        }
     }
 
     /// For the half steps of the energy balance.

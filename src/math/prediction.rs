@@ -21,6 +21,20 @@ pub fn parabola_at_end(coefficients: &Prediction) -> [f64; 3] {
     [value, 2.0 * slope, 4.0 * half_curvature]
 }
 
+/// A polynomial by the root of the time since the start of the step as the parabola in time that continues it.
+pub fn parabola_in_time(by_root: &Prediction) -> Prediction {
+    let [value, by_root, half_curvature] = parabola_at_end(by_root);
+    let (slope, half_curvature) = (0.5 * by_root, 0.25 * half_curvature - 0.125 * by_root);
+    let mut parabola = [0.0; LONG + 1];
+    let middle = [
+        value - 0.5 * slope + 0.25 * half_curvature,
+        0.5 * (slope - half_curvature),
+        0.25 * half_curvature,
+    ];
+    parabola.iter_mut().zip(middle).for_each(|(to, from)| *to = from);
+    parabola
+}
+
 /// A polynomial at `y`, relative to the end of the step in step lengths, and its derivative by `y` (Horner's rule).
 pub fn value_and_slope(coefficients: &Prediction, y: f64) -> (f64, f64) {
     let z = centred(y);

@@ -212,6 +212,7 @@ mod tests {
     use crate::excitation::drive::Drive;
     use crate::integrator::collocation::cache::{Cache, OF_LONG};
     use crate::integrator::collocation::polynomial::Collocation;
+    use crate::integrator::collocation::shapes::Variable;
     use crate::integrator::collocation::step::compute;
     use crate::integrator::collocation::trial::Scratch;
     use crate::link::CONTACT;
@@ -244,11 +245,11 @@ mod tests {
     fn energy_changes_by_the_work_of_the_axial_force() {
         for (source, given) in [(Source::Laws(1e-12), 0.0), (Source::Given, 0.3)] {
             let (model, mut state) = pushed();
-            let mut cache = Cache::new(&model, &OF_LONG);
+            let mut cache = Cache::new(&model, &OF_LONG, Variable::Time);
             let (mut most, mut wrong) = (0.0_f64, 0.0_f64);
             let start = model.energy(&state);
             let length = 1e-5;
-            let collocation = Collocation::<LONG>::new();
+            let collocation = Collocation::<LONG>::default();
             let axial = model.axial.as_ref().unwrap();
             let mut scratch: Box<Scratch<LONG>> = bytemuck::zeroed_box();
             for _ in 0..100 {

@@ -1,6 +1,7 @@
 //! The coefficients of the steps taken so far, kept by the length of the step.
 
 use std::mem;
+use std::sync::OnceLock;
 
 use bytemuck::Zeroable;
 
@@ -8,6 +9,7 @@ use crate::excitation::random::Piece;
 use crate::excitation::waveform::Accelerations;
 use crate::integrator::collocation::coefficients::StepCoefficients;
 use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::collocation::shapes::Variable;
 use crate::integrator::collocation::store::{Basis, Store};
 use crate::integrator::collocation::superposition::Sum;
 use crate::math::nodal::{LONG, SHORT};
@@ -18,6 +20,8 @@ use crate::shared::{Home, Shared, Shelf};
 #[derive(Debug, Default)]
 pub struct Common<const S: usize> {
     collocation: Collocation<S>,
+    /// By the root of time.
+    by_root: OnceLock<Collocation<S>>,
     /// Coefficients that simulations have left.
     left: Shelf<Store<S>>,
 }
@@ -32,6 +36,7 @@ pub static OF_LONG: Home<Common<LONG>> = Home::new();
 #[derive(Clone, Debug)]
 pub struct Cache<const S: usize> {
     common: Shared<Common<S>>,
+    variable: Variable,
     /// For recurring lengths, and first for the last other one.
     places: Store<S>,
     /// While coefficients are computed: for each response, and for one mode.
@@ -51,13 +56,25 @@ pub struct Prepared<'a, const S: usize> {
     pub generated: Accelerations<S>,
 }
 
+impl<const S: usize> Common<S> {
+    /// The polynomials by this variable.
+    fn polynomials(&self, variable: Variable) -> &Collocation<S> {
+        match variable {
+            Variable::Time => &self.collocation,
+            Variable::Root => self.by_root.get_or_init(|| Collocation::new(variable)),
+        }
+    }
+}
+
 impl<const S: usize> Cache<S> {
     /// With what another simulation of the same modes has left, or allocated for the model.
-    pub fn new(model: &Model, home: &'static Home<Common<S>>) -> Self {
-        let (common, basis) = (Shared::of(home), Basis::of(model));
+    pub fn new(model: &Model, home: &'static Home<Common<S>>, variable: Variable) -> Self {
+        let (common, basis) = (Shared::of(home), Basis::of(model, variable));
+        // Now: not in a step.
+        let collocation = common.polynomials(variable);
         let places = match common.left.take(|places| places.is_of(&basis)) {
             Some(mut places) => {
-                places.turn(&model.generator, &common.collocation.nodes);
+                places.turn(&model.generator, &collocation.nodes);
                 places
             }
             None => Store::for_model(basis, model),
@@ -65,9 +82,15 @@ impl<const S: usize> Cache<S> {
         Self {
             sums: vec![Sum::zeroed(); Store::<S>::sums(model)],
             common,
+            variable,
             places,
             piece: Piece::default(),
         }
+    }
+
+    /// Those by a variable.
+    pub fn polynomials(&self, variable: Variable) -> &Collocation<S> {
+        self.common.polynomials(variable)
     }
 
     /// What it takes of memory for the model at most, bytes.
@@ -77,20 +100,20 @@ impl<const S: usize> Cache<S> {
 
     /// The polynomials.
     pub fn collocation(&self) -> &Collocation<S> {
-        &self.common.collocation
+        self.common.polynomials(self.variable)
     }
 
     /// The coefficients for a length, with the base acceleration of a step from `time` (s) on.
     pub fn prepare(&mut self, time: f64, length: f64, recurring: bool, model: &Model) -> Prepared<'_, S> {
+        let collocation = self.common.polynomials(self.variable);
         let place = self.places.place(length, recurring, &model.generator);
         if self.places.length(place).to_bits() != length.to_bits() {
-            self.places
-                .fill(place, length, model, &self.common.collocation, &mut self.sums);
+            self.places.fill(place, length, model, collocation, &mut self.sums);
         }
         let step = self.places.view(place);
         Prepared {
             step,
-            collocation: &self.common.collocation,
+            collocation,
             generated: model.generator.over_step(model.simd, time, step.turns, &mut self.piece),
         }
     }

@@ -9,6 +9,7 @@ use crate::integrator::collocation::coefficients::StepCoefficients;
 use crate::integrator::collocation::elimination::in_use;
 use crate::integrator::collocation::newton::{Linked, NodalMotion, Solution, Tangent, Unknown};
 use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::collocation::shapes::Variable;
 use crate::integrator::collocation::trial::{Estimate, FreeResponse, Trial};
 use crate::integrator::constants::{FORCE_ROUNDING, KINKED, SUM_ROUNDINGS};
 use crate::link::{LinkLaw, MAX_LINKS, Port};
@@ -68,7 +69,7 @@ impl<const S: usize, const L: usize> Judged<'_, S, L> {
             let unknown = linked.unknowns.get(a);
             let (link, (d, rate)) = (&model.links[unknown.link], wrong.ends[a]);
             let nodes = &mut trial.links[unknown.link];
-            let tangent = linked.tangent(solution, a);
+            let tangent = linked.tangent(collocation, solution, a);
             nodes.tangent = tangent;
             of_way += (tangent.stiffness * d).abs();
             passing += (tangent.damping * rate).abs();
@@ -98,7 +99,12 @@ impl<const S: usize, const L: usize> Judged<'_, S, L> {
         let base = free.start_defect.abs();
         let missed = model.inertia * free.missed_mean;
         let along = model.friction().map_or(0.0, |(_, friction)| friction.inertia);
-        let slow = 3.0 * squares / largest + kinked::<S>(state, step.length, sum) + missed;
+        let kinked = match collocation.variable {
+            Variable::Time => kinked::<S>(state, step.length, sum),
+            // By the root of time the force is smooth.
+            Variable::Root => 0.0,
+        };
+        let slow = 3.0 * squares / largest + kinked + missed;
         let lasting = of_way + along * free.missed_mean + kept + slow * reaction;
         trial.error = Estimate {
             total: passing + lasting,

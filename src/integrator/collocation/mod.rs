@@ -5,6 +5,7 @@ pub mod cache;
 pub mod coefficients;
 pub(crate) mod elimination;
 pub mod error;
+pub mod fading_load;
 pub mod modal_response;
 pub mod newton;
 pub mod part;

@@ -20,6 +20,8 @@ use bytemuck::Zeroable;
 use crate::contact::law::Law;
 use crate::integrator::collocation::coefficients::{Columns, ErrorColumn, Response, StepCoefficients};
 use crate::integrator::collocation::elimination::{Equations, Stacked, in_use};
+use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::collocation::shapes::Variable;
 use crate::integrator::constants::{ITERATIONS, MOTION_ROUNDING, STALE};
 use crate::link::{CONTACT, LinkLaw, MAX_UNKNOWNS};
 use crate::math::nodal::{Nodal, add, add_columns, add_products, end, greatest, scaled, unit};
@@ -398,17 +400,25 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
         Wrong { forces, ends }
     }
 
-    /// Tangent of an unknown link, with that at the start.
+    /// Tangent of an unknown link: the greatest, with that at the start. In a leap the mean: at touch that of the dissipative part is
+    /// infinite.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "unknowns in use")]
-    pub(crate) fn tangent(&self, solution: &Solution<S, L>, a: usize) -> Tangent {
+    pub(crate) fn tangent(&self, collocation: &Collocation<S>, solution: &Solution<S, L>, a: usize) -> Tangent {
         let index = self.unknowns.get(a).link;
         let link = &self.model.links[index];
         let (mut stiffness, mut damping) = (
             greatest(&solution.laws.stiffness[a]),
             greatest(&solution.laws.damping[a]),
         );
-        if let Some(law) = link.contact() {
+        if collocation.variable == Variable::Root {
+            let Laws {
+                stiffness: of_way,
+                damping: of_rate,
+                ..
+            } = &solution.laws;
+            (stiffness, damping) = (collocation.mean(&of_way[a]).abs(), collocation.mean(&of_rate[a]));
+        } else if let Some(law) = link.contact() {
             let start = law.stiffness(link.approach + self.state.links[index].approach);
             (stiffness, damping) = (stiffness.max(start), damping.max(law.damping() * start));
         }

@@ -1,10 +1,10 @@
-//! The collocation polynomial in time for contact force and base acceleration within a step.
+//! The collocation polynomial in time, or in the root of time, for contact force and base acceleration within a step.
 //!
 //! A step has `S` Radau IIA nodes, the last one at its end, so that the contact force there satisfies the contact law
 //! however stiff its damping (Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.5): eight for long
 //! steps, four for short ones (communication steps of a microsecond, the time just after an impact).
 
-use crate::integrator::collocation::shapes::{MAX_SHAPES, Shapes};
+use crate::integrator::collocation::shapes::{MAX_SHAPES, Shapes, Variable};
 use crate::integrator::constants::{FAR_AHEAD, NEAR, SLOWEST_DECAY};
 use crate::integrator::course::turning_points;
 use crate::math::legendre;
@@ -15,8 +15,12 @@ use crate::math::simd::{Arithmetic, Separate, Simd, compiled_for};
 /// The polynomials of a step with `S` nodes.
 #[derive(Debug)]
 pub struct Collocation<const S: usize> {
-    /// Nodes on [0, 1], ascending.
+    /// Nodes on [0, 1], ascending: parts of the step.
     pub nodes: Nodal<S>,
+    /// Of what the polynomials are.
+    pub variable: Variable,
+    /// The nodes by that variable, 0 to 1.
+    pub places: Nodal<S>,
     /// The load shapes: the Lagrange polynomials of the nodes, and the polynomial of degree S that vanishes at the
     /// nodes and is 1 at the start.
     pub shapes: Shapes<S>,
@@ -44,13 +48,13 @@ pub struct Collocation<const S: usize> {
 
 impl<const S: usize> Default for Collocation<S> {
     fn default() -> Self {
-        Self::new()
+        Self::new(Variable::Time)
     }
 }
 
 impl<const S: usize> Collocation<S> {
     /// Computes the nodes and shapes.
-    pub fn new() -> Self {
+    pub fn new(variable: Variable) -> Self {
         let mut nodes = [0.0; S];
         for (node, x) in nodes.iter_mut().zip(legendre::radau(S)) {
             *node = f64::midpoint(1.0, x);
@@ -67,10 +71,6 @@ impl<const S: usize> Collocation<S> {
                 .map(by_factorials)
                 .collect()
         };
-        let mut weights = [0.0; S];
-        for (weight, shape) in weights.iter_mut().zip(lagrange::<MAX_SHAPES>(&nodes)) {
-            *weight = shape.iter().enumerate().map(|(m, c)| c / (m + 1) as f64).sum();
-        }
         let mut at_start = [0.0; S];
         for (start, shape) in at_start.iter_mut().zip(derivatives_at(0.0)) {
             *start = shape.first().copied().unwrap_or_default();
@@ -79,7 +79,7 @@ impl<const S: usize> Collocation<S> {
             let others = nodes.iter().filter(|node| **node != own);
             others.map(|node| 1.0 / (own - node)).product()
         });
-        let shapes = Shapes::new(&nodes, derivatives_at);
+        let shapes = Shapes::new(&nodes, variable, derivatives_at);
         let impulses = shapes.integrals.first().map_or([0.0; S], |table| table.error);
         let without = |first: usize| {
             let mut values = [0.0; S];
@@ -96,11 +96,13 @@ impl<const S: usize> Collocation<S> {
         let with_start = lagrange(&places);
         let nodal = lagrange(places.get(1..).unwrap_or_default());
         Self {
-            nodes,
-            shapes,
+            nodes: variable.times(&nodes),
+            variable,
+            places: nodes,
             at_start,
             at_start_of_fewer: [without(1), without(2)],
-            weights,
+            weights: shapes.end_integrals.first().copied().unwrap_or([0.0; S]),
+            shapes,
             leading,
             quadrature: 0.5 * S as f64 * factorial(S - 1).powi(2) / factorial(2 * S - 1),
             impulse: impulses.iter().fold(0.0, |most, impulse| most.max(impulse.abs())),
@@ -109,23 +111,23 @@ impl<const S: usize> Collocation<S> {
         }
     }
 
-    /// The Lagrange polynomials at `x`, 0 to 1 over the step.
+    /// The Lagrange polynomials at a place `x`, 0 to 1 over the step.
     #[inline(always)]
     pub fn lagrange(&self, x: f64) -> Nodal<S> {
         let mut row = self.leading;
         let (mut below, mut above) = (1.0, 1.0);
-        for (entry, node) in row.iter_mut().zip(&self.nodes) {
+        for (entry, node) in row.iter_mut().zip(&self.places) {
             *entry *= below;
             below *= x - node;
         }
-        for (entry, node) in row.iter_mut().zip(&self.nodes).rev() {
+        for (entry, node) in row.iter_mut().zip(&self.places).rev() {
             *entry *= above;
             above *= x - node;
         }
         row
     }
 
-    /// The nodal polynomial through `values` at `x`, 0 to 1 over the step.
+    /// The nodal polynomial through `values` at a place `x`, 0 to 1 over the step.
     pub fn interpolate(&self, values: &Nodal<S>, x: f64) -> f64 {
         dot::<S, Separate>(&self.lagrange(x), values)
     }
@@ -141,12 +143,12 @@ impl<const S: usize> Collocation<S> {
     /// First place in the step (0 to 1) before `until` where the nodal polynomial through `values` is found below zero: at a node,
     /// or where it turns. It is not searched before the first node, where the polynomial extrapolates.
     pub fn first_dip(&self, values: &Nodal<S>, until: f64) -> Option<f64> {
-        let mut nodes = self.nodes.iter().zip(values);
+        let mut nodes = self.places.iter().zip(values);
         let below = nodes.find(|(node, value)| **node < until && **value < 0.0);
         let below = below.map(|(node, _)| *node);
         let until = below.unwrap_or(until);
         let polynomial = combine::<Separate>(&self.nodal, values.iter());
-        let first = self.nodes.first().copied().unwrap_or_default();
+        let first = self.places.first().copied().unwrap_or_default();
         let turns = turning_points(&polynomial);
         let mut places = turns.iter().map(|y| 1.0 + y).filter(|x| (first..until).contains(x));
         let dip = places.find(|x| value_and_slope(&polynomial, x - 1.0).0 < 0.0);

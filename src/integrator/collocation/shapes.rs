@@ -18,6 +18,42 @@ pub const POINTS: usize = 20;
 /// Largest number of load shapes: one for each node, one for the error estimate.
 pub const MAX_SHAPES: usize = LONG + 1;
 
+/// What the polynomials of a step are polynomials of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Variable {
+    /// Time.
+    #[default]
+    Time,
+    /// The root of the time since the start: after a closing the dissipative part of the force starts like it.
+    Root,
+}
+
+impl Variable {
+    /// The parts of the step at places in it, 0 to 1.
+    pub fn times<const N: usize>(self, places: &[f64; N]) -> [f64; N] {
+        places.map(|place| match self {
+            Self::Time => place,
+            Self::Root => place * place,
+        })
+    }
+
+    /// The place of a part of the step.
+    pub fn place(self, part: f64) -> f64 {
+        match self {
+            Self::Time => part,
+            Self::Root => part.sqrt(),
+        }
+    }
+
+    /// Part of the step per place, at a place.
+    fn slope(self, place: f64) -> f64 {
+        match self {
+            Self::Time => 1.0,
+            Self::Root => 2.0 * place,
+        }
+    }
+}
+
 /// A value at every node for every load shape.
 #[derive(Clone, Copy, Debug, Zeroable)]
 pub struct Table<const S: usize> {
@@ -39,6 +75,8 @@ pub struct Row<const S: usize> {
 /// Values, integrals and derivatives of the load shapes, in units of the step length.
 #[derive(Clone, Debug)]
 pub struct Shapes<const S: usize> {
+    /// What they are polynomials of.
+    pub variable: Variable,
     /// `x^n / n!` at the nodes, n = 0, 1, ...
     pub powers: Vec<Nodal<S>>,
     /// n-fold integrals from the start, n = 1, 2, ...
@@ -78,12 +116,28 @@ impl<const S: usize> Table<S> {
         add::<S, A>(&mut self.error, factor, &values.error);
     }
 
+    /// From what becomes of each power (0, 1, ...) at each node, and the derivatives of the shapes at the start.
+    pub(super) fn of_powers(start: &[Row<S>], powers: &[[f64; MAX_SHAPES]; S]) -> Self {
+        let mut table = Self::ZERO;
+        for (k, powers) in powers.iter().enumerate() {
+            let mut factorial = 1.0;
+            for (m, (power, row)) in powers.iter().zip(start).enumerate() {
+                factorial *= m.max(1) as f64;
+                for (column, derivative) in table.columns_mut().zip(row.nodal.iter().chain([&row.error])) {
+                    let entries = column.iter_mut().skip(k).take(1);
+                    entries.for_each(|entry| *entry += power * derivative / factorial);
+                }
+            }
+        }
+        table
+    }
+
     fn columns_mut(&mut self) -> impl Iterator<Item = &mut Nodal<S>> {
         self.nodal.iter_mut().chain([&mut self.error])
     }
 
     /// The Lagrange polynomials at the last node.
-    fn end(&self) -> Nodal<S> {
+    pub(super) fn end(&self) -> Nodal<S> {
         self.nodal.map(|column| end(&column))
     }
 }
@@ -106,21 +160,24 @@ impl<const S: usize> Shapes<S> {
         load
     }
 
-    /// From the nodes on [0, 1] and a function that gives the derivatives (m = 0, ..., S) of each shape at an instant.
-    pub fn new(nodes: &Nodal<S>, derivatives_at: impl Fn(f64) -> Vec<[f64; MAX_SHAPES]>) -> Self {
+    /// From the nodes on [0, 1] by a variable and a function that gives the derivatives (m = 0, ..., S) by it of each shape at a
+    /// place.
+    pub fn new(nodes: &Nodal<S>, variable: Variable, derivatives_at: impl Fn(f64) -> Vec<[f64; MAX_SHAPES]>) -> Self {
         let mut power = [1.0; S];
+        let times = variable.times(nodes);
         let powers = (0..=TERMS).map(|n| {
             let now = power;
-            for (power, x) in power.iter_mut().zip(nodes) {
+            for (power, x) in power.iter_mut().zip(&times) {
                 *power *= x / (n + 1) as f64;
             }
             now
         });
-        let integrals = integrals(nodes);
         let start = rows(&derivatives_at(0.0));
+        let integrals = integrals(nodes, variable);
         let at_nodes = nodes.map(|x| rows(&derivatives_at(x)));
         let derivatives: Vec<_> = (0..=S).map(|m| table(&at_nodes, m)).collect();
         Self {
+            variable,
             powers: powers.collect(),
             end_integrals: integrals.iter().map(Table::end).collect(),
             integrals,
@@ -133,12 +190,12 @@ impl<const S: usize> Shapes<S> {
 
 /// `n`-fold integrals by Cauchy's formula, the integral of `(x - s)^(n-1) / (n-1)!` times the shape, by Gauss
 /// quadrature.
-fn integrals<const S: usize>(nodes: &Nodal<S>) -> Vec<Table<S>> {
-    compiled_for!(Simd::detect(), A => integrals_by::<S, A>(nodes))
+fn integrals<const S: usize>(nodes: &Nodal<S>, variable: Variable) -> Vec<Table<S>> {
+    compiled_for!(Simd::detect(), A => integrals_by::<S, A>(nodes, variable))
 }
 
 #[inline(always)]
-fn integrals_by<const S: usize, A: Arithmetic>(nodes: &Nodal<S>) -> Vec<Table<S>> {
+fn integrals_by<const S: usize, A: Arithmetic>(nodes: &Nodal<S>, variable: Variable) -> Vec<Table<S>> {
     let mut tables = vec![Table::<S>::ZERO; TERMS];
     let points: Vec<_> = legendre::gauss(POINTS).collect();
     // Of each shape, and of its magnitude.
@@ -152,12 +209,13 @@ fn integrals_by<const S: usize, A: Arithmetic>(nodes: &Nodal<S>) -> Vec<Table<S>
             for ((value, size), shape) in signed.iter_mut().zip(sizes).zip(shape_values(nodes, s)) {
                 (*value, *size) = (shape, shape.abs());
             }
-            let mut kernel = 0.5 * weight * x;
+            let [end, now] = variable.times(&[x, s]);
+            let mut kernel = 0.5 * weight * x * variable.slope(s);
             for (n, sums) in sums.iter_mut().enumerate() {
                 for (sums, values) in sums.iter_mut().zip(&values) {
                     add::<MAX_SHAPES, A>(sums, kernel, values);
                 }
-                kernel *= (x - s) / (n + 1) as f64;
+                kernel *= (end - now) / (n + 1) as f64;
             }
         }
         for (table, [sums, sizes]) in tables.iter_mut().zip(&sums) {

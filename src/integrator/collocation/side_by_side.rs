@@ -285,7 +285,7 @@ mod tests {
     )]
     fn they_move_as_each_does_alone() {
         let h = 1e-4;
-        let collocation = Collocation::<LONG>::new();
+        let collocation = Collocation::<LONG>::default();
         let values: [[f64; LONG]; 2] = [1.0, 3.0].map(|k| std::array::from_fn(|j| (k * (1.0 + j as f64)).sin()));
         let both = values.map(|values| collocation.shapes.load::<Separate>(&values));
         let loads = Loads {

@@ -12,7 +12,7 @@ use crate::integrator::collocation::coefficients::{
 use crate::integrator::collocation::elimination::solve;
 use crate::integrator::collocation::modal_response::ModeOverStep;
 use crate::integrator::collocation::polynomial::Collocation;
-use crate::integrator::collocation::shapes::Shapes;
+use crate::integrator::collocation::shapes::{Shapes, Variable};
 use crate::integrator::collocation::superposition::{Pair, Sum};
 use crate::link::Port;
 use crate::math::free_motion::FreeMotion;
@@ -43,16 +43,18 @@ pub(super) struct Basis {
     /// Damping time of the contact, s, where it rubs.
     rubbing: Option<f64>,
     portable: bool,
+    variable: Variable,
 }
 
 impl Basis {
-    pub(super) fn of(model: &Model) -> Self {
+    pub(super) fn of(model: &Model, variable: Variable) -> Self {
         Self {
             modes: model.modes.clone(),
             ports: model.ports.clone(),
             axial: model.axial().is_some(),
             rubbing: model.friction().map(|_| model.law().damping()),
             portable: matches!(model.simd, Simd::Portable),
+            variable,
         }
     }
 }

@@ -51,12 +51,22 @@ pub(crate) struct Fading<const S: usize> {
     pub(crate) fade: Pair<Nodal<S>>,
 }
 
+/// The part of a root that is fast against a step by the root of time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fast<const S: usize> {
+    /// Its convolution with the shapes at the nodes.
+    pub(crate) convolved: Table<S>,
+    /// Factors of it that are taken from displacement and velocity.
+    pub(crate) factors: Pair<f64>,
+}
+
 /// The response of one mode to the load shapes and to an initial velocity.
 #[derive(Clone, Copy, Debug)]
 pub struct Response<const S: usize> {
     pub(crate) combination: Combination,
     /// None, one for a single fast root, or two for a pair.
     pub(crate) fading: [Option<Fading<S>>; 2],
+    pub(crate) fast: Option<Fast<S>>,
     /// Free motion at the nodes per initial velocity.
     pub impulse: Pair<Nodal<S>>,
 }
@@ -94,6 +104,10 @@ impl<const S: usize> Response<S> {
         for fading in self.fading.iter().flatten() {
             add::<S, A>(&mut q, -end(&fading.fade.q), &fading.start.nodal);
             add::<S, A>(&mut v, -end(&fading.fade.v), &fading.start.nodal);
+        }
+        if let Some(Fast { convolved, factors }) = &self.fast {
+            add::<S, A>(&mut q, -factors.q, &convolved.end());
+            add::<S, A>(&mut v, -factors.v, &convolved.end());
         }
         Pair { q, v }
     }
@@ -136,6 +150,10 @@ impl<const S: usize> Sum<S> {
             }
             add::<S, A>(&mut self.faded.q.error, weight * fading.start.error, q);
             add::<S, A>(&mut self.faded.v.error, weight * fading.start.error, v);
+        }
+        if let Some(Fast { convolved, factors }) = &response.fast {
+            self.faded.q.add::<A>(weight * factors.q, convolved);
+            self.faded.v.add::<A>(weight * factors.v, convolved);
         }
     }
 

@@ -41,6 +41,7 @@
 //! times the force scale times the path.
 
 use crate::excitation::drive::Drive;
+use crate::integrator::collocation::shapes::Variable;
 use crate::integrator::collocation::step::compute;
 use crate::integrator::collocation::trial::{Source, Trial};
 use crate::integrator::grid::Target;
@@ -65,28 +66,40 @@ where
 {
     let half = 0.5 * target.length;
     let polynomial = Rooms::<S>::room(workspace).cache.collocation();
-    let nodes = Rooms::<LONG>::room(workspace).cache.collocation().nodes;
+    let variable = polynomial.variable;
+    let long = &Rooms::<LONG>::room(workspace).cache;
+    // Of a leap only the first half begins where its contact has closed.
+    let nodes = [long.collocation().nodes, long.polynomials(Variable::Time).nodes];
     let in_halves = |values: &Nodal<S>| {
-        [0.0, 0.5].map(|start| nodes.map(|node| polynomial.interpolate(values, start + 0.5 * node)))
+        [(0.0, nodes[0]), (0.5, nodes[1])]
+            .map(|(start, nodes)| nodes.map(|node| polynomial.interpolate(values, variable.place(start + 0.5 * node))))
     };
     let halves: [[Nodal<LONG>; 2]; MAX_LINKS] = trial.links.map(|nodes| in_halves(&nodes.forces));
-    let (Room { cache, scratch, .. }, motion) = workspace.for_half_steps();
     let mut at: State = *state;
     let mut work = 0.0;
     for half_step in 0..2 {
+        let leaves = half_step > 0 && variable == Variable::Root;
+        if leaves {
+            workspace.exchange();
+        }
+        let (Room { cache, scratch, .. }, motion) = workspace.for_half_steps();
         for (nodes, halves) in motion.links.iter_mut().zip(&halves) {
             nodes.forces = *halves.get(half_step)?;
         }
         let prepared = cache.prepare(at.time, half, target.recurring, model);
-        compute(model, &at, drive, prepared, Source::Given, motion, scratch)?;
+        let computed = compute(model, &at, drive, prepared, Source::Given, motion, scratch);
         work += half * prepared.collocation.mean(&powers(model, state, motion));
-        at.time += half;
         at.modes = motion.modes;
-        for (displacement, velocity) in at.displacements.iter_mut().zip(&drive.velocities) {
-            *displacement += velocity * half;
-        }
         for (at, nodes) in at.links.iter_mut().zip(&motion.links) {
             (at.approach, at.rate) = (nodes.end.approach, nodes.end.rate);
+        }
+        if leaves {
+            workspace.exchange();
+        }
+        computed?;
+        at.time += half;
+        for (displacement, velocity) in at.displacements.iter_mut().zip(&drive.velocities) {
+            *displacement += velocity * half;
         }
     }
     // Of a closed contact the work; without contact force, all elastic energy that leaves the contact is dissipated.
@@ -224,7 +237,7 @@ mod tests {
         trial: &Trial<S>,
     ) -> f64 {
         const STEPS: u32 = 20_000;
-        let collocation = Collocation::<S>::new();
+        let collocation = Collocation::<S>::default();
         // Displacement and velocity of each mode, energy supplied, energy dissipated.
         let rates = |t: f64, y: &Along| {
             let force = collocation.interpolate(&trial.links[CONTACT].forces, t / length);

@@ -52,17 +52,10 @@ struct Ripple {
     acceleration: f64,
 }
 
-impl<const S: usize> Locator<'_, S> {
+impl<'a, const S: usize> Locator<'a, S> {
     /// Locates the closing of an open contact; `None` if it stays open.
     pub(crate) fn closing(&mut self, index: usize) -> Option<Cut> {
-        let (link, start) = self.link(index)?;
-        let sought = Sought {
-            index,
-            link,
-            law: link.contact()?,
-            start,
-            unsure: self.unsure(link, start),
-        };
+        let sought = self.sought(index)?;
         let samples = self.samples(&sought)?;
         let samples = samples.get(..S + 1)?;
         if self.is_distant(&sought, samples) {
@@ -86,6 +79,30 @@ impl<const S: usize> Locator<'_, S> {
             at: touch.at,
             time: self.whole.state.time + touch.at,
             event: Event::Switches(index),
+        })
+    }
+
+    /// Whether an open contact is so far that it stays open; a link that is no contact does.
+    pub(crate) fn is_far(&self, index: usize) -> bool {
+        let Some(sought) = self.sought(index) else {
+            return true;
+        };
+        let samples = self.samples(&sought);
+        samples.is_some_and(|samples| {
+            samples
+                .get(..S + 1)
+                .is_some_and(|samples| self.is_distant(&sought, samples))
+        })
+    }
+
+    fn sought(&self, index: usize) -> Option<Sought<'a>> {
+        let (link, start) = self.link(index)?;
+        Some(Sought {
+            index,
+            link,
+            law: link.contact()?,
+            start,
+            unsure: self.unsure(link, start),
         })
     }
 

@@ -4,6 +4,7 @@
 use crate::integrator::accuracy::inaccuracy;
 use crate::integrator::collocation::part::Whole;
 use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::collocation::shapes::Variable;
 use crate::integrator::constants::BRIEF;
 use crate::integrator::course::{Places, turning_points};
 use crate::integrator::events::Locator;
@@ -57,6 +58,9 @@ impl<const S: usize> Locator<'_, S> {
         let turns = turning_points(&polynomial);
         let inaccuracy = inaccuracy((model, state), collocation, trial, length);
         let is_accurate = inaccuracy <= 1.0;
+        if !is_accurate && collocation.variable == Variable::Root {
+            return None;
+        }
         let is_brief =
             length <= BRIEF * model.scene.solver.effective_tolerance() * model.scene.chatter.minimum_duration;
         let unsure = inaccuracy * self.tolerance.force;
@@ -80,7 +84,8 @@ impl<const S: usize> Locator<'_, S> {
                     let found = self.instant(index, force, from, (1.0 + y) * length, rounding);
                     found.at / length - 1.0
                 };
-                passages.push(place.clamp(before.0, y));
+                let [part] = collocation.variable.times(&[1.0 + place.clamp(before.0, y)]);
+                passages.push(part - 1.0);
                 interrupted = below;
             }
             before = now;
