@@ -40,7 +40,7 @@ pub(crate) fn commit<const S: usize>(
                 at.force = law.without_pull(link.force + nodes.end.force);
                 state.force_error.greatest = state.force_error.greatest.max(at.force);
             }
-            LinkLaw::Magnet(_) => at.force = link.force + nodes.end.force,
+            LinkLaw::Magnet(magnet) => at.force = magnet.force(link.approach + at.approach, state.coil).0,
             _ => {}
         }
     }
