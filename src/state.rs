@@ -126,6 +126,11 @@ impl State {
         }
     }
 
+    /// Whether a contact has just closed.
+    pub(crate) fn touches_now(&self) -> bool {
+        self.kink_is_closing && self.last_kink == self.time
+    }
+
     /// The first contact.
     pub fn contact(&self) -> &LinkState {
         &self.links[CONTACT]

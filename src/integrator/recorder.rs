@@ -58,7 +58,7 @@ impl Recorder<'_> {
         passages: &Passages,
     ) {
         let second = model.second();
-        let touches = state.kink_is_closing && state.last_kink == state.time;
+        let touches = state.touches_now();
         let read = self.reads_before(target.time) || self.dense.is_some() && second.is_some();
         for (index, (link, at)) in model.links.iter().zip(&mut state.links).enumerate() {
             let (Some(nodes), Some(passages)) = (trial.links.get(index), passages.get(index)) else {

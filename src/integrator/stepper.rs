@@ -286,7 +286,7 @@ impl Stepper<'_> {
             // What the corner sets vibrating, the step sizes before it do not resolve.
             let next = transition::step_after_jump(self.model, self.state);
             let lengths = &mut self.state.lengths;
-            (lengths.long, lengths.flight) = (lengths.long.min(next), lengths.flight.min(next));
+            (lengths.long, lengths.flight, lengths.last) = (lengths.long.min(next), lengths.flight.min(next), 0.0);
             return Ok(StepOutcome {
                 accepted: true,
                 switched: false,
@@ -334,13 +334,15 @@ impl Stepper<'_> {
         let (model, closed) = (self.model, self.state.is_closed());
         let read = self.recorder.reads_before(target.time);
         let watched = model.scene.effects.extremes || model.counts_interruptions();
-        // 4-node steps may be inaccurate inside: they end where they are read. After a change of the inputs extremes lie there.
-        let driven = self.progress.driven;
-        let inside = if driven && watched && closed || (read || watched || !closed) && S != SHORT {
-            self.inaccuracy(trial, target.length)
-        } else {
-            0.0
-        };
+        // 4-node steps may be inaccurate inside: they end where they are read. After a change of the inputs, or a jump of the
+        // generated acceleration, extremes lie there.
+        let jumps = self.state.lengths.last == 0.0 && !self.state.touches_now();
+        let inside =
+            if (self.progress.driven || jumps) && watched && closed || (read || watched || !closed) && S != SHORT {
+                self.inaccuracy(trial, target.length)
+            } else {
+                0.0
+            };
         let near = self.state.kink_is_closing && self.state.time - self.state.last_kink < NEAR_BLOW * target.length;
         let after_blow = if closed && near { AFTER_BLOW } else { 1.0 };
         let all = self.passing();
