@@ -76,7 +76,7 @@ impl Foundation {
                 limit: spring.buckling_load,
             });
         };
-        let resolution = Resolution::new(&section, &basis, &own);
+        let resolution = Resolution::new(&section, &basis, &own, scene.pushed_at().is_some());
         let Basis { modes, shapes, space } = basis;
         let axial = (scene.effects.axial_force == AxialForceKind::FromDeflection)
             .then(|| Feedback::new(&section, &preload, scene.environment.gravity, &space, &modes, &shapes))

@@ -159,6 +159,16 @@ fn none_above_in_silence(judged: &[Judged], count: u64) {
     assert!(100 * number(|judged| judged.outcome == Outcome::NotRun) < 5 * count);
 }
 
+/// The force of a pusher jumps, and excites what no mode resolves.
+#[test]
+fn what_a_pusher_does_beyond_the_modes_is_not_silent() {
+    for number in [10_474, 10_902] {
+        let judged = judge(number, kinds::any);
+        assert!(judged.error > judged.tolerance, "{judged:?}");
+        assert!(judged.estimate > judged.error, "{judged:?}");
+    }
+}
+
 /// Relays above their tolerance in earlier versions: where a half sine ends, inside a long step, through the quadrature of a
 /// random acceleration in flight, and where the error estimate of a step passes through zero; with friction, where the
 /// contact begins or ceases to slip; on a core, where the magnet kept a force of just before; and in the first step, where a

@@ -11,10 +11,16 @@
 //! ```
 //!
 //! at most: with the largest factor at any frequency, and the largest `c` so far.
+//!
+//! A pusher loads the spring elsewhere. As its force jumps the contact feels what the missing functions do before any wave can
+//! reach it, and the damping `beta` of the spring resists their strain as its stiffness does: `c + beta c'` stands for `c`. What
+//! `c` makes counts in the next blow, what `beta c'` makes is over by then: it counts in the ratio of the contact's stiffness to that
+//! in a blow. Without a pusher the force of the contact itself jumps first, and what is missing in its course after that is over
+//! before it shows.
 
 use nalgebra::{Complex, DVector};
 
-use crate::beam::mode::Mode;
+use crate::beam::mode::{Mode, ModeStates};
 use crate::beam::mode_count::Blow;
 use crate::beam::section::Section;
 use crate::beam::spring::Basis;
@@ -32,13 +38,15 @@ const OF_BOUND: f64 = 0.25;
 pub struct Resolution {
     /// Coefficients of each mode, sqrt(J) per displacement; none where the modes are given.
     rows: Vec<[f64; LANES]>,
+    /// Time in which the velocity of a mode counts as a displacement, per stiffness of the contact, s m/N; 0 without a pusher.
+    damping: f64,
     /// Contact force that is missing per coefficient, N / sqrt(J).
     force: f64,
 }
 
 impl Resolution {
-    /// Of the modes of a section and their shapes, in a blow.
-    pub fn new(section: &Section, basis: &Basis, blow: &Blow) -> Self {
+    /// Of the modes of a section and their shapes, in a blow; whether a pusher loads it too.
+    pub fn new(section: &Section, basis: &Basis, blow: &Blow, pushed: bool) -> Self {
         let root = (8.0 * section.bending_stiffness / section.length.powi(3)).sqrt();
         let last = |shape: &DVector<f64>, k: usize| {
             let place = (shape.len() + k).checked_sub(LANES);
@@ -52,7 +60,15 @@ impl Resolution {
             .map(|shape| std::array::from_fn(|k| last(shape, k)))
             .collect();
         let force = OF_BOUND * greatest_force(&basis.modes, &rows, blow);
-        Self { rows, force }
+        Self {
+            rows,
+            damping: if pushed {
+                blow.stiffness_damping / blow.contact_stiffness
+            } else {
+                0.0
+            },
+            force,
+        }
     }
 
     /// Of motions in which each mode has these displacements.
@@ -61,6 +77,13 @@ impl Resolution {
             .map(|displacements| self.coefficients(displacements.copied()))
             .collect();
         Self { rows, ..*self }
+    }
+
+    /// Error of the contact force in this motion of the modes, where the contact has this stiffness (N/m), N.
+    #[inline(always)]
+    pub fn error_of(&self, modes: &ModeStates, stiffness: f64) -> f64 {
+        let damping = self.damping * stiffness;
+        self.error(modes.iter().map(|mode| mode.q + damping * mode.v))
     }
 
     /// Error of the contact force in a motion with these displacements, N.

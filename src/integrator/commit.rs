@@ -45,7 +45,9 @@ pub(crate) fn commit<const S: usize>(
         }
     }
     if state.steps.is_multiple_of(EACH) {
-        let error = model.resolution.error(state.modes.iter().map(|mode| mode.q));
+        let indentation = model.preload.indentation + state.contact().approach;
+        let stiffness = model.law().stiffness(indentation);
+        let error = model.resolution.error_of(&state.modes, stiffness);
         state.force_error.note_unresolved(error, model.force_scale);
     }
     state.lengths.last = target.length;
