@@ -146,7 +146,7 @@ fn counts(
     springs
         .counts(own, &others, scene.solver.effective_tolerance())
         .or(usize::try_from(scene.solver.modes).unwrap_or_default())
-        .within_room()
+        .within_room(springs.room())
 }
 
 /// A blow as the scene may have it.

@@ -169,6 +169,15 @@ fn what_a_pusher_does_beyond_the_modes_is_not_silent() {
     }
 }
 
+/// Beside an armature there is room for one mode less: with the highest of a spring's modes left out, the others would not resolve
+/// what they could.
+#[test]
+fn all_modes_beside_an_armature_resolve_the_motion() {
+    let relay = kinds::any(10_902);
+    let (course, _) = relay.run(|scene| scene.solver.modes = 64).unwrap();
+    assert!(course.estimate < relay.scene.solver.tolerance, "{}", course.estimate);
+}
+
 /// Relays above their tolerance in earlier versions: where a half sine ends, inside a long step, through the quadrature of a
 /// random acceleration in flight, and where the error estimate of a step passes through zero; with friction, where the
 /// contact begins or ceases to slip; on a core, where the magnet kept a force of just before; and in the first step, where a

@@ -68,16 +68,16 @@ impl Counts {
 
     /// As many as there is room for, in the same ratio.
     #[must_use]
-    pub fn within_room(self) -> Self {
+    pub fn within_room(self, room: usize) -> Self {
         let Self { moving, fixed, tongues } = self;
         let (others, sum) = (fixed + tongues, moving + fixed + tongues);
-        if sum <= MAX_MODES {
+        if sum <= room {
             return self;
         }
         let share = |count: usize, room: usize, sum: usize| room * count / sum / LANES * LANES;
-        let most = MAX_MODES - others.min(2 * LANES);
-        let moving = share(moving, MAX_MODES, sum).clamp(LANES.min(most), most);
-        let room = MAX_MODES - moving;
+        let most = room - others.min(2 * LANES);
+        let moving = share(moving, room, sum).clamp(LANES.min(most), most);
+        let room = room - moving;
         let fixed = match (fixed, tongues) {
             (_, 0) => room,
             (0, _) => 0,
@@ -176,14 +176,18 @@ impl Springs {
             let fixed = self.fixed.iter().flat_map(|fixed| fixed.modes(counts.fixed));
             let tongues = self.tongues.iter();
             let others = fixed.chain(tongues.flat_map(|tongues| tongues.modes(counts.tongues, axial_force)));
-            let room = MAX_MODES - usize::from(self.armature.is_some());
-            let springs = basis.modes.drain(..).chain(others).take(room);
+            let springs = basis.modes.drain(..).chain(others).take(self.room());
             let all = springs.chain(self.armature.as_ref().map(Armature::mode));
             let mut pairs: Vec<_> = all.zip(shapes).collect();
             pairs.sort_by(|(a, _), (b, _)| a.omega_squared.total_cmp(&b.omega_squared));
             (basis.modes, basis.shapes) = pairs.into_iter().unzip();
         }
         Some(basis)
+    }
+
+    /// Most modes of all of them, beside that of the armature.
+    pub fn room(&self) -> usize {
+        MAX_MODES - usize::from(self.armature.is_some())
     }
 
     /// Modes for the lowest frequency of all.
@@ -193,7 +197,7 @@ impl Springs {
             fixed: self.fixed.as_ref().map_or(0, |_| FREQUENCY_MODES),
             tongues: self.tongues.as_ref().map_or(0, |_| FREQUENCY_MODES),
         };
-        self.modes(scene, counts.within_room(), axial_force)
+        self.modes(scene, counts.within_room(self.room()), axial_force)
             .map(|basis| basis.modes)
     }
 }
