@@ -112,13 +112,14 @@ def thresholds(frequency: float) -> Thresholds:
     known, factors = own.response.sine(UNIT, 0.0)
     guess = float(np.interp(frequency, known, factors))
 
-    def opens(factor: float) -> Lengths:
-        return {"": 1.0} if steady(own, frequency, factor * G, True)[1][0] <= 0 else {}
+    def opens(factor: float) -> tuple[Lengths, float]:
+        left = steady(own, frequency, factor * G, True)[1][0]
+        return {"": 1.0} if left <= 0 else {}, left / own.response.reserve
 
     first, _ = threshold(opens, guess)
     interrupts, _ = sine_threshold(own, UNIT, frequency, first)
     # From far below: what opens it briefly must not be missed where a stronger start would close it earlier.
-    sudden, _ = threshold(lambda factor: suddenly(frequency, factor), 0.5 * guess)
+    sudden, _ = threshold(lambda factor: (suddenly(frequency, factor), 0.0), 0.5 * guess)
     return Thresholds(frequency, guess, first, interrupts, sudden)
 
 
@@ -191,7 +192,7 @@ def shocks(quick: bool) -> str:
     tests = [test for test in standard().tests if isinstance(test, Shock)]
     for test in tests[:1] if quick else tests:
         for direction, sign in (("presses the contact", 1.0), ("pulls it open", -1.0)):
-            lengths, course = Piece(test.course(), 1.0, 0.0).follow(subject(), sign, 1)
+            lengths, course, _ = Piece(test.course(), 1.0, 0.0).follow(subject(), sign, 1)
             least = float(course[:, 2].min()) / rest()
             rows.append([
                 f"{test.clause.rpartition(' of ')[2].rpartition(', ')[2]}, condition {test.name[-1]}",

@@ -23,7 +23,7 @@ from relay_contact.identification.measurement import (
 )
 from relay_contact.qualification.response import EXACT, FREE, interrupting_force, respond
 from relay_contact.qualification.standards import Contacts
-from relay_contact.qualification.trials import Specimen, steady, threshold
+from relay_contact.qualification.trials import Specimen, threshold, vibrated
 
 ALONE: Values = {**FREE, "effects.excitation": "None", "base.acceleration": 0.0}
 AWAY: Values = {"contact.overtravel": -1e-2}
@@ -237,7 +237,7 @@ class Laboratory:
         response = respond(self.component, asked, monitor.threshold)
         specimen = Specimen(self.component, alone, monitor, response)
         levels = [
-            threshold(lambda level, at=float(frequency): steady(specimen, at, level, True)[0], float(guess))[0]  # type: ignore[misc]
+            threshold(lambda level, at=float(frequency): vibrated(specimen, at, level, True)[::2], float(guess))[0]  # type: ignore[misc]
             for frequency, guess in zip(measurement.over, linear, strict=True)
         ]
         return np.array(levels) / linear

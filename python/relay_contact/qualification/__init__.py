@@ -5,15 +5,16 @@ from pathlib import Path
 
 from relay_contact.component import Component
 from relay_contact.qualification.assessment import assess, chosen
+from relay_contact.qualification.judgement import FEW
 from relay_contact.qualification.relay import Relay, check_monitor, relays
 from relay_contact.qualification.results import Assessment, Finding, Tested
 from relay_contact.qualification.standards import Standard, standards
 from relay_contact.scene import progress_bar
 
-__all__ = ["Assessment", "Finding", "Relay", "Standard", "Tested", "qualify", "relays", "standards"]
+__all__ = ["FEW", "Assessment", "Finding", "Relay", "Standard", "Tested", "qualify", "relays", "standards"]
 
-POINTS, FEW = 120, 24
-"""Frequencies of a sweep, and in the short form."""
+POINTS = 120
+"""Frequencies of a sweep."""
 
 
 def qualify(

@@ -30,14 +30,11 @@ from relay_contact.qualification.response import Response
 from relay_contact.qualification.results import Finding, Margin, PartMargin, Verdict
 from relay_contact.qualification.trials import (
     RESOLUTION,
-    SAMPLE,
     SHORT,
     SHOWN,
     Lengths,
     Piece,
     Specimen,
-    middle_dip,
-    sine_least,
     sine_threshold,
     steady,
     sweep,
@@ -49,6 +46,8 @@ QUALITY = 10.0
 """Of the oscillators whose shock response spectrum is shown."""
 SHOWN_TIME = 10e-3  # s around a dip
 POINTS = 1500  # of a course that is shown as a whole
+FEW = 24
+"""Frequencies of a sweep in the short form, and by a model that figures do not show."""
 FOLLOWS = 0.9
 """Part of its level by linear theory below which another part than the first fails because that has failed."""
 BEYOND = 2.0
@@ -124,7 +123,7 @@ def searched(position: Position, test: Sine) -> tuple[float, float, list[str]]:
     at = int(factors.argmin())
     if factors[at] >= MOST:
         return float(known[at]), MOST, []
-    return sine_least(position.specimen, test)
+    return position.weakest[test.name]
 
 
 def vibration(position: Position, test: Sine, points: int) -> Found:
@@ -204,7 +203,8 @@ def random(position: Position, test: Random) -> Found:
     found = {each.part: random_level(each, test) for each in shaken}
     levels = {each.part: found[each.part][0] if each.part in found else ENDLESS for each in position.parts}
     failed, least = merged(position, [own[1:] for own in found.values()])
-    shown = found[CONTACT][2][-round(SHOWN_TIME / SAMPLE) :]
+    shown = found[CONTACT][2]
+    shown = shown[shown[:, 0] > shown[-1, 0] - SHOWN_TIME]
     curves = {"time": (shown[:, 0] - shown[0, 0]).tolist(), "course": shown[:, 1].tolist()}
     return levels, Seen(failed, dict.fromkeys(failed, f"in {three(test.duration / 60)} min"), least, curves)
 
@@ -214,10 +214,10 @@ def random_level(position: Position, test: Random) -> tuple[Level, Lengths, Arra
     specimen = position.specimen
     response = specimen.response
     linear = response.random(test, specimen.lasting)
-    dips, eased = position.noises[test.name]
-    part, decides, piece = middle_dip(specimen, dips)
+    _, eased = position.noises[test.name]
+    part, decides, piece = position.middle[test.name]
     raised = piece.guess / (linear * eased)
-    lengths, rows = piece.follow(specimen, raised, points=1)
+    lengths, rows, _ = piece.follow(specimen, raised)
     own = specimen.own(lengths)
     if own and part * linear * eased > 1:
         level, decides = piece.threshold(specimen, 1.0, own, raised)
@@ -287,7 +287,7 @@ def transient_level(position: Position, test: Transient) -> tuple[Level, list[Ru
     ways = test.directions
     own = sorted(((way, piece) for way, each in position.pieces[test.name].items() for piece in each),
                  key=lambda each: each[1].guess)  # fmt: skip
-    runs = [(way, piece, *piece.follow(specimen, ways[way], SHOWN)) for way, piece in own]
+    runs = [(way, piece, *piece.follow(specimen, ways[way], SHOWN)[:2]) for way, piece in own]
     way, piece = own[0]
     factor, decides = piece.threshold(specimen, ways[way])
     for other, each, lengths, _ in runs:
@@ -313,8 +313,10 @@ def opening_run(specimen: Specimen, runs: list[Any]) -> Array:
 
 def failing_run(specimen: Specimen, piece: Piece, level: float, start: float) -> tuple[Lengths, Array]:
     """Run what is around the dip that fails first at the level at which it fails; return the failures and the run."""
-    lengths, rows = piece.follow(specimen, level, SHOWN)
+    lengths, rows, _ = piece.follow(specimen, level, SHOWN)
     dip = int(rows[:, 2].argmin())
+    # Between the points that are shown.
+    rows[dip, 1] = min(rows[dip, 1:3])
     near = np.abs(rows[:, 0] - rows[dip, 0]) < SHOWN_TIME
     return lengths, np.column_stack((rows[near, 0] + piece.begin + start, rows[near, 1]))
 
@@ -412,7 +414,8 @@ def judged(position: Position, test: Test, points: int) -> Finding:
         return finding("FAIL", reason)
     match test:
         case Sine():
-            levels, seen = vibration(position, test, points)
+            shown = position.model == position.relay.models[0]
+            levels, seen = vibration(position, test, points if shown else min(points, FEW))
         case Random():
             levels, seen = random(position, test)
         case Transient():

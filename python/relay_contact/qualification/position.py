@@ -14,22 +14,36 @@ from scipy.stats import norm, qmc
 from relay_contact.component import Array, Component, Values
 from relay_contact.many import side_by_side
 from relay_contact.qualification import statistics
-from relay_contact.qualification.distributions import LEAST, LIMITS, TWO_SIDED
+from relay_contact.qualification.distributions import LEAST, TWO_SIDED
 from relay_contact.qualification.excitation import Random, Sine, Test, Transient
 from relay_contact.qualification.parts import CONTACT, Rest, at_rest
 from relay_contact.qualification.relay import NORMAL, Model, Relay
 from relay_contact.qualification.response import CALM, Response, answers, margin
 from relay_contact.qualification.results import Chance
 from relay_contact.qualification.standards import Contacts
-from relay_contact.qualification.trials import Piece, Specimen, middle_dip, noise_dips, pieces, sine_least
+from relay_contact.qualification.trials import (
+    ASIDE,
+    ROUGHLY,
+    Piece,
+    Specimen,
+    middle_dip,
+    noise_dips,
+    pieces,
+    sine_least,
+    sine_threshold,
+)
 from relay_contact.spring import is_entry
 
 MODEL = "model"
 CHANCE = "chance of the largest dip"
 WORN = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2)
 """Parts of the overtravel over which margins are shown."""
-FEWEST, EACH, DRAWS = 64, 16, 256
-"""Draws of the uncertain parameters in which the component answers a pulse: fewest, for each parameter, most."""
+FEWEST, DRAWS = 8, 256
+"""Draws of all uncertain parameters in which the component answers a pulse: fewest, most."""
+ENOUGH = 0.03
+"""Share of the deviation of a margin up to which the error of what follows the draws is small."""
+MATTERS = 0.2
+"""Share of the largest effect of a parameter from which on the component seeks the level at the ends of another."""
 AT_LIMIT = 2
 """Draws next to the limit in which the component seeks the level itself."""
 SETTLED = 1e-3
@@ -42,6 +56,8 @@ LOWEST = 1e-3
 """Margin of a draw that fails at rest, whose logarithm would be endless."""
 FAR = -9e-3
 """Overtravel (m) of a contact that is out of reach."""
+STILL = 1e-9
+"""Part of a margin that rounding changes at most."""
 NEAR = 0.05
 """Of 1, within which draws are at the limit: others would tell of another level."""
 
@@ -75,6 +91,8 @@ class Shared:
     """Responses of the relay as its file says, by part."""
     surfaces: dict[str, dict[str, statistics.Surface]] = field(default_factory=dict)
     """Logarithm of the margin of each test over the scores, by linear theory, by part."""
+    tried: dict[int, tuple[Values, dict[str, Response]]] = field(default_factory=dict)
+    """Parameters and responses of draws in which the component seeks levels, by their number."""
     worn: dict[float, dict[str, Response]] = field(default_factory=dict)
     """Responses over the overtravel (m), which the wear of the contacts takes away, or over the gap, by part."""
 
@@ -159,18 +177,18 @@ class Position:
             return min(*found, MOST)
         return min(margin(response, test, lasting), MOST)
 
-    @cached_property
-    def scores(self) -> Array:
-        """Independent scores of the uncertain parameters in the draws that the component answers, in columns.
+    def scores(self, draws: int) -> Array:
+        """Return independent scores of the uncertain parameters for which the component answers, in columns.
 
-        They are points of Sobol's sequence, which fill the space evenly: each column alone is as even as it can be.
+        All in the middle; one after the other at its upper end, at its lower end; and draws, as points of Sobol's
+        sequence, which fill the space evenly.
         """
         count = len(self.relay.uncertainty)
         if not count:
             return np.zeros((1, 0))
-        # Powers of 2, of which each column is even.
-        draws = min(DRAWS, max(FEWEST, 2 ** int(np.ceil(np.log2(EACH * (count + 1))))))
-        return np.asarray(norm.ppf(qmc.Sobol(count, scramble=False).random(draws) + 0.5 / draws))
+        ends = TWO_SIDED * np.eye(count)
+        drawn = norm.ppf(qmc.Sobol(count, scramble=False).random(draws) + 0.5 / draws)
+        return np.vstack((np.zeros(count), ends, -ends, drawn))
 
     @cached_property
     def root(self) -> Array:
@@ -188,29 +206,42 @@ class Position:
         return found
 
     @property
+    def nominal(self) -> Values:
+        """The uncertain parameters as the file says."""
+        return {name: self.value(name) for name in self.relay.uncertainty}
+
+    @property
     def surfaces(self) -> dict[str, statistics.Surface]:
         """Logarithm of the margin of each test over the scores, by linear theory."""
         if not self.shared.surfaces:
             # Known to all draws, which run beside each other.
             nominal = {each.part: each.specimen.response for each in self.parts}
+            own = self.nominal
 
             def margins(row: Array) -> dict[str, dict[str, float]]:
-                responses = self.responses(self.drawn(row)) if len(row) else nominal
+                responses = self.responses(self.drawn(row)) if self.drawn(row) != own else nominal
                 return {
                     each.part: {test.name: each.linear(responses[each.part], test) for test in self.tests}
                     for each in self.parts
                 }
 
-            found = side_by_side(margins, list(self.scores))
-            self.shared.surfaces |= {
-                each.part: {
-                    test.name: statistics.Surface(
-                        self.scores, np.log([max(own[each.part][test.name], LOWEST) for own in found])
-                    )
-                    for test in self.tests
+            draws = min(FEWEST, DRAWS)
+            while not self.shared.surfaces:
+                scores = self.scores(draws)
+                found = side_by_side(margins, list(scores))
+                known = {
+                    each.part: {
+                        test.name: statistics.Surface(
+                            scores, np.log([max(own[each.part][test.name], LOWEST) for own in found])
+                        )
+                        for test in self.tests
+                    }
+                    for each in self.parts
                 }
-                for each in self.parts
-            }
+                every = [own for each in known.values() for own in each.values()]
+                if draws == DRAWS or all(own.error <= ENOUGH * np.std(own.values) for own in every):
+                    self.shared.surfaces |= known
+                draws = min(4 * draws, DRAWS)
         return self.shared.surfaces[self.part]
 
     @cached_property
@@ -241,35 +272,58 @@ class Position:
         ratio = factor / margins[WORN.index(1.0)]
         return {"overtravel": list(self.worn), "margin": [ratio * value for value in margins]}
 
-    def ratio(self, values: Values, response: Response, test: Test) -> float:
-        """Return the level that fails in the component, with other parameters, by that of linear theory."""
-        specimen = replace(self.specimen, values={**self.values, **values}, response=response)
-        if self.linear(response, test) >= MOST:
-            return 1.0
-        match test:
-            case Sine():
-                return sine_least(specimen, test)[1] / self.linear(response, test)
-            case Random():
-                dips, eased = self.noises[test.name]
-                lasting = self.specimen.lasting
-                own = [replace(each, guess=response.course(each.course, 1.0, lasting)) for each in dips]
-                return middle_dip(specimen, own)[0] * eased
-        ways = self.pieces[test.name].items()
-        assert isinstance(test, Transient)
-        guesses = [
-            (response.course(piece.course, test.directions[way], specimen.lasting), way, piece)
-            for way, own in ways for piece in own
-        ]  # fmt: skip
-        guess, way, piece = min(guesses, key=lambda each: each[0])
-        return piece.threshold(specimen, test.directions[way], guess=guess)[0] / guess
+    @cached_property
+    def weakest(self) -> dict[str, tuple[float, float, list[str]]]:
+        """Of each sine, by the test's name: the frequency (Hz) that fails at the least level, its factor, and what."""
+        return {test.name: sine_least(self.specimen, test) for test in self.tests if isinstance(test, Sine)}
+
+    @cached_property
+    def middle(self) -> dict[str, tuple[float, list[str], Piece]]:
+        """Of each noise, by the test's name: at which part of linear theory it fails, what fails, and the dip."""
+        return {name: middle_dip(self.specimen, dips) for name, (dips, _) in self.noises.items()}
+
+    def turn(self, test: Test, number: int, expected: float) -> float:
+        """Return the logarithm of the level that fails in the component in a draw by that of linear theory.
+
+        It is sought where the relay as its file says fails: beside the weakest frequency by as much, in the same dip.
+        """
+        surface = self.surfaces[test.name]
+        linear = float(np.exp(surface.values[number]))
+        if not LOWEST * (1 + STILL) < linear < MOST * (1 - STILL):
+            return expected
+        if number not in self.shared.tried:
+            values = self.drawn(surface.scores[number])
+            self.shared.tried[number] = {**self.values, **values}, self.responses(values)
+        values, responses = self.shared.tried[number]
+        response, lasting = responses[self.part], self.specimen.lasting
+        specimen, factor = replace(self.specimen, values=values, response=response), float(np.exp(expected))
+        if isinstance(test, Sine):
+            first, nominal = (each.weakest(test, lasting) for each in (response, self.specimen.response))
+            beside = 1.0 if test.steps else self.weakest[test.name][0] / nominal
+            frequency = float(np.clip(first * beside, *test.band))
+            level, _ = sine_threshold(specimen, test, frequency, linear * factor, resolution=ROUGHLY)
+        elif isinstance(test, Random):
+            eased, piece, sign = self.noises[test.name][1], self.middle[test.name][2], 1.0
+            linear = response.course(piece.course, sign, lasting) / eased
+            level, _ = piece.threshold(specimen, sign, guess=linear * factor, resolution=ROUGHLY)
+        else:
+            assert isinstance(test, Transient)
+            _, sign, piece = min(
+                ((response.course(piece.course, sign, lasting), sign, piece)
+                 for way, sign in test.directions.items() for piece in self.pieces[test.name][way]),
+                key=lambda each: each[0],
+            )  # fmt: skip
+            level, _ = piece.threshold(specimen, sign, guess=linear * factor, resolution=ROUGHLY)
+        return float(np.log(level / (1 + ASIDE * ROUGHLY) / linear))
 
     def dips(self, test: Test, scores: Array) -> Array:
         """Return the part of the margin for scores of the chance of the largest dip."""
         if not isinstance(test, Random):
             return np.ones(len(scores))
         response, lasting = self.specimen.response, self.specimen.lasting
-        found = np.array([response.random(test, lasting, float(each)) for each in norm.cdf(GRID)])
-        return np.interp(scores, GRID, found / response.random(test, lasting))
+        moments = response.moments(test)
+        found = np.array([response.random(test, lasting, float(each), moments) for each in norm.cdf(GRID)])
+        return np.interp(scores, GRID, found / response.random(test, lasting, moments=moments))
 
     @cached_property
     def independent(self) -> Array:
@@ -279,40 +333,43 @@ class Position:
     def margins(self, test: Test, factor: float, confirmed: bool = True) -> Drawn:
         """Return the margin in many draws, for that which the component found as it is; `confirmed` by it in some.
 
-        What the component found in place of linear theory lies on straight lines between the draws where it is known.
+        What the component finds in place of linear theory is, in logarithms, a sum over the parameters, straight from
+        the middle of each to its ends. Draws next to the limit tell how well.
         """
-        surface = self.surfaces[test.name]
-        count = len(self.relay.uncertainty)
-        independent = self.independent
-        linear = np.exp(surface(independent[:, :count]))
-        nominal = self.linear(self.specimen.response, test)
-        known = {nominal: factor / nominal}
+        surface, count, independent = self.surfaces[test.name], len(self.relay.uncertainty), self.independent
+        middle = float(np.log(factor / self.linear(self.specimen.response, test)))
+        turns, errors, tried = np.zeros((count, 3)), [surface.error if count else 0.0], 0
+
+        def told(scores: Array) -> Array:
+            ends = (-TWO_SIDED, 0.0, TWO_SIDED)
+            each = [np.interp(score, ends, turn) for score, turn in zip(scores.T, turns, strict=True)]
+            return np.asarray(middle + np.sum(each, axis=0))
+
+        if count and confirmed:
+            if self.drawn(surface.scores[0]) != self.nominal:
+                middle = self.turn(test, 0, middle)
+            upper, lower, drawn = np.split(surface.values[1:], (count, 2 * count))
+            effects = np.abs(upper - lower)
+            matter = np.flatnonzero((effects > 0) & (effects >= MATTERS * effects.max()))
+            for number in matter.tolist():
+                turns[number] = [
+                    self.turn(test, 1 + count + number, middle),
+                    middle,
+                    self.turn(test, 1 + number, middle),
+                ]
+            turns[matter] -= middle
+            expected = told(surface.scores[-len(drawn) :])
+            away = np.abs(drawn + expected)
+            near = [at for at in np.argsort(away)[:AT_LIMIT].tolist() if away[at] < NEAR]
+            for at in near:
+                found = self.turn(test, len(surface.values) - len(drawn) + at, float(expected[at]))
+                errors.append(float(np.abs(np.expm1(expected[at] - found))))
+            tried = 2 * len(matter) + len(near)
         others = self.dips(test, independent[:, -1]) * np.maximum(
             1 + self.model.uncertainty * independent[:, -2] / TWO_SIDED, LEAST
         )
-
-        def whole() -> Array:
-            levels = np.array(sorted(known.items()))
-            return np.asarray(np.interp(linear, *levels.T) * linear * others)
-
-        errors = [surface.error if count else 0.0]
-        chosen = [int(np.argsort(linear)[int(limit * len(linear))]) for limit in LIMITS] if count else []
-        for round_ in range(2 if count and confirmed else 0):
-            for number in chosen:
-                values = self.drawn(independent[number, :count])
-                response = self.responses(values)[self.part]
-                own = self.linear(response, test)
-                if own <= 0:
-                    continue
-                found = self.ratio(values, response, test)
-                if round_:
-                    levels = np.array(sorted(known.items()))
-                    errors.append(abs(np.interp(linear[number], *levels.T) * linear[number] / (own * found) - 1))
-                known[own] = found
-            if not round_:
-                away = np.abs(np.log(whole()))
-                chosen = [int(each) for each in np.argsort(away)[:AT_LIMIT] if away[each] < NEAR]
-        return Drawn(whole(), float(max(errors)), len(known) - 1)
+        scores = independent[:, :count]
+        return Drawn(np.exp(surface(scores) + told(scores)) * others, max(errors), tried)
 
     def chance(self, test: Test, drawn: Drawn, factor: float) -> Chance:
         """Return the chance of failing and what contributes to it, from the margins in many draws."""

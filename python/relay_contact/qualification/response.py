@@ -92,6 +92,11 @@ class Response:
         gain = np.interp(frequency, self.frequency, self.gain)
         return frequency, needed / np.maximum(test.amplitude(frequency) * gain, 1e-300)
 
+    def weakest(self, test: Sine, opening: float) -> float:
+        """Return the frequency (Hz) of a test at which the least factor of the level fails for a time (s)."""
+        frequency, factors = self.sine(test, opening)
+        return float(frequency[factors.argmin()])
+
     def moments(self, test: Random) -> tuple[float, float]:
         """Return rms (N or m) and mean frequency (Hz) of force or gap in random vibration, without its sines."""
         density = test.spectrum(self.frequency) * self.gain**2
@@ -99,11 +104,13 @@ class Response:
         power = float(density.sum() * step)
         return power**0.5, float((density * self.frequency**2).sum() * step / power) ** 0.5
 
-    def random(self, test: Random, opening: float, chance: float = 0.5) -> float:
+    def random(
+        self, test: Random, opening: float, chance: float = 0.5, moments: tuple[float, float] | None = None
+    ) -> float:
         """Return the factor of the level that fails within the test with a chance, by Rice's rate of crossings."""
         if not self.gain.any():
             return np.inf
-        rms, mean = self.moments(test)
+        rms, mean = moments or self.moments(test)
         needed = self.reserve * (1 + (np.pi * mean * opening) ** 2 / 2)
         crossings = -np.log1p(-chance) / test.duration
         largest = rms * np.sqrt(2 * np.log(mean / crossings))

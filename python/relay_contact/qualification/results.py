@@ -1,6 +1,7 @@
 """What an assessment showed: a finding for each test, position and model, and all of them as tables."""
 
-from dataclasses import asdict, field
+import csv
+from dataclasses import field
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -178,17 +179,14 @@ class Assessment:
                 return each
         raise KeyError(f"{name}: there are {', '.join(dict.fromkeys(each.first.test for each in self.tests))}")
 
-    @property
-    def table(self) -> "pd.DataFrame":
-        """A row for each test, position and model; `attrs["units"]` has the units."""
-        import pandas as pd
-
+    def results(self) -> "Rows":
+        """Return the columns, a row for each test, position and model, and the units."""
         rows: list[dict[str, Any]] = []
         units: dict[str, str] = {}
         for tested in self.tests:
             for each in tested.models:
-                found = asdict(each)
-                row = {name: found[name] for name in (*FIELDS, "limits")} | {"verdict of all models": tested.verdict}
+                row = {name: getattr(each, name) for name in (*FIELDS, "limits")}
+                row |= {"verdict of all models": tested.verdict}
                 if (judged := each.judged) is not None:
                     row |= {"margin": judged.margin, "low": judged.low, "high": judged.high, "weakest": judged.weakest}
                     if judged.chance:
@@ -202,39 +200,44 @@ class Assessment:
                 rows.append(row)
         # Columns of parts that no relay here has would be empty.
         others = [name for name in (*MARGINS.values(), *LEAST.values()) if any(name in row for row in rows)]
-        table = pd.DataFrame(rows, columns=[*FIELDS, *NUMBERS, *(name for name in others if name not in NUMBERS)])
-        table.attrs["units"] = units | dict.fromkeys(TIMES.values(), "s") | {"resonance": "Hz"}
-        return table
+        columns = [*FIELDS, *NUMBERS, *(name for name in others if name not in NUMBERS)]
+        return columns, rows, units | dict.fromkeys(TIMES.values(), "s") | {"resonance": "Hz"}
 
-    @property
-    def sweeps(self) -> "pd.DataFrame":
-        """A row for each frequency of each sine, at the level of the test; `attrs["units"]` has the units."""
-        import pandas as pd
-
-        tables = []
+    def swept(self) -> "Rows":
+        """Return the columns, a row for each frequency of each sine, at the level of the test, and the units."""
+        rows: list[dict[str, Any]] = []
         for each in (each for tested in self.tests for each in tested.models):
             if each.kind == "sine" and each.judged:
                 curves = each.judged.curves
                 columns = {"frequency": curves["frequency"], "acceleration": curves["level"]}
                 for key, names in (("length", TIMES), ("least", LEAST)):
                     columns |= {names[name]: values for name, values in curves[key].items() if name in names}
-                own = pd.DataFrame(columns)
-                tables.append(own.assign(position=each.position, test=each.test, model=each.model))
-        known = {name for own in tables for name in own.columns}
-        others = [name for name in LEAST.values() if name in known and name not in CONTACTS]
+                own = {"position": each.position, "test": each.test, "model": each.model}
+                rows += [own | dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+        others = [name for name in LEAST.values() if name not in CONTACTS and any(name in row for row in rows)]
         keys = ["position", "test", "model", "frequency", "acceleration", *TIMES.values(), *CONTACTS, *others]
-        table = pd.concat(tables, ignore_index=True) if tables else pd.DataFrame()
-        table = table.reindex(columns=keys)
-        table.attrs["units"] = {"frequency": "Hz", "acceleration": "m/s2", **dict.fromkeys(TIMES.values(), "s"),
-                                **{LEAST[name]: UNITS[name] for name in LEAST}}  # fmt: skip
-        return table
+        units = {"frequency": "Hz", "acceleration": "m/s2", **dict.fromkeys(TIMES.values(), "s"),
+                 **{LEAST[name]: UNITS[name] for name in LEAST}}  # fmt: skip
+        return keys, rows, units
+
+    @property
+    def table(self) -> "pd.DataFrame":
+        """A row for each test, position and model; `attrs["units"]` has the units."""
+        return frame(*self.results())
+
+    @property
+    def sweeps(self) -> "pd.DataFrame":
+        """A row for each frequency of each sine, at the level of the test; `attrs["units"]` has the units."""
+        return frame(*self.swept())
 
     def write(self) -> None:
         """Write both tables as CSV, with the units in the names of their columns."""
-        for name, table in (("qualification.csv", self.table), ("sweeps.csv", self.sweeps)):
-            units = table.attrs["units"]
-            heads = [f"{column} [{units[column]}]" if column in units else column for column in table.columns]
-            table.to_csv(self.folder / name, index=False, header=heads, float_format="%.9g", lineterminator="\n")
+        for name, (columns, rows, units) in (("qualification.csv", self.results()), ("sweeps.csv", self.swept())):
+            cells = [[row.get(column, "") for column in columns] for row in rows]
+            with (self.folder / name).open("w", encoding="utf-8", newline="") as file:
+                writer = csv.writer(file, lineterminator="\n")
+                writer.writerow(f"{column} [{units[column]}]" if column in units else column for column in columns)
+                writer.writerows([f"{cell:.9g}" if isinstance(cell, float) else cell for cell in row] for row in cells)
 
     def _repr_html_(self) -> str:
         """Return the page for a notebook, apart from the notebook's own style."""
@@ -242,6 +245,18 @@ class Assessment:
         return f'<iframe srcdoc="{escape(page)}" style="width:100%;height:50em;border:1px solid #ccc"></iframe>'
 
 
+def frame(columns: list[str], rows: list[dict[str, Any]], units: dict[str, str]) -> "pd.DataFrame":
+    """Return a table of rows."""
+    # It takes long to import, and nothing else here needs it.
+    import pandas as pd
+
+    table = pd.DataFrame(rows, columns=columns)
+    table.attrs["units"] = units
+    return table
+
+
+Rows = tuple[list[str], list[dict[str, Any]], dict[str, str]]
+"""Columns, rows and units of a table."""
 FIELDS = ["position", "test", "axis", "model", "clause", "evidence", "level", "verdict"]
 NUMBERS = ["margin", "low", "high", "chance", "chance low", "chance high", "weakest", "limits", "verdict of all models",
            "fails first", "resonance", *TIMES.values(), *CONTACTS]  # fmt: skip

@@ -1,22 +1,27 @@
 """The tests as the component runs them: steady vibration, and courses over time; levels that fail."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from threading import Lock
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.fft import next_fast_len
 from scipy.signal import find_peaks
 
 from relay_contact.component import Array, Component, Contact, Values
 from relay_contact.figures import GRAVITY as G
 from relay_contact.many import side_by_side
-from relay_contact.qualification.excitation import STEP, Breakpoint, Course, Random, Sine, overall, straight
+from relay_contact.qualification.excitation import BAND, STEP, Breakpoint, Course, Random, Sine, overall, straight
 from relay_contact.qualification.parts import CLOSED, CONTACT, OPEN, Part, Rest, at_rest, parts
 from relay_contact.qualification.response import Response, stays
 from relay_contact.qualification.standards import Contacts
 
-RESOLUTION = 1e-4  # of levels
+TOLERANCE = 1e-5  # solver.tolerance, which levels feel by less than their resolution
+RESOLUTION, ROUGHLY = 1e-4, 5e-4  # of levels, and of those in draws or at other frequencies
+ASIDE = 0.4  # of a resolution, by which levels are tried beside the one that is expected to fail
+GROWS = 1.5  # power of the time for which a contact fails that grows with the level; 2, did it not bounce
 WATCHED = 10  # periods
 SAMPLES = 64  # of the gap of an open first contact in a period: 0.1 % of its least value may be missed
 PIECES = 16  # of a period of a rise, over each of which base.acceleration is linear
@@ -31,8 +36,10 @@ component; step of the search, as a part of the frequency, at most; frequencies 
 SHORT = 0.25  # s, up to which a course is simulated as a whole
 DIPS = 3
 BEFORE, AFTER = 5e-3, 2e-3  # s, of a dip, at least
+BENT = 5  # steps to either side, by which a dip is bent
 RECORD = 60.0  # s, of random vibration
 SAMPLE = 2e-5  # s
+EVENLY = 16  # times at which its change is known in a period of its highest frequency
 SEED = 1
 RANKS = 30  # dips of noise by which it is told what clipping does to the largest
 
@@ -103,11 +110,11 @@ class Specimen:
 
     def start(self, values: Values) -> Contact:
         """Return the contacts at rest, with further parameters."""
-        monitored = {
+        monitored: Values = {
             "chatter.minimumDuration": self.contacts.opening,
             "second.minimumDuration": self.contacts.false_make,
-            "chatter.resistanceThreshold": self.contacts.threshold,
-        }
+            "chatter.resistanceThreshold": self.contacts.threshold, "solver.tolerance": TOLERANCE,
+        }  # fmt: skip
         return self.component.started({**monitored, **self.values, **values})
 
     @cached_property
@@ -135,6 +142,20 @@ class Specimen:
         own = [rows[name] for name in self.watched[: 2 + len(self.monitors)]]
         return np.column_stack((own[0] - own[1], *own[2:], *held))
 
+    def ahead(self, contact: Contact, lengths: Lengths, left: Sequence[float] | Array, longer: float) -> float:
+        """Return by which part a level has to rise until the part fails, if all is in proportion; 0: not known.
+
+        By what is left of its force or gap; of a contact that was interrupted or made by the longest time, which grows
+        as the level rises above a touch. By the part `longer` it is where it just fails.
+        """
+        name = self.names[0]
+        if self.part != CONTACT:
+            return left[self.names.index(self.part)] / self.response.reserve
+        length = contact.get(self.monitors[name][2])
+        if (length >= self.lasting) != (name in lengths):
+            return 0.0
+        return longer * (1 - (length / self.lasting) ** GROWS) if length else left[0] / self.response.reserve + longer
+
     def left(self, part: Part, rows: dict[str, Array]) -> Array:
         """Return the force (N) that is left of a part in each step."""
         return np.maximum(rows[part.least] if part.least else part.force(rows), 0.0)
@@ -150,29 +171,47 @@ class Specimen:
 
 
 def threshold(
-    fails: Callable[[float], Lengths], guess: float, failing: Lengths | None = None
-) -> tuple[float, list[str]]:
+    tried: Callable[[float], tuple[Lengths, float]], guess: float, failing: Lengths | None = None,
+    resolution: float = RESOLUTION,
+) -> tuple[float, list[str]]:  # fmt: skip
     """Return a factor of a level that fails, just above one that does not, and what fails there.
 
-    From a guess outwards, then by bisection; `failing` is what is known to fail at the guess itself.
+    `tried` tells what fails at a factor and, if it can, what `Specimen.ahead` does; `failing` is what is known to fail
+    at the guess itself. From one side to the other of where secants cross 0, by halves where they do not close in.
     """
-    low, high = guess / 1.01, guess if failing else guess * 1.01
-    failed: Lengths = failing or {}
-    while found := fails(low):
-        low, high, failed = low / 1.1, low, found
-        if low < 1e-3 * guess:
-            return low, list(failed)
-    while not failed and not (failed := fails(high)):
-        low, high = high, high * 1.1
-        if high > 1e3 * guess:
-            return high, []
-    while high > (1 + RESOLUTION) * low:
-        middle = (low * high) ** 0.5
-        if found := fails(middle):
-            high, failed = middle, found
+    low, high, failed = 0.0, guess if failing else np.inf, failing or {}
+    level, hoped, missed = guess / 1.01 if failing else guess, False, 1
+    near: list[tuple[float, float]] = []
+    widths = [np.inf, np.inf]
+    while True:
+        found, ahead = tried(level)
+        low, high, failed = (low, level, found) if found else (level, high, failed)
+        if high <= (1 + resolution) * low or high < 1e-3 * guess or low > 1e3 * guess:
+            return (high if failed else low), list(failed)
+        if ahead:
+            near = sorted([*near, (ahead * level, level)], key=lambda each: abs(each[0]))[:2]
+        root = crossing(near)
+        missed = 2 * missed if near and bool(found) != hoped else 1
+        hoped = high == np.inf or root - low < high - root
+        end = low if hoped else high
+        beyond = end + missed * (root * (1 + (ASIDE if hoped else -ASIDE) * resolution) - end)
+        if high == np.inf:
+            level = min(beyond, 1.25 * low) if beyond > low else 1.1 * low
+        elif not low:
+            level = max(beyond, high / 1.25) if beyond < high else high / 1.1
         else:
-            low = middle
-    return high, list(failed)
+            widths.append(high - low)
+            slow = widths[-1] > widths[-3] / 2
+            level = (low * high) ** 0.5 if slow or not low < beyond < high else beyond
+
+
+def crossing(near: list[tuple[float, float]]) -> float:
+    """Return the level at which what is ahead of it vanishes, by what is ahead of one or two others."""
+    if not near:
+        return np.nan
+    (ahead, level), (other, beside) = near[0], near[-1]
+    slope = (other - ahead) / (beside - level) if other != ahead else -1.0
+    return level - ahead / min(slope, -1e-9)
 
 
 def steady(specimen: Specimen, frequency: float, amplitude: float, gently: bool) -> tuple[Lengths, list[float]]:
@@ -181,6 +220,13 @@ def steady(specimen: Specimen, frequency: float, amplitude: float, gently: bool)
     The length is the longest since the start of the vibration, what is left the least after it is forgotten. Gently:
     raised from rest.
     """
+    return vibrated(specimen, frequency, amplitude, gently)[:2]
+
+
+def vibrated(
+    specimen: Specimen, frequency: float, amplitude: float, gently: bool
+) -> tuple[Lengths, list[float], float]:
+    """Return what `steady` does, and `Specimen.ahead`."""
     sine: Values = {"effects.excitation": "Sine", "excitation.frequency": frequency, "excitation.amplitude": amplitude}
     periods = int(np.ceil(max(2.0, specimen.response.settling() * frequency)))
     with specimen.start(sine) as contact, contact.explained():
@@ -202,7 +248,9 @@ def steady(specimen: Specimen, frequency: float, amplitude: float, gently: bool)
         # Of failures that last long enough; also of one without an end.
         still = [name for name, total in totals().items() if total > before[name]]
         lengths = {name: length for name, length in specimen.longest(contact).items() if name in still}
-        return lengths | specimen.leaving(np.full(pieces, step), rows), left.min(axis=0).tolist()
+        lengths |= specimen.leaving(np.full(pieces, step), rows)
+        least = left.min(axis=0).tolist()
+        return lengths, least, specimen.ahead(contact, lengths, least, (np.pi * frequency * specimen.lasting) ** 2 / 2)
 
 
 def sweep(
@@ -219,15 +267,17 @@ def sweep(
 
 
 def sine_threshold(
-    specimen: Specimen, test: Sine, frequency: float, guess: float, failing: Lengths | None = None
-) -> tuple[float, list[str]]:
+    specimen: Specimen, test: Sine, frequency: float, guess: float, failing: Lengths | None = None,
+    resolution: float = RESOLUTION,
+) -> tuple[float, list[str]]:  # fmt: skip
     """Return the factor of the level that fails in steady vibration at a frequency (Hz), and what of the part."""
     amplitude = float(test.amplitude(np.array(frequency)))
 
-    def fails(factor: float) -> Lengths:
-        return specimen.own(steady(specimen, frequency, factor * amplitude, True)[0])
+    def tried(factor: float) -> tuple[Lengths, float]:
+        lengths, _, ahead = vibrated(specimen, frequency, factor * amplitude, True)
+        return specimen.own(lengths), ahead
 
-    return threshold(fails, guess, failing)
+    return threshold(tried, guess, failing, resolution)
 
 
 def sine_least(specimen: Specimen, test: Sine) -> tuple[float, float, list[str]]:
@@ -240,25 +290,20 @@ def sine_least(specimen: Specimen, test: Sine) -> tuple[float, float, list[str]]
     known, factors = specimen.response.sine(test, specimen.lasting)
     at = int(factors.argmin())
     first, guess = float(known[at]), float(factors[at])
-    if test.steps:
-        # The response is known beside it.
-        first = min(test.steps, key=lambda each: abs(each - first))
     step = 1 + min(BESIDE, specimen.response.bandwidth(first) / first / 2)
-
     low, high = test.band
 
-    def tried(place: float) -> tuple[float, float, list[str]]:
+    def tried(place: float, guess: float, resolution: float = RESOLUTION) -> tuple[float, float, list[str]]:
         frequency = first * step**place
         if not low <= frequency <= high:
             return frequency, np.inf, []
-        return frequency, *sine_threshold(specimen, test, frequency, found[0.0][1] if found else guess)
+        return frequency, *sine_threshold(specimen, test, frequency, guess, resolution=resolution)
 
-    found: dict[float, tuple[float, float, list[str]]] = {}
-    found[0.0] = tried(0.0)
-    if len(known) > 1 and not test.steps and abs(found[0.0][1] / guess - 1) > APART:
-        best = 0.0
+    exact = [tried(0.0, guess)]
+    if len(known) > 1 and not test.steps and abs(exact[0][1] / guess - 1) > APART:
+        found, best = {0.0: exact[0]}, 0.0
         while beside := {best - 1, best + 1} - found.keys():
-            found |= {place: tried(place) for place in beside}
+            found |= {place: tried(place, found[best][1], ROUGHLY) for place in beside}
             best = min(found, key=lambda place: found[place][1])
             if len(found) > TRIED:
                 break
@@ -266,9 +311,10 @@ def sine_least(specimen: Specimen, test: Sine) -> tuple[float, float, list[str]]
             below, middle, above = (found[best + each][1] for each in (-1, 0, 1))
             bent = below - 2 * middle + above
             if np.isfinite(bent) and bent > 0:
-                vertex = best + (below - above) / (2 * bent)
-                found[vertex] = tried(vertex)
-    return min(found.values(), key=lambda each: each[1])
+                exact.append(tried(best + (below - above) / (2 * bent), middle))
+        if found[best][1] < min(each[1] for each in exact):
+            exact.append(tried(best, found[best][1]))
+    return min(exact, key=lambda each: each[1])
 
 
 @dataclass(frozen=True)
@@ -279,12 +325,13 @@ class Piece:
     guess: float
     begin: float
     """Time (s) of the whole course at which it begins."""
+    longer: float = 0.0
+    """Part of its level by which what fails is above a touch, by linear theory."""
 
-    def follow(self, specimen: Specimen, factor: float, points: int = 0) -> tuple[Lengths, Array]:
-        """Run it at a factor of its level; return the longest failures, and rows of time (s) and what is observed.
+    def follow(self, specimen: Specimen, factor: float, points: int = 0) -> tuple[Lengths, Array, float]:
+        """Run it at a factor of its level; return the longest failures, rows of what is observed, `Specimen.ahead`.
 
-        There are so many points at least, if any; of parts that are held always. A course that ends at 0 is observed
-        until calm.
+        Their first column is the time (s); there are so many at least. A course that ends at 0 is observed until calm.
         """
         course = self.course
         values = {**course.generator, **({"excitation.amplitude": factor * course.acceleration.max()}
@@ -293,8 +340,11 @@ class Piece:
         if not acceleration[-1]:
             end = max(3 * course.end, course.end + specimen.response.settling())
             time, acceleration = np.append(time, end), np.append(acceleration, 0.0)
-        points = points or (1 if specimen.held else 0)
-        if points:
+        if course.generator and not specimen.sampled:
+            # It needs no points to be exact.
+            time = np.unique([0.0, course.end, time[-1]])
+            acceleration = np.zeros(len(time))
+        if points or specimen.sampled:
             dense = np.linspace(0.0, min(3 * course.end, time[-1]), points + 1)
             if specimen.held and specimen.sampled:
                 every = STEP * np.arange(1, time[-1] / STEP)
@@ -307,48 +357,88 @@ class Piece:
             time = np.insert(time, at, dense)
         with specimen.start(values) as contact, contact.explained():
             course_ = {} if course.generator else {"base.acceleration": acceleration}
-            rows = contact.drive(time, course_, specimen.watched if points else [])
-            lengths = specimen.longest(contact)
-        if not points:
-            return lengths, np.zeros((0, 0))
-        taken = np.diff(time) > 0
-        lengths |= specimen.leaving(np.diff(time)[taken], rows)
-        return lengths, np.column_stack((time[1:][taken], specimen.observed(rows)))
+            rows = contact.drive(time, course_, specimen.watched)
+            taken = np.diff(time) > 0
+            lengths = specimen.longest(contact) | specimen.leaving(np.diff(time)[taken], rows)
+            observed = specimen.observed(rows)
+            ahead = specimen.ahead(contact, lengths, observed[:, 1:].min(axis=0), self.longer)
+        return lengths, np.column_stack((time[1:][taken], observed)), ahead
 
-    def threshold(self, specimen: Specimen, sign: float, failing: Lengths | None = None, guess: float = 0.0) -> (
-        tuple[float, list[str]]
-    ):  # fmt: skip
+    def threshold(
+        self, specimen: Specimen, sign: float, failing: Lengths | None = None, guess: float = 0.0,
+        resolution: float = RESOLUTION,
+    ) -> tuple[float, list[str]]:  # fmt: skip
         """Return the factor of its level that fails with a sign, and what of the part."""
 
-        def fails(factor: float) -> Lengths:
-            return specimen.own(self.follow(specimen, sign * factor)[0])
+        def tried(factor: float) -> tuple[Lengths, float]:
+            lengths, _, ahead = self.follow(specimen, sign * factor)
+            return specimen.own(lengths), ahead
 
-        return threshold(fails, guess or self.guess, failing)
+        return threshold(tried, guess or self.guess, failing, resolution)
 
 
 def pieces(specimen: Specimen, course: Course, sign: float, count: int = DIPS) -> list[Piece]:
     """Return a course as a whole if it is short, else what is around its largest dips, by linear theory."""
-    response = specimen.response
-    whole = course.padded(response.settling())
-    change = sign * response.change(whole.sampled())
-    level = stays(change, specimen.lasting)
+    response, lasting = specimen.response, specimen.lasting
+    whole = course if isinstance(course, Noise) else course.padded(response.settling())
     lead = whole.end - course.end
+
+    def deepest(change: Array) -> tuple[float, float, int]:
+        level = stays(change, lasting)
+        at, last = int(level.argmin()), len(change) - 1
+        dip = max(float(-level[at]), 1e-12)
+        bent = change[max(at - BENT, 0)] - 2 * change[at] + change[min(at + BENT, last)]
+        return dip, float(bent / (BENT * STEP) ** 2 * lasting**2 / 8 / dip), at
+
     if whole.end <= SHORT:
-        return [Piece(whole, response.reserve / max(float(-level.min()), 1e-12), -lead)]
-    before = 2 * max(response.settling(), BEFORE)
+        dip, longer, _ = deepest(sign * response.change(whole.sampled()))
+        return [Piece(whole, response.reserve / dip, -lead, longer)]
+    before, since = 2 * max(response.settling(), BEFORE), len(response.answer)
+    if isinstance(course, Noise):
+        level, step = course.change(response)
+        level = sign * level
+        level[: round(before / step)] = np.inf
+    else:
+        level, step = stays(sign * response.change(whole.sampled()), lasting), STEP
     found = []
-    for _ in range(count):
+    # Of noise some more, as a change that is known at fewer times may miss their depth by some per cent.
+    for _ in range(2 * count + 2 if isinstance(course, Noise) else count):
         at = int(level.argmin())
-        dip, now = float(-level[at]), STEP * at
+        first, last = (round((step * at + each) / STEP) for each in (-before / 2, before / 2))
+        time = STEP * np.arange(first - since, last)
+        near = np.interp(time, whole.time, whole.acceleration, left=0.0, right=0.0)
+        dip, longer, own = deepest(sign * response.change(near)[since : len(near)])
+        now = STEP * (first + own)
         begin = max(now - before, 0.0)
-        found.append(
-            Piece(whole.part(begin, now + specimen.lasting + AFTER), response.reserve / max(dip, 1e-12), begin - lead)
-        )
-        level[max(0, at - round(before / STEP)) : at + round(before / STEP)] = np.inf
-    return found
+        part = whole.part(begin, now + lasting + AFTER)
+        found.append((dip, Piece(part, response.reserve / dip, begin - lead, longer)))
+        level[max(0, at - round(before / step)) : at + round(before / step)] = np.inf
+    return [piece for _, piece in sorted(found, key=lambda each: -each[0])[:count]]
 
 
-def noise(test: Random) -> tuple[Course, Course]:
+@dataclass(frozen=True)
+class Noise(Course):
+    """A record of random acceleration, which might be repeated."""
+
+    top: float = 0.0
+    """Frequency (Hz) from which on it has nothing that a contact feels."""
+
+    @cached_property
+    def spectrum(self) -> NDArray[np.complex128]:
+        """Its Fourier transform, straight between samples as it is, in parts of the number of samples."""
+        frequency = np.arange(int(self.top * RECORD) + 1) / RECORD
+        whole = np.fft.rfft(self.acceleration)[: len(frequency)]
+        return np.asarray(whole * np.sinc(frequency * SAMPLE) ** 2 / len(self.time))
+
+    def change(self, response: Response) -> tuple[Array, float]:
+        """Return the change of force or gap at even times by linear theory, and how far (s) these are apart."""
+        frequency = np.arange(len(self.spectrum)) / RECORD
+        count = next_fast_len(EVENLY * len(frequency), real=True)
+        changed = self.spectrum * np.interp(frequency, response.frequency, response.transfer)
+        return np.fft.irfft(changed, count) * count, RECORD / count
+
+
+def noise(test: Random) -> tuple[Noise, Noise]:
     """Return a record of random acceleration as it is before and after clipping; the same for all positions."""
     with MAKING:
         return record(test.density, test.clipping, test.sines)
@@ -361,37 +451,49 @@ MAKING = Lock()
 @lru_cache(maxsize=1)
 def record(
     density: tuple[Breakpoint, ...], clipping: float | None, sines: tuple[tuple[float, float], ...]
-) -> tuple[Course, Course]:
+) -> tuple[Noise, Noise]:
     """Return a record of random acceleration as it is before and after clipping.
 
     It is the sum of sines a sixtieth of a Hz apart with normally distributed amplitudes, and of the sines of the test
     with any phases; between samples it is linear, for which the amplitudes are raised.
     """
     count = round(RECORD / SAMPLE)
-    frequency: Array = np.fft.rfftfreq(count, SAMPLE).astype(np.float64)
     generator = np.random.default_rng(SEED)
-    normal = generator.standard_normal((2, len(frequency)))
-    amplitude = np.sqrt(G**2 * straight(density, frequency) / (4 * RECORD)) * (count * SAMPLE) / SAMPLE
-    spectrum = amplitude * (normal[0] + 1j * normal[1])
+    normal = generator.standard_normal((2, count // 2 + 1))
+    frequency = np.arange(int(density[-1][0] * RECORD) + 2) / RECORD
+    amplitude = np.sqrt(G**2 * straight(density, frequency) / (4 * RECORD)) * count
+    spectrum = amplitude * (normal[0] + 1j * normal[1])[: len(frequency)]
     time = SAMPLE * np.arange(count)
     acceleration = np.fft.irfft(spectrum / np.sinc(frequency * SAMPLE) ** 2, count)
     most = G * overall(density) * (clipping or np.inf)
     tones = np.zeros(count)
     for (tone, level), phase in zip(sines, generator.uniform(0, 2 * np.pi, len(sines)), strict=True):
         tones += G * level / np.sinc(tone * SAMPLE) ** 2 * np.sin(2 * np.pi * tone * time + phase)
-    return Course(time, acceleration + tones), Course(time, np.clip(acceleration, -most, most) + tones)
+    top = BAND[1] if clipping else max(density[-1][0], *(tone for tone, _ in sines), 0.0)
+    clipped = np.clip(acceleration, -most, most) if clipping else acceleration
+    return Noise(time, acceleration + tones, top=top), Noise(time, clipped + tones, top=top)
 
 
 def middle_dip(specimen: Specimen, dips: list[Piece]) -> tuple[float, list[str], Piece]:
-    """Return at which part of the level of linear theory the contacts fail, and which, in the middle of the dips.
+    """Return at which part of the level of linear theory the contacts fail, and which, in the middle of three dips.
 
     That is, of the largest dips of a record of noise, the one whose part is neither least nor greatest.
     """
-    found = []
-    for piece in dips:
-        level, failed = piece.threshold(specimen, 1.0)
-        found.append((level / piece.guess, failed, piece))
-    return sorted(found, key=lambda each: each[0])[len(found) // 2]
+
+    def sought(piece: Piece, part: float) -> tuple[float, list[str], Piece]:
+        level, failed = piece.threshold(specimen, 1.0, guess=piece.guess * part)
+        return level / piece.guess, failed, piece
+
+    def fails(piece: Piece, part: float) -> bool:
+        return bool(specimen.own(piece.follow(specimen, piece.guess * part)[0]))
+
+    one, other, third = dips
+    first = sought(one, 1.0)
+    weaker = fails(other, first[0])
+    if fails(third, first[0]) != weaker:
+        return first
+    second = sought(other, first[0])
+    return second if fails(third, second[0]) == weaker else sought(third, second[0])
 
 
 def noise_dips(specimen: Specimen, test: Random) -> tuple[list[Piece], float]:
@@ -400,7 +502,7 @@ def noise_dips(specimen: Specimen, test: Random) -> tuple[list[Piece], float]:
     return pieces(specimen, clipped, 1.0), eased(specimen, test, free, clipped) if test.clipping else 1.0
 
 
-def eased(specimen: Specimen, test: Random, free: Course, clipped: Course) -> float:
+def eased(specimen: Specimen, test: Random, free: Noise, clipped: Noise) -> float:
     """Return by which part clipping raises the level that fails in the time of a test.
 
     The largest dips of a record with and without it, by rank, are on a line, which is followed to the largest dip in
@@ -408,12 +510,11 @@ def eased(specimen: Specimen, test: Random, free: Course, clipped: Course) -> fl
     it follows the acceleration its slope is 0.
     """
     response = specimen.response
-    apart = max(1, round(1 / response.moments(test)[1] / STEP))
     sizes = []
     for course in (free, clipped):
-        change = -response.change(course.sampled())
-        peaks, _ = find_peaks(change, distance=apart)
-        sizes.append(np.sort(change[peaks])[-RANKS:])
+        change, step = course.change(response)
+        peaks, _ = find_peaks(-change, distance=max(1, round(1 / response.moments(test)[1] / step)))
+        sizes.append(np.sort(-change[peaks])[-RANKS:])
     slope, _ = np.polyfit(sizes[0], sizes[1], 1)
     largest = response.reserve / response.random(test, 0.0)
     dip = sizes[1].mean() + float(np.clip(slope, 0.0, 1.0)) * (largest - sizes[0].mean())
