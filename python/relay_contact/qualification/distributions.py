@@ -5,13 +5,13 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, TypeAdapter, ValidationError, model_validator
 from pydantic.dataclasses import dataclass
-from scipy.stats import norm, triang
+from scipy.special import ndtr, ndtri
 
 from relay_contact.component import Array
 from relay_contact.schema import STRICT, Table, within
 
 LIMITS = (0.025, 0.975)
-TWO_SIDED = float(norm.ppf(LIMITS[1]))
+TWO_SIDED = float(ndtri(LIMITS[1]))
 """Standard deviations from the middle of a normal distribution to the limits of 95 %."""
 LEAST = 0.01
 """Part of its value that a drawn parameter has at least, so that none changes its sign."""
@@ -60,7 +60,7 @@ class Distribution:
 
     def factor(self, score: Array, value: float) -> Array:
         """Return the parameter in parts of its value, for scores of a standard normal distribution."""
-        chance = norm.cdf(score)
+        chance = ndtr(score)
         match self.distribution:
             case "normal":
                 found = 1 + (self.part or 0.0) * np.asarray(score) / TWO_SIDED
@@ -68,21 +68,23 @@ class Distribution:
                 found = 1 + (self.part or 0.0) * (2 * chance - 1)
             case "triangular":
                 low, mode, high = self.corners
-                found = 1 + triang.ppf(chance, (mode - low) / (high - low), low, high - low)
+                rising = low + np.sqrt(chance * (high - low) * (mode - low))
+                falling = high - np.sqrt((1 - chance) * (high - low) * (high - mode))
+                found = 1 + np.where(chance * (high - low) < mode - low, rising, falling)
             case "data":
                 found = np.quantile(np.array(self.values), chance, method="hazen") / value
         return np.maximum(found, LEAST)
 
     def half(self, value: float) -> float:
         """Return half of the interval of 95 %, as a part of the value."""
-        low, high = self.factor(norm.ppf(LIMITS), value)
+        low, high = self.factor(ndtri(LIMITS), value)
         return float(high - low) / 2
 
     def told(self, value: float) -> str:
         """Describe it."""
         if self.distribution == "normal":
             return f"± {100 * (self.part or 0.0):.3g} %"
-        low, high = (100 * (each - 1) for each in self.factor(norm.ppf(LIMITS), value))
+        low, high = (100 * (each - 1) for each in self.factor(ndtri(LIMITS), value))
         return f"{low:+.3g} to {high:+.3g} % ({self.distribution})"
 
 

@@ -8,8 +8,6 @@ Which of them a position has is told by the component at rest. The forces of the
 from dataclasses import dataclass
 from math import atan2, exp, log, sqrt
 
-from scipy.optimize import brentq
-
 from relay_contact.component import Array, Component, Contact, Values
 from relay_contact.files import RelayContactError
 
@@ -106,6 +104,8 @@ def damping_ratio(restitution: float) -> float:
     """
     if restitution >= 1:
         return 0.0
+    # It takes long to import.
+    from scipy.optimize import brentq
 
     def excess(logarithm: float) -> float:
         ratio = exp(logarithm)

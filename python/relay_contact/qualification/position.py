@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.stats import norm, qmc
+from scipy.special import ndtr, ndtri
 
 from relay_contact.component import Array, Component, Values
 from relay_contact.many import side_by_side
@@ -18,7 +18,7 @@ from relay_contact.qualification.distributions import LEAST, TWO_SIDED
 from relay_contact.qualification.excitation import Random, Sine, Test, Transient
 from relay_contact.qualification.parts import CONTACT, Rest, at_rest
 from relay_contact.qualification.relay import NORMAL, Model, Relay
-from relay_contact.qualification.response import CALM, Response, answers, margin
+from relay_contact.qualification.response import CALM, Response, answers, margin, spread
 from relay_contact.qualification.results import Chance
 from relay_contact.qualification.standards import Contacts
 from relay_contact.qualification.trials import (
@@ -180,15 +180,13 @@ class Position:
     def scores(self, draws: int) -> Array:
         """Return independent scores of the uncertain parameters for which the component answers, in columns.
 
-        All in the middle; one after the other at its upper end, at its lower end; and draws, as points of Sobol's
-        sequence, which fill the space evenly.
+        All in the middle; one after the other at its upper end, at its lower end; and draws that are even in each.
         """
         count = len(self.relay.uncertainty)
         if not count:
             return np.zeros((1, 0))
         ends = TWO_SIDED * np.eye(count)
-        drawn = norm.ppf(qmc.Sobol(count, scramble=False).random(draws) + 0.5 / draws)
-        return np.vstack((np.zeros(count), ends, -ends, drawn))
+        return np.vstack((np.zeros(count), ends, -ends, ndtri(spread(draws, count))))
 
     @cached_property
     def root(self) -> Array:
@@ -322,7 +320,7 @@ class Position:
             return np.ones(len(scores))
         response, lasting = self.specimen.response, self.specimen.lasting
         moments = response.moments(test)
-        found = np.array([response.random(test, lasting, float(each), moments) for each in norm.cdf(GRID)])
+        found = np.array([response.random(test, lasting, float(each), moments) for each in ndtr(GRID)])
         return np.interp(scores, GRID, found / response.random(test, lasting, moments=moments))
 
     @cached_property

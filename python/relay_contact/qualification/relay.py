@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import numpy as np
 from pydantic import Field
-from scipy.stats import norm
+from scipy.special import ndtri
 
 from relay_contact.component import Component, Value, Values, nearest
 from relay_contact.files import RelayContactError, by_name, found, named, read_toml
@@ -277,9 +277,7 @@ def uncertainties(
             used = [distribution.part == 0]
             for position, values in positions.items():
                 start = 1.0 if is_entry(name) else value_of(component, values, name)
-                ends = (
-                    [start, start] if not start else start * distribution.factor(norm.ppf(distributions.LIMITS), start)
-                )
+                ends = [start, start] if not start else start * distribution.factor(ndtri(distributions.LIMITS), start)
                 for end in ends:
                     used.append(blow(component, values, {name: float(end)}) != rest[position])
             if not any(used):

@@ -16,10 +16,9 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.fft import fft, ifft, irfft, next_fast_len, rfft
 from scipy.ndimage import maximum_filter1d
-from scipy.optimize import brentq
-from scipy.signal import ZoomFFT, oaconvolve
-from scipy.stats import norm, qmc
+from scipy.special import ndtr
 
 from relay_contact.component import Array, Component, Contact, Values
 from relay_contact.figures import GRAVITY as G
@@ -117,22 +116,27 @@ class Response:
         if test.sines:
             frequency, level = np.array(test.sines).T
             size = G * level * np.interp(frequency, self.frequency, self.gain)
-            phases = 2 * np.pi * qmc.Sobol(len(size), scramble=False).random(PHASES)
+            phases = 2 * np.pi * spread(PHASES, len(size))
             shift, speed = np.cos(phases) @ size, np.sin(phases) @ (2 * np.pi * frequency * size)
             slope = 2 * np.pi * mean * rms
             # Noise and sines are independent: at each phase the crossings are those of noise that moves with them.
-            moving = slope * norm.pdf(speed / slope) + speed * norm.cdf(speed / slope)
+            moving = slope * bell(speed / slope) + speed * ndtr(speed / slope)
 
             def excess(dip: float) -> float:
-                rate = float((norm.pdf((dip - shift) / rms) / rms * moving).mean())
+                rate = float((bell((dip - shift) / rms) / rms * moving).mean())
                 return float(np.log(max(rate, 1e-300) / crossings))
+
+            # It takes long to import.
+            from scipy.optimize import brentq
 
             largest = brentq(excess, rms, largest + size.sum() + rms)
         return float(needed / largest)
 
     def change(self, course: Array) -> Array:
         """Return the change of force (N) or gap (m), at every step, by an acceleration (m/s2) at every step."""
-        return np.asarray(oaconvolve(course, self.answer)) * STEP
+        count = len(course) + len(self.answer) - 1
+        size = next_fast_len(count, real=True)
+        return np.asarray(irfft(rfft(course, size) * rfft(self.answer, size), size)[:count]) * STEP
 
     def course(self, course: Course, sign: float, opening: float) -> float:
         """Return the factor of a course that fails, with a sign."""
@@ -247,23 +251,37 @@ def answered(
 def transformed(reserve: float, natural: float, answer: Array, slowest: float) -> Response:
     """Return the response by the answer to a pulse."""
     # The triangle begins one step before its peak, which the first of these is at.
-    frequency, share, transform = transformation(len(answer))
-    return Response(reserve, natural, frequency, transform(answer) * STEP / share, answer, slowest)
+    frequency, factors, chirp, kernel = transformation(len(answer))
+    # Bluestein's: the transform at lines that are closer than those of the answer itself.
+    whole = ifft(fft(answer * chirp, len(kernel)) * kernel)[len(answer) - 1 :][: len(frequency)]
+    return Response(reserve, natural, frequency, whole * factors, answer, slowest)
 
 
 @lru_cache(maxsize=4)
-def transformation(length: int) -> tuple[Array, Array, ZoomFFT]:
-    """Return the frequencies (Hz) of the response by an answer of so many steps, and its Fourier transform there.
+def transformation(length: int) -> tuple[Array, NDArray[np.complex128], NDArray[np.complex128], NDArray[np.complex128]]:
+    """Return the frequencies (Hz) of the response by an answer of so many steps, and what its Fourier transform takes.
 
-    Between them is the share of a sine that a triangle of a step has.
+    The factors of its lines have the share of a sine that a triangle of a step has, too.
     """
     # Lines are close enough for the narrowest resonance, which the answer just shows, and end where its aliases begin.
     count = max(POINTS, 4 * length)
     lines = int(count * BAND[1] * STEP) + 1
     frequency = np.arange(lines) / (count * STEP)
-    return (
-        frequency, np.sinc(frequency * STEP) ** 2, ZoomFFT(length, lines / (count * STEP), lines, fs=1 / STEP)
-    )  # fmt: skip
+    chirp = np.exp(-1j * np.pi / count * np.arange(max(length, lines)) ** 2)
+    size = next_fast_len(length + lines - 1)
+    kernel = fft(1 / np.concatenate((chirp[length - 1 : 0 : -1], chirp[:lines])), size)
+    return frequency, chirp[:lines] * STEP / np.sinc(frequency * STEP) ** 2, chirp[:length], kernel
+
+
+def bell(score: Array) -> Array:
+    """Return the density of a standard normal distribution."""
+    return np.asarray(np.exp(-(score**2) / 2) / np.sqrt(2 * np.pi))
+
+
+def spread(count: int, columns: int) -> Array:
+    """Return points between 0 and 1 that are even in each column, in random orders."""
+    order = np.argsort(np.random.default_rng(0).random((count, columns)), axis=0)
+    return np.asarray((order + 0.5) / count)
 
 
 def interrupting_force(law: list[float], threshold: float) -> float:

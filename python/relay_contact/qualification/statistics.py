@@ -7,8 +7,7 @@ follow; how well is told by draws that are left out in turn. The margins of very
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import RBFInterpolator
-from scipy.stats import beta
+from scipy.special import betaincinv
 
 from relay_contact.component import Array
 
@@ -30,6 +29,12 @@ def terms(scores: Array, count: int) -> Array:
     return np.column_stack([np.ones(len(scores)), scores, scores**2, *products])
 
 
+def distances(points: Array, others: Array) -> Array:
+    """Return the distances of points from others, in rows."""
+    squares = (points**2).sum(axis=1)[:, None] + (others**2).sum(axis=1) - 2 * points @ others.T
+    return np.asarray(np.sqrt(np.maximum(squares, 0.0)))
+
+
 @dataclass(frozen=True)
 class Surface:
     """A quantity over the scores of parameters, by its values in some draws."""
@@ -44,8 +49,11 @@ class Surface:
         count = len(self.scores)
         plane, *_ = np.linalg.lstsq(terms(self.scores, count), self.values)
         left = self.values - terms(self.scores, count) @ plane
-        between = RBFInterpolator(self.scores, left, kernel="linear", degree=0)
-        return np.asarray(terms(scores, count) @ plane + between(scores))
+        # Distances as radial functions, whose weights add up to nothing, and a constant.
+        matrix = np.pad(-distances(self.scores, self.scores), (0, 1), constant_values=1.0)
+        matrix[-1, -1] = 0.0
+        *weights, constant = np.linalg.solve(matrix, [*left, 0.0])
+        return np.asarray(terms(scores, count) @ plane + constant - distances(scores, self.scores) @ weights)
 
     @property
     def error(self) -> float:
@@ -72,8 +80,8 @@ def chance(margins: Array, error: float) -> tuple[float, float, float]:
     number = len(margins)
     fewest, found, most = (int((margins < level).sum()) for level in (1 - error, 1, 1 + error))
     tail = (1 - CONFIDENCE) / 2
-    low = float(beta.ppf(tail, fewest, number - fewest + 1)) if fewest else 0.0
-    high = float(beta.ppf(1 - tail, most + 1, number - most)) if most < number else 1.0
+    low = float(betaincinv(fewest, number - fewest + 1, tail)) if fewest else 0.0
+    high = float(betaincinv(most + 1, number - most, 1 - tail)) if most < number else 1.0
     return found / number, low, high
 
 

@@ -9,7 +9,6 @@ are corrected by the ratio of required and reached spectrum, again and again.
 from functools import lru_cache
 
 import numpy as np
-from scipy.signal import lfilter
 
 from relay_contact.component import Array
 from relay_contact.figures import GRAVITY as G
@@ -27,6 +26,9 @@ ROUNDS, STRENGTH = 15, 0.7  # of corrections, and the power of each
 
 def response(acceleration: Array, step: float, frequencies: Array, quality: float) -> Array:
     """Return the spectrum of a pulse at frequencies (Hz), in its unit."""
+    # It takes long to import.
+    from scipy.signal import lfilter
+
     found = []
     for frequency in frequencies:
         omega, damping = 2 * np.pi * frequency, 0.5 / quality

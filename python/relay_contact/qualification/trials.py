@@ -8,7 +8,6 @@ from threading import Lock
 import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import next_fast_len
-from scipy.signal import find_peaks
 
 from relay_contact.component import Array, Component, Contact, Values
 from relay_contact.figures import GRAVITY as G
@@ -509,6 +508,9 @@ def eased(specimen: Specimen, test: Random, free: Noise, clipped: Noise) -> floa
     the time of the test: where the contact resonates it has a slope near 1, as many clipped peaks make a dip, and where
     it follows the acceleration its slope is 0.
     """
+    # It takes long to import.
+    from scipy.signal import find_peaks
+
     response = specimen.response
     sizes = []
     for course in (free, clipped):
