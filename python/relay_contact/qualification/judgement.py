@@ -313,9 +313,9 @@ def opening_run(specimen: Specimen, runs: list[Any]) -> Array:
 
 def failing_run(specimen: Specimen, piece: Piece, level: float, start: float) -> tuple[Lengths, Array]:
     """Run what is around the dip that fails first at the level at which it fails; return the failures and the run."""
-    lengths, rows, _ = piece.follow(specimen, level, SHOWN)
+    # Surely beyond it, by as much as it is known.
+    lengths, rows, _ = piece.follow(specimen, level * (1 + RESOLUTION), SHOWN)
     dip = int(rows[:, 2].argmin())
-    # Between the points that are shown.
     rows[dip, 1] = min(rows[dip, 1:3])
     near = np.abs(rows[:, 0] - rows[dip, 0]) < SHOWN_TIME
     return lengths, np.column_stack((rows[near, 0] + piece.begin + start, rows[near, 1]))

@@ -35,16 +35,16 @@ LAWS = {
 """By effects.contactLaw."""
 NOTES = {
     "Margin": """the level that interrupts the closed contact, or closes the open one, for the time that the standard
-allows, relative to that of the test. Its interval has 95 % confidence: the component answers a pulse with each of
-{fewest} to {draws} draws of the uncertain parameters, the margins of {many} further draws follow from these answers,
-and at both ends of the interval and at its limit the component seeks the level itself. If the interval includes 1,
-the verdict is undecided; if there are several models, a test is passed only by all, and failed only by all. Fails
-first: the contact that fails at the margin. In the test: which contacts fail at its level, and the longest failure.
-Left at least: of the force of the closed contact and the gap of the open one, in parts of those at rest. Chance of
-failing: the part of the draws whose margin is below 1, with its own interval of 95 % by the number of draws and by
-how far the component was from them. To measure or tighten: the share of the variance of the margin that goes with a
-parameter once it is known (first-order Sobol index). Passes from: the overtravel of the closed contact, or the gap of
-one that is open alone, from which on the whole interval is above 1, if that is as wide as here.""",
+allows, relative to that of the test. Its interval has 95 % confidence: the component answers a pulse at both ends of
+each uncertain parameter and in {fewest} to {draws} draws, the margins of {many} further draws follow from these
+answers, and at both ends of each parameter that matters and next to the limit the component seeks the level itself. If
+the interval includes 1, the verdict is undecided; if there are several models, a test is passed only by all, and failed
+only by all. Fails first: the contact that fails at the margin. In the test: which contacts fail at its level, and the
+longest failure. Left at least: of the force of the closed contact and the gap of the open one, in parts of those at
+rest. Chance of failing: the part of the draws whose margin is below 1, with its own interval of 95 % by the number of
+draws and by how far the component was from them. To measure or tighten: the share of the variance of the margin that
+goes with a parameter once it is known (first-order Sobol index). Passes from: the overtravel of the closed contact, or
+the gap of one that is open alone, from which on the whole interval is above 1, if that is as wide as here.""",
     "Open contact": """that of a changeover relay is reached only after the closed one has opened, so that an
 interruption comes first, unless the gap is crossed within the time allowed for one.""",
     "Parts": """of a relay whose file describes a pusher or an armature, each part that is held at rest is judged: the

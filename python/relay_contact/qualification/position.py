@@ -2,7 +2,7 @@
 
 The margin of a test follows from the response to a pulse; in draws of the uncertain parameters too
 (`relay_contact.qualification.statistics`). Where linear theory is off, and by how much, the component tells: as the
-relay is, at both ends of the interval, and at the limit between failing and passing.
+relay is, at both ends of each parameter that matters, and at the limit between failing and passing.
 """
 
 from dataclasses import dataclass, field, replace
@@ -41,9 +41,9 @@ WORN = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2)
 FEWEST, DRAWS = 8, 256
 """Draws of all uncertain parameters in which the component answers a pulse: fewest, most."""
 ENOUGH = 0.03
-"""Share of the deviation of a margin up to which the error of what follows the draws is small."""
+"""Share of the deviation of a margin that its error may be in what follows the draws; else there are more of them."""
 MATTERS = 0.2
-"""Share of the largest effect of a parameter from which on the component seeks the level at the ends of another."""
+"""Share of the largest effect of a parameter from which on the component seeks the level at the ends of one."""
 AT_LIMIT = 2
 """Draws next to the limit in which the component seeks the level itself."""
 SETTLED = 1e-3
@@ -237,7 +237,9 @@ class Position:
                     for each in self.parts
                 }
                 every = [own for each in known.values() for own in each.values()]
-                if draws == DRAWS or all(own.error <= ENOUGH * np.std(own.values) for own in every):
+                if draws == DRAWS or all(
+                    own.error <= max(ROUGHLY, ENOUGH * float(np.std(own.values))) for own in every
+                ):
                     self.shared.surfaces |= known
                 draws = min(4 * draws, DRAWS)
         return self.shared.surfaces[self.part]
@@ -294,24 +296,21 @@ class Position:
             self.shared.tried[number] = {**self.values, **values}, self.responses(values)
         values, responses = self.shared.tried[number]
         response, lasting = responses[self.part], self.specimen.lasting
-        specimen, factor = replace(self.specimen, values=values, response=response), float(np.exp(expected))
+        specimen = replace(self.specimen, values=values, response=response)
         if isinstance(test, Sine):
             first, nominal = (each.weakest(test, lasting) for each in (response, self.specimen.response))
             beside = 1.0 if test.steps else self.weakest[test.name][0] / nominal
             frequency = float(np.clip(first * beside, *test.band))
-            level, _ = sine_threshold(specimen, test, frequency, linear * factor, resolution=ROUGHLY)
-        elif isinstance(test, Random):
-            eased, piece, sign = self.noises[test.name][1], self.middle[test.name][2], 1.0
-            linear = response.course(piece.course, sign, lasting) / eased
-            level, _ = piece.threshold(specimen, sign, guess=linear * factor, resolution=ROUGHLY)
+            level, _ = sine_threshold(specimen, test, frequency, linear * np.exp(expected), resolution=ROUGHLY)
         else:
-            assert isinstance(test, Transient)
-            _, sign, piece = min(
-                ((response.course(piece.course, sign, lasting), sign, piece)
-                 for way, sign in test.directions.items() for piece in self.pieces[test.name][way]),
-                key=lambda each: each[0],
-            )  # fmt: skip
-            level, _ = piece.threshold(specimen, sign, guess=linear * factor, resolution=ROUGHLY)
+            if isinstance(test, Random):
+                piece, sign = self.middle[test.name][2], 1.0
+                linear = response.course(piece.course, sign, lasting) / self.noises[test.name][1]
+            else:
+                assert isinstance(test, Transient)
+                ways = [(sign, each) for way, sign in test.directions.items() for each in self.pieces[test.name][way]]
+                sign, piece = min(ways, key=lambda way: response.course(way[1].course, way[0], lasting))
+            level, _ = piece.threshold(specimen, sign, guess=linear * np.exp(expected), resolution=ROUGHLY)
         return float(np.log(level / (1 + ASIDE * ROUGHLY) / linear))
 
     def dips(self, test: Test, scores: Array) -> Array:
@@ -335,6 +334,7 @@ class Position:
         the middle of each to its ends. Draws next to the limit tell how well.
         """
         surface, count, independent = self.surfaces[test.name], len(self.relay.uncertainty), self.independent
+        scores = independent[:, :count]
         middle = float(np.log(factor / self.linear(self.specimen.response, test)))
         turns, errors, tried = np.zeros((count, 3)), [surface.error if count else 0.0], 0
 
@@ -350,12 +350,7 @@ class Position:
             effects = np.abs(upper - lower)
             matter = np.flatnonzero((effects > 0) & (effects >= MATTERS * effects.max()))
             for number in matter.tolist():
-                turns[number] = [
-                    self.turn(test, 1 + count + number, middle),
-                    middle,
-                    self.turn(test, 1 + number, middle),
-                ]
-            turns[matter] -= middle
+                turns[number, ::2] = [self.turn(test, 1 + at + number, middle) - middle for at in (count, 0)]
             expected = told(surface.scores[-len(drawn) :])
             away = np.abs(drawn + expected)
             near = [at for at in np.argsort(away)[:AT_LIMIT].tolist() if away[at] < NEAR]
@@ -366,7 +361,6 @@ class Position:
         others = self.dips(test, independent[:, -1]) * np.maximum(
             1 + self.model.uncertainty * independent[:, -2] / TWO_SIDED, LEAST
         )
-        scores = independent[:, :count]
         return Drawn(np.exp(surface(scores) + told(scores)) * others, max(errors), tried)
 
     def chance(self, test: Test, drawn: Drawn, factor: float) -> Chance:
@@ -378,7 +372,7 @@ class Position:
         used[-1] = isinstance(test, Random)
         correlated, names = correlated[:, used], [name for name, own in zip(names, used, strict=True) if own]
         plane = np.column_stack((np.ones(len(margins)), correlated))
-        slopes = np.linalg.lstsq(plane, margins / factor)[0][1:]
+        slopes = np.linalg.lstsq(plane.T @ plane, plane.T @ margins / factor)[0][1:]
         effects = {name: float(TWO_SIDED * abs(slope)) for name, slope in zip(names, slopes, strict=True)}
         failing, low, high = statistics.chance(margins, drawn.error)
         indices = statistics.first_order(correlated, margins, names)

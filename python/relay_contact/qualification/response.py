@@ -29,6 +29,7 @@ from relay_contact.qualification.parts import CONTACT, Part, Rest, at_rest, part
 PHASES = 1024
 """Combinations of the phases of sines on noise, over which the rate of crossings is averaged."""
 WATCHED, LONGEST = 1000, 200_000  # steps: an answer ends after some of at most
+LONG = 2**20  # steps of a course, from which on it is convolved in pieces
 CALM = 1e-6  # part of its largest force
 POINTS = 2**18  # of the transform at least, every 0.38 Hz
 WEAK = 3e-6
@@ -134,6 +135,11 @@ class Response:
 
     def change(self, course: Array) -> Array:
         """Return the change of force (N) or gap (m), at every step, by an acceleration (m/s2) at every step."""
+        if len(course) > LONG:
+            # In pieces; it takes long to import.
+            from scipy.signal import oaconvolve
+
+            return np.asarray(oaconvolve(course, self.answer)) * STEP
         count = len(course) + len(self.answer) - 1
         size = next_fast_len(count, real=True)
         return np.asarray(irfft(rfft(course, size) * rfft(self.answer, size), size)[:count]) * STEP

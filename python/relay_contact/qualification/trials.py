@@ -19,7 +19,7 @@ from relay_contact.qualification.standards import Contacts
 
 TOLERANCE = 1e-5  # solver.tolerance, which levels feel by less than their resolution
 RESOLUTION, ROUGHLY = 1e-4, 5e-4  # of levels, and of those in draws or at other frequencies
-ASIDE = 0.4  # of a resolution, by which levels are tried beside the one that is expected to fail
+ASIDE = 0.25  # of a resolution: how far beside the level that is expected just to fail others are tried
 GROWS = 1.5  # power of the time for which a contact fails that grows with the level; 2, did it not bounce
 WATCHED = 10  # periods
 SAMPLES = 64  # of the gap of an open first contact in a period: 0.1 % of its least value may be missed
@@ -147,13 +147,14 @@ class Specimen:
         By what is left of its force or gap; of a contact that was interrupted or made by the longest time, which grows
         as the level rises above a touch. By the part `longer` it is where it just fails.
         """
-        name = self.names[0]
         if self.part != CONTACT:
-            return left[self.names.index(self.part)] / self.response.reserve
-        length = contact.get(self.monitors[name][2])
-        if (length >= self.lasting) != (name in lengths):
+            return float(left[self.names.index(self.part)]) / self.response.reserve
+        length = contact.get(self.monitors[self.names[0]][2])
+        if not length:
+            return float(left[0]) / self.response.reserve + longer
+        if not self.lasting or (length >= self.lasting) != (self.names[0] in lengths):
             return 0.0
-        return longer * (1 - (length / self.lasting) ** GROWS) if length else left[0] / self.response.reserve + longer
+        return float(longer * (1 - (length / self.lasting) ** GROWS))
 
     def left(self, part: Part, rows: dict[str, Array]) -> Array:
         """Return the force (N) that is left of a part in each step."""
@@ -179,7 +180,7 @@ def threshold(
     at the guess itself. From one side to the other of where secants cross 0, by halves where they do not close in.
     """
     low, high, failed = 0.0, guess if failing else np.inf, failing or {}
-    level, hoped, missed = guess / 1.01 if failing else guess, False, 1
+    level = guess / 1.01 if failing else guess
     near: list[tuple[float, float]] = []
     widths = [np.inf, np.inf]
     while True:
@@ -190,10 +191,8 @@ def threshold(
         if ahead:
             near = sorted([*near, (ahead * level, level)], key=lambda each: abs(each[0]))[:2]
         root = crossing(near)
-        missed = 2 * missed if near and bool(found) != hoped else 1
-        hoped = high == np.inf or root - low < high - root
-        end = low if hoped else high
-        beyond = end + missed * (root * (1 + (ASIDE if hoped else -ASIDE) * resolution) - end)
+        nearer = high == np.inf or root - low < high - root
+        beyond = root * (1 + (ASIDE if nearer else -ASIDE) * resolution)
         if high == np.inf:
             level = min(beyond, 1.25 * low) if beyond > low else 1.1 * low
         elif not low:
