@@ -4,8 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from relay_contact.component import Component
-from relay_contact.qualification.assessment import assess, chosen
-from relay_contact.qualification.judgement import FEW
+from relay_contact.qualification.assessment import FEW, assess, chosen
 from relay_contact.qualification.relay import Relay, check_monitor, relays
 from relay_contact.qualification.results import Assessment, Finding, Tested
 from relay_contact.qualification.standards import Standard, standards

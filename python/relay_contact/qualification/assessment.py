@@ -24,6 +24,8 @@ from relay_contact.qualification.results import FINDING, Finding, Tested
 from relay_contact.qualification.standards import Standard
 from relay_contact.spring import SPRING_FILES
 
+FEW = 24
+"""Frequencies of a sweep in the short form, and by a model that figures do not show."""
 Job = tuple[Path, Position, Test, int]
 """The file that a test is to write, the position, the test, and the number of frequencies."""
 
@@ -102,8 +104,9 @@ def assess(
     (folder / "parts").mkdir(parents=True, exist_ok=True)
     jobs: list[Job] = []
     for position, tests in positions(component, relay, standard):
+        own = points if position.model is relay.models[0] else min(points, FEW)
         for test in tests:
-            jobs.append((folder / "parts" / f"{key(position, test, points)}.json", position, test, points))
+            jobs.append((folder / "parts" / f"{key(position, test, own)}.json", position, test, own))
     todo = [job for job in jobs if not job[0].exists()]
     for _ in range(len(jobs) - len(todo)):
         tell("")

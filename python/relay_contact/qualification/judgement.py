@@ -46,8 +46,6 @@ QUALITY = 10.0
 """Of the oscillators whose shock response spectrum is shown."""
 SHOWN_TIME = 10e-3  # s around a dip
 POINTS = 1500  # of a course that is shown as a whole
-FEW = 24
-"""Frequencies of a sweep in the short form, and by a model that figures do not show."""
 FOLLOWS = 0.9
 """Part of its level by linear theory below which another part than the first fails because that has failed."""
 BEYOND = 2.0
@@ -414,8 +412,7 @@ def judged(position: Position, test: Test, points: int) -> Finding:
         return finding("FAIL", reason)
     match test:
         case Sine():
-            shown = position.model == position.relay.models[0]
-            levels, seen = vibration(position, test, points if shown else min(points, FEW))
+            levels, seen = vibration(position, test, points)
         case Random():
             levels, seen = random(position, test)
         case Transient():
