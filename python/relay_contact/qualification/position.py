@@ -22,6 +22,7 @@ from relay_contact.qualification.response import CALM, Response, answers, margin
 from relay_contact.qualification.results import Chance
 from relay_contact.qualification.standards import Contacts
 from relay_contact.qualification.trials import (
+    APART,
     ASIDE,
     ROUGHLY,
     Piece,
@@ -348,16 +349,20 @@ class Position:
                 middle = self.turn(test, 0, middle)
             upper, lower, drawn = np.split(surface.values[1:], (count, 2 * count))
             effects = np.abs(upper - lower)
-            matter = np.flatnonzero((effects > 0) & (effects >= MATTERS * effects.max()))
-            for number in matter.tolist():
-                turns[number, ::2] = [self.turn(test, 1 + at + number, middle) - middle for at in (count, 0)]
+            matter = (effects > 0) & (effects >= MATTERS * effects.max())
+            for number in range(count):
+                if matter[number]:
+                    turns[number, ::2] = [self.turn(test, 1 + at + number, middle) - middle for at in (count, 0)]
+                elif abs(middle) > APART:
+                    # It may matter far from linear theory alone.
+                    turns[number] = (self.turn(test, 1 + number, middle) - middle) * np.array((-1.0, 0.0, 1.0))
             expected = told(surface.scores[-len(drawn) :])
             away = np.abs(drawn + expected)
             near = [at for at in np.argsort(away)[:AT_LIMIT].tolist() if away[at] < NEAR]
             for at in near:
                 found = self.turn(test, len(surface.values) - len(drawn) + at, float(expected[at]))
                 errors.append(float(np.abs(np.expm1(expected[at] - found))))
-            tried = 2 * len(matter) + len(near)
+            tried = int(np.count_nonzero(turns)) + len(near)
         others = self.dips(test, independent[:, -1]) * np.maximum(
             1 + self.model.uncertainty * independent[:, -2] / TWO_SIDED, LEAST
         )
