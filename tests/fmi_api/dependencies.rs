@@ -14,289 +14,121 @@ use relay_contact::variables::{Group, RealOutput, VARIABLES, Variable};
 use roxmltree::Document;
 
 /// Values by name, choices and Booleans by number.
-type Values = &'static [(&'static str, f64)];
+type Values = Vec<(&'static str, f64)>;
 
 /// In all scenes.
-const ALWAYS: Values = &[
-    ("effects.heating", 1.0),
-    ("contact.current", 0.1),
-    ("effects.axialForce", 1.0),
+const ALWAYS: &str = "effects.heating=1 contact.current=0.1 effects.axialForce=1";
+
+/// Changes that many scenes have.
+const SHARED: [(&str, &str); 11] = [
+    ("PLAIN", ""),
+    ("ALL_COUNT", "chatter.minimumDuration=0"),
+    ("PULLED", "environment.gravity=-9.81"),
+    ("OPEN", "contact.overtravel=-1e-4"),
+    ("RUBBING", "effects.friction=2"),
+    ("SECOND", "effects.secondContact=1"),
+    ("BESIDE", "effects.parallelContact=1"),
+    ("ON_SPRING", "fixed.file=1"),
+    ("PRESSED", "effects.pusher=2"),
+    ("MOVED", "effects.pusher=3"),
+    // Between its stops.
+    (
+        "FLOATING",
+        "armature.corePosition=1e-3 armature.gapConstant=1e-3 armature.returnForce=0",
+    ),
 ];
 
-/// Scenes in which every known that matters at all matters somewhere: the start values with these changes. A threshold of
-/// [`CRITICAL`] is the resistance at rest, an overtravel or a pusher of it closes the
-/// contact or touches without force.
-static SCENES: [Values; 64] = [
-    &[],
-    &[("effects.axialForce", 2.0)],
-    &[("effects.axialForce", 3.0)],
-    &[("effects.axialForce", 3.0), ("solver.modes", 5.0)],
-    &[("effects.axialForce", 4.0)],
-    &[("solver.tolerance", 1e-9), ("beam.stiffnessDamping", 3e-6)],
-    &[("effects.contactLaw", 2.0), ("solver.tolerance", 1e-3)],
-    &[("effects.contactLaw", 3.0), ("effects.contactDamping", 0.0)],
-    &[("effects.contactLaw", 4.0)],
-    &[
-        ("effects.contactLaw", 4.0),
-        ("effects.friction", 2.0),
-        ("friction.initial", 0.5),
-    ],
-    &[
-        PULLED,
-        ALL_COUNT,
-        ("effects.contactLaw", 4.0),
-        ("chatter.resistanceThreshold", CRITICAL),
-    ],
-    &[
-        ("effects.contactLaw", 4.0),
-        ("effects.secondContact", 1.0),
-        ("second.stiffness", 1e7),
-    ],
-    &[("environment.gravity", 9.81), ("effects.axialForce", 3.0)],
-    &[PULLED, ("contact.overtravel", CRITICAL)],
-    &[
-        PULLED,
-        ("effects.axialForce", 4.0),
-        ("beam.axialForce", 2.0),
-        ("contact.overtravel", CRITICAL),
-    ],
-    &[
-        PULLED,
-        ALL_COUNT,
-        ("effects.axialForce", 4.0),
-        ("chatter.resistanceThreshold", CRITICAL),
-    ],
-    &[
-        PULLED,
-        ALL_COUNT,
-        ("effects.resistance", 2.0),
-        ("chatter.resistanceThreshold", CRITICAL),
-    ],
-    &[("contact.overtravel", -2e-5), ("support.displacement", 1e-4)],
-    &[ALL_COUNT, ("contact.overtravel", -2e-5)],
-    &[("resistance.film", 0.1), ("contact.current", 100.0)],
-    &[("resistance.film", 100.0), ("contact.current", -1.0)],
-    &[("effects.resistance", 3.0), ("effects.chatter", 0.0)],
-    &[("effects.heating", 0.0), ("effects.extremes", 0.0)],
-    &[("effects.excitation", 2.0), ("effects.energy", 1.0)],
-    &[("effects.excitation", 5.0), ("beam.massDamping", 100.0)],
-    &[SECOND, ("second.curvatureRadius", 5.0), ("effects.axialForce", 3.0)],
-    &[
-        SECOND,
-        ("second.curvatureRadius", 5.0),
-        ("second.damping", 1e-6),
-        ("beam.stiffnessDamping", 3e-6),
-    ],
-    &[SECOND, ("effects.extremes", 0.0), ("effects.chatter", 0.0)],
-    &[
-        RUBBING,
-        ALL_COUNT,
-        ("effects.axialForce", 4.0),
-        ("chatter.resistanceThreshold", CRITICAL),
-    ],
-    &[RUBBING, PULLED, ("effects.axialForce", 4.0)],
-    &[RUBBING, ("solver.tolerance", 1e-9), ("beam.stiffnessDamping", 3e-6)],
-    &[
-        ON_SPRING,
-        RUBBING,
-        PULLED,
-        ALL_COUNT,
-        ("effects.axialForce", 4.0),
-        ("beam.axialForce", 1.0),
-        ("chatter.resistanceThreshold", CRITICAL),
-    ],
-    &[
-        ON_SPRING,
-        ("effects.contactLaw", 4.0),
-        ("solver.tolerance", 1e-9),
-        ("fixed.stiffnessDamping", 3e-6),
-    ],
-    &[ON_SPRING, PULLED, ("contact.overtravel", CRITICAL)],
-    &[
-        PRESSED,
-        OPEN,
-        ("pusher.displacement", 3e-4),
-        RUBBING,
-        PULLED,
-        ALL_COUNT,
-        ("effects.axialForce", 4.0),
-        ("beam.axialForce", 1.0),
-        ("chatter.resistanceThreshold", CRITICAL),
-    ],
-    &[
-        PRESSED,
-        OPEN,
-        ("pusher.displacement", 3e-4),
-        ON_SPRING,
-        ("solver.tolerance", 1e-9),
-    ],
-    &[
-        PRESSED,
-        ("pusher.stiffness", 1e9),
-        ("pusher.damping", 1e3),
-        ("solver.tolerance", 1e-9),
-        ("beam.stiffnessDamping", 3e-6),
-    ],
-    &[
-        PRESSED,
-        PULLED,
-        ("pusher.displacement", 1e-5),
-        ("contact.overtravel", CRITICAL),
-    ],
-    &[
-        PRESSED,
-        PULLED,
-        RUBBING,
-        ("effects.axialForce", 4.0),
-        ("beam.axialForce", 1.0),
-        ("pusher.displacement", CRITICAL),
-    ],
-    &[
-        PRESSED,
-        PULLED,
-        ON_SPRING,
-        ("effects.contactLaw", 4.0),
-        ("pusher.displacement", CRITICAL),
-    ],
-    &[PRESSED, OPEN, PULLED, ("pusher.displacement", CRITICAL)],
-    &[MOVED, OPEN],
-    &[
-        MOVED,
-        OPEN,
-        PULLED,
-        RUBBING,
-        ALL_COUNT,
-        ("effects.axialForce", 4.0),
-        ("beam.axialForce", 1.0),
-        ("chatter.resistanceThreshold", CRITICAL),
-    ],
-    &[MOVED, OPEN, ("coil.relativeCurrent", 0.0)],
-    &[MOVED, OPEN, ON_SPRING, PULLED, ("effects.contactLaw", 4.0)],
-    &[
-        MOVED,
-        OPEN,
-        FLOATING[0],
-        FLOATING[1],
-        FLOATING[2],
-        RUBBING,
-        ALL_COUNT,
-        ("chatter.resistanceThreshold", CRITICAL),
-    ],
-    &[
-        MOVED,
-        OPEN,
-        FLOATING[0],
-        FLOATING[1],
-        FLOATING[2],
-        PULLED,
-        ("effects.axialForce", 1.0),
-    ],
-    &[
-        MOVED,
-        OPEN,
-        ("armature.holdForce", 2.0),
-        FLOATING[0],
-        FLOATING[1],
-        FLOATING[2],
-        ON_SPRING,
-    ],
-    &[
-        MOVED,
-        OPEN,
-        PULLED,
-        ("coil.relativeCurrent", 0.0),
-        ("armature.mass", 0.5),
-        ("armature.restPosition", -1e-5),
-        ("armature.corePosition", 1e-3),
-    ],
-    &[
-        MOVED,
-        FLOATING[0],
-        FLOATING[1],
-        FLOATING[2],
-        PULLED,
-        ("contact.overtravel", CRITICAL),
-    ],
-    &[BESIDE, ("parallel.offset", 1e-5), ("beam.file", 2.0)],
-    &[
-        BESIDE,
-        PULLED,
-        ALL_COUNT,
-        ("effects.contactLaw", 4.0),
-        ("effects.axialForce", 4.0),
-        ("beam.axialForce", 1.0),
-        ("chatter.resistanceThreshold", CRITICAL),
-    ],
-    &[
-        BESIDE,
-        ("parallel.damping", 1e-6),
-        ("parallel.curvatureRadius", 5.0),
-        ("solver.tolerance", 1e-9),
-        ("beam.stiffnessDamping", 3e-6),
-    ],
-    &[BESIDE, PRESSED, OPEN, PULLED, ("pusher.displacement", 3e-4), ON_SPRING],
-    &[BESIDE, MOVED, OPEN, PULLED, ON_SPRING, ("effects.contactLaw", 4.0)],
-    &[
-        BESIDE,
-        PULLED,
-        ("parallel.offset", -1e-5),
-        ("contact.overtravel", CRITICAL),
-        ("effects.contactLaw", 4.0),
-    ],
-    &[
-        BESIDE,
-        MOVED,
-        FLOATING[0],
-        FLOATING[1],
-        FLOATING[2],
-        PULLED,
-        ("effects.axialForce", 4.0),
-        ("beam.axialForce", 1.0),
-        ("contact.overtravel", CRITICAL),
-    ],
-    // Half of the force has a resistance just above.
-    &[BESIDE, ALL_COUNT, ("chatter.resistanceThreshold", 0.085)],
-    &[
-        BESIDE,
-        ALL_COUNT,
-        ("effects.contactLaw", 4.0),
-        ("chatter.resistanceThreshold", 0.085),
-    ],
-    // The parallel contact holds the first open; a softer one would not.
-    &[BESIDE, ("parallel.offset", -2e-7)],
-    &[BESIDE, PRESSED, PULLED, ("pusher.displacement", CRITICAL)],
-    &[
-        BESIDE,
-        PRESSED,
-        PULLED,
-        ("effects.contactLaw", 4.0),
-        ("pusher.displacement", CRITICAL),
-    ],
-    &[BESIDE, MOVED, PULLED, ("coil.relativeCurrent", 0.2), OPEN],
-    &[
-        BESIDE,
-        ON_SPRING,
-        ("parallel.offset", -1e-3),
-        ("contact.overtravel", 1e-5),
-        ("effects.contactLaw", 4.0),
-    ],
-];
-const BESIDE: (&str, f64) = ("effects.parallelContact", 1.0);
-/// Between its stops.
-const FLOATING: [(&str, f64); 3] = [
-    ("armature.corePosition", 1e-3),
-    ("armature.gapConstant", 1e-3),
-    ("armature.returnForce", 0.0),
-];
-const MOVED: (&str, f64) = ("effects.pusher", 3.0);
-const PRESSED: (&str, f64) = ("effects.pusher", 2.0);
-const OPEN: (&str, f64) = ("contact.overtravel", -1e-4);
-const ON_SPRING: (&str, f64) = ("fixed.file", 1.0);
-const SECOND: (&str, f64) = ("effects.secondContact", 1.0);
-const RUBBING: (&str, f64) = ("effects.friction", 2.0);
-const CRITICAL: f64 = f64::NAN;
-const PULLED: (&str, f64) = ("environment.gravity", -9.81);
-const ALL_COUNT: (&str, f64) = ("chatter.minimumDuration", 0.0);
+/// Scenes in which every known that matters at all matters somewhere: the start values with these changes. A threshold that
+/// is critical is the resistance at rest; an overtravel or a pusher that is critical closes the contact or touches without
+/// force.
+const SCENES: &str = "\
+PLAIN
+effects.axialForce=2
+effects.axialForce=3
+effects.axialForce=3 solver.modes=5
+effects.axialForce=4
+solver.tolerance=1e-9 beam.stiffnessDamping=3e-6
+effects.contactLaw=2 solver.tolerance=1e-3
+effects.contactLaw=3 effects.contactDamping=0
+effects.contactLaw=4
+effects.contactLaw=4 effects.friction=2 friction.initial=0.5
+PULLED ALL_COUNT effects.contactLaw=4 chatter.resistanceThreshold=critical
+effects.contactLaw=4 effects.secondContact=1 second.stiffness=1e7
+environment.gravity=9.81 effects.axialForce=3
+PULLED contact.overtravel=critical
+PULLED effects.axialForce=4 beam.axialForce=2 contact.overtravel=critical
+PULLED ALL_COUNT effects.axialForce=4 chatter.resistanceThreshold=critical
+PULLED ALL_COUNT effects.resistance=2 chatter.resistanceThreshold=critical
+contact.overtravel=-2e-5 support.displacement=1e-4
+ALL_COUNT contact.overtravel=-2e-5
+resistance.film=0.1 contact.current=100
+resistance.film=100 contact.current=-1
+effects.resistance=3 effects.chatter=0
+effects.heating=0 effects.extremes=0
+effects.excitation=2 effects.energy=1
+effects.excitation=5 beam.massDamping=100
+SECOND second.curvatureRadius=5 effects.axialForce=3
+SECOND second.curvatureRadius=5 second.damping=1e-6 beam.stiffnessDamping=3e-6
+SECOND effects.extremes=0 effects.chatter=0
+RUBBING ALL_COUNT effects.axialForce=4 chatter.resistanceThreshold=critical
+RUBBING PULLED effects.axialForce=4
+RUBBING solver.tolerance=1e-9 beam.stiffnessDamping=3e-6
+ON_SPRING RUBBING PULLED ALL_COUNT effects.axialForce=4 beam.axialForce=1 chatter.resistanceThreshold=critical
+ON_SPRING effects.contactLaw=4 solver.tolerance=1e-9 fixed.stiffnessDamping=3e-6
+ON_SPRING PULLED contact.overtravel=critical
+PRESSED OPEN pusher.displacement=3e-4 RUBBING PULLED ALL_COUNT effects.axialForce=4 beam.axialForce=1 \
+    chatter.resistanceThreshold=critical
+PRESSED OPEN pusher.displacement=3e-4 ON_SPRING solver.tolerance=1e-9
+PRESSED pusher.stiffness=1e9 pusher.damping=1e3 solver.tolerance=1e-9 beam.stiffnessDamping=3e-6
+PRESSED PULLED pusher.displacement=1e-5 contact.overtravel=critical
+PRESSED PULLED RUBBING effects.axialForce=4 beam.axialForce=1 pusher.displacement=critical
+PRESSED PULLED ON_SPRING effects.contactLaw=4 pusher.displacement=critical
+PRESSED OPEN PULLED pusher.displacement=critical
+MOVED OPEN
+MOVED OPEN PULLED RUBBING ALL_COUNT effects.axialForce=4 beam.axialForce=1 chatter.resistanceThreshold=critical
+MOVED OPEN coil.relativeCurrent=0
+MOVED OPEN ON_SPRING PULLED effects.contactLaw=4
+MOVED OPEN FLOATING RUBBING ALL_COUNT chatter.resistanceThreshold=critical
+MOVED OPEN FLOATING PULLED effects.axialForce=1
+MOVED OPEN armature.holdForce=2 FLOATING ON_SPRING
+MOVED OPEN PULLED coil.relativeCurrent=0 armature.mass=0.5 armature.restPosition=-1e-5 armature.corePosition=1e-3
+MOVED FLOATING PULLED contact.overtravel=critical
+BESIDE parallel.offset=1e-5 beam.file=2
+BESIDE PULLED ALL_COUNT effects.contactLaw=4 effects.axialForce=4 beam.axialForce=1 chatter.resistanceThreshold=critical
+BESIDE parallel.damping=1e-6 parallel.curvatureRadius=5 solver.tolerance=1e-9 beam.stiffnessDamping=3e-6
+BESIDE PRESSED OPEN PULLED pusher.displacement=3e-4 ON_SPRING
+BESIDE MOVED OPEN PULLED ON_SPRING effects.contactLaw=4
+BESIDE PULLED parallel.offset=-1e-5 contact.overtravel=critical effects.contactLaw=4
+BESIDE MOVED FLOATING PULLED effects.axialForce=4 beam.axialForce=1 contact.overtravel=critical
+# Half of the force has a resistance just above.
+BESIDE ALL_COUNT chatter.resistanceThreshold=0.085
+BESIDE ALL_COUNT effects.contactLaw=4 chatter.resistanceThreshold=0.085
+# The parallel contact holds the first open; a softer one would not.
+BESIDE parallel.offset=-2e-7
+BESIDE PRESSED PULLED pusher.displacement=critical
+BESIDE PRESSED PULLED effects.contactLaw=4 pusher.displacement=critical
+BESIDE MOVED PULLED coil.relativeCurrent=0.2 OPEN
+BESIDE ON_SPRING parallel.offset=-1e-3 contact.overtravel=1e-5 effects.contactLaw=4
+";
+
+/// The scenes, each with its changes.
+fn scenes() -> Vec<Values> {
+    let lines = SCENES.lines().filter(|line| !line.starts_with('#'));
+    lines.map(|line| values(ALWAYS).chain(values(line)).collect()).collect()
+}
+
+/// The values in a text, a critical one as no number.
+fn values(text: &'static str) -> impl Iterator<Item = (&'static str, f64)> {
+    let changes = text.split_whitespace().flat_map(|word| {
+        let shared = SHARED.iter().find(|(name, _)| *name == word);
+        shared.map_or(word, |(_, changes)| changes).split_whitespace()
+    });
+    changes.map(|change| {
+        let (name, value) = change.split_once('=').unwrap();
+        let critical = value == "critical";
+        (name, if critical { f64::NAN } else { value.parse().unwrap() })
+    })
+}
 
 /// What is known at initialisation.
 #[derive(Clone)]
@@ -327,7 +159,7 @@ impl Known {
     }
 
     /// These values, critical ones for those set so far.
-    fn with(values: impl Iterator<Item = &'static (&'static str, f64)>) -> Self {
+    fn with(values: &Values) -> Self {
         let (scene, inputs) = (Scene::default(), Inputs::default());
         let mut known = Self { scene, inputs };
         for &(name, value) in values {
@@ -415,10 +247,10 @@ fn declared() -> Pairs {
 }
 
 /// Unknowns that change with a known, in these scenes.
-fn moved_in(scenes: impl Iterator<Item = &'static Values>) -> Pairs {
+fn moved_in(scenes: impl Iterator<Item = Values>) -> Pairs {
     let mut found = Pairs::new();
     for values in scenes {
-        let base = Known::with(ALWAYS.iter().chain(*values));
+        let base = Known::with(&values);
         let before = base.unknowns().unwrap_or_else(|| panic!("{values:?} do not fit"));
         for known in &VARIABLES {
             for other in base.others(known) {
@@ -438,7 +270,7 @@ fn moved_in(scenes: impl Iterator<Item = &'static Values>) -> Pairs {
 fn initial_unknowns_depend_on_what_the_description_says() {
     // On both processors: springs of segments take their time to begin.
     let found: Pairs = thread::scope(|scope| {
-        let threads = [0, 1].map(|first| scope.spawn(move || moved_in(SCENES.iter().skip(first).step_by(2))));
+        let threads = [0, 1].map(|first| scope.spawn(move || moved_in(scenes().into_iter().skip(first).step_by(2))));
         threads.into_iter().flat_map(|thread| thread.join().unwrap()).collect()
     });
     let declared = declared();
