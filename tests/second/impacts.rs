@@ -1,10 +1,10 @@
-//! Impacts between two stops, against closed forms and another integrator.
+//! Impacts between two stops, against closed forms.
 
 use relay_contact::inputs::Inputs;
-use relay_contact::reference::{Generator, Law, Mode, Model};
+use relay_contact::reference::{Law, Model};
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{ExcitationKind, RealOutput};
+use relay_contact::variables::RealOutput;
 use testing::rig::{Rig, oscillator};
 
 use super::changeover;
@@ -63,120 +63,6 @@ fn a_mass_between_two_stops() {
             touch += durations[side] + between;
             assert_eq!(to(touch - 0.5 * between), [0.0, 0.0], "{tolerance}, impact {impact}");
         }
-    }
-}
-
-/// Forces of both contacts every 10 us, by the classical Runge-Kutta method with steps of `h` (s).
-fn by_runge_kutta(scene: &Scene, inputs: impl Fn(f64) -> Inputs, end: u32, h: f64) -> Vec<[f64; 2]> {
-    let model = Model::new(scene, 0.0).unwrap();
-    let generator = Generator::new(scene).unwrap();
-    let [first, second] = laws(scene, &model);
-    let preload = model.preload();
-    let law = |(coefficient, damping): (f64, f64), d: f64, rate: f64| {
-        let root = coefficient * d.max(0.0).sqrt();
-        (root * (d + 1.5 * damping * rate)).max(0.0)
-    };
-    let modes: &[Mode] = model.modes();
-    let forces = |t: f64, y: &[[f64; 2]]| {
-        let driven = inputs(t);
-        let (mut d, mut rate) = (driven.support_displacement, driven.support_displacement_rate);
-        for (mode, [q, v]) in modes.iter().zip(y) {
-            d -= mode.tip * q;
-            rate -= mode.tip * v;
-        }
-        let e = driven.second_displacement - scene.second.gap - d;
-        let second = law(second, e, driven.second_displacement_rate - rate);
-        [law(first, preload.indentation + d, rate), second]
-    };
-    let slopes = |t: f64, y: &[[f64; 2]]| -> Vec<[f64; 2]> {
-        let [first, second] = forces(t, y);
-        let base = inputs(t).base_acceleration + generator.acceleration(t);
-        let slope = |(mode, [q, v]): (&Mode, &[f64; 2])| {
-            let load = mode.tip * (first - second - preload.force) - mode.participation * base;
-            [*v, load - mode.damping * v - mode.omega_squared * q]
-        };
-        modes.iter().zip(y).map(slope).collect()
-    };
-    let moved = |y: &[[f64; 2]], k: &[[f64; 2]], h: f64| -> Vec<[f64; 2]> {
-        y.iter()
-            .zip(k)
-            .map(|(y, k)| [y[0] + h * k[0], y[1] + h * k[1]])
-            .collect()
-    };
-    let mut y = vec![[0.0; 2]; modes.len()];
-    let every = (1e-5 / h).round();
-    let mut course = Vec::new();
-    for point in 0..end {
-        let start = f64::from(point) * 1e-5;
-        let mut part = 0.0;
-        while part < every {
-            let t = start + part * h;
-            let a = slopes(t, &y);
-            let b = slopes(t + 0.5 * h, &moved(&y, &a, 0.5 * h));
-            let c = slopes(t + 0.5 * h, &moved(&y, &b, 0.5 * h));
-            let d = slopes(t + h, &moved(&y, &c, h));
-            for (k, share) in [(a, 1.0), (b, 2.0), (c, 2.0), (d, 1.0)] {
-                y = moved(&y, &k, share * h / 6.0);
-            }
-            part += 1.0;
-        }
-        course.push(forces(start + 1e-5, &y));
-    }
-    course
-}
-
-/// Points of time, 10 us apart.
-const ROWS: u32 = 200;
-
-/// The spring between two contacts of different radius and damping, both moving, against the classical Runge-Kutta method
-/// on the same modes, whose own error is seen from steps of twice the length.
-#[test]
-fn a_spring_between_two_contacts() {
-    for (kind, second_rate) in [(ExcitationKind::Sine, 0.0), (ExcitationKind::Random, 2e-3)] {
-        let mut scene = changeover(1e-5);
-        scene.effects.excitation = kind;
-        scene.excitation.amplitude = 250.0;
-        scene.excitation.frequency = 500.0;
-        scene.excitation.end_frequency = 1500.0;
-        scene.excitation.spectral_density = 60.0;
-        scene.environment.gravity = 9.81;
-        scene.effects.axial_force = relay_contact::variables::AxialForceKind::None;
-        scene.second.curvature_radius = 2e-3;
-        scene.second.damping = 4e-6;
-        scene.solver.modes = 4;
-        scene.solver.tolerance = 1e-5;
-        let inputs = |time: f64| Inputs {
-            support_displacement: 1e-3 * time,
-            support_displacement_rate: 1e-3,
-            second_displacement: second_rate * time,
-            second_displacement_rate: second_rate,
-            ..Inputs::default()
-        };
-        let [fine, coarse] = [2e-8, 4e-8].map(|h| by_runge_kutta(&scene, inputs, ROWS, h));
-        let mut simulation = Simulation::new(&scene, &inputs(0.0), 0.0).unwrap();
-        let mut scale = simulation.model().force_scale();
-        let (mut closed, mut error, mut unsure) = ([0, 0], 0.0_f64, 0.0_f64);
-        for (row, (fine, coarse)) in fine.iter().zip(&coarse).enumerate() {
-            let time = simulation.time();
-            simulation
-                .step(&inputs(time), time, 1e-5 * (row as f64 + 1.0) - time)
-                .unwrap();
-            let found = [RealOutput::ContactForce, RealOutput::SecondForce].map(|output| simulation.real(output));
-            for n in 0..2 {
-                closed[n] += u32::from(found[n] > 0.0);
-                scale = scale.max(found[n]);
-                error = error.max((found[n] - fine[n]).abs() / scale);
-                unsure = unsure.max((fine[n] - coarse[n]).abs() / scale);
-            }
-        }
-        println!("{kind:?}: {error:e}, reference {unsure:e}, closed at {closed:?} of {ROWS} points");
-        assert!(closed.iter().all(|closed| *closed > 10), "{kind:?}: {closed:?}");
-        // A method of first order at each impact is wrong by as much as it changes from twice the step.
-        assert!(
-            error <= scene.solver.tolerance + unsure,
-            "{kind:?}: {error:e}, {unsure:e}"
-        );
-        assert!(unsure < 1e-4, "{kind:?}: the reference is wrong by {unsure:e}");
     }
 }
 

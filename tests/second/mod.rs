@@ -1,7 +1,7 @@
-//! The second contact of a changeover relay: its mirror image, its absence, and solutions of its own.
+//! The second contact of a changeover relay: its mirror image, its absence, and solutions of its own. Its motion, its false
+//! makes and the smallest gap are compared with another solution in `tests/python/test_second_contact.py`.
 
 mod impacts;
-mod monitor;
 mod refused;
 
 use std::path::Path;
@@ -151,62 +151,6 @@ fn a_far_second_contact_changes_nothing() {
     }
 }
 
-/// Every way of asking gives the same motion: inside steps of the integrator, at their ends, from a saved state.
-#[test]
-fn the_communication_steps_do_not_matter() {
-    let mut scene = changeover(2e-5);
-    scene.effects.excitation = ExcitationKind::Sine;
-    scene.excitation.amplitude = 150.0;
-    scene.excitation.frequency = 400.0;
-    scene.solver.tolerance = 1e-8;
-    // Both fixed contacts move, the second also by itself.
-    let at = |time: f64| Inputs {
-        support_displacement: 1e-3 * time,
-        support_displacement_rate: 1e-3,
-        second_displacement: -5e-4 * time,
-        second_displacement_rate: -5e-4,
-        ..Inputs::default()
-    };
-    let run = |per_row: u32, saved: bool| {
-        let size = 1e-4 / f64::from(per_row);
-        let mut simulation = Simulation::new(&scene, &at(0.0), 0.0).unwrap();
-        let mut courses = Vec::new();
-
-        for row in 0..60 {
-            for part in 0..per_row {
-                let time = f64::from(row) * 1e-4 + f64::from(part) * size;
-                simulation.step(&at(time), time, size).unwrap();
-            }
-            if saved {
-                let motion = *simulation.motion();
-                simulation =
-                    Simulation::resume(&scene, &relay_contact::reference::Initial::default(), &motion).unwrap();
-            }
-            courses.push([RealOutput::ContactForce, RealOutput::SecondForce].map(|output| simulation.real(output)));
-        }
-        courses
-    };
-    let whole = run(1, false);
-    assert_eq!(whole, run(1, true), "a saved state does not go on with the same bits");
-    let scale = Simulation::new(&scene, &at(0.0), 0.0).unwrap().model().force_scale();
-    let largest = |n: usize| whole.iter().map(|row| row[n]).fold(0.0, f64::max);
-    assert!(
-        largest(0) > 0.01 && largest(1) > 0.01,
-        "{} N, {} N",
-        largest(0),
-        largest(1)
-    );
-    for per_row in [5, 100] {
-        for (k, (a, b)) in whole.iter().zip(&run(per_row, false)).enumerate() {
-            for (a, b) in a.iter().zip(b) {
-                // Each is right to the tolerance of the largest force so far.
-                let allowed = 2.0 * scene.solver.tolerance * scale.max(largest(0)).max(largest(1));
-                assert!((a - b).abs() <= allowed, "{per_row} steps, row {k}: {a} N, {b} N");
-            }
-        }
-    }
-}
-
 /// The rate of an output of the second contact lies between the slopes just before and just after it, as those of the
 /// first do (`tests/derivatives.rs`).
 #[test]
@@ -299,4 +243,27 @@ fn a_changeover_relay_switches() {
     assert_eq!(makes[1000], makes[1500]);
     let last = makes.last().unwrap();
     assert!(last.iter().all(|makes| *makes > 2), "{last:?} makes: no bounces");
+}
+
+/// A contact that is closed at the start has not been made; each make after an interruption counts.
+#[test]
+fn a_closed_start_is_no_false_make() {
+    let mut scene = Scene::default();
+    scene.effects.excitation = ExcitationKind::Sine;
+    let run = |scene: &Scene| {
+        let mut simulation = Simulation::new(scene, &Inputs::default(), 0.0).unwrap();
+        simulation.step(&Inputs::default(), 0.0, 5e-3).unwrap();
+        let makes = simulation.integer(IntegerOutput::ChatterFalseMakes);
+        (simulation.integer(IntegerOutput::ChatterCount), makes)
+    };
+    assert_eq!(run(&scene), (0, 0));
+    scene.excitation.amplitude = 400.0;
+    let (interruptions, makes) = run(&scene);
+    assert!(
+        interruptions > 2 && (0..=1).contains(&(interruptions - makes)),
+        "{interruptions}, {makes}"
+    );
+    // The minimum duration is that of makes.
+    scene.second.minimum_duration = 1.0;
+    assert_eq!(run(&scene), (interruptions, 0));
 }
