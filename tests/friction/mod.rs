@@ -144,34 +144,6 @@ fn the_tolerance_is_kept_and_no_energy_is_made() {
     }
 }
 
-/// What is set back goes on with the same bits, wherever it was saved.
-#[test]
-fn saved_states_go_on_with_the_same_bits() {
-    for (amplitude, size) in [(98.0, 3e-6), (98.0, 4e-5), (400.0, 3e-6), (400.0, 4e-5)] {
-        let scene = rubbing(shaken(amplitude, 1000.0));
-        let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
-        let bits = |simulation: &Simulation| WATCHED.map(|output| simulation.real(output).to_bits());
-        for n in 0..40 {
-            let saved = *simulation.motion();
-            assert!(saved.is_sound());
-            let run = |simulation: &mut Simulation, steps: u32| {
-                (0..steps)
-                    .map(|_| {
-                        simulation.step(&Inputs::default(), simulation.time(), size).unwrap();
-                        bits(simulation)
-                    })
-                    .collect::<Vec<_>>()
-            };
-            let steps = 1 + 7 * n % 19;
-            let once = run(&mut simulation, steps);
-            let mut other = Simulation::resume(&scene, &relay_contact::reference::Initial::default(), &saved).unwrap();
-            assert_eq!(once, run(&mut other, steps));
-            simulation.go_on_from(&saved);
-            assert_eq!(once, run(&mut simulation, steps));
-        }
-    }
-}
-
 /// A derivative lies between the slopes just before and just after it.
 #[test]
 fn derivatives_are_the_slopes_of_the_courses() {
