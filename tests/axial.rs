@@ -1,6 +1,5 @@
-//! The axial force that follows the deflection at all times: its preload, its rest, and that results do not depend on how it
-//! is stepped. The force under vibration is compared with another solution in `tests/python/test_effects_mechanics.py` and
-//! `random_relays.py`.
+//! The axial force that follows the deflection at all times: its preload and its rest. The force under vibration is compared
+//! with another solution in `tests/python/test_effects_mechanics.py` and `random_relays.py`.
 
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
@@ -46,34 +45,6 @@ fn preload_is_that_of_the_constant_force() {
     assert_eq!(constant, following);
     // Of the published specimen, all digits given.
     assert!((following[0] - 0.151_980_6).abs() <= 0.5001e-7, "{}", following[0]);
-}
-
-#[test]
-fn result_does_not_depend_on_the_communication_step() {
-    let mut scene = bent();
-    scene.excitation.amplitude = 8e3;
-    scene.solver.modes = 0;
-    for tolerance in [1e-4, 1e-6, 1e-8] {
-        scene.solver.tolerance = tolerance;
-        let force = |size: f64, count: u32| -> Vec<f64> {
-            let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
-            let steps = (0..count).map(|k| {
-                simulation.step(&Inputs::default(), size * f64::from(k), size).unwrap();
-                simulation.real(RealOutput::ContactForce)
-            });
-            steps.collect()
-        };
-        let scale = force_scale(&scene);
-        let long = force(4e-4, 10);
-        for finer in [20, 400] {
-            let short = force(4e-4 / f64::from(finer), 10 * finer);
-            let ends = short.iter().skip(finer as usize - 1).step_by(finer as usize);
-            for (a, b) in long.iter().zip(ends) {
-                // Each is within the tolerance of the truth.
-                assert!((a - b).abs() <= 2.0 * tolerance * scale, "{a} {b} at {tolerance:e}");
-            }
-        }
-    }
 }
 
 #[test]

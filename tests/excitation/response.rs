@@ -3,58 +3,11 @@
 use relay_contact::inputs::Inputs;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ContactLawKind, ExcitationKind, IntegerOutput, RealOutput};
-use testing::scenes::{at_rest, force_scale, propped_mass};
+use testing::scenes::force_scale;
 
 use super::{
-    G, closed_form, equal_steps, every_waveform, excited, forces, generator, half_sine, limited, phased, random, sweep,
-    undriven,
+    G, closed_form, equal_steps, every_waveform, forces, generator, half_sine, limited, random, sweep, undriven,
 };
-
-/// Slow against the spring, the force follows the inertia of a propped cantilever. Bonded, so that it may also pull.
-#[test]
-fn a_slow_acceleration_acts_through_its_mass() {
-    let slow = [
-        phased(excited(ExcitationKind::Sine, 0.01), 0.5),
-        limited(excited(ExcitationKind::Sine, 0.01), 0.02),
-        half_sine(0.01, 98.0, 0.2),
-        sweep(0.01, 2.0, 20.0, 0.3),
-        limited(sweep(0.01, 20.0, 2.0, 0.3), 0.02),
-        random(0.01, 1.0, 20.0, 100.0),
-    ];
-    for law in [
-        ContactLawKind::Bonded,
-        ContactLawKind::Linearised,
-        ContactLawKind::Hertz,
-    ] {
-        for mut scene in slow.clone() {
-            scene.effects.contact_law = law;
-            if scene.effects.excitation == ExcitationKind::Sine {
-                scene.excitation.frequency = 10.0;
-            }
-            let mass = propped_mass(&scene);
-            let preload = at_rest(&scene, RealOutput::PreloadForce);
-            let times = equal_steps(5.1e-3, 70);
-            let (forces, _) = forces(&scene, &times, undriven);
-            let expected: Vec<f64> = times.iter().map(|t| mass * closed_form(&scene, *t)).collect();
-            let largest = expected.iter().fold(0.0_f64, |largest, force| largest.max(force.abs()));
-            assert!(largest > 0.1 * preload, "{:?}: {largest}", scene.excitation);
-            let generator = generator(&scene);
-            for ((time, force), expected) in times.iter().zip(&forces).zip(&expected) {
-                // What a jump or a kink has set ringing dies out at 0.34 times 8500 1/s.
-                if generator.next_break(time - 5e-3).is_some_and(|corner| corner <= *time) {
-                    continue;
-                }
-                // The prop gives way by 1e-3 of the spring's stiffness, inertia by (20 / 1354)^2.
-                assert!(
-                    (force - preload - expected).abs() < 2e-3 * largest,
-                    "{law:?} {:?} at {time}: {} {expected}",
-                    scene.effects.excitation,
-                    force - preload
-                );
-            }
-        }
-    }
-}
 
 /// The same course from outside, in straight pieces, is wrong by the square of their length.
 #[test]
