@@ -77,14 +77,6 @@ fn run(mut program: Command, acceleration: &str, duration: &str, table: &str) ->
 }
 
 #[test]
-fn a_c_program_lives_a_full_life_with_two_instances() {
-    let ran = compiled("tests/c/life_cycle.c").output().unwrap();
-    let said = String::from_utf8_lossy(&ran.stdout);
-    assert!(ran.status.success(), "{said}{}", String::from_utf8_lossy(&ran.stderr));
-    assert!(said.contains("life cycle passed"), "{said}");
-}
-
-#[test]
 fn both_languages_give_the_same_numbers() {
     let rust = run(in_rust(), "400", "0.006", "embed-rust.csv");
     let c = run(compiled("examples/embed.c"), "400", "0.006", "embed-c.csv");

@@ -61,7 +61,7 @@ pub fn run() -> Result<()> {
     // Cargo builds the library beside the test.
     let library = campaign.with_file_name(format!("{DLL_PREFIX}relay_contact{DLL_SUFFIX}"));
     let trial = Trial::prepare(runner, "valgrind", &library)?;
-    print!("{}", trial.output("life_cycle", &["-lrelay_contact", "-lm"], &[])?);
+    print!("{}", trial.embedded()?);
     Ok(())
 }
 
