@@ -9,7 +9,13 @@ FMPy also hands over the velocity of the pusher, as the derivative of the contac
 moves on in a straight line, and only the force is late, by the step. libcosim hands over no derivatives of inputs: the
 pusher is late by a step, too. With --libcosim the coupled FMUs run there as well, and in FMPy without derivatives,
 which has to be the same. It needs libcosimpy, and the component with choices as numbers
-(`cargo xtask fmu --plain`). What a tool that is not a Python program needs for Actuator.fmu: two_fmus.py.
+(`cargo xtask fmu --plain`). Other tools couple the component by files: conformance/SystemStructure.ssd is a system for
+libcosim and Ecos.
+
+Actuator.fmu runs in the Python of the process that loads it and needs no packages: the FMU contains its part of
+PythonFMU. A tool that is not a Python program must load one: on Linux by LD_PRELOAD=libpython3.11.so.1.0 (the binary in
+the FMU is not linked to any), on Windows by python3.dll in the PATH. PythonFMU has binaries for 64-bit x86 Linux and
+Windows.
 
 Operate time: from switching on to the first touch. Bounce at make: from there to the last closing before switching off.
 Release time: from switching off to the first opening. Bounce at break: from there to the last opening.

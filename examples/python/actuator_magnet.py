@@ -1,6 +1,8 @@
 """The partner of the contact in actuator.py: a magnet whose coil is switched on and off, made an FMU by PythonFMU.
 
-The tool that loads the FMU runs this file, which PythonFMU packs together with magnet.py and fmu_slave.py.
+The tool that loads the FMU runs this file, which PythonFMU packs together with magnet.py and fmu_slave.py. They need
+only Python itself; a file that also imported FMPy, libcosim and matplotlib would make every user of the FMU install
+them.
 """
 
 import math

@@ -10,8 +10,6 @@ voltage q and the conductance G of the contact:
     v = (i + q / Rq) / (G + 1 / Rq)    contact voltage
     L di/dt = V - R i - v
     Rq Cq dq/dt = v - q
-
-Python alone is enough for this file: it is part of the FMU that two_fmus.py makes.
 """
 
 import cmath

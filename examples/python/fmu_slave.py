@@ -1,4 +1,4 @@
-"""Real variables with units, for the FMUs that PythonFMU makes of the examples: it packs this file with them."""
+"""Real variables with units, for the FMU that PythonFMU makes of an example: it packs this file with it."""
 
 from functools import partial
 from typing import Any
@@ -10,19 +10,14 @@ UNITS = {
     "V": {"kg": 1, "m": 2, "s": -3, "A": -1},
     "A": {"A": 1},
     "Ohm": {"kg": 1, "m": 2, "s": -3, "A": -2},
-    "S": {"kg": -1, "m": -2, "s": 3, "A": 2},
     "H": {"kg": 1, "m": 2, "s": -2, "A": -2},
-    "F": {"kg": -1, "m": -2, "s": 4, "A": 2},
     "s": {"s": 1},
     "m": {"m": 1},
     "kg": {"kg": 1},
     "m/s": {"m": 1, "s": -1},
-    "m/s2": {"m": 1, "s": -2},
     "N": {"kg": 1, "m": 1, "s": -2},
     "N/m": {"kg": 1, "s": -2},
     "N.s/m": {"kg": 1, "s": -1},
-    "Hz": {"s": -1},
-    "1": {},
 }
 Variables = list[tuple[str, str, float, str]]
 """Name, unit, start value, meaning of each."""
