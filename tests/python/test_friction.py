@@ -121,17 +121,6 @@ def test_the_motions_are_what_their_names_say() -> None:
     assert phases["opens"] == phases["shock"] == set(Phase)
 
 
-def test_without_a_coefficient_friction_changes_nothing() -> None:
-    found, _, reference = results("no friction")
-    values, stop = MOTIONS["no friction"]
-    without = run(Scene("", stop, STEP, OUTPUTS[:5], {**values, "effects.friction": "None"}, {})).columns
-    # Two runs, each right to the tolerance.
-    error = 2 * TOLERANCE * max(reference.force_scale, found["contact.force"].max())
-    assert np.max(np.abs(found["contact.force"] - without["contact.force"])) <= error
-    for output in OUTPUTS[1:5]:
-        assert (without[output] == 0).all()
-
-
 @pytest.mark.parametrize(
     "values",
     [
