@@ -2,8 +2,13 @@
 //!
 //! The problem of the literature on vibrating Hertzian contacts: P. R. Nayak, J. Sound Vib. 22 (1972) 297; J. Perret-Liaudet
 //! and E. Rigaud, J. Sound Vib. 265 (2003) 289 and 309; Q. Ma, A. Kahraman, J. Perret-Liaudet and E. Rigaud,
-//! doi:10.1115/1.2190230. Equation, units and digits are those of `tests/python/preloaded_contact.py`, which integrates
-//! nothing in time: harmonic balance, quadrature, and the stationary solution of the Fokker-Planck equation.
+//! doi:10.1115/1.2190230. For a force that follows any power p, in units of preload, stiffness at preload and mass:
+//!
+//! `y'' + 2 z y' + g(y, y') - 1 = s cos(w t)`, `g = max(0, u^p + 2 z_c u^(p - 1) y')` where `u = 1 + y/p > 0`, else 0
+//!
+//! The digits are of methods that integrate nothing in time: a balance of 240 harmonics, each evaluated at 8192 samples of a
+//! period; the quadrature `T = 2 int dy / v(y)` of the free motion; and under white noise the stationary solution of the
+//! Fokker-Planck equation, a density proportional to `exp(-(v^2/2 + V(y)) / heat)`.
 
 use std::f64::consts::TAU;
 
