@@ -11,8 +11,8 @@ import pytest
 from fmpy import simulate_fmu
 from fmpy.ssp.ssd import read_ssd
 
-from component import COMPONENT, FMU, PLAIN, ROOT, Instance, run
-from relay_contact import Component, Values, read_table
+from component import COMPONENT, FMU, ROOT, Instance, run
+from relay_contact import Values, read_table
 from results import FOLDER, STEP, SYSTEM, TOLERANCE, compare, published, record, staircase
 
 
@@ -33,29 +33,6 @@ def test_the_system_of_two_instances_follows_the_schema_of_ssp() -> None:
     system = read_ssd(str(SYSTEM), validate=True).system
     assert [element.name for element in system.elements] == ["first", "second"]
     record("FMPy", fmpy.__version__, "SSP description")
-
-
-def values(instance: Instance) -> dict[str, float]:
-    """Give the values of all variables that are numbers."""
-    variables = instance.component.variables.items()
-    return {name: instance.get(name) for name, variable in variables if variable.type != "String"}
-
-
-def test_all_variables_can_be_read_in_initialization_mode() -> None:
-    with Instance() as instance:
-        instance.set("effects.excitation", "Sine")
-        instance.fmu.setupExperiment(startTime=0.0)
-        instance.fmu.enterInitializationMode()
-        before = values(instance)
-        # An input set after the look counts.
-        instance.set("support.displacement", 1e-5)
-        closer = values(instance)
-        instance.fmu.exitInitializationMode()
-        after = values(instance)
-    assert all(math.isfinite(value) for value in before.values())
-    assert closer == after
-    assert closer["contact.force"] > before["contact.force"] > 0.1
-    assert instance.messages == []
 
 
 def test_a_folder_with_spaces_and_letters_beyond_ascii(tmp_path: Path) -> None:
@@ -110,22 +87,6 @@ def test_no_stop_time() -> None:
     with_stop = simulate_fmu(str(FMU), **settings)
     without = simulate_fmu(str(FMU), set_stop_time=False, **settings)
     assert np.array_equal(with_stop, without)
-
-
-def test_a_host_that_knows_reals_alone() -> None:
-    """As PathSim and CoFMUPy do: every output is read, every parameter set, by the functions for Reals."""
-    component = Component(PLAIN)
-    names = [name for name, variable in component.variables.items() if variable.causality == "output"]
-    typed: Values = {"effects.excitation": "Sine", "excitation.amplitude": 400.0, "effects.energy": True}
-    plain: Values = {"effects.excitation": 2.0, "excitation.amplitude": 400.0, "effects.energy": 1.0}
-    closed = set()
-    with COMPONENT.started(typed) as expected, component.started(plain) as contact:
-        for step in range(150):
-            for each in (expected, contact):
-                each.step(step * STEP, STEP)
-            closed |= set(contact.real("contact.closed"))
-            assert contact.real(*names) == [expected.get(name) for name in names]
-    assert closed == {0.0, 1.0}
 
 
 def test_a_communication_point_at_every_event() -> None:

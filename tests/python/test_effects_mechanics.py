@@ -80,18 +80,6 @@ def test_the_force_of_a_law_under_vibration_until_the_contact_closes_again(law: 
     assert np.max(np.abs(result["contact.force"] - expected)) <= tolerance * reference.force_scale
 
 
-def test_laws_and_damping_are_told_apart_by_more_than_the_tolerance() -> None:
-    choices: list[Values] = [
-        {"effects.contactLaw": law, "effects.contactDamping": damping} for law in LAWS for damping in (True, False)
-    ]
-    forces = [
-        run(shaken({**NO_AXIAL, **c}, 400.0, 1e-7), 1.06e-3, 1e-5, ["contact.force"])["contact.force"] for c in choices
-    ]
-    for n, force in enumerate(forces):
-        for other in forces[:n]:
-            assert np.max(np.abs(force - other)) > 1e-5
-
-
 def test_contact_damping_adds_its_force_to_the_elastic_one() -> None:
     tolerance = 1e-8
     output = ["contact.force", "contact.indentation", "tip.velocity"]

@@ -4,9 +4,8 @@ from math import pi
 
 import numpy as np
 import pytest
-from fmpy.fmi1 import FMICallException
 
-from component import Instance, run
+from component import run
 from reference import Reference, crossings
 from relay_contact import Array, Scene, Values
 from relay_contact import run as run_scene
@@ -76,14 +75,6 @@ def test_without_resistance_its_outputs_are_zero_and_the_motion_is_the_same() ->
     for kind in ("PowerLaw", "Holm", "Barber"):
         values: Values = {"effects.resistance": kind, "effects.heating": True, "contact.current": 0.1}
         assert (run({**PRESSED, **values}, 2e-3, 1e-5, output)["contact.force"] == force).all()
-
-
-def test_interruptions_need_a_resistance() -> None:
-    with Instance() as instance:
-        instance.set("effects.resistance", "None")
-        with pytest.raises(FMICallException):
-            instance.initialise()
-        assert any("effects.chatter" in message for message in instance.messages)
 
 
 @pytest.mark.parametrize(("current", "melts"), [(-0.05, "never"), (3.0, "sometimes"), (30.0, "always")])
