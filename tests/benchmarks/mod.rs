@@ -3,7 +3,6 @@
 //! A contact force wrong by `e` (N) for a time `t` moves a free mass `m` by at most `e t^2 / (2 m)` and its velocity by
 //! `e t / m`: from this and the tolerance asked follow the tolerances here.
 
-mod energy;
 mod forced_shock;
 mod hertz_impact;
 mod linear_scene;
