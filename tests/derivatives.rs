@@ -6,52 +6,9 @@ use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ContactLawKind, RealOutput};
-use testing::scenes::{check_slope, force_scale, largest_difference, propped_mass, shaken};
+use testing::scenes::{NEAR, check_slope, force_scale, propped_mass, range, shaken, threes};
 
 const FREQUENCY: f64 = 1000.0;
-
-/// Forces every 100 us of 2 ms, with communication steps of `step` us.
-fn forces(scene: &Scene, step: u32, inputs: impl Fn(f64) -> Inputs) -> Vec<f64> {
-    let every = 100 / step;
-    let mut simulation = Simulation::new(scene, &inputs(0.0), 0.0).unwrap();
-    let steps = 20 * every;
-    let mut forces = Vec::new();
-    for k in 0..steps {
-        let time = 1e-6 * f64::from(k * step);
-        simulation.step(&inputs(time), time, 1e-6 * f64::from(step)).unwrap();
-        if (k + 1).is_multiple_of(every) {
-            forces.push(simulation.real(RealOutput::ContactForce));
-        }
-    }
-    forces
-}
-
-/// The sine from outside is that of the generator, wrong by the square of the step where its derivative comes with it and by
-/// the step where it does not. At 98 m/s2 the contact stays closed, at 400 it opens twice in the run.
-#[test]
-fn a_sine_from_outside_converges_to_the_generators() {
-    for amplitude in [98.0, 400.0] {
-        let mut scene = Scene::default();
-        scene.solver.tolerance = 1e-9;
-        let held = |time: f64| Inputs {
-            base_acceleration: amplitude * (TAU * FREQUENCY * time).sin(),
-            ..Inputs::default()
-        };
-        let linear = |time: f64| Inputs {
-            base_acceleration_rate: amplitude * TAU * FREQUENCY * (TAU * FREQUENCY * time).cos(),
-            ..held(time)
-        };
-        let mut generated = shaken(amplitude, FREQUENCY);
-        generated.solver.tolerance = scene.solver.tolerance;
-        let exact = forces(&generated, 100, |_| Inputs::default());
-        for (inputs, order) in [(&held as &dyn Fn(f64) -> Inputs, 1), (&linear, 2)] {
-            let errors = [2, 1].map(|step| largest_difference(&forces(&scene, step, inputs), &exact));
-            let reached = (errors[0] / errors[1]).log2();
-            println!("{amplitude} m/s2, order {order}: {errors:?} N, {reached:.2}");
-            assert!((reached - f64::from(order)).abs() < 0.15, "{errors:?}");
-        }
-    }
-}
 
 /// However a ramp is cut into communication steps, it is the same ramp.
 #[test]
@@ -199,7 +156,6 @@ const CONTINUOUS: [RealOutput; 8] = [
 #[test]
 fn derivatives_of_outputs_are_the_slopes_of_their_courses() {
     const TOLERANCE: f64 = 1e-9;
-    const NEAR: f64 = 1e-7;
     for law in [
         ContactLawKind::Hertz,
         ContactLawKind::Rough,
@@ -214,15 +170,7 @@ fn derivatives_of_outputs_are_the_slopes_of_their_courses() {
                 contact_current: 0.1,
                 ..Inputs::default()
             };
-            let mut simulation = Simulation::new(&scene, &inputs, 0.0).unwrap();
-            let mut rows = Vec::new();
-            while simulation.time() < 2e-3 {
-                let [before, now, after] = [size - 2.0 * NEAR, NEAR, NEAR].map(|step| {
-                    simulation.step(&inputs, simulation.time(), step).unwrap();
-                    CONTINUOUS.map(|output| (simulation.real(output), simulation.rate(output).unwrap()))
-                });
-                rows.push([before, now, after]);
-            }
+            let rows = threes(&scene, &inputs, CONTINUOUS, size);
             for (n, output) in CONTINUOUS.into_iter().enumerate() {
                 // Where the contact opens these jump: to what `resistance.open` says, which the conductance tells too; or to
                 // zero, as the force without damping is not zero yet.
@@ -233,22 +181,24 @@ fn derivatives_of_outputs_are_the_slopes_of_their_courses() {
                 if jumps && amplitude > 98.0 {
                     continue;
                 }
-                let values = || rows.iter().map(|[_, now, _]| now[n].0);
-                let range = values().fold(f64::MIN, f64::max) - values().fold(f64::MAX, f64::min);
-                let noise = 2.0 * TOLERANCE * range / NEAR;
+                let noise = 2.0 * TOLERANCE * range(&rows, n) / NEAR;
                 let steepest = rows.iter().map(|[_, now, _]| now[n].1.abs()).fold(0.0, f64::max);
                 assert!(
                     steepest > 100.0 * noise,
                     "{output:?}: nothing to be seen above {noise:e}"
                 );
-                for [before, now, after] in &rows {
+                for row in &rows {
+                    let [before, _, after] = row;
                     // Steepest at no force, where the contact opens or closes between the three.
                     if output == RealOutput::ContactConductance && before[0].0.min(after[0].0) <= 0.0 {
                         continue;
                     }
-                    let values = [before[n].0, now[n].0, after[n].0];
-                    let case = format!("{law:?}, {amplitude} m/s2, {size} s, {output:?}");
-                    check_slope(values, NEAR, noise, now[n].1, &case);
+                    check_slope(
+                        row,
+                        n,
+                        noise,
+                        &format!("{law:?}, {amplitude} m/s2, {size} s, {output:?}"),
+                    );
                 }
             }
         }

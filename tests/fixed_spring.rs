@@ -6,30 +6,22 @@ use std::sync::Arc;
 use relay_contact::inputs::Inputs;
 use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
-use relay_contact::scene::spring::{Segment, Segments, Shape, SpringFile};
+use relay_contact::scene::spring::{Segments, Shape};
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{AxialForceKind, RealOutput};
 use testing::rig::Rig;
 use testing::scenes::shaken;
+use testing::springs::{segment, spring_file};
 
 /// The scene with a uniform fixed spring of this width and thickness over those of the moving one.
 fn on_spring(mut scene: Scene, width: f64, thickness: f64) -> Scene {
     let beam = &scene.beam;
-    let segment = Segment {
-        length: beam.length,
-        width: [width * beam.width; 2],
-        thickness: [thickness * beam.thickness; 2],
-        youngs_modulus: None,
-        density: None,
-    };
+    let whole = segment(beam.length, [width * beam.width; 2], [thickness * beam.thickness; 2]);
     let segments = Segments {
-        segments: vec![segment],
+        segments: vec![whole],
         ..Segments::default()
     };
-    scene.fixed_spring = Some(Arc::new(SpringFile {
-        name: "fixed.toml".to_owned(),
-        shape: Shape::Segments(segments),
-    }));
+    scene.fixed_spring = spring_file("fixed.toml", Shape::Segments(segments));
     scene
 }
 
@@ -97,21 +89,17 @@ fn two_equal_springs_struck_in_opposite_ways_are_one_against_a_rigid_wall() {
 }
 
 /// The scene with a short fixed spring that is so many times stiffer than the moving one.
-fn stiffer(mut scene: Scene, times: f64) -> Scene {
-    let beam = &scene.beam;
+fn stiffer(scene: Scene, times: f64) -> Scene {
     let (length, modulus) = (1e-3, 1e13);
-    let cube = times * beam.youngs_modulus / modulus * (length / beam.length).powi(3);
-    let file = on_spring(scene.clone(), 1.0, cube.cbrt()).fixed_spring.unwrap();
-    let Shape::Segments(mut segments) = file.shape.clone() else {
+    let cube = times * scene.beam.youngs_modulus / modulus * (length / scene.beam.length).powi(3);
+    let mut scene = on_spring(scene, 1.0, cube.cbrt());
+    let file = Arc::make_mut(scene.fixed_spring.as_mut().unwrap());
+    let Shape::Segments(segments) = &mut file.shape else {
         panic!("segments")
     };
     for segment in &mut segments.segments {
         (segment.length, segment.youngs_modulus) = (length, Some(modulus));
     }
-    scene.fixed_spring = Some(Arc::new(SpringFile {
-        name: file.name.clone(),
-        shape: Shape::Segments(segments),
-    }));
     scene
 }
 

@@ -1,17 +1,19 @@
 //! Contacts side by side: against one contact of twice the constant, by beam formulas, and what counts as interrupted.
 
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use relay_contact::error::SceneError;
 use relay_contact::inputs::Inputs;
 use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
-use relay_contact::scene::spring::{GivenMode, Modes, Segment, Segments, Shape, SpringFile};
+use relay_contact::scene::spring::{GivenMode, Modes, Segments, Shape};
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{
     AxialForceKind, BooleanOutput, ContactLawKind, FrictionKind, IntegerOutput, RealOutput,
 };
 use testing::scenes::{force_scale, shaken, tip_stiffness};
+use testing::springs::{mode, segment, spring_file};
 
 /// The scene with a parallel contact, equal to the first.
 fn pair(mut scene: Scene) -> Scene {
@@ -31,20 +33,11 @@ fn doubled(mut scene: Scene) -> Scene {
 fn forked(mut scene: Scene, share: f64) -> Scene {
     let beam = &scene.beam;
     let segments = Segments {
-        segments: vec![Segment {
-            length: beam.length,
-            width: [beam.width; 2],
-            thickness: [beam.thickness; 2],
-            youngs_modulus: None,
-            density: None,
-        }],
+        segments: vec![segment(beam.length, [beam.width; 2], [beam.thickness; 2])],
         fork_position: Some(share * beam.length),
         ..Segments::default()
     };
-    scene.spring = Some(Arc::new(SpringFile {
-        name: "forked.toml".to_owned(),
-        shape: Shape::Segments(segments),
-    }));
+    scene.spring = spring_file("forked.toml", Shape::Segments(segments));
     scene
 }
 
@@ -216,31 +209,18 @@ fn modes_of_a_forked_spring_are_that_spring() {
     scene.effects.axial_force = AxialForceKind::None;
     let model = Model::new(&scene, 0.0).unwrap();
     let mut given = scene.clone();
-    given.spring = Some(Arc::new(SpringFile {
-        name: "modes.toml".to_owned(),
-        shape: Shape::Modes(Modes {
-            // Of all modes: the same truncation on both sides.
-            compliance: model
-                .modes()
-                .iter()
-                .map(|mode| mode.tip.powi(2) / mode.omega_squared)
-                .sum(),
-            parallel_compliance: None,
-            modes: model
-                .modes()
-                .iter()
-                .map(|mode| GivenMode {
-                    frequency: mode.omega_squared.sqrt() / std::f64::consts::TAU,
-                    contact: mode.tip,
-                    participation: mode.participation,
-                    damping: None,
-                    rotation: None,
-                    pusher: None,
-                    parallel: Some(mode.parallel),
-                })
-                .collect(),
-        }),
-    }));
+    let own = model.modes().iter();
+    let modes = own.clone().map(|own| GivenMode {
+        parallel: Some(own.parallel),
+        ..mode(own.omega_squared.sqrt() / TAU, own.tip, own.participation)
+    });
+    let shape = Shape::Modes(Modes {
+        // Of all modes: the same truncation on both sides.
+        compliance: own.map(|own| own.tip.powi(2) / own.omega_squared).sum(),
+        parallel_compliance: None,
+        modes: modes.collect(),
+    });
+    given.spring = spring_file("modes.toml", shape);
     let mut expected = Vec::new();
     run(&scene, 0.003, |simulation| {
         expected.push([RealOutput::ContactForce, RealOutput::ParallelForce].map(|output| simulation.real(output)));

@@ -1,16 +1,17 @@
 //! Kinds of random relays: the one of a number with a law, a spring, an effect or inputs that not every relay has.
 
-use std::sync::Arc;
+use std::f64::consts::TAU;
 
 use fastrand::Rng;
 use relay_contact::inputs::Inputs;
 use relay_contact::reference::Spring;
-use relay_contact::scene::spring::{GivenMode, Modes, Shape, SpringFile};
+use relay_contact::scene::spring::{GivenMode, Modes, Shape};
 use relay_contact::variables::{AxialForceKind, ContactLawKind, ExcitationKind, FrictionKind, ResistanceKind};
 
 use crate::parts;
 use crate::relays::{Relay, logarithmic, steps, uniform};
 use crate::scenes::tip_stiffness;
+use crate::springs::{mode, spring_file};
 
 /// A kind of relays: its name, how many of a hundred are of it, and the relay of a number.
 pub type Kind = (&'static str, u8, fn(u64) -> Relay);
@@ -157,22 +158,20 @@ pub fn with_modes(number: u64) -> Relay {
         .and_then(|spring| spring.modes(scene, rng.usize(4..=24), 0.0));
     let modes = basis.expect("a spring without axial force").modes;
     let own = rng.bool();
-    let given = modes.iter().take(rng.usize(2..=modes.len())).map(|mode| GivenMode {
-        frequency: mode.omega_squared.sqrt() / std::f64::consts::TAU,
-        contact: mode.tip,
-        participation: mode.participation,
-        damping: own.then(|| (0.5 * mode.damping / mode.omega_squared.sqrt()).min(1.0)),
-        rotation: None,
-        pusher: None,
-        parallel: None,
+    let given = modes.iter().take(rng.usize(2..=modes.len())).map(|own_mode| GivenMode {
+        damping: own.then(|| (0.5 * own_mode.damping / own_mode.omega_squared.sqrt()).min(1.0)),
+        ..mode(
+            own_mode.omega_squared.sqrt() / TAU,
+            own_mode.tip,
+            own_mode.participation,
+        )
     });
     let shape = Shape::Modes(Modes {
         compliance: 1.0 / tip_stiffness(scene),
         parallel_compliance: None,
         modes: given.collect(),
     });
-    let name = format!("random modes {number}");
-    scene.spring = Some(Arc::new(SpringFile { name, shape }));
+    scene.spring = spring_file(&format!("random modes {number}"), shape);
     relay
 }
 

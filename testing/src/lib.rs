@@ -5,7 +5,7 @@
 //! relays    random plausible relays, run and compared
 //! kinds     kinds of them: laws, effects and inputs that not every relay has
 //! parts     relays with more than one spring and contact
-//! springs   random springs of segments for them
+//! springs   springs of files, and random ones of segments for them
 //! scenes    scenes for tests, with reference values computed without the library
 //! log       the messages of an instance
 //! allocator counts allocations

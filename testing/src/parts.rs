@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use fastrand::Rng;
 use relay_contact::inputs::Inputs;
-use relay_contact::scene::spring::{Shape, SpringFile};
+use relay_contact::scene::spring::Shape;
 use relay_contact::scene::{Armature, Scene};
 use relay_contact::variables::{AxialForceKind, ContactLawKind, PusherKind};
 
 use crate::relays::{Relay, logarithmic, uniform};
 use crate::scenes::tip_stiffness;
-use crate::springs::segments;
+use crate::springs::{segments, spring_file};
 
 /// The relay of a number with contacts side by side, at one tip or on tongues.
 pub fn parallel(number: u64) -> Relay {
@@ -47,10 +47,8 @@ pub fn fixed_spring(number: u64) -> Relay {
     let mut other = scene.clone();
     other.beam.thickness *= logarithmic(rng, 0.5, 4.0);
     other.beam.length *= logarithmic(rng, 0.3, 1.0);
-    scene.fixed_spring = Some(Arc::new(SpringFile {
-        name: format!("random fixed spring {number}"),
-        shape: Shape::Segments(segments(rng, &other)),
-    }));
+    let shape = Shape::Segments(segments(rng, &other));
+    scene.fixed_spring = spring_file(&format!("random fixed spring {number}"), shape);
     scene.fixed.stiffness_damping = scene.beam.stiffness_damping * logarithmic(rng, 0.2, 2.0);
     scene.fixed.mass_damping = scene.beam.mass_damping * logarithmic(rng, 0.2, 2.0);
     relay

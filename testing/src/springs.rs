@@ -1,14 +1,47 @@
-//! Random springs of segments: tapered, stepped, with masses, beyond their contact, on clamps from rigid to nearly hinged.
+//! Springs of files: by their parts, and random ones of segments, tapered, stepped, with masses, beyond their contact, on
+//! clamps from rigid to nearly hinged.
 
 use std::sync::Arc;
 
 use fastrand::Rng;
 use relay_contact::reference::Spring;
 use relay_contact::scene::Scene;
-use relay_contact::scene::spring::{PointMass, Segment, Segments, Shape, SpringFile};
+use relay_contact::scene::spring::{GivenMode, PointMass, Segment, Segments, Shape, SpringFile};
 
 use crate::relays::{Relay, logarithmic, uniform};
 use crate::scenes::tip_stiffness;
+
+/// What a scene has of a spring file of this name and shape.
+#[allow(clippy::unnecessary_wraps)] // as a field of the scene has it
+pub fn spring_file(name: &str, shape: Shape) -> Option<Arc<SpringFile>> {
+    let name = name.to_owned();
+    Some(Arc::new(SpringFile { name, shape }))
+}
+
+/// A segment of this length, with width and thickness at its start and end (m), of the scene's material.
+pub fn segment(length: f64, width: [f64; 2], thickness: [f64; 2]) -> Segment {
+    Segment {
+        length,
+        width,
+        thickness,
+        youngs_modulus: None,
+        density: None,
+    }
+}
+
+/// A mode of this frequency (Hz) with what every mode has: displacement of the contact (1/sqrt(kg)), load per base acceleration
+/// (sqrt(kg)).
+pub fn mode(frequency: f64, contact: f64, participation: f64) -> GivenMode {
+    GivenMode {
+        frequency,
+        contact,
+        participation,
+        damping: None,
+        rotation: None,
+        pusher: None,
+        parallel: None,
+    }
+}
 
 impl Relay {
     /// The relay of a number, its spring made of segments that are about as stiff and heavy as its own spring. The contact is
@@ -17,10 +50,8 @@ impl Relay {
         let mut relay = Self::draw(number);
         let scene = &mut relay.scene;
         let stiffness = tip_stiffness(scene);
-        scene.spring = Some(Arc::new(SpringFile {
-            name: format!("random spring {number}"),
-            shape: Shape::Segments(segments(&mut Rng::with_seed(number), scene)),
-        }));
+        let shape = Shape::Segments(segments(&mut Rng::with_seed(number), scene));
+        scene.spring = spring_file(&format!("random spring {number}"), shape);
         if let Ok(spring) = Spring::new(scene) {
             let softer = stiffness / spring.section.tip_stiffness();
             scene.contact.overtravel = (scene.contact.overtravel * softer).clamp(-0.01, 0.01);
@@ -46,13 +77,8 @@ pub(crate) fn segments(rng: &mut Rng, scene: &Scene) -> Segments {
                 },
             ]
         };
-        Segment {
-            length: beam.length * share / whole,
-            width: ends(beam.width, 0.4),
-            thickness: ends(beam.thickness, 0.7),
-            youngs_modulus: None,
-            density: None,
-        }
+        let (width, thickness) = (ends(beam.width, 0.4), ends(beam.thickness, 0.7));
+        segment(beam.length * share / whole, width, thickness)
     });
     let segments = segments.collect();
     let mass = beam.density * beam.width * beam.thickness * beam.length;

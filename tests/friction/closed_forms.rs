@@ -2,16 +2,16 @@
 
 use std::env;
 use std::f64::consts::{PI, TAU};
-use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 use relay_contact::inputs::Inputs;
 use relay_contact::reference::{Model, bracketed};
 use relay_contact::scene::Scene;
-use relay_contact::scene::spring::{GivenMode, Modes, Shape, SpringFile};
+use relay_contact::scene::spring::{GivenMode, Modes, Shape};
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::RealOutput;
 use testing::scenes::{at_rest, shaken, undamped};
+use testing::springs::{mode, spring_file};
 
 use super::{course, rubbing, stiffness_ratio};
 
@@ -30,32 +30,22 @@ fn slider(amplitude: f64, frequency: f64, own: f64, ratio: f64) -> Scene {
     let pressing = 300.0;
     let modes = vec![
         GivenMode {
-            frequency: pressing,
-            contact: TAU * pressing * f64::sqrt(compliance),
-            participation: 0.0,
             damping: Some(1.0),
             rotation: Some(0.0),
-            pusher: None,
-            parallel: None,
+            ..mode(pressing, TAU * pressing * f64::sqrt(compliance), 0.0)
         },
         GivenMode {
-            frequency: own,
-            contact: 0.0,
-            participation: LOADED * lever,
             damping: Some(ratio),
             rotation: Some(lever / scene.tip.contact_height),
-            pusher: None,
-            parallel: None,
+            ..mode(own, 0.0, LOADED * lever)
         },
     ];
-    scene.spring = Some(Arc::new(SpringFile {
-        name: "slider".to_owned(),
-        shape: Shape::Modes(Modes {
-            compliance,
-            parallel_compliance: None,
-            modes,
-        }),
-    }));
+    let shape = Shape::Modes(Modes {
+        compliance,
+        parallel_compliance: None,
+        modes,
+    });
+    scene.spring = spring_file("slider", shape);
     scene
 }
 

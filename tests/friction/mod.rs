@@ -8,7 +8,7 @@ use relay_contact::inputs::Inputs;
 use relay_contact::scene::{Contact, Scene};
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{FrictionKind, IntegerOutput, RealOutput};
-use testing::scenes::{check_slope, force_scale, largest_difference, shaken};
+use testing::scenes::{NEAR, Three, check_slope, force_scale, largest_difference, range, shaken, threes};
 
 /// The scene with friction.
 fn rubbing(mut scene: Scene) -> Scene {
@@ -147,7 +147,6 @@ fn the_tolerance_is_kept_and_no_energy_is_made() {
 /// A derivative lies between the slopes just before and just after it.
 #[test]
 fn derivatives_are_the_slopes_of_the_courses() {
-    const NEAR: f64 = 1e-7;
     const CONTINUOUS: [RealOutput; 5] = [
         RealOutput::ContactForce,
         RealOutput::ContactTangentialForce,
@@ -159,20 +158,10 @@ fn derivatives_are_the_slopes_of_the_courses() {
         let mut scene = rubbing(shaken(98.0, 1000.0));
         scene.solver.tolerance = 1e-9;
         scene.contact.damping = damping;
-        let inputs = Inputs::default();
-        let mut simulation = Simulation::new(&scene, &inputs, 0.0).unwrap();
-        let mut rows = Vec::new();
-        while simulation.time() < 2e-3 {
-            rows.push([size - 2.0 * NEAR, NEAR, NEAR].map(|step| {
-                simulation.step(&inputs, simulation.time(), step).unwrap();
-                CONTINUOUS.map(|output| (simulation.real(output), simulation.rate(output).unwrap()))
-            }));
-        }
+        let rows = threes(&scene, &Inputs::default(), CONTINUOUS, size);
         for (n, output) in CONTINUOUS.into_iter().enumerate() {
-            let values = || rows.iter().map(|[_, now, _]| now[n].0);
-            let range = values().fold(f64::MIN, f64::max) - values().fold(f64::MAX, f64::min);
-            let noise = 4.0 * 1e-9 * range.max(if n == 1 { 0.15 } else { 0.0 }) / NEAR;
-            let slips = |row: &[[(f64, f64); 5]; 3]| [0, 1, 2].map(|k| row[k][2].1 != 0.0);
+            let noise = 4.0 * 1e-9 * range(&rows, n).max(if n == 1 { 0.15 } else { 0.0 }) / NEAR;
+            let slips = |row: &Three<5>| row.map(|at| at[2].1 != 0.0);
             let mut since = 0.0;
             for (row, next) in rows.iter().zip(&rows[1..]) {
                 // The slope of the friction force jumps where it begins or ceases to slip, and the spring answers within
@@ -184,15 +173,7 @@ fn derivatives_are_the_slopes_of_the_courses() {
                 if since < 2e-5 {
                     continue;
                 }
-                let [before, now, after] = next;
-                let values = [before[n].0, now[n].0, after[n].0];
-                check_slope(
-                    values,
-                    NEAR,
-                    noise,
-                    now[n].1,
-                    &format!("{output:?}, {size} s, {damping} s"),
-                );
+                check_slope(next, n, noise, &format!("{output:?}, {size} s, {damping} s"));
             }
         }
     }

@@ -2,9 +2,10 @@
 
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
-use relay_contact::scene::spring::{GivenMode, Modes, Shape, SpringFile};
+use relay_contact::scene::spring::{GivenMode, Modes, Shape};
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{AxialForceKind, ContactLawKind};
+use testing::springs::{mode, spring_file};
 
 use super::rubbing;
 
@@ -42,21 +43,11 @@ fn modes_need_their_rotation() {
         compliance: 1e-3,
         parallel_compliance: None,
         modes: vec![GivenMode {
-            frequency: 1000.0,
-            contact: 150.0,
-            participation: 0.005,
-            damping: None,
             rotation,
-            pusher: None,
-            parallel: None,
+            ..mode(1000.0, 150.0, 0.005)
         }],
     };
-    let with = |rotation| {
-        said(|scene| {
-            let (name, shape) = ("own.toml".to_owned(), Shape::Modes(modes(rotation)));
-            scene.spring = Some(SpringFile { name, shape }.into());
-        })
-    };
+    let with = |rotation| said(|scene| scene.spring = spring_file("own.toml", Shape::Modes(modes(rotation))));
     assert_eq!(with(Some(1e4)), "");
     let text = with(None);
     assert!(text.contains("own.toml") && text.contains("rotation"), "{text}");

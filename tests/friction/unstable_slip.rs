@@ -1,17 +1,17 @@
 //! Slip that is unstable: two modes that feed each other while the contact slips, in closed form.
 
 use std::f64::consts::TAU;
-use std::sync::Arc;
 
 use nalgebra::{Complex, DMatrix, DVector};
 use relay_contact::error::Remark;
 use relay_contact::inputs::Inputs;
 use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
-use relay_contact::scene::spring::{GivenMode, Modes, Shape, SpringFile};
+use relay_contact::scene::spring::{GivenMode, Modes, Shape};
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ContactLawKind, RealOutput};
 use testing::scenes::undamped;
+use testing::springs::{mode, spring_file};
 
 use super::rubbing;
 
@@ -34,22 +34,14 @@ fn squealing(loads: [f64; 2]) -> Scene {
     scene.contact.stiffness_exponent = EXPONENT;
     let share = scene.friction.coefficient * scene.tip.contact_height;
     let flexible = MODES.iter().zip(loads).map(|(&(frequency, contact), load)| GivenMode {
-        frequency,
-        contact,
-        participation: 0.0,
         damping: Some(0.0),
         rotation: Some((contact - load) / share),
-        pusher: None,
-        parallel: None,
+        ..mode(frequency, contact, 0.0)
     });
     let slide = GivenMode {
-        frequency: 0.1,
-        contact: 0.0,
-        participation: 0.0,
         damping: Some(0.0),
         rotation: Some(1.0 / scene.tip.contact_height),
-        pusher: None,
-        parallel: None,
+        ..mode(0.1, 0.0, 0.0)
     };
     let modes: Vec<_> = flexible.chain([slide]).collect();
     let compliance = MODES
@@ -58,14 +50,12 @@ fn squealing(loads: [f64; 2]) -> Scene {
         .sum();
     // Some FORCE on contact and spring; each mode gives way to its load.
     scene.contact.overtravel = FORCE / ((1.0 - EXPONENT) * STIFFNESS);
-    scene.spring = Some(Arc::new(SpringFile {
-        name: "two modes".to_owned(),
-        shape: Shape::Modes(Modes {
-            compliance,
-            parallel_compliance: None,
-            modes,
-        }),
-    }));
+    let shape = Shape::Modes(Modes {
+        compliance,
+        parallel_compliance: None,
+        modes,
+    });
+    scene.spring = spring_file("two modes", shape);
     scene
 }
 

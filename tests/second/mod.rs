@@ -11,7 +11,7 @@ use relay_contact::scene::Scene;
 use relay_contact::scene::file::SceneFile;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{AxialForceKind, BooleanOutput, ExcitationKind, IntegerOutput, RealOutput};
-use testing::scenes::check_slope;
+use testing::scenes::{NEAR, check_slope, range, threes};
 
 /// A relay whose moving contact lies open in the middle between both fixed ones.
 pub fn changeover(gap: f64) -> Scene {
@@ -155,7 +155,6 @@ fn a_far_second_contact_changes_nothing() {
 /// first do (`tests/derivatives.rs`).
 #[test]
 fn rates_are_the_slopes_of_the_courses() {
-    const NEAR: f64 = 1e-7;
     let mut scene = changeover(2e-5);
     scene.effects.excitation = ExcitationKind::Sine;
     scene.excitation.amplitude = -250.0;
@@ -170,31 +169,19 @@ fn rates_are_the_slopes_of_the_courses() {
         RealOutput::TipVelocity,
     ];
     for size in [1e-6, 1e-5] {
-        let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
-        let mut rows = Vec::new();
-        while simulation.time() < 2e-3 {
-            let row = [size - 2.0 * NEAR, NEAR, NEAR].map(|step| {
-                simulation.step(&Inputs::default(), simulation.time(), step).unwrap();
-                outputs.map(|output| (simulation.real(output), simulation.rate(output).unwrap()))
-            });
-            // In the second contact all the while.
-            if row.iter().all(|at| at[0].0 > 0.0) {
-                rows.push(row);
-            }
-        }
+        let mut rows = threes(&scene, &Inputs::default(), outputs, size);
+        // In the second contact all the while.
+        rows.retain(|row| row.iter().all(|at| at[0].0 > 0.0));
         assert!(
             rows.len() as f64 > 2e-4 / size,
             "{size} s: closed at {} points",
             rows.len()
         );
         for (n, output) in outputs.into_iter().enumerate() {
-            let values = || rows.iter().map(|[_, now, _]| now[n].0);
-            let range = values().fold(f64::MIN, f64::max) - values().fold(f64::MAX, f64::min);
             // Values are wrong by the tolerance.
-            let noise = 2.0 * scene.solver.tolerance * range / NEAR;
-            for [before, now, after] in &rows {
-                let values = [before[n].0, now[n].0, after[n].0];
-                check_slope(values, NEAR, noise, now[n].1, &format!("{size} s, {output:?}"));
+            let noise = 2.0 * scene.solver.tolerance * range(&rows, n) / NEAR;
+            for row in &rows {
+                check_slope(row, n, noise, &format!("{size} s, {output:?}"));
             }
         }
     }

@@ -6,35 +6,24 @@ mod modes;
 mod reference;
 
 use std::f64::consts::TAU;
-use std::sync::Arc;
 
 use reference::{Stretch, frequencies};
 use relay_contact::inputs::Inputs;
 use relay_contact::reference::{Model, Section, Spring, frequencies as uniform_frequencies};
 use relay_contact::scene::Scene;
-use relay_contact::scene::spring::{PointMass, Segment, Segments, Shape, SpringFile};
+use relay_contact::scene::spring::{PointMass, Segment, Segments, Shape};
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{AxialForceKind, RealOutput};
 use testing::scenes::{largest_difference, shaken};
+use testing::springs::{segment, spring_file};
 
 fn with(mut scene: Scene, shape: Shape) -> Scene {
-    let name = "spring.toml".to_owned();
-    scene.spring = Some(Arc::new(SpringFile { name, shape }));
+    scene.spring = spring_file("spring.toml", shape);
     scene
 }
 
 fn made_of(scene: Scene, segments: Segments) -> Scene {
     with(scene, Shape::Segments(segments))
-}
-
-fn segment(length: f64, width: [f64; 2], thickness: [f64; 2]) -> Segment {
-    Segment {
-        length,
-        width,
-        thickness,
-        youngs_modulus: None,
-        density: None,
-    }
 }
 
 fn uniform(length: f64, width: f64, thickness: f64) -> Segment {

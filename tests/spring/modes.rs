@@ -6,24 +6,14 @@ use relay_contact::scene::Scene;
 use relay_contact::scene::spring::{GivenMode, Modes, Shape};
 use relay_contact::variables::{AxialForceKind, ContactLawKind};
 use testing::scenes::{largest_difference, shaken};
+use testing::springs::mode;
 
 use super::{TAU, course, with};
 
 /// The modes of a model, and the static compliance of its spring.
 fn written(model: &Model) -> Modes {
-    let mode = |omega_squared: f64, contact, participation| GivenMode {
-        frequency: omega_squared.sqrt() / TAU,
-        contact,
-        participation,
-        damping: None,
-        rotation: None,
-        pusher: None,
-        parallel: None,
-    };
-    let modes = model
-        .modes()
-        .iter()
-        .map(|own| mode(own.omega_squared, own.tip, own.participation));
+    let modes = model.modes().iter();
+    let modes = modes.map(|own| mode(own.omega_squared.sqrt() / TAU, own.tip, own.participation));
     Modes {
         compliance: 1.0 / model.section().tip_stiffness(),
         parallel_compliance: None,
@@ -94,13 +84,8 @@ fn a_single_mode_with_its_residual_is_a_mass_between_two_springs() {
         compliance: 1.1 * held,
         parallel_compliance: None,
         modes: vec![GivenMode {
-            frequency,
-            contact: contact / mass.sqrt(),
-            participation: mass.sqrt(),
             damping: Some(0.01),
-            rotation: None,
-            pusher: None,
-            parallel: None,
+            ..mode(frequency, contact / mass.sqrt(), mass.sqrt())
         }],
     };
     let mut scene = shaken(20.0, 300.0);
