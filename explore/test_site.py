@@ -21,18 +21,6 @@ def test_search_finds_without_server_or_network(page: Page) -> None:
     assert failed == []
 
 
-def test_every_link_on_every_page_leads_to_a_file(page: Page) -> None:
-    dead = []
-    for path in SITE.rglob("*.html"):
-        if path.name in ("404.html", "explore.html"):
-            continue
-        page.goto(path.as_uri(), wait_until="domcontentloaded")
-        links = page.eval_on_selector_all("a[href]", "all => all.map(one => one.href.split('#')[0])")
-        files = {link.removeprefix("file://") for link in links if link.startswith("file:")}
-        dead += [(path.name, file) for file in files if not (ROOT / file).exists()]
-    assert dead == []
-
-
 def test_the_python_interface_is_there(page: Page) -> None:
     page.goto((SITE / "python.html").as_uri())
     text = str(page.locator("article").text_content())

@@ -46,47 +46,27 @@ fn an_array_that_is_null_misaligned_or_endless_is_named() {
 
 #[test]
 fn a_value_out_of_range_is_named_with_its_unit_and_the_range() {
-    let cases: [(&str, f64, &[&str]); 10] = [
-        ("beam.width", -1.0, &["beam.width = -1 m", "0.0001 to 1"]),
-        ("beam.width", 1e300, &["beam.width = 1e300 m"]),
+    // In the words of a scene file, which `tests/scene_file.rs` looks at.
+    let cases: [(&str, f64, &[&str]); 3] = [
+        ("beam.width", 1e300, &["beam.width = 1e300 m", "0.0001 to 1"]),
         ("beam.width", -5e-324, &["beam.width = -5e-324 m"]),
-        (
-            "beam.thickness",
-            123_456.5,
-            &["beam.thickness = 123456.5 m", "1e-5 to 0.005"],
-        ),
-        ("beam.width", f64::NAN, &["beam.width = NaN"]),
-        ("beam.width", f64::INFINITY, &["beam.width = inf"]),
-        (
-            "contact.moving.poissonRatio",
-            0.6,
-            &["contact.moving.poissonRatio = 0.6", "-1", "0.5"],
-        ),
-        (
-            "contact.moving.poissonRatio",
-            0.5,
-            &["contact.moving.poissonRatio = 0.5", "less than 0.5"],
-        ),
-        ("resistance.open", 0.0, &["resistance.open = 0 Ohm", "1 to"]),
         (
             "base.acceleration",
             f64::NEG_INFINITY,
-            &["base.acceleration = -inf m/s2", "-1000000000 to 1000000000"],
+            &["base.acceleration = -inf m/s2"],
         ),
     ];
     for (name, value, parts) in cases {
         let fmu = Instance::new();
         fmu.answers(fmu.set_real(name, value), fmi2Discard, parts);
     }
-    let cases: [(&str, i32, &[&str]); 4] = [
+    let cases: [(&str, i32, &[&str]); 2] = [
         (
             "effects.axialForce",
             9,
             &["effects.axialForce = 9", "FromPreload", "Prescribed"],
         ),
-        ("effects.excitation", 0, &["effects.excitation = 0", "Sine"]),
-        ("solver.modes", -1, &["solver.modes = -1", "0 to"]),
-        ("solver.modes", i32::MAX, &["solver.modes = 2147483647"]),
+        ("solver.modes", i32::MAX, &["solver.modes = 2147483647", "0 to"]),
     ];
     for (name, value, parts) in cases {
         let fmu = Instance::initializing();
