@@ -11,8 +11,8 @@ from scipy.integrate import solve_ivp
 from component import COMPONENT
 from reference import Reference
 from relay_contact import Array, RelayContactError, Values
-from relay_contact.qualification import FEW, Relay, Standard, assessment, qualify, standards, synthesis
-from relay_contact.qualification.excitation import STEP, Course, Random, Shock, Sine, Spectrum, overall
+from relay_contact.qualification import FEW, Relay, Standard, assessment, qualify, synthesis
+from relay_contact.qualification.excitation import STEP, Course, Random, Shock, Sine, Spectrum
 from relay_contact.qualification.relay import Model
 from relay_contact.qualification.response import Response, respond
 from relay_contact.qualification.standards import Contacts, Monitor, Recorded
@@ -171,11 +171,6 @@ def test_densities_by_slopes() -> None:
     assert isinstance(screen, Random)
     assert screen.density[0][1] == pytest.approx(0.04 * 10 ** (-0.3 * 2), rel=1e-12)
     assert screen.density[-1][1] == pytest.approx(0.04 * 10 ** (-0.3 * np.log2(2000 / 350)), rel=1e-12)
-    # What the standards print, of their own break points.
-    for name in standards():
-        for test in Standard.read(name).tests:
-            if isinstance(test, Random):
-                assert overall(test.density) == pytest.approx(test.rms, rel=0.011 if name.startswith("NAV") else 3e-3)
     (spectrum,) = (test for test in Standard.read("MIL-STD-810").tests if isinstance(test, Spectrum))
     assert spectrum.course().end < 3.0
 

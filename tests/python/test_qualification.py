@@ -13,8 +13,9 @@ from scipy.linalg import block_diag
 from scipy.stats import norm
 
 from component import COMPONENT, ROOT
+from elements import element
 from reference import Reference, crossings
-from relay_contact import Array, RelayContactError, Values
+from relay_contact import RelayContactError, Values
 from relay_contact.command import main
 from relay_contact.qualification import (
     FEW,
@@ -177,16 +178,6 @@ def test_shock_like_a_spring_without_vibration(paper: tuple[dict[str, Tested], P
     assert tested.verdict == "FAIL"
 
 
-def element(length: float, width: float, thickness: float, modulus: float, density: float) -> tuple[Array, Array]:
-    """Give stiffness and mass of a short beam element."""
-    lengths = np.diag([1.0, length, 1.0, length])
-    bent = np.array([[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]])
-    moved = np.array([[156, 22, 54, -13], [22, 4, 13, -3], [54, 13, 156, -22], [-13, -3, -22, 4]])
-    stiffness = modulus * width * thickness**3 / 12 / length**3 * lengths @ bent @ lengths
-    mass = density * width * thickness * length / 420 * lengths @ moved @ lengths
-    return stiffness, mass
-
-
 class Elements:
     """A spring of a file by finite elements, 0.1 mm each, with the contact as a linear spring."""
 
@@ -203,14 +194,10 @@ class Elements:
             begin, end = (segment.get(f"width_{end}", segment.get("width")) for end in ("start", "end"))
             widths = np.linspace(begin, end, number + 1)
             for at in range(number):
-                section = (
-                    (widths[at] + widths[at + 1]) / 2,
-                    segment["thickness"],
-                    segment["youngs_modulus"],
-                    segment["density"],
-                )
+                area = (widths[at] + widths[at + 1]) / 2 * segment["thickness"]
+                bending = segment["youngs_modulus"] * area * segment["thickness"] ** 2 / 12
                 place = slice(2 * (first + at), 2 * (first + at) + 4)
-                own = element(self.SIZE, *section)
+                own = element(bending, segment["density"] * area, self.SIZE)
                 stiffness[place, place] += own[0]
                 mass[place, place] += own[1]
             first += number
@@ -496,17 +483,7 @@ def test_two_open_contacts_are_not_judged(tmp_path: Path) -> None:
     assert "both contacts open" in (tmp_path / "qualification.html").read_text(encoding="utf-8")
 
 
-def test_errors_in_files_of_ones_own_name_the_entry(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    relay, standard = tmp_path / "relay.toml", tmp_path / "standard.toml"
-    relay.write_text("[parameters]\ntip.mas = 1e-5\n")
-    with pytest.raises(RelayContactError, match=r"relay.toml:2: tip.mas: no such variable; did you mean tip.mass"):
-        Relay.read(relay, COMPONENT)
-    text = (ROOT / "python/relay_contact/standards/ISO-16750-3.toml").read_text()
-    standard.write_text(text.replace("duration = 6e-3", "durations = 6e-3"))
-    with pytest.raises(
-        RelayContactError, match=r"standard.toml:23: shock.1.durations: no such entry, .*did you mean duration"
-    ):
-        Standard.read(standard)
+def test_a_test_that_no_standard_has_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["qualify", "paper", "--standard", "MIL-STD-202", "--test", "none", "--out", str(tmp_path)]) == 1
     assert "none: no test named so; there are 201A, 204 A" in capsys.readouterr().err
     with pytest.raises(RelayContactError, match=r"shok: no test named so"):
