@@ -1,7 +1,7 @@
 """The generators of base acceleration, by the force on a bonded contact: that of their closed forms, exactly."""
 
 from collections.abc import Callable
-from math import exp, log, pi, sin, sqrt
+from math import exp, log, pi, sin
 
 import numpy as np
 import pytest
@@ -103,33 +103,6 @@ def test_without_a_generator_nothing_moves() -> None:
     ]:
         assert np.ptp(force({"effects.excitation": kind, f"excitation.{size}": 0.0})) == 0.0
         assert np.ptp(force({"effects.excitation": kind})) > 1e-3
-
-
-RANDOM: Values = {"effects.excitation": "Random", "excitation.frequency": 50.0}
-
-
-@pytest.mark.parametrize(("band", "seed"), [((50.0, 2000.0), 1), ((1200.0, 1500.0), 2)])
-def test_random_force_has_the_mean_square_of_its_spectral_density(band: tuple[float, float], seed: int) -> None:
-    density, step, settled, stop = 0.5, 2.0**-12, 0.125, 8.0
-    values: Values = {
-        **RANDOM,
-        "excitation.frequency": band[0],
-        "excitation.endFrequency": band[1],
-        "excitation.spectralDensity": density,
-        "excitation.seed": seed,
-        "solver.tolerance": 1e-5,
-    }
-    reference = Reference(BONDED)
-    found = force(values, round(stop / step), step)[round(settled / step) :] - reference.force
-    frequencies, width = np.linspace(*band, 201, retstep=True)
-    spectrum = density * np.array([abs(reference.force_response(frequency)) ** 2 for frequency in frequencies])
-    expected = np.trapezoid(spectrum, dx=width)
-    # With one of at least 200 sines in each equal part of the band, the sum of their powers is a Riemann sum.
-    quadrature = np.sum(np.abs(np.diff(spectrum))) * (band[1] - band[0]) / 200
-    # The mean square of Gaussian noise over a time scatters by this; that of sines apart from each other by less.
-    scatter = sqrt(np.trapezoid(spectrum**2, dx=width) / (stop - settled))
-    assert 4 * scatter + quadrature < 0.2 * expected
-    assert np.mean(found**2) == pytest.approx(expected, rel=0, abs=4 * scatter + quadrature)
 
 
 def test_a_displacement_limit_out_of_reach_limits_nothing() -> None:

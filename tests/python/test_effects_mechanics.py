@@ -80,23 +80,6 @@ def test_the_force_of_a_law_under_vibration_until_the_contact_closes_again(law: 
     assert np.max(np.abs(result["contact.force"] - expected)) <= tolerance * reference.force_scale
 
 
-def test_contact_damping_adds_its_force_to_the_elastic_one() -> None:
-    tolerance = 1e-8
-    output = ["contact.force", "contact.indentation", "tip.velocity"]
-    for law, damping in [(law, damping) for law in POWERS for damping in (True, False)]:
-        values: Values = {**NO_AXIAL, "effects.contactLaw": law, "effects.contactDamping": damping}
-        result = run(shaken(values, 200.0, tolerance), 3e-3, 1e-5, output)
-        force, indentation, velocity = (result[name] for name in output)
-        reference = Reference(values)
-        elastic = reference.elastic(indentation)
-        tangent = reference.stiffness_at(indentation)
-        damped = -reference.values["contact.damping"] * tangent * velocity
-        assert np.max(np.abs(damped)) > 1e-3
-        # All three outputs have the error of the force.
-        allowed = 3 * tolerance * reference.force_scale
-        assert np.max(np.abs(force - (elastic + damped if damping else elastic))) <= allowed
-
-
 @pytest.mark.parametrize(
     ("off", "neutral"),
     [
