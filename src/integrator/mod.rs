@@ -63,7 +63,7 @@
 //! as far as its error allows, tens of nanoseconds. Only the integrals of the shapes differ: those of `t^(m/2)` are known, and for a
 //! root of a mode that is fast against the step so are the convolutions ([`collocation::fading_load`]). Modes that swing fast against
 //! the step limit its length ([`collocation::modal_response::ModeOverStep::longest_by_root`]). A leap ends at no event: where
-//! anything may happen inside, where a contact law is no polynomial of the root (exponents other than 1 and 3/2), with friction or
+//! anything may happen inside, where the exponent of a contact law is no multiple of 1/2, with friction or
 //! an axial force that follows the deflection, there is none, and short steps do it.
 //!
 //! *Newton's method* ([`collocation::newton`]). The unknowns are the nodal forces of the links that are closed. The residual is
