@@ -133,9 +133,7 @@ impl Sizes {
 impl<const S: usize> Store<S> {
     /// With room for all lengths of a model, of which this is the basis.
     pub(super) fn for_model(basis: Basis, model: &Model) -> Self {
-        let mut store = Self::reserved(basis, Sizes::of::<S>(model));
-        store.add(&model.generator);
-        store
+        Self::reserved(basis, Sizes::of::<S>(model))
     }
 
     /// How many sums [`Store::fill`] takes for a model: for each response, and for one mode.
@@ -157,11 +155,16 @@ impl<const S: usize> Store<S> {
     pub(super) fn known(&self, length: f64, recurring: bool) -> Option<StepCoefficients<'_, S>> {
         let slot = self.of_slot.get(slot(length)).filter(|_| recurring);
         let place = slot.map_or(0, |place| usize::from(*place));
-        (self.length(place).to_bits() == length.to_bits()).then(|| self.view(place))
+        let own = self.lengths.get(place)?;
+        (own.to_bits() == length.to_bits()).then(|| self.view(place))
     }
 
     /// The place for the coefficients of a length, `recurring`: one that is kept.
     pub(super) fn place(&mut self, length: f64, recurring: bool, generator: &Generator) -> usize {
+        if self.lengths.is_empty() {
+            // That of a length that does not recur.
+            self.add(generator);
+        }
         let slot = slot(length);
         let Some(place) = self.of_slot.get(slot).filter(|_| recurring) else {
             return 0;
