@@ -158,9 +158,7 @@ impl Stepper<'_> {
             ..self.grid.cut(length, self.state.time + length)
         };
         self.workspace.exchange();
-        let mut trial = self.parts::<LONG>().trial.take().unwrap_or_else(bytemuck::zeroed_box);
-        let done = self.try_leap(&mut trial, &target);
-        self.parts::<LONG>().trial = Some(trial);
+        let done = self.with_trial(|stepper, trial| stepper.try_leap(trial, &target));
         self.workspace.exchange();
         done
     }
@@ -174,18 +172,17 @@ impl Stepper<'_> {
         let count = self.model.links.len();
         let mut locator = self.locator(trial, length);
         let mut links = locator.whole.state.links.iter().take(count).enumerate();
-        let stays = links.all(|(index, at)| {
-            if at.closed {
-                locator.first_open(index).is_none()
-            } else {
-                locator.is_far(index)
-            }
-        });
-        let passages = if ratio <= 1.0 && stays {
-            locator.passages(false)
-        } else {
-            None
+        let mut stay = || {
+            links.all(|(index, at)| {
+                if at.closed {
+                    locator.first_open(index).is_none()
+                } else {
+                    locator.is_far(index)
+                }
+            })
         };
+        let is_possible = ratio <= 1.0 && stay();
+        let passages = is_possible.then(|| locator.passages(false)).flatten();
         let Some(passages) = passages else {
             self.state.rejected_steps += 1;
             self.state.lengths.leap = length * shrinkage::<LONG>(ratio.max(1.0));
@@ -211,8 +208,17 @@ impl Stepper<'_> {
             .max(self.shortest());
         let corner = self.model.generator.next_break(self.state.time);
         let target = self.grid.target(requested, self.state.time, corner);
+        self.with_trial(|stepper, trial: &mut Trial<S>| stepper.try_step(trial, &target, requested, corner))
+    }
+
+    /// Does something with the room for a trial.
+    #[inline(always)]
+    fn with_trial<const S: usize, R>(&mut self, work: impl FnOnce(&mut Self, &mut Trial<S>) -> R) -> R
+    where
+        Workspace: Rooms<S>,
+    {
         let mut trial = self.parts::<S>().trial.take().unwrap_or_else(bytemuck::zeroed_box);
-        let outcome = self.try_step::<S>(&mut trial, &target, requested, corner);
+        let outcome = work(self, &mut trial);
         self.parts::<S>().trial = Some(trial);
         outcome
     }
@@ -696,10 +702,7 @@ impl Stepper<'_> {
 
     /// Takes a step with constant forces, which always has a solution.
     pub(crate) fn take_with_constant_force(&mut self, target: &Target) -> Result<StepOutcome, StepError> {
-        let mut trial = self.parts::<SHORT>().trial.take().unwrap_or_else(bytemuck::zeroed_box);
-        let outcome = self.try_with_constant_force(&mut trial, target);
-        self.parts::<SHORT>().trial = Some(trial);
-        outcome
+        self.with_trial(|stepper, trial| stepper.try_with_constant_force(trial, target))
     }
 
     fn try_with_constant_force(&mut self, trial: &mut Trial<SHORT>, target: &Target) -> Result<StepOutcome, StepError> {

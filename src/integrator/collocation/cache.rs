@@ -100,7 +100,7 @@ impl<const S: usize> Cache<S> {
 
     /// The polynomials.
     pub fn collocation(&self) -> &Collocation<S> {
-        self.common.polynomials(self.variable)
+        self.polynomials(self.variable)
     }
 
     /// The coefficients for a length, with the base acceleration of a step from `time` (s) on.

@@ -99,11 +99,7 @@ impl<const S: usize, const L: usize> Judged<'_, S, L> {
         let base = free.start_defect.abs();
         let missed = model.inertia * free.missed_mean;
         let along = model.friction().map_or(0.0, |(_, friction)| friction.inertia);
-        let kinked = match collocation.variable {
-            Variable::Time => kinked::<S>(state, step.length, sum),
-            // By the root of time the force is smooth.
-            Variable::Root => 0.0,
-        };
+        let kinked = kinked(collocation, state, step.length, sum);
         let slow = 3.0 * squares / largest + kinked + missed;
         let lasting = of_way + along * free.missed_mean + kept + slow * reaction;
         trial.error = Estimate {
@@ -277,10 +273,13 @@ pub(crate) fn sum_rounding(port: &Port, state: &State) -> (f64, f64) {
 }
 
 /// Error of slow modes, N, that a defect (N) of the force at the start of a step of `length` seconds makes near a kink, where
-/// the force is not smooth.
+/// the force is not smooth; by the root of time it is.
 #[inline(always)]
-fn kinked<const S: usize>(state: &State, length: f64, defect: f64) -> f64 {
-    KINKED * defect * analytic::<S>((state.time - state.last_kink) / length)
+fn kinked<const S: usize>(collocation: &Collocation<S>, state: &State, length: f64, defect: f64) -> f64 {
+    match collocation.variable {
+        Variable::Time => KINKED * defect * analytic::<S>((state.time - state.last_kink) / length),
+        Variable::Root => 0.0,
+    }
 }
 
 /// Ratio of the quadrature error to the interpolation error with `S` nodes for a square root of time whose branch point
