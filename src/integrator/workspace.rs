@@ -17,6 +17,7 @@ use crate::integrator::collocation::shapes::Variable;
 use crate::integrator::collocation::trial::{Scratch, Trial};
 use crate::integrator::constants::HALVINGS;
 use crate::integrator::events::log::Events;
+use crate::integrator::events::swings::Swings;
 use crate::integrator::motion::Motion;
 use crate::math::nodal::{LONG, SHORT};
 use crate::model::Model;
@@ -98,6 +99,8 @@ pub(crate) struct Search {
     pub(crate) looked: Option<f64>,
     /// Later halves of intervals in which a closing is sought: end, error of the cubic (m), depth.
     pub(crate) halves: Vec<(Instant, f64, u32)>,
+    /// The modes that oscillate in the trial in which it is sought.
+    pub(crate) swings: Swings,
     /// Work so far, of rejected and probe steps too, in modes at nodes.
     pub(crate) work: u64,
 }
@@ -138,6 +141,7 @@ impl Workspace {
                 modes: zeroed_box(),
                 looked: None,
                 halves: Vec::with_capacity(HALVINGS as usize + 1),
+                swings: Swings::room(model.modes.len()),
                 work: 0,
             },
             propagators: ByLength::new(lengths, zeroed_box),

@@ -1,5 +1,6 @@
 //! Numerical tools without contact mechanics: quadrature, polynomials, root finding, vector arithmetic.
 
+pub mod elementary;
 pub mod free_motion;
 pub mod legendre;
 pub mod nodal;

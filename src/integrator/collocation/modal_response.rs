@@ -8,7 +8,7 @@
 
 use crate::beam::mode::Mode;
 use crate::integrator::collocation::fading_load::convolved;
-use crate::integrator::collocation::shapes::{MAX_SHAPES, Row, Shapes, TERMS, Variable};
+use crate::integrator::collocation::shapes::{MAX_SHAPES, NEGLIGIBLE, Row, Shapes, TERMS, Variable};
 use crate::integrator::collocation::superposition::{Combination, Fading, Fast, Pair, Response};
 use crate::math::free_motion::FreeMotion;
 use crate::math::nodal::{Nodal, add, scaled};
@@ -25,10 +25,6 @@ pub const FAST: f64 = 5.0;
 /// Root times step length up to which the power series of the free motion keeps its digits, 1: `2^2 / 2!`. Pinned: ×
 /// 10, `responses_agree_with_quadrature_in_every_regime`.
 pub const FREE: f64 = 2.0;
-
-/// Terms of a power series below this are left out, 1. A thousandth of rounding. Pinned: × 1e10,
-/// `responses_agree_with_quadrature_in_every_regime`.
-pub const NEGLIGIBLE: f64 = 1e-19;
 
 /// Which characteristic roots of a mode are slow compared with the step.
 #[derive(Clone, Copy, Debug)]

@@ -11,6 +11,10 @@ use crate::math::simd::{Arithmetic, Simd, compiled_for};
 /// `responses_agree_with_quadrature_in_every_regime`.
 pub const TERMS: usize = 48;
 
+/// Terms of a power series below this are left out, 1. A thousandth of rounding. Pinned: × 1e10,
+/// `responses_agree_with_quadrature_in_every_regime`.
+pub const NEGLIGIBLE: f64 = 1e-19;
+
 /// Points of the quadrature for repeated integrals. Exact for all that are large. Pinned: ÷ 5,
 /// `responses_agree_with_quadrature_in_every_regime`.
 pub const POINTS: usize = 20;
@@ -79,6 +83,8 @@ pub struct Shapes<const S: usize> {
     pub variable: Variable,
     /// `x^n / n!` at the nodes, n = 0, 1, ...
     pub powers: Vec<Nodal<S>>,
+    /// Root times step length up to which its n-th power over n! is [`NEGLIGIBLE`], n = 1, 2, ...
+    pub negligible: Vec<f64>,
     /// n-fold integrals from the start, n = 1, 2, ...
     pub integrals: Vec<Table<S>>,
     /// Integrals of the Lagrange polynomials up to the end of the step.
@@ -176,8 +182,14 @@ impl<const S: usize> Shapes<S> {
         let integrals = integrals(nodes, variable);
         let at_nodes = nodes.map(|x| rows(&derivatives_at(x)));
         let derivatives: Vec<_> = (0..=S).map(|m| table(&at_nodes, m)).collect();
+        let mut factorial = 1.0;
+        let negligible = (1..TERMS).map(|n| {
+            factorial *= n as f64;
+            (NEGLIGIBLE * factorial).powf(1.0 / n as f64)
+        });
         Self {
             variable,
+            negligible: negligible.collect(),
             powers: powers.collect(),
             end_integrals: integrals.iter().map(Table::end).collect(),
             integrals,

@@ -7,7 +7,7 @@
 use std::array;
 
 use crate::beam::mode::{Mode, ModeState, ModeStates};
-use crate::integrator::collocation::modal_response::{ModeOverStep, NEGLIGIBLE, Regime, decayed};
+use crate::integrator::collocation::modal_response::{ModeOverStep, Regime};
 use crate::integrator::collocation::shapes::{Load, Shapes, TERMS};
 use crate::integrator::collocation::superposition::Pair;
 use crate::math::free_motion::FreeMotion;
@@ -67,7 +67,9 @@ impl<const S: usize, const LOADS: usize> Loads<'_, S, LOADS> {
         let over = modes
             .each_ref()
             .map(|mode| ModeOverStep::new(mode.omega_squared, mode.damping, self.length));
-        let free = over.each_ref().map(free_motion);
+        let [omega_squared, damping] =
+            [|mode: &Mode| mode.omega_squared, |mode: &Mode| mode.damping].map(|of| modes.each_ref().map(of));
+        let free = FreeMotion::side_by_side::<N, A>(&omega_squared, &damping, &[self.length; N]);
         let response = if let Some(regime) = Together::of(&over) {
             regime.under::<S, A, LOADS>(self, &free, factors)
         } else {
@@ -113,31 +115,8 @@ impl<const S: usize, const LOADS: usize> Loads<'_, S, LOADS> {
     /// Number of integrals of which the powers of a root times the step length are not negligible.
     #[inline(always)]
     fn terms(&self, root: f64) -> usize {
-        // At the last node the powers are 1 / n!.
-        let sizes = self.shapes.powers.iter().filter_map(|power| power.last());
-        let mut power = 1.0;
-        let counts = sizes.take_while(|size| {
-            let counts = power * **size >= NEGLIGIBLE;
-            power *= root;
-            counts
-        });
-        (counts.count() + 1).min(TERMS)
-    }
-}
-
-/// The free motion of a mode over its step. Roots that are far apart need two exponentials only.
-fn free_motion(over: &ModeOverStep) -> FreeMotion {
-    let Regime::Split(slow, fast) = over.regime else {
-        return FreeMotion::new(over.omega_squared, over.damping, over.h);
-    };
-    let share = 1.0 / (slow - fast);
-    let (by_slow, by_fast) = (share * slow.exp(), share * decayed(fast));
-    let q_from_v = over.h * (by_slow - by_fast);
-    FreeMotion {
-        q_from_q: slow * by_fast - fast * by_slow,
-        q_from_v,
-        v_from_q: -over.omega_squared * q_from_v,
-        v_from_v: slow * by_slow - fast * by_fast,
+        let counts = self.shapes.negligible.partition_point(|limit| *limit <= root);
+        (counts + 2).min(TERMS)
     }
 }
 

@@ -7,7 +7,6 @@
 //! their amplitudes. An interval along which the engagement rises has one closing, which is found on cubics as well: each look at
 //! the motion gives the next one a nearer sample.
 
-use crate::beam::mode::Mode;
 use crate::contact::law::Law;
 use crate::integrator::collocation::part::{Instant, Whole};
 use crate::integrator::constants::{DISTANT, HALVINGS, SHORTEST_FLIGHT, UNSEEN};
@@ -44,14 +43,6 @@ impl Sought<'_> {
     }
 }
 
-/// Bound of what fast modes do: displacement (m), velocity (m/s) and acceleration (m/s2).
-#[derive(Clone, Copy, Debug, Default)]
-struct Ripple {
-    displacement: f64,
-    velocity: f64,
-    acceleration: f64,
-}
-
 impl<'a, const S: usize> Locator<'a, S> {
     /// Locates the closing of an open contact; `None` if it stays open.
     pub(crate) fn closing(&mut self, index: usize) -> Option<Cut> {
@@ -61,6 +52,7 @@ impl<'a, const S: usize> Locator<'a, S> {
         if self.is_distant(&sought, samples) {
             return None;
         }
+        self.search.swings.set(self.whole, sought.link);
         // The cubic over two intervals is wrong by more than that over each.
         let mut errors = [0.0_f64; LONG + 1];
         for (k, triple) in samples.windows(3).enumerate() {
@@ -146,7 +138,7 @@ impl<'a, const S: usize> Locator<'a, S> {
     fn is_clear(&self, sought: &Sought, cubic: &Cubic, error: f64) -> bool {
         // A contact whose force is far below the tolerance need not be found.
         let negligible = sought.law.overlap(self.tolerance.located);
-        let (ripple, length) = (self.ripple(sought, cubic.length()), cubic.length());
+        let (ripple, length) = (self.search.swings.ripple(cubic.length()), cubic.length());
         let (least, unseen) = (
             negligible.max(sought.unsure),
             (error + ripple.displacement, ripple.velocity),
@@ -189,38 +181,9 @@ impl<'a, const S: usize> Locator<'a, S> {
 
     /// Whether oscillations faster than the interval between two samples are negligible.
     fn is_resolved(&self, sought: &Sought, cubic: &Cubic) -> bool {
-        let ripple = self.ripple(sought, cubic.length());
+        let ripple = self.search.swings.ripple(cubic.length());
         let [from, to] = [&cubic.a, &cubic.b].map(|sample| sought.engagement(sample));
         ripple.displacement + sought.law.damping() * ripple.velocity <= UNSEEN * (to - from).abs()
-    }
-
-    /// Bound of the motion of a contact by the modes that oscillate within `interval` seconds or less.
-    fn ripple(&self, sought: &Sought, interval: f64) -> Ripple {
-        let Whole {
-            model, state, drive, ..
-        } = self.whole;
-        let swings = |mode: &Mode| mode.damping * mode.damping < 4.0 * mode.omega_squared;
-        let fast = |mode: &Mode| mode.omega_squared * interval * interval > 1.0 && swings(mode);
-        let acceleration = drive.acceleration(state.time);
-        let mut ripple = Ripple::default();
-        let modes = model.modes.iter().zip(&state.modes).enumerate();
-        for (i, (mode, at)) in modes.filter(|(_, (mode, _))| fast(mode)) {
-            let factor = |port: usize| {
-                let shape = model.ports.get(port).map(|port| &port.shape);
-                shape.and_then(|shape| shape.get(i)).copied().unwrap_or_default()
-            };
-            let omega = mode.omega_squared.sqrt();
-            let links = model.links.iter().zip(&state.links);
-            let load = links.fold(-mode.participation * acceleration, |load, (link, at)| {
-                load + link.sense * factor(link.port) * (at.force - link.force)
-            });
-            let (q, v) = (at.q - load / mode.omega_squared, at.v / omega);
-            let swing = factor(sought.link.port).abs() * (q * q + v * v).sqrt();
-            ripple.displacement += swing;
-            ripple.velocity += omega * swing;
-            ripple.acceleration += mode.omega_squared * swing;
-        }
-        ripple
     }
 
     /// The first instant of closing between two samples; `error` (m) is the error of their cubic. Where that cannot tell, the
@@ -259,8 +222,11 @@ impl<'a, const S: usize> Locator<'a, S> {
 
     /// The instant of closing between an open and a closed sample: where their cubic closes, which then has a sample there.
     fn crossing(&mut self, sought: &Sought, mut cubic: Cubic) -> Instant {
-        // Not before the touch: from there a step as short as rounding would find the contact open once more.
-        let aim = motion_rounding(self.whole.model, sought.link, self.whole.state);
+        // Not before the touch: from there a step as short as rounding would find the contact open once more. Half the shortest
+        // step after it is soon enough.
+        let risen = sought.engagement(&cubic.b) - sought.engagement(&cubic.a);
+        let soon = 4.0 * self.resolution * risen / cubic.length();
+        let aim = motion_rounding(self.whole.model, sought.link, self.whole.state).max(soon);
         for iteration in 0..2 * HALVINGS {
             let Cubic { a, b } = cubic;
             // A flight starts at the opening itself, where rounding may give a positive engagement.

@@ -8,6 +8,7 @@ pub mod interruption;
 pub mod log;
 pub mod opening;
 pub mod slip;
+pub mod swings;
 
 use crate::contact::friction::Phase;
 use crate::contact::law::Law;
