@@ -15,8 +15,9 @@
 //! A pusher loads the spring elsewhere. As its force jumps the contact feels what the missing functions do before any wave can
 //! reach it, and the damping `beta` of the spring resists their strain as its stiffness does: `c + beta c'` stands for `c`. What
 //! `c` makes counts in the next blow, what `beta c'` makes is over by then: it counts in the ratio of the contact's stiffness to that
-//! in a blow. Without a pusher the force of the contact itself jumps first, and what is missing in its course after that is over
-//! before it shows.
+//! in a blow. So it is where the other contact is on a spring, too: a blow between two springs is over when the waves have left, and
+//! its maximum is made by what leaves last. Else the force of the contact itself jumps first, and what is missing in its course after
+//! that is over before it shows.
 
 use nalgebra::{Complex, DVector};
 
@@ -38,15 +39,15 @@ const OF_BOUND: f64 = 0.25;
 pub struct Resolution {
     /// Coefficients of each mode, sqrt(J) per displacement; none where the modes are given.
     rows: Vec<[f64; LANES]>,
-    /// Time in which the velocity of a mode counts as a displacement, per stiffness of the contact, s m/N; 0 without a pusher.
+    /// Time in which the velocity of a mode counts as a displacement, per stiffness of the contact, s m/N; 0 without jolts.
     damping: f64,
     /// Contact force that is missing per coefficient, N / sqrt(J).
     force: f64,
 }
 
 impl Resolution {
-    /// Of the modes of a section and their shapes, in a blow; whether a pusher loads it too.
-    pub fn new(section: &Section, basis: &Basis, blow: &Blow, pushed: bool) -> Self {
+    /// Of the modes of a section and their shapes, in a blow; whether it jolts, from a pusher or another spring.
+    pub fn new(section: &Section, basis: &Basis, blow: &Blow, jolts: bool) -> Self {
         let root = (8.0 * section.bending_stiffness / section.length.powi(3)).sqrt();
         let last = |shape: &DVector<f64>, k: usize| {
             let place = (shape.len() + k).checked_sub(LANES);
@@ -62,7 +63,7 @@ impl Resolution {
         let force = OF_BOUND * greatest_force(&basis.modes, &rows, blow);
         Self {
             rows,
-            damping: if pushed {
+            damping: if jolts {
                 blow.stiffness_damping / blow.contact_stiffness
             } else {
                 0.0
