@@ -100,7 +100,7 @@ impl<T> Shelf<T> {
 pub struct Found<K, V>(Mutex<VecDeque<(K, V)>>);
 
 /// How many are kept. Cost.
-const KEPT: usize = 16;
+const KEPT: usize = 32;
 
 impl<K, V> Default for Found<K, V> {
     fn default() -> Self {
