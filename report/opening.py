@@ -9,19 +9,11 @@ import numpy as np
 from relay_contact import Component, Values
 from relay_contact.figures import GRAVITY as G
 from relay_contact.qualification.excitation import Shock, Sine
+from relay_contact.qualification.level import RESOLUTION, Lengths, threshold
 from relay_contact.qualification.relay import Relay
 from relay_contact.qualification.response import Response, respond
 from relay_contact.qualification.standards import Standard
-from relay_contact.qualification.trials import (
-    RESOLUTION,
-    Lengths,
-    Piece,
-    Specimen,
-    sine_threshold,
-    steady,
-    sweep,
-    threshold,
-)
+from relay_contact.qualification.trials import Piece, Specimen, sine_threshold, steady, sweep
 from report.bench import in_parallel, specimen
 from report.figure import Curve, Figure
 from report.published import FORCE, PEAKS

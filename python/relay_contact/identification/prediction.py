@@ -21,9 +21,10 @@ from relay_contact.identification.measurement import (
     RINGDOWN,
     Measurement,
 )
+from relay_contact.qualification.level import threshold
 from relay_contact.qualification.response import EXACT, FREE, interrupting_force, respond
 from relay_contact.qualification.standards import Contacts
-from relay_contact.qualification.trials import Specimen, threshold, vibrated
+from relay_contact.qualification.trials import Specimen, vibrated
 
 ALONE: Values = {**FREE, "effects.excitation": "None", "base.acceleration": 0.0}
 AWAY: Values = {"contact.overtravel": -1e-2}

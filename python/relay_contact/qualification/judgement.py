@@ -23,22 +23,13 @@ from relay_contact.qualification.excitation import (  # fmt: skip
     Transient,
     straight,
 )
+from relay_contact.qualification.level import RESOLUTION, Lengths
 from relay_contact.qualification.parts import CLOSED, CONTACT, CORE, MOVED, NONE, OPEN, STOP, pusher_of
 from relay_contact.qualification.position import MOST, WORN, Drawn, Position
 from relay_contact.qualification.relay import NORMAL
 from relay_contact.qualification.response import Response
 from relay_contact.qualification.results import Finding, Margin, PartMargin, Verdict
-from relay_contact.qualification.trials import (
-    RESOLUTION,
-    SHORT,
-    SHOWN,
-    Lengths,
-    Piece,
-    Specimen,
-    sine_threshold,
-    steady,
-    sweep,
-)
+from relay_contact.qualification.trials import SHORT, SHOWN, Piece, Specimen, sine_threshold, steady, sweep
 
 MANY = 10_000
 """Decay times that a sweep takes to cross a resonance, above which their number does not matter."""

@@ -16,6 +16,7 @@ from relay_contact.many import side_by_side
 from relay_contact.qualification import statistics
 from relay_contact.qualification.distributions import LEAST, TWO_SIDED
 from relay_contact.qualification.excitation import Random, Sine, Test, Transient
+from relay_contact.qualification.level import ASIDE, ROUGHLY
 from relay_contact.qualification.parts import CONTACT, Rest, at_rest
 from relay_contact.qualification.relay import NORMAL, Model, Relay
 from relay_contact.qualification.response import CALM, Response, answers, margin, spread
@@ -23,8 +24,6 @@ from relay_contact.qualification.results import Chance
 from relay_contact.qualification.standards import Contacts
 from relay_contact.qualification.trials import (
     APART,
-    ASIDE,
-    ROUGHLY,
     Piece,
     Specimen,
     middle_dip,
