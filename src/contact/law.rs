@@ -32,6 +32,14 @@ impl Law {
         }
     }
 
+    /// Whether the engagement of bodies that approach this fast (m/s), or faster, is their way alone.
+    pub(crate) fn engages_by_way(&self, slowest: f64) -> bool {
+        match self {
+            Self::Power(power) => power.engages_by_way(slowest),
+            Self::Linear(linear) => linear.damping == 0.0,
+        }
+    }
+
     /// Time (s) by which the velocity counts in the engagement.
     pub(crate) fn by_rate(&self) -> f64 {
         match self {

@@ -292,6 +292,11 @@ impl Power {
         (d - self.least).min(d + self.by_rate() * rate)
     }
 
+    /// See [`Law::engages_by_way`](crate::contact::law::Law::engages_by_way).
+    pub(crate) fn engages_by_way(&self, slowest: f64) -> bool {
+        self.by_rate() * slowest >= -self.least
+    }
+
     /// The closed branch, continued smoothly beyond opening (the force may be negative), for steps in which the contact
     /// opens.
     #[inline(always)]

@@ -18,6 +18,56 @@ pub struct FreeMotion {
     pub v_from_v: f64,
 }
 
+/// The characteristic roots of several oscillators.
+#[derive(Clone, Copy, Debug)]
+pub struct Roots<const N: usize> {
+    /// Whether they are real.
+    pub creeps: [bool; N],
+    /// Half their distance in the complex plane, 1/s.
+    pub split: [f64; N],
+    /// The smaller and the larger magnitude, 1/s.
+    pub slow: [f64; N],
+    /// See [`Roots::slow`].
+    pub fast: [f64; N],
+}
+
+impl<const N: usize> Roots<N> {
+    /// For `omega_squared` >= 0 (1/s2) and `damping` c >= 0 (1/s).
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "there is a value for each")]
+    pub fn of(omega_squared: &[f64; N], damping: &[f64; N]) -> Self {
+        let (mut creeps, mut split, mut slow, mut fast) = ([false; N], [0.0; N], [0.0; N], [0.0; N]);
+        for i in 0..N {
+            let half = 0.5 * damping[i];
+            let discriminant = half * half - omega_squared[i];
+            split[i] = discriminant.abs().sqrt();
+            creeps[i] = discriminant > 0.0;
+            let omega = omega_squared[i].sqrt();
+            fast[i] = if creeps[i] { half + split[i] } else { omega };
+            // Their product is omega^2.
+            slow[i] = if fast[i] > 0.0 { omega_squared[i] / fast[i] } else { 0.0 };
+        }
+        Self {
+            creeps,
+            split,
+            slow,
+            fast,
+        }
+    }
+
+    /// Those of one.
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "there is a value for each")]
+    pub fn alone(&self, i: usize) -> Roots<1> {
+        Roots {
+            creeps: [self.creeps[i]],
+            split: [self.split[i]],
+            slow: [self.slow[i]],
+            fast: [self.fast[i]],
+        }
+    }
+}
+
 impl FreeMotion {
     /// After no time.
     const AT_ONCE: Self = Self {
@@ -55,71 +105,69 @@ impl FreeMotion {
         }
     }
 
-    /// Of several oscillators, or of one after several times, side by side.
+    /// Of several oscillators with these roots after a time, side by side.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "there is a value for each")]
     pub fn side_by_side<const N: usize, A: Arithmetic>(
         omega_squared: &[f64; N],
         damping: &[f64; N],
-        times: &[f64; N],
+        roots: &Roots<N>,
+        t: f64,
     ) -> [Self; N] {
-        let half = damping.map(|damping| 0.5 * damping);
-        let (mut roots, mut slow, mut fast, mut angles) = ([0.0; N], [0.0; N], [0.0; N], [0.0; N]);
-        let (mut creeps, mut swings, mut easy) = (false, false, true);
-        for i in 0..N {
-            let discriminant = half[i] * half[i] - omega_squared[i];
-            let root = discriminant.abs().sqrt();
-            let t = times[i];
-            roots[i] = root;
-            if discriminant > 0.0 {
-                creeps = true;
-                (slow[i], fast[i]) = (-omega_squared[i] / (half[i] + root), -(half[i] + root));
-                // Else their difference needs care.
-                easy &= root * t > 0.25;
+        let Roots {
+            creeps,
+            split,
+            slow,
+            fast,
+        } = roots;
+        // Where the difference of exponentials needs care, or the quotient of sine and angle.
+        let is_easy = |i: usize| {
+            let angle = split[i] * t;
+            if creeps[i] {
+                angle > 0.25
             } else {
-                swings = true;
-                (slow[i], angles[i]) = (-half[i], root * t);
-                easy &= root > 0.0 && angles[i] < LARGEST_ANGLE;
+                angle > 0.0 && angle < LARGEST_ANGLE
+            }
+        };
+        if !(0..N).all(is_easy) {
+            return array::from_fn(|i| Self::new(omega_squared[i], damping[i], t));
+        }
+        let (mut decays, mut faster, mut angles) = ([0.0; N], [0.0; N], [0.0; N]);
+        let (mut of_v, mut of_q) = ([0.0; N], [0.0; N]);
+        for i in 0..N {
+            let half = 0.5 * damping[i];
+            decays[i] = if creeps[i] { -slow[i] * t } else { -half * t };
+            faster[i] = if creeps[i] { -fast[i] * t } else { 0.0 };
+            angles[i] = if creeps[i] { 0.0 } else { split[i] * t };
+            of_v[i] = if creeps[i] { slow[i] } else { half };
+            of_q[i] = if creeps[i] { fast[i] } else { half };
+        }
+        let decays = exp::<N, A>(&decays);
+        // `q_from_v` times the split, and `v_from_v` with what follows from that.
+        let (mut sine, mut cosine) = ([0.0; N], [0.0; N]);
+        if creeps.contains(&true) {
+            let faded = exp::<N, A>(&faster);
+            for i in 0..N {
+                // Far below rounding, and slow where it is not normal.
+                cosine[i] = if faster[i] > -50.0 { faded[i] } else { 0.0 };
+                sine[i] = 0.5 * (decays[i] - cosine[i]);
             }
         }
-        if !easy {
-            return array::from_fn(|i| Self::new(omega_squared[i], damping[i], times[i]));
+        if creeps.contains(&false) {
+            let (sin, cos) = sin_cos::<N, A>(&angles);
+            for i in 0..N {
+                sine[i] = if creeps[i] { sine[i] } else { decays[i] * sin[i] };
+                cosine[i] = if creeps[i] { cosine[i] } else { decays[i] * cos[i] };
+            }
         }
-        let exponents = |rates: &[f64; N]| {
-            let mut exponents = *rates;
-            exponents.iter_mut().zip(times).for_each(|(rate, t)| *rate *= t);
-            exponents
-        };
-        let by_slow = exp::<N, A>(&exponents(&slow));
-        let by_fast = if creeps {
-            exp::<N, A>(&exponents(&fast))
-        } else {
-            [0.0; N]
-        };
-        let (sin, cos) = if swings {
-            sin_cos::<N, A>(&angles)
-        } else {
-            ([0.0; N], [0.0; N])
-        };
         let mut motions = [Self::AT_ONCE; N];
         for i in 0..N {
-            let (q_from_v, v_from_v, q_from_q);
-            if fast[i] < 0.0 {
-                // Far below rounding, and slow where it is not normal.
-                let by_fast = if fast[i] * times[i] > -50.0 { by_fast[i] } else { 0.0 };
-                q_from_v = (by_slow[i] - by_fast) / (2.0 * roots[i]);
-                v_from_v = slow[i] * q_from_v + by_fast;
-                q_from_q = by_fast - fast[i] * q_from_v;
-            } else {
-                q_from_v = by_slow[i] * sin[i] / roots[i];
-                v_from_v = by_slow[i] * cos[i] - half[i] * q_from_v;
-                q_from_q = by_slow[i] * cos[i] + half[i] * q_from_v;
-            }
+            let q_from_v = sine[i] / split[i];
             motions[i] = Self {
-                q_from_q,
+                q_from_q: cosine[i] + of_q[i] * q_from_v,
                 q_from_v,
                 v_from_q: -omega_squared[i] * q_from_v,
-                v_from_v,
+                v_from_v: cosine[i] - of_v[i] * q_from_v,
             };
         }
         motions
@@ -140,7 +188,8 @@ mod tests {
                     let omega = [1.0, 1.7];
                     let squares = omega.map(|omega| omega * omega);
                     let damping = [2.0 * first, 3.4 * second];
-                    let together = FreeMotion::side_by_side::<2, Separate>(&squares, &damping, &[t; 2]);
+                    let roots = Roots::of(&squares, &damping);
+                    let together = FreeMotion::side_by_side::<2, Separate>(&squares, &damping, &roots, t);
                     for (one, (omega, damping)) in together.iter().zip(omega.into_iter().zip(damping)) {
                         let alone = FreeMotion::new(omega * omega, damping, t);
                         let wrong = [

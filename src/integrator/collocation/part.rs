@@ -3,7 +3,7 @@
 
 use std::array;
 
-use crate::beam::mode::{Mode, ModeState, ModeStates};
+use crate::beam::mode::{MAX_MODES, Mode, ModeState, ModeStates};
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::{Load, Shapes};
@@ -63,7 +63,30 @@ impl<const S: usize> Whole<'_, S> {
             *row = collocation.lagrange(node * (at / self.length));
         }
         let base = load_on::<S, A>(shapes, &rows, &trial.accelerations);
-        if let ([link], [port]) = (&*model.links, &*model.ports) {
+        let flies = !state.is_closed() && model.links.iter().all(|link| link.contact().is_some());
+        if flies && model.modes.first().is_some_and(|slowest| slowest.omega_squared > 0.0) {
+            // About the equilibrium under the forces that are missing.
+            let (mut starts, mut leans) = (state.modes, [0.0; MAX_MODES]);
+            for (link, nodes) in model.links.iter().zip(&trial.links) {
+                let force = link.sense * nodes.forces[0];
+                for (lean, shape) in leans.iter_mut().zip(&model.ports[link.port].shape) {
+                    *lean += force * shape;
+                }
+            }
+            for ((lean, mode), at) in leans.iter_mut().zip(&model.modes).zip(&mut starts) {
+                *lean /= mode.omega_squared;
+                at.q -= *lean;
+            }
+            let loads = Loads {
+                shapes,
+                length: at,
+                polynomials: [&base],
+            };
+            loads.move_all::<A>(&model.modes, |_, mode| [-mode.participation], &starts, ends);
+            for (end, lean) in ends.iter_mut().zip(&leans).take(model.modes.len()) {
+                end.q += lean;
+            }
+        } else if let ([link], [port]) = (&*model.links, &*model.ports) {
             let force = load_on::<S, A>(shapes, &rows, &scaled(&trial.links[0].forces, link.sense));
             let loads = Loads {
                 shapes,

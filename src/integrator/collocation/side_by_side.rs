@@ -7,11 +7,11 @@
 use std::array;
 
 use crate::beam::mode::{Mode, ModeState, ModeStates};
-use crate::integrator::collocation::modal_response::{ModeOverStep, Regime};
+use crate::integrator::collocation::modal_response::{FAST, SLOW};
 use crate::integrator::collocation::shapes::{Load, Shapes, TERMS};
 use crate::integrator::collocation::superposition::Pair;
-use crate::math::free_motion::FreeMotion;
-use crate::math::nodal::{add, add_products};
+use crate::math::free_motion::{FreeMotion, Roots};
+use crate::math::nodal::{add, add_products, greatest};
 use crate::math::simd::{Arithmetic, LANES};
 
 /// Loads up to the end of a step of `length` seconds.
@@ -64,13 +64,12 @@ impl<const S: usize, const LOADS: usize> Loads<'_, S, LOADS> {
         starts: &[ModeState; N],
         ends: &mut [ModeState; N],
     ) {
-        let over = modes
-            .each_ref()
-            .map(|mode| ModeOverStep::new(mode.omega_squared, mode.damping, self.length));
         let [omega_squared, damping] =
             [|mode: &Mode| mode.omega_squared, |mode: &Mode| mode.damping].map(|of| modes.each_ref().map(of));
-        let free = FreeMotion::side_by_side::<N, A>(&omega_squared, &damping, &[self.length; N]);
-        let response = if let Some(regime) = Together::of(&over) {
+        let h = self.length;
+        let roots = Roots::of(&omega_squared, &damping);
+        let free = FreeMotion::side_by_side::<N, A>(&omega_squared, &damping, &roots, h);
+        let response = if let Some(regime) = Together::of(&omega_squared, &damping, &roots, h) {
             regime.under::<S, A, LOADS>(self, &free, factors)
         } else {
             let mut responses = Pair {
@@ -79,8 +78,13 @@ impl<const S: usize, const LOADS: usize> Loads<'_, S, LOADS> {
             };
             for i in 0..N {
                 #[expect(clippy::indexing_slicing, reason = "there is a value for each mode")]
-                let (over, free, factors) = ([over[i]], [free[i]], factors.each_ref().map(|factors| [factors[i]]));
-                if let Some(alone) = Together::of(&over) {
+                let (omega_squared, damping, free, factors) = (
+                    [omega_squared[i]],
+                    [damping[i]],
+                    [free[i]],
+                    factors.each_ref().map(|factors| [factors[i]]),
+                );
+                if let Some(alone) = Together::of(&omega_squared, &damping, &roots.alone(i), h) {
                     let Pair { q: [q], v: [v] } = alone.under::<S, A, LOADS>(self, &free, &factors);
                     #[expect(clippy::indexing_slicing, reason = "there is a value for each mode")]
                     {
@@ -90,7 +94,13 @@ impl<const S: usize, const LOADS: usize> Loads<'_, S, LOADS> {
             }
             responses
         };
-        let h = self.length;
+        let mut response = response;
+        if let [factors] = factors.as_slice() {
+            for (values, factor) in response.q.iter_mut().zip(&mut response.v).zip(factors) {
+                *values.0 *= factor;
+                *values.1 *= factor;
+            }
+        }
         let by_loads = response.q.iter().zip(&response.v);
         for (((end, start), free), (q, v)) in ends.iter_mut().zip(starts).zip(&free).zip(by_loads) {
             end.q = free.q_from_q * start.q + free.q_from_v * start.v + h * h * q;
@@ -98,13 +108,16 @@ impl<const S: usize, const LOADS: usize> Loads<'_, S, LOADS> {
         }
     }
 
-    /// A value of the loads, such as an integral, for each mode.
+    /// A value of the loads, such as an integral, for each mode; where there is one load, without its factors: they come last.
     #[inline(always)]
     fn sum<A: Arithmetic, const N: usize>(
         &self,
         factors: &[[f64; N]; LOADS],
         value: impl Fn(&Load) -> f64,
     ) -> [f64; N] {
+        if let [load] = self.polynomials.as_slice() {
+            return [value(load); N];
+        }
         let mut sum = [0.0; N];
         for (load, factors) in self.polynomials.iter().zip(factors) {
             add::<N, A>(&mut sum, value(load), factors);
@@ -120,7 +133,7 @@ impl<const S: usize, const LOADS: usize> Loads<'_, S, LOADS> {
     }
 }
 
-/// Modes over a step that are of one [`Regime`].
+/// Modes over a step that are of one [`Regime`](crate::integrator::collocation::modal_response).
 enum Together<const N: usize> {
     /// Factors of velocity and displacement in the acceleration; the largest root. All times the step length.
     Slow([f64; N], [f64; N], f64),
@@ -131,24 +144,25 @@ enum Together<const N: usize> {
 }
 
 impl<const N: usize> Together<N> {
-    /// These modes, if they are of one regime.
+    /// These modes over `h` seconds, if they are of one regime.
     #[inline(always)]
-    fn of(modes: &[ModeOverStep; N]) -> Option<Self> {
-        let count = |which: fn(&Regime) -> bool| modes.iter().filter(|mode| which(&mode.regime)).count();
-        let squared = |mode: &ModeOverStep| mode.omega_squared * mode.h * mode.h;
-        if count(|regime| matches!(regime, Regime::Slow)) == N {
-            let root = modes.iter().fold(0.0, |root, mode| mode.fast.max(root));
-            let damping = modes.each_ref().map(|mode| -mode.damping * mode.h);
-            Some(Self::Slow(damping, modes.each_ref().map(|mode| -squared(mode)), root))
-        } else if count(|regime| matches!(regime, Regime::Fast)) == N {
-            let damping = modes.each_ref().map(|mode| -mode.damping * mode.h / squared(mode));
-            Some(Self::Fast(damping, modes.each_ref().map(|mode| -1.0 / squared(mode))))
-        } else if count(|regime| matches!(regime, Regime::Split(..))) == N {
-            let roots = modes.each_ref().map(|mode| match mode.regime {
-                Regime::Split(slow, fast) => (slow, fast),
-                _ => (0.0, 0.0),
-            });
-            Some(Self::Split(roots.map(|(slow, _)| slow), roots.map(|(_, fast)| fast)))
+    fn of(omega_squared: &[f64; N], damping: &[f64; N], roots: &Roots<N>, h: f64) -> Option<Self> {
+        let (slow, fast) = (roots.slow.map(|root| root * h), roots.fast.map(|root| root * h));
+        let all = |regime: fn(f64, f64) -> bool| slow.iter().zip(&fast).all(|(slow, fast)| regime(*slow, *fast));
+        let damping = damping.map(|damping| -damping * h);
+        let squared = omega_squared.map(|squared| -squared * h * h);
+        if all(|_, fast| fast <= SLOW) {
+            Some(Self::Slow(damping, squared, greatest(&fast)))
+        } else if all(|slow, fast| fast > SLOW && slow >= FAST) {
+            let inverse = squared.map(f64::recip);
+            let mut over_squared = damping;
+            over_squared
+                .iter_mut()
+                .zip(&inverse)
+                .for_each(|(damping, inverse)| *damping *= -inverse);
+            Some(Self::Fast(over_squared, inverse))
+        } else if all(|slow, fast| fast > SLOW && slow < FAST) {
+            Some(Self::Split(slow.map(|root| -root), fast.map(|root| -root)))
         } else {
             None
         }
@@ -241,6 +255,7 @@ impl<const N: usize> Together<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::integrator::collocation::modal_response::ModeOverStep;
     use crate::integrator::collocation::polynomial::Collocation;
     use crate::math::nodal::{LONG, dot};
     use crate::math::simd::Separate;

@@ -168,10 +168,18 @@ impl<'a, const S: usize> Locator<'a, S> {
         left + motion_rounding(model, link, state)
     }
 
-    /// Whether the engagement rises throughout between an open and a closed sample, so that it is found where it passes zero
-    /// once: as the bodies approach, or while they are indented and the damper lets go of them.
-    fn rises(&self, sought: &Sought, cubic: &Cubic) -> bool {
+    /// Whether the engagement rises throughout between an open and a closed sample, whose cubic is wrong by `error` (m), so that it
+    /// is found where it passes zero once: as the bodies approach, faster than all that is unseen could part them or where that is
+    /// negligible, or while they are indented and the damper lets go of them.
+    fn rises(&self, sought: &Sought, cubic: &Cubic, error: f64) -> bool {
         let Cubic { a, b } = cubic;
+        let slowest = cubic.rates(0.0).0;
+        if slowest > 0.0 {
+            let slower = self.search.swings.ripple(cubic.length()).velocity + 4.0 * error / cubic.length();
+            if slower < slowest && sought.law.engages_by_way(slowest - slower) {
+                return true;
+            }
+        }
         let approaches = a.rate >= 0.0 && cubic.highest() <= b.d;
         let is_held = || {
             sought.law.is_indented(sought.link.approach + cubic.lowest()) && cubic.rates(sought.law.by_rate()).0 >= 0.0
@@ -201,7 +209,7 @@ impl<'a, const S: usize> Locator<'a, S> {
                     cubic = Cubic { a: b, b: later };
                     continue;
                 }
-            } else if self.rises(sought, &cubic) || depth > HALVINGS {
+            } else if self.rises(sought, &cubic, error) || depth > HALVINGS {
                 let touch = self.crossing(sought, cubic);
                 // A contact that closes at the instant of opening still gets a short flight, so that time advances.
                 let shortest = SHORTEST_FLIGHT * b.at;
