@@ -15,6 +15,7 @@ from playwright.sync_api import Browser, Page
 
 from conftest import empty_page
 from relay_contact import fmu_path
+from report import accuracy
 from report.files import DOCS, OUT
 
 QUICK = OUT / "report-quick/index.html"
@@ -154,3 +155,12 @@ def test_links_of_the_documentation_lead_to_files(documentation: Page) -> None:
     files = [link.removeprefix("file://").partition("#")[0] for link in links if link.startswith("file:")]
     assert files
     assert [file for file in files if not Path(file).exists()] == []
+
+
+def test_a_comparison_without_a_peer_is_not_written(monkeypatch: pytest.MonkeyPatch) -> None:
+    page = (DOCS / "accuracy.md").read_text(encoding="utf-8")
+    measured = [{"integrator": "CVODE BDF", "outcome": "skipped: it needs SUNDIALS"}]
+    monkeypatch.setattr(accuracy, "rows", lambda _: measured)
+    with pytest.raises(SystemExit, match="CVODE BDF skipped"):
+        accuracy.write()
+    assert (DOCS / "accuracy.md").read_text(encoding="utf-8") == page

@@ -18,6 +18,9 @@ pub struct FreeMotion {
     pub v_from_v: f64,
 }
 
+/// Exponent from which on what decays counts as zero: far below rounding, and slow to compute with once it is not normal.
+pub const FADED: f64 = -50.0;
+
 /// The characteristic roots of several oscillators.
 #[derive(Clone, Copy, Debug)]
 pub struct Roots<const N: usize> {
@@ -148,8 +151,7 @@ impl FreeMotion {
         if creeps.contains(&true) {
             let faded = exp::<N, A>(&faster);
             for i in 0..N {
-                // Far below rounding, and slow where it is not normal.
-                cosine[i] = if faster[i] > -50.0 { faded[i] } else { 0.0 };
+                cosine[i] = if faster[i] > FADED { faded[i] } else { 0.0 };
                 sine[i] = 0.5 * (decays[i] - cosine[i]);
             }
         }

@@ -10,7 +10,7 @@ use crate::beam::mode::Mode;
 use crate::integrator::collocation::fading_load::convolved;
 use crate::integrator::collocation::shapes::{MAX_SHAPES, NEGLIGIBLE, Row, Shapes, TERMS, Variable};
 use crate::integrator::collocation::superposition::{Combination, Fading, Fast, Pair, Response};
-use crate::math::free_motion::FreeMotion;
+use crate::math::free_motion::{FADED, FreeMotion, Roots};
 use crate::math::nodal::{Nodal, add, scaled};
 use crate::math::simd::Arithmetic;
 
@@ -37,6 +37,20 @@ pub(super) enum Regime {
     Split(f64, f64),
 }
 
+impl Regime {
+    /// By the magnitudes of the roots times the step length.
+    #[inline(always)]
+    pub(super) fn of(slow: f64, fast: f64) -> Self {
+        if fast <= SLOW {
+            Self::Slow
+        } else if slow >= FAST {
+            Self::Fast
+        } else {
+            Self::Split(-slow, -fast)
+        }
+    }
+}
+
 /// A mode over a step: `q'' + c q' + omega^2 q = r(t)`.
 #[derive(Clone, Copy, Debug)]
 pub struct ModeOverStep {
@@ -52,28 +66,17 @@ pub struct ModeOverStep {
 impl ModeOverStep {
     /// For `omega_squared` >= 0 (1/s2), `damping` c >= 0 (1/s), and the step length `h` > 0 (s).
     pub fn new(omega_squared: f64, damping: f64, h: f64) -> Self {
-        let half = damping / 2.0;
-        let discriminant = half * half - omega_squared;
-        let fast = if discriminant > 0.0 {
-            half + discriminant.sqrt()
-        } else {
-            omega_squared.sqrt()
-        };
-        // The product of the roots is omega^2.
-        let slow = if fast > 0.0 { omega_squared / fast } else { 0.0 };
-        let regime = if fast * h <= SLOW {
-            Regime::Slow
-        } else if slow * h >= FAST {
-            Regime::Fast
-        } else {
-            Regime::Split(-slow * h, -fast * h)
-        };
+        let Roots {
+            slow: [slow],
+            fast: [fast],
+            ..
+        } = Roots::of(&[omega_squared], &[damping]);
         Self {
             omega_squared,
             damping,
             h,
             fast: fast * h,
-            regime,
+            regime: Regime::of(slow * h, fast * h),
         }
     }
 
@@ -305,10 +308,10 @@ impl ModeOverStep {
     }
 }
 
-/// The exponential of a negative number; zero below `e^-50`, which is far below rounding.
+/// The exponential of a negative number; zero where it is [`FADED`].
 #[inline(always)]
-pub(super) fn decayed(exponent: f64) -> f64 {
-    if exponent > -50.0 { exponent.exp() } else { 0.0 }
+fn decayed(exponent: f64) -> f64 {
+    if exponent > FADED { exponent.exp() } else { 0.0 }
 }
 
 #[cfg(test)]

@@ -230,3 +230,78 @@ pub(crate) fn shorten<const S: usize>(
     }
     trial.modes = *modes;
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integrator::collocation::cache::{Cache, OF_LONG};
+    use crate::integrator::collocation::shapes::Variable;
+    use crate::integrator::collocation::step::compute;
+    use crate::integrator::collocation::trial::{Scratch, Source};
+    use crate::math::nodal::LONG;
+    use crate::scene::Scene;
+    use crate::variables::ExcitationKind;
+
+    /// At its end a look sees what the coefficients of the step make of it, in flight and closed, at any damping and length, with one
+    /// contact and with two.
+    #[test]
+    #[expect(clippy::indexing_slicing, reason = "a spring has modes")]
+    fn a_look_at_the_end_is_the_end_of_the_step() {
+        for (lifted, second) in [(0.0, false), (5e-6, false), (5e-6, true)] {
+            for damping in [0.0, 0.01, 0.3, 3.0] {
+                let mut scene = Scene::default();
+                scene.effects.second_contact = second;
+                scene.second.gap = 5e-3;
+                scene.beam.stiffness_damping *= damping;
+                scene.effects.excitation = ExcitationKind::Sine;
+                scene.excitation.amplitude = 300.0;
+                let model = Model::new(&scene, 0.0).unwrap();
+                let mut state = model.initial_state(0.0);
+                for (k, at) in state.modes.iter_mut().take(model.modes.len()).enumerate() {
+                    at.v += 1e-8 * (1.0 + k as f64).sin();
+                }
+                state.modes[0].q += lifted / model.modes[0].tip;
+                model.settle(&mut state);
+                assert_eq!(state.is_closed(), lifted == 0.0);
+                let mut cache = Cache::new(&model, &OF_LONG, Variable::Time);
+                let mut scratch: Box<Scratch<LONG>> = bytemuck::zeroed_box();
+                let mut steps = 0;
+                for length in [1e-9, 1e-7, 3e-6, 5e-5, 2e-4] {
+                    let mut trial: Box<Trial<LONG>> = bytemuck::zeroed_box();
+                    let prepared = cache.prepare(state.time, length, true, &model);
+                    let drive = Drive::default();
+                    let source = Source::Laws(1e-12);
+                    if compute(&model, &state, &drive, prepared, source, &mut trial, &mut scratch).is_none() {
+                        continue;
+                    }
+                    steps += 1;
+                    let whole = Whole {
+                        model: &model,
+                        state: &state,
+                        drive: &drive,
+                        collocation: prepared.collocation,
+                        trial: &trial,
+                        axial: &scratch.axial.loads,
+                        length,
+                    };
+                    let mut looked = [ModeState::default(); MAX_MODES];
+                    whole.modes(length, &mut looked);
+                    for (mode, (seen, end)) in model.modes.iter().zip(looked.iter().zip(&trial.modes)) {
+                        let omega = mode.omega_squared.sqrt();
+                        // With what it leans under the preload, and what the acceleration gives it.
+                        let leans = (model.preload.force * mode.tip / omega).abs();
+                        let size = (omega * end.q).abs().max(end.v.abs()) + leans + length * mode.participation.abs();
+                        let wrong = (omega * (seen.q - end.q)).abs().max((seen.v - end.v).abs());
+                        // Cancellation of power series and derivatives, as in the test of the responses.
+                        assert!(
+                            wrong <= 1e-11 * size,
+                            "{lifted} m, {second}, {damping}, {length} s, {omega} 1/s: {seen:?}, not {end:?}"
+                        );
+                    }
+                }
+                // Some long steps in contact have no solution.
+                assert!(steps >= 3, "{steps} steps");
+            }
+        }
+    }
+}

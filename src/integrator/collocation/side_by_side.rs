@@ -7,7 +7,7 @@
 use std::array;
 
 use crate::beam::mode::{Mode, ModeState, ModeStates};
-use crate::integrator::collocation::modal_response::{FAST, SLOW};
+use crate::integrator::collocation::modal_response::Regime;
 use crate::integrator::collocation::shapes::{Load, Shapes, TERMS};
 use crate::integrator::collocation::superposition::Pair;
 use crate::math::free_motion::{FreeMotion, Roots};
@@ -69,7 +69,7 @@ impl<const S: usize, const LOADS: usize> Loads<'_, S, LOADS> {
         let h = self.length;
         let roots = Roots::of(&omega_squared, &damping);
         let free = FreeMotion::side_by_side::<N, A>(&omega_squared, &damping, &roots, h);
-        let response = if let Some(regime) = Together::of(&omega_squared, &damping, &roots, h) {
+        let mut response = if let Some(regime) = Together::of(&omega_squared, &damping, &roots, h) {
             regime.under::<S, A, LOADS>(self, &free, factors)
         } else {
             let mut responses = Pair {
@@ -94,7 +94,6 @@ impl<const S: usize, const LOADS: usize> Loads<'_, S, LOADS> {
             }
             responses
         };
-        let mut response = response;
         if let [factors] = factors.as_slice() {
             for (values, factor) in response.q.iter_mut().zip(&mut response.v).zip(factors) {
                 *values.0 *= factor;
@@ -133,7 +132,7 @@ impl<const S: usize, const LOADS: usize> Loads<'_, S, LOADS> {
     }
 }
 
-/// Modes over a step that are of one [`Regime`](crate::integrator::collocation::modal_response).
+/// Modes over a step that are of one [`Regime`].
 enum Together<const N: usize> {
     /// Factors of velocity and displacement in the acceleration; the largest root. All times the step length.
     Slow([f64; N], [f64; N], f64),
@@ -148,12 +147,15 @@ impl<const N: usize> Together<N> {
     #[inline(always)]
     fn of(omega_squared: &[f64; N], damping: &[f64; N], roots: &Roots<N>, h: f64) -> Option<Self> {
         let (slow, fast) = (roots.slow.map(|root| root * h), roots.fast.map(|root| root * h));
-        let all = |regime: fn(f64, f64) -> bool| slow.iter().zip(&fast).all(|(slow, fast)| regime(*slow, *fast));
+        let all = |which: fn(&Regime) -> bool| {
+            let mut roots = slow.iter().zip(&fast);
+            roots.all(|(slow, fast)| which(&Regime::of(*slow, *fast)))
+        };
         let damping = damping.map(|damping| -damping * h);
         let squared = omega_squared.map(|squared| -squared * h * h);
-        if all(|_, fast| fast <= SLOW) {
+        if all(|regime| matches!(regime, Regime::Slow)) {
             Some(Self::Slow(damping, squared, greatest(&fast)))
-        } else if all(|slow, fast| fast > SLOW && slow >= FAST) {
+        } else if all(|regime| matches!(regime, Regime::Fast)) {
             let inverse = squared.map(f64::recip);
             let mut over_squared = damping;
             over_squared
@@ -161,7 +163,7 @@ impl<const N: usize> Together<N> {
                 .zip(&inverse)
                 .for_each(|(damping, inverse)| *damping *= -inverse);
             Some(Self::Fast(over_squared, inverse))
-        } else if all(|slow, fast| fast > SLOW && slow < FAST) {
+        } else if all(|regime| matches!(regime, Regime::Split(..))) {
             Some(Self::Split(slow.map(|root| -root), fast.map(|root| -root)))
         } else {
             None
