@@ -303,12 +303,6 @@ pub enum Remark {
         /// Those for which the tolerance is promised.
         range: Range<f64>,
     },
-    /// An armature, with which the tolerance is not promised.
-    #[error(
-        "effects.pusher = Armature: where the armature is thrown about, one relay in ten exceeds solver.tolerance, a third of \
-         these without a word from solver.forceError; compare with a tolerance ten times smaller"
-    )]
-    ThrownArmature,
     /// Friction with which slip is unstable.
     #[error(
         "effects.friction = Coulomb: slip {} the clamp is unstable with friction.coefficient = {} and tip.contactHeight = {} m: at \

@@ -223,7 +223,6 @@ impl Model {
     /// What a user should know of the scene.
     pub fn remarks(&self) -> Vec<Remark> {
         let mut remarks: Vec<_> = self.bent_far().into_iter().chain(self.friction_at_touch()).collect();
-        remarks.extend(self.armature.map(|_| Remark::ThrownArmature));
         if let (Some((_, friction)), Some(law)) = (self.friction(), self.law().power()) {
             // Of a contact open at rest the force scale.
             let at_rest = self.preload.force;

@@ -16,6 +16,10 @@ use crate::state::State;
 /// Steps from one look at what is unresolved to the next: it lasts longer than a step, and a look at each costs 1 %.
 const EACH: u64 = 4;
 
+/// Length from which on a step is counted by the force that the deviation makes in it, s. A communication point is hardly ever nearer
+/// to the instant of a closing, at which a wrong instant is a wrong force.
+const READ: f64 = 1e-9;
+
 /// Moves a state, of which the recorder has taken what it needs, to the end of an accepted step.
 pub(crate) fn commit<const S: usize>(
     model: &Model,
@@ -55,7 +59,7 @@ pub(crate) fn commit<const S: usize>(
     state.iterations += trial.iterations;
 }
 
-/// Carries the deviation along that tells how errors grow.
+/// Carries the deviation along that tells what errors grow to.
 fn advance_deviation<const S: usize>(
     model: &Model,
     state: &mut State,
@@ -65,6 +69,10 @@ fn advance_deviation<const S: usize>(
 ) {
     if !state.force_error.deviates() {
         return;
+    }
+    if let Some(contact) = model.links.get(CONTACT) {
+        let impulse = trial.slow_error * target.length;
+        state.force_error.disturb(&model.slowest, contact.port, impulse);
     }
     // Without a tangent are contacts that are open, and what slips.
     let links = model.links.iter().zip(&trial.links).enumerate();
@@ -76,6 +84,9 @@ fn advance_deviation<const S: usize>(
         known.unwrap_or_else(|| FreeMotion::new(mode.omega_squared, mode.damping, target.length))
     });
     compiled_for!(model.simd, A => state.force_error.advance::<A>(&model.slowest, &free, at_work));
+    if target.length > READ {
+        state.force_error.note_deviation(model.force_scale);
+    }
 }
 
 /// Slip at the end of an accepted step of `length` seconds, which began with a `start`: distance and energy; and the courses of slip

@@ -1,9 +1,9 @@
-//! A small deviation of the motion, which shows how errors grow.
+//! A deviation of the motion, which shows what errors grow to.
 //!
 //! In a closed contact errors die out with the vibrations. In one that opens, each closing turns an error of the motion
 //! into another blow, and errors may grow from one to the next. So the lowest modes of a deviation are carried along, with
-//! each law at work linearised about the motion and its force linear in time over each step (trapezoidal rule). Only the
-//! growth of its size is used, the root of its energy.
+//! each law at work linearised about the motion and its force linear in time over each step (trapezoidal rule). Its direction
+//! soon is that which grows most; each step adds its error to the size.
 
 use std::mem;
 
@@ -20,6 +20,21 @@ impl ForceError {
             self.deviation.v = slowest.shapes.get(port).copied().unwrap_or_default();
             self.normalise(slowest);
         }
+    }
+
+    /// A step was wrong by an impulse (N s) on a contact at this port.
+    pub(crate) fn disturb(&mut self, slowest: &Slowest, port: usize, impulse: f64) {
+        if let Some(shape) = slowest.shapes.get(port) {
+            let squares: f64 = shape.iter().map(|shape| shape * shape).sum();
+            self.size += squares.sqrt() * impulse;
+        }
+    }
+
+    /// The force that the deviation makes is part of the estimate.
+    pub(crate) fn note_deviation(&mut self, force_scale: f64) {
+        let most = self.forces.iter().fold(0.0_f64, |most, force| most.max(force.abs()));
+        let error = self.size * most / force_scale.max(self.greatest);
+        self.by_deviation = self.by_deviation.max(error.min(f64::MAX));
     }
 
     /// Over a step with the given free motion; of each law at work its index among the links, its port and the tangent.
@@ -72,6 +87,7 @@ impl ForceError {
         }
         self.deviation = Deviation { q: next_q, v: next_v };
         let size = self.normalise(slowest);
+        self.size = (self.size * size).min(f64::MAX);
         self.growth += size.ln();
         // Else part of its energy is in the contact.
         if !closed || drawn {

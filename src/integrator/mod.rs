@@ -188,11 +188,10 @@
 //! `tests/calibration.rs` and the package `benches`. Limits: springs for which [`MAX_MODES`](crate::beam::mode::MAX_MODES) are too few
 //! once the contact opens, and motions in which a change of the excitation by the tolerance moves the force by more.
 //!
-//! `solver.forceError` says what the error may be by now ([`force_error`](crate::force_error)): the largest error that a step has
-//! added, times a power of the growth of a small deviation of the motion that is carried along once a contact has opened or closed
-//! ([`deviation`]), times a factor that makes it an upper bound for nine of ten random relays; and what the modes left out do
-//! ([`resolution`](crate::beam::resolution)). With inputs that jump at each of thousands of communication steps the errors of as many
-//! steps add up, and it is too small for a third of them.
+//! `solver.forceError` says what the error may be by now ([`force_error`](crate::force_error)): by the largest error that a step has
+//! added, by a deviation of the motion that is carried along once a contact has opened or closed ([`deviation`]), and by what the modes
+//! left out do ([`resolution`](crate::beam::resolution)). With inputs that jump at each of thousands of communication steps the errors
+//! of as many steps add up, and it is too small for a third of them.
 //!
 //! # Files
 //!

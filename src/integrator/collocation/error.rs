@@ -101,6 +101,7 @@ impl<const S: usize, const L: usize> Judged<'_, S, L> {
         let along = model.friction().map_or(0.0, |(_, friction)| friction.inertia);
         let kinked = kinked(collocation, state, step.length, sum);
         let slow = 3.0 * squares / largest + kinked + missed;
+        trial.slow_error = slow;
         let lasting = of_way + along * free.missed_mean + kept + slow * reaction;
         trial.error = Estimate {
             total: passing + lasting,
@@ -239,6 +240,7 @@ pub(super) fn estimate_in_flight<const S: usize>(
         inside = inside.max(stiffness * (wrong + model.memory * most(&rows.velocity)));
     }
     trial.error = Estimate::lasting(at_end);
+    trial.slow_error = model.inertia * free.missed_mean;
     trial.inner_error = Estimate::lasting(inside);
     trial.rounding = FORCE_ROUNDING * model.preload.force;
     (trial.start_defect, trial.next_terms) = (0.0, 0.0);

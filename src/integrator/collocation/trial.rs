@@ -23,6 +23,8 @@ pub struct Trial<const S: usize> {
     pub error: Estimate,
     /// Estimate of the same at instants inside the step, N.
     pub inner_error: Estimate,
+    /// Part of the first that slow modes feel, as a mean over the step, N.
+    pub slow_error: f64,
     /// Rounding of the forces, N: an error estimate below it is meaningless.
     pub rounding: f64,
     /// Greatest defect of the force polynomials at the start: difference from the force there, N.
