@@ -13,6 +13,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from threading import Lock
 
+from threadpoolctl import threadpool_limits
+
 from relay_contact.component import Component, Values
 from relay_contact.files import HERE, RelayContactError
 from relay_contact.many import side_by_side
@@ -164,7 +166,9 @@ def here(
             tell(f"{test.name}, {position.name}{along}{several}")
             keep(path, text_of(tested(position, test, points)))
 
-    side_by_side(run, list(grouped.values()), workers)
+    # The matrices of a test are small: threads of their own would wait for each other.
+    with threadpool_limits(1, user_api="blas"):
+        side_by_side(run, list(grouped.values()), workers)
 
 
 def chosen(standard: Standard, texts: list[str]) -> Standard:

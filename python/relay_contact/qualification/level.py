@@ -10,16 +10,19 @@ ASIDE = 0.25  # of a resolution: how far beside the level that is expected just 
 Lengths = dict[str, float]
 """Length (s) of the failures that count, by what failed; of a part that is held, of the steps in which it was left."""
 
+Tried = Callable[[float], tuple[Lengths, float]]
+"""What fails at a factor of a level and, if it can be told, `Specimen.ahead`."""
+
 
 def threshold(
-    tried: Callable[[float], tuple[Lengths, float]], guess: float, failing: Lengths | None = None,
-    resolution: float = RESOLUTION,
-) -> tuple[float, list[str]]:  # fmt: skip
+    tried: Tried, guess: float, failing: Lengths | None = None, *, roughly: bool = False
+) -> tuple[float, list[str]]:
     """Return a factor of a level that fails, just above one that does not, and what fails there.
 
-    `tried` tells what fails at a factor and, if it can, what `Specimen.ahead` does; `failing` is what is known to fail
-    at the guess itself. From one side to the other of where secants cross 0, by halves where they do not close in.
+    `failing` is what is known to fail at the guess itself. From one side to the other of where secants cross 0, by
+    halves where they do not close in. `roughly`: by less, and a level where a secant crosses is enough.
     """
+    resolution = ROUGHLY if roughly else RESOLUTION
     low, high, failed = 0.0, guess if failing else np.inf, failing or {}
     level = guess / 1.01 if failing else guess
     near: list[tuple[float, float]] = []
@@ -32,6 +35,9 @@ def threshold(
         if ahead:
             near = sorted([*near, (ahead * level, level)], key=lambda each: abs(each[0]))[:2]
         root = crossing(near)
+        met = len(near) > 1 and near[0][1] == level and abs(level / root - 1) < resolution
+        if roughly and met and low < (1 + resolution) * root and root < (1 + resolution) * high:
+            return root, list(failed)
         nearer = high == np.inf or root - low < high - root
         beyond = root * (1 + (ASIDE if nearer else -ASIDE) * resolution)
         if high == np.inf:

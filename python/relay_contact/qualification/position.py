@@ -16,7 +16,7 @@ from relay_contact.many import side_by_side
 from relay_contact.qualification import statistics
 from relay_contact.qualification.distributions import LEAST, TWO_SIDED
 from relay_contact.qualification.excitation import Random, Sine, Test, Transient
-from relay_contact.qualification.level import ASIDE, ROUGHLY
+from relay_contact.qualification.level import ROUGHLY, threshold
 from relay_contact.qualification.parts import CONTACT, Rest, at_rest
 from relay_contact.qualification.relay import NORMAL, Model, Relay
 from relay_contact.qualification.response import CALM, Response, answers, margin, spread
@@ -30,7 +30,7 @@ from relay_contact.qualification.trials import (
     noise_dips,
     pieces,
     sine_least,
-    sine_threshold,
+    sine_tried,
 )
 from relay_contact.spring import is_entry
 
@@ -301,7 +301,7 @@ class Position:
             first, nominal = (each.weakest(test, lasting) for each in (response, self.specimen.response))
             beside = 1.0 if test.steps else self.weakest[test.name][0] / nominal
             frequency = float(np.clip(first * beside, *test.band))
-            level, _ = sine_threshold(specimen, test, frequency, linear * np.exp(expected), resolution=ROUGHLY)
+            tried = sine_tried(specimen, test, frequency)
         else:
             if isinstance(test, Random):
                 piece, sign = self.middle[test.name][2], 1.0
@@ -310,8 +310,9 @@ class Position:
                 assert isinstance(test, Transient)
                 ways = [(sign, each) for way, sign in test.directions.items() for each in self.pieces[test.name][way]]
                 sign, piece = min(ways, key=lambda way: response.course(way[1].course, way[0], lasting))
-            level, _ = piece.threshold(specimen, sign, guess=linear * np.exp(expected), resolution=ROUGHLY)
-        return float(np.log(level / (1 + ASIDE * ROUGHLY) / linear))
+            tried = piece.tried(specimen, sign)
+        level, _ = threshold(tried, linear * np.exp(expected), roughly=True)
+        return float(np.log(level / linear))
 
     def dips(self, test: Test, scores: Array) -> Array:
         """Return the part of the margin for scores of the chance of the largest dip."""

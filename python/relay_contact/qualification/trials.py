@@ -13,7 +13,7 @@ from relay_contact.component import Array, Component, Contact, Values
 from relay_contact.figures import GRAVITY as G
 from relay_contact.many import side_by_side
 from relay_contact.qualification.excitation import BAND, STEP, Breakpoint, Course, Random, Sine, overall, straight
-from relay_contact.qualification.level import RESOLUTION, ROUGHLY, Lengths, threshold
+from relay_contact.qualification.level import Lengths, Tried, threshold
 from relay_contact.qualification.parts import CLOSED, CONTACT, OPEN, Part, Rest, at_rest, parts
 from relay_contact.qualification.response import Response, stays
 from relay_contact.qualification.standards import Contacts
@@ -218,18 +218,22 @@ def sweep(
     return side_by_side(at, list(zip(frequencies, np.min(least, axis=0), strict=True)))
 
 
-def sine_threshold(
-    specimen: Specimen, test: Sine, frequency: float, guess: float, failing: Lengths | None = None,
-    resolution: float = RESOLUTION,
-) -> tuple[float, list[str]]:  # fmt: skip
-    """Return the factor of the level that fails in steady vibration at a frequency (Hz), and what of the part."""
+def sine_tried(specimen: Specimen, test: Sine, frequency: float) -> Tried:
+    """Return what tells what of the part fails in steady vibration at a frequency (Hz), by factors of the level."""
     amplitude = float(test.amplitude(np.array(frequency)))
 
     def tried(factor: float) -> tuple[Lengths, float]:
         lengths, _, ahead = vibrated(specimen, frequency, factor * amplitude, True)
         return specimen.own(lengths), ahead
 
-    return threshold(tried, guess, failing, resolution)
+    return tried
+
+
+def sine_threshold(
+    specimen: Specimen, test: Sine, frequency: float, guess: float, failing: Lengths | None = None
+) -> tuple[float, list[str]]:
+    """Return the factor of the level that fails in steady vibration at a frequency (Hz), and what of the part."""
+    return threshold(sine_tried(specimen, test, frequency), guess, failing)
 
 
 def sine_least(specimen: Specimen, test: Sine) -> tuple[float, float, list[str]]:
@@ -245,27 +249,30 @@ def sine_least(specimen: Specimen, test: Sine) -> tuple[float, float, list[str]]
     step = 1 + min(BESIDE, specimen.response.bandwidth(first) / first / 2)
     low, high = test.band
 
-    def tried(place: float, guess: float, resolution: float = RESOLUTION) -> tuple[float, float, list[str]]:
+    def exactly(place: float, guess: float) -> tuple[float, float, list[str]]:
         frequency = first * step**place
-        if not low <= frequency <= high:
-            return frequency, np.inf, []
-        return frequency, *sine_threshold(specimen, test, frequency, guess, resolution=resolution)
+        return frequency, *sine_threshold(specimen, test, frequency, guess)
 
-    exact = [tried(0.0, guess)]
+    def roughly(place: float, guess: float) -> float:
+        frequency = first * step**place
+        tried = sine_tried(specimen, test, frequency)
+        return threshold(tried, guess, roughly=True)[0] if low <= frequency <= high else np.inf
+
+    exact = [exactly(0.0, guess)]
     if len(known) > 1 and not test.steps and abs(exact[0][1] / guess - 1) > APART:
-        found, best = {0.0: exact[0]}, 0.0
+        found, best = {0.0: exact[0][1]}, 0.0
         while beside := {best - 1, best + 1} - found.keys():
-            found |= {place: tried(place, found[best][1], ROUGHLY) for place in beside}
-            best = min(found, key=lambda place: found[place][1])
+            found |= {place: roughly(place, found[best]) for place in beside}
+            best = min(found, key=lambda place: found[place])
             if len(found) > TRIED:
                 break
         else:
-            below, middle, above = (found[best + each][1] for each in (-1, 0, 1))
+            below, middle, above = (found[best + each] for each in (-1, 0, 1))
             bent = below - 2 * middle + above
             if np.isfinite(bent) and bent > 0:
-                exact.append(tried(best + (below - above) / (2 * bent), middle))
-        if found[best][1] < min(each[1] for each in exact):
-            exact.append(tried(best, found[best][1]))
+                exact.append(exactly(best + (below - above) / (2 * bent), middle))
+        if found[best] < min(level for _, level, _ in exact):
+            exact.append(exactly(best, found[best]))
     return min(exact, key=lambda each: each[1])
 
 
@@ -316,17 +323,20 @@ class Piece:
             ahead = specimen.ahead(contact, lengths, observed[:, 1:].min(axis=0), self.longer)
         return lengths, np.column_stack((time[1:][taken], observed)), ahead
 
-    def threshold(
-        self, specimen: Specimen, sign: float, failing: Lengths | None = None, guess: float = 0.0,
-        resolution: float = RESOLUTION,
-    ) -> tuple[float, list[str]]:  # fmt: skip
-        """Return the factor of its level that fails with a sign, and what of the part."""
+    def tried(self, specimen: Specimen, sign: float) -> Tried:
+        """Return what tells what of the part fails, by factors of its level, with a sign."""
 
         def tried(factor: float) -> tuple[Lengths, float]:
             lengths, _, ahead = self.follow(specimen, sign * factor)
             return specimen.own(lengths), ahead
 
-        return threshold(tried, guess or self.guess, failing, resolution)
+        return tried
+
+    def threshold(
+        self, specimen: Specimen, sign: float, failing: Lengths | None = None, guess: float = 0.0
+    ) -> tuple[float, list[str]]:
+        """Return the factor of its level that fails with a sign, and what of the part."""
+        return threshold(self.tried(specimen, sign), guess or self.guess, failing)
 
 
 def pieces(specimen: Specimen, course: Course, sign: float, count: int = DIPS) -> list[Piece]:
