@@ -58,7 +58,7 @@ impl Circuits {
         let mut passed = [0; MAX_LINKS];
         loop {
             // Those of the contacts of a circuit in the order of time.
-            let ahead = passages.iter().zip(&passed).enumerate();
+            let ahead = passages.iter().zip(&passed).take(links.len()).enumerate();
             let ahead = ahead.filter_map(|(index, (places, passed))| Some((index, places.until(now).nth(*passed)?)));
             let Some((index, place)) = ahead.min_by(|a, b| a.1.total_cmp(&b.1)) else {
                 return;

@@ -65,6 +65,8 @@ pub(crate) struct Slowest {
     pub(crate) omega_squared: Lanes,
     /// Displacement of each port per mode.
     pub(crate) shapes: [Lanes; MAX_PORTS],
+    /// The size of a deviation that a unit impulse at each port makes, kg^(-1/2).
+    pub(crate) by_impulse: [f64; MAX_PORTS],
 }
 
 /// Free motion of the modes of a deviation over a step.
@@ -95,6 +97,7 @@ impl Slowest {
             modes,
             omega_squared,
             shapes,
+            by_impulse: shapes.map(|shape| shape.iter().map(|shape| shape * shape).sum::<f64>().sqrt()),
         }
     }
 

@@ -337,16 +337,21 @@ fn go_ahead(
     time: f64,
     extremes: Option<&mut Extremes>,
 ) -> Result<(), StepError> {
+    if time <= motion.end.time {
+        // Without a step nothing can fail.
+        return take_steps(model, motion, workspace, time, extremes);
+    }
     // One after the other: together they would lie on the stack in between.
     let former = &mut *workspace.former;
     former.start = motion.start;
     former.end = motion.end;
-    former.dense = motion.dense;
+    let links = model.links.len();
+    former.dense.copy(&motion.dense, links);
     take_steps(model, motion, workspace, time, extremes).inspect_err(|_| {
         let former = &*workspace.former;
         motion.start = former.start;
         motion.end = former.end;
-        motion.dense = former.dense;
+        motion.dense.copy(&former.dense, links);
         workspace.events.forget_after(motion.end.time);
     })
 }
@@ -367,7 +372,7 @@ fn take_steps(
         if let Some(extremes) = &mut extremes {
             motion.add_dense(extremes, model, since, time.min(motion.end.time));
             if motion.end.time <= time {
-                for (index, link) in motion.end.links.iter().enumerate() {
+                for (index, link) in motion.end.links.iter().take(model.links.len()).enumerate() {
                     extremes.of(index).add(link.force);
                 }
             }

@@ -151,7 +151,7 @@ pub const MOST_CHANGES: u32 = 16;
 
 /// Pieces of a step in each of which at most two extremes of its force polynomial are looked for. The degree of long steps.
 /// Pinned: ÷ 8, `tests/promise.rs`.
-pub const PIECES: u32 = 8;
+pub const PIECES: usize = 8;
 
 // Axial force, rest, energy.
 

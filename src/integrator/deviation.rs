@@ -24,10 +24,7 @@ impl ForceError {
 
     /// A step was wrong by an impulse (N s) on a contact at this port.
     pub(crate) fn disturb(&mut self, slowest: &Slowest, port: usize, impulse: f64) {
-        if let Some(shape) = slowest.shapes.get(port) {
-            let squares: f64 = shape.iter().map(|shape| shape * shape).sum();
-            self.size += squares.sqrt() * impulse;
-        }
+        self.size += slowest.by_impulse.get(port).copied().unwrap_or_default() * impulse;
     }
 
     /// The force that the deviation makes is part of the estimate.

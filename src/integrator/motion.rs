@@ -432,7 +432,7 @@ impl Motion {
                 extremes.of(index).add(0.0);
             }
             if model.second() == Some(index) {
-                let turns = turning_points_between(&dense.approach, from, to);
+                let turns = turning_points_between(model.simd, &dense.approach, from, to);
                 for y in turns.iter().chain([from, to]) {
                     extremes.approach(link.approach + value_and_slope(&dense.approach, y).0);
                 }

@@ -76,7 +76,7 @@ impl Recorder<'_> {
                 at.course = collocation.through(model.simd, start, &nodes.forces);
             }
             let turns = if model.scene.effects.extremes && at.closed {
-                turning_points(&at.course)
+                turning_points(model.simd, &at.course)
             } else {
                 Places::default()
             };
@@ -97,7 +97,7 @@ impl Recorder<'_> {
                     let before = [at.rate].into_iter().chain(nodes.rates);
                     if before.zip(nodes.rates).any(|(before, now)| before > 0.0 && now <= 0.0) {
                         let polynomial = through(at.approach, &nodes.approaches);
-                        for y in turning_points(&polynomial).iter() {
+                        for y in turning_points(model.simd, &polynomial).iter() {
                             highest = highest.max(value_and_slope(&polynomial, y).0);
                         }
                     }
@@ -108,7 +108,7 @@ impl Recorder<'_> {
         if let Some(extremes) = &mut self.extremes {
             let course = |index: usize| {
                 let at = state.links.get(index).filter(|at| at.closed)?;
-                Some((&at.course, turning_points(&at.course)))
+                Some((&at.course, turning_points(model.simd, &at.course)))
             };
             extremes.add_pair(model, course, (-1.0, 0.0));
         }

@@ -182,12 +182,12 @@ impl Stepper<'_> {
             })
         };
         let is_possible = ratio <= 1.0 && stay();
-        let passages = is_possible.then(|| locator.passages(false)).flatten();
-        let Some(passages) = passages else {
+        let mut passages = Passages::default();
+        if !is_possible || !locator.find_passages(false, &mut passages) {
             self.state.rejected_steps += 1;
             self.state.lengths.leap = length * shrinkage::<LONG>(ratio.max(1.0));
             return Ok(());
-        };
+        }
         self.commit(trial, target, &passages)?;
         for at in &mut self.state.links {
             at.course = parabola_in_time(&at.course);
@@ -283,9 +283,10 @@ impl Stepper<'_> {
             return self.end_at(&cut, trial, target, growth, requested);
         }
         let must = self.is_shortest(target);
-        let Some(passages) = self.locator(trial, target.length).passages(must) else {
+        let mut passages = Passages::default();
+        if !self.locator(trial, target.length).find_passages(must, &mut passages) {
             return Ok(self.reject(MOST_SHRINK * target.length));
-        };
+        }
         self.keep_first_step::<S>(target.length, ratio);
         self.commit(trial, target, &passages)?;
         if corner.is_some_and(|corner| corner <= target.time) {
@@ -493,9 +494,10 @@ impl Stepper<'_> {
             return Ok(self.reject(MOST_SHRINK * target.length));
         }
         let must = self.is_shortest(target);
-        let Some(passages) = self.locator(trial, end.length).passages(must) else {
+        let mut passages = Passages::default();
+        if !self.locator(trial, end.length).find_passages(must, &mut passages) {
             return Ok(self.reject(MOST_SHRINK * target.length));
-        };
+        }
         self.commit(trial, &end, &passages)?;
         self.happen(cut.event);
         let outcome = StepOutcome::accepted(target.length, requested, growth);
@@ -715,7 +717,8 @@ impl Stepper<'_> {
         } = self;
         discrete_gradient::solve(model, state, drive, workspace, trial, target)
             .ok_or_else(|| self.error(StepErrorCause::NotFinite))?;
-        let passages = self.locator(trial, target.length).passages(true).unwrap_or_default();
+        let mut passages = Passages::default();
+        self.locator(trial, target.length).find_passages(true, &mut passages);
         self.commit(trial, target, &passages)?;
         let mut switched = false;
         for index in 0..self.model.links.len() {

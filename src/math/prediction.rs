@@ -2,6 +2,7 @@
 //! step. About an end, rounding would be a thousand times as large.
 
 use crate::math::nodal::LONG;
+use crate::math::simd::Arithmetic;
 
 /// Coefficients of a polynomial through the nodes of a step: of powers of [`centred`] time.
 pub type Prediction = [f64; LONG + 1];
@@ -43,6 +44,24 @@ pub fn value_and_slope(coefficients: &Prediction, y: f64) -> (f64, f64) {
         (value * z + coefficient, slope * z + value)
     });
     (value, 2.0 * slope)
+}
+
+/// The same at several places, side by side.
+#[inline(always)]
+#[expect(clippy::indexing_slicing, reason = "there is a value for each place")]
+pub fn values_and_slopes<const N: usize, A: Arithmetic>(
+    coefficients: &Prediction,
+    places: &[f64; N],
+) -> ([f64; N], [f64; N]) {
+    let z = places.map(centred);
+    let (mut values, mut slopes) = ([0.0; N], [0.0; N]);
+    for coefficient in coefficients.iter().rev() {
+        for i in 0..N {
+            slopes[i] = A::mul_add(slopes[i], z[i], values[i]);
+            values[i] = A::mul_add(values[i], z[i], *coefficient);
+        }
+    }
+    (values, slopes.map(|slope| 2.0 * slope))
 }
 
 /// The derivative by `y` of a polynomial.

@@ -56,9 +56,50 @@ pub fn between(mut f: impl FnMut(f64) -> f64, a: (f64, f64), b: (f64, f64), reso
     Some(x1)
 }
 
+/// Root of a smooth function, of which `f` gives value and slope, between two points with known values of opposite signs, to within
+/// `resolution`: by Newton's method, by halves where that leaves the bracket.
+pub fn newton(f: impl Fn(f64) -> (f64, f64), a: (f64, f64), b: (f64, f64), resolution: f64) -> f64 {
+    let ((mut low, at_low), (mut high, at_high)) = (a, b);
+    let mut x = low + (high - low) * at_low / (at_low - at_high);
+    // By halves alone 64 reach the resolution of numbers.
+    for _ in 0..64 {
+        let (value, slope) = f(x);
+        let end = if (value > 0.0) == (at_low > 0.0) {
+            &mut low
+        } else {
+            &mut high
+        };
+        *end = x;
+        let next = x - value / slope;
+        let next = if low <= next && next <= high {
+            next
+        } else {
+            0.5 * (low + high)
+        };
+        let change = next - x;
+        x = next;
+        // Its square, times the curvature over the slope, is what is still missing.
+        if change * change <= 1e-3 * resolution {
+            break;
+        }
+    }
+    x
+}
+
 #[cfg(test)]
 mod tests {
-    use super::bracketed;
+    use super::{bracketed, newton};
+
+    #[test]
+    fn newton_finds_simple_roots_and_stays_in_the_bracket() {
+        let (low, high) = (0.5, 3.0);
+        let f = |x: f64| ((x - 2.0).tanh(), 1.0 - (x - 2.0).tanh().powi(2));
+        let root = newton(f, (low, f(low).0), (high, f(high).0), 1e-12);
+        assert!((root - 2.0).abs() < 1e-12, "{root}");
+        // Newton's method leaves for infinity from the ends of this bracket.
+        let root = newton(f, (-30.0, f(-30.0).0), (30.0, f(30.0).0), 1e-9);
+        assert!((root - 2.0).abs() < 1e-9, "{root}");
+    }
 
     #[test]
     fn roots_are_found_to_rounding_and_only_between_signs() {

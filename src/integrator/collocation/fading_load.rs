@@ -19,12 +19,16 @@ pub(super) fn convolved<const S: usize>(rate: f64, times: &Nodal<S>, shapes: &Sh
 fn moments(rate: f64, time: f64) -> [f64; MAX_SHAPES] {
     let z = rate * time;
     let mut moments = [0.0; MAX_SHAPES];
-    let power = |m: usize| time.powf(0.5 * m as f64);
+    let root = time.sqrt();
+    let mut powers = [1.0; MAX_SHAPES + 2];
+    for m in 1..powers.len() {
+        powers[m] = powers[m - 1] * root;
+    }
     if z < 2.0 {
         for m in (0..MAX_SHAPES).rev() {
             let above = moments.get(m + 2).copied();
             let half = 0.5 * (m + 2) as f64;
-            moments[m] = above.map_or_else(|| summed(rate, time, m), |above| (power(m + 2) - rate * above) / half);
+            moments[m] = above.map_or_else(|| summed(rate, time, m), |above| (powers[m + 2] - rate * above) / half);
         }
     } else {
         moments[0] = -(-z).exp_m1() / rate;
@@ -34,7 +38,7 @@ fn moments(rate: f64, time: f64) -> [f64; MAX_SHAPES] {
             descending(rate, time)
         };
         for m in 2..MAX_SHAPES {
-            moments[m] = (power(m) - 0.5 * m as f64 * moments[m - 2]) / rate;
+            moments[m] = (powers[m] - 0.5 * m as f64 * moments[m - 2]) / rate;
         }
     }
     moments

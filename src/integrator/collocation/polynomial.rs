@@ -149,7 +149,7 @@ impl<const S: usize> Collocation<S> {
         let until = below.unwrap_or(until);
         let polynomial = combine::<Separate>(&self.nodal, values.iter());
         let first = self.places.first().copied().unwrap_or_default();
-        let turns = turning_points(&polynomial);
+        let turns = turning_points(Simd::Portable, &polynomial);
         let mut places = turns.iter().map(|y| 1.0 + y).filter(|x| (first..until).contains(x));
         let dip = places.find(|x| value_and_slope(&polynomial, x - 1.0).0 < 0.0);
         dip.or(below)

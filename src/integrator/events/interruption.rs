@@ -16,15 +16,15 @@ use crate::math::roots;
 pub(crate) type Passages = [Places; MAX_LINKS];
 
 impl<const S: usize> Locator<'_, S> {
-    /// Where in the trial the forces of closed contacts pass those of interruptions; `None` where the step is too long to
+    /// Finds where in the trial the forces of closed contacts pass those of interruptions; `false` where the step is too long to
     /// tell, unless it `must` be told.
-    pub(crate) fn passages(&mut self, must: bool) -> Option<Passages> {
-        let mut passages = Passages::default();
+    pub(crate) fn find_passages(&mut self, must: bool, passages: &mut Passages) -> bool {
         let count = self.whole.model.links.len();
-        for (index, places) in passages.iter_mut().take(count).enumerate() {
-            *places = self.passages_of(index, must)?;
-        }
-        Some(passages)
+        passages.iter_mut().take(count).enumerate().all(|(index, places)| {
+            let found = self.passages_of(index, must);
+            *places = found.unwrap_or_default();
+            found.is_some()
+        })
     }
 
     /// The force polynomial is monotone between the places where it turns, so that a dip of any length is found. Where it
@@ -55,7 +55,7 @@ impl<const S: usize> Locator<'_, S> {
         }
         let polynomial = collocation.through(model.simd, at_start, &nodes.forces);
         let value = |y: f64| excess(value_and_slope(&polynomial, y).0);
-        let turns = turning_points(&polynomial);
+        let turns = turning_points(model.simd, &polynomial);
         let inaccuracy = inaccuracy((model, state), collocation, trial, length);
         let is_accurate = inaccuracy <= 1.0;
         if !is_accurate && collocation.variable == Variable::Root {
@@ -75,8 +75,15 @@ impl<const S: usize> Locator<'_, S> {
             if below != interrupted {
                 let place = if is_accurate || is_brief {
                     // Only rounding leaves both on one side.
-                    let on_this_side = if (before.1 < 0.0) == below { before.0 } else { y };
-                    roots::between(value, before, now, 1e-12).unwrap_or(on_this_side)
+                    let course = |y: f64| {
+                        let (force, slope) = value_and_slope(&polynomial, y);
+                        (excess(force), slope)
+                    };
+                    if (before.1 < 0.0) == (now.1 < 0.0) {
+                        if (now.1 < 0.0) == below { before.0 } else { y }
+                    } else {
+                        roots::newton(course, before, now, 1e-12)
+                    }
                 } else {
                     let force = |d, rate| link.force_at(d, rate) - criterion.force;
                     let from = ((1.0 + before.0) * length, before.1);

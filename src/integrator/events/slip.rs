@@ -207,7 +207,7 @@ fn passage<const S: usize>(
     let polynomial = collocation.through(simd, start, values);
     let value = |y: f64| value_and_slope(&polynomial, y).0;
     let mut before = (-1.0, start);
-    for y in turning_points(&polynomial).iter().chain([0.0]) {
+    for y in turning_points(simd, &polynomial).iter().chain([0.0]) {
         let now = (y, value(y));
         if now.1 > 0.0 && now.1 > unsure() {
             let y = roots::between(value, before, now, 1e-12).unwrap_or(before.0);
