@@ -149,7 +149,7 @@ pub const DISTANT: f64 = 8.0;
 /// them. Pinned: 0, `amplitude_of_a_coulomb_damped_oscillator`.
 pub const MOST_CHANGES: u32 = 16;
 
-/// Pieces of a step in each of which at most two extremes of its force polynomial are looked for. The degree of long steps.
+/// Pieces of a step, or of a part of it, in each of which at most two extremes of its force polynomial are looked for. The degree of long steps.
 /// Pinned: ÷ 8, `tests/promise.rs`.
 pub const PIECES: usize = 8;
 
