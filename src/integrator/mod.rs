@@ -123,8 +123,8 @@
 //!   damping that is before the surfaces part.
 //! - *Closing* ([`events::closing`]): approach and velocity at the nodes define cubics, whose error is estimated from neighbouring
 //!   nodes. Intervals in which the highest point of the cubic, plus that error, plus the amplitudes of modes that vibrate faster than
-//!   the interval, stays open are clear; others are halved, first on the cubic, then by the exact motion. A grazing touch is not
-//!   missed, as it is by a search for changes of sign. Between an open and a closed sample there is one closing where the bodies
+//!   the interval, or settle faster after a jump, stays open are clear; others are halved, first on the cubic, then by the exact
+//!   motion. A grazing touch is not missed, as it is by a search for changes of sign. Between an open and a closed sample there is one closing where the bodies
 //!   approach faster than anything unseen could part them. The instant itself is found on the cubics of ever nearer samples, to half
 //!   the shortest step.
 //! - *Slip* ([`events::slip`]): the trial force of stick passes Coulomb's limit, or the slip velocity its zero. What is missing there

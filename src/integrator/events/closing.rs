@@ -3,8 +3,8 @@
 //! Sign changes alone would miss a grazing contact. Between two samples of indentation and velocity the indentation is
 //! approximated by the Hermite cubic, whose error is estimated at a sample between them. If the maximum of the cubic
 //! stays below first touch by more than this error there is no contact; nor is there any where the bodies part faster than
-//! all that is unseen. Otherwise the interval is bisected. Modes that oscillate faster than the interval resolves are added with
-//! their amplitudes. An interval along which the engagement rises has one closing, which is found on cubics as well: each look at
+//! all that is unseen. Otherwise the interval is bisected. Modes that oscillate or settle faster than the interval resolves are
+//! added with their amplitudes. An interval along which the engagement rises has one closing, which is found on cubics as well: each look at
 //! the motion gives the next one a nearer sample.
 
 use crate::contact::law::Law;
@@ -138,7 +138,7 @@ impl<'a, const S: usize> Locator<'a, S> {
     fn is_clear(&self, sought: &Sought, cubic: &Cubic, error: f64) -> bool {
         // A contact whose force is far below the tolerance need not be found.
         let negligible = sought.law.overlap(self.tolerance.located);
-        let (ripple, length) = (self.search.swings.ripple(cubic.length()), cubic.length());
+        let (ripple, length) = (self.search.swings.ripple(cubic.a.at, cubic.length()), cubic.length());
         let (least, unseen) = (
             negligible.max(sought.unsure),
             (error + ripple.displacement, ripple.velocity),
@@ -175,7 +175,7 @@ impl<'a, const S: usize> Locator<'a, S> {
         let Cubic { a, b } = cubic;
         let slowest = cubic.rates(0.0).0;
         if slowest > 0.0 {
-            let slower = self.search.swings.ripple(cubic.length()).velocity + 4.0 * error / cubic.length();
+            let slower = self.search.swings.ripple(cubic.a.at, cubic.length()).velocity + 4.0 * error / cubic.length();
             if slower < slowest && sought.law.engages_by_way(slowest - slower) {
                 return true;
             }
@@ -189,7 +189,7 @@ impl<'a, const S: usize> Locator<'a, S> {
 
     /// Whether oscillations faster than the interval between two samples are negligible.
     fn is_resolved(&self, sought: &Sought, cubic: &Cubic) -> bool {
-        let ripple = self.search.swings.ripple(cubic.length());
+        let ripple = self.search.swings.ripple(cubic.a.at, cubic.length());
         let [from, to] = [&cubic.a, &cubic.b].map(|sample| sought.engagement(sample));
         ripple.displacement + sought.law.damping() * ripple.velocity <= UNSEEN * (to - from).abs()
     }
@@ -211,10 +211,8 @@ impl<'a, const S: usize> Locator<'a, S> {
                 }
             } else if self.rises(sought, &cubic, error) || depth > HALVINGS {
                 let touch = self.crossing(sought, cubic);
-                // A contact that closes at the instant of opening still gets a short flight, so that time advances.
-                let shortest = SHORTEST_FLIGHT * b.at;
-                return Some(if released && touch.at < shortest {
-                    self.inside(sought.index, shortest)
+                return Some(if released {
+                    self.prolonged(sought, touch, SHORTEST_FLIGHT * b.at)
                 } else {
                     touch
                 });
@@ -226,6 +224,19 @@ impl<'a, const S: usize> Locator<'a, S> {
             cubic.b = middle;
         }
         None
+    }
+
+    /// The end of a flight that ends at a touch: a contact that closes at the instant of opening still gets a short flight (s), so
+    /// that time advances; a shorter one where it would close with a force.
+    fn prolonged(&mut self, sought: &Sought, touch: Instant, mut shortest: f64) -> Instant {
+        while touch.at < shortest {
+            let end = self.inside(sought.index, shortest);
+            if sought.link.force_at(end.d, end.rate) <= self.tolerance.located || shortest <= self.resolution {
+                return end;
+            }
+            shortest *= 0.1;
+        }
+        touch
     }
 
     /// The instant of closing between an open and a closed sample: where their cubic closes, which then has a sample there.
