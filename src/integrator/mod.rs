@@ -121,12 +121,12 @@
 //!
 //! - *Opening* ([`events::opening`]): the force reaches zero, at a node or in a dip of the polynomial between nodes. With contact
 //!   damping that is before the surfaces part.
-//! - *Closing* ([`events::closing`]): approach and velocity at the nodes define cubics, whose error is estimated from neighbouring
-//!   nodes. Intervals in which the highest point of the cubic, plus that error, plus the amplitudes of modes that vibrate faster than
-//!   the interval, or settle faster after a jump, stays open are clear; others are halved, first on the cubic, then by the exact
-//!   motion. A grazing touch is not missed, as it is by a search for changes of sign. Between an open and a closed sample there is one closing where the bodies
-//!   approach faster than anything unseen could part them. The instant itself is found on the cubics of ever nearer samples, to half
-//!   the shortest step.
+//! - *Closing* ([`events::closing`]): approach and velocity at the nodes define cubics, whose error is estimated from
+//!   neighbouring nodes. Intervals in which the highest point of the cubic, plus that error, plus the amplitudes of modes that
+//!   vibrate faster than the interval, or settle faster after a jump, stays open are clear; others are halved, first on the
+//!   cubic, then by the exact motion. A grazing touch is not missed, as it is by a search for changes of sign. Between an open
+//!   and a closed sample there is one closing where the bodies approach faster than anything unseen could part them. The
+//!   instant itself is found on the cubics of ever nearer samples, to half the shortest step.
 //! - *Slip* ([`events::slip`]): the trial force of stick passes Coulomb's limit, or the slip velocity its zero. What is missing there
 //!   would stay in the tangential spring as a wrong friction force.
 //! - *Interruption* ([`events::interruption`]): the step goes on where the force passes that of the threshold resistance. Between the
