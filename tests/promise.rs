@@ -213,6 +213,27 @@ fn relays_that_once_exceeded_the_tolerance_keep_it() {
     }
 }
 
+/// Openings and closings in the first three communication steps, s; each taken in steps of which the first has this length (s) and each
+/// of the others that of all before.
+fn events(relay: &Relay, first: f64) -> Vec<f64> {
+    let (size, _) = relay.steps;
+    let mut simulation = Simulation::new(&relay.scene, &relay.inputs(0.0, size), 0.0).unwrap();
+    let mut instants = vec![];
+    for k in 0..3 {
+        let (start, mut done) = (f64::from(k) * size, 0.0);
+        let inputs = relay.inputs(start, size);
+        while done < size {
+            let length = f64::max(first, done).min(size - done);
+            simulation
+                .step(&kinds::after(&inputs, done), start + done, length)
+                .unwrap();
+            instants.extend(simulation.events().0.map(|event| event.time));
+            done += length;
+        }
+    }
+    instants
+}
+
 /// The fixed contact is jerked away: the contact opens with a force, what the highest mode has borne of it throws the spring after it,
 /// and within picoseconds it closes again, for nanoseconds. Nothing of it is left where the first sample of a step lies: steps that
 /// begin with 0.1 ps and double cannot pass it over.
@@ -220,28 +241,7 @@ fn relays_that_once_exceeded_the_tolerance_keep_it() {
 fn a_touch_within_picoseconds_of_a_jump_is_not_missed() {
     for (number, draw) in [(11_094, kinds::any as fn(u64) -> Relay), (70_009, kinds::with_modes)] {
         let relay = draw(number);
-        let (size, _) = relay.steps;
-        let events = |first: f64| {
-            let mut simulation = Simulation::new(&relay.scene, &relay.inputs(0.0, size), 0.0).unwrap();
-            let mut instants = vec![];
-            for k in 0..3 {
-                let (start, mut done) = (f64::from(k) * size, 0.0);
-                let inputs = relay.inputs(start, size);
-                while done < size {
-                    let length = f64::max(first, done).min(size - done);
-                    let inputs = Inputs {
-                        base_acceleration: inputs.base_acceleration + inputs.base_acceleration_rate * done,
-                        support_displacement: inputs.support_displacement + inputs.support_displacement_rate * done,
-                        ..inputs
-                    };
-                    simulation.step(&inputs, start + done, length).unwrap();
-                    instants.extend(simulation.events().0.map(|event| event.time));
-                    done += length;
-                }
-            }
-            instants
-        };
-        let (at_once, expected) = (events(size), events(1e-13));
+        let (at_once, expected) = (events(&relay, relay.steps.0), events(&relay, 1e-13));
         assert_eq!(at_once.len(), expected.len(), "{number}: {at_once:?} {expected:?}");
         assert!(
             expected.windows(2).any(|pair| pair[1] - pair[0] < 1e-10),

@@ -282,8 +282,8 @@ pub fn rough(number: u64) -> Relay {
     relay
 }
 
-/// Inputs after `size` seconds.
-fn after(inputs: &Inputs, size: f64) -> Inputs {
+/// Base acceleration and support displacement after `size` seconds, and the other inputs.
+pub fn after(inputs: &Inputs, size: f64) -> Inputs {
     Inputs {
         base_acceleration: inputs.base_acceleration + inputs.base_acceleration_rate * size,
         support_displacement: inputs.displacements_after(size)[0],

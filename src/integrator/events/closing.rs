@@ -138,7 +138,7 @@ impl<'a, const S: usize> Locator<'a, S> {
     fn is_clear(&self, sought: &Sought, cubic: &Cubic, error: f64) -> bool {
         // A contact whose force is far below the tolerance need not be found.
         let negligible = sought.law.overlap(self.tolerance.located);
-        let (ripple, length) = (self.search.swings.ripple(cubic.a.at, cubic.length()), cubic.length());
+        let (ripple, length) = (self.search.swings.ripple(cubic), cubic.length());
         let (least, unseen) = (
             negligible.max(sought.unsure),
             (error + ripple.displacement, ripple.velocity),
@@ -175,7 +175,7 @@ impl<'a, const S: usize> Locator<'a, S> {
         let Cubic { a, b } = cubic;
         let slowest = cubic.rates(0.0).0;
         if slowest > 0.0 {
-            let slower = self.search.swings.ripple(cubic.a.at, cubic.length()).velocity + 4.0 * error / cubic.length();
+            let slower = self.search.swings.ripple(cubic).velocity + 4.0 * error / cubic.length();
             if slower < slowest && sought.law.engages_by_way(slowest - slower) {
                 return true;
             }
@@ -189,7 +189,7 @@ impl<'a, const S: usize> Locator<'a, S> {
 
     /// Whether oscillations faster than the interval between two samples are negligible.
     fn is_resolved(&self, sought: &Sought, cubic: &Cubic) -> bool {
-        let ripple = self.search.swings.ripple(cubic.a.at, cubic.length());
+        let ripple = self.search.swings.ripple(cubic);
         let [from, to] = [&cubic.a, &cubic.b].map(|sample| sought.engagement(sample));
         ripple.displacement + sought.law.damping() * ripple.velocity <= UNSEEN * (to - from).abs()
     }

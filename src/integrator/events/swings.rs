@@ -3,7 +3,9 @@
 
 use crate::beam::mode::Mode;
 use crate::integrator::collocation::part::Whole;
+use crate::integrator::events::cubic::Cubic;
 use crate::link::Link;
+use crate::math::free_motion::{FADED, Roots};
 
 /// Bound of what fast modes do: displacement (m), velocity (m/s) and acceleration (m/s2).
 #[derive(Clone, Copy, Debug, Default)]
@@ -13,8 +15,9 @@ pub(super) struct Ripple {
     pub(super) acceleration: f64,
 }
 
-/// Decay of what settles from which on it is not looked at, in its own time, 1: rounding of what it began with.
-const SETTLED: f64 = 36.0;
+/// Square of damping over natural frequency below which both exponentials of a mode that settles count, 1: the faster one is less than
+/// twice as fast as the other.
+const NEARLY_CRITICAL: f64 = 4.5;
 
 /// The modes that oscillate or settle in a trial.
 #[derive(Clone, Debug)]
@@ -36,19 +39,21 @@ impl Swing {
     /// samples. Of two that are nearly the same `|x(t)| <= (|x| + |v| / omega) (1 + omega t) exp(-omega t)`, so with twice as much
     /// that decays half as fast.
     fn new(mode: &Mode, x: f64, v: f64) -> Self {
-        let omega = mode.omega_squared.sqrt();
-        let half = 0.5 * mode.damping;
-        if half < omega {
-            let v = v / omega;
+        let Roots {
+            creeps: [creeps],
+            slow: [slow],
+            fast: [fast],
+            ..
+        } = Roots::of(&[mode.omega_squared], &[mode.damping]);
+        if !creeps && 0.5 * mode.damping < fast {
+            let v = v / fast;
             return Self {
-                omega,
+                omega: fast,
                 amplitude: (x * x + v * v).sqrt(),
                 decay: 0.0,
             };
         }
-        let fast = half + (half * half - mode.omega_squared).max(0.0).sqrt();
-        let slow = mode.omega_squared / fast;
-        if fast < 2.0 * slow {
+        if is_nearly_critical(mode) {
             return Self {
                 omega: fast,
                 amplitude: 2.0 * (x.abs() + v.abs() / slow),
@@ -61,6 +66,11 @@ impl Swing {
             decay: fast,
         }
     }
+}
+
+/// Or less than critically damped.
+fn is_nearly_critical(mode: &Mode) -> bool {
+    mode.damping * mode.damping < NEARLY_CRITICAL * mode.omega_squared
 }
 
 impl Swings {
@@ -78,7 +88,7 @@ impl Swings {
         let modes = model.modes.iter().zip(&state.modes).enumerate();
         self.0.clear();
         // One that settles at once has nothing to settle but after a jump.
-        let moves = |mode: &Mode| !state.kink_is_closing || mode.damping * mode.damping < 4.5 * mode.omega_squared;
+        let moves = |mode: &Mode| !state.kink_is_closing || is_nearly_critical(mode);
         self.0
             .extend(modes.filter(|(_, (mode, _))| moves(mode)).map(|(i, (mode, at))| {
                 let factor = |port: usize| {
@@ -97,11 +107,11 @@ impl Swings {
             }));
     }
 
-    /// Bound of the motion of the contact by those that oscillate or settle within the `interval` seconds after an instant (s after
-    /// the start of the trial), or less.
-    pub(super) fn ripple(&self, at: f64, interval: f64) -> Ripple {
+    /// Bound of the motion of the contact by those that oscillate or settle within the interval of a cubic, or less.
+    pub(super) fn ripple(&self, cubic: &Cubic) -> Ripple {
+        let (at, interval) = (cubic.a.at, cubic.length());
         let mut ripple = Ripple::default();
-        let fast = |swing: &&Swing| swing.omega * interval > 1.0 && swing.decay * at < SETTLED;
+        let fast = |swing: &&Swing| swing.omega * interval > 1.0 && -swing.decay * at > FADED;
         for Swing {
             omega,
             amplitude,
@@ -149,8 +159,7 @@ mod tests {
                 damping: 2.0 * ratio * omega,
                 ..Mode::default()
             };
-            let half = ratio * omega;
-            let slow = omega * omega / (half + (half * half - omega * omega).max(0.0).sqrt());
+            let [slow] = Roots::of(&[mode.omega_squared], &[mode.damping]).slow;
             for (x, v) in [(1.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, -1.0), (-0.3, 0.4)] {
                 let v = v * omega;
                 let Swing {
