@@ -76,9 +76,10 @@ impl Foundation {
                 limit: spring.buckling_load,
             });
         };
-        let jolts = scene.pushed_at().is_some() || springs.fixed.is_some();
-        let resolution = Resolution::new(&section, &basis, &own, jolts);
-        let Basis { modes, shapes, space } = basis;
+        let resolution = springs.resolution(&basis, &own, scene.pushed_at().is_some());
+        let Basis {
+            modes, shapes, space, ..
+        } = basis;
         let axial = (scene.effects.axial_force == AxialForceKind::FromDeflection)
             .then(|| Feedback::new(&section, &preload, scene.environment.gravity, &space, &modes, &shapes))
             .map(Box::new);

@@ -92,7 +92,7 @@ fn an_initialisation_without_memory_is_an_error_that_a_reset_heals() {
 fn a_state_without_memory_is_an_error() {
     let contact = Instance::initialized();
     let (mut state, mut again, mut size) = (ptr::null_mut(), ptr::null_mut(), 0);
-    // A simulation's motion alone has some 4 kB: two states of 64 modes.
+    // A simulation's motion alone has some 6 kB: two states of 128 modes.
     Counting::refuse_above(4000);
     let status = unsafe { fmi2GetFMUstate(contact.component, &raw mut state) };
     Counting::refuse_above(usize::MAX);

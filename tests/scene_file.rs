@@ -117,8 +117,8 @@ fn a_value_out_of_range_is_reported_with_its_unit_and_the_range() {
             "line 5: beam.length = NaN m: not allowed, allowed is 0.001 to 0.2",
         ),
         (
-            "solver.modes = 65",
-            "line 5: solver.modes = 65: not allowed, allowed is 0 to 64",
+            "solver.modes = 129",
+            "line 5: solver.modes = 129: not allowed, allowed is 0 to 128",
         ),
         (
             "effects.excitation = \"Sinus\"",

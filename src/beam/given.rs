@@ -8,10 +8,11 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::beam::galerkin::{Places, Space};
-use crate::beam::mode::{MAX_MODES, Mode};
+use crate::beam::mode::{Last, MAX_MODES, Mode};
 use crate::beam::mode_count::Blow;
 use crate::beam::section::Section;
 use crate::math::roots;
+use crate::math::simd::LANES;
 use crate::scene::spring::{GivenMode, Modes};
 
 /// Frequency of the residual flexibility over the highest of the modes, 1: it lags by 2e-4 of a period at that frequency,
@@ -114,6 +115,24 @@ impl Given {
         modes.extend(tip.map(|tip| Mode { tip, ..rest }));
         modes.extend(parallel.map(|parallel| Mode { parallel, ..rest }));
         modes
+    }
+
+    /// Coefficients of these modes in the highest that are not left out, sqrt(J) per displacement; zero if none is left out.
+    pub fn last<'a>(&'a self, modes: &'a [Mode]) -> impl Iterator<Item = Last> + 'a {
+        let pairs = modes.iter().zip(&self.modes);
+        let kept = pairs
+            .take_while(|(mode, given)| mode.omega_squared == given.omega_squared())
+            .count();
+        let in_function = move |i: usize, k: usize| kept < self.modes.len() && i + LANES == kept + k;
+        modes.iter().enumerate().map(move |(i, mode)| {
+            std::array::from_fn(|k| {
+                if in_function(i, k) {
+                    mode.omega_squared.sqrt()
+                } else {
+                    0.0
+                }
+            })
+        })
     }
 
     /// Modes as functions orthonormal in strain energy, in units of the equivalent section.

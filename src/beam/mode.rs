@@ -3,11 +3,19 @@
 use bytemuck::Zeroable;
 use serde::{Deserialize, Serialize};
 
+use crate::math::simd::LANES;
+
 /// Largest number of modes; a multiple of four, the width of the vectors in a step.
-pub const MAX_MODES: usize = 64;
+pub const MAX_MODES: usize = 128;
 
 /// A value for each mode; those beyond the modes in use are zero.
 pub type Modal = [f64; MAX_MODES];
+
+/// Coefficients in the last functions of a space of shapes, sqrt(J).
+pub type Last = [f64; LANES];
+
+/// Springs that a relay may have: the moving one, that of the fixed contact, and tongues against each other.
+pub const SPRINGS: usize = 3;
 
 /// One damped mode of a spring without contact, of modal mass 1 kg.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

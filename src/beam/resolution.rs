@@ -10,7 +10,8 @@
 //! K c_1 c / (1 + K H),     H(s) = sum T_i^2 / (s^2 + c_i s + omega_i^2)
 //! ```
 //!
-//! at most: with the largest factor at any frequency, and the largest `c` so far.
+//! at most: with the largest factor at any frequency, and the largest `c` so far. Where modes are given, but not all of them used,
+//! the highest in use stand for the last functions. Each spring has functions of its own; what they lack adds up.
 //!
 //! A pusher loads the spring elsewhere. As its force jumps the contact feels what the missing functions do before any wave can
 //! reach it, and the damping `beta` of the spring resists their strain as its stiffness does: `c + beta c'` stands for `c`. What
@@ -19,11 +20,10 @@
 //! its maximum is made by what leaves last. Else the force of the contact itself jumps first, and what is missing in its course after
 //! that is over before it shows.
 
-use nalgebra::{Complex, DVector};
+use nalgebra::Complex;
 
-use crate::beam::mode::{Mode, ModeStates};
+use crate::beam::mode::{Last, Mode, ModeStates, SPRINGS};
 use crate::beam::mode_count::Blow;
-use crate::beam::section::Section;
 use crate::beam::spring::Basis;
 use crate::math::simd::LANES;
 
@@ -34,11 +34,17 @@ const DECAY: f64 = 0.05;
 /// Error of the contact force over this bound, 1: of closed relays with 8 to 48 modes, 95 % have a smaller one.
 const OF_BOUND: f64 = 0.25;
 
-/// Coefficients of the last functions of the space, and what they mean for the contact force.
+/// What the modes left out do, of each spring.
 #[derive(Clone, Debug, Default)]
 pub struct Resolution {
-    /// Coefficients of each mode, sqrt(J) per displacement; none where the modes are given.
-    rows: Vec<[f64; LANES]>,
+    parts: Vec<Part>,
+}
+
+/// Coefficients of the last functions of the space of a spring, and what they mean for the contact force.
+#[derive(Clone, Debug)]
+struct Part {
+    /// Coefficients of each mode, sqrt(J) per displacement.
+    rows: Vec<Last>,
     /// Time in which the velocity of a mode counts as a displacement, per stiffness of the contact, s m/N; 0 without jolts.
     damping: f64,
     /// Contact force that is missing per coefficient, N / sqrt(J).
@@ -46,50 +52,59 @@ pub struct Resolution {
 }
 
 impl Resolution {
-    /// Of the modes of a section and their shapes, in a blow; whether it jolts, from a pusher or another spring.
-    pub fn new(section: &Section, basis: &Basis, blow: &Blow, jolts: bool) -> Self {
-        let root = (8.0 * section.bending_stiffness / section.length.powi(3)).sqrt();
-        let last = |shape: &DVector<f64>, k: usize| {
-            let place = (shape.len() + k).checked_sub(LANES);
-            place
-                .and_then(|place| shape.get(place))
-                .map_or(0.0, |entry| root * entry)
+    /// Of modes in a blow, with the damping of each spring (`blows`, in their order); whether it jolts, from a pusher or another
+    /// spring.
+    pub fn new(basis: &Basis, blows: [&Blow; SPRINGS], jolts: bool) -> Self {
+        let part = |(spring, blow): (usize, &Blow)| {
+            let rows: Vec<_> = basis.last.iter().filter_map(|last| last.get(spring).copied()).collect();
+            let force = OF_BOUND * greatest_force(&basis.modes, &rows, blow);
+            (force > 0.0).then(|| Part {
+                rows,
+                damping: if jolts {
+                    blow.stiffness_damping / blow.contact_stiffness
+                } else {
+                    0.0
+                },
+                force,
+            })
         };
-        let rows: Vec<_> = basis
-            .shapes
-            .iter()
-            .map(|shape| std::array::from_fn(|k| last(shape, k)))
-            .collect();
-        let force = OF_BOUND * greatest_force(&basis.modes, &rows, blow);
         Self {
-            rows,
-            damping: if jolts {
-                blow.stiffness_damping / blow.contact_stiffness
-            } else {
-                0.0
-            },
-            force,
+            parts: blows.into_iter().enumerate().filter_map(part).collect(),
         }
     }
 
     /// Of motions in which each mode has these displacements.
-    pub fn of_motions<'a>(&self, motions: impl Iterator<Item = impl Iterator<Item = &'a f64>>) -> Self {
-        let rows = motions
-            .map(|displacements| self.coefficients(displacements.copied()))
-            .collect();
-        Self { rows, ..*self }
+    pub fn of_motions<'a>(&self, motions: &(impl Iterator<Item = impl Iterator<Item = &'a f64>> + Clone)) -> Self {
+        let part = |part: &Part| {
+            let row = |displacements| part.coefficients(Iterator::copied(displacements));
+            let rows = motions.clone().map(row).collect();
+            Part { rows, ..*part }
+        };
+        Self {
+            parts: self.parts.iter().map(part).collect(),
+        }
     }
 
     /// Error of the contact force in this motion of the modes, where the contact has this stiffness (N/m), N.
     #[inline(always)]
     pub fn error_of(&self, modes: &ModeStates, stiffness: f64) -> f64 {
-        let damping = self.damping * stiffness;
-        self.error(modes.iter().map(|mode| mode.q + damping * mode.v))
+        let of = |part: &Part| {
+            let damping = part.damping * stiffness;
+            part.error(modes.iter().map(|mode| mode.q + damping * mode.v))
+        };
+        self.parts.iter().map(of).sum()
     }
 
     /// Error of the contact force in a motion with these displacements, N.
     #[inline(always)]
-    pub fn error(&self, displacements: impl Iterator<Item = f64>) -> f64 {
+    pub fn error(&self, displacements: &(impl Iterator<Item = f64> + Clone)) -> f64 {
+        self.parts.iter().map(|part| part.error(displacements.clone())).sum()
+    }
+}
+
+impl Part {
+    #[inline(always)]
+    fn error(&self, displacements: impl Iterator<Item = f64>) -> f64 {
         let last = self.coefficients(displacements);
         self.force * last.iter().map(|last| last * last).sum::<f64>().sqrt()
     }
@@ -107,7 +122,7 @@ impl Resolution {
 }
 
 /// The largest factor, at the frequencies of the modes and between them.
-fn greatest_force(modes: &[Mode], rows: &[[f64; LANES]], blow: &Blow) -> f64 {
+fn greatest_force(modes: &[Mode], rows: &[Last], blow: &Blow) -> f64 {
     let rates = modes.iter().map(|mode| mode.omega_squared.sqrt());
     let between = rates.clone().zip(rates.clone().skip(1)).map(|(a, b)| (a * b).sqrt());
     let factor = |omega: f64| {

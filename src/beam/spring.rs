@@ -5,7 +5,7 @@ use nalgebra::DVector;
 use crate::beam::characteristic;
 use crate::beam::galerkin::{self, Space};
 use crate::beam::given::Given;
-use crate::beam::mode::{MAX_MODES, Mode};
+use crate::beam::mode::{Last, MAX_MODES, Mode, SPRINGS};
 use crate::beam::mode_count::Blow;
 use crate::beam::pieces::Pieces;
 use crate::beam::ritz;
@@ -46,6 +46,8 @@ pub struct Basis {
     pub shapes: Vec<DVector<f64>>,
     /// The space they are found in, in units of the section.
     pub space: Space,
+    /// Coefficients of each mode in the last functions of the space of each spring, sqrt(J) per displacement: this spring first.
+    pub last: Vec<[Last; SPRINGS]>,
 }
 
 /// Quarters of the number of modes that steps, masses, tapers or an end beyond the contact take in addition, 1. Found on 200
@@ -159,6 +161,7 @@ impl Spring {
             return Some(Basis {
                 space: given.space(&modes),
                 shapes: Vec::new(),
+                last: given.last(&modes).map(of_this).collect(),
                 modes,
             });
         }
@@ -186,7 +189,17 @@ impl Spring {
                 (mode, shape)
             })
             .unzip();
-        Some(Basis { modes, shapes, space })
+        let shapes: Vec<DVector<f64>> = shapes;
+        let root = (8.0 * self.section.bending_stiffness / self.section.length.powi(3)).sqrt();
+        let last = shapes
+            .iter()
+            .map(|shape| of_this(last_of(shape).map(|entry| root * entry)));
+        Some(Basis {
+            last: last.collect(),
+            modes,
+            shapes,
+            space,
+        })
     }
 
     /// Lowest angular frequency under an axial compression (N) with an elastic support of `stiffness` (N/m) at the tip,
@@ -238,6 +251,19 @@ type Undamped = (Vec<(galerkin::Mode, DVector<f64>)>, Space);
 
 /// Where that is.
 pub static KNOWN: Home<Known> = Home::new();
+
+/// Coefficients of the first spring alone.
+fn of_this(last: Last) -> [Last; SPRINGS] {
+    let mut all = [Last::default(); SPRINGS];
+    all[0] = last;
+    all
+}
+
+/// The last entries of a shape.
+fn last_of(shape: &DVector<f64>) -> Last {
+    let place = |k: usize| (shape.len() + k).checked_sub(LANES);
+    std::array::from_fn(|k| place(k).and_then(|place| shape.get(place)).copied().unwrap_or_default())
+}
 
 /// A pusher touches the spring somewhere, and leaves the axial force as it is.
 fn check_pusher(scene: &Scene) -> Result<(), SceneError> {

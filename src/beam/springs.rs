@@ -15,8 +15,9 @@
 use nalgebra::DVector;
 
 use crate::armature::Armature;
-use crate::beam::mode::{MAX_MODES, Mode};
+use crate::beam::mode::{Last, MAX_MODES, Mode, SPRINGS};
 use crate::beam::mode_count::Blow;
+use crate::beam::resolution::Resolution;
 use crate::beam::spring::{Basis, Spring};
 use crate::beam::statics::AtPlace;
 use crate::beam::tongues::Tongues;
@@ -28,7 +29,7 @@ use crate::variables::{AxialForceKind, PusherKind};
 
 /// Modes of each spring for the lowest frequency of both: what the others add to the flexibility there, beyond their static
 /// share, is less than rounding of the compliance.
-const FREQUENCY_MODES: usize = MAX_MODES / 2;
+const FREQUENCY_MODES: usize = 32;
 
 /// The springs of a scene.
 #[derive(Clone, Debug)]
@@ -151,6 +152,13 @@ impl Springs {
         }
     }
 
+    /// What modes left out do in a blow of the contact.
+    pub fn resolution(&self, basis: &Basis, own: &Blow, pushed: bool) -> Resolution {
+        let fixed = self.fixed.as_ref().map(|fixed| fixed.blow(own));
+        let blows = [own, fixed.as_ref().unwrap_or(own), own];
+        Resolution::new(basis, blows, pushed || self.fixed.is_some())
+    }
+
     /// Frequencies of the highest mode of a spring given by modes and up to which a blow excites it, where that is higher,
     /// Hz; and whether it is the fixed contact's.
     pub fn missed(&self, blow: &Blow) -> Option<(f64, f64, bool)> {
@@ -170,17 +178,30 @@ impl Springs {
     pub fn modes(&self, scene: &Scene, counts: Counts, axial_force: f64) -> Option<Basis> {
         let mut basis = self.moving.modes(scene, counts.moving, axial_force)?;
         if self.fixed.is_some() || self.tongues.is_some() || self.armature.is_some() {
+            let fixed = self.fixed.as_ref().and_then(|fixed| fixed.modes(counts.fixed));
+            let tongues = self.tongues.as_ref();
+            let tongues = tongues.and_then(|tongues| tongues.modes(counts.tongues, axial_force));
             // Modes of others have no part in the shapes of the moving spring.
             let size = basis.shapes.first().map_or(0, DVector::len);
             let shapes = basis.shapes.drain(..).chain(std::iter::repeat(DVector::zeros(size)));
-            let fixed = self.fixed.iter().flat_map(|fixed| fixed.modes(counts.fixed));
-            let tongues = self.tongues.iter();
-            let others = fixed.chain(tongues.flat_map(|tongues| tongues.modes(counts.tongues, axial_force)));
-            let springs = basis.modes.drain(..).chain(others).take(self.room());
-            let all = springs.chain(self.armature.as_ref().map(Armature::mode));
-            let mut pairs: Vec<_> = all.zip(shapes).collect();
-            pairs.sort_by(|(a, _), (b, _)| a.omega_squared.total_cmp(&b.omega_squared));
-            (basis.modes, basis.shapes) = pairs.into_iter().unzip();
+            let own = basis.modes.drain(..).zip(basis.last.drain(..));
+            let others = [fixed, tongues].into_iter().enumerate();
+            let others = others.filter_map(|(before, other)| Some((before + 1, other?)));
+            let others = others.flat_map(|(spring, other)| {
+                let placed = move |mut last: [Last; SPRINGS]| {
+                    last.swap(0, spring);
+                    last
+                };
+                other.modes.into_iter().zip(other.last.into_iter().map(placed))
+            });
+            let springs = own.chain(others).take(self.room());
+            let armature = self.armature.as_ref().map(Armature::mode);
+            let armature = armature.map(|mode| (mode, <[Last; SPRINGS]>::default()));
+            let mut all: Vec<_> = springs.chain(armature).zip(shapes).collect();
+            all.sort_by(|((a, _), _), ((b, _), _)| a.omega_squared.total_cmp(&b.omega_squared));
+            let (modes, shapes): (Vec<_>, _) = all.into_iter().unzip();
+            basis.shapes = shapes;
+            (basis.modes, basis.last) = modes.into_iter().unzip();
         }
         Some(basis)
     }
@@ -264,14 +285,11 @@ impl FixedSpring {
     }
 
     /// Its modes as they act at the contact.
-    fn modes(&self, count: usize) -> Vec<Mode> {
-        let basis = self.spring.modes(&self.scene, count, 0.0);
-        let turned = |mode: Mode| Mode {
-            tip: -mode.tip,
-            parallel: -mode.tip,
-            fixed: mode.tip,
-            ..mode
-        };
-        basis.map_or_else(Vec::new, |basis| basis.modes.into_iter().map(turned).collect())
+    fn modes(&self, count: usize) -> Option<Basis> {
+        let mut basis = self.spring.modes(&self.scene, count, 0.0)?;
+        for mode in &mut basis.modes {
+            (mode.tip, mode.parallel, mode.fixed) = (-mode.tip, -mode.tip, mode.tip);
+        }
+        Some(basis)
     }
 }

@@ -7,9 +7,8 @@
 
 use std::sync::Arc;
 
-use crate::beam::mode::Mode;
 use crate::beam::mode_count::Blow;
-use crate::beam::spring::Spring;
+use crate::beam::spring::{Basis, Spring};
 use crate::error::SceneError;
 use crate::scene::Scene;
 use crate::scene::spring::{PointMass, Segment, Segments, Shape, SpringFile};
@@ -66,15 +65,13 @@ impl Tongues {
         self.spring.count(blow, tolerance)
     }
 
-    /// Their modes under an axial compression of both (N); none at or above the buckling load.
-    pub fn modes(&self, count: usize, axial_force: f64) -> Vec<Mode> {
-        let basis = self.spring.modes(&self.scene, count, axial_force);
-        let against = |mode: Mode| Mode {
-            parallel: -mode.tip,
-            participation: 0.0,
-            ..mode
-        };
-        basis.map_or_else(Vec::new, |basis| basis.modes.into_iter().map(against).collect())
+    /// Their modes under an axial compression of both (N); `None` at or above the buckling load.
+    pub fn modes(&self, count: usize, axial_force: f64) -> Option<Basis> {
+        let mut basis = self.spring.modes(&self.scene, count, axial_force)?;
+        for mode in &mut basis.modes {
+            (mode.parallel, mode.participation) = (-mode.tip, 0.0);
+        }
+        Some(basis)
     }
 }
 

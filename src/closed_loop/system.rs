@@ -204,7 +204,7 @@ impl ClosedLoop {
         let size = 2 * self.oscillators.len();
         let columns = self.to_modes.entries.chunks_exact(size);
         let displacements = columns.clone().take(size).map(|column| column.iter().step_by(2));
-        self.resolution = resolution.of_motions(displacements);
+        self.resolution = resolution.of_motions(&displacements);
         let [displacement, velocity] = &mut *self.tip;
         for ((displacement, velocity), column) in displacement.iter_mut().zip(velocity).zip(columns).take(size) {
             for (mode, motion) in modes.iter().zip(column.chunks_exact(2)) {

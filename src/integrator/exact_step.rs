@@ -241,7 +241,7 @@ impl<'a> Start<'a> {
         if !(indentation.is_finite() && rate.is_finite()) {
             return false;
         }
-        let unresolved = closed_loop.resolution.error(motion.iter().copied());
+        let unresolved = closed_loop.resolution.error(&motion.iter().copied());
         state.force_error.note_unresolved(unresolved, model.force_scale);
         let (x, v) = motion.split_at(closed_loop.oscillators.len());
         for (mode, (x, v)) in state.modes.iter_mut().zip(x.iter().zip(v)) {
