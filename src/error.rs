@@ -307,8 +307,8 @@ pub enum Remark {
     #[error(
         "effects.friction = Coulomb: slip {} the clamp is unstable with friction.coefficient = {} and tip.contactHeight = {} m: at \
          a contact force of {force:.2e} N its small motions grow by {growth:.2e} 1/s {}, until the contact sticks or opens. Where \
-         they grow far, forces are not predictable, solver.tolerance is not promised, nor does solver.forceError tell; less \
-         friction or height makes slip stable, more damping may",
+         they grow far, forces are not predictable and solver.tolerance is not kept, as solver.forceError tells; less friction or \
+         height makes slip stable, more damping may",
         if *away { "away from" } else { "towards" }, number(*coefficient), number(*height), sounding(*frequency)
     )]
     UnstableSlip {

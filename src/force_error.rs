@@ -5,7 +5,8 @@
 //! error has grown, and which force all errors so far make if each has the direction that grows most. The first says too little where
 //! many errors add up, the second too much: the estimate is their geometric mean. Of 1,820 random relays that open, 108 exceed their
 //! tolerance, four of them without a larger estimate; either alone missed seven and nine. 401 that keep it have one, too. Of 2,991
-//! others 123 exceed it, nine without. What the modes left out do is added ([`crate::beam::resolution`]).
+//! others 123 exceed it, nine without. What the modes left out do is added ([`crate::beam::resolution`]). Where slip is unstable
+//! ([`crate::slip_stability`]) all of it grows, at the rate about the preload, until the contact sticks, opens or slips back.
 
 use std::array;
 
@@ -36,6 +37,10 @@ pub struct ForceError {
     pub growth: f64,
     /// The largest growth of it in flight.
     pub largest_growth: f64,
+    /// Logarithm of what a deviation has grown by in unstable slip, since that began.
+    pub by_slip: f64,
+    /// The largest of it.
+    pub largest_by_slip: f64,
     /// Its size with the errors of all steps, the root of its energy, J^(1/2).
     pub size: f64,
     /// Greatest force that it made so far, relative as `largest`.
@@ -125,7 +130,13 @@ impl ForceError {
     pub fn relative(&self) -> f64 {
         let by_steps = PER_STEP * self.largest;
         let by_all = (by_steps * self.by_deviation.max(by_steps)).sqrt() * (0.5 * self.largest_growth).exp();
-        (by_all + self.unresolved).min(1.0)
+        ((by_all + self.unresolved) * self.largest_by_slip.exp()).min(1.0)
+    }
+
+    /// Over a step of `length` seconds, in which slip grows at this rate (1/s); `None`: it does not slip.
+    pub(crate) fn note_slip(&mut self, growth: Option<f64>, length: f64) {
+        self.by_slip = growth.map_or(0.0, |growth| self.by_slip + growth * length);
+        self.largest_by_slip = self.largest_by_slip.max(self.by_slip);
     }
 
     /// A step has added an error (N).
@@ -152,6 +163,8 @@ impl ForceError {
             forces,
             growth,
             largest_growth,
+            by_slip,
+            largest_by_slip,
             size,
             by_deviation,
             unresolved,
@@ -162,6 +175,8 @@ impl ForceError {
             && (0.0..f64::INFINITY).contains(greatest)
             && (0.0..f64::INFINITY).contains(largest)
             && (0.0..f64::INFINITY).contains(largest_growth)
+            && (0.0..f64::INFINITY).contains(by_slip)
+            && (0.0..f64::INFINITY).contains(largest_by_slip)
             && (0.0..f64::INFINITY).contains(size)
             && (0.0..f64::INFINITY).contains(by_deviation)
             && (0.0..f64::INFINITY).contains(unresolved)

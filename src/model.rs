@@ -23,7 +23,7 @@ use crate::math::simd::Simd;
 use crate::preload::{Initial, Preload};
 use crate::scene::Scene;
 use crate::scene::spring::SpringFile;
-use crate::slip_stability;
+use crate::slip_stability::{self, Unstable};
 use crate::state::{LinkState, State};
 use crate::variables::{AxialForceKind, ContactLawKind, RealParameter, StringParameter};
 
@@ -85,6 +85,8 @@ pub struct Model {
     missed: Option<(f64, f64, bool)>,
     /// Length of the spring, if it is known, m.
     spring_length: Option<f64>,
+    /// The directions in which slip is unstable.
+    pub(crate) unstable_slip: Vec<Unstable>,
     /// The errors allowed.
     pub(crate) tolerance: Tolerance,
     /// Instruction set used for the steps.
@@ -170,6 +172,7 @@ impl Model {
             initial: *initial,
             armature: foundation.armature,
             force_scale: foundation.force_scale,
+            unstable_slip: Vec::new(),
             tolerance: Tolerance::new(scene.solver.effective_tolerance(), foundation.force_scale),
             frequency: foundation.frequency.map_or(0.0, |omega| omega / std::f64::consts::TAU),
             missed: foundation.missed,
@@ -189,6 +192,12 @@ impl Model {
             Assembly::new((&self.scene, &self.modes, &self.preload), laws, self.armature.as_ref());
         self.slowest = Slowest::of(&self.modes, &ports);
         (self.law, self.ports, self.links, self.roles) = (laws.contact, ports, links, roles);
+        if let (Some((_, friction)), Some(law)) = (self.friction(), self.law().power()) {
+            // Of a contact open at rest the force scale.
+            let at_rest = self.preload.force;
+            let usual = if at_rest > 0.0 { at_rest } else { self.force_scale };
+            self.unstable_slip = slip_stability::unstable(&self.modes, friction, law, usual);
+        }
     }
 
     /// The same model with other parts, for test problems without a spring. It takes no exact steps.
@@ -223,12 +232,7 @@ impl Model {
     /// What a user should know of the scene.
     pub fn remarks(&self) -> Vec<Remark> {
         let mut remarks: Vec<_> = self.bent_far().into_iter().chain(self.friction_at_touch()).collect();
-        if let (Some((_, friction)), Some(law)) = (self.friction(), self.law().power()) {
-            // Of a contact open at rest the force scale.
-            let at_rest = self.preload.force;
-            let usual = if at_rest > 0.0 { at_rest } else { self.force_scale };
-            remarks.extend(slip_stability::remarks(&self.modes, friction, law, usual));
-        }
+        remarks.extend(self.unstable_slip.iter().map(|unstable| unstable.remark(&self.scene)));
         if let Some(spring) = &self.scene.spring {
             remarks.extend(self.not_used(spring));
         }

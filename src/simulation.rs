@@ -31,10 +31,10 @@ pub struct Simulation {
     model: Box<Model>,
     motion: Box<Motion>,
     workspace: Workspace,
-    _springs: Shared<spring::Known>,
+    _kept: Kept,
 }
 
-/// Keeps what simulations find of springs and steps for the next ones, also while there is none.
+/// Keeps what simulations find of springs, slip and steps for the next ones, also while there is none.
 #[derive(Clone, Debug)]
 pub struct Kept {
     _springs: Shared<spring::Known>,
@@ -60,7 +60,7 @@ impl Simulation {
     /// # Errors
     /// A [`SceneError`] if the scene cannot be simulated.
     pub fn new(scene: &Scene, inputs: &Inputs, start_time: f64) -> Result<Self, SceneError> {
-        let springs = Shared::of(&spring::KNOWN);
+        let kept = Kept::default();
         let [support, displacement, pusher] = inputs.displacements_after(0.0);
         let initial = Initial {
             displacements: [support, 0.0, pusher],
@@ -90,7 +90,7 @@ impl Simulation {
             model,
             motion,
             workspace,
-            _springs: springs,
+            _kept: kept,
         })
     }
 
@@ -101,7 +101,7 @@ impl Simulation {
             model: Box::new(model),
             motion: Box::new(Motion::new(*state)),
             workspace,
-            _springs: Shared::of(&spring::KNOWN),
+            _kept: Kept::default(),
         }
     }
 
@@ -138,14 +138,14 @@ impl Simulation {
     /// # Errors
     /// A [`SceneError`] if the scene cannot be simulated.
     pub fn resume(scene: &Scene, initial: &Initial, motion: &Motion) -> Result<Self, SceneError> {
-        let springs = Shared::of(&spring::KNOWN);
+        let kept = Kept::default();
         let model = with_room(scene, initial)?;
         let workspace = Workspace::new(&model);
         let mut simulation = Self {
             motion: Motion::at_rest(&model, 0.0),
             model,
             workspace,
-            _springs: springs,
+            _kept: kept,
         };
         simulation.go_on_from(motion);
         Ok(simulation)

@@ -18,6 +18,7 @@ use crate::beam::mode::Mode;
 use crate::contact::friction::{Friction, Phase};
 use crate::contact::power::Power;
 use crate::error::Remark;
+use crate::scene::Scene;
 use crate::shared::{Found, Home, Shared};
 
 /// Contact forces looked at, in the preload force, 1: at rest, and the largest of a contact shaken until it nearly opens.
@@ -30,31 +31,56 @@ const ROUNDING: f64 = 1e-12;
 /// are known with which it never ends (its issues 611 and 764).
 const ITERATIONS: usize = 30;
 
+/// Slip that is unstable: where it grows fastest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Unstable {
+    /// Its direction.
+    pub(crate) slip: Phase,
+    /// The contact force, N.
+    pub(crate) force: f64,
+    /// Growth rate, 1/s.
+    pub(crate) growth: f64,
+    /// Frequency, Hz; 0: it moves away without vibrating.
+    pub(crate) frequency: f64,
+}
+
+impl Unstable {
+    /// What a user should know of it.
+    pub(crate) fn remark(&self, scene: &Scene) -> Remark {
+        Remark::UnstableSlip {
+            away: self.slip == Phase::SlipForth,
+            force: self.force,
+            growth: self.growth,
+            frequency: self.frequency,
+            coefficient: scene.friction.coefficient,
+            height: scene.tip.contact_height,
+        }
+    }
+}
+
 /// What was found, by modes, friction, law and usual force (N).
-pub(crate) type Known = Found<(Vec<Mode>, Friction, Power, f64), Vec<Remark>>;
+pub(crate) type Known = Found<(Vec<Mode>, Friction, Power, f64), Vec<Unstable>>;
 
 /// Where that is.
 pub(crate) static KNOWN: Home<Known> = Home::new();
 
-/// Unstable slip, in each direction in which it is: where it grows fastest, about the usual contact force (N).
-pub(crate) fn remarks(modes: &[Mode], friction: &Friction, law: &Power, usual: f64) -> Vec<Remark> {
+/// Unstable slip, in each direction in which it is, about the usual contact force (N).
+pub(crate) fn unstable(modes: &[Mode], friction: &Friction, law: &Power, usual: f64) -> Vec<Unstable> {
     let of = (modes.to_vec(), *friction, *law, usual);
     Shared::of(&KNOWN).of(of, |(modes, friction, law, usual)| found(modes, friction, law, *usual))
 }
 
-fn found(modes: &[Mode], friction: &Friction, law: &Power, usual: f64) -> Vec<Remark> {
+fn found(modes: &[Mode], friction: &Friction, law: &Power, usual: f64) -> Vec<Unstable> {
     let worst = |slip: Phase| {
         let loads = loads(modes, friction, slip)?;
         let at = |force: f64| Some((force, fastest(modes, &loads, law, force)?));
         let found = FORCES.iter().filter_map(|share| at(share * usual));
         let (force, growing) = found.max_by(|(_, a), (_, b)| a.re.total_cmp(&b.re))?;
-        Some(Remark::UnstableSlip {
-            away: slip == Phase::SlipForth,
+        Some(Unstable {
+            slip,
             force,
             growth: growing.re,
             frequency: growing.im.abs() / std::f64::consts::TAU,
-            coefficient: friction.coefficient,
-            height: friction.height,
         })
     };
     [Phase::SlipBack, Phase::SlipForth]

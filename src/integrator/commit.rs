@@ -113,6 +113,9 @@ pub(crate) fn follow_slip<const S: usize>(
         }
         add_columns::<S, Separate>(&mut dissipated, &integrals.nodal, &powers);
     }
+    let growing = model.unstable_slip.iter().find(|unstable| unstable.slip == start.phase);
+    let growth = growing.map(|unstable| unstable.growth);
+    state.force_error.note_slip(growth, length);
     let displacement = -state.links.get(index)?.approach;
     if !state.links.get(CONTACT)?.closed {
         state.slip.way = displacement;
