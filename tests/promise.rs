@@ -178,7 +178,7 @@ fn what_flights_make_of_the_errors_of_blows_is_not_silent() {
 /// In slip that is unstable errors grow with its vibration, far faster than by blows, and in a contact that never opens, too.
 #[test]
 fn what_unstable_slip_makes_of_errors_is_not_silent() {
-    above_but_told(kinds::friction, &[40_070, 40_173, 40_317, 40_345, 40_469]);
+    above_but_told(kinds::friction, &[40_070, 40_173, 40_317, 40_345]);
 }
 
 fn above_but_told(draw: fn(u64) -> Relay, numbers: &[u64]) {
@@ -200,11 +200,37 @@ fn all_modes_beside_an_armature_resolve_the_motion() {
     assert!(course.estimate < relay.scene.solver.tolerance, "{}", course.estimate);
 }
 
+/// In a step of 8 fs after a jump of the inputs, too short for a collocation, the speed of a contact was rounding, and its damping
+/// made a minimum of it that was 5e-6 of the force too low.
+#[test]
+fn a_minimum_does_not_depend_on_where_communication_steps_end() {
+    let relay = kinds::any(11_288);
+    let mut scene = relay.scene.clone();
+    tighten(&mut scene, 0.0);
+    let (size, last) = (relay.steps.0, 561);
+    let inputs = |k: u32, part: f64| kinds::after(&relay.inputs(f64::from(k) * size, size), part * size);
+    let mut whole = Simulation::new(&scene, &inputs(0, 0.0), 0.0).unwrap();
+    let step = |simulation: &mut Simulation, k: u32, part: f64, share: f64| {
+        let time = (f64::from(k) + part) * size;
+        simulation.step(&inputs(k, part), time, share * size).unwrap();
+        simulation.real(RealOutput::StepMinimumForce)
+    };
+    for k in 0..last {
+        step(&mut whole, k, 0.0, 1.0);
+    }
+    let mut parts = whole.clone();
+    let expected = (0..4).map(|part| step(&mut parts, last, 0.25 * f64::from(part), 0.25));
+    let expected = expected.fold(f64::INFINITY, f64::min);
+    let least = step(&mut whole, last, 0.0, 1.0);
+    assert!((least - expected).abs() < 1e-9 * expected, "{least} {expected}");
+}
+
 /// Relays above their tolerance in earlier versions: where a half sine ends, inside a long step, through the quadrature of a
 /// random acceleration in flight, and where the error estimate of a step passes through zero; with friction, where the
 /// contact begins or ceases to slip; on a core, where the magnet kept a force of just before; in the first step, where a
 /// jump of the acceleration bent the course of the force; and where the fixed contact is jerked and the highest of few modes answers
-/// at once: touches were missed, or came late, with a force that was never there.
+/// at once: touches were missed, or came late, with a force that was never there; and in the first part of a step that ends as a
+/// contact opens.
 #[test]
 fn relays_that_once_exceeded_the_tolerance_keep_it() {
     for number in [10_144, 10_769, 10_244, 11_223, 11_483, 11_458, 11_976] {
@@ -215,7 +241,7 @@ fn relays_that_once_exceeded_the_tolerance_keep_it() {
     ] {
         assert_eq!(judge(number, kinds::friction).outcome, Outcome::Kept, "{number}");
     }
-    for number in [10_691, 10_861, 10_723, 14_154, 17_090] {
+    for number in [10_691, 10_861, 10_723, 14_154, 17_090, 19_909] {
         assert_eq!(judge(number, kinds::any).outcome, Outcome::Kept, "{number}");
     }
     for number in [70_009, 70_086, 70_227] {

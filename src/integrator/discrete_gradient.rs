@@ -8,6 +8,7 @@
 //! method.
 
 use crate::excitation::drive::Drive;
+use crate::integrator::collocation::error::sum_rounding;
 use crate::integrator::collocation::step::compute;
 use crate::integrator::collocation::trial::{Source, Trial};
 use crate::integrator::grid::Target;
@@ -46,7 +47,14 @@ pub(crate) fn solve(
         compute(model, state, drive, prepared, Source::Given, trial, scratch)?;
         // What its law gives between both ends.
         let (nodes, at) = trial.links.get(index).zip(state.links.get(index))?;
-        let speed = (nodes.end.approach - at.approach) / target.length;
+        let (moved, mean) = (nodes.end.approach - at.approach, 0.5 * (at.rate + nodes.end.rate));
+        let (rounding, _) = sum_rounding(model.ports.get(link.port)?, state);
+        // Of a step of femtoseconds a contact with much damping would make a force of that rounding.
+        let speed = if (moved - mean * target.length).abs() <= rounding {
+            mean
+        } else {
+            moved / target.length
+        };
         let [from, to] = [at.approach, nodes.end.approach].map(|deviation| link.approach + deviation);
         Some(link.contact()?.mean_force(from, to, speed))
     };

@@ -66,9 +66,10 @@ impl Recorder<'_> {
             };
             // Of an open contact nobody reads the force.
             if at.closed || link.contact().is_none() {
-                // Through an instant at which the force all but jumps a polynomial would overshoot.
+                // Through an instant at which the force all but jumps a polynomial would overshoot; so it would to a constant one.
                 let jumps = touches && link.contact().is_some_and(Law::is_steep_at_touch);
-                let start = if jumps {
+                let is_constant = nodes.forces.windows(2).all(|pair| matches!(pair, [a, b] if a == b));
+                let start = if jumps || is_constant {
                     collocation.interpolate(&nodes.forces, 0.0)
                 } else {
                     at.force - link.force

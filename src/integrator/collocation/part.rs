@@ -202,7 +202,12 @@ pub(crate) fn shorten<const S: usize>(
         ) else {
             continue;
         };
-        nodes.forces = nodal(&nodes.forces);
+        // Near the start the polynomial without it is the worse, the shorter the part.
+        nodes.forces = if start.closed && !state.touches_now() {
+            with_start(start.force - link.force, &nodes.forces)
+        } else {
+            nodal(&nodes.forces)
+        };
         nodes.approaches = with_start(start.approach, &nodes.approaches);
         nodes.rates = with_start(start.rate, &nodes.rates);
         nodes.end = LinkEnd {
