@@ -34,6 +34,10 @@ const RINGING: f64 = 0.01;
 /// with friction among the former excesses, and those with linear springs, fail `tests/promise.rs`.
 const STEEP: f64 = 1.5;
 
+/// Most modes of a spring. Without damping no number is enough, and steps are as short as the period of the highest: 128 take more of
+/// them than a communication step may.
+pub const MOST: usize = 64;
+
 /// Contact and damping as the number of modes depends on them.
 #[derive(Clone, Copy, Debug)]
 pub struct Blow {
@@ -59,7 +63,7 @@ impl Blow {
     pub fn modes(&self, section: &Section, tolerance: f64) -> usize {
         let digits = self.first_digits(section) - tolerance.log10();
         let count = digits * self.per_digit(section);
-        LANES * (count / LANES as f64).ceil().max(3.0) as usize
+        (LANES * (count / LANES as f64).ceil().max(3.0) as usize).min(MOST)
     }
 
     /// Modes per digit, 1.

@@ -6,7 +6,7 @@ use crate::beam::characteristic;
 use crate::beam::galerkin::{self, Space};
 use crate::beam::given::Given;
 use crate::beam::mode::{Last, MAX_MODES, Mode, SPRINGS};
-use crate::beam::mode_count::Blow;
+use crate::beam::mode_count::{Blow, MOST};
 use crate::beam::pieces::Pieces;
 use crate::beam::ritz;
 use crate::beam::section::Section;
@@ -139,7 +139,7 @@ impl Spring {
             Form::Segments(pieces) => {
                 let count = blow.modes(&pieces.at_contact(), tolerance);
                 let more = if pieces.are_uniform() { 0 } else { count * IRREGULAR / 4 };
-                (count + more).next_multiple_of(LANES)
+                (count + more).next_multiple_of(LANES).min(MOST)
             }
             Form::Modes(given) => given.count(),
         }

@@ -118,19 +118,22 @@ impl<'a, const S: usize> Locator<'a, S> {
     /// stay in the tangential spring.
     pub(crate) fn cut_at_change(&mut self, change: &Change) -> Cut {
         // Without a damper there is no such force for the slip velocity, nor a slope.
-        let at = if change.at > 0.0 && change.slope > 0.0 {
+        let (mut at, mut event) = (change.at, Event::Slides(change.phase));
+        if change.at > 0.0 && change.slope > 0.0 {
             let beyond = |this: &Self, now: &Instant| this.beyond(now, change.phase);
             let (before, guess) = ((0.0, -f64::MIN_POSITIVE), (change.at, change.slope));
-            let latest = self.whole.length;
-            self.refined(CONTACT, beyond, before, guess, latest, self.tolerance.step)
-                .at
-        } else {
-            change.at
-        };
+            let (latest, allowed) = (self.whole.length, self.tolerance.step);
+            let end = self.refined(CONTACT, beyond, before, guess, latest, allowed);
+            at = end.at;
+            // Else it changes after the trial: the next step starts here.
+            if end.at >= latest && beyond(self, &end) < -allowed {
+                event = Event::Dips;
+            }
+        }
         Cut {
             at,
             time: self.whole.state.time + at,
-            event: Event::Slides(change.phase),
+            event,
         }
     }
 
