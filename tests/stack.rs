@@ -135,17 +135,7 @@ fn steps(contact: &Instance, choices: &Choices, mut time: f64) {
             );
         }
         if n % 12 == 9 {
-            let (reference, order, rate) = (vr("base.acceleration"), 1, 1e6);
-            let status = unsafe {
-                fmi2SetRealInputDerivatives(
-                    contact.component,
-                    &raw const reference,
-                    1,
-                    &raw const order,
-                    &raw const rate,
-                )
-            };
-            assert_eq!(status, fmi2OK);
+            assert_eq!(contact.set_rates(["base.acceleration"], [1], [1e6]), fmi2OK);
         }
         let status = contact.step(time, size);
         assert_eq!(status, fmi2OK, "{choices:?} at {time}: {:?}", contact.messages());
@@ -158,40 +148,20 @@ fn steps(contact: &Instance, choices: &Choices, mut time: f64) {
             "energy.balance",
             "tip.velocity",
         ];
-        let (references, mut rates) = (outputs.map(vr), [0.0; 6]);
-        let count = references.len();
-        unsafe {
-            fmi2GetRealOutputDerivatives(
-                contact.component,
-                references.as_ptr(),
-                count,
-                [1; 6].as_ptr(),
-                rates.as_mut_ptr(),
-            )
-        };
-        contact.reals_of(references);
+        for name in outputs {
+            contact.try_rate(name);
+        }
+        contact.reals_of(outputs.map(vr));
     }
 }
 
 /// Saves the instance to bytes, and sets it to the state restored from them.
 fn save_and_restore(contact: &Instance) {
-    let (component, mut state, mut again, mut size) = (contact.component, ptr::null_mut(), ptr::null_mut(), 0);
-    unsafe {
-        assert_eq!(fmi2GetFMUstate(component, &raw mut state), fmi2OK);
-        assert_eq!(fmi2SerializedFMUstateSize(component, state, &raw mut size), fmi2OK);
-        let mut bytes = vec![0; size];
-        assert_eq!(
-            fmi2SerializeFMUstate(component, state, bytes.as_mut_ptr(), size),
-            fmi2OK
-        );
-        assert_eq!(
-            fmi2DeSerializeFMUstate(component, bytes.as_ptr(), size, &raw mut again),
-            fmi2OK
-        );
-        assert_eq!(fmi2SetFMUstate(component, again), fmi2OK);
-        assert_eq!(fmi2FreeFMUstate(component, &raw mut state), fmi2OK);
-        assert_eq!(fmi2FreeFMUstate(component, &raw mut again), fmi2OK);
-    }
+    let state = contact.save();
+    let (status, again) = contact.from_bytes(&contact.to_bytes(state));
+    assert_eq!((status, contact.restore(again)), (fmi2OK, fmi2OK));
+    contact.free(state);
+    contact.free(again);
 }
 
 /// The life of an instance that logs all: run, saved, restored, run on; reset, restored as it was, run on; failed, reset, run
@@ -201,20 +171,16 @@ fn live(choices: &Choices) {
         logging_on: true,
         ..Arguments::default()
     });
-    let component = contact.component;
-    assert_eq!(
-        unsafe { fmi2SetDebugLogging(component, fmi2True, 0, ptr::null()) },
-        fmi2OK
-    );
+    let logging = unsafe { fmi2SetDebugLogging(contact.component, fmi2True, 0, ptr::null()) };
+    assert_eq!(logging, fmi2OK);
     begin(&contact, choices);
     steps(&contact, choices, 0.0);
     save_and_restore(&contact);
-    let mut state = ptr::null_mut();
-    assert_eq!(unsafe { fmi2GetFMUstate(component, &raw mut state) }, fmi2OK);
+    let state = contact.save();
     let time = contact.last_successful_time().1;
     steps(&contact, choices, time);
     assert_eq!(contact.reset(), fmi2OK);
-    assert_eq!(unsafe { fmi2SetFMUstate(component, state) }, fmi2OK);
+    assert_eq!(contact.restore(state), fmi2OK);
     steps(&contact, choices, time);
     assert_eq!(contact.step(0.0, -1.0), fmi2Error);
     assert_eq!(contact.reset(), fmi2OK);

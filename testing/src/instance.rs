@@ -217,10 +217,27 @@ impl Instance {
             inputs.contact_current_rate,
         ];
         assert_eq!(self.set_reals(names, values), fmi2OK, "{:?}", self.log);
-        let (references, orders) = (names.map(vr), [1; 4]);
-        let (references, orders, rates) = (references.as_ptr(), orders.as_ptr(), rates.as_ptr());
-        let status = unsafe { fmi2SetRealInputDerivatives(self.component, references, 4, orders, rates) };
-        assert_eq!(status, fmi2OK, "{:?}", self.log);
+        assert_eq!(self.set_rates(names, [1; 4], rates), fmi2OK, "{:?}", self.log);
+    }
+
+    /// `fmi2SetRealInputDerivatives`, of these orders.
+    pub fn set_rates<const N: usize>(&self, names: [&str; N], orders: [i32; N], rates: [f64; N]) -> fmi2Status {
+        let (references, orders) = (names.map(vr), orders.as_ptr());
+        unsafe { fmi2SetRealInputDerivatives(self.component, references.as_ptr(), N, orders, rates.as_ptr()) }
+    }
+
+    /// `fmi2GetRealOutputDerivatives` of one variable, the first: status and value.
+    pub fn try_rate(&self, name: &str) -> (fmi2Status, f64) {
+        let (reference, order, mut rate) = (vr(name), 1, f64::NAN);
+        let (reference, order) = (&raw const reference, &raw const order);
+        let status = unsafe { fmi2GetRealOutputDerivatives(self.component, reference, 1, order, &raw mut rate) };
+        (status, rate)
+    }
+
+    /// Sets the excitation to a sine of 1 kHz and this amplitude, m/s2.
+    pub fn shake(&self, amplitude: f64) {
+        assert_eq!(self.set_integer("effects.excitation", 2), fmi2OK);
+        assert_eq!(self.set_real("excitation.amplitude", amplitude), fmi2OK);
     }
 
     /// `fmi2GetReal`: status and value.
@@ -269,6 +286,46 @@ impl Instance {
     /// `fmi2Reset`.
     pub fn reset(&self) -> fmi2Status {
         unsafe { fmi2Reset(self.component) }
+    }
+
+    /// `fmi2GetFMUstate`.
+    pub fn save(&self) -> fmi2FMUstate {
+        let mut state = ptr::null_mut();
+        assert_eq!(unsafe { fmi2GetFMUstate(self.component, &raw mut state) }, fmi2OK);
+        assert!(!state.is_null());
+        state
+    }
+
+    /// `fmi2SetFMUstate`.
+    pub fn restore(&self, state: fmi2FMUstate) -> fmi2Status {
+        unsafe { fmi2SetFMUstate(self.component, state) }
+    }
+
+    /// `fmi2FreeFMUstate`.
+    pub fn free(&self, mut state: fmi2FMUstate) {
+        assert_eq!(unsafe { fmi2FreeFMUstate(self.component, &raw mut state) }, fmi2OK);
+        assert!(state.is_null());
+    }
+
+    /// A saved state as bytes.
+    pub fn to_bytes(&self, state: fmi2FMUstate) -> Vec<fmi2Byte> {
+        let (component, mut size) = (self.component, 0);
+        unsafe {
+            assert_eq!(fmi2SerializedFMUstateSize(component, state, &raw mut size), fmi2OK);
+            let mut bytes = vec![0; size];
+            assert_eq!(
+                fmi2SerializeFMUstate(component, state, bytes.as_mut_ptr(), size),
+                fmi2OK
+            );
+            bytes
+        }
+    }
+
+    /// `fmi2DeSerializeFMUstate`: status, and the state, null where there is none.
+    pub fn from_bytes(&self, bytes: &[fmi2Byte]) -> (fmi2Status, fmi2FMUstate) {
+        let mut state = ptr::null_mut();
+        let status = unsafe { fmi2DeSerializeFMUstate(self.component, bytes.as_ptr(), bytes.len(), &raw mut state) };
+        (status, state)
     }
 
     /// Status and value of the last successful time.

@@ -12,6 +12,7 @@
 //! instance  fmi2Instantiate with any arguments, and an instance of the library linked into the program
 //! ```
 #![allow(clippy::undocumented_unsafe_blocks)] // every block calls a C function with valid arguments, or with wrong ones on purpose
+#![allow(clippy::not_unsafe_ptr_arg_deref)] // the component finds out what is a saved state of it
 #![allow(clippy::missing_panics_doc)] // used only by tests
 #![allow(clippy::wildcard_imports)] // of the standard's types and statuses
 

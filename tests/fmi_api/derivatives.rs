@@ -2,27 +2,13 @@
 
 use relay_contact::fmi2::*;
 use relay_contact::scene::Scene;
-use testing::instance::{Instance, vr};
+use testing::instance::Instance;
 use testing::scenes::propped_mass;
-
-fn set(fmu: &Instance, names: &[&str], orders: &[fmi2Integer], values: &[f64]) -> fmi2Status {
-    let references: Vec<_> = names.iter().map(|name| vr(name)).collect();
-    let (orders, values) = (orders.as_ptr(), values.as_ptr());
-    unsafe { fmi2SetRealInputDerivatives(fmu.component, references.as_ptr(), references.len(), orders, values) }
-}
-
-fn get(fmu: &Instance, name: &str, order: fmi2Integer) -> (fmi2Status, f64) {
-    let (reference, mut value) = (vr(name), f64::NAN);
-    let status = unsafe {
-        fmi2GetRealOutputDerivatives(fmu.component, &raw const reference, 1, &raw const order, &raw mut value)
-    };
-    (status, value)
-}
 
 #[test]
 fn a_derivative_counts_for_one_step() {
     let fmu = Instance::initialized();
-    assert_eq!(set(&fmu, &["support.displacement"], &[1], &[1e-3]), fmi2OK);
+    assert_eq!(fmu.set_rates(["support.displacement"], [1], [1e-3]), fmi2OK);
     assert_eq!(fmu.step(0.0, 1e-4), fmi2OK);
     let moved = fmu.real("tip.displacement") + fmu.real("contact.indentation");
     // The fixed contact is where the derivative led; without one it goes back to its input.
@@ -35,7 +21,7 @@ fn a_derivative_counts_for_one_step() {
 #[test]
 fn the_force_follows_an_acceleration_that_grows() {
     let fmu = Instance::initialized();
-    assert_eq!(set(&fmu, &["base.acceleration"], &[1], &[1e3]), fmi2OK);
+    assert_eq!(fmu.set_rates(["base.acceleration"], [1], [1e3]), fmi2OK);
     let before = fmu.real("contact.force");
     assert_eq!(fmu.step(0.0, 0.1), fmi2OK);
     let after = fmu.real("contact.force");
@@ -46,7 +32,7 @@ fn the_force_follows_an_acceleration_that_grows() {
         (found / expected - 1.0).abs() < 1e-3,
         "{found} N, expected {expected} N"
     );
-    let (status, rate) = get(&fmu, "contact.force", 1);
+    let (status, rate) = fmu.try_rate("contact.force");
     assert_eq!(status, fmi2OK);
     assert!((rate / (mass * 1e3) - 1.0).abs() < 1e-3, "{rate} N/s");
 }
@@ -56,7 +42,7 @@ fn higher_derivatives_of_inputs_have_no_effect_and_are_told_of_once() {
     let fmu = Instance::initialized();
     let names = ["support.displacement", "support.displacement", "base.acceleration"];
     for step in 0..3 {
-        assert_eq!(set(&fmu, &names, &[1, 2, 3], &[1e-3, 5.0, 1e9]), fmi2OK);
+        assert_eq!(fmu.set_rates(names, [1, 2, 3], [1e-3, 5.0, 1e9]), fmi2OK);
         assert_eq!(fmu.step(f64::from(step) * 1e-4, 1e-4), fmi2OK);
         let place = fmu.real("tip.displacement") + fmu.real("contact.indentation");
         assert!((place - 2e-4 - 1e-7).abs() < 1e-18, "{place}");

@@ -1,32 +1,12 @@
 //! Saved states: what is restored goes on bit by bit as it did before.
 
-use std::ptr;
-
 use relay_contact::fmi2::*;
 use testing::instance::Instance;
 
-/// A saved state of an instance.
-pub fn save(fmu: &Instance) -> fmi2FMUstate {
-    let mut state = ptr::null_mut();
-    assert_eq!(unsafe { fmi2GetFMUstate(fmu.component, &raw mut state) }, fmi2OK);
-    assert!(!state.is_null());
-    state
-}
-
-pub fn restore(fmu: &Instance, state: fmi2FMUstate) -> fmi2Status {
-    unsafe { fmi2SetFMUstate(fmu.component, state) }
-}
-
-fn free(fmu: &Instance, mut state: fmi2FMUstate) {
-    assert_eq!(unsafe { fmi2FreeFMUstate(fmu.component, &raw mut state) }, fmi2OK);
-    assert!(state.is_null());
-}
-
-/// Shaken so that the contact opens.
-fn shaken() -> Instance {
+/// Shaken with this amplitude (m/s2): the contact opens.
+fn shaken(amplitude: f64) -> Instance {
     let fmu = Instance::new();
-    assert_eq!(fmu.set_integer("effects.excitation", 2), fmi2OK);
-    assert_eq!(fmu.set_real("excitation.amplitude", 400.0), fmi2OK);
+    fmu.shake(amplitude);
     fmu.initialize();
     fmu
 }
@@ -53,24 +33,6 @@ pub fn trace(fmu: &Instance, start: u32, count: u32, size: f64) -> Vec<[u64; 8]>
             OUTPUTS.map(|name| fmu.real(name).to_bits())
         })
         .collect()
-}
-
-/// The state as bytes.
-pub fn to_bytes(fmu: &Instance, state: fmi2FMUstate) -> Vec<fmi2Byte> {
-    let mut size = 0;
-    unsafe {
-        assert_eq!(fmi2SerializedFMUstateSize(fmu.component, state, &raw mut size), fmi2OK);
-        let mut bytes = vec![0; size];
-        assert_eq!(
-            fmi2SerializeFMUstate(fmu.component, state, bytes.as_mut_ptr(), size),
-            fmi2OK
-        );
-        bytes
-    }
-}
-
-pub fn from_bytes(fmu: &Instance, bytes: &[fmi2Byte], state: &mut fmi2FMUstate) -> fmi2Status {
-    unsafe { fmi2DeSerializeFMUstate(fmu.component, bytes.as_ptr(), bytes.len(), &raw mut *state) }
 }
 
 /// A scene in which the contact opens or starts open, some with friction or a second contact, and its communication step, s.
@@ -119,31 +81,23 @@ fn opening(number: u32) -> (Instance, f64) {
 #[test]
 fn every_state_goes_through_bytes() {
     let mut scenes: Vec<_> = (0..40).map(opening).collect();
-    let fmu = Instance::new();
-    assert_eq!(fmu.set_integer("effects.excitation", 2), fmi2OK);
-    assert_eq!(fmu.set_real("excitation.amplitude", 450.0), fmi2OK);
-    fmu.initialize();
-    scenes.push((fmu, 1e-5));
+    scenes.push((shaken(450.0), 1e-5));
     for (number, (fmu, size)) in scenes.into_iter().enumerate() {
         let other = Instance::new();
         for k in 0..500 {
-            let state = save(&fmu);
-            let bytes = to_bytes(&fmu, state);
-            let mut made = ptr::null_mut();
-            assert_eq!(
-                from_bytes(&other, &bytes, &mut made),
-                fmi2OK,
-                "scene {number}, step {k}"
-            );
-            assert_eq!(to_bytes(&other, made), bytes);
+            let state = fmu.save();
+            let bytes = fmu.to_bytes(state);
+            let (status, made) = other.from_bytes(&bytes);
+            assert_eq!(status, fmi2OK, "scene {number}, step {k}");
+            assert_eq!(other.to_bytes(made), bytes);
             if k % 50 == 0 {
-                assert_eq!(restore(&other, made), fmi2OK);
+                assert_eq!(other.restore(made), fmi2OK);
                 let on = trace(&fmu, k, 60, size);
                 assert_eq!(trace(&other, k, 60, size), on, "scene {number}, step {k}");
-                assert_eq!(restore(&fmu, state), fmi2OK);
+                assert_eq!(fmu.restore(state), fmi2OK);
             }
-            free(&fmu, state);
-            free(&other, made);
+            fmu.free(state);
+            other.free(made);
             trace(&fmu, k, 1, size);
         }
     }
@@ -151,15 +105,15 @@ fn every_state_goes_through_bytes() {
 
 #[test]
 fn bytes_that_are_no_state_are_an_error_that_says_which() {
-    let fmu = shaken();
+    let fmu = shaken(400.0);
     trace(&fmu, 0, 10, 1e-5);
-    let state = save(&fmu);
-    let bytes = to_bytes(&fmu, state);
+    let state = fmu.save();
+    let bytes = fmu.to_bytes(state);
     let expect = |bytes: &[fmi2Byte], reason: &str| {
         // A state may be read before initialization, which would take most of the time.
         let fmu = Instance::new();
-        let mut made = ptr::null_mut();
-        assert_eq!(from_bytes(&fmu, bytes, &mut made), fmi2Error, "{reason}");
+        let (status, made) = fmu.from_bytes(bytes);
+        assert_eq!(status, fmi2Error, "{reason}");
         assert!(made.is_null());
         fmu.expect_message(fmi2Error, &["fmi2DeSerializeFMUstate", "serializedState", reason]);
     };
@@ -184,5 +138,5 @@ fn bytes_that_are_no_state_are_an_error_that_says_which() {
     let status = unsafe { fmi2SerializeFMUstate(fmu.component, state, room.as_mut_ptr(), room.len()) };
     assert_eq!(status, fmi2Error);
     fmu.expect_message(fmi2Error, &["fmi2SerializeFMUstate", "size", "not allowed"]);
-    free(&fmu, state);
+    fmu.free(state);
 }

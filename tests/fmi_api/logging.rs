@@ -49,9 +49,8 @@ fn debug_messages(logging_on: bool, choices: &[Choice]) -> [Vec<String>; 2] {
     for (on, categories) in choices {
         assert_eq!(choose(&fmu, *on, categories), fmi2OK);
     }
-    assert_eq!(fmu.set_integer("effects.excitation", 2), fmi2OK);
+    fmu.shake(400.0);
     assert_eq!(fmu.set_integer("effects.axialForce", 2), fmi2OK);
-    assert_eq!(fmu.set_real("excitation.amplitude", 400.0), fmi2OK);
     fmu.initialize();
     for k in 0..3 {
         assert_eq!(fmu.step(f64::from(k) * 5e-4, 5e-4), fmi2OK);
@@ -104,8 +103,7 @@ fn debug_messages_are_off_unless_asked_for() {
 /// Warnings of a shaken specimen with this damping of the spring (s) and number of modes over 20 ms.
 fn warnings(damping: f64, modes: i32) -> Vec<String> {
     let fmu = Instance::new();
-    assert_eq!(fmu.set_integer("effects.excitation", 2), fmi2OK);
-    assert_eq!(fmu.set_real("excitation.amplitude", 600.0), fmi2OK);
+    fmu.shake(600.0);
     assert_eq!(fmu.set_boolean("effects.contactDamping", false), fmi2OK);
     assert_eq!(fmu.set_real("beam.stiffnessDamping", damping), fmi2OK);
     assert_eq!(fmu.set_integer("solver.modes", modes), fmi2OK);

@@ -8,7 +8,7 @@ use relay_contact::variables::{GUID, PLAIN_GUID, guid_carrying};
 use testing::instance::{Arguments, Instance, vr};
 use testing::log::{Log, callbacks};
 
-use super::fmu_state::{from_bytes, restore, save, to_bytes, trace};
+use super::fmu_state::trace;
 
 const FILE: &str = "springs/tapered-cube.toml";
 
@@ -25,8 +25,7 @@ fn in_scenes() -> Instance {
 fn sprung() -> Instance {
     let fmu = in_scenes();
     assert_eq!(fmu.set_string("beam.file", FILE), fmi2OK);
-    assert_eq!(fmu.set_integer("effects.excitation", 2), fmi2OK);
-    assert_eq!(fmu.set_real("excitation.amplitude", 400.0), fmi2OK);
+    fmu.shake(400.0);
     fmu.initialize();
     fmu
 }
@@ -59,20 +58,19 @@ fn a_spring_of_the_resources_is_read_and_can_be_left_again() {
 fn a_state_keeps_the_spring() {
     let fmu = sprung();
     trace(&fmu, 0, 30, 2e-5);
-    let state = save(&fmu);
-    let bytes = to_bytes(&fmu, state);
+    let state = fmu.save();
+    let bytes = fmu.to_bytes(state);
     let first = trace(&fmu, 30, 60, 2e-5);
     // In an instance that has no resources, and could not read the file.
     let other = Instance::new();
-    let mut made = ptr::null_mut();
-    assert_eq!(from_bytes(&other, &bytes, &mut made), fmi2OK);
-    assert_eq!(restore(&other, made), fmi2OK);
+    let (status, made) = other.from_bytes(&bytes);
+    assert_eq!((status, other.restore(made)), (fmi2OK, fmi2OK));
     assert_eq!(trace(&other, 30, 60, 2e-5), first);
-    assert_eq!(to_bytes(&other, made), bytes);
+    assert_eq!(other.to_bytes(made), bytes);
     assert_eq!(other.string("beam.file"), FILE);
     // And where another spring was set.
     let other = Instance::initialized();
-    assert_eq!(restore(&other, state), fmi2OK);
+    assert_eq!(other.restore(state), fmi2OK);
     assert_eq!(trace(&other, 30, 60, 2e-5), first);
 }
 
@@ -215,12 +213,11 @@ fn a_state_keeps_its_spring_in_a_component_that_carries_another() {
     assert_eq!(first.set_integer("effects.excitation", 2), fmi2OK);
     first.initialize();
     trace(&first, 0, 30, 2e-5);
-    let bytes = to_bytes(&first, save(&first));
+    let bytes = first.to_bytes(first.save());
     let expected = trace(&first, 30, 60, 2e-5);
     let (second, _) = carrying(GUID, "hole-and-rivet-modes.toml");
-    let mut state = ptr::null_mut();
-    assert_eq!(from_bytes(&second, &bytes, &mut state), fmi2OK);
-    assert_eq!(restore(&second, state), fmi2OK);
+    let (status, state) = second.from_bytes(&bytes);
+    assert_eq!((status, second.restore(state)), (fmi2OK, fmi2OK));
     assert_eq!(second.string("beam.file"), "tapered-cube.toml");
     assert_eq!(trace(&second, 30, 60, 2e-5), expected);
     assert_eq!(second.reset(), fmi2OK);
