@@ -3,7 +3,6 @@
 //! solution in `tests/python/test_relay_parts.py`.
 
 use relay_contact::inputs::Inputs;
-use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{BooleanOutput, ExcitationKind, PusherKind, RealOutput};
@@ -225,14 +224,6 @@ fn a_released_armature_opens_the_contact() {
     let (released, opened, back) = run(-3000.0);
     assert!(released && opened);
     close(back, 1.0, 1e-3);
-}
-
-#[test]
-fn a_core_before_the_rest_position_is_refused() {
-    let mut scene = relay();
-    scene.armature.core_position = scene.armature.rest_position;
-    let text = Model::new(&scene, 0.0).unwrap_err().to_string();
-    assert!(text.contains("armature.corePosition = -0.0003 m"), "{text}");
 }
 
 /// Between elastic stops an armature alone keeps the sum of kinetic energy, that of its return spring and stops, and what the

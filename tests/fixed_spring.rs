@@ -8,7 +8,7 @@ use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
 use relay_contact::scene::spring::{Segments, Shape};
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{AxialForceKind, RealOutput};
+use relay_contact::variables::RealOutput;
 use testing::rig::Rig;
 use testing::scenes::shaken;
 use testing::springs::{segment, spring_file};
@@ -200,15 +200,4 @@ fn the_fixed_contact_moves_as_its_outputs_say() {
         }
     }
     assert!(furthest > 0.01 * overtravel, "{furthest}");
-}
-
-#[test]
-fn an_axial_force_that_follows_the_deflection_is_refused() {
-    let mut scene = on_spring(Scene::default(), 1.0, 1.0);
-    scene.effects.axial_force = AxialForceKind::FromDeflection;
-    let error = Model::new(&scene, 0.0).unwrap_err().to_string();
-    assert!(
-        error.contains("effects.axialForce = FromDeflection: not allowed with fixed.file"),
-        "{error}"
-    );
 }

@@ -26,6 +26,7 @@ mod parallel;
 mod preloaded_contact;
 mod promise;
 mod pusher;
+mod refused;
 mod scene_file;
 mod second;
 mod spring;

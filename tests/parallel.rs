@@ -9,9 +9,7 @@ use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
 use relay_contact::scene::spring::{GivenMode, Modes, Segments, Shape};
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{
-    AxialForceKind, BooleanOutput, ContactLawKind, FrictionKind, IntegerOutput, RealOutput,
-};
+use relay_contact::variables::{AxialForceKind, BooleanOutput, ContactLawKind, IntegerOutput, RealOutput};
 use testing::scenes::{force_scale, shaken, tip_stiffness};
 use testing::springs::{mode, segment, spring_file};
 
@@ -268,23 +266,5 @@ fn contacts_of_all_heights_find_their_preload() {
                 }
             }
         }
-    }
-}
-
-#[test]
-fn what_a_parallel_contact_does_not_go_with_is_refused() {
-    let changes: [fn(&mut Scene); 4] = [
-        |scene| scene.effects.contact_law = ContactLawKind::Linearised,
-        |scene| scene.effects.contact_law = ContactLawKind::Bonded,
-        |scene| scene.effects.friction = FrictionKind::Coulomb,
-        |scene| scene.effects.axial_force = AxialForceKind::FromDeflection,
-    ];
-    for change in changes {
-        let mut scene = pair(Scene::default());
-        change(&mut scene);
-        let refused = Simulation::new(&scene, &Inputs::default(), 0.0)
-            .unwrap_err()
-            .to_string();
-        assert!(refused.contains("effects.parallelContact"), "{refused}");
     }
 }

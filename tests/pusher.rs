@@ -1,10 +1,9 @@
 //! A pusher between clamp and contact: statics, against the second contact that it is at the tip, and energy.
 
 use relay_contact::inputs::Inputs;
-use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{AxialForceKind, BooleanOutput, ContactLawKind, PusherKind, RealOutput};
+use relay_contact::variables::{BooleanOutput, ContactLawKind, PusherKind, RealOutput};
 use testing::scenes::shaken;
 
 /// A contact open by 0.1 mm without a pusher, and the specimen without its rivet.
@@ -177,20 +176,4 @@ fn the_frequency_is_that_of_free_motion() {
         .max_by(|a, b| power(*a).total_cmp(&power(*b)))
         .unwrap();
     assert!((best - frequency).abs() <= 2.1e-4 * frequency, "{best} {frequency}");
-}
-
-#[test]
-fn what_a_pusher_cannot_be_combined_with_is_refused() {
-    let said = |change: &dyn Fn(&mut Scene)| {
-        let mut scene = pushed(Scene::default());
-        change(&mut scene);
-        Model::new(&scene, 0.0).unwrap_err().to_string()
-    };
-    let text = said(&|scene| scene.effects.axial_force = AxialForceKind::FromDeflection);
-    assert!(text.contains("effects.pusher = Prescribed"), "{text}");
-    let text = said(&|scene| scene.pusher.position = 0.02);
-    assert!(
-        text.contains("pusher.position = 0.02 m") && text.contains("0.0155 m"),
-        "{text}"
-    );
 }

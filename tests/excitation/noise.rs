@@ -2,10 +2,6 @@
 
 use std::f64::consts::{PI, TAU};
 
-use relay_contact::error::SceneError;
-use relay_contact::inputs::Inputs;
-use relay_contact::simulation::Simulation;
-
 use super::{equal_steps, forces, generator, random, undriven};
 
 #[test]
@@ -87,21 +83,4 @@ fn a_seed_chooses_the_course() {
     );
     let difference = first.iter().zip(&other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     assert!(difference > 1e-2, "{difference}");
-}
-
-#[test]
-fn a_random_acceleration_needs_a_band() {
-    for end_frequency in [1000.0, 999.0] {
-        let scene = random(0.0, 1000.0, end_frequency, 1.0);
-        let error = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap_err();
-        assert!(matches!(error, SceneError::NoBand { .. }), "{error:?}");
-        let text = error.to_string();
-        for part in [
-            "excitation.frequency = 1000 Hz",
-            &format!("excitation.endFrequency = {end_frequency} Hz"),
-            "above",
-        ] {
-            assert!(text.contains(part), "{text}");
-        }
-    }
 }

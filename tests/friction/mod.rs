@@ -1,7 +1,6 @@
 //! Friction between the contacts: closed forms, its absence, the tolerance, energy, and hard cases.
 
 mod closed_forms;
-mod refused;
 mod unstable_slip;
 
 use relay_contact::inputs::Inputs;

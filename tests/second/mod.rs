@@ -2,7 +2,6 @@
 //! makes and the smallest gap are compared with another solution in `tests/python/test_second_contact.py`.
 
 mod impacts;
-mod refused;
 
 use std::path::Path;
 
@@ -253,4 +252,29 @@ fn a_closed_start_is_no_false_make() {
     // The minimum duration is that of makes.
     scene.second.minimum_duration = 1.0;
     assert_eq!(run(&scene), (interruptions, 0));
+}
+
+/// The fixed contacts may approach each other, but not meet.
+#[test]
+fn fixed_contacts_do_not_meet() {
+    let mut scene = Scene::default();
+    scene.effects.second_contact = true;
+    scene.contact.overtravel = -1e-4;
+    let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
+    let inputs = |second_displacement| Inputs {
+        second_displacement,
+        ..Inputs::default()
+    };
+    // Into the spring, to within 10 um of the first, and held there.
+    for (time, displacement) in [(0.0, 3.9e-4), (1e-2, 3.9e-4)] {
+        simulation.step(&inputs(displacement), time, 1e-2).unwrap();
+    }
+    assert!(simulation.real(RealOutput::SecondForce) > 0.0);
+    let error = simulation.step(&inputs(4.1e-4), 2e-2, 1e-3).unwrap_err().to_string();
+    assert!(
+        error.contains("second.displacement = 0.00041 m") && error.contains("less than 0.00039999"),
+        "{error}"
+    );
+    // The step that failed has changed nothing.
+    simulation.step(&inputs(3.9e-4), 2e-2, 1e-3).unwrap();
 }

@@ -1,10 +1,10 @@
 //! Springs of modes.
 
-use relay_contact::error::{Remark, SceneError};
+use relay_contact::error::Remark;
 use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
 use relay_contact::scene::spring::{GivenMode, Modes, Shape};
-use relay_contact::variables::{AxialForceKind, ContactLawKind};
+use relay_contact::variables::ContactLawKind;
 use testing::scenes::{largest_difference, shaken};
 use testing::springs::mode;
 
@@ -128,26 +128,4 @@ fn each_mode_may_have_its_own_damping() {
     let beta = scene.beam.stiffness_damping;
     assert_eq!(first.damping, beta * first.omega_squared);
     assert!((second.damping / (0.06 * second.omega_squared.sqrt()) - 1.0).abs() < 1e-12);
-}
-
-#[test]
-fn modes_have_no_axial_force() {
-    let scene = Scene::default();
-    let modes = written(&Model::new(&scene, 0.0).unwrap());
-    for (kind, refused) in [
-        (AxialForceKind::None, false),
-        (AxialForceKind::FromPreload, true),
-        (AxialForceKind::FromDeflection, true),
-        (AxialForceKind::Prescribed, true),
-    ] {
-        let mut scene = with(scene.clone(), Shape::Modes(modes.clone()));
-        scene.effects.axial_force = kind;
-        match Model::new(&scene, 0.0) {
-            Ok(model) => assert!(!refused && model.preload().axial_force == 0.0),
-            Err(SceneError::NeedsGeometry { choice, file }) => {
-                assert!(refused && choice == format!("{kind:?}") && file == "spring.toml");
-            }
-            Err(error) => panic!("{error}"),
-        }
-    }
 }

@@ -1,0 +1,161 @@
+//! Parameters and inputs that do not go together: each combination is refused before anything is simulated, with the names, the
+//! values and what is allowed.
+
+use relay_contact::inputs::Inputs;
+use relay_contact::scene::Scene;
+use relay_contact::scene::spring::{GivenMode, Modes, Segments, Shape};
+use relay_contact::simulation::Simulation;
+use relay_contact::variables::{
+    AxialForceKind, ContactLawKind, ExcitationKind, FrictionKind, PusherKind, ResistanceKind,
+};
+use testing::springs::{mode, segment, spring_file};
+
+/// Changes of a scene, and parts of what is said of it; nothing is said where it can be simulated.
+type Case = (fn(&mut Scene, &mut Inputs), &'static [&'static str]);
+
+fn check(base: fn(&mut Scene), cases: &[Case]) {
+    for (number, (change, parts)) in cases.iter().enumerate() {
+        let (mut scene, mut inputs) = (Scene::default(), Inputs::default());
+        base(&mut scene);
+        change(&mut scene, &mut inputs);
+        let said = Simulation::new(&scene, &inputs, 0.0).map_or_else(|error| error.to_string(), |_| String::new());
+        assert_eq!(said.is_empty(), parts.is_empty(), "case {number}: {said}");
+        for part in *parts {
+            assert!(said.contains(part), "case {number}: {part:?} missing: {said}");
+        }
+    }
+}
+
+fn linearised(scene: &mut Scene) {
+    scene.effects.contact_law = ContactLawKind::Linearised;
+}
+
+fn bonded(scene: &mut Scene) {
+    scene.effects.contact_law = ContactLawKind::Bonded;
+}
+
+fn rubbing(scene: &mut Scene) {
+    scene.effects.friction = FrictionKind::Coulomb;
+}
+
+fn following(scene: &mut Scene) {
+    scene.effects.axial_force = AxialForceKind::FromDeflection;
+}
+
+/// So much friction, at a height of 10 mm.
+fn gripping(scene: &mut Scene, coefficient: f64, initial: f64) {
+    (scene.friction.coefficient, scene.friction.initial) = (coefficient, initial);
+    scene.tip.contact_height = 0.01;
+}
+
+/// A spring given by a mode.
+fn with_mode(scene: &mut Scene, rotation: Option<f64>) {
+    let modes = Modes {
+        compliance: 1e-3,
+        parallel_compliance: None,
+        modes: vec![GivenMode {
+            rotation,
+            ..mode(1000.0, 150.0, 0.005)
+        }],
+    };
+    scene.effects.axial_force = AxialForceKind::None;
+    scene.spring = spring_file("own.toml", Shape::Modes(modes));
+}
+
+#[rustfmt::skip]
+const FRICTION: &[Case] = &[
+    (|_, _| (), &[]),
+    (|scene, _| linearised(scene), &["effects.contactLaw = Linearised", "effects.friction = Coulomb"]),
+    (|scene, _| bonded(scene), &["effects.contactLaw = Bonded", "effects.friction = Coulomb"]),
+    (|scene, _| scene.effects.second_contact = true, &["effects.secondContact = true"]),
+    (|scene, _| following(scene), &["effects.axialForce = FromDeflection"]),
+    (|scene, _| with_mode(scene, Some(1e4)), &[]),
+    (|scene, _| with_mode(scene, None), &["own.toml", "rotation"]),
+    // At two thirds of the length the moment of the friction force bends the spring back as far as the contact force bends it.
+    (|scene, _| gripping(scene, 2.0, -1.0), &["friction.coefficient = 2 ", "0.01033"]),
+    (|scene, _| gripping(scene, 2.0, 0.0), &[]),
+];
+
+#[rustfmt::skip]
+const SECOND_CONTACT: &[Case] = &[
+    (|_, _| (), &[]),
+    (|scene, _| linearised(scene), &["effects.contactLaw", "Hertz"]),
+    (|scene, _| bonded(scene), &["effects.contactLaw", "Hertz"]),
+    // 64 nm is the indentation of the first at the preload.
+    (|scene, _| scene.second.gap = 5e-8, &["second.gap = 5e-8 m", "more than 6.4"]),
+    (|scene, inputs| inputs.second_displacement = scene.second.gap, &["second.displacement = 0.0003 m"]),
+    // A backstop: the first contact is out of reach.
+    (|scene, _| scene.contact.overtravel = -0.01, &[]),
+];
+
+#[rustfmt::skip]
+const PARALLEL_CONTACT: &[Case] = &[
+    (|_, _| (), &[]),
+    (|scene, _| linearised(scene), &["effects.parallelContact"]),
+    (|scene, _| bonded(scene), &["effects.parallelContact"]),
+    (|scene, _| rubbing(scene), &["effects.parallelContact"]),
+    (|scene, _| following(scene), &["effects.parallelContact"]),
+];
+
+#[rustfmt::skip]
+const PUSHER: &[Case] = &[
+    (|_, _| (), &[]),
+    (|scene, _| following(scene), &["effects.pusher = Prescribed"]),
+    (|scene, _| scene.pusher.position = 0.02, &["pusher.position = 0.02 m", "0.0155 m"]),
+];
+
+#[rustfmt::skip]
+const ARMATURE: &[Case] = &[
+    (|_, _| (), &[]),
+    (|scene, _| scene.armature.core_position = scene.armature.rest_position, &["armature.corePosition = -0.0003 m"]),
+];
+
+#[rustfmt::skip]
+const FIXED_SPRING: &[Case] = &[
+    (|_, _| (), &[]),
+    (|scene, _| following(scene), &["effects.axialForce = FromDeflection: not allowed with fixed.file"]),
+];
+
+#[rustfmt::skip]
+const SPRING_OF_MODES: &[Case] = &[
+    (|_, _| (), &[]),
+    (|scene, _| scene.effects.axial_force = AxialForceKind::FromPreload, &["effects.axialForce = FromPreload", "own.toml"]),
+    (|scene, _| following(scene), &["effects.axialForce = FromDeflection", "own.toml"]),
+    (|scene, _| scene.effects.axial_force = AxialForceKind::Prescribed, &["effects.axialForce = Prescribed", "own.toml"]),
+];
+
+#[rustfmt::skip]
+const RANDOM_ACCELERATION: &[Case] = &[
+    (|scene, _| scene.excitation.end_frequency = 1001.0, &[]),
+    (|scene, _| scene.excitation.end_frequency = 1000.0, &["frequency = 1000 Hz", "endFrequency = 1000 Hz", "above"]),
+    (|scene, _| scene.excitation.end_frequency = 999.0, &["frequency = 1000 Hz", "endFrequency = 999 Hz", "above"]),
+];
+
+#[rustfmt::skip]
+const NO_RESISTANCE: &[Case] = &[
+    (|scene, _| scene.effects.chatter = false, &[]),
+    (|_, _| (), &["effects.chatter = true", "effects.resistance = None"]),
+];
+
+#[test]
+fn what_does_not_go_together_is_refused_with_names_and_values() {
+    check(rubbing, FRICTION);
+    check(|scene| scene.effects.second_contact = true, SECOND_CONTACT);
+    check(|scene| scene.effects.parallel_contact = true, PARALLEL_CONTACT);
+    check(|scene| scene.effects.pusher = PusherKind::Prescribed, PUSHER);
+    check(|scene| scene.effects.pusher = PusherKind::Armature, ARMATURE);
+    let on_spring = |scene: &mut Scene| {
+        let segments = Segments {
+            segments: vec![segment(0.015, [4e-3; 2], [2e-4; 2])],
+            ..Segments::default()
+        };
+        scene.fixed_spring = spring_file("fixed.toml", Shape::Segments(segments));
+    };
+    check(on_spring, FIXED_SPRING);
+    check(|scene| with_mode(scene, None), SPRING_OF_MODES);
+    check(
+        |scene| scene.effects.excitation = ExcitationKind::Random,
+        RANDOM_ACCELERATION,
+    );
+    check(|scene| scene.effects.resistance = ResistanceKind::None, NO_RESISTANCE);
+}
