@@ -5,7 +5,7 @@ use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{AxialForceKind, ExcitationKind, RealOutput};
-use testing::scenes::{at_rest, force_scale};
+use testing::scenes::{at_rest, force_scale, forces, largest_difference};
 
 /// A spring bent by half its length against a soft contact: the axial force is 0.4 of the buckling load and moves with
 /// the tip.
@@ -52,20 +52,11 @@ fn at_the_specimen_the_difference_is_tiny() {
     let mut scene = Scene::default();
     scene.effects.excitation = ExcitationKind::Sine;
     scene.solver.tolerance = 1e-10;
-    let mut of = |kind| {
+    let [constant, following] = [AxialForceKind::FromPreload, AxialForceKind::FromDeflection].map(|kind| {
         scene.effects.axial_force = kind;
-        Simulation::new(&scene, &Inputs::default(), 0.0).unwrap()
-    };
-    let (mut constant, mut following) = (of(AxialForceKind::FromPreload), of(AxialForceKind::FromDeflection));
-    let mut largest = 0.0_f64;
-    for k in 0..2000 {
-        let time = 1e-5 * f64::from(k);
-        let forces = [&mut constant, &mut following].map(|simulation| {
-            simulation.step(&Inputs::default(), time, 1e-5).unwrap();
-            simulation.real(RealOutput::ContactForce)
-        });
-        largest = largest.max((forces[0] - forces[1]).abs());
-    }
+        forces(&scene, 1e-5, 2000)
+    });
+    let largest = largest_difference(&constant, &following);
     println!("98 m/s2, 1000 Hz: the forces differ by at most {largest:.3e} N of 0.2 N");
     // The tip moves 50 nm: N by 1.5e-6 N, its transverse part N w' by 2e-2 of that; resonance and the spring's way to
     // the contact leave the order.

@@ -10,7 +10,7 @@ use relay_contact::scene::spring::{Segments, Shape};
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::RealOutput;
 use testing::rig::Rig;
-use testing::scenes::shaken;
+use testing::scenes::{forces, largest_difference, shaken};
 use testing::springs::{segment, spring_file};
 
 /// The scene with a uniform fixed spring of this width and thickness over those of the moving one.
@@ -103,17 +103,6 @@ fn stiffer(scene: Scene, times: f64) -> Scene {
     scene
 }
 
-/// Forces over 5 ms.
-fn forces(scene: &Scene) -> Vec<f64> {
-    let mut simulation = Simulation::new(scene, &Inputs::default(), 0.0).unwrap();
-    let mut forces = vec![simulation.real(RealOutput::ContactForce)];
-    for n in 0..500 {
-        simulation.step(&Inputs::default(), f64::from(n) * 1e-5, 1e-5).unwrap();
-        forces.push(simulation.real(RealOutput::ContactForce));
-    }
-    forces
-}
-
 /// A fixed spring much stiffer than the moving one is a rigid contact; where it opens, much stiffer than the contact in a blow,
 /// of 1e7 N/m.
 #[test]
@@ -123,11 +112,10 @@ fn a_stiff_fixed_spring_is_a_rigid_contact() {
     for (amplitude, times, share) in [(98.0, 1e6, 1e-5), (400.0, 1e10, 1e-4)] {
         let mut scene = shaken(amplitude, 1000.0);
         scene.solver.tolerance = 1e-8;
-        let (rigid, stiff) = (forces(&scene), forces(&stiffer(scene, times)));
+        let (rigid, stiff) = (forces(&scene, 1e-5, 500), forces(&stiffer(scene, times), 1e-5, 500));
         let greatest = rigid.iter().copied().fold(0.0, f64::max);
         assert_eq!(rigid.contains(&0.0), amplitude > 200.0, "whether it opens");
-        let pairs = rigid.iter().zip(&stiff);
-        let worst = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let worst = largest_difference(&rigid, &stiff);
         assert!(
             worst > 0.0 && worst < share * greatest,
             "{amplitude} m/s2: {worst} of {greatest}"

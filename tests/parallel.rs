@@ -10,7 +10,7 @@ use relay_contact::scene::Scene;
 use relay_contact::scene::spring::{GivenMode, Modes, Segments, Shape};
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{AxialForceKind, BooleanOutput, ContactLawKind, IntegerOutput, RealOutput};
-use testing::scenes::{force_scale, shaken, tip_stiffness};
+use testing::scenes::{course, force_scale, forces, largest_difference, shaken, tip_stiffness};
 use testing::springs::{mode, segment, spring_file};
 
 /// The scene with a parallel contact, equal to the first.
@@ -39,20 +39,8 @@ fn forked(mut scene: Scene, share: f64) -> Scene {
     scene
 }
 
-/// Steps of 10 us for so long (s), each of which is told.
-fn run(scene: &Scene, duration: f64, mut told: impl FnMut(&Simulation)) -> Simulation {
-    let mut simulation = Simulation::new(scene, &Inputs::default(), 0.0).unwrap();
-    let step = 1e-5;
-    let mut count = 0_u32;
-    while f64::from(count) * step < duration {
-        simulation
-            .step(&Inputs::default(), f64::from(count) * step, step)
-            .unwrap();
-        told(&simulation);
-        count += 1;
-    }
-    simulation
-}
+/// Forces of both contacts.
+const BOTH: [RealOutput; 2] = [RealOutput::ContactForce, RealOutput::ParallelForce];
 
 #[test]
 fn two_equal_contacts_are_one_of_twice_the_constant() {
@@ -62,26 +50,19 @@ fn two_equal_contacts_are_one_of_twice_the_constant() {
     scene.solver.modes = 24;
     for fork in [None, Some(0.4)] {
         let spring = |scene: Scene| fork.map_or(scene.clone(), |share| forked(scene.clone(), share));
-        let mut expected = Vec::new();
-        let one = run(&spring(doubled(scene.clone())), 0.01, |simulation| {
-            expected.push(simulation.real(RealOutput::ContactForce));
-        });
-        let scale = force_scale(&scene).max(expected.iter().copied().fold(0.0, f64::max));
-        let mut expected = expected.into_iter();
-        let both = run(&spring(pair(scene.clone())), 0.01, |simulation| {
-            let [first, other] =
-                [RealOutput::ContactForce, RealOutput::ParallelForce].map(|output| simulation.real(output));
-            // Both simulations keep the tolerance, each of the forces of the two by itself.
-            let allowed = 3.0 * tolerance * scale;
-            let time = simulation.time();
-            assert!((first - other).abs() <= allowed, "{fork:?} {time}: {first} {other}");
-            let sum = expected.next().unwrap();
+        let (expected, one) = course(&spring(doubled(scene.clone())), 1e-5, 1000, [RealOutput::ContactForce]);
+        let (found, both) = course(&spring(pair(scene.clone())), 1e-5, 1000, BOTH);
+        let largest = expected.iter().flatten().copied().fold(force_scale(&scene), f64::max);
+        // Both simulations keep the tolerance, each of the forces of the two by itself.
+        let allowed = 3.0 * tolerance * largest;
+        for (n, ([sum], [first, other])) in expected.iter().zip(&found).enumerate() {
+            assert!((first - other).abs() <= allowed, "{fork:?} {n}: {first} {other}");
             assert!(
                 (first + other - sum).abs() <= allowed,
-                "{fork:?} {time}: {}",
+                "{fork:?} {n}: {}",
                 first + other - sum
             );
-        });
+        }
         assert!(one.real(RealOutput::ContactLastOpening) > 0.0);
         let frequencies = [&one, &both].map(|simulation| simulation.real(RealOutput::PreloadFrequency));
         assert!((frequencies[0] / frequencies[1] - 1.0).abs() < 1e-6, "{frequencies:?}");
@@ -92,18 +73,14 @@ fn two_equal_contacts_are_one_of_twice_the_constant() {
 fn a_contact_that_stays_back_further_than_the_other_is_pressed_is_not_there() {
     let mut scene = shaken(300.0, 900.0);
     scene.solver.modes = 16;
-    let mut expected = Vec::new();
-    run(&scene, 0.005, |simulation| {
-        expected.push(simulation.real(RealOutput::ContactForce));
-    });
+    let expected = forces(&scene, 1e-5, 500);
     let mut both = pair(scene);
     both.parallel.offset = 1e-3;
-    let mut expected = expected.into_iter();
-    run(&both, 0.005, |simulation| {
-        assert_eq!(Some(simulation.real(RealOutput::ContactForce)), expected.next());
-        assert_eq!(simulation.real(RealOutput::ParallelForce), 0.0);
-        assert!(!simulation.boolean(BooleanOutput::ParallelClosed));
-    });
+    let (found, last) = course(&both, 1e-5, 500, BOTH);
+    for (found, expected) in found.into_iter().zip(expected) {
+        assert_eq!(found, [expected, 0.0]);
+    }
+    assert!(!last.boolean(BooleanOutput::ParallelClosed));
 }
 
 /// A tongue of half the width, clamped where the spring forks, gives way by `(L - f)^3 / (3 E I / 2)` to its own force, beside
@@ -161,7 +138,7 @@ fn the_circuit_is_interrupted_while_both_are_open() {
     for k in 0..count {
         let start = f64::from(k) * step;
         fine.step(&Inputs::default(), start, step).unwrap();
-        let [first, other] = [RealOutput::ContactForce, RealOutput::ParallelForce].map(|output| fine.real(output));
+        let [first, other] = BOTH.map(|output| fine.real(output));
         let is_open = first == 0.0 && other == 0.0;
         open += if is_open { step } else { 0.0 };
         let one_is_open = !is_open && (first == 0.0 || other == 0.0);
@@ -175,20 +152,12 @@ fn the_circuit_is_interrupted_while_both_are_open() {
         }
     }
     assert!(begins > 2 && apart > 2e-4, "{begins} {apart}");
-    let mut highest = highest.into_iter();
-    let coarse = run(&scene, 5e-3, |simulation| {
-        let (found, expected) = (
-            simulation.real(RealOutput::StepMaximumResistance),
-            highest.next().unwrap(),
-        );
+    let (found, coarse) = course(&scene, 1e-5, 500, [RealOutput::StepMaximumResistance]);
+    for (n, ([found], expected)) in found.into_iter().zip(highest).enumerate() {
         // Samples 20 ns apart miss the rise at an opening, where the resistance follows the root of the time.
-        assert!(
-            expected <= found * (1.0 + 1e-4),
-            "{}: {found} {expected}",
-            simulation.time()
-        );
-        assert!(expected > 0.8 * found, "{}: {found} {expected}", simulation.time());
-    });
+        assert!(expected <= found * (1.0 + 1e-4), "{n}: {found} {expected}");
+        assert!(expected > 0.8 * found, "{n}: {found} {expected}");
+    }
     for simulation in [&fine, &coarse] {
         assert_eq!(simulation.integer(IntegerOutput::ChatterCount), begins);
         let total = simulation.real(RealOutput::ChatterTotalInterruption);
@@ -219,23 +188,10 @@ fn modes_of_a_forked_spring_are_that_spring() {
         modes: modes.collect(),
     });
     given.spring = spring_file("modes.toml", shape);
-    let mut expected = Vec::new();
-    run(&scene, 0.003, |simulation| {
-        expected.push([RealOutput::ContactForce, RealOutput::ParallelForce].map(|output| simulation.real(output)));
-    });
-    let mut expected = expected.into_iter();
-    let scale = force_scale(&scene);
-    run(&given, 0.003, |simulation| {
-        let found = [RealOutput::ContactForce, RealOutput::ParallelForce].map(|output| simulation.real(output));
-        for (found, expected) in found.into_iter().zip(expected.next().unwrap()) {
-            // The segments' static compliance is that of all modes, here that of 24.
-            assert!(
-                (found - expected).abs() < 2e-3 * scale,
-                "{}: {found} {expected}",
-                simulation.time()
-            );
-        }
-    });
+    let [expected, found] = [&scene, &given].map(|scene| course(scene, 1e-5, 300, BOTH).0.concat());
+    // The segments' static compliance is that of all modes, here that of 24.
+    let difference = largest_difference(&found, &expected);
+    assert!(difference < 2e-3 * force_scale(&scene), "{difference}");
     if let Shape::Modes(modes) = &mut Arc::make_mut(given.spring.as_mut().unwrap()).shape {
         modes.modes[3].parallel = None;
     }

@@ -59,6 +59,31 @@ pub fn propped_mass(scene: &Scene) -> f64 {
     0.375 * beam.density * beam.width * beam.thickness * beam.length + scene.tip.mass
 }
 
+/// Outputs after each of `count` communication steps of `size` seconds without inputs, and the simulation.
+///
+/// # Panics
+/// If it cannot be simulated.
+pub fn course<const N: usize>(
+    scene: &Scene,
+    size: f64,
+    count: u32,
+    outputs: [RealOutput; N],
+) -> (Vec<[f64; N]>, Simulation) {
+    let inputs = Inputs::default();
+    let mut simulation = Simulation::new(scene, &inputs, 0.0).expect("a scene that can be simulated");
+    let rows = (0..count).map(|k| {
+        simulation.step(&inputs, f64::from(k) * size, size).expect("a step");
+        outputs.map(|output| simulation.real(output))
+    });
+    (rows.collect(), simulation)
+}
+
+/// The contact force after each of them.
+pub fn forces(scene: &Scene, size: f64, count: u32) -> Vec<f64> {
+    let (rows, _) = course(scene, size, count, [RealOutput::ContactForce]);
+    rows.into_iter().flatten().collect()
+}
+
 /// Largest difference of two time histories at the same times.
 pub fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)

@@ -10,10 +10,10 @@ use relay_contact::scene::Scene;
 use relay_contact::scene::spring::{GivenMode, Modes, Shape};
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::RealOutput;
-use testing::scenes::{at_rest, shaken, undamped};
+use testing::scenes::{at_rest, course, shaken, undamped};
 use testing::springs::{mode, spring_file};
 
-use super::{course, rubbing, stiffness_ratio};
+use super::{rubbing, stiffness_ratio};
 
 /// Mass of the slider, kg, and force on it per base acceleration, kg.
 const MASS: f64 = 1e-4;
@@ -63,7 +63,7 @@ const ALONG: [RealOutput; 3] = [
 ];
 
 /// Displacement along the spring, from the slip and what the tangential spring gives.
-fn displacements(rows: &[Vec<f64>], stiffness: f64) -> Vec<f64> {
+fn displacements(rows: &[[f64; 3]], stiffness: f64) -> Vec<f64> {
     rows.iter().map(|row| row[1] - row[0] / stiffness).collect()
 }
 
@@ -75,7 +75,7 @@ fn hysteresis_of_a_slider_moved_to_and_fro() {
         scene.solver.tolerance = 1e-7;
         let (limit, stiffness) = grip(&scene);
         let per_cycle = 1000;
-        let (rows, _) = course(&scene, 1e-2 / f64::from(per_cycle), 4 * per_cycle, &ALONG);
+        let (rows, _) = course(&scene, 1e-2 / f64::from(per_cycle), 4 * per_cycle, ALONG);
         let (before, last) = rows.split_at(3 * per_cycle as usize);
         let moved = displacements(last, stiffness);
         let extreme = |pick: fn(f64, f64) -> f64| moved.iter().copied().reduce(pick).unwrap();
@@ -109,7 +109,7 @@ fn amplitude_of_a_coulomb_damped_oscillator() {
         let per_cycle = 2000;
         let period = 1.0 / (OWN * ratio);
         let cycles = 80;
-        let (rows, _) = course(&scene, period / f64::from(per_cycle), cycles * per_cycle, &ALONG);
+        let (rows, _) = course(&scene, period / f64::from(per_cycle), cycles * per_cycle, ALONG);
         let last = rows.len() - 10 * per_cycle as usize;
         let moved = displacements(&rows[last..], stiffness);
         let found = moved.iter().map(|x| x.abs()).fold(0.0, f64::max);

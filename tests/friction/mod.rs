@@ -7,7 +7,9 @@ use relay_contact::inputs::Inputs;
 use relay_contact::scene::{Contact, Scene};
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{FrictionKind, IntegerOutput, RealOutput};
-use testing::scenes::{NEAR, Three, check_slope, force_scale, largest_difference, range, shaken, threes};
+use testing::scenes::{
+    NEAR, Three, check_slope, course, force_scale, forces, largest_difference, range, shaken, threes,
+};
 
 /// The scene with friction.
 fn rubbing(mut scene: Scene) -> Scene {
@@ -29,21 +31,6 @@ fn stiffness_ratio(contact: &Contact) -> f64 {
     8.0 / shear / (2.0 / normal)
 }
 
-/// Outputs after each of `count` communication steps of `size` seconds, and the simulation.
-fn course(scene: &Scene, size: f64, count: u32, outputs: &[RealOutput]) -> (Vec<Vec<f64>>, Simulation) {
-    let mut simulation = Simulation::new(scene, &Inputs::default(), 0.0).unwrap();
-    let mut rows = Vec::new();
-    for k in 0..count {
-        simulation.step(&Inputs::default(), f64::from(k) * size, size).unwrap();
-        rows.push(outputs.iter().map(|output| simulation.real(*output)).collect());
-    }
-    (rows, simulation)
-}
-
-fn column(scene: &Scene, size: f64, count: u32, output: RealOutput) -> Vec<f64> {
-    course(scene, size, count, &[output]).0.concat()
-}
-
 const WATCHED: [RealOutput; 7] = [
     RealOutput::ContactForce,
     RealOutput::ContactTangentialForce,
@@ -60,12 +47,12 @@ fn a_contact_without_coefficient_or_height_moves_as_without_friction() {
     for amplitude in [98.0, 400.0] {
         let plain = shaken(amplitude, 1000.0);
         let tolerance = plain.solver.effective_tolerance();
-        let expected = column(&plain, 7e-6, 600, RealOutput::ContactForce);
+        let expected = forces(&plain, 7e-6, 600);
         let largest = expected.iter().copied().fold(force_scale(&plain), f64::max);
         for (coefficient, height) in [(0.0, 1e-3), (0.2, 0.0)] {
             let mut scene = rubbing(plain.clone());
             (scene.friction.coefficient, scene.tip.contact_height) = (coefficient, height);
-            let found = column(&scene, 7e-6, 600, RealOutput::ContactForce);
+            let found = forces(&scene, 7e-6, 600);
             let wrong = largest_difference(&found, &expected) / largest;
             println!("{amplitude} m/s2, mu {coefficient}, {height} m: {wrong:e}");
             // Each is right to the tolerance.
@@ -95,7 +82,7 @@ fn the_tolerance_is_kept_and_no_energy_is_made() {
         let rows = |tolerance: f64| {
             let mut scene = scene.clone();
             scene.solver.tolerance = tolerance;
-            course(&scene, 9e-6, 500, &WATCHED)
+            course(&scene, 9e-6, 500, WATCHED)
         };
         let (expected, _) = rows(1e-10);
         for tolerance in [1e-4, 1e-6] {

@@ -8,13 +8,11 @@ mod reference;
 use std::f64::consts::TAU;
 
 use reference::{Stretch, frequencies};
-use relay_contact::inputs::Inputs;
 use relay_contact::reference::{Model, Section, Spring, frequencies as uniform_frequencies};
 use relay_contact::scene::Scene;
 use relay_contact::scene::spring::{PointMass, Segment, Segments, Shape};
-use relay_contact::simulation::Simulation;
-use relay_contact::variables::{AxialForceKind, RealOutput};
-use testing::scenes::{largest_difference, shaken};
+use relay_contact::variables::AxialForceKind;
+use testing::scenes::{forces, largest_difference, shaken};
 use testing::springs::{segment, spring_file};
 
 fn with(mut scene: Scene, shape: Shape) -> Scene {
@@ -47,17 +45,6 @@ fn section(scene: &Scene, width: f64, thickness: f64) -> (f64, f64) {
         scene.beam.youngs_modulus * width * thickness.powi(3) / 12.0,
         scene.beam.density * width * thickness,
     )
-}
-
-/// Force over a run, N.
-fn course(scene: &Scene, steps: u32, size: f64) -> Vec<f64> {
-    let mut simulation = Simulation::new(scene, &Inputs::default(), 0.0).unwrap();
-    (0..steps)
-        .map(|n| {
-            simulation.step(&Inputs::default(), f64::from(n) * size, size).unwrap();
-            simulation.real(RealOutput::ContactForce)
-        })
-        .collect()
 }
 
 /// The angular frequencies of the free spring, rad/s.
@@ -95,7 +82,7 @@ fn segments_of_the_uniform_section_are_the_uniform_spring() {
         scene.environment.gravity = 9.81;
         scene.tip.rotary_inertia = 1e-12;
         let plain = Model::new(&scene, 0.0).unwrap();
-        let expected = course(&scene, 200, 2e-5);
+        let expected = forces(&scene, 2e-5, 200);
         let largest = expected.iter().copied().fold(0.0, f64::max);
         for shares in [&[1.0][..], &[0.3, 0.7], &[0.2; 5]] {
             let scene = cut(&scene, shares);
@@ -112,7 +99,7 @@ fn segments_of_the_uniform_section_are_the_uniform_spring() {
                     "{axial:?} {shares:?}: {found} {expected}"
                 );
             }
-            let difference = largest_difference(&course(&scene, 200, 2e-5), &expected);
+            let difference = largest_difference(&forces(&scene, 2e-5, 200), &expected);
             println!("{axial:?} {shares:?}: {:e}", difference / largest);
             assert!(difference < 1e-10 * largest, "{axial:?} {shares:?}: {difference:e}");
         }

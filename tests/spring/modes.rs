@@ -5,10 +5,10 @@ use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
 use relay_contact::scene::spring::{GivenMode, Modes, Shape};
 use relay_contact::variables::ContactLawKind;
-use testing::scenes::{largest_difference, shaken};
+use testing::scenes::{forces, largest_difference, shaken};
 use testing::springs::mode;
 
-use super::{TAU, course, with};
+use super::{TAU, with};
 
 /// The modes of a model, and the static compliance of its spring.
 fn written(model: &Model) -> Modes {
@@ -41,7 +41,7 @@ fn modes_written_by_our_own_beam_and_read_again_are_the_beam() {
         ] {
             assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
         }
-        let (found, expected) = (course(&given, 200, 2e-5), course(&scene, 200, 2e-5));
+        let (found, expected) = (forces(&given, 2e-5, 200), forces(&scene, 2e-5, 200));
         let largest = expected.iter().copied().fold(0.0, f64::max);
         let difference = largest_difference(&found, &expected);
         assert!(difference < 1e-9 * largest, "{amplitude}: {difference:e}");
@@ -56,7 +56,7 @@ fn the_compliance_of_modes_left_out_acts_as_a_spring_in_series() {
     let mut fine = scene.clone();
     fine.solver.modes = 64;
     let all = written(&Model::new(&fine, 0.0).unwrap());
-    let expected = course(&scene, 100, 1e-4);
+    let expected = forces(&scene, 1e-4, 100);
     let swing = expected.iter().map(|force| (force - 0.152).abs()).fold(0.0, f64::max);
     let error = |count: usize| {
         let modes = Modes {
@@ -67,7 +67,7 @@ fn the_compliance_of_modes_left_out_acts_as_a_spring_in_series() {
         let model = Model::new(&scene, 0.0).unwrap();
         assert_eq!(model.modes().len(), count + 1);
         assert!(matches!(model.remarks()[..], [Remark::FewModes { .. }]));
-        largest_difference(&course(&scene, 100, 1e-4), &expected) / swing
+        largest_difference(&forces(&scene, 1e-4, 100), &expected) / swing
     };
     let errors = [2, 4, 8, 16].map(error);
     println!("{errors:?}");
@@ -108,8 +108,7 @@ fn a_single_mode_with_its_residual_is_a_mass_between_two_springs() {
         omega * 0.02 * omega_squared.sqrt(),
     );
     let amplitude = 20.0 * mass.sqrt() * series * contact / mass.sqrt() / real.hypot(imaginary);
-    let forces = course(&scene, 2000, 1e-4);
-    let late = &forces[1000..];
+    let late = &forces(&scene, 1e-4, 2000)[1000..];
     let middle = model.preload().force;
     let found = late.iter().map(|force| (force - middle).abs()).fold(0.0, f64::max);
     // A hundred points a third of a period apart miss the crest by less than 1e-3.
