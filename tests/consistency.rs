@@ -6,10 +6,9 @@ use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::scene::file::SceneFile;
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{BooleanOutput, ContactLawKind, IntegerOutput, RealOutput};
+use relay_contact::variables::{ContactLawKind, IntegerOutput, RealOutput};
 use testing::relays::Relay;
-use testing::scenes;
-use testing::{kinds, parts};
+use testing::{kinds, parts, relays, scenes};
 
 /// A contact's outputs that have to agree.
 #[derive(Clone, Copy, Debug)]
@@ -23,41 +22,7 @@ struct Outputs {
     closed: bool,
 }
 
-/// What is read of a contact: force, extremes, instants, and whether it is closed.
-type Names = ([RealOutput; 5], BooleanOutput);
-
-const CONTACT: Names = (
-    [
-        RealOutput::ContactForce,
-        RealOutput::StepMinimumForce,
-        RealOutput::StepMaximumForce,
-        RealOutput::ContactLastOpening,
-        RealOutput::ContactLastClosing,
-    ],
-    BooleanOutput::ContactClosed,
-);
-const SECOND: Names = (
-    [
-        RealOutput::SecondForce,
-        RealOutput::SecondMinimumForce,
-        RealOutput::SecondMaximumForce,
-        RealOutput::SecondLastOpening,
-        RealOutput::SecondLastClosing,
-    ],
-    BooleanOutput::SecondClosed,
-);
-const PARALLEL: Names = (
-    [
-        RealOutput::ParallelForce,
-        RealOutput::ParallelMinimumForce,
-        RealOutput::ParallelMaximumForce,
-        RealOutput::ParallelLastOpening,
-        RealOutput::ParallelLastClosing,
-    ],
-    BooleanOutput::ParallelClosed,
-);
-
-fn outputs(simulation: &Simulation, (names, closed): Names) -> Outputs {
+fn outputs(simulation: &Simulation, (names, closed): relays::Outputs) -> Outputs {
     let [force, least, greatest, last_opening, last_closing] = names.map(|name| simulation.real(name));
     Outputs {
         time: simulation.time(),
@@ -116,17 +81,11 @@ fn ride(case: &str, scene: &Scene, rng: &mut Rng, duration: f64, inputs: impl Fn
         return;
     };
     let bonded = scene.effects.contact_law == ContactLawKind::Bonded;
-    let effects = &scene.effects;
-    let contacts = [
-        (true, CONTACT),
-        (effects.second_contact, SECOND),
-        (effects.parallel_contact, PARALLEL),
-    ];
-    let contacts: Vec<_> = contacts.iter().filter(|(is, _)| *is).map(|(_, names)| *names).collect();
+    let contacts = relays::contacts(scene);
     let read =
         |simulation: &Simulation| -> Vec<_> { contacts.iter().map(|names| outputs(simulation, *names)).collect() };
     // Two in parallel are interrupted while each has more than the threshold.
-    let threshold = scene.chatter.resistance_threshold / if effects.parallel_contact { 2.0 } else { 1.0 };
+    let threshold = scene.chatter.resistance_threshold / if scene.effects.parallel_contact { 2.0 } else { 1.0 };
     let mut before = read(&simulation);
     let count = |simulation: &Simulation| {
         let [longest, total] = [

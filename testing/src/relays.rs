@@ -8,7 +8,7 @@ use relay_contact::error::{SceneError, StepError};
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{AxialForceKind, ContactLawKind, ExcitationKind, RealOutput};
+use relay_contact::variables::{AxialForceKind, BooleanOutput, ContactLawKind, ExcitationKind, RealOutput};
 
 use crate::scenes::{propped_mass, tip_stiffness};
 
@@ -56,24 +56,47 @@ pub struct Course {
     pub scale: f64,
 }
 
-/// Force of a contact, its least and its greatest in a step.
-type Outputs = [RealOutput; 3];
+/// What is read of a contact: force, extremes of a step, instants of the last opening and closing, and whether it is closed.
+pub type Outputs = ([RealOutput; 5], BooleanOutput);
 
-const CONTACT: Outputs = [
-    RealOutput::ContactForce,
-    RealOutput::StepMinimumForce,
-    RealOutput::StepMaximumForce,
-];
-const SECOND: Outputs = [
-    RealOutput::SecondForce,
-    RealOutput::SecondMinimumForce,
-    RealOutput::SecondMaximumForce,
-];
-const PARALLEL: Outputs = [
-    RealOutput::ParallelForce,
-    RealOutput::ParallelMinimumForce,
-    RealOutput::ParallelMaximumForce,
-];
+const CONTACT: Outputs = (
+    [
+        RealOutput::ContactForce,
+        RealOutput::StepMinimumForce,
+        RealOutput::StepMaximumForce,
+        RealOutput::ContactLastOpening,
+        RealOutput::ContactLastClosing,
+    ],
+    BooleanOutput::ContactClosed,
+);
+const SECOND: Outputs = (
+    [
+        RealOutput::SecondForce,
+        RealOutput::SecondMinimumForce,
+        RealOutput::SecondMaximumForce,
+        RealOutput::SecondLastOpening,
+        RealOutput::SecondLastClosing,
+    ],
+    BooleanOutput::SecondClosed,
+);
+const PARALLEL: Outputs = (
+    [
+        RealOutput::ParallelForce,
+        RealOutput::ParallelMinimumForce,
+        RealOutput::ParallelMaximumForce,
+        RealOutput::ParallelLastOpening,
+        RealOutput::ParallelLastClosing,
+    ],
+    BooleanOutput::ParallelClosed,
+);
+
+/// The contacts that a scene has.
+pub fn contacts(scene: &Scene) -> Vec<Outputs> {
+    let effects = &scene.effects;
+    let second = effects.second_contact.then_some(SECOND);
+    let parallel = effects.parallel_contact.then_some(PARALLEL);
+    [CONTACT].into_iter().chain(second).chain(parallel).collect()
+}
 
 /// Between both, each order of magnitude as likely as the others.
 pub(crate) fn logarithmic(rng: &mut Rng, least: f64, greatest: f64) -> f64 {
@@ -174,17 +197,7 @@ impl Relay {
         change(&mut scene);
         let (size, count) = self.steps;
         let mut simulation = Simulation::new(&scene, &self.inputs(0.0, size), 0.0)?;
-        let effects = scene.effects;
-        let contacts = [
-            (true, CONTACT),
-            (effects.second_contact, SECOND),
-            (effects.parallel_contact, PARALLEL),
-        ];
-        let contacts: Vec<_> = contacts
-            .iter()
-            .filter(|(is, _)| *is)
-            .map(|(_, outputs)| *outputs)
-            .collect();
+        let contacts = contacts(&scene);
         let mut course = Course {
             contacts: contacts.len(),
             scale: simulation.model().force_scale(),
@@ -195,8 +208,8 @@ impl Relay {
             if let Err(error) = simulation.step(&self.inputs(time, size), time, size) {
                 return Ok((course, Some(error)));
             }
-            for [force, least, greatest] in &contacts {
-                let (least, greatest) = if effects.extremes {
+            for ([force, least, greatest, ..], _) in &contacts {
+                let (least, greatest) = if scene.effects.extremes {
                     (least, greatest)
                 } else {
                     (force, force)
