@@ -1,9 +1,7 @@
 //! Interruptions and extremes inside communication steps.
 
-use relay_contact::error::SceneError;
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
-use relay_contact::scene::file::SceneFile;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{AxialForceKind, ContactLawKind, IntegerOutput, RealOutput, ResistanceKind};
 use testing::scenes;
@@ -110,37 +108,6 @@ fn interruptions_do_not_depend_on_the_communication_step() {
 }
 
 #[test]
-fn the_chatter_scene_opens_and_closes_at_the_same_instants_whatever_the_communication_step() {
-    let file = SceneFile::read("scenes/chatter-41g.toml".as_ref()).unwrap();
-    let events = |steps: u32| {
-        let size = file.stop / f64::from(steps);
-        let mut simulation = Simulation::new(&file.scene, &Inputs::default(), 0.0).unwrap();
-        let mut events = Vec::new();
-        for step in 0..steps {
-            simulation
-                .step(&Inputs::default(), f64::from(step) * size, size)
-                .unwrap();
-            events.extend(simulation.events().0.copied());
-        }
-        events
-    };
-    // 10 ms to 1 us.
-    let expected = events(1);
-    assert_eq!(expected.len(), 19);
-    for steps in [10, 100, 1000, 10_000] {
-        let found = events(steps);
-        assert_eq!(found.len(), expected.len());
-        for (found, expected) in found.iter().zip(&expected) {
-            assert_eq!(found.closes, expected.closes);
-            assert!(
-                (found.time - expected.time).abs() < 1e-9,
-                "{steps}: {found:?} {expected:?}"
-            );
-        }
-    }
-}
-
-#[test]
 fn an_interruption_that_stands_at_the_start_begins_there_and_counts_while_it_goes_on() {
     let mut scene = Scene::default();
     scene.contact.overtravel = -1e-5;
@@ -182,11 +149,6 @@ fn without_a_threshold_that_can_be_crossed_there_is_no_interruption_or_one_witho
     scene.effects.resistance = ResistanceKind::None;
     assert_eq!(scenes::at_rest(&scene, RealOutput::ContactConductance), 0.0);
     assert_eq!(interruptions(&scene, 1e-3, 5e-3), (0, 0.0, 0.0));
-    scene.effects.chatter = true;
-    assert!(matches!(
-        Simulation::new(&scene, &Inputs::default(), 0.0),
-        Err(SceneError::NoResistance)
-    ));
 }
 
 /// Extremes are those of a trace every 10 ns.
