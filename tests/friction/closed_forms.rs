@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::{DMatrix, DVector};
 use relay_contact::inputs::Inputs;
-use relay_contact::reference::{Model, bracketed};
+use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
 use relay_contact::scene::spring::{GivenMode, Modes, Shape};
 use relay_contact::simulation::Simulation;
@@ -14,6 +14,7 @@ use testing::scenes::{at_rest, course, shaken, undamped};
 use testing::springs::{mode, spring_file};
 
 use super::{rubbing, stiffness_ratio};
+use crate::spring::reference::{Stretch, frequencies};
 
 /// Mass of the slider, kg, and force on it per base acceleration, kg.
 const MASS: f64 = 1e-4;
@@ -157,40 +158,6 @@ fn no_energy_is_made_over_many_cycles() {
     assert!(balance.abs() < 1e-5 * dissipated, "{balance:e} of {dissipated:e} J");
 }
 
-/// Lowest frequency of the continuum, rad/s, with a spring `normal` (N/m) and a rotational spring `turn` (N m/rad) at the
-/// tip: the determinant of the conditions there for `U = cos - cosh` and `V = sin - sinh` of `z x / L`.
-fn characteristic(model: &Model, normal: f64, turn: f64) -> f64 {
-    let section = model.section();
-    let (length, bending) = (section.length, section.bending_stiffness);
-    let scale = (bending / section.mass_per_length).sqrt() / length.powi(2);
-    let determinant = |z: f64| {
-        let omega = z * z * scale;
-        let (sin, cos) = z.sin_cos();
-        let (sinh, cosh) = (z.sinh(), z.cosh());
-        let u = [
-            cos - cosh,
-            z * (-sin - sinh),
-            z * z * (-cos - cosh),
-            z.powi(3) * (sin - sinh),
-        ];
-        let v = [
-            sin - sinh,
-            z * (cos - cosh),
-            z * z * (-sin - sinh),
-            z.powi(3) * (-cos - cosh),
-        ];
-        let moment = |w: [f64; 4]| w[2] + turn * length / bending * w[1];
-        let shear = |w: [f64; 4]| w[3] + (section.tip_mass * omega * omega - normal) * length.powi(3) / bending * w[0];
-        moment(u) * shear(v) - moment(v) * shear(u)
-    };
-    let roots = (1..2000).map(|k| f64::from(k) * 5e-3);
-    let found = roots
-        .map(|z| (z, z + 5e-3))
-        .find_map(|(a, b)| bracketed(determinant, a, b))
-        .unwrap();
-    found * found * scale
-}
-
 /// A contact that sticks is a linear spring against the rotation of the tip, `h^2 k_t`.
 #[test]
 fn what_sticks_is_a_rotational_spring() {
@@ -217,8 +184,15 @@ fn what_sticks_is_a_rotational_spring() {
         let eigen = stiffness.symmetric_eigen();
         let lowest = eigen.eigenvalues.imin();
         let omega = eigen.eigenvalues[lowest].sqrt();
-        let exact = characteristic(&model, normal, height * height * tangential);
-        println!("{height} m: {} Hz, characteristic {} Hz", omega / TAU, exact / TAU);
+        let section = model.section();
+        let spring = Stretch {
+            mass: section.tip_mass,
+            support: normal,
+            turn: height * height * tangential,
+            ..Stretch::uniform(section.length, section.bending_stiffness, section.mass_per_length)
+        };
+        let exact = frequencies(&[spring], f64::INFINITY, 20.0, 1)[0];
+        println!("{height} m: {} Hz, transfer matrix {} Hz", omega / TAU, exact / TAU);
         assert!((omega / exact - 1.0).abs() < 1e-6, "{omega} {exact}");
 
         // Swung in this shape, so little that the law is linear.

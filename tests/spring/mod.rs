@@ -3,7 +3,7 @@
 
 mod files;
 mod modes;
-mod reference;
+pub mod reference;
 
 use std::f64::consts::TAU;
 

@@ -12,6 +12,8 @@ pub struct Stretch {
     pub inertia: f64,
     /// Elastic support at its end, N/m.
     pub support: f64,
+    /// The same against rotation, N m.
+    pub turn: f64,
 }
 
 /// Deflection, slope, moment and shear.
@@ -26,6 +28,7 @@ impl Stretch {
             mass: 0.0,
             inertia: 0.0,
             support: 0.0,
+            turn: 0.0,
         }
     }
 
@@ -56,9 +59,10 @@ impl Stretch {
             self.bending_stiffness * k * k * moment,
             self.bending_stiffness * k.powi(3) * shear,
         );
-        // What sits there: its inertia and support are forces on the spring.
+        // What sits there: its inertia and support are forces and moments on the spring.
         let force = (self.mass * omega * omega - self.support) * w;
-        [w, slope, moment - self.inertia * omega * omega * slope, shear + force]
+        let turned = (self.turn - self.inertia * omega * omega) * slope;
+        [w, slope, moment + turned, shear + force]
     }
 }
 
