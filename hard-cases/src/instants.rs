@@ -4,14 +4,14 @@ use std::f64::consts::PI;
 
 use anyhow::{Context, Result};
 use relay_contact::inputs::Inputs;
-use relay_contact::reference::{Law, Linear, Model};
+use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::ExcitationKind;
 
 use crate::case::{Check, cases};
 use crate::ride::throw;
-use testing::rig::{Rig, compose, oscillator};
+use testing::rig::{Rig, compose, oscillator, stop};
 
 cases! { CASES:
     "Chatter at 41 g in communication steps of 1 µs to 10 ms",
@@ -107,7 +107,7 @@ fn grazing_mass() -> Result<Vec<Check>> {
     let (gap, omega) = (1e-5, 1e4);
     let touches = |excess: f64| {
         let mode = oscillator(1.0, omega * omega);
-        let mut rig = Rig::new(compose(&[mode], pushing(1e6), gap, 1e-6, 1.0));
+        let mut rig = Rig::new(compose(&[mode], stop(1e6), gap, 1e-6, 1.0));
         rig.launch(&[-gap * omega * (1.0 + excess)]);
         // Three quarters of a period: once there.
         rig.run_to(&Inputs::default(), 1.5 * PI / omega)?;
@@ -161,22 +161,12 @@ fn grazing_spring() -> Result<Vec<Check>> {
     grazes(touches, [1e-2, 1e-4, 1e-6, -1e-12, -1e-6, -1e-2])
 }
 
-/// A linear unilateral contact of a stiffness (N/m).
-fn pushing(stiffness: f64) -> Law {
-    Law::Linear(Linear {
-        stiffness,
-        damping: 0.0,
-        offset: 0.0,
-        bonded: false,
-    })
-}
-
 /// 1 g on a contact of 1e10 N/m: half a period of it, all within one communication step a thousand times longer.
 fn stiff_contact() -> Result<Vec<Check>> {
     let (mass, stiffness, speed) = (1e-3_f64, 1e10, 1.0);
     let greatest = speed * (mass * stiffness).sqrt();
     let tolerance = 1e-9;
-    let model = compose(&[oscillator(mass, 0.0)], pushing(stiffness), 1e-6, tolerance, greatest);
+    let model = compose(&[oscillator(mass, 0.0)], stop(stiffness), 1e-6, tolerance, greatest);
     let mut rig = Rig::new(model);
     rig.launch(&[-speed * mass.sqrt()]);
     rig.run_to(&Inputs::default(), 1e-3)?;

@@ -1,10 +1,7 @@
 //! Extreme settings of the solver, and extreme communication steps.
 
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
-
 use anyhow::{Result, ensure};
 use relay_contact::inputs::Inputs;
-use relay_contact::reference;
 use relay_contact::scene::{Scene, Solver};
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ContactLawKind, ExcitationKind, IntegerOutput, RealOutput};
@@ -29,9 +26,6 @@ cases! { CASES:
         => with_modes(1);
     "40 modes", "the highest is above 1 MHz"
         => with_modes(40);
-    "Bonded contact, 1 to 2 s in one communication step, tolerance 0.1 to 1e-11, 1 to 40 modes",
-        "a thousand periods in one step, with one or forty modes"
-        => linear();
     "Bonded contact after jumps of 3 000 g, tolerance 1e-6 to 1e-11",
         "rounding of the force of a stiff contact does not shrink with the step"
         => closest([1e-6, 1e-8, 1e-10, 1e-11].map(bonded_after_jumps));
@@ -92,36 +86,6 @@ fn below_rounding() -> Result<Vec<Check>> {
     };
     let state = ride.run(4)?.rig.state;
     Ok(vec![Check::steps(state.steps + state.rejected_steps, ride.steps)])
-}
-
-/// The bonded contact under vibration: F = F_0 + Re(-i A R(omega) exp(i omega t)) after the transients.
-fn linear() -> Result<Vec<Check>> {
-    let mut off = 0.0;
-    for (tolerance, modes) in [(1e-1, 1), (1e-2, 0), (1e-6, 0), (1e-11, 40)] {
-        let mut scene = Scene::default();
-        scene.effects.excitation = ExcitationKind::Sine;
-        scene.effects.contact_law = ContactLawKind::Bonded;
-        // Extremes require values within steps; without them each step is one exact step.
-        scene.effects.extremes = false;
-        scene.effects.chatter = false;
-        scene.solver.tolerance = tolerance;
-        scene.solver.modes = modes;
-        for time in [1.0, 1.0001, 1.000_35, 2.0] {
-            let mut contact = Simulation::new(&scene, &Inputs::default(), 0.0)?;
-            contact.step(&Inputs::default(), 0.0, time)?;
-            let omega = TAU * scene.excitation.frequency;
-            let (amplitude, phase) = reference::response(contact.model(), omega).force.to_polar();
-            let swing = scene.excitation.amplitude * amplitude * (omega * time + phase - FRAC_PI_2).cos();
-            let exact = contact.real(RealOutput::PreloadForce) + swing;
-            off = worst(off, (force(&contact) - exact).abs() / contact.model().force_scale());
-        }
-    }
-    Ok(vec![Check::new(
-        "the force agrees with the frequency domain (relative to the preload force)",
-        (off, 1e4 * PI * f64::EPSILON),
-        "",
-        "rounding of the phase of 2 s at 1 kHz and of the force",
-    )])
 }
 
 fn hour_at_rest() -> Result<Vec<Check>> {

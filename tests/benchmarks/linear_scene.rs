@@ -66,28 +66,6 @@ fn scene(law: ContactLawKind) -> Scene {
     scene
 }
 
-#[test]
-fn linear_scenes_keep_the_tolerance_of_the_closed_form() {
-    for law in [ContactLawKind::Bonded, ContactLawKind::Linearised] {
-        for tolerance in [1e-2, 1e-4, 1e-6, 1e-8, 1e-10] {
-            let mut scene = scene(law);
-            scene.solver.tolerance = tolerance;
-            let mut rig = Rig::new(Model::new(&scene, 0.0).unwrap());
-            let mut worst = 0.0_f64;
-            for k in 1..=1000 {
-                rig.run_to(&Inputs::default(), f64::from(k) * 1.3e-5).unwrap();
-                let exact = rig.model.preload().force + force(&rig.model, rig.state.time);
-                worst = worst.max((rig.state.contact().force - exact).abs() / rig.model.force_scale());
-            }
-            println!(
-                "{law:?}: asked {tolerance:e}, delivered {worst:.1e}, {} steps",
-                rig.state.steps
-            );
-            assert!(worst <= tolerance, "{law:?}, {tolerance:e}: {worst:e}");
-        }
-    }
-}
-
 /// The exact solution at any step length, with one step per communication step, and with longer ones where the
 /// integrator may take them. Rounding: the sum of the modes' displacements loses some two digits, the phase at `t` some
 /// more.
