@@ -116,6 +116,21 @@ const FIXED_SPRING: &[Case] = &[
     (|scene, _| following(scene), &["effects.axialForce = FromDeflection: not allowed with fixed.file"]),
 ];
 
+/// Presses the spring with a share of its buckling load as a column that is clamped at one end, `pi^2 E I / (4 L^2)`.
+fn press(scene: &mut Scene, share: f64) {
+    let beam = &mut scene.beam;
+    let bending = beam.youngs_modulus * beam.width * beam.thickness.powi(3) / 12.0;
+    beam.axial_force = share * (std::f64::consts::PI / (2.0 * beam.length)).powi(2) * bending;
+}
+
+#[rustfmt::skip]
+const AXIAL_FORCE: &[Case] = &[
+    (|scene, _| press(scene, 0.999_999), &[]),
+    (|scene, _| press(scene, 1.000_001), &["beam.axialForce = ", "buckles", "less than 9.69344"]),
+    (|scene, _| press(scene, 100.0), &["beam.axialForce = ", "buckles", "less than 9.69344"]),
+    (|scene, _| scene.beam.axial_force = 1e6, &["beam.axialForce = 1000000 N", "buckles", "less than 9.69344"]),
+];
+
 #[rustfmt::skip]
 const SPRING_OF_MODES: &[Case] = &[
     (|_, _| (), &[]),
@@ -152,6 +167,10 @@ fn what_does_not_go_together_is_refused_with_names_and_values() {
         scene.fixed_spring = spring_file("fixed.toml", Shape::Segments(segments));
     };
     check(on_spring, FIXED_SPRING);
+    check(
+        |scene| scene.effects.axial_force = AxialForceKind::Prescribed,
+        AXIAL_FORCE,
+    );
     check(|scene| with_mode(scene, None), SPRING_OF_MODES);
     check(
         |scene| scene.effects.excitation = ExcitationKind::Random,

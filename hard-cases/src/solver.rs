@@ -29,8 +29,6 @@ cases! { CASES:
     "Bonded contact after jumps of 3 000 g, tolerance 1e-6 to 1e-11",
         "rounding of the force of a stiff contact does not shrink with the step"
         => closest([1e-6, 1e-8, 1e-10, 1e-11].map(bonded_after_jumps));
-    "An hour at rest, in one communication step and in 3600", "rounding errors accumulate; nothing moves, so no integration step should be taken"
-        => hour_at_rest();
     "5000 g for 50 µs in two communication steps, and in steps around a nanosecond",
         "steps of 10⁻⁹ s: differences of nearly equal numbers everywhere"
         => nanoseconds();
@@ -86,22 +84,6 @@ fn below_rounding() -> Result<Vec<Check>> {
     };
     let state = ride.run(4)?.rig.state;
     Ok(vec![Check::steps(state.steps + state.rejected_steps, ride.steps)])
-}
-
-fn hour_at_rest() -> Result<Vec<Check>> {
-    let mut whole = Simulation::new(&Scene::default(), &Inputs::default(), 0.0)?;
-    let mut seconds = whole.clone();
-    let preload = whole.real(RealOutput::PreloadForce);
-    whole.step(&Inputs::default(), 0.0, 3600.0)?;
-    for second in 0..3600 {
-        seconds.step(&Inputs::default(), f64::from(second), 1.0)?;
-    }
-    let off = worst((force(&whole) - preload).abs(), (force(&seconds) - preload).abs());
-    let steps = whole.integer(IntegerOutput::SolverSteps) + seconds.integer(IntegerOutput::SolverSteps);
-    Ok(vec![
-        Check::exact("the force remains the preload force", off, "N"),
-        Check::exact("no integration step is taken", f64::from(steps), ""),
-    ])
 }
 
 /// The contact opens and closes again.
