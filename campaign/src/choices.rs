@@ -50,21 +50,9 @@ impl<'a> Choices<'a> {
     }
 }
 
-/// Bytes of a generator (xorshift64*): the same for the same seed.
+/// Bytes of a random generator: the same for the same seed.
 pub fn bytes(seed: u64, count: usize) -> Vec<u8> {
-    // Neighbouring seeds must give unrelated sequences, and the state must not be zero.
-    let mut state = seed.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
-    let mut next = || {
-        state ^= state >> 12;
-        state ^= state << 25;
-        state ^= state >> 27;
-        state.wrapping_mul(0x2545_f491_4f6c_dd1d).to_be_bytes()
-    };
-    (0..count.div_ceil(4))
-        .flat_map(|_| {
-            let [a, b, c, d, ..] = next();
-            [a, b, c, d]
-        })
-        .take(count)
-        .collect()
+    let mut bytes = vec![0; count];
+    fastrand::Rng::with_seed(seed).fill(&mut bytes);
+    bytes
 }
