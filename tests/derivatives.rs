@@ -61,30 +61,6 @@ fn a_ramp_does_not_depend_on_where_it_is_cut() {
     }
 }
 
-/// The fixed contact moves with the derivative, without the lag of one step.
-#[test]
-fn a_support_with_its_derivative_does_not_lag() {
-    let scene = Scene::default();
-    let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
-    let rate = 1e-3;
-    // The tip and the overlap with the fixed contact move against each other by its displacement.
-    let sum = |simulation: &Simulation| {
-        simulation.real(RealOutput::TipDisplacement) + simulation.real(RealOutput::ContactIndentation)
-    };
-    let start = sum(&simulation);
-    for k in 0..10 {
-        let time = 1e-5 * f64::from(k);
-        let inputs = Inputs {
-            support_displacement: rate * time,
-            support_displacement_rate: rate,
-            ..Inputs::default()
-        };
-        simulation.step(&inputs, time, 1e-5).unwrap();
-        let reached = sum(&simulation) - start;
-        assert!((reached - rate * simulation.time()).abs() < 1e-18, "{reached}");
-    }
-}
-
 #[test]
 fn the_voltage_follows_the_current() {
     let mut simulation = Simulation::new(&Scene::default(), &Inputs::default(), 0.0).unwrap();

@@ -7,8 +7,8 @@ use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{PusherKind, RealOutput};
 
-use crate::case::{Check, cases, closest, worst};
-use crate::ride::{Ride, Segment, throw};
+use crate::case::{Check, cases, closest};
+use crate::ride::{Ride, Segment, conserved, throw};
 use testing::rig::Rig;
 
 cases! { CASES:
@@ -16,7 +16,7 @@ cases! { CASES:
         => thrown(without_end(), true);
     "Armature without damping anywhere, thrown off its core",
         "springs, contact, pusher and stops exchange energy that nothing dissipates"
-        => conserved();
+        => undamped();
     "Armature without hold force", "a coil with current that pulls nothing: it rests at its stop, thrown against the spring"
         => closest([1500.0, -1500.0].map(|acceleration| shaken(changed(|scene| scene.armature.hold_force = 0.0), acceleration)));
     "Armature unbalanced the other way", "the base presses the spring closed and takes the armature from its core"
@@ -85,23 +85,12 @@ fn thrown(scene: Scene, back: bool) -> Result<Vec<Check>> {
     shaken(scene, -1500.0)
 }
 
-fn conserved() -> Result<Vec<Check>> {
+fn undamped() -> Result<Vec<Check>> {
     let mut scene = without_end();
     scene.beam.stiffness_damping = 0.0;
     scene.contact.damping = 0.0;
     scene.pusher.damping = 0.0;
     let mut rig = Rig::new(Model::new(&scene, 0.0)?);
     throw(&mut rig, 0.5);
-    let (start, mut before) = (rig.energy(), rig.state);
-    let (mut off, mut path) = (0.0, 0.0);
-    for point in 1..=3000_u32 {
-        rig.run_to(&Inputs::default(), f64::from(point) * 1e-6)?;
-        path += (rig.state.contact().approach - before.contact().approach).abs();
-        path += (rig.armature(&rig.state) - rig.armature(&before)).abs();
-        off = worst(off, (rig.energy() - start).abs());
-        before = rig.state;
-    }
-    // Rounding: the last of thirteen digits.
-    let allowed = scene.solver.effective_tolerance() * rig.model.force_scale() * path + 1e-13 * start;
-    Ok(vec![Check::energy("the energy supplied is conserved", off, allowed)])
+    conserved(rig, 3000)
 }

@@ -6,9 +6,9 @@ use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
 use relay_contact::variables::ContactLawKind;
 
-use crate::case::{Check, cases, closest, worst};
+use crate::case::{Check, cases, closest};
 use crate::energy_balance::{balances, square};
-use crate::ride::{Ride, Segment, throw};
+use crate::ride::{Ride, Segment, conserved, throw};
 use testing::rig::{Rig, compose, hertz, oscillator, undamped};
 
 cases! { CASES:
@@ -109,18 +109,7 @@ fn undamped_impact() -> Result<Vec<Check>> {
     scene.contact.overtravel = -1e-4;
     let mut rig = Rig::new(Model::new(&scene, 0.0)?);
     throw(&mut rig, -10.0);
-    let start = rig.energy();
-    let (mut off, mut path) = (0.0, 0.0);
-    for point in 1..=300_u32 {
-        let before = rig.state.contact().approach;
-        rig.run_to(&Inputs::default(), f64::from(point) * 1e-6)?;
-        path += (rig.state.contact().approach - before).abs();
-        off = worst(off, (rig.energy() - start).abs());
-    }
-    // Rounding: the last of thirteen digits.
-    let allowed = scene.solver.effective_tolerance() * rig.model.force_scale() * path + 1e-13 * start;
-    let property = "the energy supplied is conserved";
-    Ok(vec![Check::energy(property, off, allowed)])
+    conserved(rig, 300)
 }
 
 fn pressed() -> Result<Vec<Check>> {

@@ -7,7 +7,7 @@ use relay_contact::inputs::Inputs;
 use relay_contact::reference::{MAX_MODES, Mode, Model};
 use relay_contact::scene::Scene;
 
-use crate::case::{Check, closest};
+use crate::case::{Check, closest, worst};
 use testing::rig::Rig;
 
 /// Tip displacement per impulse of the auxiliary mode that measures the impulse of the contact force; its mass is so
@@ -260,6 +260,22 @@ pub(crate) fn throw(rig: &mut Rig, speed: f64) {
     let modes = rig.model.modes().iter();
     let velocities: Vec<f64> = modes.map(|mode| speed * mode.participation).collect();
     rig.launch(&velocities);
+}
+
+/// Without damping and inputs: the energy of a thrown spring, read every microsecond.
+pub(crate) fn conserved(mut rig: Rig, microseconds: u32) -> Result<Vec<Check>> {
+    let (start, mut before) = (rig.energy(), rig.state);
+    let (mut off, mut path) = (0.0, 0.0);
+    for point in 1..=microseconds {
+        rig.run_to(&Inputs::default(), f64::from(point) * 1e-6)?;
+        path += (rig.state.contact().approach - before.contact().approach).abs();
+        path += (rig.armature(&rig.state) - rig.armature(&before)).abs();
+        off = worst(off, (rig.energy() - start).abs());
+        before = rig.state;
+    }
+    // Rounding: the last of thirteen digits.
+    let allowed = rig.model.scene().solver.effective_tolerance() * rig.model.force_scale() * path + 1e-13 * start;
+    Ok(vec![Check::energy("the energy supplied is conserved", off, allowed)])
 }
 
 /// Impulse of the contact force in excess of the preload force since the start, N s.

@@ -18,6 +18,10 @@ fn greatest_force_and_duration() {
             let duration = 2.943_275_184_3 * depth / speed;
             let allowed = tolerance * force;
             let touch = gap / speed;
+            if mass == 1.0 {
+                digits(force, 1.143_262_6, 1e-7, 0.0);
+                digits(duration, 3.218_065_5, 1e-7, 0.0);
+            }
 
             let model = compose(&[oscillator(mass, 0.0)], hertz(coefficient, 0.0), gap, tolerance, force);
             let mut rig = Rig::new(model);
@@ -38,20 +42,4 @@ fn greatest_force_and_duration() {
             digits(rig.state.contact().rate, -speed, 0.0, allowed * duration / mass);
         }
     }
-}
-
-#[test]
-fn a_mass_on_a_hertzian_contact_has_the_published_digits() {
-    let model = compose(&[oscillator(1.0, 0.0)], hertz(1.0, 0.0), 1.0, 1e-10, 1.0);
-    let mut rig = Rig::new(model);
-    rig.launch(&[-1.0]);
-    rig.run_to(&Inputs::default(), 1.0 + 0.5 * 3.218_065_5).unwrap();
-    digits(rig.state.contact().force, 1.143_262_6, 1e-7, 1e-10);
-    rig.run_to(&Inputs::default(), 5.0).unwrap();
-    digits(
-        rig.state.contact().last_opening.unwrap() - rig.state.contact().last_closing.unwrap(),
-        3.218_065_5,
-        1e-7,
-        0.0,
-    );
 }
