@@ -2,29 +2,28 @@
 //! said with the file, the line and the column.
 
 use std::error::Error;
-use std::path::{Path, PathBuf};
-use std::{env, fs, process};
+use std::fs;
+use std::path::Path;
 
 use relay_contact::error::SceneError;
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::file::SceneFile;
+use tempfile::TempDir;
 
 const HEAD: &str = "stop = 1\ncommunicationStep = 1e-3\noutputs = []\n";
 
 /// A folder that goes away.
-struct Folder(PathBuf);
+struct Folder(TempDir);
 
 impl Folder {
-    fn new(name: &str) -> Result<Self, Box<dyn Error>> {
-        let folder = env::temp_dir().join(format!("relay-contact-{name}-{}", process::id()));
-        fs::create_dir_all(&folder)?;
-        Ok(Self(folder))
+    fn new() -> Result<Self, Box<dyn Error>> {
+        Ok(Self(tempfile::tempdir()?))
     }
 
     /// A scene with this table, and `rest` among its inputs.
     fn scene(&self, table: &str, rest: &str) -> Result<SceneFile, Box<dyn Error>> {
-        fs::write(self.0.join("table.csv"), table)?;
-        let path = self.0.join("scene.toml");
+        fs::write(self.0.path().join("table.csv"), table)?;
+        let path = self.0.path().join("scene.toml");
         fs::write(&path, format!("{HEAD}[inputs]\nfile = \"table.csv\"\n{rest}"))?;
         Ok(SceneFile::read(&path)?)
     }
@@ -34,19 +33,13 @@ impl Folder {
         let error = self
             .scene(table, rest)
             .map_or_else(|error| error.to_string(), |_| "accepted".to_owned());
-        error.replace(&format!("{}{}", self.0.display(), std::path::MAIN_SEPARATOR), "")
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
+        error.replace(&format!("{}{}", self.0.path().display(), std::path::MAIN_SEPARATOR), "")
     }
 }
 
 #[test]
 fn between_rows_inputs_are_linear_and_beyond_them_held() -> Result<(), Box<dyn Error>> {
-    let folder = Folder::new("linear")?;
+    let folder = Folder::new()?;
     let table = "time, contact.current ,support.displacement\n 0.25,0.5,0\n0.75,1.5,-1e-4\n";
     let file = folder.scene(table, "base.acceleration = 9\n")?;
     let held = |contact_current, support_displacement| Inputs {
@@ -72,7 +65,7 @@ fn between_rows_inputs_are_linear_and_beyond_them_held() -> Result<(), Box<dyn E
 
 #[test]
 fn a_value_set_by_name_holds_the_input() -> Result<(), Box<dyn Error>> {
-    let folder = Folder::new("set")?;
+    let folder = Folder::new()?;
     let mut file = folder.scene("time,contact.current\n0,0\n1,1\n", "")?;
     assert_eq!(file.inputs_over(0.5, 0.1)?.contact_current, 0.5);
     assert!(file.set("contact.current", "nan").is_err());
@@ -85,7 +78,7 @@ fn a_value_set_by_name_holds_the_input() -> Result<(), Box<dyn Error>> {
 
 #[test]
 fn errors_in_a_table_are_reported_with_their_place() -> Result<(), Box<dyn Error>> {
-    let folder = Folder::new("wrong")?;
+    let folder = Folder::new()?;
     for (table, expected) in [
         (
             "time,contact.curent\n0,1\n",
@@ -141,7 +134,7 @@ fn errors_in_a_table_are_reported_with_their_place() -> Result<(), Box<dyn Error
 
 #[test]
 fn a_missing_table_and_an_input_given_twice_are_reported() -> Result<(), Box<dyn Error>> {
-    let folder = Folder::new("missing")?;
+    let folder = Folder::new()?;
     let twice = folder.message("time,contact.current\n0,1\n", "contact.current = 1\n");
     let expected = "scene.toml:6: contact.current: given twice, allowed is either a value here or a column of the file";
     assert_eq!(twice, expected);

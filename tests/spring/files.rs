@@ -1,44 +1,29 @@
 //! Spring files: what they hold arrives, and what is wrong in them is said with file, line, entry, value and range.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
 use relay_contact::scene::file::SceneFile;
 use relay_contact::scene::spring::{Segments, Shape, SpringFile};
+use tempfile::NamedTempFile;
 
-/// A file of this text, deleted with the value.
-struct Written(PathBuf);
-
-impl Written {
-    fn new(name: &str, text: &[u8]) -> Self {
-        let path = std::env::temp_dir().join(format!("relay-contact-{}-{name}", std::process::id()));
-        fs::write(&path, text).unwrap();
-        Self(path)
-    }
-
-    fn read(&self) -> Result<SpringFile, String> {
-        SpringFile::read(Path::new(""), self.0.to_str().unwrap()).map_err(|error| error.to_string())
-    }
-}
-
-impl Drop for Written {
-    fn drop(&mut self) {
-        let _ = fs::remove_file(&self.0);
-    }
+/// What is read of a file of this text, and its path.
+fn read(text: &[u8]) -> (Result<SpringFile, String>, String) {
+    let file = NamedTempFile::new().unwrap();
+    fs::write(&file, text).unwrap();
+    let path = file.path().to_str().unwrap();
+    let read = SpringFile::read(Path::new(""), path).map_err(|error| error.to_string());
+    (read, path.to_owned())
 }
 
 /// The message for a text, after the file.
-fn message(name: &str, text: &str) -> String {
-    let file = Written::new(name, text.as_bytes());
-    let message = file.read().map_or_else(|message| message, |_| "accepted".to_owned());
-    let prefix = format!("{}:", file.0.display());
-    message
-        .strip_prefix(&prefix)
-        .unwrap_or(&message)
-        .trim_start()
-        .to_owned()
+fn message(text: &str) -> String {
+    let (read, path) = read(text.as_bytes());
+    let message = read.map_or_else(|message| message, |_| "accepted".to_owned());
+    let after = message.strip_prefix(&format!("{path}:")).unwrap_or(&message);
+    after.trim_start().to_owned()
 }
 
 const SEGMENT: &str = "[[segment]]\nlength = 0.01\nwidth = 4e-3\nthickness = 2e-4\n";
@@ -46,7 +31,8 @@ const SEGMENT: &str = "[[segment]]\nlength = 0.01\nwidth = 4e-3\nthickness = 2e-
 #[test]
 fn errors_in_a_spring_file_have_line_entry_and_range() {
     let with = |more: &str| format!("{SEGMENT}{more}");
-    for (n, (text, expected)) in [
+    #[rustfmt::skip]
+    let cases = [
         (String::new(), "segment = 0 entries: not allowed, allowed are 1 to 500"),
         (with("width_start = 1e-3\n"), "3: segment 1: width: given twice, allowed is either one value, or one at the start and one at the end"),
         (with(&SEGMENT.replace("2e-4", "0")), "8: segment 2: thickness = 0 m: not allowed, allowed is 1e-6 to 0.005"),
@@ -64,29 +50,23 @@ fn errors_in_a_spring_file_have_line_entry_and_range() {
         ("compliance = 1e-3\n[[mode]]\nfrequency = 100\ncontact = 50\nparticipation = 0.01\n".to_owned(), "1: compliance = 0.001 m/N: not allowed, allowed is 0.006332573977646111 m/N or more, which the modes hold alone (sum of contact^2/omega^2); modes and compliance contradict each other"),
         ("compliance = 1\n[[mode]]\nfrequency = 100\nparticipation = 0.01\n".to_owned(), "2: mode 1: contact: missing; expected a number"),
         ("compliance = 1\n[[segment]]\nlength = 3\n".to_owned(), "2: segment: no such key, allowed are title, compliance, parallel_compliance, mode"),
-    ]
-    .iter()
-    .enumerate()
-    {
-        assert_eq!(message(&format!("wrong-{n}"), text), *expected, "{text}");
+    ];
+    for (text, expected) in cases {
+        assert_eq!(message(&text), expected, "{text}");
     }
 }
 
 #[test]
 fn a_spring_file_that_cannot_be_read_is_refused() {
-    let read = |name: &str| SpringFile::read(Path::new(""), name).unwrap_err().to_string();
-    assert!(read("/no/such/spring.toml").starts_with("/no/such/spring.toml: cannot be read: "));
+    let said = |name: &str| SpringFile::read(Path::new(""), name).unwrap_err().to_string();
+    assert!(said("/no/such/spring.toml").starts_with("/no/such/spring.toml: cannot be read: "));
     for name in ["/dev/zero", "/", "scenes"] {
-        assert_eq!(read(name), format!("{name}: cannot be read: not a file"));
+        assert_eq!(said(name), format!("{name}: cannot be read: not a file"));
     }
-    let long = Written::new("long", &vec![b' '; (1 << 20) + 1]);
-    assert!(
-        long.read()
-            .unwrap_err()
-            .ends_with("cannot be read: longer than 1048576 bytes")
-    );
-    let latin = Written::new("latin", b"title = \"\xe4\"\n");
-    assert!(latin.read().unwrap_err().contains("UTF-8"));
+    let (long, _) = read(&vec![b' '; (1 << 20) + 1]);
+    assert!(long.unwrap_err().ends_with("cannot be read: longer than 1048576 bytes"));
+    let (latin, _) = read(b"title = \"\xe4\"\n");
+    assert!(latin.unwrap_err().contains("UTF-8"));
 }
 
 #[test]
