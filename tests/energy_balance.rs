@@ -158,13 +158,7 @@ fn run(case: &Case, tolerance: f64, size: f64) -> (Sum, f64, f64) {
     scene.effects.energy = true;
     let mut rig = Rig::new(Model::new(&scene, 0.0).unwrap());
     if case.launch > 0.0 {
-        let velocities: Vec<f64> = rig
-            .model
-            .modes()
-            .iter()
-            .map(|mode| case.launch * mode.participation)
-            .collect();
-        rig.launch(&velocities);
+        rig.throw(case.launch);
     }
     // The static force does work on the displaced tip.
     let stored = |rig: &Rig| rig.energy() + rig.model.preload().force * rig.state.displacements[0];

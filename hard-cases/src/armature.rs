@@ -8,7 +8,7 @@ use relay_contact::simulation::Simulation;
 use relay_contact::variables::{PusherKind, RealOutput};
 
 use crate::case::{Check, cases, closest};
-use crate::ride::{Ride, Segment, conserved, throw};
+use crate::ride::{Ride, Segment, conserved};
 use testing::rig::Rig;
 
 cases! { CASES:
@@ -91,6 +91,6 @@ fn undamped() -> Result<Vec<Check>> {
     scene.contact.damping = 0.0;
     scene.pusher.damping = 0.0;
     let mut rig = Rig::new(Model::new(&scene, 0.0)?);
-    throw(&mut rig, 0.5);
+    rig.throw(0.5);
     conserved(rig, 3000)
 }

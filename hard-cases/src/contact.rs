@@ -8,7 +8,7 @@ use relay_contact::variables::ContactLawKind;
 
 use crate::case::{Check, cases, closest};
 use crate::energy_balance::{balances, square};
-use crate::ride::{Ride, Segment, conserved, throw};
+use crate::ride::{Ride, Segment, conserved};
 use testing::rig::{Rig, compose, hertz, oscillator, undamped};
 
 cases! { CASES:
@@ -108,7 +108,7 @@ fn undamped_impact() -> Result<Vec<Check>> {
     let mut scene = undamped();
     scene.contact.overtravel = -1e-4;
     let mut rig = Rig::new(Model::new(&scene, 0.0)?);
-    throw(&mut rig, -10.0);
+    rig.throw(-10.0);
     conserved(rig, 300)
 }
 

@@ -8,7 +8,6 @@ use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ExcitationKind, RealOutput};
 
 use crate::case::{Check, cases, closest, worst};
-use crate::ride::throw;
 use testing::rig::{Rig, undamped};
 
 cases! { CASES:
@@ -63,7 +62,7 @@ fn contact_cycles(cycles: u32, tolerance: f64, step: f64) -> Result<Vec<Check>> 
     scene.solver.tolerance = tolerance;
     scene.solver.modes = 6;
     let mut rig = Rig::new(Model::new(&scene, 0.0)?);
-    throw(&mut rig, 0.1);
+    rig.throw(0.1);
     let start = rig.energy();
     let (mut closings, mut last, mut off, mut point) = (0, None, 0.0, 0_u32);
     while closings < cycles {

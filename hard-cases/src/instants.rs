@@ -10,7 +10,6 @@ use relay_contact::simulation::Simulation;
 use relay_contact::variables::ExcitationKind;
 
 use crate::case::{Check, cases};
-use crate::ride::throw;
 use testing::rig::{Rig, compose, oscillator, stop};
 
 cases! { CASES:
@@ -125,7 +124,7 @@ fn grazing_spring() -> Result<Vec<Check>> {
     scene.solver.modes = 4;
     let thrown = |scene: &Scene, speed: f64| -> Result<Rig> {
         let mut rig = Rig::new(Model::new(scene, 0.0)?);
-        throw(&mut rig, -speed);
+        rig.throw(-speed);
         Ok(rig)
     };
     let thrown_until = |scene: &Scene, speed: f64, time: f64| -> Result<_> {

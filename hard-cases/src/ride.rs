@@ -114,7 +114,7 @@ impl Ride {
         model = model.with(|parts| parts.modes.insert(0, massless));
         let mut rig = Rig::new(model);
         if self.speed != 0.0 {
-            throw(&mut rig, self.speed);
+            rig.throw(self.speed);
         }
         let (mut work, mut lowest, mut support, mut time) = (0.0, rig.energy(), 0.0, 0.0);
         let mut outcome = Outcome {
@@ -253,13 +253,6 @@ impl Outcome {
     fn tolerance(&self) -> f64 {
         self.rig.model.scene().solver.effective_tolerance()
     }
-}
-
-/// Gives the whole spring a velocity, m/s.
-pub(crate) fn throw(rig: &mut Rig, speed: f64) {
-    let modes = rig.model.modes().iter();
-    let velocities: Vec<f64> = modes.map(|mode| speed * mode.participation).collect();
-    rig.launch(&velocities);
 }
 
 /// Without damping and inputs: the energy of a thrown spring, read every microsecond.

@@ -53,6 +53,17 @@ impl Rig {
         *self = Self::at(model.clone(), &state);
     }
 
+    /// Gives the whole spring a velocity, m/s.
+    pub fn throw(&mut self, speed: f64) {
+        let velocities: Vec<f64> = self
+            .model
+            .modes()
+            .iter()
+            .map(|mode| speed * mode.participation)
+            .collect();
+        self.launch(&velocities);
+    }
+
     /// Allows a bonded contact to open from now on.
     pub fn unbond(&mut self) {
         let model = self.model.clone().with(|parts| {

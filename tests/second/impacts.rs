@@ -77,13 +77,7 @@ fn no_energy_is_made_or_lost_between_two_undamped_stops() {
     scene.solver.tolerance = 1e-6;
     let model = Model::new(&scene, 0.0).unwrap();
     let mut rig = Rig::new(model);
-    let velocities: Vec<f64> = rig
-        .model
-        .modes()
-        .iter()
-        .map(|mode| -0.05 * mode.participation)
-        .collect();
-    rig.launch(&velocities);
+    rig.throw(-0.05);
     let [first, second] = laws(&scene, &rig.model);
     let energy = |rig: &Rig| {
         let modes = rig.model.modes().iter().zip(&rig.state.modes);
