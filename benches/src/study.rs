@@ -6,7 +6,6 @@ use std::fmt::Write as _;
 use std::rc::Rc;
 
 use anyhow::{Result, anyhow};
-use indicatif::{ProgressBar, ProgressStyle};
 use relay_contact::scene::Solver;
 
 use crate::component::Component;
@@ -231,11 +230,9 @@ fn tolerances(quick: bool, parts: u32) -> impl Iterator<Item = f64> {
 fn rounds(cases: &[Case], turns: usize) -> Vec<Result<Measured, Failure>> {
     let mut times = vec![Vec::new(); cases.len()];
     let mut first: Vec<Option<Result<Run, Failure>>> = cases.iter().map(|_| None).collect();
-    let style = ProgressStyle::with_template("{bar:40} {pos}/{len}").unwrap_or_else(|_| ProgressStyle::default_bar());
-    let progress = ProgressBar::new((turns * cases.len()) as u64).with_style(style);
-    for _ in 0..turns {
+    for turn in 1..=turns {
+        eprintln!("round {turn} of {turns}: {} runs", cases.len());
         for ((case, times), first) in cases.iter().zip(&mut times).zip(&mut first) {
-            progress.inc(1);
             if first
                 .as_ref()
                 .is_some_and(|known| known.as_ref().map_or(true, |run| run.time > LONG))
@@ -251,7 +248,6 @@ fn rounds(cases: &[Case], turns: usize) -> Vec<Result<Measured, Failure>> {
             }
         }
     }
-    progress.finish_and_clear();
     let rows = cases.iter().zip(times).zip(first);
     rows.map(|((case, times), first)| {
         first
