@@ -6,6 +6,8 @@
 //! step every stage of every mode is linear in the contact forces at the stages, which leaves five equations for Newton.
 
 use nalgebra::{SMatrix, SVector};
+use relay_contact::reference::bracketed;
+use testing::scenes::largest_difference;
 
 use crate::integrator::Failure;
 use crate::problem::Problem;
@@ -42,10 +44,9 @@ impl Reference {
                 "the reference has another number of openings with halved steps".to_owned(),
             ));
         }
-        let difference = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         Ok(Self {
-            force_error: difference(&coarse_forces, &forces) / problem.model.force_scale(),
-            event_error: difference(&coarse_events, &events),
+            force_error: largest_difference(&coarse_forces, &forces) / problem.model.force_scale(),
+            event_error: largest_difference(&coarse_events, &events),
             forces,
             events,
         })
@@ -70,23 +71,10 @@ impl Tableau {
             p
         };
         let radau = |x: f64| legendre(5, x) - legendre(4, x);
-        let mut nodes = Vec::new();
         let looks = 1000;
-        for k in 0..looks - 1 {
-            let at = |k: i32| -1.0 + 2.0 * f64::from(k) / f64::from(looks);
-            let (mut low, mut high) = (at(k), at(k + 1));
-            if radau(low) * radau(high) < 0.0 {
-                for _ in 0..80 {
-                    let middle = f64::midpoint(low, high);
-                    if radau(low) * radau(middle) <= 0.0 {
-                        high = middle;
-                    } else {
-                        low = middle;
-                    }
-                }
-                nodes.push(f64::midpoint(1.0, f64::midpoint(low, high)));
-            }
-        }
+        let at = |k: i32| -1.0 + 2.0 * f64::from(k) / f64::from(looks);
+        let inside = (0..looks - 1).filter_map(|k| bracketed(radau, at(k), at(k + 1)));
+        let mut nodes: Vec<_> = inside.map(|zero| f64::midpoint(1.0, zero)).collect();
         nodes.push(1.0);
         assert_eq!(
             nodes.len(),

@@ -2,7 +2,8 @@
 
 use relay_contact::error::SceneError;
 use relay_contact::scene::Scene;
-use relay_contact::variables::{ContactLawKind, ExcitationKind};
+use relay_contact::variables::ContactLawKind;
+use testing::scenes::shaken;
 
 use crate::problem::Problem;
 
@@ -17,7 +18,7 @@ pub const COMPARED: [&str; 4] = ["paper", "chatter", "chatter 3 %", "closing bou
 /// # Errors
 /// A [`SceneError`] if the scene cannot be simulated; the same for all functions here.
 pub fn paper() -> Result<Problem, SceneError> {
-    Problem::new("paper", &shaken(98.0), 0.0, 0.05, 500)
+    Problem::new("paper", &shaken(98.0, 1000.0), 0.0, 0.05, 500)
 }
 
 /// 400 m/s2: the contact opens in every period; first 5 ms. The first mode of the spring has this share of critical damping;
@@ -26,7 +27,7 @@ pub fn paper() -> Result<Problem, SceneError> {
 /// # Errors
 /// See [`paper`].
 pub fn chatter(name: &'static str, damping: f64) -> Result<Problem, SceneError> {
-    let mut scene = shaken(400.0);
+    let mut scene = shaken(400.0, 1000.0);
     scene.beam.stiffness_damping *= damping / 0.34;
     Problem::new(name, &scene, 0.0, 0.005, 250)
 }
@@ -48,7 +49,7 @@ pub fn closing_bounce() -> Result<Problem, SceneError> {
 /// # Errors
 /// See [`paper`].
 pub fn linear() -> Result<Problem, SceneError> {
-    let mut scene = shaken(98.0);
+    let mut scene = shaken(98.0, 1000.0);
     scene.effects.contact_law = ContactLawKind::Bonded;
     Problem::new("linear", &scene, 0.0, 0.05, 500)
 }
@@ -66,12 +67,4 @@ pub fn all() -> Result<Vec<Problem>, SceneError> {
         chatter("chatter 0.3 %", 0.003)?,
         closing_bounce()?,
     ])
-}
-
-fn shaken(amplitude: f64) -> Scene {
-    let mut scene = Scene::default();
-    scene.effects.excitation = ExcitationKind::Sine;
-    scene.excitation.amplitude = amplitude;
-    scene.excitation.frequency = 1000.0;
-    scene
 }

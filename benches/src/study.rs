@@ -7,6 +7,7 @@ use std::rc::Rc;
 
 use anyhow::{Result, anyhow};
 use relay_contact::scene::Solver;
+use testing::scenes::largest_difference;
 
 use crate::component::Component;
 use crate::cvode::Cvode;
@@ -288,10 +289,6 @@ fn judge(case: &Case, run: &Run, times: Vec<(f64, f64)>) -> Result<Measured, Fai
 fn openings(events: &[f64], starts_closed: bool) -> Vec<f64> {
     let events = events.get(usize::from(!starts_closed)..).unwrap_or_default();
     events.chunks_exact(2).map(|pair| pair[1] - pair[0]).collect()
-}
-
-fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
 #[cfg(test)]
