@@ -320,6 +320,23 @@ def test_an_instrument_that_may_be_wrong_widens_the_intervals(tmp_path: Path) ->
     assert result[names[0]].half == pytest.approx(0.02, rel=0.15)
 
 
+def test_an_uncertain_spring_of_the_fixed_contact_widens_the_interval(tmp_path: Path) -> None:
+    """The force goes with Young's modulus of both springs, and with the cube of the thickness of one."""
+    strip, relay, data = (tmp_path / name for name in ("strip.toml", "relay.toml", "force.csv"))
+    strip.write_text("[[segment]]\nlength = 0.01\nwidth = 4e-3\nthickness = 3e-4\n")
+    relay.write_text("parameters.fixed.file = 'strip.toml'\nuncertainty.fixed.spring.thickness = 0.02\n")
+    rows = []
+    for travel in np.linspace(-1e-4, 1e-4, 5):
+        with COMPONENT.started({"fixed.file": str(strip), "contact.overtravel": 2e-4 + travel}) as contact:
+            force, moving, fixed = contact.real("contact.force", "tip.displacement", "fixed.displacement")
+        rows.append(f"{travel},{force}")
+    data.write_text("travel,force\n" + "\n".join(rows) + "\n")
+    result = found(data, relay=relay, parameters=["beam.youngsModulus"])["beam.youngsModulus"]
+    assert result.value == pytest.approx(COMPONENT.value({}, "beam.youngsModulus"), rel=1e-6)
+    share = fixed / (fixed - moving)
+    assert result.by_others["fixed.spring.thickness"] == pytest.approx(3 * 0.02 * share, rel=0.01)
+
+
 def test_each_position_has_its_overtravel(tmp_path: Path) -> None:
     """The force of a spring on a stiff contact is in proportion to the overtravel."""
     paths, file = [], tmp_path / "relay.toml"

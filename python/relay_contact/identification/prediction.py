@@ -101,7 +101,7 @@ class Laboratory:
 
     def overtravel(self, values: Values) -> float:
         """Return the overtravel (m)."""
-        return float(values.get("contact.overtravel", self.component.start("contact.overtravel")))
+        return self.component.value(values, "contact.overtravel")
 
     def force(self, measurement: Measurement, values: Values) -> Array:
         """Return the static contact force (N) over travel from the working position."""
@@ -226,7 +226,7 @@ class Laboratory:
     def monitor(self, values: Values) -> Contacts:
         """Return what counts as an interruption."""
         names = ("chatter.minimumDuration", "chatter.resistanceThreshold")
-        opening, resistance = (float(values.get(name, self.component.start(name))) for name in names)
+        opening, resistance = (self.component.value(values, name) for name in names)
         return Contacts(opening, 1e-6, resistance, 1.0, "", "measured")
 
     def correction(self, measurement: Measurement, values: Values) -> Array:

@@ -219,7 +219,7 @@ def reserved(
         size = 10 * reserve
     else:
         lost = interrupting_force(contact.real("resistance.coefficient", "resistance.exponent"), threshold)
-        overtravel = float(values.get("contact.overtravel", contact.component.start("contact.overtravel")))
+        overtravel = contact.component.value(values, "contact.overtravel")
         overtravel = max(abs(overtravel), SHALLOW) if held else overtravel
         (force,) = contact.real("contact.force")
         reserve, size = force - lost, WEAK * overtravel * 2 * np.pi * natural
