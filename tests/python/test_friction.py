@@ -63,7 +63,7 @@ def solved(name: str, tolerance: float) -> FrictionalMotion:
         duration = known["excitation.duration"]
         return float(amplitude * sin(pi * time / duration)) if time < duration else 0.0
 
-    return reference.moves(acceleration, stop, tolerance)
+    return FrictionalMotion(reference, acceleration, stop, tolerance)
 
 
 @cache
