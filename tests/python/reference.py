@@ -57,6 +57,15 @@ class Equations:
     scale: float
 
 
+def hertz(values: dict[str, Any], contact: str = "contact") -> float:
+    """Give the force of Hertz over the indentation to the power 3/2 (N/m^1.5), of one of the contacts."""
+    compliance = sum(
+        (1 - values[f"contact.{side}.poissonRatio"] ** 2) / values[f"contact.{side}.youngsModulus"]
+        for side in ("moving", "fixed")
+    )
+    return float(4 / 3 / compliance * sqrt(values[f"{contact}.curvatureRadius"]))
+
+
 class Reference:
     """The contact with its spring at preload."""
 
@@ -69,12 +78,8 @@ class Reference:
         self.density: float = get("beam.density") * get("beam.width") * get("beam.thickness")  # rho A
         self.mass: float = get("tip.mass")
         self.inertia: float = get("tip.rotaryInertia")
-        compliance = sum(
-            (1 - get(f"contact.{side}.poissonRatio") ** 2) / get(f"contact.{side}.youngsModulus")
-            for side in ("moving", "fixed")
-        )
         # F = factor d^power: Hertz, or dF/dd = k_r (F / F_r)^n, with the depth F_r / ((1 - n) k_r) at F_r.
-        self.factor: float = 4 / 3 / compliance * sqrt(get("contact.curvatureRadius"))
+        self.factor: float = hertz(self.values)
         self.power = 1.5
         if get("effects.contactLaw") == "Rough":
             reach: float = get("contact.stiffnessForce")

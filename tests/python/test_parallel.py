@@ -9,8 +9,8 @@ import pytest
 from scipy.optimize import root
 
 from component import STARTS, run
-from elements import element
-from reference import cvode
+from elements import assembled
+from reference import cvode, hertz
 from relay_contact import Array, Values
 
 ELEMENTS = 16
@@ -31,23 +31,16 @@ class Forked:
         bending = start["beam.youngsModulus"] * start["beam.width"] * start["beam.thickness"] ** 3 / 12
         per_length = start["beam.density"] * start["beam.width"] * start["beam.thickness"]
         n = ELEMENTS
-        nodes = 3 * n + 1
-        self.mass, self.rigidity = np.zeros((2 * nodes, 2 * nodes)), np.zeros((2 * nodes, 2 * nodes))
         trunk = [(k, k + 1, FORK / n, 1.0) for k in range(n)]
         tongue = (start["beam.length"] - FORK) / n
         first = [(n + k, n + k + 1, tongue, 0.5) for k in range(n)]
         other = [(n if k == 0 else 2 * n + k, 2 * n + k + 1, tongue, 0.5) for k in range(n)]
-        for a, b, length, share in trunk + first + other:
-            stiffness, mass = element(share * bending, share * per_length, length)
-            at = np.array([2 * a, 2 * a + 1, 2 * b, 2 * b + 1])
-            self.rigidity[np.ix_(at, at)] += stiffness
-            self.mass[np.ix_(at, at)] += mass
+        parts = [(a, b, share * bending, share * per_length, h) for a, b, h, share in trunk + first + other]
+        rigidity, mass = assembled(3 * n + 1, parts)
         tips = [2 * 2 * n, 2 * 3 * n]
         for tip in tips:
-            self.mass[tip, tip] += start["tip.mass"] / 2
-        rigid = np.tile([1.0, 0.0], nodes)
-        self.load = (self.mass @ rigid)[2:]
-        self.mass, self.rigidity = self.mass[2:, 2:], self.rigidity[2:, 2:]
+            mass[tip, tip] += start["tip.mass"] / 2
+        self.load, self.mass, self.rigidity = mass[2:, ::2].sum(axis=1), mass[2:, 2:], rigidity[2:, 2:]
         self.damping = start["beam.stiffnessDamping"] * self.rigidity
         self.opens = np.zeros((2, len(self.load)))
         for row, tip in enumerate(tips):
@@ -59,18 +52,14 @@ def forces(values: Values, times: Array) -> Array:
     known: dict[str, Any] = {**STARTS, **values}
     spring = Forked()
     n = len(spring.load)
-    compliance = sum(
-        (1 - known[f"contact.{side}.poissonRatio"] ** 2) / known[f"contact.{side}.youngsModulus"]
-        for side in ("moving", "fixed")
-    )
-    hertz = np.array([4 / 3 / compliance * known[f"{name}.curvatureRadius"] ** 0.5 for name in ("contact", "parallel")])
+    factor = np.array([hertz(known, name) for name in ("contact", "parallel")])
     damper = np.array([known["contact.damping"], known["parallel.damping"]])
     reach = known["contact.overtravel"] - np.array([0.0, known["parallel.offset"]])
 
     def contacts(w: Array, v: Array) -> Array:
         """Return the forces."""
         d, rate = np.maximum(reach - spring.opens @ w, 0.0), -spring.opens @ v
-        return np.asarray(np.maximum(hertz * d**0.5 * (d + 1.5 * damper * rate), 0.0))
+        return np.asarray(np.maximum(factor * d**0.5 * (d + 1.5 * damper * rate), 0.0))
 
     none = np.zeros(n)
     flexible = np.linalg.inv(spring.rigidity)

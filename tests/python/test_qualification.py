@@ -13,7 +13,7 @@ from scipy.linalg import block_diag
 from scipy.stats import norm
 
 from component import COMPONENT, ROOT
-from elements import element
+from elements import Part, assembled
 from reference import Reference, crossings
 from relay_contact import RelayContactError, Values
 from relay_contact.command import main
@@ -187,8 +187,7 @@ class Elements:
         """Assemble the matrices; `contact` is the stiffness of the contact, N/m."""
         file = tomllib.loads(Path(values["beam.file"]).read_text())
         count = round(sum(segment["length"] for segment in file["segment"]) / self.SIZE)
-        stiffness, mass = np.zeros((2, 2 * count + 2, 2 * count + 2))
-        first = 0
+        parts: list[Part] = []
         for segment in file["segment"]:
             number = round(segment["length"] / self.SIZE)
             begin, end = (segment.get(f"width_{end}", segment.get("width")) for end in ("start", "end"))
@@ -196,11 +195,8 @@ class Elements:
             for at in range(number):
                 area = (widths[at] + widths[at + 1]) / 2 * segment["thickness"]
                 bending = segment["youngs_modulus"] * area * segment["thickness"] ** 2 / 12
-                place = slice(2 * (first + at), 2 * (first + at) + 4)
-                own = element(bending, segment["density"] * area, self.SIZE)
-                stiffness[place, place] += own[0]
-                mass[place, place] += own[1]
-            first += number
+                parts.append((len(parts), len(parts) + 1, bending, segment["density"] * area, self.SIZE))
+        stiffness, mass = assembled(count + 1, parts)
         for each in file["mass"]:
             at = 2 * round(each["position"] / self.SIZE)
             mass[at : at + 2, at : at + 2] += block_diag(each["mass"], each["rotary_inertia"])

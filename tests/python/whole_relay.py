@@ -15,8 +15,8 @@ from scipy.linalg import block_diag, eigh
 from scipy.optimize import brentq
 
 from component import STARTS
-from elements import element
-from reference import cvode
+from elements import assembled
+from reference import cvode, hertz
 from relay_contact import Array, Values
 
 ELEMENTS = 40
@@ -39,18 +39,12 @@ class Beam:
         nodes = np.concatenate(
             [np.linspace(0, place, before + 1), np.linspace(place, length, ELEMENTS - before + 1)[1:]]
         )
-        size = 2 * len(nodes)
-        self.mass, rigidity = np.zeros((size, size)), np.zeros((size, size))
-        for k, h in enumerate(np.diff(nodes)):
-            at = np.s_[2 * k : 2 * k + 4]
-            bent, moved = element(bending, per_length, h)
-            rigidity[at, at] += bent
-            self.mass[at, at] += moved
-        rigid = np.tile([1.0, 0.0], len(nodes))
-        self.load = (self.mass @ rigid)[2:]
-        self.mass, self.rigidity = self.mass[2:, 2:], rigidity[2:, 2:]
+        parts = [(k, k + 1, bending, per_length, h) for k, h in enumerate(np.diff(nodes).tolist())]
+        rigidity, mass = assembled(len(nodes), parts)
+        # The load is that of all nodes moving alike; the first is clamped.
+        self.load, self.mass, self.rigidity = mass[2:, ::2].sum(axis=1), mass[2:, 2:], rigidity[2:, 2:]
         self.damping = damping
-        self.tip, self.place = np.zeros(size - 2), np.zeros(size - 2)
+        self.tip, self.place = np.zeros((2, len(self.load)))
         self.tip[-2], self.place[2 * before - 2] = 1.0, 1.0
 
 
@@ -135,8 +129,8 @@ class Relay:
         `fixed` is the width and thickness (m) of the fixed contact's spring; `pushed` where a prescribed pusher is
         (m), its speed (m/s) and from when on (s); without a coil the current is that of the hold force.
         """
-        known: dict[str, Any] = {**STARTS, **values}
-        self.get, self.coil = known.__getitem__, coil
+        self.known: dict[str, Any] = {**STARTS, **values}
+        self.get, self.coil = self.known.__getitem__, coil
         get = self.get
         length, beta = get("beam.length"), get("beam.stiffnessDamping")
         self.has_pusher, self.moves = get("effects.pusher") != "None", get("effects.pusher") == "Armature"
@@ -180,12 +174,7 @@ class Relay:
     def contact(self, row: Array) -> Law:
         """Return the law of the contact."""
         get = self.get
-        compliance = sum(
-            (1 - get(f"contact.{side}.poissonRatio") ** 2) / get(f"contact.{side}.youngsModulus")
-            for side in ("moving", "fixed")
-        )
-        hertz = 4 / 3 / compliance * get("contact.curvatureRadius") ** 0.5
-        return Law("contact", row, hertz, get("contact.damping"), 1.5, get("contact.overtravel"))
+        return Law("contact", row, hertz(self.known), get("contact.damping"), 1.5, get("contact.overtravel"))
 
     def stops(self) -> list[Law]:
         """Return the laws of both stops."""
