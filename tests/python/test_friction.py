@@ -7,9 +7,9 @@ from math import pi, sin
 import numpy as np
 import pytest
 
-from component import Instance
+from component import COMPONENT
 from frictional import Frictional, FrictionalMotion, Phase
-from relay_contact import Array, Values
+from relay_contact import Array, Contact, Values
 from relay_contact.scene import Scene, run
 
 TOLERANCE, STEP = 1e-6, 5e-6
@@ -201,7 +201,7 @@ UNSTABLE: dict[int, Values] = {
 
 def warnings(values: Values) -> list[str]:
     """Give what the component warns of as it is initialised."""
-    with Instance() as contact:
+    with Contact(COMPONENT) as contact:
         contact.begin(values)
         return contact.warnings
 
