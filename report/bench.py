@@ -107,15 +107,10 @@ class Bench:
 
     def period(self, frequency: float, level: float, deflection: float, number: int, repeats: bool = False) -> Period:
         """Return the period with this number, which comes next."""
-        contact = self.contact
         names = ("contact.force", "contact.elasticForce", "tip.displacement", "contact.resistance",
                  "step.minimumForce", "step.maximumForce")  # fmt: skip
-        outputs = contact.references(*names)
-        rows = []
-        for sample in range(SAMPLES):
-            contact.step((number + sample / SAMPLES) / frequency, 1 / SAMPLES / frequency)
-            rows.append(contact.fmu.getReal(outputs))
-        force, elastic, tip, resistance, least, greatest = np.array(rows).T
+        time = (number + np.arange(SAMPLES + 1) / SAMPLES) / frequency
+        force, elastic, tip, resistance, least, greatest = self.contact.drive(time, {}, names).values()
         base = level / (2 * np.pi * frequency) ** 2
         phase = 2 * np.pi * np.arange(1, SAMPLES + 1) / SAMPLES
         with_base = tip - deflection - base * np.sin(phase)

@@ -9,7 +9,7 @@ from report.bench import bench
 from report.figure import Curve, Figure
 from report.publication import DRAWN, Publication, base, deviations, resistance
 from report.published import BEST, FREQUENCIES, RATIOS
-from report.spring import LINEAR, of_ratio
+from report.spring import LINEAR
 
 FREQUENCY, AMPLITUDE = "frequency / Hz", "amplitude of the contact force / cN"
 
@@ -167,7 +167,7 @@ def elastic_figure(of: Publication) -> Figure:
     """Draw total force as fitted, and the elastic part fitted to the same amplitudes."""
     curves = []
     for colour, (ratio, at, highest) in enumerate(paper.PEAKS):
-        name, refitted = f"elastic part, parameters refitted, ratio {ratio:g}", of_ratio(of.refitted, ratio)
+        name, refitted = f"elastic part, parameters refitted, ratio {ratio:g}", of.refitted.of_ratio(ratio)
         curves.append(Curve(name, LINEAR, refitted.elastic(LINEAR), "line", colour))
         whole = of.spring(ratio).force(LINEAR)
         curves.append(Curve(f"total force, ratio {ratio:g}", LINEAR, whole, "dashed", colour))

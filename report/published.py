@@ -1,10 +1,9 @@
 """Published values: Zhang, Zhang, Meng, Ren, Machines 2025, 13(1), 52."""
 
-import csv
 from dataclasses import dataclass
 
 from relay_contact import Values
-from report.files import ROOT
+from report.files import DOCS, rows
 
 ACCELERATION = 98.0
 """Of the excitation grid, m/s2 (Table 3)."""
@@ -81,12 +80,11 @@ class Number:
 
 def numbers() -> list[Number]:
     """Return the numbers of docs/published-numbers.csv."""
-    with (ROOT / "docs/published-numbers.csv").open(newline="", encoding="utf-8") as file:
-        return [
-            Number(
-                row["quantity"], row["kind"],
-                {name: float(row[name] or "nan") for name in ("length", "overtravel", "ratio", "alpha", "frequency")},
-                float(row["published"]), row["unit"], row["location"], row["fitted"] == "1",
-            )
-            for row in csv.DictReader(file)
-        ]  # fmt: skip
+    return [
+        Number(
+            row["quantity"], row["kind"],
+            {name: float(row[name] or "nan") for name in ("length", "overtravel", "ratio", "alpha", "frequency")},
+            float(row["published"]), row["unit"], row["location"], row["fitted"] == "1",
+        )
+        for row in rows(DOCS / "published-numbers.csv")
+    ]  # fmt: skip

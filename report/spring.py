@@ -89,8 +89,9 @@ class Spring:
         """The axial force at which the spring buckles off its contact, N."""
         return np.pi**2 * self.bending / (4 * self.length**2)
 
-    def damped(self, factor: float) -> Self:
-        """Return the spring with other damping times."""
+    def of_ratio(self, ratio: float) -> Self:
+        """Return the spring, whose damping is that of the published ratio 10, with that of another one."""
+        factor = ratio / BEST
         return replace(self, beam_damping=factor * self.beam_damping, contact_damping=factor * self.contact_damping)
 
 
@@ -239,8 +240,3 @@ def elastic_reading(materials: Materials, frequency: float, amplitude: float) ->
 
     factor = brentq(lambda factor: float(found(factor).spring.elastic(frequency)[0] - amplitude), 0.72, 1.0)
     return found(factor)
-
-
-def of_ratio(spring: Spring, ratio: float) -> Spring:
-    """Return a spring whose damping is that of the published ratio 10 with that of another one."""
-    return spring.damped(ratio / BEST)

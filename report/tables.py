@@ -8,7 +8,7 @@ from report import published as paper
 from report.bench import bench, specimen
 from report.publication import Publication, base, deviations, resistance
 from report.published import BEST, FORCE, FREQUENCIES, RATIOS
-from report.spring import LINEAR, Spring, of_ratio
+from report.spring import LINEAR, Spring
 from report.text import number, percent, signed, table
 
 COLUMNS = ("quantity", "published", "this model", "deviation", "location in the publication")
@@ -160,7 +160,7 @@ def peaks(of: Publication) -> str:
     for ratio, place, known in paper.PEAKS:
         amplitude, at = of.peak(ratio)
         found = [(amplitude, at)]
-        for elastic in (of.spring(ratio).elastic(grid), of_ratio(of.refitted, ratio).elastic(grid)):
+        for elastic in (of.spring(ratio).elastic(grid), of.refitted.of_ratio(ratio).elastic(grid)):
             found.append((float(elastic.max()), float(grid[elastic.argmax()])))
         cells = [f"{number(value, 2)} cN at {at:g} Hz, {percent(value / known)}" for value, at in found]
         rows.append([f"{ratio:g}", f"{known:g} cN near {place:g} Hz", *cells])
@@ -180,5 +180,5 @@ def misfits(of: Publication) -> list[float]:
     return [
         misfit(lambda ratio: (of.runs[ratio, 1000.0].least, of.runs[ratio, 1000.0].greatest)),
         misfit(lambda ratio: about(of.spring(ratio))),
-        misfit(lambda ratio: about(of_ratio(of.refitted, ratio))),
+        misfit(lambda ratio: about(of.refitted.of_ratio(ratio))),
     ]

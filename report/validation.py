@@ -1,6 +1,5 @@
 """The text of docs/validation.md: its numbers, and the tables of what was fitted and identified."""
 
-import csv
 from typing import Any
 
 import numpy as np
@@ -11,6 +10,7 @@ from report import fit
 from report import published as paper
 from report import tables as tabulated
 from report.figure import Figure
+from report.files import rows
 from report.publication import Publication, deviations, force, resistance
 from report.published import BEST, FORCE, FREQUENCIES, RATIOS
 from report.spring import PARAMETERS, RIVET, SOURCES, identified, sensitivities
@@ -134,10 +134,8 @@ def identification(of: Publication) -> dict[str, Any]:
 
 def fitted_contacts() -> dict[str, Any]:
     """Return the tables and numbers of the three contacts that were fitted."""
-    with fit.TABLE.open(newline="", encoding="utf-8") as file:
-        numbers = list(csv.DictReader(file))
-    with fit.PARAMETERS.open(newline="", encoding="utf-8") as file:
-        parameters = {(each["contact"], each["parameter"]): each for each in csv.DictReader(file)}
+    numbers = rows(fit.TABLE)
+    parameters = {(each["contact"], each["parameter"]): each for each in rows(fit.PARAMETERS)}
 
     def parameter(contact: str, name: str) -> float:
         return float(parameters[contact, name]["value"])
@@ -173,7 +171,7 @@ def fitted_contacts() -> dict[str, Any]:
     others = [each for each in numbers if each["fitted"] != "1"]
     rms = {contact: parameter(contact, "rms") for contact in CONTACTS}
     names = [name for contact, name in parameters if contact == "Rough" and name != "rms"]
-    rows = [[name, *(cell(contact, name) for contact in CONTACTS)] for name in names]
+    lines = [[name, *(cell(contact, name) for contact in CONTACTS)] for name in names]
     # Those fitted, and the displacement with the weakest damping, which stands first among the others.
     squares = {contact: [np.log(float(each[contact]) / float(each["published"])) ** 2 for each in [*fitted, others[0]]]
                for contact in CONTACTS}  # fmt: skip
@@ -190,7 +188,7 @@ def fitted_contacts() -> dict[str, Any]:
         "fitted": compared(fitted,
                            ["**rms**", "", *(f"**{number(each, 1)} %**" for each in rms.values()), ""]),
         "others": compared(others),
-        "fits": table(["parameter", *CONTACTS.values()], rows),
+        "fits": table(["parameter", *CONTACTS.values()], lines),
         "softer_support": paper.STIFFNESS / parameter("support", "contact stiffness at 0.152 N"),
         "table4": 100 * (paper.DISPLACEMENTS[0] / paper.DISPLACEMENTS[1] - 1),
         "with_weakest": {contact: 100 * np.mean(each) ** 0.5 for contact, each in squares.items()},

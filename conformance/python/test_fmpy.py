@@ -11,8 +11,8 @@ import pytest
 from fmpy import simulate_fmu
 from fmpy.ssp.ssd import read_ssd
 
-from component import COMPONENT, FMU, ROOT, Instance, run
-from relay_contact import Values, read_table
+from component import COMPONENT, FMU, ROOT, run
+from relay_contact import Component, Contact, Values, read_table
 from results import FOLDER, STEP, SYSTEM, TOLERANCE, compare, published, record, staircase
 
 
@@ -36,7 +36,7 @@ def test_the_system_of_two_instances_follows_the_schema_of_ssp() -> None:
 
 
 def test_a_folder_with_spaces_and_letters_beyond_ascii(tmp_path: Path) -> None:
-    with Instance(tmp_path / "ein schöner Ordner #1 100%") as instance:
+    with Contact(Component(FMU, tmp_path / "ein schöner Ordner #1 100%")) as instance:
         instance.initialise()
         instance.step(0.0, STEP)
         assert instance.messages == []
@@ -62,7 +62,7 @@ def test_derivatives_of_inputs_are_set_after_each_step() -> None:
             fmu.setRealInputDerivatives([variable], [1], [slope * amplitude * omega * math.cos(omega * time)])
             return True
 
-        fmu = Instance().fmu
+        fmu = Contact(COMPONENT).fmu
         drive(fmu, 0.0)
         result = simulate_fmu(
             COMPONENT.folder,

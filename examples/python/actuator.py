@@ -1,7 +1,7 @@
 """Make and break of a contact by an electromagnet that is another FMU, in FMPy and in libcosim.
 
 The partner, Actuator.fmu, which PythonFMU makes of actuator_magnet.py, is a coil that is switched on and off, its
-magnet, and an armature between two stops (magnet.py has the equations). The contact has effects.pusher Prescribed. Two
+magnet, and an armature between two stops (its equations are there). The contact has effects.pusher Prescribed. Two
 connections, updated at every communication point: pusher.displacement of the actuator to that of the contact, and
 pusher.force of the contact back.
 
@@ -42,7 +42,7 @@ WIRES = [
     ("actuator", "pusher.displacement", "contact", "pusher.displacement"),
     ("contact", "pusher.force", "actuator", "pusher.force"),
 ]
-MAGNET, *PARTS = (Path(__file__).with_name(f"{name}.py") for name in ("actuator_magnet", "magnet", "fmu_slave"))
+MAGNET = Path(__file__).with_name("actuator_magnet.py")
 # A contact of clean metal, open without the pusher.
 CONTACT = {"contact.overtravel": -5e-5, "contact.damping": 1e-6}
 PUSHER, PRESCRIBED = "effects.pusher", 2  # libcosim knows no choices, but their numbers
@@ -210,7 +210,7 @@ def main() -> int:
         return 1
     fmus = {
         "contact": given.fmu.resolve(),
-        "actuator": FmuBuilder.build_FMU(MAGNET, dest=given.out, project_files=PARTS).resolve(),
+        "actuator": FmuBuilder.build_FMU(MAGNET, dest=given.out).resolve(),
     }
     magnet = {name: start for name, _, start, _ in PARAMETERS}
     magnet |= {"supply.voltage": given.voltage, "armature.mass": given.mass}

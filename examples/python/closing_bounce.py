@@ -32,6 +32,8 @@ from relay_contact.figures import BLUE, GREY, ORANGE, RED
 REST = 0.01  # s, the contact comes to rest within 1 ms
 PIECES = 1000  # of a parabola
 TOUCH = 1e-6  # s after the first touch, a step ends: no bounce is that short
+SHOWN = ("contact.force", "contact.indentation")
+COUNTED = ("chatter.count", "contact.lastClosing", "chatter.totalInterruption", "contact.lastOpening")
 
 
 def course(gap: float, overtravel: float, speed: float) -> tuple[Array, Array, float]:
@@ -103,28 +105,22 @@ class Relay:
             "effects.axialForce": "None",
             "chatter.minimumDuration": self.minimum,
         }
-        touch, made, largest = -1.0, (0, 0.0, 0.0), 0.0
         with self.component.started(values) as contact:
-            rows = [[0.0, *contact.real("contact.force", "contact.indentation")]]
-            for (begin, end), (here, there) in zip(itertools.pairwise(time), itertools.pairwise(position), strict=True):
-                if begin >= back and made[0] == 0:
-                    closing, interrupted = contact.real("contact.lastClosing", "chatter.totalInterruption")
-                    made = int(contact.get("chatter.count")), closing, interrupted
-                contact.change("support.displacement", here, there, end - begin)
-                contact.step(begin, end - begin)
-                force, indentation, closing, most = contact.real(
-                    "contact.force", "contact.indentation", "contact.lastClosing", "step.maximumForce"
-                )
-                touch = closing if touch < 0 else touch
-                largest = max(largest, most)
-                rows.append([end, force, indentation])
-            broken, opening = int(contact.get("chatter.count")), contact.get("contact.lastOpening")
-        count, closing, interrupted = made
+            first = contact.real(*SHOWN)
+            rows = contact.drive(time, {"support.displacement": position}, [*SHOWN, *COUNTED, "step.maximumForce"])
+        made, last = int(np.searchsorted(time, back)) - 1, -1  # the last step before the return, and of all
+        (count, closing, interrupted, _), (broken, _, _, opening) = (
+            [float(rows[name][at]) for name in COUNTED] for at in (made, last)
+        )
+        touches = rows["contact.lastClosing"]
+        touch, largest = float(touches[touches >= 0][0]), float(rows["step.maximumForce"].max())
         # The gap before the first touch is an interruption too, and so is the one after the last separation.
-        bounces = count - 1
+        bounces = int(count) - 1
         times = (closing - touch, interrupted - touch) if bounces else (0.0, 0.0)
-        outcome = Outcome(speed, damping, touch, bounces, *times, largest, opening - back, broken - count - 1)
-        return outcome, np.array(rows)
+        again = int(broken - count) - 1
+        outcome = Outcome(speed, damping, touch, bounces, *times, largest, opening - back, again)
+        columns = [np.append(start, rows[name]) for name, start in zip(SHOWN, first, strict=True)]
+        return outcome, np.column_stack([time, *columns])
 
 
 def edges(centres: list[float]) -> Array:

@@ -13,6 +13,7 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
+from scipy.optimize import brentq
 from tqdm import tqdm
 
 from common import parser, read_arguments, save
@@ -72,11 +73,8 @@ def lowest_frequency(start: dict[str, float], contact: float, turning: float) ->
     high = 0.1
     while determinant(high) * determinant(high + 0.01) > 0:
         high += 0.01
-    low, high = high, high + 0.01
-    for _ in range(60):
-        middle = (low + high) / 2
-        low, high = (low, middle) if determinant(low) * determinant(middle) <= 0 else (middle, high)
-    return (low / length) ** 2 * math.sqrt(bending / line) / (2 * math.pi)
+    root: float = brentq(determinant, high, high + 0.01, xtol=1e-14)
+    return (root / length) ** 2 * math.sqrt(bending / line) / (2 * math.pi)
 
 
 def tangential_ratio(start: dict[str, float]) -> float:
@@ -136,13 +134,10 @@ class Study:
         }
         with self.component.started(FRICTION | driven | values) as contact:
             contact.rise(frequency, amplitude, rise := math.ceil(RISE * frequency), RISE_PIECES)
-            period, rows = 1 / frequency, []
-            for number in range(rise, rise + math.ceil(SETTLED * frequency) + WATCHED):
-                contact.step(number * period, period)
-                rows.append(
-                    contact.real("step.minimumForce", "step.maximumForce", "contact.slipDistance", "friction.energy")
-                )
-        least, greatest, distance, energy = np.array(rows[-WATCHED - 1 :]).T
+            periods = np.arange(rise, rise + math.ceil(SETTLED * frequency) + WATCHED + 1)
+            names = ["step.minimumForce", "step.maximumForce", "contact.slipDistance", "friction.energy"]
+            rows = contact.drive(periods / frequency, {}, names)
+        least, greatest, distance, energy = (rows[name][-WATCHED - 1 :] for name in names)
         low, high = float(least.min()), float(greatest.max())
         slip, lost = (float(each[-1] - each[0]) / WATCHED for each in (distance, energy))
         return Vibration((high - low) / 2, slip, lost, low <= 0)
@@ -162,12 +157,9 @@ class Study:
         time = SLOW * np.linspace(0, 1.5, 1501)
         moved = TRAVEL * np.sin(2 * np.pi * time / SLOW)
         with self.component.started(FRICTION | values) as contact:
-            force = contact.real("contact.force")
-            for n in range(len(time) - 1):
-                contact.change("support.displacement", moved[n], moved[n + 1], time[n + 1] - time[n])
-                contact.step(time[n], time[n + 1] - time[n])
-                force += contact.real("contact.force")
-        return moved, np.array(force)
+            first = contact.get("contact.force")
+            rows = contact.drive(time, {"support.displacement": moved}, ["contact.force"])
+        return moved, np.append(first, rows["contact.force"])
 
 
 def draw_frequencies(axes: Axes, rows: Array) -> None:

@@ -91,6 +91,7 @@ class Drawing:
         outline = [(0, -half), (self.taper_start, -half), (self.length, -end)]
         outline += [(x, -y) for x, y in reversed(outline)]
         lines = ["Mesh.ElementOrder = 2; Mesh.SecondOrderIncomplete = 1; Mesh.RecombineAll = 1;"]
+        lines.append("Mesh.ScalingFactor = 0.001;")  # of what it writes
         lines += [f"Point({n}) = {{{mm * x}, {mm * y}, {z}, {mm * size}}};" for n, (x, y) in enumerate(outline, 1)]
         lines += [f"Line({n}) = {{{n}, {n % 6 + 1}}};" for n in range(1, 7)] + ["Curve Loop(1) = {1:6};"]
         loops = [1]
@@ -123,22 +124,20 @@ class Mesh:
     nodes: dict[int, Array]
     blocks: list[tuple[str, list[list[int]]]]
     """Type of elements; number and nodes of each."""
-    sets: dict[str, list[int]]
 
     @classmethod
-    def read(cls, path: Path) -> "Mesh":
-        """Read what gmsh wrote, in millimetres."""
-        mesh, into, name = cls({}, [], {}), "", ""
-        for line in path.read_text(encoding="utf-8").splitlines():
+    def read(cls, text: str) -> "Mesh":
+        """Read what gmsh wrote."""
+        mesh, into = cls({}, []), ""
+        for line in text.splitlines():
             if line.startswith("*"):
                 into = line[1:].split(",")[0].strip().upper()
-                name = line.rpartition("=")[2]
                 if into == "ELEMENT":
                     mesh.blocks.append((re.findall(r"type=(\w+)", line)[0], []))
                 continue
             numbers = line.replace(",", " ").split()
             if into == "NODE":
-                mesh.nodes[int(numbers[0])] = 1e-3 * np.array([float(each) for each in numbers[1:]])
+                mesh.nodes[int(numbers[0])] = np.array([float(each) for each in numbers[1:]])
             elif into == "ELEMENT":
                 # An element with many nodes goes on in a second line, which the first announces by its last comma.
                 rows = mesh.blocks[-1][1]
@@ -146,20 +145,11 @@ class Mesh:
                     rows[-1] += [int(each) for each in numbers]
                 else:
                     rows.append([int(each) for each in numbers])
-            elif into == "ELSET":
-                mesh.sets.setdefault(name, []).extend(int(each) for each in numbers)
         return mesh
 
-    def deck(self, drawing: Drawing) -> str:
-        """Give what all decks share; thin quadratic bricks have to be integrated at fewer points."""
-        lines = ["*NODE, NSET=all"]
-        lines += [", ".join([str(node), *(f"{each:.12g}" for each in place)]) for node, place in self.nodes.items()]
-        for kind, elements in self.blocks:
-            lines.append(f"*ELEMENT, TYPE={'C3D20R' if kind == 'C3D20' else kind}")
-            for element in elements:
-                lines += [", ".join(map(str, element[:11])) + ",", ", ".join(map(str, element[11:]))]
-        for name, members in self.sets.items():
-            lines += [f"*ELSET, ELSET={name}", *(f"{member}," for member in members)]
+    def deck(self, written: str, drawing: Drawing) -> str:
+        """Give what gmsh wrote as all decks need it; thin quadratic bricks have to be integrated at fewer points."""
+        lines = [re.sub(r"type=C3D20\b", "type=C3D20R", written)]
         clamped = [node for node, place in self.nodes.items() if abs(place[0]) < 1e-9]
         lines += ["*NSET, NSET=clamp", *(f"{node}," for node in clamped)]
         for name, material in (("spring", drawing.spring_material), ("rivet", drawing.rivet_material)):
@@ -211,8 +201,9 @@ class Elements:
         folder.mkdir(parents=True, exist_ok=True)
         (folder / "spring.geo").write_text(drawing.geometry(size), encoding="utf-8")
         self.call("gmsh", "-3", "-format", "inp", "-o", "gmsh.inp", "spring.geo")
-        self.mesh = Mesh.read(folder / "gmsh.inp")
-        (folder / "mesh.inp").write_text(self.mesh.deck(drawing), encoding="utf-8")
+        written = (folder / "gmsh.inp").read_text(encoding="utf-8")
+        self.mesh = Mesh.read(written)
+        (folder / "mesh.inp").write_text(self.mesh.deck(written, drawing), encoding="utf-8")
         low = -drawing.thickness / 2 - drawing.head
         face = {node: place for node, place in self.mesh.nodes.items() if abs(place[2] - low) < 1e-9}
         away = {node: math.dist(place[:2], (drawing.rivet[0], 0.0)) for node, place in face.items()}

@@ -24,7 +24,7 @@ from fmpy.fmi1 import FMICallException
 from numpy.typing import ArrayLike, NDArray
 
 from relay_contact.files import RelayContactError, RelayContactWarning, fmu_path, shown
-from relay_contact.spring import OF_FILES, applied
+from relay_contact.spring import OF_FILES, applied, is_entry
 from relay_contact.stepping import drive
 
 DIFFERENCE = re.compile(r"\S*[/\\]\S*|\d[\d.e+-]*")
@@ -195,6 +195,10 @@ class Component:
                 return next(each for each, number in self.choices(name).items() if number == int(variable.start))
             case _:
                 return float(variable.start)
+
+    def value(self, values: Values, name: str) -> float:
+        """Return the number of a parameter among these, else its start value; an entry of a spring file is a factor."""
+        return float(values.get(name, 1.0 if is_entry(name) else self.start(name)))
 
     def started(self, values: Values | None = None) -> "Contact":
         """Give an instance that is initialised with these parameters and inputs, at time 0.
@@ -372,7 +376,7 @@ class Contact:
 
     def begin(self, values: Values) -> None:
         """Set parameters, inputs and entries of the spring file, and go through the initialisation."""
-        start = float(self.component.start("beam.youngsModulus"))
+        start = self.component.value({}, "beam.youngsModulus")
         with self.explained():
             for parameter, prefix in OF_FILES.items():
                 if parameter in values and any(name.startswith(prefix) for name in values):

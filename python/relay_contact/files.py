@@ -1,5 +1,6 @@
 """Where component, scenes, relays and standards are: carried by the wheel, or in the project's folders."""
 
+import hashlib
 import os
 import re
 import tomllib
@@ -59,6 +60,11 @@ def named(kind: str, name: str | Path, known: dict[str, Path]) -> Path:
     if Path(name).is_file():
         return Path(name)
     raise RelayContactError(f"{name}: no such file, and no {kind} of this name; there are {', '.join(known)}")
+
+
+def digest(data: bytes) -> str:
+    """Return the hash by which contents are known: the first 16 digits of SHA-256."""
+    return hashlib.sha256(data).hexdigest()[:16]
 
 
 def shown(value: object) -> str:

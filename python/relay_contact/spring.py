@@ -7,7 +7,6 @@ stiffness of the whole, clamp included, whether the spring is a uniform section,
 `fixed.spring.` they are those of the spring that carries the fixed contact.
 """
 
-import hashlib
 import math
 from collections.abc import Mapping
 from pathlib import Path
@@ -16,7 +15,7 @@ from typing import Any
 
 import tomlkit
 
-from relay_contact.files import RelayContactError, read_toml
+from relay_contact.files import RelayContactError, digest, read_toml
 
 PREFIX, FIXED = "spring.", "fixed.spring."
 OF_FILES = {"beam.file": PREFIX, "fixed.file": FIXED}
@@ -116,7 +115,7 @@ def applied(values: Mapping[str, Any], start: float, folder: Path) -> dict[str, 
         shared = prefix == FIXED and bool({STIFFNESS, FIXED + WHOLE} & factors.keys())
         if file and (mine or shared):
             text = text_of(file, mine, modulus if shared else None, prefix)
-            path = folder / f"spring-{hashlib.sha256(text.encode()).hexdigest()[:16]}.toml"
+            path = folder / f"spring-{digest(text.encode())}.toml"
             if not path.exists():
                 # At once, as another thread may look for it now.
                 part = path.with_suffix(f".{get_ident()}")

@@ -1,4 +1,4 @@
-"""The packaged component under FMPy: whole runs, and instances stepped by hand with their messages kept."""
+"""The packaged component under FMPy: whole runs."""
 
 from pathlib import Path
 from typing import Any
@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from fmpy import simulate_fmu
 
-from relay_contact import Array, Component, Contact, Values, fmu_path
+from relay_contact import Array, Component, Values, fmu_path
 
 ROOT = Path(__file__).resolve().parents[2]
 FMU = fmu_path()
@@ -37,12 +37,3 @@ def run(
         str(FMU), stop_time=stop, output_interval=step, start_values=start, output=output, input=signals
     )
     return {name: np.asarray(result[name]) for name in ["time", *output]}
-
-
-class Instance(Contact):
-    """An instance whose messages are kept."""
-
-    def __init__(self, folder: Path | None = None) -> None:
-        """Instantiate the component, unpacked in a folder of its own if one is given."""
-        self.messages: list[str] = []
-        super().__init__(Component(FMU, folder) if folder else COMPONENT, self.messages)

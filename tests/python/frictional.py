@@ -44,11 +44,9 @@ class Law:
     ratio: float
     coefficient: float
 
-    def normal(self, d: float, rate: float) -> tuple[float, float, float]:
-        """Contact force (N) of a closed contact, and its derivatives by indentation (m) and rate (m/s)."""
-        root = self.hertz * sqrt(max(d, 0.0))
-        by_rate = 1.5 * self.damping * root
-        return root * d + by_rate * rate, 1.5 * root + (0.5 * by_rate * rate / d if d > 0 else 0.0), by_rate
+    def normal(self, d: float, rate: float) -> float:
+        """Contact force (N) of a closed contact, by indentation (m) and rate (m/s)."""
+        return self.hertz * sqrt(max(d, 0.0)) * (d + 1.5 * self.damping * rate)
 
     def engagement(self, d: float, rate: float) -> float:
         """Give what is positive while the contact is closed, m."""
@@ -87,30 +85,8 @@ class Law:
             excess, against = abs(moves) - grows, -speed
         else:
             trial = self.trial(d, z, speed)
-            excess, against = abs(trial) - self.coefficient * self.normal(d, rate)[0], trial
+            excess, against = abs(trial) - self.coefficient * self.normal(d, rate), trial
         return Phase(copysign(1.0, against)) if excess > 0 else Phase.STICK
-
-
-@dataclass(frozen=True)
-class Carrier:
-    """What carries the contact: modes of mass 1 kg, with their displacement along the normal and along the spring."""
-
-    omega_squared: Array
-    damping: Array
-    tip: Array
-    lever: Array
-    participation: Array
-
-
-@dataclass(frozen=True)
-class Start:
-    """Where a motion starts, and what it is counted from."""
-
-    indentation: float
-    force: float
-    tangential: float
-    deflection: float
-    motion: Array
 
 
 class Frictional(Reference):
@@ -138,17 +114,11 @@ class Frictional(Reference):
         pushed = (per_force + per_moment * self.height * self.share) * self.elastic(indentation)
         return float(deflection - pushed - per_acceleration * self.gravity)
 
-    def carrier(self) -> Carrier:
-        """Give the modes."""
-        modes = self.modes()
-        lever = self.height * modes.rotation
-        return Carrier(modes.omega_squared, modes.damping, modes.tip, lever, modes.participation)
-
     def sticking_by_modes(self) -> float:
         """Lowest natural frequency of the contact that sticks, under a constant axial force, by the modes, Hz."""
-        modes = self.carrier()
+        modes = self.modes()
         matrix = np.diag(modes.omega_squared) + self.tangent * np.outer(modes.tip, modes.tip)
-        matrix += self.tangential * np.outer(modes.lever, modes.lever)
+        matrix += self.height**2 * self.tangential * np.outer(modes.rotation, modes.rotation)
         return sqrt(np.linalg.eigvalsh(matrix)[0]) / (2 * pi)
 
     def sticking_frequency(self) -> float:
@@ -165,10 +135,12 @@ class Frictional(Reference):
 
     def growth(self, force: float, sign: float) -> complex:
         """Give the eigenvalue (1/s) that grows fastest of small motions about slip, at a contact force (N)."""
-        modes = self.carrier()
+        modes = self.modes()
         # Hertz: the stiffness is as the cube root of the force.
         stiffness = self.tangent * (force / self.force) ** (1 / 3)
-        pushed = np.outer(modes.tip + sign * self.friction.coefficient * modes.lever, stiffness * modes.tip)
+        pushed = np.outer(
+            modes.tip + sign * self.friction.coefficient * self.height * modes.rotation, stiffness * modes.tip
+        )
         matrix = np.block(
             [
                 [np.zeros_like(pushed), np.eye(len(modes.tip))],
@@ -176,15 +148,6 @@ class Frictional(Reference):
             ]
         )
         return complex(max(np.linalg.eigvals(matrix), key=lambda value: value.real))
-
-    def moves(self, acceleration: Acceleration, stop: float, tolerance: float) -> "FrictionalMotion":
-        """Give the motion from rest at 0."""
-        carrier = self.carrier()
-        friction = self.share * self.force
-        deflection = -friction / self.tangential if self.tangential > 0 else 0.0
-        rest = np.zeros(2 * len(carrier.tip))
-        start = Start(self.indentation, self.force, friction, deflection, rest)
-        return FrictionalMotion(self.friction, carrier, start, acceleration, stop, tolerance, self.force_scale)
 
 
 @dataclass
@@ -200,31 +163,26 @@ class Piece:
 class FrictionalMotion:
     """Contact force, friction force and slip over time."""
 
-    def __init__(
-        self,
-        law: Law,
-        carrier: Carrier,
-        start: Start,
-        acceleration: Acceleration,
-        stop: float,
-        tolerance: float,
-        force_scale: float,
-    ) -> None:
+    def __init__(self, relay: Frictional, acceleration: Acceleration, stop: float, tolerance: float) -> None:
         """Integrate; the motion is `omega q` and `q'` of the modes, then z, distance slipped, energy dissipated."""
-        self.law, self.carrier, self.start, self.acceleration = law, carrier, start, acceleration
-        self.n, self.omega = len(carrier.tip), np.sqrt(carrier.omega_squared)
+        self.relay, self.law, self.modes, self.acceleration = relay, relay.friction, relay.modes(), acceleration
+        law, modes = self.law, self.modes
+        # Displacement along the spring by the modes, and the friction force at rest.
+        self.lever, self.held = relay.height * modes.rotation, relay.share * relay.force
+        self.n, self.omega = len(modes.tip), np.sqrt(modes.omega_squared)
         n = self.n
         # Velocity that the force scale gives the first mode in 1 / omega, and the deflection under Coulomb's limit.
-        loads = np.hypot(carrier.tip, carrier.lever * law.coefficient)
-        scale = force_scale * np.max(loads / self.omega)
-        short = max(law.limit_deflection(start.indentation, 0.0), abs(start.deflection), 1e-9)
-        energy = max(law.coefficient * force_scale * short, 1e-15)
+        loads = np.hypot(modes.tip, self.lever * law.coefficient)
+        scale = relay.force_scale * np.max(loads / self.omega)
+        deflection = -self.held / relay.tangential if relay.tangential > 0 else 0.0
+        short = max(law.limit_deflection(relay.indentation, 0.0), abs(deflection), 1e-9)
+        energy = max(law.coefficient * relay.force_scale * short, 1e-15)
         self.short = short
         self.floor = tolerance * np.concatenate([np.full(2 * n, scale), [short, short, energy]])
         self.tolerance = tolerance
-        motion = np.concatenate([start.motion, [start.deflection, 0.0, 0.0]])
+        motion = np.concatenate([np.zeros(2 * n), [deflection, 0.0, 0.0]])
         self.pieces: list[Piece] = []
-        time, phase = 0.0, self._closed(motion) if start.force > 0 else Phase.OPEN
+        time, phase = 0.0, self._closed(motion) if relay.force > 0 else Phase.OPEN
         while time < stop:
             piece, motion, change = self._piece(time, stop, phase, motion)
             self.pieces.append(piece)
@@ -239,9 +197,9 @@ class FrictionalMotion:
 
     def contact(self, motion: Array) -> tuple[Any, Any, Any, Any]:
         """Give indentation (m) and its rate (m/s), displacement along the spring and its rate."""
-        n, carrier = self.n, self.carrier
+        n, tip = self.n, self.modes.tip
         q, v = (motion[:n].T / self.omega).T, motion[n : 2 * n]
-        return self.start.indentation - carrier.tip @ q, -carrier.tip @ v, carrier.lever @ q, carrier.lever @ v
+        return self.relay.indentation - tip @ q, -tip @ v, self.lever @ q, self.lever @ v
 
     def _closed(self, motion: Array) -> Phase:
         d, rate, _, speed = self.contact(motion)
@@ -252,55 +210,21 @@ class FrictionalMotion:
         if phase is Phase.OPEN:
             return 0.0, 0.0
         d, rate, _, speed = self.contact(motion)
-        force = self.law.normal(d, rate)[0]
+        force = self.law.normal(d, rate)
         if phase is Phase.STICK:
             return force, self.law.trial(d, motion[2 * self.n], speed)
         return force, phase.value * self.law.coefficient * force
 
     def _rates(self, phase: Phase, time: float, motion: Array) -> Array:
-        n, carrier, start = self.n, self.carrier, self.start
+        n, modes = self.n, self.modes
         d, rate, _, speed = self.contact(motion)
         force, friction = self.forces(phase, motion)
-        load = carrier.tip * (force - start.force) + carrier.lever * (friction - start.tangential)
-        load = load - carrier.participation * self.acceleration(time)
+        load = modes.tip * (force - self.relay.force) + self.lever * (friction - self.held)
+        load = load - modes.participation * self.acceleration(time)
         deflects = self.law.deflects(phase, d, rate, motion[2 * n], speed)
         slips = abs(speed - deflects) if phase in (Phase.FORTH, Phase.BACK) else 0.0
-        turns = load - self.omega * motion[:n] - carrier.damping * motion[n : 2 * n]
+        turns = load - self.omega * motion[:n] - modes.damping * motion[n : 2 * n]
         return np.concatenate([self.omega * motion[n : 2 * n], turns, [deflects, slips, abs(friction) * slips]])
-
-    def _jacobian(self, phase: Phase, time: float, motion: Array) -> Array:
-        """Give what Newton's method needs: exact but for the two sums, which nothing depends on."""
-        del time
-        n, carrier, law = self.n, self.carrier, self.law
-        d, rate, _, speed = self.contact(motion)
-        matrix = np.zeros((2 * n + 3, 2 * n + 3))
-        matrix[:n, n : 2 * n] = np.diag(self.omega)
-        matrix[n : 2 * n, :n] = -np.diag(self.omega)
-        matrix[n : 2 * n, n : 2 * n] = -np.diag(carrier.damping)
-        if phase is Phase.OPEN:
-            return matrix
-        # Indentation, its rate and the speed by the motion.
-        by_d = np.concatenate([-carrier.tip / self.omega, np.zeros(n + 3)])
-        by_rate = np.concatenate([np.zeros(n), -carrier.tip, np.zeros(3)])
-        by_speed = np.concatenate([np.zeros(n), carrier.lever, np.zeros(3)])
-        by_z = np.eye(2 * n + 3)[2 * n]
-        _, stiffness, damping = law.normal(d, rate)
-        force = stiffness * by_d + damping * by_rate
-        if phase is Phase.STICK:
-            tangential = law.tangential_stiffness(d)
-            half = 0.5 * law.trial(d, motion[2 * n], speed) / d if d > 0 else 0.0
-            friction = half * by_d - tangential * (by_z + law.damping * by_speed)
-            deflects = by_speed
-        else:
-            friction = phase.value * law.coefficient * force
-            if law.damping == 0:
-                deflects = -phase.value * law.limit_deflection(1.0, 0.0) * by_rate
-            else:
-                limit = law.limit_deflection(1.0, 0.0) * by_d + law.limit_deflection(0.0, 1.0) * by_rate
-                deflects = (-phase.value * limit - by_z) / law.damping
-        matrix[n : 2 * n] += np.outer(carrier.tip, force) + np.outer(carrier.lever, friction)
-        matrix[2 * n] = deflects
-        return matrix
 
     def _piece(self, begin: float, stop: float, phase: Phase, motion: Array) -> tuple[Piece, Array, str]:
         """Go on to the next change, and say of what."""
@@ -334,7 +258,6 @@ class FrictionalMotion:
             (begin, stop),
             motion,
             method="Radau",
-            jac=lambda time, motion: self._jacobian(phase, time, motion),
             rtol=self.tolerance,
             atol=self.floor,
             dense_output=True,

@@ -1,11 +1,9 @@
 """What a laboratory would measure on the published relay, by the second solution of the model, with scatter."""
 
 from functools import cache
-from math import cos, cosh, pi, sin, sinh, sqrt
 from pathlib import Path
 
 import numpy as np
-from scipy.optimize import brentq
 
 from reference import Reference
 from relay_contact import Array, Values
@@ -133,39 +131,25 @@ def record(length: float, rate: float, noise: float, seed: int) -> list[Measurem
     ]
 
 
-def rough(overtravel: float, **changes: float) -> tuple[Reference, float]:
-    """Return ROUGH as the second solution, linear about its preload at an overtravel (m), with its frequency (Hz).
+def rough(overtravel: float, **changes: float) -> Reference:
+    """Return ROUGH as the second solution, linear about its preload at an overtravel (m).
 
     With other values of parameters, underscores in place of dots.
-
-    The frequency is that of a uniform cantilever with a mass and a spring at its tip: a root of
-    `E I d3w/dx3 = (k - m omega^2) w` at the tip, where the bending moment vanishes.
     """
     other = {name.replace("_", "."): value for name, value in changes.items()}
-    relay = Reference({**ROUGH, **other, "effects.contactLaw": "Rough", "contact.overtravel": overtravel})
-
-    def at_tip(x: float) -> float:
-        load = relay.tangent - relay.mass * relay.stiffness * (x / relay.length) ** 4 / relay.density
-        first, second = sin(x) + sinh(x), -cos(x) - cosh(x)
-        value = first * (cos(x) - cosh(x)) + second * (sin(x) - sinh(x))
-        third = first * (sin(x) - sinh(x)) + second * second
-        return third - load * value * (relay.length / x) ** 3 / relay.stiffness
-
-    # From below the free cantilever, 1.87 without a rivet, to above the pinned one, 3.93.
-    x = brentq(at_tip, 1.2, 4.0, rtol=1e-14)
-    return relay, (x / relay.length) ** 2 * sqrt(relay.stiffness / relay.density) / (2 * pi)
+    return Reference({**ROUGH, **other, "effects.contactLaw": "Rough", "contact.overtravel": overtravel})
 
 
 @cache
 def rough_frequencies() -> Array:
     """Return the frequencies (Hz) of ROUGH over OVERTRAVELS without scatter."""
-    return np.array([rough(each)[1] for each in OVERTRAVELS])
+    return np.array([rough(each).frequency() for each in OVERTRAVELS])
 
 
 @cache
 def rough_curves() -> Array:
     """Return the amplitudes (N) of ROUGH at 1 m/s2 over FREQUENCY without scatter, in rows for CURVES."""
-    return np.array([[abs(rough(each)[0].force_response(f)) for f in FREQUENCY] for each in CURVES])
+    return np.array([[abs(rough(each).force_response(f)) for f in FREQUENCY] for each in CURVES])
 
 
 def rough_frequency_record(seed: int, noise: float = 0.001) -> list[Measurement]:

@@ -12,10 +12,9 @@ from dataclasses import dataclass
 from math import pi, sin
 
 import numpy as np
-from sksundae.cvode import CVODE
 
 from component import COMPONENT, ROOT
-from reference import Reference
+from reference import Reference, cvode
 from relay_contact import Array, RelayContactError, Value
 
 MARKS = "<!-- independent: written by tests/python/random_relays.py -->", "<!-- end of independent -->"
@@ -90,27 +89,17 @@ def second(relay: Relay, functions: int) -> tuple[Array, int, float]:
     amplitude, omega = (float(relay.values[f"excitation.{name}"]) for name in ("amplitude", "frequency"))
     omega *= 2 * pi
 
-    def contact(_time: float, deflection: float, rate: float) -> tuple[float, float, float]:
-        force, stiffness, damping = reference.law_force(reference.indentation - deflection, -rate)
-        return force, stiffness, damping
+    def contact(_time: float, deflection: float, rate: float) -> float:
+        return reference.law_force(reference.indentation - deflection, -rate)
 
     equations = reference.equations(lambda time: amplitude * sin(omega * time), contact)
 
-    def rates(time: float, motion: Array, rates: Array) -> None:
-        rates[:] = equations.rates(time, motion)
-
-    def jacobian(time: float, motion: Array, _: Array, matrix: Array) -> None:
-        matrix[:] = equations.jacobian(time, motion)
-
-    def engaged(_time: float, motion: Array, values: Array) -> None:
+    def engaged(_time: float, motion: Array) -> float:
         deflection, rate = equations.tip(motion)
         indentation = reference.indentation - deflection
-        values[0] = min(indentation, indentation - reference.power * reference.contact_damping * rate)
+        return float(min(indentation, indentation - reference.power * reference.contact_damping * rate))
 
-    solver = CVODE(
-        rates, jacfn=jacobian, eventsfn=engaged, num_events=1, rtol=TOLERANCE, atol=TOLERANCE * equations.scale,
-        max_num_steps=500_000,
-    )  # fmt: skip
+    solver = cvode(equations.rates, engaged, [0], True, TOLERANCE, TOLERANCE * equations.scale)
     motion, force, events = np.zeros(equations.size), [reference.force], 0
     solver.init_step(relay.times[0], motion)
     for time in relay.times[1:]:
@@ -119,18 +108,15 @@ def second(relay: Relay, functions: int) -> tuple[Array, int, float]:
             events += 1
             solver.init_step(found.t, found.y)
         deflection, rate = equations.tip(found.y)
-        force.append(contact(time, deflection, rate)[0])
+        force.append(contact(time, deflection, rate))
     return np.array(force), events, reference.force_scale
 
 
 def own(relay: Relay, tolerance: float) -> Array:
     """Return the contact forces of the component (N) at the communication points."""
     with COMPONENT.started({**relay.values, "solver.tolerance": tolerance}) as contact, contact.explained():
-        forces = [contact.get("contact.force")]
-        for begin, end in zip(relay.times, relay.times[1:], strict=False):
-            contact.step(float(begin), float(end - begin))
-            forces.append(contact.get("contact.force"))
-    return np.array(forces)
+        first = contact.get("contact.force")
+        return np.append(first, contact.drive(relay.times, {}, ["contact.force"])["contact.force"])
 
 
 @dataclass(frozen=True)

@@ -2,10 +2,11 @@
 
 Static and harmonic motions are exact: solutions of the boundary value problem, by a matrix exponential along the beam.
 In time the beam has modes by Galerkin's method. With a linear contact their motion is a matrix exponential too, with
-any other it is integrated by scipy's implicit Runge-Kutta method. Names and units are those of the component.
+any other it is integrated by scipy's implicit Runge-Kutta method, or by SUNDIALS CVODE from one event to the next.
+Names and units are those of the component.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import pi, sin, sqrt
 from typing import Any
@@ -15,13 +16,14 @@ from numpy.polynomial.legendre import Legendre, leggauss
 from scipy.integrate import solve_ivp
 from scipy.linalg import eig, eigh, expm
 from scipy.optimize import brentq
+from sksundae.cvode import CVODE
 
 from component import STARTS
 from relay_contact import Array, Values
 
 Acceleration = Callable[[float], float]
-# Force (N) on the tip by time, deflection and rate, and how fast it falls with the last two.
-Contact = Callable[[float, float, float], tuple[float, float, float]]
+# Force (N) on the tip by time, deflection and rate.
+Contact = Callable[[float, float, float], float]
 
 # Functions of Galerkin's method where solver.modes is not set. Where the beam is damped, the contact force of motion
 # without blows is then right to 1e-10 of its scale.
@@ -49,11 +51,19 @@ class Equations:
 
     size: int
     rates: Callable[[float, Array], Array]
-    jacobian: Callable[[float, Array], Array]
     # Deflection (m) of the tip and its rate by the motion.
     tip: Callable[[Array], Any]
     # What a tolerance of the motion is relative to, m/s.
     scale: float
+
+
+def hertz(values: dict[str, Any], contact: str = "contact") -> float:
+    """Give the force of Hertz over the indentation to the power 3/2 (N/m^1.5), of one of the contacts."""
+    compliance = sum(
+        (1 - values[f"contact.{side}.poissonRatio"] ** 2) / values[f"contact.{side}.youngsModulus"]
+        for side in ("moving", "fixed")
+    )
+    return float(4 / 3 / compliance * sqrt(values[f"{contact}.curvatureRadius"]))
 
 
 class Reference:
@@ -68,12 +78,8 @@ class Reference:
         self.density: float = get("beam.density") * get("beam.width") * get("beam.thickness")  # rho A
         self.mass: float = get("tip.mass")
         self.inertia: float = get("tip.rotaryInertia")
-        compliance = sum(
-            (1 - get(f"contact.{side}.poissonRatio") ** 2) / get(f"contact.{side}.youngsModulus")
-            for side in ("moving", "fixed")
-        )
         # F = factor d^power: Hertz, or dF/dd = k_r (F / F_r)^n, with the depth F_r / ((1 - n) k_r) at F_r.
-        self.factor: float = 4 / 3 / compliance * sqrt(get("contact.curvatureRadius"))
+        self.factor: float = hertz(self.values)
         self.power = 1.5
         if get("effects.contactLaw") == "Rough":
             reach: float = get("contact.stiffnessForce")
@@ -236,21 +242,15 @@ class Reference:
             force.append(self.force + to_force @ motion)
         return np.array(force)
 
-    def law_force(self, indentation: float, rate: float) -> tuple[float, float, float]:
-        """Contact force (N) with its derivatives by indentation and rate."""
+    def law_force(self, indentation: float, rate: float) -> float:
+        """Contact force, N."""
         if self.law in ("Hertz", "Rough"):
-            if indentation <= 0:
-                return 0.0, 0.0, 0.0
-            stiffness = self.power * self.factor * indentation ** (self.power - 1)
-            by_rate = self.contact_damping * stiffness
-            force = stiffness * indentation / self.power + by_rate * rate
-            by_indentation = stiffness + (self.power - 1) * by_rate * rate / indentation
+            pressed = max(indentation, 0.0)
+            stiffness = self.power * self.factor * pressed ** (self.power - 1)
+            force = stiffness * (pressed / self.power + self.contact_damping * rate)
         else:
             force = self.force + self.tangent * (indentation - self.indentation + self.contact_damping * rate)
-            by_indentation, by_rate = self.tangent, self.contact_damping * self.tangent
-        if force <= 0 and self.law != "Bonded":
-            return 0.0, 0.0, 0.0
-        return force, by_indentation, by_rate
+        return float(force if self.law == "Bonded" else max(force, 0.0))
 
     def motion(
         self,
@@ -265,11 +265,24 @@ class Reference:
         The fixed contact may come at a constant speed, m/s; the steps are limited where a blow could be stepped over.
         """
 
-        def contact(time: float, deflection: float, rate: float) -> tuple[float, float, float]:
+        def contact(time: float, deflection: float, rate: float) -> float:
             return self.law_force(self.indentation + support_speed * time - deflection, support_speed - rate)
 
-        tip = self.tip(acceleration, stop, tolerance, contact, max_step)
-        return lambda time: contact(time, *tip(time))[0]
+        equations = self.equations(acceleration, contact)
+        # Of a spring at rest the error is next to nothing.
+        with np.errstate(divide="ignore"):
+            solution = solve_ivp(
+                equations.rates,
+                (0.0, stop),
+                np.zeros(equations.size),
+                method="Radau",
+                rtol=tolerance,
+                atol=tolerance * equations.scale,
+                dense_output=True,
+                max_step=max_step,
+            )
+        assert solution.success, solution.message
+        return lambda time: contact(time, *equations.tip(solution.sol(time)))
 
     def equations(self, acceleration: Acceleration, contact: Contact) -> Equations:
         """Equations of motion of the tip from the preload, under a base acceleration and the force of the contact."""
@@ -283,47 +296,15 @@ class Reference:
 
         def rates(time: float, motion: Array) -> Array:
             q = motion[:n] / omega
-            load = modes.tip * (contact(time, *of(motion))[0] - self.force) - modes.participation * acceleration(time)
+            load = modes.tip * (contact(time, *of(motion)) - self.force) - modes.participation * acceleration(time)
             if follows:
                 change = self.axial_force_at(self.deflection + float(modes.tip @ q)) - self.axial_force
                 load = load + change * modes.slopes @ (preload + q)
             return np.concatenate([omega * motion[n:], load - omega * motion[:n] - modes.damping * motion[n:]])
 
-        def jacobian(time: float, motion: Array) -> Array:
-            _, by_deflection, by_rate = contact(time, *of(motion))
-            matrix = np.zeros((2 * n, 2 * n))
-            matrix[:n, n:] = np.diag(omega)
-            matrix[n:, :n] = -np.diag(omega) - by_deflection * np.outer(modes.tip, modes.tip / omega)
-            matrix[n:, n:] = -np.diag(modes.damping) - by_rate * np.outer(modes.tip, modes.tip)
-            return matrix
-
         # Velocity that the force scale gives the first mode in 1 / omega.
         scale = self.force_scale * abs(modes.tip[-1]) / omega.min()
-        return Equations(2 * n, rates, jacobian, of, scale)
-
-    def tip(
-        self,
-        acceleration: Acceleration,
-        stop: float,
-        tolerance: float,
-        contact: Contact,
-        max_step: float = np.inf,
-    ) -> Callable[[Any], Any]:
-        """Deflection (m) of the tip from the preload and its rate as functions of time, from rest at 0."""
-        equations = self.equations(acceleration, contact)
-        solution = solve_ivp(
-            equations.rates,
-            (0.0, stop),
-            np.zeros(equations.size),
-            method="Radau",
-            jac=equations.jacobian,
-            rtol=tolerance,
-            atol=tolerance * equations.scale,
-            dense_output=True,
-            max_step=max_step,
-        )
-        assert solution.success, solution.message
-        return lambda time: equations.tip(solution.sol(time))
+        return Equations(2 * n, rates, of, scale)
 
     def frequency_following(self) -> float:
         """Lowest natural frequency with the contact as a spring and the axial force following the deflection, Hz."""
@@ -334,6 +315,31 @@ class Reference:
         matrix = np.diag(modes.omega_squared)
         matrix = matrix + np.outer(self.tangent * modes.tip - slope * modes.slopes @ preload, modes.tip)
         return float(sqrt(np.min(eig(matrix, right=False).real))) / (2 * pi)
+
+
+def cvode(
+    rates: Callable[[float, Array], Any],
+    events: Callable[[float, Array], Any],
+    directions: Sequence[int],
+    terminal: bool,
+    relative: float,
+    absolute: Any,  # noqa: ANN401
+) -> CVODE:
+    """Give a solver that locates where events change their signs, in these directions (0: in both), and may end there.
+
+    Rates and events are by time and state.
+    """
+
+    def into(time: float, state: Array, found: Array) -> None:
+        found[:] = rates(time, state)
+
+    def located(time: float, state: Array, found: Array) -> None:
+        found[:] = events(time, state)
+
+    located.direction, located.terminal = list(directions), [terminal] * len(directions)  # type: ignore[attr-defined]
+    return CVODE(
+        into, eventsfn=located, num_events=len(directions), rtol=relative, atol=absolute, max_num_steps=500_000
+    )
 
 
 def crossings(force: Callable[[float], float], limit: float, times: Array) -> tuple[Array, Array]:

@@ -7,9 +7,9 @@ from math import pi, sin
 import numpy as np
 import pytest
 
-from component import Instance
+from component import COMPONENT
 from frictional import Frictional, FrictionalMotion, Phase
-from relay_contact import Array, Values
+from relay_contact import Array, Contact, Values
 from relay_contact.scene import Scene, run
 
 TOLERANCE, STEP = 1e-6, 5e-6
@@ -63,7 +63,7 @@ def solved(name: str, tolerance: float) -> FrictionalMotion:
         duration = known["excitation.duration"]
         return float(amplitude * sin(pi * time / duration)) if time < duration else 0.0
 
-    return reference.moves(acceleration, stop, tolerance)
+    return FrictionalMotion(reference, acceleration, stop, tolerance)
 
 
 @cache
@@ -201,7 +201,7 @@ UNSTABLE: dict[int, Values] = {
 
 def warnings(values: Values) -> list[str]:
     """Give what the component warns of as it is initialised."""
-    with Instance() as contact:
+    with Contact(COMPONENT) as contact:
         contact.begin(values)
         return contact.warnings
 

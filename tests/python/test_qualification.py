@@ -13,7 +13,7 @@ from scipy.linalg import block_diag
 from scipy.stats import norm
 
 from component import COMPONENT, ROOT
-from elements import element
+from elements import Part, assembled
 from reference import Reference, crossings
 from relay_contact import RelayContactError, Values
 from relay_contact.command import main
@@ -44,16 +44,12 @@ ROUGH = Reference({**PUBLISHED, **MODELS["rough contact"]})
 MILITARY = Standard.read("MIL-PRF-28776")
 
 
-def by_name(tests: Assessment) -> dict[str, Tested]:
-    return {tested.first.test: tested for tested in tests}
-
-
 @pytest.fixture(scope="module")
-def paper(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Tested], Path]:
-    """Test the published relay as MIL-PRF-28776F asks; give what the tests showed, and the folder."""
+def paper(tmp_path_factory: pytest.TempPathFactory) -> Assessment:
+    """Test the published relay as MIL-PRF-28776F asks."""
     out = tmp_path_factory.mktemp("paper")
     wanted = ["sine", "random", "213 A"]
-    return by_name(qualify("paper", "MIL-PRF-28776", out=out, tests=wanted, quick=True, component=COMPONENT)), out
+    return qualify("paper", "MIL-PRF-28776", out=out, tests=wanted, quick=True, component=COMPONENT)
 
 
 def test_levels_of_standards() -> None:
@@ -85,8 +81,8 @@ def test_the_response_is_that_of_the_exact_beam(specimen: Reference) -> None:
         assert abs(found.transfer[at] - exact) < 1.1 * folded + 1e-5 * abs(specimen.force_response(1250.0)), frequency
 
 
-def test_sine_like_the_exact_beam(paper: tuple[dict[str, Tested], Path]) -> None:
-    tested = paper[0]["vibration (sine)"]
+def test_sine_like_the_exact_beam(paper: Assessment) -> None:
+    tested = paper["vibration (sine)"]
     part = tested.margin
     preload = SPECIMEN.force
     exact = min(preload / abs(SPECIMEN.force_response(f)) / G for f in np.arange(1100, 1300, 1.0))
@@ -119,9 +115,9 @@ def test_sine_like_the_exact_beam(paper: tuple[dict[str, Tested], Path]) -> None
     assert part.high - part.low == pytest.approx(2 * np.hypot(0.0033, 0.0225) * part.margin, rel=0.05)
 
 
-def test_a_rough_contact_opens_where_the_second_solution_does(paper: tuple[dict[str, Tested], Path]) -> None:
+def test_a_rough_contact_opens_where_the_second_solution_does(paper: Assessment) -> None:
     """Its stiffness falls with the force: it opens at a level 20 % above that of the linear contact."""
-    part = next(each for each in paper[0]["vibration (sine)"].models if each.model == "rough contact").margin
+    part = next(each for each in paper["vibration (sine)"].models if each.model == "rough contact").margin
     assert part.linear < 0.85 * part.margin
     frequency = float(part.weakest.split()[0])
     end = 14 / frequency
@@ -141,19 +137,19 @@ def test_a_rough_contact_opens_where_the_second_solution_does(paper: tuple[dict[
     assert least(1.01) < 1e-6 * ROUGH.force
 
 
-def test_friction_hardly_changes_what_opens_a_contact_slowly(paper: tuple[dict[str, Tested], Path]) -> None:
+def test_friction_hardly_changes_what_opens_a_contact_slowly(paper: Assessment) -> None:
     """It vanishes with the force, so that the contact opens at the acceleration that takes the preload without it."""
-    first, *_, rubs = paper[0]["shock, 213 A"].models
+    first, *_, rubs = paper["shock, 213 A"].models
     assert rubs.model == "with friction"
     # The pulse is slow, 45 of 1355 Hz: beside it the spring's own vibration, of 3 %, is the only difference.
     assert rubs.margin.margin == pytest.approx(first.margin.margin, rel=0.01)
-    page = (paper[1] / "qualification.html").read_text(encoding="utf-8")
+    page = (paper.folder / "qualification.html").read_text(encoding="utf-8")
     for text in ("Hertzian contact of smooth bodies", "the power 0.617 of the force", "friction of 0.2", "4 models"):
         assert text in page
 
 
-def test_random_by_rice_on_the_exact_beam(paper: tuple[dict[str, Tested], Path]) -> None:
-    tested = paper[0]["vibration (random), 214 G"]
+def test_random_by_rice_on_the_exact_beam(paper: Assessment) -> None:
+    tested = paper["vibration (random), 214 G"]
     part = tested.margin
     test = next(test for test in MILITARY.tests if isinstance(test, Random))
     frequency = np.linspace(50.0, 2000.0, 400)
@@ -169,8 +165,8 @@ def test_random_by_rice_on_the_exact_beam(paper: tuple[dict[str, Tested], Path])
     assert list(part.failed) == part.decides == ["closed contact"]
 
 
-def test_shock_like_a_spring_without_vibration(paper: tuple[dict[str, Tested], Path]) -> None:
-    tested = paper[0]["shock, 213 A"]
+def test_shock_like_a_spring_without_vibration(paper: Assessment) -> None:
+    tested = paper["shock, 213 A"]
     part = tested.margin
     # The pulse has 45 Hz, the spring 1355 Hz: its own vibration, 45/1355 of the peak at first, dies away.
     assert part.margin == pytest.approx(SPECIMEN.force / (SPECIMEN.carried_mass * 50 * G), rel=0.01)
@@ -187,8 +183,7 @@ class Elements:
         """Assemble the matrices; `contact` is the stiffness of the contact, N/m."""
         file = tomllib.loads(Path(values["beam.file"]).read_text())
         count = round(sum(segment["length"] for segment in file["segment"]) / self.SIZE)
-        stiffness, mass = np.zeros((2, 2 * count + 2, 2 * count + 2))
-        first = 0
+        parts: list[Part] = []
         for segment in file["segment"]:
             number = round(segment["length"] / self.SIZE)
             begin, end = (segment.get(f"width_{end}", segment.get("width")) for end in ("start", "end"))
@@ -196,11 +191,8 @@ class Elements:
             for at in range(number):
                 area = (widths[at] + widths[at + 1]) / 2 * segment["thickness"]
                 bending = segment["youngs_modulus"] * area * segment["thickness"] ** 2 / 12
-                place = slice(2 * (first + at), 2 * (first + at) + 4)
-                own = element(bending, segment["density"] * area, self.SIZE)
-                stiffness[place, place] += own[0]
-                mass[place, place] += own[1]
-            first += number
+                parts.append((len(parts), len(parts) + 1, bending, segment["density"] * area, self.SIZE))
+        stiffness, mass = assembled(count + 1, parts)
         for each in file["mass"]:
             at = 2 * round(each["position"] / self.SIZE)
             mass[at : at + 2, at : at + 2] += block_diag(each["mass"], each["rotary_inertia"])
@@ -247,8 +239,8 @@ def test_margins_of_a_spring_of_segments_by_finite_elements(tmp_path: Path) -> N
         assert part.chance.effects["contact.overtravel"] == pytest.approx(0.05, rel=0.01)
 
 
-def test_margins_over_the_overtravel(paper: tuple[dict[str, Tested], Path]) -> None:
-    for tested in paper[0].values():
+def test_margins_over_the_overtravel(paper: Assessment) -> None:
+    for tested in paper:
         part = tested.margin
         overtravel, margins = (np.array(part.wear[name]) for name in ("overtravel", "margin"))
         assert part.margin == pytest.approx(np.interp(part.overtravel, overtravel, margins), rel=1e-9)
@@ -258,33 +250,32 @@ def test_margins_over_the_overtravel(paper: tuple[dict[str, Tested], Path]) -> N
         if part.passes is not None:
             assert part.passes == pytest.approx(part.overtravel / part.low, rel=5e-3)
     # A normal distribution; of 256 draws one is 0.4 %, and two or three lie on the wrong side of a slanting line.
-    sine = paper[0]["vibration (sine)"].margin
+    sine = paper["vibration (sine)"].margin
     sigma = np.hypot(0.0033, 0.0225) * sine.margin / 1.96
     assert sine.chance
     assert sine.chance.failing == pytest.approx(norm.cdf(1, sine.margin, sigma), abs=0.012)
 
 
-def test_page_and_tables_show_verdict_and_margins(paper: tuple[dict[str, Tested], Path]) -> None:
-    parts, out = paper
-    page = (out / "qualification.html").read_text(encoding="utf-8")
+def test_page_and_tables_show_verdict_and_margins(paper: Assessment) -> None:
+    page = (paper.folder / "qualification.html").read_text(encoding="utf-8")
     assert "<b>2 FAIL, 1 undecided</b>" in page
     # Margins, sketch, sweeps, random vibration, shock, overtravel.
     assert page.count("<svg") == 6
     assert "4.8.10.2; shape of MIL-STD-202 method 214, from memory" in page
     assert "rms, duration read in the standard; density from memory" in page
-    with (out / "qualification.csv").open(encoding="utf-8") as file:
+    with (paper.folder / "qualification.csv").open(encoding="utf-8") as file:
         assert {(row["test"], row["model"]): float(row["margin"]) for row in csv.DictReader(file)} == {
-            (name, each.model): pytest.approx(each.margin.margin, rel=1e-8)
-            for name, part in parts.items()
+            (part.first.test, each.model): pytest.approx(each.margin.margin, rel=1e-8)
+            for part in paper
             for each in part.models
         }
 
 
-def test_the_result_is_a_table_a_page_and_a_pdf(paper: tuple[dict[str, Tested], Path], tmp_path: Path) -> None:
+def test_the_result_is_a_table_a_page_and_a_pdf(paper: Assessment, tmp_path: Path) -> None:
     """Also in a notebook, which shows the page."""
     relay = Relay.read("paper", COMPONENT)
     standard = assessment.chosen(MILITARY, ["sine"])
-    whole = Assessment(relay, standard, [paper[0]["vibration (sine)"]], tmp_path)
+    whole = Assessment(relay, standard, [paper["vibration (sine)"]], tmp_path)
     write(whole, COMPONENT, pdf=True)
     table = whole.table
     assert list(table["model"]) == list(MODELS)
@@ -378,9 +369,7 @@ def test_false_makes_of_an_open_contact_like_the_exact_beam(tmp_path: Path) -> N
     relay, gap = tmp_path / "open.toml", 1e-4
     relay.write_text(f"uncertainty.contact.overtravel = 0.1\nposition = [{{parameters.contact.overtravel = {-gap}}}]\n")
     wanted = ["sine", "random", "213 A"]
-    parts = by_name(
-        qualify(relay, "MIL-PRF-28776", out=tmp_path, tests=wanted, quick=True, component=COMPONENT)
-    )  # fmt: skip
+    parts = qualify(relay, "MIL-PRF-28776", out=tmp_path, tests=wanted, quick=True, component=COMPONENT)
     beam = Reference({"contact.overtravel": -gap})
     sine, random, shock = (
         parts[name].margin for name in ("vibration (sine)", "vibration (random), 214 G", "shock, 213 A")
@@ -401,7 +390,7 @@ def test_false_makes_of_an_open_contact_like_the_exact_beam(tmp_path: Path) -> N
     mean = np.sqrt(np.trapezoid(density * wide**2, wide) / power)
     assert random.linear == pytest.approx(gap / np.sqrt(2 * power * np.log(mean * 900 / np.log(2))), rel=3e-3)
     assert random.margin == pytest.approx(random.linear, rel=5e-3)
-    for tested in parts.values():
+    for tested in parts:
         part = tested.margin
         assert part.chance
         assert part.decides == ["open contact"]
@@ -490,7 +479,7 @@ def test_a_test_that_no_standard_has_is_refused(tmp_path: Path, capsys: pytest.C
         assessment.chosen(MILITARY, ["sine", "shok"])
 
 
-def test_parts_hold_findings(paper: tuple[dict[str, Tested], Path]) -> None:
-    for path in (paper[1] / "parts").glob("*.json"):
+def test_parts_hold_findings(paper: Assessment) -> None:
+    for path in (paper.folder / "parts").glob("*.json"):
         finding = FINDING.validate_json(path.read_bytes())
-        assert finding in [each for part in paper[0].values() for each in part.models]
+        assert finding in [each for part in paper for each in part.models]

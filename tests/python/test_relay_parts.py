@@ -78,7 +78,7 @@ SHOCKS: dict[str, tuple[Values, int, int]] = {
 
 @pytest.mark.parametrize("shock", SHOCKS)
 def test_a_released_armature_bounces_as_in_a_second_solution(shock: str) -> None:
-    """Force, position and each release from the core, until it is back; and the energy of the second solution."""
+    """Force, position and each release from the core, until it is back."""
     values, releases, rests = SHOCKS[shock]
     relay = Relay(values)
     names = ["contact.force", "armature.displacement", "armature.gap", "armature.lastRelease"]
@@ -92,11 +92,6 @@ def test_a_released_armature_bounces_as_in_a_second_solution(shock: str) -> None
     assert len(left) == releases
     assert len(course.changes.get(("rest", "closes"), [])) == rests
     assert np.unique(found["armature.lastRelease"])[1:] == pytest.approx(left, abs=LOCATED)
-    # What is put in is stored or dissipated, to the tolerance of the integrator in each of some thousand steps.
-    energy = course.energy
-    balance = sum(energy[name] for name in ("kinetic", "strain", "magnet", "dissipated")) - energy["put in"]
-    assert np.ptp(balance) < 1e-6 * energy["dissipated"][-1]
-    assert energy["dissipated"][-1] > 0.1 * np.ptp(energy["magnet"])
 
 
 @pytest.mark.parametrize("shock", SHOCKS)

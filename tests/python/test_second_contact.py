@@ -6,9 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from sksundae.cvode import CVODE
 
-from reference import Reference
+from reference import Reference, cvode
 from relay_contact import Array, Values
 from relay_contact.scene import Scene, run
 
@@ -50,26 +49,11 @@ class Between:
         amplitude, omega = known["excitation.amplitude"], 2 * pi * known["excitation.frequency"]
         equations = self.first.equations(lambda time: amplitude * sin(omega * time), self._load)
 
-        def rates(time: float, motion: Array, rates: Array) -> None:
-            rates[:] = equations.rates(time, motion)
-
-        def jacobian(time: float, motion: Array, _: Array, matrix: Array) -> None:
-            matrix[:] = equations.jacobian(time, motion)
-
-        def events(time: float, motion: Array, values: Array) -> None:
+        def events(time: float, motion: Array) -> list[float]:
             tip = time, *equations.tip(motion)
-            values[:] = [self._overlap(side, *tip) for side in (0, 1)] + self._margins(*tip)
+            return [self._overlap(side, *tip) for side in (0, 1)] + self._margins(*tip)
 
-        events.terminal = [False] * 4  # type: ignore[attr-defined]
-        solver = CVODE(
-            rates,
-            jacfn=jacobian,
-            eventsfn=events,
-            num_events=4,
-            rtol=tolerance,
-            atol=tolerance * equations.scale,
-            max_num_steps=100_000,
-        )
+        solver = cvode(equations.rates, events, [0] * 4, False, tolerance, tolerance * equations.scale)
         solution = solver.solve(times, np.zeros(equations.size))
         assert solution.success, solution.message
         # The instants of events are among its times.
@@ -86,16 +70,16 @@ class Between:
             (second * time - self.gap - change, second - change_rate),
         ]
 
-    def _laws(self, *tip: float) -> list[tuple[float, float, float]]:
+    def _laws(self, *tip: float) -> list[float]:
         return [law.law_force(*at) for law, at in zip(self.laws, self._indentations(*tip), strict=True)]
 
-    def _load(self, *tip: float) -> tuple[float, float, float]:
+    def _load(self, *tip: float) -> float:
         first, second = self._laws(*tip)
-        return first[0] - second[0], first[1] + second[1], first[2] + second[2]
+        return first - second
 
     def _margins(self, *tip: float) -> list[float]:
         """Force of each contact above that of the threshold resistance, N."""
-        return [law[0] - self.limit for law in self._laws(*tip)]
+        return [force - self.limit for force in self._laws(*tip)]
 
     def _overlap(self, side: int, *tip: Any) -> Any:  # noqa: ANN401
         """Give what is positive where a contact has a force: its indentation, or what damping leaves of it (m)."""
@@ -105,7 +89,7 @@ class Between:
     def forces(self, side: int, every: int) -> Array:
         """Force of a contact at so many times each but the first, N."""
         tips = zip(*(course[every::every] for course in (self.times, *self.tip)), strict=True)
-        return np.array([self._laws(*tip)[side][0] for tip in tips])
+        return np.array([self._laws(*tip)[side] for tip in tips])
 
     def closed(self, side: int) -> Any:  # noqa: ANN401
         """Whether a contact has a force, at all times."""

@@ -9,7 +9,6 @@ import pytest
 from scipy.stats import norm, qmc
 
 from component import COMPONENT
-from relay_contact import RelayContactError
 from relay_contact.qualification import Relay, Standard
 from relay_contact.qualification import position as positions
 from relay_contact.qualification.distributions import LIMITS, Distribution
@@ -35,27 +34,6 @@ def test_distributions_by_name(entries: Any, ends: tuple[float, float]) -> None:
     found = Distribution(**entries)
     assert found.factor(norm.ppf(LIMITS), 2.0) == pytest.approx(ends, abs=2e-4)
     assert found.half(2.0) == pytest.approx((ends[1] - ends[0]) / 2, abs=2e-4)
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("uncertainty.tip.mass = {distribution = 'uniform'}", "1: uncertainty.tip.mass = .*a uniform .* has part"),
-        ("uncertainty.tip.mass = {distribution = 'normal', part = 2.0}", "1: .*part: allowed is less than 1"),
-        ("uncertainty.tip.mass = {distribution = 'gauss', part = 0.1}", "1: .*distribution: allowed is 'normal'"),
-        ("uncertainty.tip.mass = {distribution = 'triangular', low = 0.1, mode = 0.0, high = 0.1}", "1: .*to rise"),
-        ("uncertainty.tip.mass = 0.1\n[correlation]\nnames = ['tip.mas']\nmatrix = [[1.0]]", "3: correlation.names.1"),
-        ("[correlation]\nnames = ['a', 'b']\nmatrix = [[1.0, 2.0], [2.0, 1.0]]", "3: correlation.matrix.1.2 = 2.0"),
-        ("[correlation]\nnames = ['a', 'b']\nmatrix = [[1.0, 0.5], [0.4, 1.0]]", "1: correlation = .*symmetrical"),
-        ("[correlation]\nnames = ['a', 'b', 'c']\nmatrix = [[1.0, 0.9, -0.9], [0.9, 1.0, 0.9], [-0.9, 0.9, 1.0]]",
-         "1: correlation = .*negative eigenvalue"),
-    ],
-)  # fmt: skip
-def test_wrong_uncertainties(tmp_path: Path, text: str, message: str) -> None:
-    path = tmp_path / "relay.toml"
-    path.write_text(f"{text}\n")
-    with pytest.raises(RelayContactError, match=f"relay.toml:{message}"):
-        Relay.read(path, COMPONENT)
 
 
 def slow_shock(tmp_path: Path, text: str) -> tuple[Position, float]:

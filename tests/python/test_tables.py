@@ -22,6 +22,7 @@ def by_semicolons(text: str) -> str:
     return text.replace(",", ";").replace(".", ",")
 
 
+HEAD, ROWS = "travel [mm],force [cN]\n", "0,1\n1,2\n2,3\n3,4\n"
 EXPORTS = {
     "plain": "travel [um],force [cN]\n" + PLAIN,
     "capitals and parentheses": "Travel (um),FORCE (cN)\n" + PLAIN,
@@ -71,6 +72,24 @@ def test_exports_are_read_as_they_are(tmp_path: Path, name: str, encoding: str, 
         ("travel [um],force [cN],force [N]\n", ":1: column force: there twice"),
         ("time,displacement,velocity\n0,1,1\n", "columns displacement and velocity: not allowed, allowed is one"),
         ("force 12\nno table\n", "csv: no line with the names of the columns"),
+        (
+            "travel,level\n",
+            ":1: columns travel, level: no measurement that is known; there are static force: travel",
+        ),
+        (HEAD + "0,1\n1,x\n", ":3: column force: x: not allowed, allowed is a number"),
+        (HEAD + "0,1\n1,nan\n", ":3: column force: nan cN: not allowed, allowed is a finite number"),
+        (HEAD + "0,1\n1\n", ":3: 1 values: not allowed, allowed is 2, one in each column"),
+        (HEAD + ROWS, ":5: 4 rows: not allowed, allowed is 5 or more for a static force"),
+        ("frequency,level\n-3,1\n", ":2: column frequency: -3 Hz: not allowed, allowed is more than 0 Hz"),
+        (
+            "time,displacement\n0,1\n0,2\n",
+            ":3: column time: 0 s: not allowed, allowed is more than in the row before",
+        ),
+        ("# positon = a\n" + HEAD + ROWS + "4,5\n", ":1: positon: unknown; did you mean position"),
+        ("# position = b\n" + HEAD + ROWS + "4,5\n", ":1: position = b: not allowed, allowed is a"),
+        ("# calibration = 2 %\n" + HEAD + ROWS + "4,5\n", ":1: calibration = 2 %: not allowed, allowed is 0 to 1"),
+        ("# tip.mas = 1\n" + HEAD + ROWS + "4,5\n", ":1: tip.mas: no such variable; did you mean tip.mass"),
+        ("", "csv: no line with the names of the columns"),
     ],
 )
 def test_errors_in_an_export_have_line_and_column(tmp_path: Path, text: str, message: str) -> None:

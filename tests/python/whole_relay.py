@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 from scipy.linalg import block_diag, eigh
 from scipy.optimize import brentq
-from sksundae.cvode import CVODE
 
 from component import STARTS
-from elements import element
+from elements import assembled
+from reference import cvode, hertz
 from relay_contact import Array, Values
 
 ELEMENTS = 40
@@ -39,18 +39,12 @@ class Beam:
         nodes = np.concatenate(
             [np.linspace(0, place, before + 1), np.linspace(place, length, ELEMENTS - before + 1)[1:]]
         )
-        size = 2 * len(nodes)
-        self.mass, rigidity = np.zeros((size, size)), np.zeros((size, size))
-        for k, h in enumerate(np.diff(nodes)):
-            at = np.s_[2 * k : 2 * k + 4]
-            bent, moved = element(bending, per_length, h)
-            rigidity[at, at] += bent
-            self.mass[at, at] += moved
-        rigid = np.tile([1.0, 0.0], len(nodes))
-        self.load = (self.mass @ rigid)[2:]
-        self.mass, self.rigidity = self.mass[2:, 2:], rigidity[2:, 2:]
+        parts = [(k, k + 1, bending, per_length, h) for k, h in enumerate(np.diff(nodes).tolist())]
+        rigidity, mass = assembled(len(nodes), parts)
+        # The load is that of all nodes moving alike; the first is clamped.
+        self.load, self.mass, self.rigidity = mass[2:, ::2].sum(axis=1), mass[2:, 2:], rigidity[2:, 2:]
         self.damping = damping
-        self.tip, self.place = np.zeros(size - 2), np.zeros(size - 2)
+        self.tip, self.place = np.zeros((2, len(self.load)))
         self.tip[-2], self.place[2 * before - 2] = 1.0, 1.0
 
 
@@ -84,21 +78,9 @@ class Law:
         """Return the force of the closed law, N."""
         return float(self.stiffness * max(d, 0.0) ** (self.power - 1) * self.sign(d, rate))
 
-    def slopes(self, d: float, rate: float) -> tuple[float, float]:
-        """Return the derivatives of the force of the closed law by overlap and rate."""
-        if self.power == 1.0:
-            return self.stiffness, self.stiffness * self.damping
-        d = max(d, 1e-16)
-        tangent = self.power * self.stiffness * d ** (self.power - 1)
-        return tangent * (1 + self.damping * (self.power - 1) * rate / d), tangent * self.damping
-
     def elastic(self, d: float) -> float:
         """Return the force without damping, N."""
         return float(self.stiffness * max(d, 0.0) ** self.power)
-
-    def energy(self, d: float) -> float:
-        """Return the energy stored, J."""
-        return float(self.stiffness * max(d, 0.0) ** (self.power + 1) / (self.power + 1))
 
 
 @dataclass(frozen=True)
@@ -125,8 +107,6 @@ class Course:
     """Contact force at the instants asked for, N."""
     place: Array
     """Position of the armature, m."""
-    energy: dict[str, Array]
-    """J: kinetic, strain (also of the touches and the return spring), magnet, dissipated, and put in by the base."""
     changes: dict[tuple[str, str], list[float]] = field(default_factory=dict)
     """Instants at which a law closes and leaves, by its name."""
 
@@ -149,8 +129,8 @@ class Relay:
         `fixed` is the width and thickness (m) of the fixed contact's spring; `pushed` where a prescribed pusher is
         (m), its speed (m/s) and from when on (s); without a coil the current is that of the hold force.
         """
-        known: dict[str, Any] = {**STARTS, **values}
-        self.get, self.coil = known.__getitem__, coil
+        self.known: dict[str, Any] = {**STARTS, **values}
+        self.get, self.coil = self.known.__getitem__, coil
         get = self.get
         length, beta = get("beam.length"), get("beam.stiffnessDamping")
         self.has_pusher, self.moves = get("effects.pusher") != "None", get("effects.pusher") == "Armature"
@@ -194,12 +174,7 @@ class Relay:
     def contact(self, row: Array) -> Law:
         """Return the law of the contact."""
         get = self.get
-        compliance = sum(
-            (1 - get(f"contact.{side}.poissonRatio") ** 2) / get(f"contact.{side}.youngsModulus")
-            for side in ("moving", "fixed")
-        )
-        hertz = 4 / 3 / compliance * get("contact.curvatureRadius") ** 0.5
-        return Law("contact", row, hertz, get("contact.damping"), 1.5, get("contact.overtravel"))
+        return Law("contact", row, hertz(self.known), get("contact.damping"), 1.5, get("contact.overtravel"))
 
     def stops(self) -> list[Law]:
         """Return the laws of both stops."""
@@ -223,16 +198,13 @@ class Relay:
         """Return the position of the armature, m."""
         return float(q[-1]) / sqrt(self.mass) if self.moves else 0.0
 
-    def magnet(self, place: float, flux: float) -> tuple[float, float, float]:
-        """Return force towards the core (N), its derivative by the place, and potential (J) of a held current."""
+    def magnet(self, place: float, flux: float) -> float:
+        """Return the force towards the core (N), without a coil that of a held current."""
         if self.coil:
-            return flux**2 / (2 * self.coil.inductance * self.coil.constant), 0.0, 0.0
+            return flux**2 / (2 * self.coil.inductance * self.coil.constant)
         hold, constant = self.get("armature.holdForce"), self.get("armature.gapConstant")
-        gap = self.get("armature.corePosition") - place
-        if gap <= 0:
-            return hold, 0.0, hold * (gap - constant)
-        share = 1 / (1 + gap / constant)
-        return hold * share**2, 2 * hold * share**3 / constant, -hold * constant * share
+        gap = max(self.get("armature.corePosition") - place, 0.0)
+        return float(hold / (1 + gap / constant) ** 2)
 
     def preload(self, place: float) -> Array:
         """Return the springs at rest, with the pusher at a place (m)."""
@@ -283,7 +255,7 @@ class Relay:
         if self.moves:
             get = self.get
             back = get("armature.returnForce") - get("armature.stiffness") * get("armature.restPosition")
-            total[-1] += (self.magnet(self.place(q), flux)[0] - back) / sqrt(self.mass)
+            total[-1] += (self.magnet(self.place(q), flux) - back) / sqrt(self.mass)
         return total
 
     def base(self, time: float) -> float:
@@ -291,90 +263,32 @@ class Relay:
         return self.amplitude * sin(self.frequency * time) if time < self.duration else 0.0
 
     def rates(self, time: float, state: Array, states: Sequence[int], voltage: float) -> Array:
-        """Return the derivatives of displacements, velocities, energies dissipated and put in, and flux linkage."""
+        """Return the derivatives of displacements, velocities and flux linkage."""
         n = self.count
         q, v, flux = state[:n], state[n : 2 * n], state[-1]
-        base = self.base(time)
-        rates = np.empty(2 * n + 3)
-        rates[:n] = v
-        rates[n : 2 * n] = (
-            self.forces(time, q, v, states, flux) - self.squares * q - self.damping * v - self.load * base
-        )
-        lost = self.damping @ (v * v)
-        for law, each in zip(self.laws, states, strict=True):
-            if each != OPEN:
-                d, rate = law.overlap(time, q), law.rate(time, v)
-                lost += ((law.force(d, rate) if each == CLOSED else 0.0) - law.elastic(d)) * rate
-        rates[2 * n :] = lost, -base * (self.load @ v), 0.0
-        if self.coil:
-            rates[-1] = self.coil.slope(flux, self.get("armature.corePosition") - self.place(q), voltage)
-        return rates
-
-    def jacobian(self, time: float, state: Array, states: Sequence[int]) -> Array:
-        """Return the derivatives of the rates but those of the energies, on which nothing depends."""
-        n = self.count
-        q, v, flux = state[:n], state[n : 2 * n], state[-1]
-        matrix = np.zeros((2 * n + 3, 2 * n + 3))
-        matrix[:n, n : 2 * n] = np.eye(n)
-        matrix[n : 2 * n, :n], matrix[n : 2 * n, n : 2 * n] = np.diag(-self.squares), np.diag(-self.damping)
-        for law, each in zip(self.laws, states, strict=True):
-            if each == CLOSED:
-                by_overlap, by_rate = law.slopes(law.overlap(time, q), law.rate(time, v))
-                across = np.outer(law.row, law.row)
-                matrix[n : 2 * n, :n] -= by_overlap * across
-                matrix[n : 2 * n, n : 2 * n] -= by_rate * across
-        if self.moves:
-            matrix[2 * n - 1, n - 1] += self.magnet(self.place(q), flux)[1] / self.mass
-        if self.coil:
-            coil, root = self.coil, sqrt(self.mass)
-            gap = self.get("armature.corePosition") - self.place(q)
-            matrix[2 * n - 1, -1] = flux / coil.inductance / coil.constant / root
-            matrix[-1, -1] = -coil.resistance * (1 + max(gap, 0.0) / coil.constant) / coil.inductance
-            matrix[-1, n - 1] = coil.resistance * flux / coil.inductance / coil.constant / root if gap > 0 else 0.0
-        return matrix
-
-    def stored(self, time: float, state: Array) -> dict[str, float]:
-        """Return the energies."""
-        n = self.count
-        q, v = state[:n], state[n : 2 * n]
-        strain = 0.5 * self.squares @ q**2 + sum(law.energy(law.overlap(time, q)) for law in self.laws)
-        magnet = 0.0
-        if self.moves:
-            get = self.get
-            back = get("armature.returnForce") - get("armature.stiffness") * get("armature.restPosition")
-            strain += back * self.place(q)
-            magnet = self.magnet(self.place(q), state[-1])[2]
-        lost, put = state[2 * n], state[2 * n + 1]
-        return {"kinetic": 0.5 * v @ v, "strain": strain, "magnet": magnet, "dissipated": lost, "put in": put}
+        turns = self.forces(time, q, v, states, flux) - self.squares * q - self.damping * v
+        gap = self.get("armature.corePosition") - self.place(q)
+        flows = self.coil.slope(flux, gap, voltage) if self.coil else 0.0
+        return np.concatenate([v, turns - self.load * self.base(time), [flows]])
 
     def integrate(self, states: list[int], voltage: float) -> Any:  # noqa: ANN401
         """Return a solver of the motion while no law changes and the voltage stays."""
         n = self.count
-
-        def rates(time: float, state: Array, rates: Array) -> None:
-            rates[:] = self.rates(time, state, states, voltage)
-
-        def jacobian(time: float, state: Array, _: Array, matrix: Array) -> None:
-            matrix[:] = self.jacobian(time, state, states)
-
-        def changes(time: float, state: Array, values: Array) -> None:
-            for k, law in enumerate(self.laws):
-                d, rate = law.overlap(time, state[:n]), law.rate(time, state[n : 2 * n])
-                values[2 * k : 2 * k + 2] = d, law.sign(d, rate)
-
         # What does not matter in a state is watched in no direction: by a constant.
         watched = {OPEN: (1, 0), CLOSED: (0, -1), LOOSE: (-1, 1)}
-        directions = [each for state in states for each in watched[state]]
+        directions = np.array([each for state in states for each in watched[state]])
 
-        def events(time: float, state: Array, values: Array) -> None:
-            changes(time, state, values)
-            values[np.array(directions) == 0] = 1.0
+        def events(time: float, state: Array) -> Array:
+            found = []
+            for law in self.laws:
+                d, rate = law.overlap(time, state[:n]), law.rate(time, state[n : 2 * n])
+                found += [d, law.sign(d, rate)]
+            return np.where(directions == 0, 1.0, found)
 
-        events.direction, events.terminal = directions, [True] * len(directions)  # type: ignore[attr-defined]
-        absolute = np.concatenate([np.full(n, ABSOLUTE), np.full(n, FASTEST * ABSOLUTE), [1e-15, 1e-15, 1e-12]])
-        return CVODE(
-            rates, jacfn=jacobian, eventsfn=events, num_events=len(directions), rtol=RELATIVE, atol=absolute,
-            max_num_steps=500_000,
+        absolute = np.concatenate([np.full(n, ABSOLUTE), np.full(n, FASTEST * ABSOLUTE), [1e-12]])
+        return cvode(
+            lambda time, state: self.rates(time, state, states, voltage), events, directions.tolist(), True, RELATIVE,
+            absolute,
         )  # fmt: skip
 
     def solve(self, times: Array) -> Course:
@@ -382,12 +296,10 @@ class Relay:
         n, coil = self.count, self.coil
         start = self.at_rest()
         states = self.states(float(times[0]), start)
-        state = np.concatenate([start, np.zeros(n + 3)])
+        state = np.concatenate([start, np.zeros(n + 1)])
         kinks = [self.duration] + [law.start for law in self.laws] + ([coil.on, coil.off] if coil else [])
-        rows: list[Array] = []
-        course = Course(np.zeros(0), np.zeros(0), {})
-        now, solver, force = float(times[0]), None, []
-        names = list(self.stored(now, state))
+        course = Course(np.zeros(0), np.zeros(0))
+        now, solver, force, place = float(times[0]), None, [], []
         for time in times.tolist():
             while now < time:
                 stop = min([time, *(kink for kink in kinks if now < kink < time)])
@@ -403,15 +315,13 @@ class Relay:
                     solver = None
                 elif stop in kinks:
                     solver = None
-            rows.append(np.array([self.place(state[:n]), *self.stored(time, state).values()]))
+            place.append(self.place(state[:n]))
             contact = self.laws[0]
             closed = states[0] == CLOSED
             force.append(
                 contact.force(contact.overlap(time, state[:n]), contact.rate(time, state[n : 2 * n])) if closed else 0.0
             )
-        course.force = np.array(force)
-        course.place, *energies = np.array(rows).T
-        course.energy = dict(zip(names, energies, strict=True))
+        course.force, course.place = np.array(force), np.array(place)
         return course
 
     def changed(self, time: float, state: Array, states: list[int], found: Any, course: Course) -> list[int]:  # noqa: ANN401

@@ -290,8 +290,8 @@ class Fit:
             left = []
             for each in self.sets:
                 values = self.values(each.measurement.position, self.logarithms)
-                known = 1.0 if name.startswith("spring.") else self.laboratory.component.start(name)
-                left.append(self.left(each, self.logarithms, {name: float(values.get(name, known)) * factor}))
+                known = self.laboratory.component.value(values, name)
+                left.append(self.left(each, self.logarithms, {name: known * factor}))
             return np.concatenate([*left, self.beliefs(self.logarithms)])
 
         slope = (moved(1 + step) - moved(1 - step)) / (2 * step)

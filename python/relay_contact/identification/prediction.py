@@ -101,7 +101,7 @@ class Laboratory:
 
     def overtravel(self, values: Values) -> float:
         """Return the overtravel (m)."""
-        return float(values.get("contact.overtravel", self.component.start("contact.overtravel")))
+        return self.component.value(values, "contact.overtravel")
 
     def force(self, measurement: Measurement, values: Values) -> Array:
         """Return the static contact force (N) over travel from the working position."""
@@ -132,11 +132,9 @@ class Laboratory:
             "excitation.duration": 0.5 / frequency,
         }
         self.contact.begin_anew({**values, **knock})
-        step, now, motion = 1 / frequency / DENSITY, 0.0, []
-        for instant in (1 / frequency + step * np.arange(SAMPLES)).tolist():
-            self.contact.step(now, instant - now)
-            now = instant
-            motion.append(self.contact.real(name)[0] - rest)
+        step = 1 / frequency / DENSITY
+        instants = 1 / frequency + step * np.arange(SAMPLES)
+        motion = self.contact.drive(np.append(0.0, instants), {}, [name])[name] - rest
         half = SAMPLES // 2
         table = hankel(motion[:half], motion[half - 1 :])
         left, sizes, right = np.linalg.svd(table[:, :-1], full_matrices=False)
@@ -144,7 +142,7 @@ class Laboratory:
         system = left[:, :order].T @ table[:, 1:] @ right[:order].T / sizes[:order]
         ratios = np.linalg.eigvals(system).astype(complex)
         course = ratios ** np.arange(SAMPLES)[:, None]
-        parts = course * np.linalg.lstsq(course, np.array(motion), rcond=None)[0]
+        parts = course * np.linalg.lstsq(course, motion, rcond=None)[0]
         energy = np.where(ratios.imag > 0, (np.abs(parts) ** 2).sum(axis=0), 0.0)
         if not energy.any():
             raise RelayContactError(f"{measurement.path}: {measurement.kind}: with these parameters nothing rings")
@@ -180,12 +178,10 @@ class Laboratory:
         quarter = 0.25 / frequency
         time, periods, calm, before = 0.0, PERIODS, 0, 0j
         while True:
-            values = []
-            for instant in (periods / frequency + quarter * np.arange(3)).tolist():
-                self.contact.step(time, instant - time)
-                time = instant
-                values += self.contact.real(name)
-            amplitude = complex((values[0] - values[2]) / 2, values[1] - (values[0] + values[2]) / 2)
+            instants = np.append(time, periods / frequency + quarter * np.arange(3))
+            first, second, third = self.contact.drive(instants, {}, [name])[name].tolist()
+            time = instants[-1]
+            amplitude = complex((first - third) / 2, second - (first + third) / 2)
             calm = calm + 1 if abs(amplitude - before) <= SETTLED * abs(amplitude) else 0
             if calm == 2 or periods >= MOST:
                 return abs(amplitude)
@@ -226,7 +222,7 @@ class Laboratory:
     def monitor(self, values: Values) -> Contacts:
         """Return what counts as an interruption."""
         names = ("chatter.minimumDuration", "chatter.resistanceThreshold")
-        opening, resistance = (float(values.get(name, self.component.start(name))) for name in names)
+        opening, resistance = (self.component.value(values, name) for name in names)
         return Contacts(opening, 1e-6, resistance, 1.0, "", "measured")
 
     def correction(self, measurement: Measurement, values: Values) -> Array:

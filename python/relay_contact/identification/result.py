@@ -130,7 +130,7 @@ def unknowns(
                 start, least, most = 1.0, 0.0, np.inf
             else:
                 variable = component.variables[name]
-                start = float(values.get(name, component.start(name)))
+                start = component.value(values, name)
                 least, most = float(variable.min or 0.0), float(variable.max or np.inf)
             if start <= 0:
                 raise RelayContactError(f"{name} = {start:g} in the relay's file: not allowed, a search starts above 0")

@@ -1,6 +1,5 @@
 """The results of an assessment as one page, in HTML and PDF, and tables."""
 
-import hashlib
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -10,6 +9,7 @@ import matplotlib as mpl
 from relay_contact import pages
 from relay_contact.component import DIFFERENCE, Component, Values, units
 from relay_contact.figures import three
+from relay_contact.files import digest
 from relay_contact.qualification import plots, statistics
 from relay_contact.qualification.assessment import springs_of
 from relay_contact.qualification.excitation import LEVELS, evidence_told
@@ -192,7 +192,7 @@ def position_context(assessment: Assessment, component: Component, name: str, va
         context["rest"] = f"{at_rest(own)}; first resonance {three(own.natural)} Hz{clear}"
         lengths = {} if values.get("beam.file") else {"length": "beam.length"}
         shown = {**lengths, "tip": "tip.mass"}
-        given = {key: float(values.get(name, component.start(name))) for key, name in shown.items()}
+        given = {key: component.value(values, name) for key, name in shown.items()}
         given["overtravel"] = own.overtravel
         context["sketch"] = pages.svg(plots.sketch(known, given))
     return context
@@ -232,20 +232,15 @@ def scope(relay: Relay, standard: Standard) -> tuple[list[str], list[str]]:
     return judged, left
 
 
-def hash_of(path: Path) -> str:
-    """Return the hash of a file."""
-    return hashlib.sha256(path.read_bytes()).hexdigest()[:16]
-
-
 def versions(assessment: Assessment, component: Component) -> list[tuple[str, str, str]]:
     """Return version and hash of all that the results come from."""
-    described = component.description
+    described, own = component.description, digest(component.path.read_bytes())
     try:
         package = version("relay-contact")
     except PackageNotFoundError:
         package = "from its folder"
     return [
-        ("component", f"{described.modelName} {described.version}, {described.guid}", hash_of(component.path)),
+        ("component", f"{described.modelName} {described.version}, {described.guid}", own),
         ("package", f"relay-contact {package}", ""),
         ("relay", assessment.relay.title, assessment.relay.digest),
         ("standard", assessment.standard.title, assessment.standard.digest),

@@ -66,7 +66,7 @@ def at_rest(component: Component, values: Values) -> Rest:
     Without a pusher the sign of the overtravel says whether the contact is open, else the component does.
     """
     if pusher_of(component, values) == NONE:
-        return Rest(float(values.get("contact.overtravel", component.start("contact.overtravel"))) < 0)
+        return Rest(component.value(values, "contact.overtravel") < 0)
     known = all_parts(component, values)
     with component.started(values) as contact, contact.explained():
         touching = tuple(name for name, part in known.items() if part.now(contact) > 0)
@@ -82,17 +82,14 @@ def all_parts(component: Component, values: Values) -> dict[str, Part]:
     """Return all parts beside the contacts that a relay with these parameters has, by name."""
     found = [Part(PUSHER, (("pusher.force", 1.0),), least="step.minimumPusherForce")]
     if pusher_of(component, values) == MOVED:
-
-        def value(name: str) -> float:
-            return float(values.get(f"armature.{name}", component.start(f"armature.{name}")))
-
-        stiffness = value("stopStiffness")
-        damper = 2 * damping_ratio(value("stopRestitution")) * sqrt(stiffness * value("mass"))
+        names = ("stopStiffness", "stopRestitution", "mass", "restPosition")
+        stiffness, restitution, mass, place = (component.value(values, f"armature.{name}") for name in names)
+        damper = 2 * damping_ratio(restitution) * sqrt(stiffness * mass)
         overlap, velocity = ("armature.gap", -stiffness), ("armature.velocity", damper)
         resting = ("armature.displacement", -stiffness), ("armature.velocity", -damper)
         found += [
             Part(CORE, (overlap, velocity), least="step.minimumStopForce"),
-            Part(STOP, resting, stiffness * value("restPosition")),
+            Part(STOP, resting, stiffness * place),
         ]
     return {part.name: part for part in found}
 
@@ -120,7 +117,7 @@ def damping_ratio(restitution: float) -> float:
 
 def check_held(component: Component, values: Values) -> None:
     """Refuse a position in which the nominal current or more does not hold the armature at its core."""
-    current = float(values.get("coil.relativeCurrent", component.start("coil.relativeCurrent")))
+    current = component.value(values, "coil.relativeCurrent")
     if pusher_of(component, values) == MOVED and abs(current) >= 1 and CORE not in at_rest(component, values).held:
         with component.started(values) as contact:
             gap = contact.get("armature.gap")

@@ -118,9 +118,7 @@ class Position:
 
     def value(self, name: str) -> float:
         """Return the value of a parameter; that of an entry of a spring file is a factor, 1 but in further axes."""
-        if is_entry(name):
-            return float(self.values.get(name, 1.0))
-        return float(self.values.get(name, self.component.start(name)))
+        return self.component.value(self.values, name)
 
     @cached_property
     def rest(self) -> Rest:

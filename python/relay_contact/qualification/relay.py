@@ -1,6 +1,5 @@
 """A relay as its file describes it: contacts, coil positions, and how well its parameters are known."""
 
-import hashlib
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any
@@ -10,7 +9,7 @@ from pydantic import Field
 from scipy.special import ndtri
 
 from relay_contact.component import Component, Value, Values, nearest
-from relay_contact.files import RelayContactError, by_name, found, named, read_toml
+from relay_contact.files import RelayContactError, by_name, digest, found, named, read_toml
 from relay_contact.qualification import distributions
 from relay_contact.qualification.distributions import Correlation, Distribution
 from relay_contact.qualification.parts import check_held
@@ -124,7 +123,7 @@ class Relay:
     def value(self, component: Component, name: str, position: str | None = None) -> float:
         """Return the value of a parameter, in the first position unless another is named; of an entry a factor of 1."""
         values = self.positions[position or next(iter(self.positions))]
-        return 1.0 if is_entry(name) else value_of(component, values, name)
+        return component.value(values, name)
 
     def parts(self, component: Component) -> dict[str, float]:
         """Return half of each interval of 95 %, as a part of the value."""
@@ -172,10 +171,9 @@ class Relay:
                     check_held(component, {**values, **changed})
         title, roughness = content.title or path.stem, content.contact.roughness
         axes = {name: participations(path, name, own, positions) for name, own in content.axes.items()}
-        digest = hashlib.sha256(path.read_bytes()).hexdigest()[:16]
         return cls(
             title, positions, uncertainty, tuple(models.values()), content.monitor, roughness, content.correlation,
-            axes, digest,
+            axes, digest(path.read_bytes()),
         )  # fmt: skip
 
 
@@ -276,7 +274,7 @@ def uncertainties(
         with at(path, *place):
             used = [distribution.part == 0]
             for position, values in positions.items():
-                start = 1.0 if is_entry(name) else value_of(component, values, name)
+                start = component.value(values, name)
                 ends = [start, start] if not start else start * distribution.factor(ndtri(distributions.LIMITS), start)
                 for end in ends:
                     used.append(blow(component, values, {name: float(end)}) != rest[position])
@@ -289,7 +287,7 @@ def blow(component: Component, values: Values, changed: Values | None = None) ->
     """Return what the contacts do after a blow that closes the first and one that opens it, with other parameters."""
     watched = ("contact.force", "contact.resistance", "tip.displacement", "second.force", "second.resistance",
                "fixed.displacement", "pusher.force", "armature.displacement")  # fmt: skip
-    travel = FURTHER + sum(abs(value_of(component, values, name)) for name in ("contact.overtravel", "second.gap"))
+    travel = FURTHER + sum(abs(component.value(values, name)) for name in ("contact.overtravel", "second.gap"))
     size = 2 * travel / (HALF * STEP) ** 2
     # The middle twice: there it turns around.
     time = STEP * np.insert(np.arange(2.0 * HALF + 1), HALF, HALF)
@@ -297,11 +295,6 @@ def blow(component: Component, values: Values, changed: Values | None = None) ->
     with component.started({**values, **(changed or {})}) as contact, contact.explained():
         rows = contact.drive(time, {"base.acceleration": course}, watched)
         return [float(value) for row in zip(*rows.values(), strict=True) for value in row]
-
-
-def value_of(component: Component, values: Values, name: str) -> float:
-    """Return the value of a real parameter."""
-    return float(values.get(name, component.start(name)))
 
 
 def relays() -> dict[str, Path]:

@@ -219,7 +219,7 @@ def reserved(
         size = 10 * reserve
     else:
         lost = interrupting_force(contact.real("resistance.coefficient", "resistance.exponent"), threshold)
-        overtravel = float(values.get("contact.overtravel", contact.component.start("contact.overtravel")))
+        overtravel = contact.component.value(values, "contact.overtravel")
         overtravel = max(abs(overtravel), SHALLOW) if held else overtravel
         (force,) = contact.real("contact.force")
         reserve, size = force - lost, WEAK * overtravel * 2 * np.pi * natural
@@ -296,16 +296,16 @@ def interrupting_force(law: list[float], threshold: float) -> float:
     return float((coefficient / threshold) ** (1 / exponent))
 
 
-def margin(response: Response, test: Test, opening: float, chance: float = 0.5) -> float:
+def margin(response: Response, test: Test, opening: float) -> float:
     """Return the factor of the level of a test that fails, that is, interrupts or closes the contact for a time (s).
 
-    In random vibration it does so within the test with a chance.
+    In random vibration it does so within the test with a chance of one half.
     """
     match test:
         case Sine():
             return float(response.sine(test, opening)[1].min())
         case Random():
-            return response.random(test, opening, chance)
+            return response.random(test, opening)
         case Transient():
             course = test.course()
             return min(response.course(course, sign, opening) for sign in test.directions.values())

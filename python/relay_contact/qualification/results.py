@@ -1,6 +1,5 @@
 """What an assessment showed: a finding for each test, position and model, and all of them as tables."""
 
-import csv
 from dataclasses import field
 from html import escape
 from pathlib import Path
@@ -179,8 +178,9 @@ class Assessment:
                 return each
         raise KeyError(f"{name}: there are {', '.join(dict.fromkeys(each.first.test for each in self.tests))}")
 
-    def results(self) -> "Rows":
-        """Return the columns, a row for each test, position and model, and the units."""
+    @property
+    def table(self) -> "pd.DataFrame":
+        """A row for each test, position and model; `attrs["units"]` has the units."""
         rows: list[dict[str, Any]] = []
         units: dict[str, str] = {}
         for tested in self.tests:
@@ -201,10 +201,11 @@ class Assessment:
         # Columns of parts that no relay here has would be empty.
         others = [name for name in (*MARGINS.values(), *LEAST.values()) if any(name in row for row in rows)]
         columns = [*FIELDS, *NUMBERS, *(name for name in others if name not in NUMBERS)]
-        return columns, rows, units | dict.fromkeys(TIMES.values(), "s") | {"resonance": "Hz"}
+        return frame(columns, rows, units | dict.fromkeys(TIMES.values(), "s") | {"resonance": "Hz"})
 
-    def swept(self) -> "Rows":
-        """Return the columns, a row for each frequency of each sine, at the level of the test, and the units."""
+    @property
+    def sweeps(self) -> "pd.DataFrame":
+        """A row for each frequency of each sine, at the level of the test; `attrs["units"]` has the units."""
         rows: list[dict[str, Any]] = []
         for each in (each for tested in self.tests for each in tested.models):
             if each.kind == "sine" and each.judged:
@@ -218,26 +219,14 @@ class Assessment:
         keys = ["position", "test", "model", "frequency", "acceleration", *TIMES.values(), *CONTACTS, *others]
         units = {"frequency": "Hz", "acceleration": "m/s2", **dict.fromkeys(TIMES.values(), "s"),
                  **{LEAST[name]: UNITS[name] for name in LEAST}}  # fmt: skip
-        return keys, rows, units
-
-    @property
-    def table(self) -> "pd.DataFrame":
-        """A row for each test, position and model; `attrs["units"]` has the units."""
-        return frame(*self.results())
-
-    @property
-    def sweeps(self) -> "pd.DataFrame":
-        """A row for each frequency of each sine, at the level of the test; `attrs["units"]` has the units."""
-        return frame(*self.swept())
+        return frame(keys, rows, units)
 
     def write(self) -> None:
         """Write both tables as CSV, with the units in the names of their columns."""
-        for name, (columns, rows, units) in (("qualification.csv", self.results()), ("sweeps.csv", self.swept())):
-            cells = [[row.get(column, "") for column in columns] for row in rows]
-            with (self.folder / name).open("w", encoding="utf-8", newline="") as file:
-                writer = csv.writer(file, lineterminator="\n")
-                writer.writerow(f"{column} [{units[column]}]" if column in units else column for column in columns)
-                writer.writerows([f"{cell:.9g}" if isinstance(cell, float) else cell for cell in row] for row in cells)
+        for name, table in (("qualification.csv", self.table), ("sweeps.csv", self.sweeps)):
+            units = table.attrs["units"]
+            head = [f"{column} [{units[column]}]" if column in units else column for column in map(str, table)]
+            table.to_csv(self.folder / name, index=False, header=head, float_format="%.9g", lineterminator="\n")
 
     def _repr_html_(self) -> str:
         """Return the page for a notebook, apart from the notebook's own style."""
@@ -247,7 +236,7 @@ class Assessment:
 
 def frame(columns: list[str], rows: list[dict[str, Any]], units: dict[str, str]) -> "pd.DataFrame":
     """Return a table of rows."""
-    # It takes long to import, and nothing else here needs it.
+    # It takes long to import, and workers write no tables.
     import pandas as pd
 
     table = pd.DataFrame(rows, columns=columns)
@@ -255,8 +244,6 @@ def frame(columns: list[str], rows: list[dict[str, Any]], units: dict[str, str])
     return table
 
 
-Rows = tuple[list[str], list[dict[str, Any]], dict[str, str]]
-"""Columns, rows and units of a table."""
 FIELDS = ["position", "test", "axis", "model", "clause", "evidence", "level", "verdict"]
 NUMBERS = ["margin", "low", "high", "chance", "chance low", "chance high", "weakest", "limits", "verdict of all models",
            "fails first", "resonance", *TIMES.values(), *CONTACTS]  # fmt: skip

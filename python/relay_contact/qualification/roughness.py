@@ -7,7 +7,7 @@ curvature over the square of the radius of Hertz's circle, which is the roughnes
 from dataclasses import dataclass
 
 from relay_contact.component import Component, Values
-from relay_contact.qualification.relay import Relay, value_of
+from relay_contact.qualification.relay import Relay
 
 SMOOTH = 0.05
 """The number below which Hertz's law is wrong by 7 % at most, 1."""
@@ -33,11 +33,11 @@ def spot(component: Component, values: Values) -> Spot | None:
     if force <= 0:
         return None
     compliance = sum(
-        (1 - value_of(component, values, f"contact.{side}.poissonRatio") ** 2)
-        / value_of(component, values, f"contact.{side}.youngsModulus")
+        (1 - component.value(values, f"contact.{side}.poissonRatio") ** 2)
+        / component.value(values, f"contact.{side}.youngsModulus")
         for side in ("moving", "fixed")
     )
-    curvature = value_of(component, values, "contact.curvatureRadius")
+    curvature = component.value(values, "contact.curvatureRadius")
     radius = (0.75 * force * curvature * compliance) ** (1 / 3)
     return Spot(force, radius, radius**2 / curvature)
 

@@ -1,6 +1,5 @@
 """What standards ask of a contact, from files: tests, and the interruptions allowed."""
 
-import hashlib
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Literal
@@ -9,7 +8,7 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass
 
 from relay_contact import records
-from relay_contact.files import HERE, RelayContactError, by_name, named
+from relay_contact.files import HERE, RelayContactError, by_name, digest, named
 from relay_contact.qualification.excitation import (
     Evidence,
     History,
@@ -84,7 +83,7 @@ class Recorded(Table):
             History(
                 f"{name}, {each.channel}" if len(found) > 1 else name, self.clause or f"{path.name}, {each.channel}",
                 self.evidence, axis=self.axis, record=each, both=self.reversed,
-                digest=hashlib.sha256(each.time.tobytes() + each.acceleration.tobytes()).hexdigest()[:16],
+                digest=digest(each.time.tobytes() + each.acceleration.tobytes()),
             )
             for each in found
         ]  # fmt: skip
@@ -133,8 +132,7 @@ class Standard:
             if shock.duration <= longest:
                 text = f"allowed is more than the longest opening and closing in [contacts], {longest:g} s"
                 raise refused(path, ("shock", number, "duration"), shock.duration, text)
-        digest = hashlib.sha256(path.read_bytes()).hexdigest()[:16]
-        return cls(content.title or path.stem, content.contacts, tuple(tests), digest)
+        return cls(content.title or path.stem, content.contacts, tuple(tests), digest(path.read_bytes()))
 
     def with_history(self, file: Path, channel: str = "", unit: str = "", rate: float | None = None) -> "Standard":
         """Return the standard with a measured record as a further test."""

@@ -7,6 +7,7 @@ follow; how well is told by draws that are left out in turn. The margins of very
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.interpolate import RBFInterpolator
 from scipy.special import betaincinv
 
 from relay_contact.component import Array
@@ -29,12 +30,6 @@ def terms(scores: Array, count: int) -> Array:
     return np.column_stack([np.ones(len(scores)), scores, scores**2, *products])
 
 
-def distances(points: Array, others: Array) -> Array:
-    """Return the distances of points from others, in rows."""
-    squares = (points**2).sum(axis=1)[:, None] + (others**2).sum(axis=1) - 2 * points @ others.T
-    return np.asarray(np.sqrt(np.maximum(squares, 0.0)))
-
-
 @dataclass(frozen=True)
 class Surface:
     """A quantity over the scores of parameters, by its values in some draws."""
@@ -49,11 +44,9 @@ class Surface:
         count = len(self.scores)
         plane, *_ = np.linalg.lstsq(terms(self.scores, count), self.values)
         left = self.values - terms(self.scores, count) @ plane
-        # Distances as radial functions, whose weights add up to nothing, and a constant.
-        matrix = np.pad(-distances(self.scores, self.scores), (0, 1), constant_values=1.0)
-        matrix[-1, -1] = 0.0
-        *weights, constant = np.linalg.solve(matrix, [*left, 0.0])
-        return np.asarray(terms(scores, count) @ plane + constant - distances(scores, self.scores) @ weights)
+        # Distances as radial functions, and a constant.
+        between = RBFInterpolator(self.scores, left, kernel="linear", degree=0)
+        return np.asarray(terms(scores, count) @ plane + between(scores))
 
     @property
     def error(self) -> float:
