@@ -44,10 +44,11 @@ limit, the component searches the level itself. If the interval includes 1, the 
 several models, a test is passed only if all pass, and failed only if all fail.""",
     "Columns": """Fails first: the contact that fails at the margin. In the test: which contacts fail at the level of
 the test, and the longest failure. Left at least: force of the closed contact and gap of the open one, relative to those
-at rest. Chance of failing: the share of draws whose margin is below 1. Its own interval of 95 % comes from the number
-of draws and the deviation of the component from them. To measure or tighten: the share of the variance of the margin
-that vanishes once the parameter is known (first-order Sobol index). Passes from: the overtravel of the closed contact,
-or the gap if only an open one is judged, from which on the whole interval is above 1, with the width it has here.""",
+at rest. Chance of failing: the fraction of draws whose margin is below 1. Its own interval of 95 % comes from the
+number of draws and the deviation of the component from them. To measure or tighten: the fraction of the variance of the
+margin that vanishes once the parameter is known (first-order Sobol index). Passes from: the overtravel of the closed
+contact, or the gap if only an open one is judged, from which on the whole interval is above 1, with the width it has
+here.""",
     "Open contact": """in a changeover relay the spring reaches it only after the closed contact has opened. An
 interruption therefore comes first, unless the gap is crossed within the time allowed for one.""",
     "Parts": """if the relay's file describes a pusher or an armature, each part that is held at rest is judged. The
