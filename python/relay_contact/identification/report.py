@@ -31,9 +31,10 @@ OVER_FREQUENCY = ("frequency [Hz]", 1.0)
 DECADE = 6.0  # ratio of largest to least value from which on there is no room for labels between powers of ten
 DENSE = 300  # values from which on points are drawn smaller
 NOTES = """Fitted by least squares, with the component as the model. The scatter of each measurement is that of its
-residuals, independent from one value to the next; intervals have 95 % confidence and hold for all parameters that are
-not in the table being as the relay's file says, or as uncertain as it says. Size, phase and offset of a ring-down are
-free, so that its sensor needs no calibration. The written relay file has the values found, with their uncertainties."""
+residuals, independent from one value to the next. Intervals have 95 % confidence. Parameters that are not in the table
+have the values of the relay's file, and its uncertainties where it states them. Size, phase and offset of a ring-down
+are free, so that its sensor needs no calibration. The written relay file has the values found, with their
+uncertainties."""
 
 
 def shown(component: Component, found: Found) -> tuple[str, str, str, str]:

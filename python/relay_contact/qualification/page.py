@@ -24,8 +24,10 @@ from relay_contact.spring import SPRING_FILES
 FILLS = {"pass": "#BFE5D8", "FAIL": "#F5CDB8", "undecided": "#FBE8B0", "not judged": "#E4E4E4"}
 FILES = ("qualification.html", "qualification.csv", "sweeps.csv")
 PDF = "qualification.pdf"
-ALONE = """An interval is that of the uncertain parameters alone, and of the allowance that the relay's file makes for
-what the model leaves out. How far another form of the model would move a margin"""
+ALONE = (
+    "The interval covers the uncertain parameters and the allowance that the relay's file makes for what the model "
+    "leaves out."
+)
 LAWS = {
     "Hertz": "Hertzian contact of smooth bodies",
     "Rough": "contact of rough surfaces, its stiffness the power {:g} of the force,",
@@ -34,32 +36,34 @@ LAWS = {
 }
 """By effects.contactLaw."""
 NOTES = {
-    "Margin": """the level that interrupts the closed contact, or closes the open one, for the time that the standard
-allows, relative to that of the test. Its interval has 95 % confidence: the component answers a pulse at both ends of
-each uncertain parameter and in {fewest} to {draws} draws, the margins of {many} further draws follow from these
-answers, and at both ends of each parameter that matters and next to the limit the component seeks the level itself. If
-the interval includes 1, the verdict is undecided; if there are several models, a test is passed only by all, and failed
-only by all. Fails first: the contact that fails at the margin. In the test: which contacts fail at its level, and the
-longest failure. Left at least: of the force of the closed contact and the gap of the open one, in parts of those at
-rest. Chance of failing: the part of the draws whose margin is below 1, with its own interval of 95 % by the number of
-draws and by how far the component was from them. To measure or tighten: the share of the variance of the margin that
-goes with a parameter once it is known (first-order Sobol index). Passes from: the overtravel of the closed contact, or
-the gap of one that is open alone, from which on the whole interval is above 1, if that is as wide as here.""",
-    "Open contact": """that of a changeover relay is reached only after the closed one has opened, so that an
-interruption comes first, unless the gap is crossed within the time allowed for one.""",
-    "Parts": """of a relay whose file describes a pusher or an armature, each part that is held at rest is judged: the
-armature fails where the force of the core, or of the stop, that it rests on is gone for an instant, the spring where
-that of its pusher is; the contacts as above. The margin of the relay is the least. Up to it all parts are held; the
-margins of the others are searched with the component, at their own weakest place and where the first part fails.""",
-    "Sine": """steady vibration, its level raised gently; the slow sweep of a test is close to it. A contact at rest
-that is vibrated suddenly may fail at a lower level.""",
+    "Margin": """the level at which a contact fails, relative to that of the test. A closed contact fails by an
+interruption, an open one by a make, for the time that the standard allows. The interval has 95 % confidence. The
+component computes the response to a pulse at both ends of each uncertain parameter and in {fewest} to {draws} draws;
+the margins of {many} further draws follow from these. At both ends of each parameter that matters, and next to the
+limit, the component searches the level itself. If the interval includes 1, the verdict is undecided. If there are
+several models, a test is passed only if all pass, and failed only if all fail.""",
+    "Columns": """Fails first: the contact that fails at the margin. In the test: which contacts fail at the level of
+the test, and the longest failure. Left at least: force of the closed contact and gap of the open one, relative to those
+at rest. Chance of failing: the fraction of draws whose margin is below 1. Its own interval of 95 % comes from the
+number of draws and the deviation of the component from them. To measure or tighten: the fraction of the variance of the
+margin that vanishes once the parameter is known (first-order Sobol index). Passes from: the overtravel of the closed
+contact, or the gap if only an open one is judged, from which on the whole interval is above 1, with the width it has
+here.""",
+    "Open contact": """in a changeover relay the spring reaches it only after the closed contact has opened. An
+interruption therefore comes first, unless the gap is crossed within the time allowed for one.""",
+    "Parts": """if the relay's file describes a pusher or an armature, each part that is held at rest is judged. The
+armature fails where the force of the core or stop that it rests on vanishes for an instant, the spring where that of
+its pusher does; the contacts as above. The margin of the relay is the smallest. The margins of the other parts are
+searched with the component, at their own weakest frequency or dip and where the first part fails.""",
+    "Sine": """steady vibration, its level raised gently; the slow sweep of a test is close to it. A contact that is
+suddenly vibrated may fail at a lower level.""",
     "Random": """the level at which the largest dip of force or gap in the time of the test fails with a chance of one
-half, by Rice's rate of crossings; the response is that of the component, and the largest dips in a record of one minute
-were simulated in full. What fails in the test is told of such a dip, raised to the size of the largest in the time of
-the test. Gaussian, and clipped only where the level says so.""",
+half, by Rice's rate of crossings from the response of the component. The largest dips in a record of one minute are
+simulated in full. What fails in the test is shown for such a dip, raised to the size of the largest in the time of the
+test. The noise is Gaussian, and clipped only where the level says so.""",
     "Shock": "a pulse in both directions along the motion of the contact; the worse one is shown.",
-    "Spectrum": """a pulse of damped sines whose shock response spectrum is the required one or more, both directions.
-Another pulse that meets the spectrum may be more severe for the contact.""",
+    "Spectrum": """a pulse of damped sines, in both directions, whose shock response spectrum is the required one or
+more. Another pulse that meets the spectrum may be more severe for the contact.""",
     "Record": """the margin is a factor on the whole record. The component is run around its largest dips of force or
 gap by linear theory, with the times and values of the file.""",
 }
@@ -174,14 +178,16 @@ def position_context(assessment: Assessment, component: Component, name: str, va
     known = next((tested.first for tested in mine if tested.judged), None)
     forms = {form(component, {**values, **model.parameters}): None for model in relay.models}
     count = len(relay.models)
-    told = f", the margins of {count} models show" if count > 1 else " it does not say; one model is judged"
+    several = f"The margins of {count} models show how far another form of the model moves a margin."
+    single = "One model is judged: how far another form of the model would move the margin is not known."
+    told = several if count > 1 else single
     cells = [
         {"cells": row, "source": f"{tested.first.clause}{evidence_of(tested)}".strip(", ") if number == 0 else ""}
         for tested in mine for number, row in enumerate(rows(tested))
     ]  # fmt: skip
     notes = [f"{tested.first.named}: {note}" for tested in mine for note in tested.first.notes]
     context = {
-        "name": name, "rest": "", "sketch": "", "form": f"{ALONE}{told}. Form of the model: {'; '.join(forms)}.",
+        "name": name, "rest": "", "sketch": "", "form": f"{ALONE} {told} Form of the model: {'; '.join(forms)}.",
         "rows": cells, "reasons": [row for tested in mine for row in reasons(tested)], "notes": notes,
         "figures": [pages.svg(figure) for figure in plots.position_figures(mine, assessment.standard.contacts)],
     }  # fmt: skip
