@@ -18,31 +18,28 @@ pub fn texts(crates: &Crates, rustc: &Path, mut files: Files) -> Result<Files> {
     for name in ["LICENSE-MIT", "LICENSE-APACHE"] {
         files.insert(format!("{FOLDER}/{name}"), read(name)?);
     }
-    for ((name, version), linked) in crates {
-        if name == COMPONENT {
-            continue;
-        }
-        let source = linked.package.manifest_path.parent();
-        let texts = of_crate(source.context("a crate without a folder")?.as_std_path())?;
+    let packages = crates.values().map(|linked| linked.package);
+    for package in packages.filter(|package| package.name != COMPONENT) {
+        let crate_ = format!("{}-{}", package.name, package.version);
+        let source = package.manifest_path.parent().context("a crate without a folder")?;
+        let texts = of_crate(source.as_std_path())?;
         if texts.is_empty() {
-            bail!("crate {name} {version} is linked into the component but comes without a licence text");
+            bail!("crate {crate_} is linked into the component but comes without a licence text");
         }
-        files.extend(texts.into_iter().map(|(text, contents)| {
-            let path = format!("{FOLDER}/{name}-{version}/{text}");
-            (path, contents)
-        }));
+        let texts = texts.into_iter();
+        files.extend(texts.map(|(text, contents)| (format!("{FOLDER}/{crate_}/{text}"), contents)));
     }
     if let Some((name, text)) = standard_library(rustc)? {
         files.insert(format!("{FOLDER}/rust-standard-library/{name}"), text);
     }
-    let mut list =
+    let names = files
+        .keys()
+        .filter_map(|path| path.strip_prefix(FOLDER)?.strip_prefix('/'));
+    let list = format!(
         "RelayContact is licensed under MIT OR Apache-2.0, at your choice. Its library contains other people's work; \
-                    all licences are in this folder:\n\n"
-            .to_owned();
-    for path in files.keys() {
-        list.push_str(path.strip_prefix(FOLDER).unwrap_or(path).trim_start_matches('/'));
-        list.push('\n');
-    }
+         all licences are in this folder:\n\n{}\n",
+        names.collect::<Vec<_>>().join("\n")
+    );
     files.insert(format!("{FOLDER}/license.txt"), list.into_bytes());
     Ok(files)
 }
@@ -68,13 +65,13 @@ fn standard_library(rustc: &Path) -> Result<Option<(&'static str, Vec<u8>)>> {
 /// The licence files of a crate, by their names.
 fn of_crate(folder: &Path) -> Result<Files> {
     let mut files = Files::new();
-    for entry in fs::read_dir(folder)? {
+    for entry in fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))? {
         let entry = entry?;
         let name = entry.file_name().to_string_lossy().into_owned();
         let about = ["license", "licence", "copying", "copyright", "notice", "unlicense"];
         let lower = name.to_lowercase();
         if about.iter().any(|word| lower.starts_with(word)) && entry.file_type()?.is_file() {
-            files.insert(name, fs::read(entry.path())?);
+            files.insert(name, read(entry.path())?);
         }
     }
     Ok(files)

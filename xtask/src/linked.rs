@@ -1,4 +1,8 @@
-//! The crates linked into the component.
+//! The crates linked into the component, for its licences and its bill of materials.
+//!
+//! cargo-about and cargo-cyclonedx are not used: both take minutes to install, list crates that only macros or other
+//! packages of the project need, and leave out the standard library. The first replaces some crates' licence files by a
+//! common text, the second writes no CycloneDX 1.6.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,55 +18,48 @@ pub fn metadata() -> Result<Metadata> {
 /// The component itself among the crates.
 pub const COMPONENT: &str = "relay-contact";
 
-/// Name and version of a crate.
-pub type Crate = (String, String);
-
 /// A crate that is linked.
 pub struct Linked<'a> {
     /// Its metadata from cargo.
     pub package: &'a Package,
     /// Its direct dependencies.
-    pub uses: BTreeSet<Crate>,
+    pub uses: BTreeSet<String>,
 }
 
-/// All of them, the component included.
-pub type Crates<'a> = BTreeMap<Crate, Linked<'a>>;
+/// All of them, the component included, as `name@version`.
+pub type Crates<'a> = BTreeMap<String, Linked<'a>>;
 
 /// Finds them. `targets` are the target triples; empty for this machine. `cargo tree` is used because, unlike `cargo
 /// metadata`, it resolves features for this package only.
 pub fn crates<'a>(metadata: &'a Metadata, targets: &[&str]) -> Result<Crates<'a>> {
     let mut tree = cargo();
-    tree.args(["tree", "--edges=normal,no-proc-macro", "--prefix=depth", "--format={p}"]);
-    tree.arg(format!("--package={COMPONENT}"));
+    tree.args(["tree", "--prefix=depth", "--format= {p}"]);
+    tree.args(["--edges=normal,no-proc-macro", "--package", COMPONENT]);
     for target in targets {
         tree.args(["--target", target]);
     }
     let mut crates = Crates::new();
-    let mut above: Vec<Crate> = Vec::new();
+    let mut above: Vec<String> = Vec::new();
     // A tree for each platform, an empty line between them.
     for line in output(&mut tree)?.lines().filter(|line| !line.is_empty()) {
-        let (depth, name, version) =
-            parts(line).with_context(|| format!("cannot read a line of cargo tree: {line}"))?;
-        let crate_ = (name.to_owned(), version.to_owned());
+        let (depth, crate_) = parts(line).with_context(|| format!("cannot read a line of cargo tree: {line}"))?;
+        let mut known = metadata.packages.iter();
+        let package = known.find(|known| format!("{}@{}", known.name, known.version) == crate_);
+        let package = package.with_context(|| format!("cargo metadata does not know {crate_}"))?;
         above.truncate(depth);
         if let Some(user) = above.last().and_then(|user| crates.get_mut(user)) {
             user.uses.insert(crate_.clone());
         }
-        if !crates.contains_key(&crate_) {
-            let mut known = metadata.packages.iter();
-            let package = known.find(|known| known.name.as_str() == name && known.version.to_string() == version);
-            let package = package.with_context(|| format!("cargo metadata does not know {name} {version}"))?;
-            let uses = BTreeSet::new();
-            crates.insert(crate_.clone(), Linked { package, uses });
-        }
+        let uses = BTreeSet::new();
+        crates.entry(crate_.clone()).or_insert(Linked { package, uses });
         above.push(crate_);
     }
     Ok(crates)
 }
 
-/// Depth, name and version in a line such as `2csv-core v0.1.13 (*)`.
-fn parts(line: &str) -> Option<(usize, &str, &str)> {
-    let (depth, crate_) = line.split_at(line.find(|c: char| !c.is_ascii_digit())?);
-    let mut words = crate_.split(' ');
-    Some((depth.parse().ok()?, words.next()?, words.next()?.strip_prefix('v')?))
+/// Depth and crate in a line such as `2 csv-core v0.1.13 (*)`.
+fn parts(line: &str) -> Option<(usize, String)> {
+    let mut words = line.split(' ');
+    let (depth, name, version) = (words.next()?, words.next()?, words.next()?);
+    Some((depth.parse().ok()?, format!("{name}@{}", version.strip_prefix('v')?)))
 }
