@@ -314,7 +314,7 @@ pub enum Remark {
     UnstableSlip {
         /// Whether it slips away from the clamp, or towards it.
         away: bool,
-        /// Contact force, N: that of the preload or twice it, the one at which it grows faster.
+        /// Contact force, N: that of the preload, or where it is stable then a multiple or a part of it.
         force: f64,
         /// Growth rate, 1/s.
         growth: f64,

@@ -6,7 +6,7 @@
 //! little where many errors add up, the second too much: the estimate is their geometric mean. Of 4,000 random relays of all kinds
 //! 122 exceed their tolerance, ten of them without a larger estimate; one in seven that keep it has one, too. What the modes left
 //! out do is added ([`crate::beam::resolution`]). Where slip is unstable ([`crate::slip_stability`]) all of it grows, at the rate
-//! about the preload, until the contact sticks, opens or slips back.
+//! of such a contact force, until the contact sticks, opens or slips back.
 
 use std::array;
 
@@ -133,7 +133,7 @@ impl ForceError {
         ((by_all + self.unresolved) * self.largest_by_slip.exp()).min(1.0)
     }
 
-    /// Over a step of `length` seconds, in which slip grows at this rate (1/s); `None`: it does not slip.
+    /// Over a step of `length` seconds, in which slip grows at this rate (1/s); `None`: it does not slip, or in a direction in which it is stable.
     pub(crate) fn note_slip(&mut self, growth: Option<f64>, length: f64) {
         self.by_slip = growth.map_or(0.0, |growth| self.by_slip + growth * length);
         self.largest_by_slip = self.largest_by_slip.max(self.by_slip);

@@ -232,7 +232,11 @@ impl Model {
     /// What a user should know of the scene.
     pub fn remarks(&self) -> Vec<Remark> {
         let mut remarks: Vec<_> = self.bent_far().into_iter().chain(self.friction_at_touch()).collect();
-        remarks.extend(self.unstable_slip.iter().map(|unstable| unstable.remark(&self.scene)));
+        remarks.extend(
+            self.unstable_slip
+                .iter()
+                .filter_map(|unstable| unstable.remark(&self.scene)),
+        );
         if let Some(spring) = &self.scene.spring {
             remarks.extend(self.not_used(spring));
         }

@@ -49,16 +49,19 @@ impl Model {
         let d = self.preload.indentation + contact.approach;
         let trial = friction.trial(law, d, displacement - slip.way, rate).force;
         let limit = friction.coefficient * contact.force;
-        // As it closes both are zero: what they begin with decides.
-        let closes = contact.force <= 0.0;
-        let slips = if closes {
-            let slide = if law.damping > 0.0 { 1.0 } else { law.exponent };
-            slide * friction.ratio * rate.abs() > friction.coefficient * contact.rate.abs()
+        let (slips, against) = if law.damping > 0.0 {
+            // Over the tangential stiffness, which is zero as undeformed contacts touch.
+            let lag = displacement - slip.way + law.damping * rate;
+            let limit = friction.limit_deflection(law, 1.0, d, contact.rate);
+            (lag.abs() > limit.abs(), -lag)
+        } else if contact.force <= 0.0 {
+            // As it closes both are zero: what they begin with decides.
+            let rates = law.exponent * friction.ratio * rate.abs();
+            (rates > friction.coefficient * contact.rate.abs(), -rate)
         } else {
-            trial.abs() > limit
+            (trial.abs() > limit, trial)
         };
         if slips {
-            let against = if closes { -rate } else { trial };
             slip.phase = Phase::slip(against);
             along.force = limit.copysign(against);
             if law.damping == 0.0 {

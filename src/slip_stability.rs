@@ -11,6 +11,8 @@
 //! each other from the slip (flutter, heard as squeal), or one alone moves away (divergence). The tangential spring follows
 //! and does not act back.
 
+use std::f64::consts::TAU;
+
 use nalgebra::linalg::Schur;
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -21,8 +23,9 @@ use crate::error::Remark;
 use crate::scene::Scene;
 use crate::shared::{Found, Home, Shared};
 
-/// Contact forces looked at, in the preload force, 1: at rest, and the largest of a contact shaken until it nearly opens.
-const FORCES: [f64; 2] = [1.0, 2.0];
+/// Contact forces looked at, in the usual force, 1, each this many times the one before: a blow has many times the preload.
+const FORCES: [f64; 5] = [0.0625, 0.25, 1.0, 4.0, 16.0];
+const APART: f64 = 4.0;
 
 /// Growth that is mere rounding, in the norm of the matrix, 1.
 const ROUNDING: f64 = 1e-12;
@@ -31,30 +34,39 @@ const ROUNDING: f64 = 1e-12;
 /// are known with which it never ends (its issues 611 and 764).
 const ITERATIONS: usize = 30;
 
-/// Slip that is unstable: where it grows fastest.
+/// Slip in a direction in which it is unstable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Unstable {
-    /// Its direction.
+    /// The direction.
     pub(crate) slip: Phase,
-    /// The contact force, N.
-    pub(crate) force: f64,
-    /// Growth rate, 1/s.
-    pub(crate) growth: f64,
-    /// Frequency, Hz; 0: it moves away without vibrating.
-    pub(crate) frequency: f64,
+    /// The usual contact force, N.
+    usual: f64,
+    /// Growth rate at each of the forces, 1/s, 0 where it is stable, and its frequency, Hz, 0: it moves away without vibrating.
+    growing: [(f64, f64); FORCES.len()],
 }
 
 impl Unstable {
-    /// What a user should know of it.
-    pub(crate) fn remark(&self, scene: &Scene) -> Remark {
-        Remark::UnstableSlip {
+    /// Growth rate at a contact force (N), 1/s: linear in the logarithm of the force between those looked at.
+    pub(crate) fn growth(&self, force: f64) -> f64 {
+        let [least, .., most] = FORCES;
+        let force = (force / self.usual).clamp(least, most);
+        let near = |share: f64| (1.0 - (force / share).ln().abs() / APART.ln()).max(0.0);
+        let rates = FORCES.iter().zip(&self.growing);
+        rates.map(|(share, (rate, _))| near(*share) * rate).sum()
+    }
+
+    /// What a user should know of it: where it is unstable nearest to the usual force.
+    pub(crate) fn remark(&self, scene: &Scene) -> Option<Remark> {
+        let rates = FORCES.iter().zip(self.growing).filter(|(_, (rate, _))| *rate > 0.0);
+        let (share, (growth, frequency)) = rates.min_by(|(a, _), (b, _)| a.ln().abs().total_cmp(&b.ln().abs()))?;
+        Some(Remark::UnstableSlip {
             away: self.slip == Phase::SlipForth,
-            force: self.force,
-            growth: self.growth,
-            frequency: self.frequency,
+            force: share * self.usual,
+            growth,
+            frequency,
             coefficient: scene.friction.coefficient,
             height: scene.tip.contact_height,
-        }
+        })
     }
 }
 
@@ -71,21 +83,18 @@ pub(crate) fn unstable(modes: &[Mode], friction: &Friction, law: &Power, usual: 
 }
 
 fn found(modes: &[Mode], friction: &Friction, law: &Power, usual: f64) -> Vec<Unstable> {
-    let worst = |slip: Phase| {
+    let along = |slip: Phase| {
         let loads = loads(modes, friction, slip)?;
-        let at = |force: f64| Some((force, fastest(modes, &loads, law, force)?));
-        let found = FORCES.iter().filter_map(|share| at(share * usual));
-        let (force, growing) = found.max_by(|(_, a), (_, b)| a.re.total_cmp(&b.re))?;
-        Some(Unstable {
-            slip,
-            force,
-            growth: growing.re,
-            frequency: growing.im.abs() / std::f64::consts::TAU,
-        })
+        let growing = FORCES.map(|share| {
+            let value = fastest(modes, &loads, law, share * usual);
+            value.map_or((0.0, 0.0), |value| (value.re, value.im.abs() / TAU))
+        });
+        let unstable = growing.iter().any(|(rate, _)| *rate > 0.0);
+        unstable.then_some(Unstable { slip, usual, growing })
     };
     [Phase::SlipBack, Phase::SlipForth]
         .into_iter()
-        .filter_map(worst)
+        .filter_map(along)
         .collect()
 }
 

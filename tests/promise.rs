@@ -7,8 +7,8 @@ use relay_contact::inputs::Inputs;
 use relay_contact::scene::{Scene, Solver};
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{AxialForceKind, RealOutput};
-use testing::promise::{Judged, Outcome, judge, judge_all, tighten};
-use testing::relays::Relay;
+use testing::promise::{Judged, Outcome, compare, compare_all, judge, judge_all, tighten};
+use testing::relays::{Relay, after};
 use testing::scenes::{at_rest, largest_difference, shaken, tip_stiffness};
 use testing::{kinds, parts};
 
@@ -200,29 +200,25 @@ fn all_modes_beside_an_armature_resolve_the_motion() {
     assert!(course.estimate < relay.scene.solver.tolerance, "{}", course.estimate);
 }
 
-/// In a step of 8 fs after a jump of the inputs, too short for a collocation, the speed of a contact was rounding, and its damping
-/// made a minimum of it that was 5e-6 of the force too low.
+/// References that were wrong without a word. In a step of 8 fs after a jump of the inputs the speed of a contact was rounding, and
+/// its damping made a minimum of it that was 5e-6 of the force too low. Where a contact with friction closed while it was still
+/// indented, the deflection of its tangential spring jumped. Where a contact opened, rounding closed it again, and the long step after
+/// that made the resolution of time so coarse that it closed 0.1 ns late.
 #[test]
-fn a_minimum_does_not_depend_on_where_communication_steps_end() {
-    let relay = kinds::any(11_288);
-    let mut scene = relay.scene.clone();
-    tighten(&mut scene, 0.0);
-    let (size, last) = (relay.steps.0, 561);
-    let inputs = |k: u32, part: f64| kinds::after(&relay.inputs(f64::from(k) * size, size), part * size);
-    let mut whole = Simulation::new(&scene, &inputs(0, 0.0), 0.0).unwrap();
-    let step = |simulation: &mut Simulation, k: u32, part: f64, share: f64| {
-        let time = (f64::from(k) + part) * size;
-        simulation.step(&inputs(k, part), time, share * size).unwrap();
-        simulation.real(RealOutput::StepMinimumForce)
-    };
-    for k in 0..last {
-        step(&mut whole, k, 0.0, 1.0);
+fn references_do_not_depend_on_where_communication_steps_end() {
+    for (number, draw) in [
+        (11_288, kinds::any as fn(u64) -> Relay),
+        (10_418, kinds::any),
+        (30_494, kinds::any),
+        (44_721, kinds::friction),
+        (46_021, kinds::rough),
+    ] {
+        let compared = compare(number, draw).unwrap();
+        assert!(!compared.is_silent(), "{compared:?}");
     }
-    let mut parts = whole.clone();
-    let expected = (0..4).map(|part| step(&mut parts, last, 0.25 * f64::from(part), 0.25));
-    let expected = expected.fold(f64::INFINITY, f64::min);
-    let least = step(&mut whole, last, 0.0, 1.0);
-    assert!((least - expected).abs() < 1e-9 * expected, "{least} {expected}");
+    for compared in compare_all(33_000, 40, kinds::any) {
+        assert!(!compared.is_silent(), "{compared:?}");
+    }
 }
 
 /// Relays above their tolerance in earlier versions: where a half sine ends, inside a long step, through the quadrature of a
@@ -237,7 +233,7 @@ fn relays_that_once_exceeded_the_tolerance_keep_it() {
         assert_eq!(judge(number, Relay::draw).outcome, Outcome::Kept, "{number}");
     }
     for number in [
-        40_109, 40_148, 40_274, 40_282, 40_283, 40_375, 40_377, 40_462, 41_276, 41_346, 40_345,
+        40_109, 40_148, 40_274, 40_282, 40_283, 40_375, 40_377, 40_462, 41_276, 41_346, 40_345, 44_721,
     ] {
         assert_eq!(judge(number, kinds::friction).outcome, Outcome::Kept, "{number}");
     }
@@ -260,9 +256,7 @@ fn events(relay: &Relay, first: f64) -> Vec<f64> {
         let inputs = relay.inputs(start, size);
         while done < size {
             let length = f64::max(first, done).min(size - done);
-            simulation
-                .step(&kinds::after(&inputs, done), start + done, length)
-                .unwrap();
+            simulation.step(&after(&inputs, done), start + done, length).unwrap();
             instants.extend(simulation.events().0.map(|event| event.time));
             done += length;
         }

@@ -113,11 +113,12 @@ pub(crate) fn follow_slip<const S: usize>(
         }
         add_columns::<S, Separate>(&mut dissipated, &integrals.nodal, &powers);
     }
+    let contact = *state.links.get(CONTACT)?;
     let growing = model.unstable_slip.iter().find(|unstable| unstable.slip == start.phase);
-    let growth = growing.map(|unstable| unstable.growth);
+    let growth = growing.map(|unstable| unstable.growth(contact.force));
     state.force_error.note_slip(growth, length);
     let displacement = -state.links.get(index)?.approach;
-    if !state.links.get(CONTACT)?.closed {
+    if !contact.closed {
         state.slip.way = displacement;
     } else if start.phase.sign().is_some() {
         state.slip.way = displacement - end(&trial.slip.deflections);

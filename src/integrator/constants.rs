@@ -63,10 +63,10 @@ pub const SLOWEST_DECAY: f64 = 1.0 / 3.0;
 pub const KINKED: f64 = 0.015;
 
 /// Factor on the estimated error just after a closing, 1, where steps grow with the time since. Pinned: ÷ 10,
-/// `former_excesses_are_within_the_tolerance`.
+/// `relays_that_once_exceeded_the_tolerance_keep_it`.
 pub const AFTER_BLOW: f64 = 10.0;
 
-/// Time since a closing up to which that holds, steps. Observed. Pinned: 0, `former_excesses_are_within_the_tolerance`.
+/// Time since a closing up to which that holds, steps. Observed. Pinned: 0, `relays_that_once_exceeded_the_tolerance_keep_it`.
 pub const NEAR_BLOW: f64 = 3.0;
 
 /// Factor on the error that the contact's damper takes back, where a step is accepted or rejected, 1: the velocity at its

@@ -52,7 +52,8 @@ impl StepOutcome {
         Self {
             accepted: true,
             switched: false,
-            growth,
+            // Leaving a kink just behind it, a step would have any factor.
+            growth: growth.min(MOST_GROWTH),
             // A step shortened by the grid keeps the size proposed before.
             length: if length < SAFETY * requested {
                 requested.max(next)
@@ -62,6 +63,9 @@ impl StepOutcome {
         }
     }
 }
+
+/// Most factor on the length after a step: no proposal makes use of more, 1.
+const MOST_GROWTH: f64 = LONGER * STEP_GROWTH;
 
 impl StepLengths {
     /// All of this length (s), at the start.
@@ -163,12 +167,10 @@ impl StepLengths {
 
 /// Factor on the length after a step of the relative error `ratio`.
 pub(crate) fn growth<const S: usize>(ratio: f64) -> f64 {
-    // More than that no proposal makes use of.
-    let most = LONGER * STEP_GROWTH;
     if ratio < ROUNDED {
-        most
+        MOST_GROWTH
     } else {
-        (SAFETY * step_factor::<S>(ratio)).clamp(MOST_SHRINK, most)
+        (SAFETY * step_factor::<S>(ratio)).clamp(MOST_SHRINK, MOST_GROWTH)
     }
 }
 

@@ -9,7 +9,7 @@ use relay_contact::scene::spring::{GivenMode, Modes, Shape};
 use relay_contact::variables::{AxialForceKind, ContactLawKind, ExcitationKind, FrictionKind, ResistanceKind};
 
 use crate::parts;
-use crate::relays::{Relay, logarithmic, steps, uniform};
+use crate::relays::{Relay, after, logarithmic, steps, uniform};
 use crate::scenes::tip_stiffness;
 use crate::springs::{mode, spring_file};
 
@@ -280,13 +280,4 @@ pub fn rough(number: u64) -> Relay {
     scene.effects.contact_law = ContactLawKind::Rough;
     scene.effects.resistance = ResistanceKind::Barber;
     relay
-}
-
-/// Base acceleration and support displacement after `size` seconds, and the other inputs.
-pub fn after(inputs: &Inputs, size: f64) -> Inputs {
-    Inputs {
-        base_acceleration: inputs.base_acceleration + inputs.base_acceleration_rate * size,
-        support_displacement: inputs.displacements_after(size)[0],
-        ..*inputs
-    }
 }

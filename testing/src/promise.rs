@@ -1,5 +1,6 @@
 //! Whether a random relay keeps the promise of `solver.tolerance`, and what `solver.forceError` says of it.
 
+use std::ops::Range;
 use std::thread;
 
 use relay_contact::reference::MAX_MODES;
@@ -23,6 +24,10 @@ pub enum Outcome {
 /// Part of the tolerance by which a single step may be wrong, 1: a change of the input by as much is not seen.
 pub const OF_A_STEP: f64 = 1.0 / 250.0;
 
+/// Difference of a reference from itself in shorter communication steps over what it says of its error, 1: a tenth of all it is used
+/// for, tolerances of 1e-8 and more.
+const UNSEEN: f64 = 100.0;
+
 /// Makes a scene its own reference: the tightest tolerance with all modes, shaken and curved more strongly by a share.
 pub fn tighten(scene: &mut Scene, stronger: f64) {
     scene.solver.tolerance = Solver::TOLERANCE_FLOOR;
@@ -37,6 +42,46 @@ fn reference(relay: &Relay, stronger: f64) -> Option<Course> {
         Ok((course, None)) => Some(course),
         _ => None,
     }
+}
+
+/// The reference of a relay beside itself in communication steps of a quarter.
+#[derive(Clone, Copy, Debug)]
+pub struct Disagreement {
+    /// Number of the relay.
+    pub number: u64,
+    /// Its kind.
+    pub kind: &'static str,
+    /// Largest difference of force and extremes, relative as the tolerance.
+    pub difference: f64,
+    /// Numbers of openings and closings.
+    pub events: [usize; 2],
+    /// The larger `solver.forceError` at the end.
+    pub estimate: f64,
+}
+
+impl Disagreement {
+    /// Whether the reference is wrong without a word: what both differ by is [`UNSEEN`] times the estimate or the tightest tolerance,
+    /// or there are more events in one of them though the force is known.
+    pub fn is_silent(&self) -> bool {
+        let known = UNSEEN * self.estimate.max(Solver::TOLERANCE_FLOOR);
+        self.difference > known || known < 1e-3 && self.events[0] != self.events[1]
+    }
+}
+
+/// Compares the reference of the relay of a number, drawn by a function such as [`Relay::draw`], with itself; `None` if it has none.
+pub fn compare(number: u64, draw: fn(u64) -> Relay) -> Option<Disagreement> {
+    let mut relay = draw(number);
+    let whole = reference(&relay, 0.0)?;
+    relay.parts = 4;
+    let parts = reference(&relay, 0.0)?;
+    let (force, extremes) = parts.error(&whole);
+    Some(Disagreement {
+        number,
+        kind: relay.kind,
+        difference: force.max(extremes),
+        events: [whole.events.len(), parts.events.len()],
+        estimate: whole.estimate.max(parts.estimate),
+    })
 }
 
 /// A relay judged.
@@ -104,11 +149,22 @@ pub fn judge(number: u64, draw: fn(u64) -> Relay) -> Judged {
 
 /// Judges relays on all cores; in order.
 pub fn judge_all(first: u64, count: u64, draw: fn(u64) -> Relay) -> Vec<Judged> {
+    on_all_cores(first..first + count, |number| judge(number, draw))
+}
+
+/// Compares references on all cores; in order.
+pub fn compare_all(first: u64, count: u64, draw: fn(u64) -> Relay) -> Vec<Disagreement> {
+    let all = on_all_cores(first..first + count, |number| compare(number, draw));
+    all.into_iter().flatten().collect()
+}
+
+fn on_all_cores<T: Send>(numbers: Range<u64>, of: impl Fn(u64) -> T + Sync) -> Vec<T> {
     let threads = thread::available_parallelism().map_or(1, usize::from) as u64;
-    let mut judged: Vec<_> = thread::scope(|scope| {
+    let of = &of;
+    let mut found: Vec<_> = thread::scope(|scope| {
         let part = |thread| {
-            let own = (first..first + count).filter(move |number| number % threads == thread);
-            own.map(move |number| judge(number, draw)).collect::<Vec<_>>()
+            let own = numbers.clone().filter(move |number| number % threads == thread);
+            own.map(|number| (number, of(number))).collect::<Vec<_>>()
         };
         let parts: Vec<_> = (0..threads).map(|thread| scope.spawn(move || part(thread))).collect();
         parts
@@ -116,6 +172,6 @@ pub fn judge_all(first: u64, count: u64, draw: fn(u64) -> Relay) -> Vec<Judged> 
             .flat_map(|part| part.join().unwrap_or_default())
             .collect()
     });
-    judged.sort_by_key(|judged| judged.number);
-    judged
+    found.sort_by_key(|(number, _)| *number);
+    found.into_iter().map(|(_, found)| found).collect()
 }

@@ -33,6 +33,8 @@ pub struct Relay {
     pub knots: Vec<Inputs>,
     /// Length of the communication steps, s, and their number.
     pub steps: (f64, u32),
+    /// Equal parts in which each of them is taken, 1.
+    pub parts: u32,
     /// Damping of the first mode of the spring without contact, relative to critical.
     pub damping: f64,
 }
@@ -146,6 +148,7 @@ impl Relay {
             held: false,
             knots: Vec::new(),
             steps: steps(step, duration),
+            parts: 1,
             damping,
         }
     }
@@ -203,25 +206,42 @@ impl Relay {
             scale: simulation.model().force_scale(),
             ..Course::default()
         };
+        let part = size / f64::from(self.parts);
         for k in 0..count {
-            let time = f64::from(k) * size;
-            if let Err(error) = simulation.step(&self.inputs(time, size), time, size) {
-                return Ok((course, Some(error)));
+            let start = f64::from(k) * size;
+            let inputs = self.inputs(start, size);
+            let mut extremes = vec![(f64::INFINITY, f64::NEG_INFINITY); contacts.len()];
+            for done in (0..self.parts).map(|done| f64::from(done) * part) {
+                if let Err(error) = simulation.step(&after(&inputs, done), start + done, part) {
+                    return Ok((course, Some(error)));
+                }
+                for (([_, least, greatest, ..], _), (low, high)) in contacts.iter().zip(&mut extremes) {
+                    let [least, greatest] = [least, greatest].map(|output| simulation.real(*output));
+                    (*low, *high) = (low.min(least), high.max(greatest));
+                }
+                course.events.extend(simulation.events().0.map(|event| event.time));
             }
-            for ([force, least, greatest, ..], _) in &contacts {
-                let (least, greatest) = if scene.effects.extremes {
-                    (least, greatest)
-                } else {
-                    (force, force)
-                };
-                course.force.push(simulation.real(*force));
-                course.least.push(simulation.real(*least));
-                course.greatest.push(simulation.real(*greatest));
+            for (([force, ..], _), (low, high)) in contacts.iter().zip(extremes) {
+                let force = simulation.real(*force);
+                let recorded = scene.effects.extremes;
+                course.force.push(force);
+                course.least.push(if recorded { low } else { force });
+                course.greatest.push(if recorded { high } else { force });
             }
-            course.events.extend(simulation.events().0.map(|event| event.time));
             course.estimate = simulation.real(RealOutput::SolverForceError);
         }
         Ok((course, None))
+    }
+}
+
+/// The inputs of a relay after `size` seconds.
+pub fn after(inputs: &Inputs, size: f64) -> Inputs {
+    let [support_displacement, _, pusher_displacement] = inputs.displacements_after(size);
+    Inputs {
+        base_acceleration: inputs.base_acceleration + inputs.base_acceleration_rate * size,
+        support_displacement,
+        pusher_displacement,
+        ..*inputs
     }
 }
 

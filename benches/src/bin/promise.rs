@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use clap::Parser;
 use testing::kinds::{self, KINDS};
-use testing::promise::{Judged, judge_all};
+use testing::promise::{Judged, compare_all, judge_all};
 
 #[derive(Parser)]
 #[command(about = "Judges random relays by the promise of solver.tolerance")]
@@ -25,6 +25,9 @@ struct Arguments {
     /// Which relays; those of one kind only are printed, and written to no file
     #[arg(long)]
     kind: Option<String>,
+    /// Compare references with themselves in communication steps of a quarter, and print those that disagree without a word
+    #[arg(long)]
+    quarters: bool,
 }
 
 fn main() -> Result<()> {
@@ -33,6 +36,12 @@ fn main() -> Result<()> {
         None => kinds::any,
         Some(kind) => KINDS.iter().find(|(name, ..)| name == kind).context("no such kind")?.2,
     };
+    if arguments.quarters {
+        let compared = compare_all(arguments.first, arguments.count, draw);
+        let silent = compared.iter().filter(|compared| compared.is_silent());
+        silent.for_each(|compared| println!("{compared:?}"));
+        return Ok(());
+    }
     let judged = judge_all(arguments.first, arguments.count, draw);
     if arguments.kind.is_some() {
         let above = judged.iter().filter(|judged| judged.error > judged.tolerance);

@@ -165,7 +165,9 @@ impl<'a, const S: usize> Locator<'a, S> {
             return 0.0;
         }
         let left = link.engagement(start.approach, start.rate).max(0.0);
-        left + motion_rounding(model, link, state)
+        // Without its force the spring moves away from where that held it.
+        let released = f64::EPSILON * model.preload.deflection.abs();
+        left + released + motion_rounding(model, link, state)
     }
 
     /// Whether the engagement rises throughout between an open and a closed sample, whose cubic is wrong by `error` (m), so that it

@@ -201,5 +201,5 @@ pub(crate) fn motion_rounding(model: &Model, link: &Link, state: &State) -> f64 
         Some(port) => sum_rounding(port, state),
         None => (0.0, 0.0),
     };
-    displacement + link.contact().map_or(0.0, Law::damping) * velocity
+    displacement + link.contact().map_or(0.0, Law::by_rate) * velocity
 }
