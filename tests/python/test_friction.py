@@ -210,7 +210,8 @@ def warnings(values: Values) -> list[str]:
 def test_unstable_slip_is_told(number: int) -> None:
     values = {"effects.axialForce": "None", **UNSTABLE[number], "effects.friction": "Coulomb", "solver.modes": 24}
     relay, calmer = Frictional(values), {**values, "friction.coefficient": 0.02}
-    forces = [share * relay.force for share in (1, 1 / 4, 4, 1 / 16, 16)]
+    shares = 1, 1 / 4, 4, 1 / 16, 16
+    forces = [share * relay.force for share in shares]
     force, growing = next((force, value) for force in forces if (value := relay.growth(force, -1.0)).real > 0)
     assert growing.real > 1000
     (told,) = warnings(values)
@@ -221,5 +222,5 @@ def test_unstable_slip_is_told(number: int) -> None:
     # Not towards the clamp, nor with little friction.
     stable = Frictional(calmer)
     assert all(relay.growth(force, 1.0).real < 0 for force in forces)
-    assert all(stable.growth(share * stable.force, sign).real < 0 for share in (1 / 16, 1 / 4, 1, 4, 16) for sign in (-1.0, 1.0))
+    assert all(stable.growth(share * stable.force, sign).real < 0 for share in shares for sign in (-1.0, 1.0))
     assert warnings(calmer) == []
