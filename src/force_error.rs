@@ -133,7 +133,8 @@ impl ForceError {
         ((by_all + self.unresolved) * self.largest_by_slip.exp()).min(1.0)
     }
 
-    /// Over a step of `length` seconds, in which slip grows at this rate (1/s); `None`: it does not slip, or in a direction in which it is stable.
+    /// Over a step of `length` seconds, in which slip grows at this rate (1/s); `None`: it does not slip, or in a direction in
+    /// which it is stable.
     pub(crate) fn note_slip(&mut self, growth: Option<f64>, length: f64) {
         self.by_slip = growth.map_or(0.0, |growth| self.by_slip + growth * length);
         self.largest_by_slip = self.largest_by_slip.max(self.by_slip);

@@ -170,7 +170,7 @@ pub(crate) fn growth<const S: usize>(ratio: f64) -> f64 {
     if ratio < ROUNDED {
         MOST_GROWTH
     } else {
-        (SAFETY * step_factor::<S>(ratio)).clamp(MOST_SHRINK, MOST_GROWTH)
+        (SAFETY * step_factor::<S>(ratio)).max(MOST_SHRINK)
     }
 }
 

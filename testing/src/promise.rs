@@ -1,6 +1,7 @@
 //! Whether a random relay keeps the promise of `solver.tolerance`, and what `solver.forceError` says of it.
 
 use std::ops::Range;
+use std::panic::resume_unwind;
 use std::thread;
 
 use relay_contact::reference::MAX_MODES;
@@ -169,7 +170,8 @@ fn on_all_cores<T: Send>(numbers: Range<u64>, of: impl Fn(u64) -> T + Sync) -> V
         let parts: Vec<_> = (0..threads).map(|thread| scope.spawn(move || part(thread))).collect();
         parts
             .into_iter()
-            .flat_map(|part| part.join().unwrap_or_default())
+            // Else the relays of a thread that panics would be missing without a word.
+            .flat_map(|part| part.join().unwrap_or_else(|panic| resume_unwind(panic)))
             .collect()
     });
     found.sort_by_key(|(number, _)| *number);
