@@ -126,6 +126,50 @@ impl State {
         }
     }
 
+    /// Takes over another state of a model with so many modes and links.
+    pub(crate) fn copy(&mut self, other: &Self, modes: usize, links: usize) {
+        let own = self.modes.iter_mut().zip(&other.modes).take(modes);
+        own.for_each(|(own, other)| *own = *other);
+        let own = self.links.iter_mut().zip(&other.links).take(links);
+        own.for_each(|(own, other)| *own = *other);
+        let Self {
+            modes: _,
+            links: _,
+            time,
+            with_contact,
+            displacements,
+            velocities,
+            coil,
+            circuits,
+            slip,
+            last_kink,
+            kink_is_closing,
+            lengths,
+            energy_surplus,
+            energy_balance,
+            force_error,
+            steps,
+            rejected_steps,
+            iterations,
+        } = other;
+        self.time = *time;
+        self.with_contact = *with_contact;
+        self.displacements = *displacements;
+        self.velocities = *velocities;
+        self.coil = *coil;
+        self.circuits = *circuits;
+        self.slip = *slip;
+        self.last_kink = *last_kink;
+        self.kink_is_closing = *kink_is_closing;
+        self.lengths = *lengths;
+        self.energy_surplus = *energy_surplus;
+        self.energy_balance = *energy_balance;
+        self.force_error = *force_error;
+        self.steps = *steps;
+        self.rejected_steps = *rejected_steps;
+        self.iterations = *iterations;
+    }
+
     /// Whether a contact has just closed.
     pub(crate) fn touches_now(&self) -> bool {
         self.kink_is_closing && self.last_kink == self.time

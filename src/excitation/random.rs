@@ -64,8 +64,6 @@ pub struct Piece {
     middle: f64,
     /// The series, m/s2.
     series: [f64; TERMS],
-    /// Sines and cosines of the phases in the middle.
-    phasors: Box<[Each; 2]>,
 }
 
 impl Default for Piece {
@@ -75,7 +73,6 @@ impl Default for Piece {
             number: -1.0,
             middle: 0.0,
             series: [0.0; TERMS],
-            phasors: zeroed_box(),
         }
     }
 }
@@ -188,8 +185,9 @@ impl Random {
     /// Makes a piece the one with this number and its middle (s after the start).
     #[inline(always)]
     fn set_piece<A: Arithmetic>(&self, piece: &mut Piece, number: f64, middle: f64) {
-        set_phasors::<A>(&mut piece.phasors, &self.frequencies, middle, &self.phases);
-        let [sin, cos] = &*piece.phasors;
+        let mut phasors = [[0.0; SINES]; 2];
+        set_phasors::<A>(&mut phasors, &self.frequencies, middle, &self.phases);
+        let [sin, cos] = &phasors;
         for (k, (coefficient, factors)) in piece.series.iter_mut().zip(&self.factors).enumerate() {
             *coefficient = dot::<A>(factors, if k.is_multiple_of(2) { sin } else { cos });
         }

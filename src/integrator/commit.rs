@@ -80,7 +80,7 @@ fn advance_deviation<const S: usize>(
     let at_work = at_work.map(|(index, (link, nodes))| (index, link.port, nodes.tangent));
     let known = cache.known(target.length, target.recurring);
     let free = model.slowest.free(|i, mode| {
-        let known = known.and_then(|step| step.end.free(i));
+        let known = known.and_then(|step| step.free(i));
         known.unwrap_or_else(|| FreeMotion::new(mode.omega_squared, mode.damping, target.length))
     });
     compiled_for!(model.simd, A => state.force_error.advance::<A>(&model.slowest, &free, at_work));

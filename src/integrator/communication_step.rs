@@ -343,9 +343,9 @@ fn go_ahead(
     }
     // One after the other: together they would lie on the stack in between.
     let former = &mut *workspace.former;
-    former.start = motion.start;
-    former.end = motion.end;
-    let links = model.links.len();
+    let (modes, links) = (model.modes.len(), model.links.len());
+    former.start.copy(&motion.start, modes, links);
+    former.end.copy(&motion.end, modes, links);
     former.dense.copy(&motion.dense, links);
     take_steps(model, motion, workspace, time, extremes).inspect_err(|_| {
         let former = &*workspace.former;
@@ -391,7 +391,6 @@ fn take_steps(
             motion.start = motion.end;
             continue;
         }
-        motion.start = motion.end;
         let Motion {
             start,
             end,
@@ -399,6 +398,7 @@ fn take_steps(
             drive,
             ..
         } = motion;
+        start.copy(end, model.modes.len(), model.links.len());
         let until = time;
         let steps = Steps::Own { until, dense, start };
         advance(model, end, workspace, *drive, steps, None)?;

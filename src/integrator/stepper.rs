@@ -637,7 +637,7 @@ impl Stepper<'_> {
         let (room, search) = self.workspace.parts();
         let Room { cache, scratch, .. } = room;
         let begun = (self.model, &*self.state, &self.drive);
-        let part = (trial, &mut scratch.axial.loads);
+        let part = (trial, scratch.axial.loads.as_mut_slice());
         shorten(begun, cache.collocation(), part, (length, at), &search.modes);
         search.looked = None;
     }

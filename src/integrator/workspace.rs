@@ -85,7 +85,7 @@ impl Leaps {
 #[derive(Clone, Debug)]
 pub(crate) struct Room<const S: usize> {
     pub(crate) cache: Box<Cache<S>>,
-    pub(crate) scratch: Box<Scratch<S>>,
+    pub(crate) scratch: Scratch<S>,
     /// The trial step; none while it is looked at.
     pub(crate) trial: Option<Box<Trial<S>>>,
 }
@@ -109,7 +109,7 @@ impl<const S: usize> Room<S> {
     fn new(model: &Model, home: &'static Home<Common<S>>) -> Self {
         Self {
             cache: Box::new(Cache::new(model, home, Variable::Time)),
-            scratch: zeroed_box(),
+            scratch: Scratch::new(model),
             trial: Some(zeroed_box()),
         }
     }
@@ -121,8 +121,7 @@ impl Workspace {
         let lengths = if model.closed_loop.is_some() { 2 * LENGTHS } else { 0 };
         let propagators = lengths * (size_of::<Propagator>() + model.modes.len() * size_of::<[TipAtNodes; 2]>());
         let trials = size_of::<Trial<SHORT>>() + 2 * size_of::<Trial<LONG>>();
-        let scratch = size_of::<Scratch<SHORT>>() + size_of::<Scratch<LONG>>();
-        Cache::<SHORT>::size(model) + 2 * Cache::<LONG>::size(model) + propagators + trials + scratch
+        Cache::<SHORT>::size(model) + 2 * Cache::<LONG>::size(model) + propagators + trials
     }
 
     /// Allocates for the model.

@@ -108,14 +108,14 @@ impl FreeMotion {
         }
     }
 
-    /// Of several oscillators with these roots after a time, side by side.
+    /// Of several oscillators with these roots, each after its time, side by side.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "there is a value for each")]
     pub fn side_by_side<const N: usize, A: Arithmetic>(
         omega_squared: &[f64; N],
         damping: &[f64; N],
         roots: &Roots<N>,
-        t: f64,
+        times: &[f64; N],
     ) -> [Self; N] {
         let Roots {
             creeps,
@@ -125,7 +125,7 @@ impl FreeMotion {
         } = roots;
         // Where the difference of exponentials needs care, or the quotient of sine and angle.
         let is_easy = |i: usize| {
-            let angle = split[i] * t;
+            let angle = split[i] * times[i];
             if creeps[i] {
                 angle > 0.25
             } else {
@@ -133,15 +133,19 @@ impl FreeMotion {
             }
         };
         if !(0..N).all(is_easy) {
-            return array::from_fn(|i| Self::new(omega_squared[i], damping[i], t));
+            return array::from_fn(|i| Self::new(omega_squared[i], damping[i], times[i]));
         }
         let (mut decays, mut faster, mut angles) = ([0.0; N], [0.0; N], [0.0; N]);
         let (mut of_v, mut of_q) = ([0.0; N], [0.0; N]);
         for i in 0..N {
             let half = 0.5 * damping[i];
-            decays[i] = if creeps[i] { -slow[i] * t } else { -half * t };
-            faster[i] = if creeps[i] { -fast[i] * t } else { 0.0 };
-            angles[i] = if creeps[i] { 0.0 } else { split[i] * t };
+            decays[i] = if creeps[i] {
+                -slow[i] * times[i]
+            } else {
+                -half * times[i]
+            };
+            faster[i] = if creeps[i] { -fast[i] * times[i] } else { 0.0 };
+            angles[i] = if creeps[i] { 0.0 } else { split[i] * times[i] };
             of_v[i] = if creeps[i] { slow[i] } else { half };
             of_q[i] = if creeps[i] { fast[i] } else { half };
         }
@@ -191,7 +195,7 @@ mod tests {
                     let squares = omega.map(|omega| omega * omega);
                     let damping = [2.0 * first, 3.4 * second];
                     let roots = Roots::of(&squares, &damping);
-                    let together = FreeMotion::side_by_side::<2, Separate>(&squares, &damping, &roots, t);
+                    let together = FreeMotion::side_by_side::<2, Separate>(&squares, &damping, &roots, &[t; 2]);
                     for (one, (omega, damping)) in together.iter().zip(omega.into_iter().zip(damping)) {
                         let alone = FreeMotion::new(omega * omega, damping, t);
                         let wrong = [

@@ -44,8 +44,23 @@ MOTIONS: dict[str, tuple[Values, float]] = {
         {**SHAKEN, "effects.excitation": "HalfSine", "excitation.amplitude": -490.0, "excitation.duration": 1e-3},
         2e-3,
     ),
+    # Its damper lets go of the indented contact, which closes again before the indentation is gone.
+    "closes while indented": (
+        {
+            **SHAKEN,
+            "effects.excitation": "HalfSine",
+            "excitation.amplitude": -793.0,
+            "excitation.duration": 2.717e-4,
+            "beam.stiffnessDamping": 2.763e-6,
+            "contact.damping": 1.084e-4,
+            "friction.coefficient": 0.2873,
+            "solver.modes": 24,
+        },
+        1.0e-3,
+    ),
     "no friction": ({**SHAKEN, "friction.coefficient": 0.0}, 2e-3),
 }
+OPENING = {"opens", "shock", "closes while indented"}
 CLOSED = {Phase.STICK, Phase.FORTH, Phase.BACK}
 FORCES, WAYS, ENERGY = OUTPUTS[:2], OUTPUTS[2:4], OUTPUTS[4]
 
@@ -93,9 +108,11 @@ def test_forces_slip_and_energy(name: str) -> None:
     away = np.min(np.abs(found["time"][:, None] - changes), axis=1) > 2 * LOCATED
     expected, coarser = (each.outputs(found["time"]) for each in (motion, solved(name, 1e-9)))
     for output, error in allowed(name, expected).items():
+        # In flight, where slip makes no force, no step is as short as its course would need.
+        seen = away & (expected["contact.force"] > 0) if output == "contact.slip" else away
         # The reference's own error is less than this difference.
-        assert np.max(np.abs(coarser[output] - expected[output])[away]) <= 0.3 * error, output
-        assert np.max(np.abs(found[output] - expected[output])[away]) <= error, output
+        assert np.max(np.abs(coarser[output] - expected[output])[seen]) <= 0.3 * error, output
+        assert np.max(np.abs(found[output] - expected[output])[seen]) <= error, output
 
 
 def openings_and_closings(motion: FrictionalMotion) -> tuple[Array, Array]:
@@ -107,7 +124,7 @@ def openings_and_closings(motion: FrictionalMotion) -> tuple[Array, Array]:
 def test_the_instants_of_opening_and_closing(name: str) -> None:
     found, motion, _ = results(name)
     expected = openings_and_closings(motion)
-    assert bool(len(expected[0])) == (name in ("opens", "shock"))
+    assert bool(len(expected[0])) == (name in OPENING)
     for output, instants in zip(OUTPUTS[5:], expected, strict=True):
         seen = np.unique(found[output])
         assert seen[seen > 0] == pytest.approx(instants, rel=0, abs=LOCATED)
@@ -118,7 +135,10 @@ def test_the_motions_are_what_their_names_say() -> None:
     assert phases["sticks"] == {Phase.STICK}
     for name in ("slips", "slips without damping of the contact", "slips on a high contact"):
         assert phases[name] == CLOSED
-    assert phases["opens"] == phases["shock"] == set(Phase)
+    assert all(phases[name] == set(Phase) for name in OPENING)
+    _, motion, reference = results("closes while indented")
+    _, closings = openings_and_closings(motion)
+    assert max(motion.outputs(closings)["contact.indentation"]) > 0.1 * reference.indentation
 
 
 @pytest.mark.parametrize(

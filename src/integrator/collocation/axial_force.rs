@@ -15,7 +15,7 @@ use crate::beam::axial::Feedback;
 use crate::beam::mode::Modal;
 use crate::integrator::collocation::coefficients::{ErrorColumn, ModeColumns, StepCoefficients};
 use crate::integrator::collocation::polynomial::Collocation;
-use crate::integrator::collocation::trial::{AxialLoads, FreeResponse, NodalModes, Source, Trial};
+use crate::integrator::collocation::trial::{AxialLoads, FreeResponse, Source, Trial};
 use crate::integrator::constants::{FORCE_ROUNDING, ITERATIONS};
 use crate::math::nodal::{Nodal, add, add_columns, dot};
 use crate::math::simd::{Arithmetic, LANES};
@@ -82,7 +82,7 @@ impl<'a, const S: usize> Rounds<'a, S> {
         self.settled = self.count > 0 && change <= tolerance + FORCE_ROUNDING * size;
         if !self.settled {
             self.count += 1;
-            *loads = *next;
+            loads.copy_from_slice(next);
         }
         let mut with_loads = with_loads::<S, A>(self.model, free, self.step, loads);
         with_loads.axial = Some(self.error::<A>(free));
@@ -112,8 +112,8 @@ fn set_motion<const S: usize, A: Arithmetic>(
     (model, state): (&Model, &State),
     step: StepCoefficients<'_, S>,
     trial: &Trial<S>,
-    loads: &NodalModes<S>,
-    motion: &mut NodalModes<S>,
+    loads: &[Nodal<S>],
+    motion: &mut [Nodal<S>],
 ) {
     let modes = model.modes.iter().zip(&state.modes).zip(step.columns);
     for (i, ((moved, ((mode, at), columns)), load)) in motion.iter_mut().zip(modes).zip(loads).enumerate() {
@@ -136,18 +136,17 @@ fn set_motion<const S: usize, A: Arithmetic>(
 fn set_loads<const S: usize, A: Arithmetic>(
     model: &Model,
     axial: &Feedback,
-    motion: &NodalModes<S>,
-    loads: &mut NodalModes<S>,
+    motion: &[Nodal<S>],
+    loads: &mut [Nodal<S>],
 ) {
-    let count = model.modes.len();
     let mut tip = [0.0; S];
     for (mode, q) in model.modes.iter().zip(motion) {
         add::<S, A>(&mut tip, mode.tip, q);
     }
     let change = tip.map(|y| axial.change(y));
     // Several independent rows at once.
-    let blocks = loads.chunks_exact_mut(LANES).zip(axial.slopes.chunks_exact(LANES));
-    for (block, (loads, slopes)) in blocks.enumerate().take(count.div_ceil(LANES)) {
+    let blocks = loads.chunks_mut(LANES).zip(axial.slopes.chunks_exact(LANES));
+    for (block, (loads, slopes)) in blocks.enumerate() {
         let mut sums = [[0.0; S]; LANES];
         for (row, q) in axial.geometric.iter().zip(motion) {
             for (sum, entry) in sums
@@ -170,7 +169,7 @@ fn set_loads<const S: usize, A: Arithmetic>(
 /// Static tip force of the same strain energy as the change of the loads, and as the loads, N: the largest over the
 /// nodes.
 #[inline(always)]
-fn force_of_change<const S: usize>(model: &Model, loads: &NodalModes<S>, next: &NodalModes<S>) -> (f64, f64) {
+fn force_of_change<const S: usize>(model: &Model, loads: &[Nodal<S>], next: &[Nodal<S>]) -> (f64, f64) {
     let (mut change, mut size, mut unit) = ([0.0; S], [0.0; S], f64::MIN_POSITIVE);
     for ((mode, load), next) in model.modes.iter().zip(loads).zip(next) {
         let compliance = 1.0 / mode.omega_squared;
@@ -195,7 +194,7 @@ fn with_loads<const S: usize, A: Arithmetic>(
     model: &Model,
     free: &FreeResponse<S>,
     step: StepCoefficients<'_, S>,
-    loads: &NodalModes<S>,
+    loads: &[Nodal<S>],
 ) -> FreeResponse<S> {
     let mut with = free.clone();
     for (port, motion) in model.ports.iter().zip(&mut with.ports) {
@@ -251,7 +250,7 @@ mod tests {
             let length = 1e-5;
             let collocation = Collocation::<LONG>::default();
             let axial = model.axial.as_ref().unwrap();
-            let mut scratch: Box<Scratch<LONG>> = bytemuck::zeroed_box();
+            let mut scratch = Scratch::<LONG>::new(&model);
             for _ in 0..100 {
                 let mut moved = |length| {
                     let mut trial: Box<Trial<LONG>> = bytemuck::zeroed_box();

@@ -4,13 +4,13 @@ use std::ops::Range;
 
 use bytemuck::Zeroable;
 
-use crate::beam::mode::{Modal, Mode};
+use crate::beam::mode::Mode;
 use crate::excitation::generator::Turns;
 use crate::integrator::collocation::shapes::Shapes;
 use crate::integrator::collocation::superposition::{self, Pair, Sum};
 use crate::math::free_motion::FreeMotion;
 use crate::math::nodal::{Nodal, add, end, scaled};
-use crate::math::simd::{Arithmetic, Simd, compiled_for};
+use crate::math::simd::{Arithmetic, LANES, Simd, compiled_for};
 
 /// Free motion of a port at the nodes due to one mode; includes the displacement of the port per coordinate of the mode.
 #[derive(Clone, Copy, Debug, Zeroable)]
@@ -25,26 +25,24 @@ pub struct NodeRows<const S: usize> {
     pub rate_from_v: Nodal<S>,
 }
 
-/// State of the modes at the end of the step; arrays over the modes, for vector arithmetic.
-#[derive(Clone, Copy, Debug)]
-pub struct EndRows<'a> {
-    /// q and v at the end per initial q and v, and per load at each node.
-    pub q_from_q: &'a Modal,
-    /// See [`EndRows::q_from_q`].
-    pub q_from_v: &'a Modal,
-    /// See [`EndRows::q_from_q`].
-    pub v_from_q: &'a Modal,
-    /// See [`EndRows::q_from_q`].
-    pub v_from_v: &'a Modal,
-    /// See [`EndRows::q_from_q`].
-    pub q_from_load: &'a [Modal],
-    /// See [`EndRows::q_from_q`].
-    pub v_from_load: &'a [Modal],
-}
+/// A value for each mode of a group.
+pub(super) type Lanes = [f64; LANES];
 
-/// How many arrays [`EndRows`] are, with `nodes` nodes.
-pub(super) const fn end_rows(nodes: usize) -> usize {
-    4 + 2 * nodes
+/// State of a group of modes at the end of the step, in vectors over the modes.
+#[derive(Clone, Copy, Debug, Zeroable)]
+pub struct EndGroup<const S: usize> {
+    /// q and v at the end per initial q and v.
+    pub(super) q_from_q: Lanes,
+    /// See [`EndGroup::q_from_q`].
+    pub(super) q_from_v: Lanes,
+    /// See [`EndGroup::q_from_q`].
+    pub(super) v_from_q: Lanes,
+    /// See [`EndGroup::q_from_q`].
+    pub(super) v_from_v: Lanes,
+    /// q and v at the end per load at each node.
+    pub(super) q_from_load: [Lanes; S],
+    /// See [`EndGroup::q_from_load`].
+    pub(super) v_from_load: [Lanes; S],
 }
 
 impl<const S: usize> NodeRows<S> {
@@ -66,30 +64,21 @@ impl<const S: usize> NodeRows<S> {
     }
 }
 
-impl<'a> EndRows<'a> {
-    /// From the arrays, one after the other.
+impl<const S: usize> EndGroup<S> {
+    /// Sets a mode of it: its free motion, and its displacement and velocity per load at each node.
     #[inline(always)]
-    #[expect(clippy::indexing_slicing, reason = "as many as there are")]
-    pub(super) fn of(rows: &'a [Modal]) -> Self {
-        let (q_from_load, v_from_load) = rows[4..].split_at(rows.len() / 2 - 2);
-        Self {
-            q_from_q: &rows[0],
-            q_from_v: &rows[1],
-            v_from_q: &rows[2],
-            v_from_v: &rows[3],
-            q_from_load,
-            v_from_load,
+    #[expect(clippy::indexing_slicing, reason = "a mode of the group")]
+    pub(super) fn set(&mut self, lane: usize, free: &FreeMotion, load: &Pair<Nodal<S>>) {
+        self.q_from_q[lane] = free.q_from_q;
+        self.q_from_v[lane] = free.q_from_v;
+        self.v_from_q[lane] = free.v_from_q;
+        self.v_from_v[lane] = free.v_from_v;
+        for (row, value) in self.q_from_load.iter_mut().zip(&load.q) {
+            row[lane] = *value;
         }
-    }
-
-    /// The free motion of a mode.
-    pub fn free(&self, i: usize) -> Option<FreeMotion> {
-        Some(FreeMotion {
-            q_from_q: *self.q_from_q.get(i)?,
-            q_from_v: *self.q_from_v.get(i)?,
-            v_from_q: *self.v_from_q.get(i)?,
-            v_from_v: *self.v_from_v.get(i)?,
-        })
+        for (row, value) in self.v_from_load.iter_mut().zip(&load.v) {
+            row[lane] = *value;
+        }
     }
 }
 
@@ -171,8 +160,8 @@ pub struct StepCoefficients<'a, const S: usize> {
     /// With friction: velocity of a deflection z that follows another with the contact's damping time, `beta_c z' + z = z_1`,
     /// per difference of the two from the start, 1/s; else empty.
     pub following: &'a [Nodal<S>],
-    /// The modes at the end.
-    pub end: EndRows<'a>,
+    /// The modes at the end, group by group.
+    pub(super) end: &'a [EndGroup<S>],
     /// Phase advance of the generator.
     pub turns: &'a Turns<S>,
     /// Port by port the motion per base acceleration, and per force at each port up to that one.
@@ -203,6 +192,17 @@ impl<'a, const S: usize> StepCoefficients<'a, S> {
                 modes: rows.get(range.clone())?,
                 acceleration: responses.get(responses_before(p))?,
             })
+        })
+    }
+
+    /// The free motion of a mode.
+    pub fn free(&self, mode: usize) -> Option<FreeMotion> {
+        let (group, lane) = (self.end.get(mode / LANES)?, mode % LANES);
+        Some(FreeMotion {
+            q_from_q: *group.q_from_q.get(lane)?,
+            q_from_v: *group.q_from_v.get(lane)?,
+            v_from_q: *group.v_from_q.get(lane)?,
+            v_from_v: *group.v_from_v.get(lane)?,
         })
     }
 

@@ -3,14 +3,22 @@
 
 use crate::integrator::collocation::shapes::{MAX_SHAPES, Shapes, Table};
 use crate::math::nodal::Nodal;
+use crate::math::simd::Arithmetic;
 
 /// Rate times time up to which moments are summed from below; beyond it they follow from the series of descending powers, whose least
 /// term is below rounding from there on.
 const NEAR: f64 = 36.0;
 
 /// The convolution of each load shape up to each node (`times`, parts of the step) with `exp(-rate t)`, by step lengths.
-pub(super) fn convolved<const S: usize>(rate: f64, times: &Nodal<S>, shapes: &Shapes<S>) -> Table<S> {
-    Table::of_powers(&shapes.start_derivatives, &times.map(|time| moments(rate, time)))
+#[inline(always)]
+pub(super) fn convolved<const S: usize, A: Arithmetic>(rate: f64, times: &Nodal<S>, shapes: &Shapes<S>) -> Table<S> {
+    let mut powers = [[0.0; S]; MAX_SHAPES];
+    for (node, time) in times.iter().enumerate() {
+        for (power, moment) in powers.iter_mut().zip(moments(rate, *time)) {
+            power.iter_mut().skip(node).take(1).for_each(|entry| *entry = moment);
+        }
+    }
+    Table::of_powers::<A>(&shapes.start_derivatives, &powers)
 }
 
 /// The convolutions of `t^(m/2)`, m = 0, 1, ..., with `exp(-rate t)` up to a time. Integrated by parts they follow from each other,
@@ -28,12 +36,15 @@ fn moments(rate: f64, time: f64) -> [f64; MAX_SHAPES] {
         for m in (0..MAX_SHAPES).rev() {
             let above = moments.get(m + 2).copied();
             let half = 0.5 * (m + 2) as f64;
-            moments[m] = above.map_or_else(|| summed(rate, time, m), |above| (powers[m + 2] - rate * above) / half);
+            moments[m] = above.map_or_else(
+                || powers[m + 2] * summed(z, m),
+                |above| (powers[m + 2] - rate * above) / half,
+            );
         }
     } else {
         moments[0] = -(-z).exp_m1() / rate;
         moments[1] = if z < NEAR {
-            summed(rate, time, 1)
+            powers[3] * summed(z, 1)
         } else {
             descending(rate, time)
         };
@@ -44,15 +55,15 @@ fn moments(rate: f64, time: f64) -> [f64; MAX_SHAPES] {
     moments
 }
 
-/// `exp(-z) t^a (1/a + z/(a + 1) + z^2/(2! (a + 2)) + ...)`, `a = m/2 + 1`, `z` rate times time: all terms are positive.
-fn summed(rate: f64, time: f64, m: usize) -> f64 {
-    let (a, z) = (0.5 * m as f64 + 1.0, rate * time);
+/// `exp(-z) (1/a + z/(a + 1) + z^2/(2! (a + 2)) + ...)`, `a = m/2 + 1`: all terms are positive.
+fn summed(z: f64, m: usize) -> f64 {
+    let a = 0.5 * m as f64 + 1.0;
     let (mut power, mut sum, mut n) = (1.0, 0.0, 0.0);
     loop {
         let term = power / (a + n);
         sum += term;
         if term <= f64::EPSILON * f64::EPSILON.sqrt() * sum {
-            return (-z).exp() * time.powf(a) * sum;
+            return (-z).exp() * sum;
         }
         n += 1.0;
         power *= z / n;

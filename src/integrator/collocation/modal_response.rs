@@ -10,6 +10,7 @@ use crate::beam::mode::Mode;
 use crate::integrator::collocation::fading_load::convolved;
 use crate::integrator::collocation::shapes::{MAX_SHAPES, NEGLIGIBLE, Row, Shapes, TERMS, Variable};
 use crate::integrator::collocation::superposition::{Combination, Fading, Fast, Pair, Response};
+use crate::math::elementary::exp;
 use crate::math::free_motion::{FADED, FreeMotion, Roots};
 use crate::math::nodal::{Nodal, add, scaled};
 use crate::math::simd::Arithmetic;
@@ -95,7 +96,7 @@ impl ModeOverStep {
     #[inline(always)]
     pub fn response<const S: usize, A: Arithmetic>(&self, nodes: &Nodal<S>, shapes: &Shapes<S>) -> Response<S> {
         let combination = self.combination::<S, A>(shapes);
-        let decay = self.decay(nodes);
+        let decay = self.decay::<S, A>(nodes);
         let impulse = self.impulse::<S, A>(nodes, shapes, &combination, &decay);
         let start = |factors: &[f64; MAX_SHAPES]| {
             let mut start = Row {
@@ -139,7 +140,7 @@ impl ModeOverStep {
             Regime::Split(slow, fast) if shapes.variable == Variable::Root => {
                 let share = 1.0 / (slow - fast);
                 Some(Fast {
-                    convolved: convolved(-fast, nodes, shapes),
+                    convolved: convolved::<S, A>(-fast, nodes, shapes),
                     factors: Pair {
                         q: share,
                         v: share * fast,
@@ -276,9 +277,7 @@ impl ModeOverStep {
                         add::<S, A>(&mut q, *term, power);
                     }
                 } else {
-                    for (q, x) in q.iter_mut().zip(nodes) {
-                        *q = share * (slow * x).exp();
-                    }
+                    q = scaled(&exp::<S, A>(&scaled(nodes, slow)), share);
                 }
                 for ((q, v), decay) in q.iter_mut().zip(&mut v).zip(decay) {
                     *v = A::mul_add(slow, *q, -share * fast * decay);
@@ -286,8 +285,10 @@ impl ModeOverStep {
                 }
             }
             _ => {
-                for ((q, v), x) in q.iter_mut().zip(&mut v).zip(nodes) {
-                    let free = FreeMotion::new(self.omega_squared, self.damping, x * self.h);
+                let (omega_squared, damping) = ([self.omega_squared; S], [self.damping; S]);
+                let (roots, times) = (Roots::of(&omega_squared, &damping), scaled(nodes, self.h));
+                let motions = FreeMotion::side_by_side::<S, A>(&omega_squared, &damping, &roots, &times);
+                for ((q, v), free) in q.iter_mut().zip(&mut v).zip(&motions) {
                     (*q, *v) = (free.q_from_v / self.h, free.v_from_v);
                 }
             }
@@ -297,21 +298,17 @@ impl ModeOverStep {
 
     /// Decay of the fast root up to the nodes.
     #[inline(always)]
-    fn decay<const S: usize>(&self, nodes: &Nodal<S>) -> Nodal<S> {
-        let mut decay = [0.0; S];
-        if let Regime::Split(_, fast) = self.regime {
-            for (decay, x) in decay.iter_mut().zip(nodes) {
-                *decay = decayed(fast * x);
-            }
+    fn decay<const S: usize, A: Arithmetic>(&self, nodes: &Nodal<S>) -> Nodal<S> {
+        let Regime::Split(_, fast) = self.regime else {
+            return [0.0; S];
+        };
+        let exponents = scaled(nodes, fast);
+        let mut decay = exp::<S, A>(&exponents);
+        for (decay, exponent) in decay.iter_mut().zip(&exponents) {
+            *decay = if *exponent > FADED { *decay } else { 0.0 };
         }
         decay
     }
-}
-
-/// The exponential of a negative number; zero where it is [`FADED`].
-#[inline(always)]
-fn decayed(exponent: f64) -> f64 {
-    if exponent > FADED { exponent.exp() } else { 0.0 }
 }
 
 #[cfg(test)]

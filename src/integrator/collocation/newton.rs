@@ -126,8 +126,16 @@ impl<const S: usize> NodalMotion<S> {
 }
 
 /// Responses between unknown links, where they are not simply that of a port to itself.
-#[derive(Clone, Debug, Zeroable)]
-pub(crate) struct Joined<const S: usize>([[Response<S>; MAX_UNKNOWNS]; MAX_UNKNOWNS]);
+#[derive(Clone, Debug)]
+pub(crate) struct Joined<const S: usize>(Vec<[Response<S>; MAX_UNKNOWNS]>);
+
+impl<const S: usize> Joined<S> {
+    /// Room for those of the model: none where it has a single link.
+    pub(super) fn new(model: &Model) -> Self {
+        let unknowns = if model.links.len() > 1 { MAX_UNKNOWNS } else { 0 };
+        Self(vec![[Response::zeroed(); MAX_UNKNOWNS]; unknowns])
+    }
+}
 
 /// Tangent of the law of a link within a step; zero if its force does not depend on the motion.
 #[derive(Clone, Copy, Debug, Default, Zeroable)]

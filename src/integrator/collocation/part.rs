@@ -8,7 +8,7 @@ use crate::excitation::drive::Drive;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::{Load, Shapes};
 use crate::integrator::collocation::side_by_side::Loads;
-use crate::integrator::collocation::trial::{LinkEnd, NodalModes, Trial};
+use crate::integrator::collocation::trial::{LinkEnd, Trial};
 use crate::link::MAX_PORTS;
 use crate::math::nodal::{Nodal, add, dot, end, scaled};
 use crate::math::prediction::value_and_slope;
@@ -36,7 +36,7 @@ pub(crate) struct Whole<'a, const S: usize> {
     pub(crate) collocation: &'a Collocation<S>,
     pub(crate) trial: &'a Trial<S>,
     /// Loads of an axial force on the modes.
-    pub(crate) axial: &'a NodalModes<S>,
+    pub(crate) axial: &'a [Nodal<S>],
     /// Length of the trial, s.
     pub(crate) length: f64,
 }
@@ -173,7 +173,7 @@ fn load_on<const S: usize, A: Arithmetic>(shapes: &Shapes<S>, rows: &[Nodal<S>; 
 pub(crate) fn shorten<const S: usize>(
     (model, state, drive): (&Model, &State, &Drive),
     collocation: &Collocation<S>,
-    (trial, axial): (&mut Trial<S>, &mut NodalModes<S>),
+    (trial, axial): (&mut Trial<S>, &mut [Nodal<S>]),
     (length, at): (f64, f64),
     modes: &ModeStates,
 ) {
@@ -269,7 +269,7 @@ mod tests {
                 model.settle(&mut state);
                 assert_eq!(state.is_closed(), lifted == 0.0);
                 let mut cache = Cache::new(&model, &OF_LONG, Variable::Time);
-                let mut scratch: Box<Scratch<LONG>> = bytemuck::zeroed_box();
+                let mut scratch = Scratch::<LONG>::new(&model);
                 let mut steps = 0;
                 for length in [1e-9, 1e-7, 3e-6, 5e-5, 2e-4] {
                     let mut trial: Box<Trial<LONG>> = bytemuck::zeroed_box();

@@ -122,17 +122,16 @@ impl<const S: usize> Table<S> {
         add::<S, A>(&mut self.error, factor, &values.error);
     }
 
-    /// From what becomes of each power (0, 1, ...) at each node, and the derivatives of the shapes at the start.
-    pub(super) fn of_powers(start: &[Row<S>], powers: &[[f64; MAX_SHAPES]; S]) -> Self {
+    /// From what becomes of each power (0, 1, ...) at the nodes, and the derivatives of the shapes at the start.
+    #[inline(always)]
+    pub(super) fn of_powers<A: Arithmetic>(start: &[Row<S>], powers: &[Nodal<S>; MAX_SHAPES]) -> Self {
         let mut table = Self::ZERO;
-        for (k, powers) in powers.iter().enumerate() {
-            let mut factorial = 1.0;
-            for (m, (power, row)) in powers.iter().zip(start).enumerate() {
-                factorial *= m.max(1) as f64;
-                for (column, derivative) in table.columns_mut().zip(row.nodal.iter().chain([&row.error])) {
-                    let entries = column.iter_mut().skip(k).take(1);
-                    entries.for_each(|entry| *entry += power * derivative / factorial);
-                }
+        let mut factorial = 1.0;
+        for (m, (powers, row)) in powers.iter().zip(start).enumerate() {
+            factorial *= m.max(1) as f64;
+            let terms = powers.map(|power| power / factorial);
+            for (column, derivative) in table.columns_mut().zip(row.nodal.iter().chain([&row.error])) {
+                add::<S, A>(column, *derivative, &terms);
             }
         }
         table

@@ -68,7 +68,7 @@ impl<const S: usize, const LOADS: usize> Loads<'_, S, LOADS> {
             [|mode: &Mode| mode.omega_squared, |mode: &Mode| mode.damping].map(|of| modes.each_ref().map(of));
         let h = self.length;
         let roots = Roots::of(&omega_squared, &damping);
-        let free = FreeMotion::side_by_side::<N, A>(&omega_squared, &damping, &roots, h);
+        let free = FreeMotion::side_by_side::<N, A>(&omega_squared, &damping, &roots, &[h; N]);
         let mut response = if let Some(regime) = Together::of(&omega_squared, &damping, &roots, h) {
             regime.under::<S, A, LOADS>(self, &free, factors)
         } else {

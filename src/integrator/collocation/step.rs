@@ -5,7 +5,7 @@ use crate::beam::mode::{Modal, ModeState};
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::axial_force::Rounds;
 use crate::integrator::collocation::cache::Prepared;
-use crate::integrator::collocation::coefficients::StepCoefficients;
+use crate::integrator::collocation::coefficients::EndGroup;
 use crate::integrator::collocation::elimination::{Stacked, in_use};
 use crate::integrator::collocation::error::{Judged, estimate_in_flight};
 use crate::integrator::collocation::newton::{Linked, NodalMotion, Solution, Tangent, Unknowns};
@@ -335,19 +335,19 @@ impl<const S: usize> Step<'_, S> {
         }
         let pushed = scaled(&trial.accelerations, -1.0);
         let mut ends = [([0.0; LANES], [0.0; LANES]); MAX_PORTS];
-        let groups = model.modes.len().div_ceil(LANES);
         let (starts, modes) = (
             state.modes.as_chunks::<LANES>().0,
             trial.modes.as_chunks_mut::<LANES>().0,
         );
-        for (group, (starts, modes)) in starts.iter().zip(modes).take(groups).enumerate() {
-            let mut end = LaneEnd::free::<S, A>(step, group, starts);
-            end.add::<S, A>(step, group, (&model.participations, &pushed));
+        for (group, (rows, (starts, modes))) in step.end.iter().zip(starts.iter().zip(modes)).enumerate() {
+            let mut end = LaneEnd::free::<S, A>(rows, starts);
+            end.add::<S, A>(rows, lanes(&model.participations, group), &pushed);
             for (port, forces) in model.ports.iter().zip(&loads) {
-                end.add::<S, A>(step, group, (&port.shape, forces));
+                end.add::<S, A>(rows, lanes(&port.shape, group), forces);
             }
             if let Some(on_modes) = on_modes {
-                end.add_each::<S, A>(step, group, on_modes);
+                let of_group = on_modes.chunks(LANES).nth(group).unwrap_or_default();
+                end.add_each::<S, A>(rows, of_group);
             }
             let LaneEnd { q, v } = end;
             for (port, (y, rate)) in model.ports.iter().zip(&mut ends) {
@@ -385,60 +385,41 @@ struct LaneEnd {
 impl LaneEnd {
     /// A group of modes from these starts, without loads.
     #[inline(always)]
-    fn free<const S: usize, A: Arithmetic>(
-        step: StepCoefficients<'_, S>,
-        group: usize,
-        starts: &[ModeState; LANES],
-    ) -> Self {
-        let rows = &step.end;
+    fn free<const S: usize, A: Arithmetic>(rows: &EndGroup<S>, starts: &[ModeState; LANES]) -> Self {
         let (mut start_q, mut start_v) = ([0.0; LANES], [0.0; LANES]);
         for ((q, v), start) in start_q.iter_mut().zip(&mut start_v).zip(starts) {
             (*q, *v) = (start.q, start.v);
         }
         let (mut q, mut v) = ([0.0; LANES], [0.0; LANES]);
-        add_products::<LANES, A>(&mut q, lanes(rows.q_from_q, group), &start_q);
-        add_products::<LANES, A>(&mut q, lanes(rows.q_from_v, group), &start_v);
-        add_products::<LANES, A>(&mut v, lanes(rows.v_from_q, group), &start_q);
-        add_products::<LANES, A>(&mut v, lanes(rows.v_from_v, group), &start_v);
+        add_products::<LANES, A>(&mut q, &rows.q_from_q, &start_q);
+        add_products::<LANES, A>(&mut q, &rows.q_from_v, &start_v);
+        add_products::<LANES, A>(&mut v, &rows.v_from_q, &start_q);
+        add_products::<LANES, A>(&mut v, &rows.v_from_v, &start_v);
         Self { q, v }
     }
 
     /// Adds what a load does that acts on each mode with its part, and has these nodal values.
     #[inline(always)]
-    fn add<const S: usize, A: Arithmetic>(
-        &mut self,
-        step: StepCoefficients<'_, S>,
-        group: usize,
-        (parts, values): (&Modal, &Nodal<S>),
-    ) {
-        let rows = &step.end;
+    fn add<const S: usize, A: Arithmetic>(&mut self, rows: &EndGroup<S>, parts: &[f64; LANES], values: &Nodal<S>) {
         let (mut q, mut v) = ([0.0; LANES], [0.0; LANES]);
-        for (value, (of_q, of_v)) in values.iter().zip(rows.q_from_load.iter().zip(rows.v_from_load)) {
-            add::<LANES, A>(&mut q, *value, lanes(of_q, group));
-            add::<LANES, A>(&mut v, *value, lanes(of_v, group));
+        for (value, (of_q, of_v)) in values.iter().zip(rows.q_from_load.iter().zip(&rows.v_from_load)) {
+            add::<LANES, A>(&mut q, *value, of_q);
+            add::<LANES, A>(&mut v, *value, of_v);
         }
-        let parts = lanes(parts, group);
         add_products::<LANES, A>(&mut self.q, parts, &q);
         add_products::<LANES, A>(&mut self.v, parts, &v);
     }
 
     /// Adds what loads of their own do to each mode.
     #[inline(always)]
-    fn add_each<const S: usize, A: Arithmetic>(
-        &mut self,
-        step: StepCoefficients<'_, S>,
-        group: usize,
-        on_modes: &[Nodal<S>],
-    ) {
-        let rows = &step.end;
-        let of_group = on_modes.as_chunks::<LANES>().0.get(group);
-        for (k, (of_q, of_v)) in rows.q_from_load.iter().zip(rows.v_from_load).enumerate() {
+    fn add_each<const S: usize, A: Arithmetic>(&mut self, rows: &EndGroup<S>, loads: &[Nodal<S>]) {
+        for (k, (of_q, of_v)) in rows.q_from_load.iter().zip(&rows.v_from_load).enumerate() {
             let mut load = [0.0; LANES];
-            for (load, values) in load.iter_mut().zip(of_group.into_iter().flatten()) {
+            for (load, values) in load.iter_mut().zip(loads) {
                 *load = values.get(k).copied().unwrap_or_default();
             }
-            add_products::<LANES, A>(&mut self.q, lanes(of_q, group), &load);
-            add_products::<LANES, A>(&mut self.v, lanes(of_v, group), &load);
+            add_products::<LANES, A>(&mut self.q, of_q, &load);
+            add_products::<LANES, A>(&mut self.v, of_v, &load);
         }
     }
 }

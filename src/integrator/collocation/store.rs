@@ -4,10 +4,10 @@ use std::ops::Range;
 
 use bytemuck::{Zeroable, write_zeroes};
 
-use crate::beam::mode::{MAX_MODES, Modal, Mode};
+use crate::beam::mode::Mode;
 use crate::excitation::generator::{Generator, Turns};
 use crate::integrator::collocation::coefficients::{
-    EndRows, ModeColumns, NodeRows, Response, StepCoefficients, end_rows, responses_before,
+    EndGroup, ModeColumns, NodeRows, Response, StepCoefficients, responses_before,
 };
 use crate::integrator::collocation::elimination::solve;
 use crate::integrator::collocation::modal_response::ModeOverStep;
@@ -17,7 +17,7 @@ use crate::integrator::collocation::superposition::{Pair, Sum};
 use crate::link::Port;
 use crate::math::free_motion::FreeMotion;
 use crate::math::nodal::{Nodal, add, scaled};
-use crate::math::simd::{Arithmetic, Simd, compiled_for};
+use crate::math::simd::{Arithmetic, LANES, Simd, compiled_for};
 use crate::model::Model;
 
 /// Step lengths whose coefficients are kept, a power of two: those of 32 octaves with and without half of their own, as
@@ -69,7 +69,7 @@ pub(super) struct Store<const S: usize> {
     responses: Vec<Response<S>>,
     columns: Vec<ModeColumns<S>>,
     following: Vec<Nodal<S>>,
-    ends: Vec<Modal>,
+    ends: Vec<EndGroup<S>>,
     turns: Vec<Turns<S>>,
     sizes: Sizes,
     /// The place of each slot that a recurring length may have by its hash; 0: none yet.
@@ -83,6 +83,7 @@ struct Sizes {
     responses: usize,
     columns: usize,
     following: usize,
+    ends: usize,
     /// Where the rows of each port begin and end.
     of_port: Vec<Range<usize>>,
 }
@@ -114,6 +115,7 @@ impl Sizes {
             responses: responses_before(model.ports.len()),
             columns: if model.axial().is_some() { model.modes.len() } else { 0 },
             following: if model.friction().is_some() { S } else { 0 },
+            ends: model.modes.len().div_ceil(LANES),
             of_port,
         }
     }
@@ -125,7 +127,7 @@ impl Sizes {
             + self.responses * size_of::<Response<S>>()
             + self.columns * size_of::<ModeColumns<S>>()
             + self.following * size_of::<Nodal<S>>()
-            + end_rows(S) * size_of::<Modal>()
+            + self.ends * size_of::<EndGroup<S>>()
             + size_of::<Turns<S>>()
     }
 }
@@ -190,7 +192,7 @@ impl<const S: usize> Store<S> {
             responses: Vec::with_capacity(places * sizes.responses),
             columns: Vec::with_capacity(places * sizes.columns),
             following: Vec::with_capacity(places * sizes.following),
-            ends: Vec::with_capacity(places * end_rows(S)),
+            ends: Vec::with_capacity(places * sizes.ends),
             turns: Vec::with_capacity(places),
             sizes,
             of_slot: vec![0; SLOTS],
@@ -214,7 +216,7 @@ impl<const S: usize> Store<S> {
         self.responses.resize_with(places * sizes.responses, Response::zeroed);
         self.columns.resize_with(places * sizes.columns, ModeColumns::zeroed);
         self.following.resize(places * sizes.following, [0.0; S]);
-        self.ends.resize(places * end_rows(S), [0.0; MAX_MODES]);
+        self.ends.resize_with(places * sizes.ends, EndGroup::zeroed);
         self.turns.push(Turns::room(generator));
         self.lengths.push(0.0);
         place
@@ -234,7 +236,7 @@ impl<const S: usize> Store<S> {
             length: self.lengths[place],
             columns: part(&self.columns, place, sizes.columns),
             following: part(&self.following, place, sizes.following),
-            end: EndRows::of(part(&self.ends, place, end_rows(S))),
+            end: part(&self.ends, place, sizes.ends),
             turns: &self.turns[place],
             responses: part(&self.responses, place, sizes.responses),
             rows: part(&self.rows, place, sizes.rows),
@@ -261,7 +263,7 @@ impl<const S: usize> Store<S> {
             rows: part_mut(&mut self.rows, place, sizes.rows),
             of_port: &sizes.of_port,
             columns: part_mut(&mut self.columns, place, sizes.columns),
-            end: part_mut(&mut self.ends, place, end_rows(S)),
+            end: part_mut(&mut self.ends, place, sizes.ends),
         };
         sums.iter_mut().for_each(write_zeroes);
         compiled_for!(simd, A => modes.set::<A>(h, model, collocation, sums));
@@ -297,7 +299,7 @@ struct Modes<'a, const S: usize> {
     rows: &'a mut [NodeRows<S>],
     of_port: &'a [Range<usize>],
     columns: &'a mut [ModeColumns<S>],
-    end: &'a mut [Modal],
+    end: &'a mut [EndGroup<S>],
 }
 
 impl<const S: usize> Modes<'_, S> {
@@ -332,13 +334,11 @@ impl<const S: usize> Modes<'_, S> {
                     rows.set::<A>(b, mode, &response, h);
                 }
             }
-            let end = FreeMotion::new(mode.omega_squared, mode.damping, h);
-            let loads = response.at_end::<A>(shapes);
-            let (q_from_load, v_from_load) = (scaled(&loads.q, h * h), scaled(&loads.v, h));
-            let free = [end.q_from_q, end.q_from_v, end.v_from_q, end.v_from_v];
-            let entries = free.iter().chain(&q_from_load).chain(&v_from_load);
-            for (row, entry) in self.end.iter_mut().zip(entries) {
-                row.iter_mut().skip(i).take(1).for_each(|own| *own = *entry);
+            if let Some(group) = self.end.get_mut(i / LANES) {
+                let free = FreeMotion::new(mode.omega_squared, mode.damping, h);
+                let Pair { q, v } = response.at_end::<A>(shapes);
+                let (q, v) = (scaled(&q, h * h), scaled(&v, h));
+                group.set(i % LANES, &free, &Pair { q, v });
             }
             if let (Some(columns), Some(alone)) = (self.columns.get_mut(i), of_port.next()) {
                 let Pair { q, v } = &response.impulse;

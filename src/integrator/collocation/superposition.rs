@@ -159,25 +159,40 @@ impl<const S: usize> Sum<S> {
 
     /// At the nodes.
     #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "a shape of the table")]
     pub fn at_nodes<A: Arithmetic>(&self, shapes: &Shapes<S>) -> Pair<Table<S>> {
-        let Combination {
-            integrals,
-            terms,
-            derivatives,
-        } = &self.combination;
         let (mut q, mut v) = (Table::ZERO, Table::ZERO);
-        let factors = integrals.q.iter().zip(&integrals.v).take(*terms);
-        for ((for_q, for_v), table) in factors.zip(&shapes.integrals) {
-            q.add::<A>(*for_q, table);
-            v.add::<A>(*for_v, table);
+        for shape in 0..S {
+            Pair {
+                q: q.nodal[shape],
+                v: v.nodal[shape],
+            } = self.of_shape::<A>(shapes, |table| &table.nodal[shape]);
         }
-        let factors = derivatives.q.iter().zip(&derivatives.v);
-        for ((for_q, for_v), table) in factors.zip(&shapes.derivatives) {
-            q.add::<A>(*for_q, table);
-            v.add::<A>(*for_v, table);
-        }
-        q.add::<A>(-1.0, &self.faded.q);
-        v.add::<A>(-1.0, &self.faded.v);
+        Pair { q: q.error, v: v.error } = self.of_shape::<A>(shapes, |table| &table.error);
         Pair { q, v }
+    }
+
+    /// At the nodes of one shape, for which the sums stay in registers.
+    #[inline(always)]
+    fn of_shape<A: Arithmetic>(&self, shapes: &Shapes<S>, column: impl Fn(&Table<S>) -> &Nodal<S>) -> Pair<Nodal<S>> {
+        let Self { combination, faded } = self;
+        let mut sum = Pair {
+            q: [0.0; S],
+            v: [0.0; S],
+        };
+        let Pair { q, v } = &combination.integrals;
+        let factors = q.iter().zip(v).take(combination.terms);
+        for ((for_q, for_v), table) in factors.zip(&shapes.integrals) {
+            add::<S, A>(&mut sum.q, *for_q, column(table));
+            add::<S, A>(&mut sum.v, *for_v, column(table));
+        }
+        let Pair { q, v } = &combination.derivatives;
+        for ((for_q, for_v), table) in q.iter().zip(v).zip(&shapes.derivatives) {
+            add::<S, A>(&mut sum.q, *for_q, column(table));
+            add::<S, A>(&mut sum.v, *for_v, column(table));
+        }
+        add::<S, A>(&mut sum.q, -1.0, column(&faded.q));
+        add::<S, A>(&mut sum.v, -1.0, column(&faded.v));
+        sum
     }
 }

@@ -2,11 +2,12 @@
 
 use bytemuck::Zeroable;
 
-use crate::beam::mode::{MAX_MODES, ModeStates};
+use crate::beam::mode::ModeStates;
 use crate::integrator::collocation::coefficients::ErrorColumn;
 use crate::integrator::collocation::newton::{Joined, NodalMotion, Tangent};
 use crate::link::{MAX_LINKS, MAX_PORTS};
 use crate::math::nodal::Nodal;
+use crate::model::Model;
 
 /// A step computed but not yet accepted.
 #[derive(Clone, Debug, Zeroable)]
@@ -70,11 +71,26 @@ pub enum Source {
     Given,
 }
 
-/// Room for a trial while it is computed.
-#[derive(Clone, Debug, Zeroable)]
+/// Room for a trial while it is computed, where a model needs it.
+#[derive(Clone, Debug)]
 pub struct Scratch<const S: usize> {
     pub(super) joined: Joined<S>,
     pub(crate) axial: AxialLoads<S>,
+}
+
+impl<const S: usize> Scratch<S> {
+    /// For the model.
+    pub fn new(model: &Model) -> Self {
+        let on_modes = || vec![[0.0; S]; if model.axial().is_some() { model.modes.len() } else { 0 }];
+        Self {
+            joined: Joined::new(model),
+            axial: AxialLoads {
+                loads: on_modes(),
+                motion: on_modes(),
+                next: on_modes(),
+            },
+        }
+    }
 }
 
 /// Response to all that is known beforehand.
@@ -110,18 +126,15 @@ pub struct SlipNodes<const S: usize> {
     pub rates: Nodal<S>,
 }
 
-/// A value at each node for each mode.
-pub(crate) type NodalModes<const S: usize> = [Nodal<S>; MAX_MODES];
-
-/// Loads of an axial force that follows the deflection.
-#[derive(Clone, Debug, Zeroable)]
+/// Loads of an axial force that follows the deflection, at each node for each mode.
+#[derive(Clone, Debug)]
 pub struct AxialLoads<const S: usize> {
     /// On the modes at the nodes of a trial.
-    pub(crate) loads: NodalModes<S>,
+    pub(crate) loads: Vec<Nodal<S>>,
     /// The modes at the nodes, while the loads are sought.
-    pub(super) motion: NodalModes<S>,
+    pub(super) motion: Vec<Nodal<S>>,
     /// The loads of that motion.
-    pub(super) next: NodalModes<S>,
+    pub(super) next: Vec<Nodal<S>>,
 }
 
 /// Estimate of an error, N.
