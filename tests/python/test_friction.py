@@ -44,6 +44,20 @@ MOTIONS: dict[str, tuple[Values, float]] = {
         {**SHAKEN, "effects.excitation": "HalfSine", "excitation.amplitude": -490.0, "excitation.duration": 1e-3},
         2e-3,
     ),
+    # Friction is at its limit from the start.
+    "slips at once": (
+        {
+            **SHAKEN,
+            "effects.excitation": "HalfSine",
+            "excitation.amplitude": -2062.0,
+            "excitation.duration": 2.059e-4,
+            "beam.stiffnessDamping": 5.253e-6,
+            "contact.damping": 1.393e-5,
+            "friction.coefficient": 0.288,
+            "solver.modes": 24,
+        },
+        1e-3,
+    ),
     # Its damper lets go of the indented contact, which closes again before the indentation is gone.
     "closes while indented": (
         {
@@ -56,11 +70,11 @@ MOTIONS: dict[str, tuple[Values, float]] = {
             "friction.coefficient": 0.2873,
             "solver.modes": 24,
         },
-        1.0e-3,
+        1e-3,
     ),
     "no friction": ({**SHAKEN, "friction.coefficient": 0.0}, 2e-3),
 }
-OPENING = {"opens", "shock", "closes while indented"}
+OPENING = {"opens", "shock", "slips at once", "closes while indented"}
 CLOSED = {Phase.STICK, Phase.FORTH, Phase.BACK}
 FORCES, WAYS, ENERGY = OUTPUTS[:2], OUTPUTS[2:4], OUTPUTS[4]
 

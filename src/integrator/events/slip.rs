@@ -54,7 +54,7 @@ impl<'a, const S: usize> Locator<'a, S> {
     }
 
     /// Where in the trial the contact first begins or ceases to slip.
-    pub(crate) fn slip_change(&self) -> Option<Change> {
+    pub(crate) fn slip_change(&mut self) -> Option<Change> {
         let Rubbing {
             contact: (contact, contact_at),
             along: (along, along_at),
@@ -72,9 +72,9 @@ impl<'a, const S: usize> Locator<'a, S> {
         } = self.whole;
         let (normal, nodes) = trial.links.get(CONTACT).zip(trial.links.get(index))?;
         let z = -along_at.approach - state.slip.way;
-        let first = |start: f64, values: &[f64; S]| {
-            let unsure = || self.tolerance.located.max(self.slip_rounding());
-            passage((collocation, model.simd), start, values, unsure)
+        let mut first = |start: f64, values: &[f64; S], phase: Phase| {
+            let exceeds = |y: f64, value: f64| self.is_beyond((1.0 + y) * length, value, phase);
+            passage((collocation, model.simd), start, values, exceeds)
         };
         let ((y, slope), phase) = if let Some(sign) = state.slip.phase.sign() {
             // The friction force that is missing for the slip velocity.
@@ -89,16 +89,17 @@ impl<'a, const S: usize> Locator<'a, S> {
             } else {
                 dot::<S, Separate>(&wrong, &collocation.at_start)
             };
-            let (y, slope) = first(before.min(0.0), &wrong)?;
+            let (y, slope) = first(before.min(0.0), &wrong, Phase::Stick)?;
             ((y, slope * damping / (damping + length)), Phase::Stick)
         } else {
             let [back, forth] = [1.0, -1.0].map(|sign| {
+                let phase = Phase::slip(sign);
                 let excess = |along: f64, force: f64| sign * along - friction.coefficient * force;
                 let mut values = nodes.forces;
                 for (value, force) in values.iter_mut().zip(&normal.forces) {
                     *value = excess(along.force + *value, contact.force + force);
                 }
-                first(excess(along_at.force, contact_at.force), &values).map(|found| (found, Phase::slip(sign)))
+                first(excess(along_at.force, contact_at.force), &values, phase).map(|found| (found, phase))
             });
             match (back, forth) {
                 (Some(back), Some(forth)) if forth.0.0 < back.0.0 => forth,
@@ -135,6 +136,22 @@ impl<'a, const S: usize> Locator<'a, S> {
             time: self.whole.state.time + at,
             event,
         }
+    }
+
+    /// Whether the contact is beyond the change to a phase `at` seconds after the start, where the polynomial has this value (N): more
+    /// than it is sure of, and on the exact motion, as just behind its start it may overshoot. Without a damper there is no such
+    /// force for the slip velocity.
+    fn is_beyond(&mut self, at: f64, value: f64, phase: Phase) -> bool {
+        let rounding = self.slip_rounding();
+        if value <= rounding.max(self.tolerance.located) {
+            return false;
+        }
+        let damped = self.rubbing().is_some_and(|rubbing| rubbing.law.damping > 0.0);
+        if !damped && phase == Phase::Stick {
+            return true;
+        }
+        let now = self.inside(CONTACT, at);
+        self.beyond(&now, phase) > rounding
     }
 
     /// How far the contact is beyond the change to a phase, at the instant looked at last, N: the trial force beyond the limit, or
@@ -196,13 +213,13 @@ impl<'a, const S: usize> Locator<'a, S> {
     }
 }
 
-/// Where the polynomial through `start` and the nodal values first exceeds zero by more than `unsure`: where it passes zero
-/// before, relative to the end of the step in step lengths, and the slope there.
+/// Where the polynomial through `start` and the nodal values passes zero before it first `exceeds` it, as is asked where it turns and
+/// at the end: relative to the end of the step in step lengths, and the slope there.
 fn passage<const S: usize>(
     (collocation, simd): (&Collocation<S>, Simd),
     start: f64,
     values: &[f64; S],
-    unsure: impl Fn() -> f64,
+    mut exceeds: impl FnMut(f64, f64) -> bool,
 ) -> Option<(f64, f64)> {
     if !Collocation::comes_near_zero(-start, &scaled(values, -1.0)) {
         return None;
@@ -212,11 +229,11 @@ fn passage<const S: usize>(
     let mut before = (-1.0, start);
     for y in turning_points(simd, &polynomial).iter().chain([0.0]) {
         let now = (y, value(y));
-        if now.1 > 0.0 && now.1 > unsure() {
+        if now.1 > 0.0 && exceeds(y, now.1) {
             let y = roots::between(value, before, now, 1e-12).unwrap_or(before.0);
             return Some((y, value_and_slope(&polynomial, y).1));
         }
-        before = now;
+        before = (y, now.1.min(0.0));
     }
     None
 }
