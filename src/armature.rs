@@ -11,11 +11,10 @@
 
 use crate::beam::mode::Mode;
 use crate::contact::power::Power;
-use crate::error::SceneError;
 use crate::magnet::{Magnet, damping_ratio};
 use crate::math::roots;
 use crate::scene::Scene;
-use crate::variables::{PusherKind, RealParameter};
+use crate::variables::PusherKind;
 
 /// Places between the stops at which the armature is looked for where it is at neither.
 const PLACES: u32 = 200;
@@ -54,23 +53,9 @@ pub struct AtRest {
 
 impl Armature {
     /// That of a scene, if it has one.
-    ///
-    /// # Errors
-    /// A [`SceneError`] if its positions leave it no room.
-    pub fn new(scene: &Scene) -> Result<Option<Self>, SceneError> {
-        if scene.effects.pusher != PusherKind::Armature {
-            return Ok(None);
-        }
+    pub fn new(scene: &Scene) -> Option<Self> {
         let given = &scene.armature;
-        if given.core_position <= given.rest_position {
-            let allowed = format!(
-                "allowed is more than armature.restPosition = {} m",
-                crate::error::number(given.rest_position)
-            );
-            let variable = RealParameter::ArmatureCorePosition.variable();
-            return Err(SceneError::out_of_range(variable, given.core_position, allowed));
-        }
-        Ok(Some(Self {
+        (scene.effects.pusher == PusherKind::Armature).then_some(Self {
             mass: given.mass,
             stiffness: given.stiffness,
             damping: given.damping,
@@ -85,7 +70,7 @@ impl Armature {
             core: given.core_position,
             stop_stiffness: given.stop_stiffness,
             stop_restitution: given.stop_restitution,
-        }))
+        })
     }
 
     /// As a mode.

@@ -9,7 +9,6 @@ use crate::beam::resolution::Resolution;
 use crate::beam::section::Section;
 use crate::beam::spring::Basis;
 use crate::beam::springs::{Counts, Springs};
-use crate::contact::friction;
 use crate::contact::law::Law;
 use crate::contact::linear::Linear;
 use crate::contact::power::Power;
@@ -52,8 +51,8 @@ impl Foundation {
     #[inline(never)]
     pub fn of(scene: &Scene, initial: &Initial) -> Result<Box<Self>, SceneError> {
         scene.validate()?;
-        friction::check(scene)?;
-        let springs = Springs::new(scene)?;
+        scene.check_combinations()?;
+        let springs = Springs::new(scene);
         let (spring, section) = (&springs.moving, springs.moving.section);
         let power = Power::of(scene);
         let (parallel, second) = (Power::of_parallel(scene), Power::of_second(scene));
@@ -107,12 +106,6 @@ impl Foundation {
 fn law(scene: &Scene, power: Power, preload: &Preload) -> Result<Law, SceneError> {
     match scene.effects.contact_law {
         ContactLawKind::Hertz | ContactLawKind::Rough => Ok(Law::Power(power)),
-        ContactLawKind::Linearised | ContactLawKind::Bonded if scene.effects.second_contact => {
-            Err(SceneError::LinearBesideOther("effects.secondContact"))
-        }
-        ContactLawKind::Linearised | ContactLawKind::Bonded if scene.effects.parallel_contact => {
-            Err(SceneError::LinearBesideOther("effects.parallelContact"))
-        }
         ContactLawKind::Linearised | ContactLawKind::Bonded if preload.force <= 0.0 => Err(SceneError::NoPreload),
         kind @ (ContactLawKind::Linearised | ContactLawKind::Bonded) => Ok(Law::Linear(Linear {
             stiffness: preload.contact_stiffness,

@@ -11,7 +11,6 @@ use crate::beam::section::Section;
 use crate::closed_loop::system::ClosedLoop;
 use crate::contact::friction::{Friction, Slip};
 use crate::contact::law::Law;
-use crate::electrical::ElectricalContact;
 use crate::error::{Remark, SceneError};
 use crate::excitation::generator::Generator;
 use crate::force_error::Slowest;
@@ -127,11 +126,8 @@ impl Model {
     /// A [`SceneError`] if the scene cannot be simulated.
     pub fn starting(scene: &Scene, initial: &Initial) -> Result<Box<Self>, SceneError> {
         let foundation = Foundation::of(scene, initial)?;
-        let generator = Generator::new(scene)?;
+        let generator = Generator::new(scene);
         let (law, modes) = (foundation.laws.contact, &foundation.modes);
-        if scene.effects.chatter && ElectricalContact::new(scene, &law).is_none() {
-            return Err(SceneError::NoResistance);
-        }
         let closed_loop = match law {
             Law::Linear(contact) if generator.is_harmonic() && is_linear(scene) && is_rayleigh(scene, modes) => {
                 ClosedLoop::new(scene, (modes, &foundation.resolution), contact, &generator).map(Box::new)

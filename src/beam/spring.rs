@@ -11,12 +11,11 @@ use crate::beam::pieces::Pieces;
 use crate::beam::ritz;
 use crate::beam::section::Section;
 use crate::beam::statics::{Statics, axial_force_from_deflection};
-use crate::error::SceneError;
 use crate::math::simd::LANES;
-use crate::scene::spring::{Segments, Shape, SpringFile};
-use crate::scene::{Scene, choices};
+use crate::scene::Scene;
+use crate::scene::spring::{Segments, Shape};
 use crate::shared::{Found, Home, Shared};
-use crate::variables::{AxialForceKind, EnumerationParameter, PusherKind, RealParameter};
+use crate::variables::AxialForceKind;
 
 /// A spring with its rivet.
 #[derive(Clone, Debug)]
@@ -59,31 +58,21 @@ const FREQUENCY_TERMS: usize = 32;
 
 impl Spring {
     /// The spring of a scene.
-    ///
-    /// # Errors
-    /// A [`SceneError`] if a spring given by modes is to have an axial force.
-    pub fn new(scene: &Scene) -> Result<Self, SceneError> {
-        check_pusher(scene)?;
-        let Some(file) = &scene.spring else {
-            return Ok(if scene.pushed_at().is_some() {
-                Self::of_segments(&scene.uniform_spring(), scene)
-            } else {
-                Self::uniform(&Section::new(scene))
-            });
-        };
-        match &file.shape {
-            Shape::Segments(segments) => Ok(Self::of_segments(segments, scene)),
-            Shape::Modes(modes) => {
-                no_axial_force(scene, file)?;
+    pub fn new(scene: &Scene) -> Self {
+        match scene.spring.as_ref().map(|file| &file.shape) {
+            None if scene.pushed_at().is_some() => Self::of_segments(&scene.uniform_spring(), scene),
+            None => Self::uniform(&Section::new(scene)),
+            Some(Shape::Segments(segments)) => Self::of_segments(segments, scene),
+            Some(Shape::Modes(modes)) => {
                 let given = Given::new(modes);
                 let section = given.equivalent();
                 let space = given.space(&given.modes(MAX_MODES, (0.0, 0.0)));
-                Ok(Self {
+                Self {
                     section,
                     buckling_load: f64::INFINITY,
                     statics: Statics::of(&section, space),
                     form: Form::Modes(given),
-                })
+                }
             }
         }
     }
@@ -263,56 +252,4 @@ fn of_this(last: Last) -> [Last; SPRINGS] {
 fn last_of(shape: &DVector<f64>) -> Last {
     let place = |k: usize| (shape.len() + k).checked_sub(LANES);
     std::array::from_fn(|k| place(k).and_then(|place| shape.get(place)).copied().unwrap_or_default())
-}
-
-/// A pusher touches the spring somewhere, and leaves the axial force as it is.
-fn check_pusher(scene: &Scene) -> Result<(), SceneError> {
-    let Some(position) = scene.pushed_at() else {
-        return Ok(());
-    };
-    let pusher = match scene.effects.pusher {
-        PusherKind::Armature => "effects.pusher = Armature",
-        PusherKind::Prescribed | PusherKind::None => "effects.pusher = Prescribed",
-    };
-    scene.keeps_axial_force(pusher, "effects.pusher = None")?;
-    let length = match scene.spring.as_ref().map(|file| (file, &file.shape)) {
-        None => scene.beam.length,
-        Some((_, Shape::Segments(segments))) => segments.length(),
-        Some((file, Shape::Modes(modes))) => {
-            let touched = modes.modes.iter().all(|mode| mode.pusher.is_some());
-            let file = file.name.clone();
-            return touched.then_some(()).ok_or(SceneError::NoPlace {
-                effect: "effects.pusher",
-                place: "pusher",
-                file,
-            });
-        }
-    };
-    if position <= length {
-        return Ok(());
-    }
-    let allowed = format!(
-        "allowed is at most the length of the spring, {} m",
-        crate::error::number(length)
-    );
-    Err(SceneError::out_of_range(
-        RealParameter::PusherPosition.variable(),
-        position,
-        allowed,
-    ))
-}
-
-/// A spring given by modes has no geometry on which an axial force could act.
-fn no_axial_force(scene: &Scene, file: &SpringFile) -> Result<(), SceneError> {
-    let kind = scene.effects.axial_force;
-    if kind == AxialForceKind::None {
-        return Ok(());
-    }
-    let choice = choices(EnumerationParameter::EffectsAxialForce)
-        .iter()
-        .find(|(_, number)| *number == kind as i32);
-    Err(SceneError::NeedsGeometry {
-        choice: choice.map_or("", |(label, _)| *label),
-        file: file.name.clone(),
-    })
 }

@@ -22,7 +22,6 @@ use crate::beam::spring::{Basis, Spring};
 use crate::beam::statics::AtPlace;
 use crate::beam::tongues::Tongues;
 use crate::contact::friction::tangential_share;
-use crate::error::SceneError;
 use crate::math::simd::LANES;
 use crate::scene::{Beam, Scene, Tip};
 use crate::variables::{AxialForceKind, PusherKind};
@@ -94,16 +93,13 @@ impl Counts {
 
 impl Springs {
     /// Those of a scene.
-    ///
-    /// # Errors
-    /// A [`SceneError`] if a spring cannot have the axial force that it is to have.
-    pub fn new(scene: &Scene) -> Result<Self, SceneError> {
-        Ok(Self {
-            moving: Spring::new(scene)?,
-            fixed: FixedSpring::new(scene)?,
-            tongues: Tongues::new(scene)?,
-            armature: Armature::new(scene)?,
-        })
+    pub fn new(scene: &Scene) -> Self {
+        Self {
+            moving: Spring::new(scene),
+            fixed: FixedSpring::new(scene),
+            tongues: Tongues::new(scene),
+            armature: Armature::new(scene),
+        }
     }
 
     /// Static stiffness of both at the contact, N/m.
@@ -232,14 +228,10 @@ pub struct FixedSpring {
 }
 
 impl FixedSpring {
-    /// That of a scene, if it has one; refused beside an axial force that follows the deflection.
-    fn new(scene: &Scene) -> Result<Option<Self>, SceneError> {
-        let Some(file) = &scene.fixed_spring else {
-            return Ok(None);
-        };
-        scene.keeps_axial_force("fixed.file", "no fixed.file")?;
+    /// That of a scene, if it has one.
+    fn new(scene: &Scene) -> Option<Self> {
         let mut own = Scene {
-            spring: Some(file.clone()),
+            spring: Some(scene.fixed_spring.clone()?),
             fixed_spring: None,
             tip: Tip {
                 mass: 0.0,
@@ -257,8 +249,8 @@ impl FixedSpring {
         own.effects.axial_force = AxialForceKind::None;
         own.effects.pusher = PusherKind::None;
         own.effects.parallel_contact = false;
-        let spring = Spring::new(&own)?;
-        Ok(Some(Self { scene: own, spring }))
+        let spring = Spring::new(&own);
+        Some(Self { scene: own, spring })
     }
 
     /// Deflection that opens the contact, per contact force with the share of friction that comes with it, m/N.

@@ -2,7 +2,6 @@
 
 use std::f64::consts::TAU;
 
-use crate::error::SceneError;
 use crate::excitation::random::{Piece, Random};
 use crate::excitation::sine::Sine;
 use crate::excitation::sweep::LogSweep;
@@ -62,30 +61,21 @@ pub enum Generator {
 
 impl Generator {
     /// The generator of the scene.
-    ///
-    /// # Errors
-    /// [`SceneError::NoBand`] for a random acceleration without a band of frequencies.
-    pub fn new(scene: &Scene) -> Result<Self, SceneError> {
+    pub fn new(scene: &Scene) -> Self {
         let excitation = &scene.excitation;
         let shakes = match scene.effects.excitation {
             ExcitationKind::None => false,
             ExcitationKind::Random => excitation.spectral_density > 0.0,
             ExcitationKind::Sine | ExcitationKind::HalfSine | ExcitationKind::LogSweep => excitation.amplitude != 0.0,
         };
-        Ok(match scene.effects.excitation {
-            ExcitationKind::Random if excitation.end_frequency <= excitation.frequency => {
-                return Err(SceneError::NoBand {
-                    frequency: excitation.frequency,
-                    end_frequency: excitation.end_frequency,
-                });
-            }
+        match scene.effects.excitation {
             _ if !shakes => Self::None,
             ExcitationKind::None => Self::None,
             ExcitationKind::Sine => Self::Sine(Sine::new(excitation)),
             ExcitationKind::HalfSine => Self::Sine(Sine::half(excitation)),
             ExcitationKind::LogSweep => Self::LogSweep(LogSweep::new(excitation)),
             ExcitationKind::Random => Self::Random(Box::new(Random::new(excitation))),
-        })
+        }
     }
 
     /// Acceleration at an instant (s) within the window, m/s2.
@@ -224,7 +214,7 @@ mod tests {
     #[test]
     fn nodes_agree_with_direct_evaluation() {
         fn check<const S: usize>(scene: &Scene, time: f64, length: f64) {
-            let generator = Generator::new(scene).unwrap();
+            let generator = Generator::new(scene);
             let nodes = Collocation::<S>::default().nodes;
             let mut turns = Turns::<S>::room(&generator);
             let e = &scene.excitation;
