@@ -90,7 +90,7 @@ pub enum SceneError {
     /// A name given twice.
     #[error("{name}: given twice, allowed is {allowed}")]
     GivenTwice { name: String, allowed: &'static str },
-    /// A key that a spring file does not have.
+    /// A key that a file does not have.
     #[error("{name}: no such key, allowed are {allowed}{}", meant(*nearest))]
     UnknownKey {
         name: String,
@@ -110,10 +110,7 @@ pub enum SceneError {
     /// Any of these, with its line of the scene file or table.
     #[error("line {line}: {error}")]
     AtLine { line: usize, error: Box<SceneError> },
-    /// A scene file that is not TOML, or with a key or a type of value that scene files do not have.
-    #[error("not a scene file: {0}")]
-    Syntax(String),
-    /// A spring file that is not TOML.
+    /// A file that is not TOML.
     #[error("not TOML: {0}")]
     Toml(String),
     /// A table of inputs that is not CSV, or has no rows.

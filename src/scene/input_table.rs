@@ -15,6 +15,7 @@ use csv::{ReaderBuilder, StringRecord, Trim};
 use crate::error::SceneError;
 use crate::inputs::Inputs;
 use crate::scene::check_range;
+use crate::scene::document::of_file;
 use crate::scene::names::{Role, variable};
 use crate::variables::{Group, RealInput};
 
@@ -39,17 +40,7 @@ impl InputTable {
     /// # Errors
     /// The first [`SceneError`] found, with the file, the line and the column's name.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
-        let file = path.display().to_string();
-        match fs::read_to_string(path) {
-            Ok(text) => Self::parse(&text).map_err(|error| SceneError::InFile {
-                file,
-                error: Box::new(error),
-            }),
-            Err(error) => Err(SceneError::Unreadable {
-                file,
-                cause: error.to_string(),
-            }),
-        }
+        of_file(path, fs::read_to_string(path), Self::parse)
     }
 
     fn parse(text: &str) -> Result<Self, SceneError> {
