@@ -21,7 +21,7 @@ impl Conducting {
     /// The circuit of a contact; `None` without the contact or a resistance.
     fn of(model: &Model, motion: &Motion, role: Option<usize>) -> Option<Self> {
         let electrical = model.links.get(role?)?.electrical?;
-        let contacts = [role, model.parallel().filter(|_| role == Some(CONTACT))];
+        let contacts = [role, model.roles.parallel.filter(|_| role == Some(CONTACT))];
         let spots =
             contacts.map(|contact| contact.map_or(0.0, |index| electrical.spot(motion.link(model, index).force)));
         Some(Self {
@@ -61,7 +61,7 @@ impl Conducting {
 /// The contact of the circuit that an output is of.
 fn role(model: &Model, output: RealOutput) -> Option<usize> {
     match output {
-        RealOutput::SecondConductance | RealOutput::SecondResistance => model.second(),
+        RealOutput::SecondConductance | RealOutput::SecondResistance => model.roles.second,
         _ => Some(CONTACT),
     }
 }
@@ -94,7 +94,7 @@ pub(crate) fn output(model: &Model, motion: &Motion, output: RealOutput) -> f64 
         RealOutput::ContactTemperature => model.scene.environment.temperature,
         RealOutput::StepMaximumResistance if model.scene.effects.extremes => {
             let mut extremes = motion.extremes(model);
-            1.0 / match model.parallel() {
+            1.0 / match model.roles.parallel {
                 Some(_) => electrical.beside(extremes.pair),
                 None => electrical.conductance(extremes.of(CONTACT).least),
             }

@@ -47,7 +47,7 @@ pub struct Model {
     /// The laws of these forces.
     pub(crate) links: Vec<Link>,
     /// Which link is what, beside the contact.
-    roles: Roles,
+    pub(crate) roles: Roles,
     /// Load on each mode per base acceleration, with opposite sign.
     pub(crate) participations: Modal,
     /// The static equilibrium, the reference of the motion.
@@ -200,7 +200,7 @@ impl Model {
     #[must_use]
     pub fn with(mut self, change: impl FnOnce(&mut Parts)) -> Self {
         let law_of = |role: Option<usize>| self.links.get(role?)?.contact().copied();
-        let (parallel, second) = (law_of(self.parallel()), law_of(self.second()));
+        let (parallel, second) = (law_of(self.roles.parallel), law_of(self.roles.second));
         let mut parts = Parts {
             law: *self.law(),
             modes: self.modes,
@@ -313,40 +313,9 @@ impl Model {
         &self.law
     }
 
-    /// The index of the parallel contact, where there is one.
-    pub(crate) fn parallel(&self) -> Option<usize> {
-        self.roles.parallel
-    }
-
-    /// The index of the second contact, where there is one.
-    #[inline(always)]
-    pub(crate) fn second(&self) -> Option<usize> {
-        self.roles.second
-    }
-
-    /// The index of the pusher, where there is one.
-    pub(crate) fn pusher(&self) -> Option<usize> {
-        self.roles.pusher
-    }
-
-    /// The index of the armature's core, where there is one.
-    pub(crate) fn core(&self) -> Option<usize> {
-        self.roles.core
-    }
-
-    /// What the user calls a link.
-    pub fn name_of(&self, link: usize) -> &'static str {
-        self.links.get(link).map_or("", |link| link.name)
-    }
-
-    /// The index of the displacement of the fixed contact on its spring, where it has one.
-    pub(crate) fn fixed(&self) -> Option<usize> {
-        self.roles.fixed
-    }
-
     /// Distance of both fixed contacts with the second displaced by so much (m); infinite where there is one.
     pub(crate) fn room(&self, displacement: f64) -> f64 {
-        if self.second().is_some() {
+        if self.roles.second.is_some() {
             self.scene.second.gap - displacement - self.preload.indentation
         } else {
             f64::INFINITY

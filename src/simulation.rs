@@ -76,7 +76,7 @@ impl Simulation {
             });
         }
         let mut motion = Motion::at_rest(&model, start_time);
-        if model.second().is_some() {
+        if model.roles.second.is_some() {
             for state in [&mut motion.start, &mut motion.end] {
                 state.displacements = [0.0, displacement, 0.0];
                 for (link, at) in model.links.iter().zip(&mut state.links) {
@@ -198,7 +198,7 @@ impl Simulation {
         let Self { model, motion, .. } = self;
         let (state, contact) = (motion.state(), || motion.link(model, CONTACT));
         let at = |role: Option<usize>| role.map_or_else(LinkNow::default, |index| motion.link(model, index));
-        let fixed = || at(model.fixed());
+        let fixed = || at(model.roles.fixed);
         match output {
             RealOutput::ContactForce => contact().force,
             RealOutput::ContactElasticForce => motion.elastic_force(model).0,
@@ -211,34 +211,34 @@ impl Simulation {
             | RealOutput::SecondResistance => conduction::output(model, motion, output),
             RealOutput::StepMinimumForce => self.range(Some(CONTACT)).least,
             RealOutput::StepMaximumForce => self.range(Some(CONTACT)).greatest,
-            RealOutput::StepMinimumGap => match self.extremes().filter(|_| model.second().is_some()) {
+            RealOutput::StepMinimumGap => match self.extremes().filter(|_| model.roles.second.is_some()) {
                 Some(extremes) => -extremes.nearest,
                 None => 0.0,
             },
-            RealOutput::ParallelForce => at(model.parallel()).force,
-            RealOutput::ParallelLastOpening => self.event(model.parallel(), |link| link.last_opening),
-            RealOutput::ParallelLastClosing => self.event(model.parallel(), |link| link.last_closing),
-            RealOutput::ParallelMinimumForce => self.range(model.parallel()).least,
-            RealOutput::ParallelMaximumForce => self.range(model.parallel()).greatest,
-            RealOutput::PusherForce => at(model.pusher()).force,
-            RealOutput::ArmatureDisplacement => model.preload.armature.place + at(model.core()).approach,
-            RealOutput::ArmatureVelocity => at(model.core()).rate,
+            RealOutput::ParallelForce => at(model.roles.parallel).force,
+            RealOutput::ParallelLastOpening => self.event(model.roles.parallel, |link| link.last_opening),
+            RealOutput::ParallelLastClosing => self.event(model.roles.parallel, |link| link.last_closing),
+            RealOutput::ParallelMinimumForce => self.range(model.roles.parallel).least,
+            RealOutput::ParallelMaximumForce => self.range(model.roles.parallel).greatest,
+            RealOutput::PusherForce => at(model.roles.pusher).force,
+            RealOutput::ArmatureDisplacement => model.preload.armature.place + at(model.roles.core).approach,
+            RealOutput::ArmatureVelocity => at(model.roles.core).rate,
             RealOutput::ArmatureGap => {
-                let core = model.core().and_then(|index| model.links.get(index));
-                core.map_or(0.0, |core| -(core.approach + at(model.core()).approach))
+                let core = model.roles.core.and_then(|index| model.links.get(index));
+                core.map_or(0.0, |core| -(core.approach + at(model.roles.core).approach))
             }
-            RealOutput::ArmatureLastRelease => self.event(model.core(), |link| link.last_opening),
-            RealOutput::StepMinimumStopForce => self.range(model.core()).least,
-            RealOutput::StepMinimumPusherForce => self.range(model.pusher()).least,
-            RealOutput::SecondForce => at(model.second()).force,
-            RealOutput::SecondLastOpening => self.event(model.second(), |link| link.last_opening),
-            RealOutput::SecondLastClosing => self.event(model.second(), |link| link.last_closing),
-            RealOutput::SecondMinimumForce => self.range(model.second()).least,
-            RealOutput::SecondMaximumForce => self.range(model.second()).greatest,
+            RealOutput::ArmatureLastRelease => self.event(model.roles.core, |link| link.last_opening),
+            RealOutput::StepMinimumStopForce => self.range(model.roles.core).least,
+            RealOutput::StepMinimumPusherForce => self.range(model.roles.pusher).least,
+            RealOutput::SecondForce => at(model.roles.second).force,
+            RealOutput::SecondLastOpening => self.event(model.roles.second, |link| link.last_opening),
+            RealOutput::SecondLastClosing => self.event(model.roles.second, |link| link.last_closing),
+            RealOutput::SecondMinimumForce => self.range(model.roles.second).least,
+            RealOutput::SecondMaximumForce => self.range(model.roles.second).greatest,
             RealOutput::ChatterLongestFalseMake => self.makes(Some(CONTACT)).longest,
             RealOutput::ChatterTotalFalseMake => self.makes(Some(CONTACT)).total,
-            RealOutput::SecondLongestFalseMake => self.makes(model.second()).longest,
-            RealOutput::SecondTotalFalseMake => self.makes(model.second()).total,
+            RealOutput::SecondLongestFalseMake => self.makes(model.roles.second).longest,
+            RealOutput::SecondTotalFalseMake => self.makes(model.roles.second).total,
             RealOutput::ChatterLongestInterruption => self.interruptions().longest,
             RealOutput::ChatterTotalInterruption => self.interruptions().total,
             RealOutput::EnergyBalance => state.energy_balance,
@@ -294,15 +294,15 @@ impl Simulation {
         // Of force and velocity.
         let rates = |role: Option<usize>| role.map_or((0.0, 0.0), |index| motion.link_rates(model, index));
         let along = || motion.friction_rates(model);
-        let fixed_acceleration = || rates(model.fixed()).1;
+        let fixed_acceleration = || rates(model.roles.fixed).1;
         Some(match output {
             RealOutput::ContactForce => rates(Some(CONTACT)).0,
-            RealOutput::ParallelForce => rates(model.parallel()).0,
-            RealOutput::SecondForce => rates(model.second()).0,
-            RealOutput::PusherForce => rates(model.pusher()).0,
+            RealOutput::ParallelForce => rates(model.roles.parallel).0,
+            RealOutput::SecondForce => rates(model.roles.second).0,
+            RealOutput::PusherForce => rates(model.roles.pusher).0,
             RealOutput::ContactElasticForce => motion.elastic_force(model).1,
             RealOutput::ArmatureDisplacement => self.real(RealOutput::ArmatureVelocity),
-            RealOutput::ArmatureVelocity => rates(model.core()).1,
+            RealOutput::ArmatureVelocity => rates(model.roles.core).1,
             RealOutput::ArmatureGap => -self.real(RealOutput::ArmatureVelocity),
             RealOutput::ContactConductance
             | RealOutput::ContactResistance
@@ -380,7 +380,7 @@ impl Simulation {
             IntegerOutput::SolverIterations => count(self.state().iterations),
             IntegerOutput::ChatterCount => count(self.interruptions().count),
             IntegerOutput::ChatterFalseMakes => count(self.makes(Some(CONTACT)).count),
-            IntegerOutput::SecondFalseMakes => count(self.makes(self.model.second()).count),
+            IntegerOutput::SecondFalseMakes => count(self.makes(self.model.roles.second).count),
             IntegerOutput::SolverModesUsed => count(self.model.modes.len() as u64),
         }
     }
@@ -399,9 +399,9 @@ impl Simulation {
     pub fn boolean(&self, output: BooleanOutput) -> bool {
         let index = match output {
             BooleanOutput::ContactClosed => Some(CONTACT),
-            BooleanOutput::ParallelClosed => self.model.parallel(),
-            BooleanOutput::SecondClosed => self.model.second(),
-            BooleanOutput::PusherClosed => self.model.pusher(),
+            BooleanOutput::ParallelClosed => self.model.roles.parallel,
+            BooleanOutput::SecondClosed => self.model.roles.second,
+            BooleanOutput::PusherClosed => self.model.roles.pusher,
         };
         index.is_some_and(|index| {
             let closed = self.motion.state().links.get(index).is_some_and(|link| link.closed);

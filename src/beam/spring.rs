@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 
 use crate::beam::characteristic;
-use crate::beam::galerkin::{self, Space};
+use crate::beam::galerkin::Space;
 use crate::beam::given::Given;
 use crate::beam::mode::{Last, MAX_MODES, Mode, SPRINGS};
 use crate::beam::mode_count::{Blow, MOST};
@@ -161,25 +161,11 @@ impl Spring {
                 let space = form.space(section, *count, *axial_force, *rubs)?;
                 Some((space.modes_with_shapes(section, *axial_force, 0.0)?, space))
             })?;
-        let (modes, shapes) = undamped
-            .into_iter()
-            .map(|(mode, shape)| {
-                let mode = Mode {
-                    omega_squared: mode.omega_squared,
-                    damping: alpha + beta * mode.omega_squared,
-                    tip: mode.tip,
-                    participation: mode.participation,
-                    rotation: mode.rotation,
-                    fixed: 0.0,
-                    pusher: mode.pusher,
-                    parallel: mode.tip,
-                    armature: 0.0,
-                };
-                (mode, shape)
-            })
-            .unzip();
-        let shapes: Vec<DVector<f64>> = shapes;
-        let root = (8.0 * self.section.bending_stiffness / self.section.length.powi(3)).sqrt();
+        let (mut modes, shapes): (Vec<Mode>, Vec<DVector<f64>>) = undamped.into_iter().unzip();
+        for mode in &mut modes {
+            mode.damping = alpha + beta * mode.omega_squared;
+        }
+        let root = self.section.halves().1.sqrt();
         let last = shapes
             .iter()
             .map(|shape| of_this(last_of(shape).map(|entry| root * entry)));
@@ -236,7 +222,7 @@ pub struct Known {
 type Asked = (usize, f64, bool);
 
 /// Modes with their shapes in a space.
-type Undamped = (Vec<(galerkin::Mode, DVector<f64>)>, Space);
+type Undamped = (Vec<(Mode, DVector<f64>)>, Space);
 
 /// Where that is.
 pub static KNOWN: Home<Known> = Home::new();

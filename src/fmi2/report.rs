@@ -39,7 +39,8 @@ fn events(logger: &Logger, simulation: &Simulation) {
     let (events, left_out) = simulation.events();
     for event in events {
         let verb = if event.closes { "closes" } else { "opens" };
-        let which = simulation.model().name_of(event.link);
+        let link = simulation.model().links.get(event.link);
+        let which = link.map_or("", |link| link.name);
         let text = format!("fmi2DoStep: the {which} {verb} at {} s", number(event.time));
         logger.log(Category::Events, fmi2OK, &text);
     }
