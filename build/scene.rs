@@ -1,4 +1,5 @@
-//! The parameters of the description as Rust structs, one for each group of names, with the start values and access by variable.
+//! The parameters of the description as Rust structs, one for each group of names, with the start values and access by variable; and
+//! the inputs.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -176,4 +177,39 @@ fn access(code: &mut String, arms: &BTreeMap<&str, Arms>) -> Result<(), Box<dyn 
          }}\n        Some(())\n    }}\n}}"
     )?;
     Ok(())
+}
+
+/// The code of the inputs: their values and rates, with the start values, and access to both by variable.
+pub fn inputs(document: &Document, list: &Node) -> Result<String, Box<dyn Error>> {
+    let (mut values, mut rates) = (String::new(), String::new());
+    let (mut starts, mut arms) = (String::new(), String::new());
+    for variable in list.children().filter(Node::is_element) {
+        let value = variable.first_element_child().ok_or("a variable without a type")?;
+        if attribute(variable, "causality")? != "input" {
+            continue;
+        }
+        let (name, description) = (attribute(variable, "name")?, attribute(variable, "description")?);
+        let (field, variant, unit) = (snake(name), camel(name), unit(document, value));
+        let (_, start) = start(document, value)?;
+        writeln!(
+            values,
+            "    /// `{name}`: {description} \\[{unit}\\].\n    pub {field}: f64,"
+        )?;
+        writeln!(
+            rates,
+            "    /// Rate of `{name}` \\[{unit} per s\\].\n    pub {field}_rate: f64,"
+        )?;
+        write!(starts, "{field}: {start}, {field}_rate: 0.0, ")?;
+        writeln!(
+            arms,
+            "            RealInput::{variant} => (&mut self.{field}, &mut self.{field}_rate),"
+        )?;
+    }
+    Ok(format!(
+        "/// Values of the inputs and their rates. SI units. With rates of 0 the inputs are held, and displacements lag one step\n\
+         /// behind.\n#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]\npub struct Inputs {{\n{values}{rates}}}\n\
+         impl Default for Inputs {{\n    /// The start values of `modelDescription.xml`.\n    fn default() -> Self {{\n        \
+         Self {{ {starts}}}\n    }}\n}}\nimpl Inputs {{\n    /// An input and its rate.\n    fn course_mut(&mut self, input: \
+         RealInput) -> (&mut f64, &mut f64) {{\n        match input {{\n{arms}        }}\n    }}\n}}\n"
+    ))
 }

@@ -32,15 +32,6 @@ impl Category {
             Solver => c"logSolver",
         }
     }
-
-    /// Messages of a status, shown without debug logging.
-    fn of_status(status: fmi2Status) -> Self {
-        if status >= fmi2Error {
-            StatusError
-        } else {
-            StatusWarning
-        }
-    }
 }
 
 /// The importer's log callback, and the categories it has enabled.
@@ -105,18 +96,18 @@ impl Logger {
 
     /// Whether messages of a category are shown.
     fn shows(&self, category: Category) -> bool {
-        let [errors, warnings, events, solver] = self.shown;
-        match category {
-            StatusError => errors,
-            StatusWarning => warnings,
-            Events => events,
-            Solver => solver,
-        }
+        let mut all = Category::ALL.iter().zip(self.shown);
+        all.any(|(known, shown)| *known == category && shown)
     }
 
     /// Passes the message of a failed call to the importer.
     pub(super) fn log_status(&self, status: fmi2Status, message: &str) {
-        self.log(Category::of_status(status), status, message);
+        let category = if status >= fmi2Error {
+            StatusError
+        } else {
+            StatusWarning
+        };
+        self.log(category, status, message);
     }
 
     /// Passes a message to the importer.
