@@ -122,21 +122,15 @@ impl Feedback {
     /// (N/m) at the tip: of the tangent `diag(omega_i^2) + (k T_i - N' g_i) T_j`, whose inverse Sherman and Morrison
     /// give.
     pub fn frequency(&self, modes: &[Mode], stiffness: f64) -> Option<f64> {
-        let count = modes.len();
         let slope = self.slope(0.0);
-        let compliant = DVector::from_iterator(count, modes.iter().map(|mode| mode.tip / mode.omega_squared));
-        let pushed = DVector::from_iterator(
-            count,
-            modes
-                .iter()
-                .zip(&self.slopes)
-                .map(|(mode, g)| (stiffness * mode.tip - slope * g) / mode.omega_squared),
-        );
-        let tips = DVector::from_iterator(count, modes.iter().map(|mode| mode.tip));
-        let mut inverse = DMatrix::from_diagonal(&DVector::from_iterator(
-            count,
-            modes.iter().map(|mode| 1.0 / mode.omega_squared),
-        ));
+        let vector = |entry: &dyn Fn(&Mode, f64) -> f64| {
+            let entries = modes.iter().zip(&self.slopes).map(|(mode, g)| entry(mode, *g));
+            DVector::from_iterator(modes.len(), entries)
+        };
+        let compliant = vector(&|mode, _| mode.tip / mode.omega_squared);
+        let pushed = vector(&|mode, g| (stiffness * mode.tip - slope * g) / mode.omega_squared);
+        let tips = vector(&|mode, _| mode.tip);
+        let mut inverse = DMatrix::from_diagonal(&vector(&|mode, _| 1.0 / mode.omega_squared));
         inverse.ger(-1.0 / (1.0 + tips.dot(&pushed)), &pushed, &compliant, 1.0);
         let largest = inverse.complex_eigenvalues().iter().map(|mu| mu.re).fold(0.0, f64::max);
         (largest > 0.0).then(|| 1.0 / largest.sqrt())

@@ -150,7 +150,7 @@ impl Spring {
             return Some(Basis {
                 space: given.space(&modes),
                 shapes: Vec::new(),
-                last: given.last(&modes).map(of_this).collect(),
+                last: given.last(&modes).map(|last| [last, NONE, NONE]).collect(),
                 modes,
             });
         }
@@ -166,11 +166,9 @@ impl Spring {
             mode.damping = alpha + beta * mode.omega_squared;
         }
         let root = self.section.halves().1.sqrt();
-        let last = shapes
-            .iter()
-            .map(|shape| of_this(last_of(shape).map(|entry| root * entry)));
+        let last = shapes.iter().map(|shape| last_of(shape).map(|entry| root * entry));
         Some(Basis {
-            last: last.collect(),
+            last: last.map(|last| [last, NONE, NONE]).collect(),
             modes,
             shapes,
             space,
@@ -227,12 +225,8 @@ type Undamped = (Vec<(Mode, DVector<f64>)>, Space);
 /// Where that is.
 pub static KNOWN: Home<Known> = Home::new();
 
-/// Coefficients of the first spring alone.
-fn of_this(last: Last) -> [Last; SPRINGS] {
-    let mut all = [Last::default(); SPRINGS];
-    all[0] = last;
-    all
-}
+/// Of springs that a mode is not of.
+const NONE: Last = [0.0; LANES];
 
 /// The last entries of a shape.
 fn last_of(shape: &DVector<f64>) -> Last {

@@ -43,52 +43,25 @@ pub struct Springs {
     pub armature: Option<Armature>,
 }
 
-/// Numbers of modes of both springs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Counts {
-    /// Of the moving one.
-    pub moving: usize,
-    /// Of that of the fixed contact.
-    pub fixed: usize,
-    /// Of the tongues against each other.
-    pub tongues: usize,
-}
+/// Numbers of modes: of the moving spring, of that of the fixed contact, and of the tongues against each other.
+pub type Counts = [usize; SPRINGS];
 
-impl Counts {
-    /// This number of each, where there are any; 0: as it is.
-    #[must_use]
-    pub fn or(self, asked: usize) -> Self {
-        let instead = |count: usize| if count == 0 || asked == 0 { count } else { asked };
-        Self {
-            moving: instead(self.moving),
-            fixed: instead(self.fixed),
-            tongues: instead(self.tongues),
-        }
+/// As many as there is room for, in the same ratio.
+fn within([moving, fixed, tongues]: Counts, room: usize) -> Counts {
+    let (others, sum) = (fixed + tongues, moving + fixed + tongues);
+    if sum <= room {
+        return [moving, fixed, tongues];
     }
-
-    /// As many as there is room for, in the same ratio.
-    #[must_use]
-    pub fn within_room(self, room: usize) -> Self {
-        let Self { moving, fixed, tongues } = self;
-        let (others, sum) = (fixed + tongues, moving + fixed + tongues);
-        if sum <= room {
-            return self;
-        }
-        let share = |count: usize, room: usize, sum: usize| room * count / sum / LANES * LANES;
-        let most = room - others.min(2 * LANES);
-        let moving = share(moving, room, sum).clamp(LANES.min(most), most);
-        let room = room - moving;
-        let fixed = match (fixed, tongues) {
-            (_, 0) => room,
-            (0, _) => 0,
-            _ => share(fixed, room, others).clamp(LANES, room - LANES),
-        };
-        Self {
-            moving,
-            fixed: fixed.min(room),
-            tongues: if tongues == 0 { 0 } else { room - fixed },
-        }
-    }
+    let share = |count: usize, room: usize, sum: usize| room * count / sum / LANES * LANES;
+    let most = room - others.min(2 * LANES);
+    let moving = share(moving, room, sum).clamp(LANES.min(most), most);
+    let room = room - moving;
+    let fixed = match (fixed, tongues) {
+        (_, 0) => room,
+        (0, _) => 0,
+        _ => share(fixed, room, others).clamp(LANES, room - LANES),
+    };
+    [moving, fixed.min(room), if tongues == 0 { 0 } else { room - fixed }]
 }
 
 impl Springs {
@@ -132,20 +105,22 @@ impl Springs {
         }
     }
 
-    /// Numbers of modes for a tolerance in blows of the contact, and of others on the moving spring.
-    pub fn counts(&self, own: &Blow, others: &[Blow], tolerance: f64) -> Counts {
-        let count = |most: usize, blow| self.moving.count(blow, tolerance).max(most);
-        Counts {
-            moving: others.iter().fold(count(0, own), count),
-            fixed: self
-                .fixed
-                .as_ref()
-                .map_or(0, |fixed| fixed.spring.count(&fixed.blow(own), tolerance)),
-            tongues: self.tongues.as_ref().map_or(0, |tongues| {
-                let blows = [own].into_iter().chain(others);
-                blows.fold(0, |most, blow| tongues.count(blow, tolerance).max(most))
-            }),
-        }
+    /// Numbers of modes for a tolerance in blows of the contact, and of others on the moving spring; where `asked` is not 0 that
+    /// number of each that there is.
+    pub fn counts(&self, own: &Blow, others: &[Blow], tolerance: f64, asked: usize) -> Counts {
+        let most = |count: &dyn Fn(&Blow) -> usize| {
+            let blows = [own].into_iter().chain(others);
+            blows.fold(0, |most, blow| count(blow).max(most))
+        };
+        let fixed = self.fixed.as_ref();
+        let tongues = self.tongues.as_ref();
+        let needed = [
+            most(&|blow| self.moving.count(blow, tolerance)),
+            fixed.map_or(0, |fixed| fixed.spring.count(&fixed.blow(own), tolerance)),
+            tongues.map_or(0, |tongues| most(&|blow| tongues.count(blow, tolerance))),
+        ];
+        let instead = |count: usize| if count == 0 || asked == 0 { count } else { asked };
+        within(needed.map(instead), self.room())
     }
 
     /// What modes left out do in a blow of the contact.
@@ -171,12 +146,12 @@ impl Springs {
 
     /// The damped modes of both, frequency ascending, under an axial compression of the moving one (N); the rest of the basis is
     /// that of the moving one. `None` at or above the buckling load.
-    pub fn modes(&self, scene: &Scene, counts: Counts, axial_force: f64) -> Option<Basis> {
-        let mut basis = self.moving.modes(scene, counts.moving, axial_force)?;
+    pub fn modes(&self, scene: &Scene, [moving, fixed, tongues]: Counts, axial_force: f64) -> Option<Basis> {
+        let mut basis = self.moving.modes(scene, moving, axial_force)?;
         if self.fixed.is_some() || self.tongues.is_some() || self.armature.is_some() {
-            let fixed = self.fixed.as_ref().and_then(|fixed| fixed.modes(counts.fixed));
-            let tongues = self.tongues.as_ref();
-            let tongues = tongues.and_then(|tongues| tongues.modes(counts.tongues, axial_force));
+            let fixed = self.fixed.as_ref().and_then(|spring| spring.modes(fixed));
+            let own = self.tongues.as_ref();
+            let tongues = own.and_then(|own| own.modes(tongues, axial_force));
             // Modes of others have no part in the shapes of the moving spring.
             let size = basis.shapes.first().map_or(0, DVector::len);
             let shapes = basis.shapes.drain(..).chain(std::iter::repeat(DVector::zeros(size)));
@@ -209,13 +184,10 @@ impl Springs {
 
     /// Modes for the lowest frequency of all.
     pub fn many_modes(&self, scene: &Scene, axial_force: f64) -> Option<Vec<Mode>> {
-        let counts = Counts {
-            moving: FREQUENCY_MODES,
-            fixed: self.fixed.as_ref().map_or(0, |_| FREQUENCY_MODES),
-            tongues: self.tongues.as_ref().map_or(0, |_| FREQUENCY_MODES),
-        };
-        self.modes(scene, counts.within_room(self.room()), axial_force)
-            .map(|basis| basis.modes)
+        let others = [self.fixed.is_some(), self.tongues.is_some()];
+        let [fixed, tongues] = others.map(|has| if has { FREQUENCY_MODES } else { 0 });
+        let counts = within([FREQUENCY_MODES, fixed, tongues], self.room());
+        self.modes(scene, counts, axial_force).map(|basis| basis.modes)
     }
 }
 

@@ -18,7 +18,7 @@ use crate::scene::{Contact, Scene};
 use crate::variables::ContactLawKind;
 
 /// Exponent of the indentation in the law of Hertz, 1. Powers of it are square roots.
-const HERTZ: f64 = 1.5;
+pub(crate) const HERTZ: f64 = 1.5;
 
 /// Force that counts as none at a contact softer than that of Hertz, in tolerances, 1: far below the errors allowed, far above
 /// what the iteration for the forces leaves.
@@ -182,11 +182,6 @@ impl Power {
         }
     }
 
-    /// See [`Law::is_steep_at_touch`](super::law::Law::is_steep_at_touch).
-    pub(crate) fn is_steep_at_touch(&self) -> bool {
-        self.damping > 0.0 && self.exponent > 1.0 && self.exponent < HERTZ
-    }
-
     /// Indentation at which the elastic force is `force` (N), m.
     pub fn indentation(&self, force: f64) -> f64 {
         (force / self.coefficient).powf(1.0 / self.exponent)
@@ -290,11 +285,6 @@ impl Power {
     /// The lesser of `d`, above the least, and `g`, m: positive while the contact is closed.
     pub fn engagement(&self, d: f64, rate: f64) -> f64 {
         (d - self.least).min(d + self.by_rate() * rate)
-    }
-
-    /// See [`Law::engages_by_way`](crate::contact::law::Law::engages_by_way).
-    pub(crate) fn engages_by_way(&self, slowest: f64) -> bool {
-        self.by_rate() * slowest >= -self.least
     }
 
     /// The closed branch, continued smoothly beyond opening (the force may be negative), for steps in which the contact

@@ -11,8 +11,7 @@ use std::f64::consts::TAU;
 
 use bytemuck::zeroed_box;
 
-use crate::excitation::waveform::Accelerations;
-use crate::excitation::window::Window;
+use crate::excitation::waveform::{Accelerations, Window};
 use crate::math::nodal::{Nodal, add, add_products};
 use crate::math::simd::{Arithmetic, Separate, Simd, compiled_for};
 use crate::scene::Excitation;
