@@ -14,7 +14,7 @@ use crate::error::SceneError;
 use crate::excitation::generator::Generator;
 use crate::force_error::Slowest;
 use crate::integrator::tolerance::Tolerance;
-use crate::math::simd::Simd;
+use crate::math::simd::{Simd, apart};
 use crate::model::Model;
 use crate::preload::{Initial, Preload};
 use crate::scene::Scene;
@@ -83,34 +83,39 @@ impl Model {
             _ => None,
         };
         let at_contact = modes.iter().find(|mode| mode.tip != 0.0);
-        let mut model = Box::new(Self {
-            law: laws.contact,
-            ports: Vec::new(),
-            links: Vec::new(),
-            roles: Roles::default(),
-            participations: [0.0; MAX_MODES],
-            slowest: Slowest::default(),
-            resolution,
-            inertia: inertia(&modes),
-            memory: at_contact.map_or(0.0, |mode| 1.0 / mode.omega_squared.sqrt()),
-            compliance: modes.iter().map(Mode::compliance).sum(),
-            scene: scene.clone(),
-            section,
-            preload,
-            modes,
-            axial,
-            closed_loop,
-            generator,
-            initial: *initial,
-            missed: springs.missed(&own),
-            spring_length: spring.length(),
-            armature: springs.armature,
-            force_scale,
-            unstable_slip: Vec::new(),
-            tolerance: Tolerance::new(tolerance, force_scale),
-            frequency: frequency.map_or(0.0, |omega| omega / std::f64::consts::TAU),
-            simd: Simd::detect(),
-        });
+        let memory = at_contact.map_or(0.0, |mode| 1.0 / mode.omega_squared.sqrt());
+        // Out of line, since it is large on the stack.
+        let build = || {
+            Box::new(Self {
+                law: laws.contact,
+                ports: Vec::new(),
+                links: Vec::new(),
+                roles: Roles::default(),
+                participations: [0.0; MAX_MODES],
+                slowest: Slowest::default(),
+                resolution,
+                inertia: inertia(&modes),
+                memory,
+                compliance: modes.iter().map(Mode::compliance).sum(),
+                scene: scene.clone(),
+                section,
+                preload,
+                modes,
+                axial,
+                closed_loop,
+                generator,
+                initial: *initial,
+                missed: springs.missed(&own),
+                spring_length: spring.length(),
+                armature: springs.armature,
+                force_scale,
+                unstable_slip: Vec::new(),
+                tolerance: Tolerance::new(tolerance, force_scale),
+                frequency: frequency.map_or(0.0, |omega| omega / std::f64::consts::TAU),
+                simd: Simd::detect(),
+            })
+        };
+        let mut model = apart(build);
         model.link(laws);
         Ok(model)
     }

@@ -108,21 +108,6 @@ impl Law {
         }
     }
 
-    /// As hard and as damped as the harder and the more damped of two of the same kind.
-    #[must_use]
-    pub fn hardest(&self, other: &Self) -> Self {
-        match (self, other) {
-            (Self::Power(a), Self::Power(b)) => Self::Power(Power {
-                coefficient: a.coefficient.max(b.coefficient),
-                exponent: a.exponent,
-                damping: a.damping.max(b.damping),
-                traces: a.traces.min(b.traces),
-                least: a.least.min(b.least),
-            }),
-            _ => *self,
-        }
-    }
-
     /// Whether the contact can bear tension.
     pub fn never_opens(&self) -> bool {
         matches!(self, Self::Linear(linear) if linear.bonded)

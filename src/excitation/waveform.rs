@@ -14,23 +14,6 @@ pub struct Accelerations<const S: usize> {
     pub nodes: Nodal<S>,
 }
 
-/// Sines and cosines of the phase advance from the start of a step to its nodes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rotation<const S: usize> {
-    /// Sines.
-    pub(crate) sin: Nodal<S>,
-    /// Cosines.
-    pub(crate) cos: Nodal<S>,
-}
-
-impl<const S: usize> Rotation<S> {
-    /// Not computed yet.
-    pub(crate) const ZERO: Self = Self {
-        sin: [0.0; S],
-        cos: [0.0; S],
-    };
-}
-
 /// The interval of time in which a generator acts, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {

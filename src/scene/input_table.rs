@@ -28,11 +28,8 @@ pub struct InputTable {
     columns: Vec<(RealInput, Vec<f64>)>,
 }
 
-/// Meaning of a column.
-enum Column {
-    Time,
-    Input(RealInput),
-}
+/// Meaning of a column: an input, or the time.
+type Column = Option<RealInput>;
 
 impl InputTable {
     /// Reads a file.
@@ -48,13 +45,10 @@ impl InputTable {
         let mut reader = ReaderBuilder::new().trim(Trim::All).from_reader(text.as_bytes());
         let head = reader.headers().map_err(syntax)?.clone();
         let columns = at_line(text, &head, columns(&head))?;
-        let inputs = columns.iter().filter_map(|column| match column {
-            Column::Input(input) => Some((*input, Vec::new())),
-            Column::Time => None,
-        });
+        let inputs = columns.iter().flatten();
         let mut table = Self {
             times: Vec::new(),
-            columns: inputs.collect(),
+            columns: inputs.map(|input| (*input, Vec::new())).collect(),
         };
         for record in reader.records() {
             let record = record.map_err(syntax)?;
@@ -71,7 +65,7 @@ impl InputTable {
         let mut rows = self.columns.iter_mut();
         for (column, field) in columns.iter().zip(record) {
             match column {
-                Column::Time => {
+                None => {
                     let time = number("time", field)?;
                     let last = self.times.last().copied().unwrap_or(f64::NEG_INFINITY);
                     if !(time > last && time.is_finite()) {
@@ -87,7 +81,7 @@ impl InputTable {
                     }
                     self.times.push(time);
                 }
-                Column::Input(input) => {
+                Some(input) => {
                     let value = number(input.variable().name, field)?;
                     check_range(input.variable(), value, false)?;
                     if let Some((_, values)) = rows.next() {
@@ -148,15 +142,15 @@ fn columns(head: &StringRecord) -> Result<Vec<Column>, SceneError> {
         }
         seen.push(name);
         if name == "time" {
-            return Ok(Column::Time);
+            return Ok(None);
         }
         match variable(Role::Input, name)?.group {
-            Group::RealInput(input) => Ok(Column::Input(input)),
+            Group::RealInput(input) => Ok(Some(input)),
             _ => Err(SceneError::InputTable(format!("{name} is not an input"))),
         }
     });
     let columns = columns.collect::<Result<Vec<_>, _>>()?;
-    if !columns.iter().any(|column| matches!(column, Column::Time)) {
+    if !columns.contains(&None) {
         return Err(SceneError::MissingKey {
             name: "time",
             allowed: "a column of times in s",
