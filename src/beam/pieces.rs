@@ -134,27 +134,24 @@ impl Pieces {
             rest.graded(&mut pieces);
             start = end;
         }
-        let (mut end, mut before_contact) = (0.0, 0);
-        let mut before_pusher = scene.pushed_at().map(|position| (position, 0));
+        let (mut end, mut ends) = (0.0, Vec::new());
         for piece in &mut pieces {
             let start = end;
             end += piece.length;
-            before_contact += usize::from(end <= contact + same);
-            if let Some((position, before)) = &mut before_pusher {
-                *before += usize::from(end <= *position + same);
-            }
-            for &(_, mass, inertia) in carried
+            ends.push(end);
+            let here = carried
                 .iter()
-                .filter(|(at, ..)| *at > start + same && *at <= end + same)
-            {
+                .filter(|(at, ..)| *at > start + same && *at <= end + same);
+            for (_, mass, inertia) in here {
                 piece.mass += mass;
                 piece.inertia += inertia;
             }
         }
+        let before = |position: f64| ends.iter().filter(|end| **end <= position + same).count();
         Self {
             parts: pieces,
-            before_contact,
-            before_pusher: before_pusher.map(|(_, before)| before),
+            before_contact: before(contact),
+            before_pusher: scene.pushed_at().map(before),
             clamp_flexibility: spring.clamp_stiffness.map_or(0.0, f64::recip),
         }
     }

@@ -12,8 +12,8 @@ use crate::beam::ritz;
 use crate::beam::section::Section;
 use crate::beam::statics::{Statics, axial_force_from_deflection};
 use crate::math::simd::LANES;
-use crate::scene::Scene;
-use crate::scene::spring::{Segments, Shape};
+use crate::scene::spring::{Segment, Segments, Shape};
+use crate::scene::{Beam, Scene};
 use crate::shared::{Found, Home, Shared};
 use crate::variables::AxialForceKind;
 
@@ -60,7 +60,7 @@ impl Spring {
     /// The spring of a scene.
     pub fn new(scene: &Scene) -> Self {
         match scene.spring.as_ref().map(|file| &file.shape) {
-            None if scene.pushed_at().is_some() => Self::of_segments(&scene.uniform_spring(), scene),
+            None if scene.pushed_at().is_some() => Self::of_segments(&uniform(&scene.beam), scene),
             None => Self::uniform(&Section::new(scene)),
             Some(Shape::Segments(segments)) => Self::of_segments(segments, scene),
             Some(Shape::Modes(modes)) => {
@@ -224,6 +224,20 @@ type Undamped = (Vec<(Mode, DVector<f64>)>, Space);
 
 /// Where that is.
 pub static KNOWN: Home<Known> = Home::new();
+
+/// The uniform section as a spring of one segment.
+fn uniform(beam: &Beam) -> Segments {
+    let segment = Segment {
+        length: beam.length,
+        width: [beam.width; 2],
+        thickness: [beam.thickness; 2],
+        ..Segment::default()
+    };
+    Segments {
+        segments: vec![segment],
+        ..Segments::default()
+    }
+}
 
 /// Of springs that a mode is not of.
 const NONE: Last = [0.0; LANES];

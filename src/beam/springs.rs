@@ -133,15 +133,12 @@ impl Springs {
     /// Frequencies of the highest mode of a spring given by modes and up to which a blow excites it, where that is higher,
     /// Hz; and whether it is the fixed contact's.
     pub fn missed(&self, blow: &Blow) -> Option<(f64, f64, bool)> {
-        let moving = self
-            .moving
-            .missed(blow)
-            .map(|(highest, reached)| (highest, reached, false));
-        moving.or_else(|| {
+        let fixed = || {
             let fixed = self.fixed.as_ref()?;
-            let (highest, reached) = fixed.spring.missed(&fixed.blow(blow))?;
-            Some((highest, reached, true))
-        })
+            Some((fixed.spring.missed(&fixed.blow(blow))?, true))
+        };
+        let missed = self.moving.missed(blow).map(|missed| (missed, false)).or_else(fixed);
+        missed.map(|((highest, reached), is_fixed)| (highest, reached, is_fixed))
     }
 
     /// The damped modes of both, frequency ascending, under an axial compression of the moving one (N); the rest of the basis is

@@ -70,11 +70,8 @@ impl Statics {
         // The same numbers for every section: found once in a process, and nothing that would have to be freed.
         static TERMS_OF_ALL: OnceLock<[Term; TERMS]> = OnceLock::new();
         let terms = TERMS_OF_ALL.get_or_init(|| {
-            let mut terms = [Term::default(); TERMS];
-            for (entry, term) in terms.iter_mut().zip(Term::of(Space::new(TERMS))) {
-                *entry = term;
-            }
-            terms
+            let mut terms = Term::of(Space::new(TERMS)).into_iter();
+            std::array::from_fn(|_| terms.next().unwrap_or_default())
         });
         Self {
             section: *section,

@@ -121,12 +121,9 @@ impl ClosedLoop {
         let oscillators: Vec<Oscillator> = pairs
             .iter()
             .map(|pair| Oscillator {
-                omega_squared: pair.omega_squared,
-                damping: pair.damping,
                 load: load(pair, |mode| -mode.participation),
                 push: load(pair, |mode| mode.tip),
-                apart: pair.apart,
-                force: pair.force,
+                ..pair.oscillator
             })
             .collect();
         let component = |pair: usize, mode: usize| pairs.get(pair % count)?.components.get(mode / 2);

@@ -296,10 +296,7 @@ impl Power {
 
     /// The same at several indentations (m) and velocities (m/s), which the processor computes in parallel.
     #[inline(always)]
-    #[expect(
-        clippy::indexing_slicing,
-        reason = "every index runs over the fixed size of the arrays"
-    )]
+    #[expect(clippy::indexing_slicing, reason = "arrays of fixed size")]
     pub(crate) fn closed_branches<const S: usize>(&self, d: &Nodal<S>, rate: &Nodal<S>) -> Branches<S> {
         // Chosen rather than branched to, and anything where it is open; NaN is not.
         let held = d.map(|d| if d <= 0.0 { 1.0 } else { d });

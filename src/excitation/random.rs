@@ -118,11 +118,9 @@ impl Random {
             for (k, (factors, value)) in factors.iter_mut().zip(values).enumerate() {
                 let sign = if k % 4 < 2 { amplitude } else { -amplitude };
                 let factor = if k == 0 { sign } else { 2.0 * sign };
-                factors
-                    .iter_mut()
-                    .skip(j)
-                    .take(1)
-                    .for_each(|entry| *entry = factor * value);
+                if let Some(entry) = factors.get_mut(j) {
+                    *entry = factor * value;
+                }
             }
         }
         for (high, low) in highs.iter_mut().zip(lows) {

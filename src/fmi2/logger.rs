@@ -68,10 +68,7 @@ impl Logger {
         self.shown = self.initially;
     }
 
-    /// Selects what is shown. An unknown category changes nothing.
-    ///
-    /// # Errors
-    /// The first category that is not declared.
+    /// Selects what is shown; the first category that is not declared changes nothing, and is returned.
     pub(super) fn choose<'a>(&mut self, on: bool, categories: &[&'a CStr]) -> Result<(), &'a CStr> {
         let known = Category::ALL.map(Category::name);
         if let Some(unknown) = categories.iter().find(|category| !known.contains(category)) {

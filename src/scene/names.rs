@@ -15,13 +15,9 @@ pub(crate) enum Role {
 impl Role {
     fn covers(self, variable: &Variable) -> bool {
         match variable.group {
-            Group::RealParameter(_)
-            | Group::IntegerParameter(_)
-            | Group::BooleanParameter(_)
-            | Group::StringParameter(_)
-            | Group::EnumerationParameter(_) => matches!(self, Self::Parameter | Self::Settable),
             Group::RealInput(_) => matches!(self, Self::Input | Self::Settable),
             Group::RealOutput(_) | Group::IntegerOutput(_) | Group::BooleanOutput(_) => matches!(self, Self::Output),
+            _ => matches!(self, Self::Parameter | Self::Settable),
         }
     }
 

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::scene::spring::{Segment, Segments, SpringFile};
+use crate::scene::spring::SpringFile;
 use crate::variables::{
     AxialForceKind, BooleanParameter, ContactLawKind, EnumerationParameter, ExcitationKind, FrictionKind,
     IntegerParameter, PusherKind, RealParameter, ResistanceKind,
@@ -25,26 +25,6 @@ impl Scene {
     /// Distance from the clamp at which a pusher presses the spring, m, where there is one.
     pub(crate) fn pushed_at(&self) -> Option<f64> {
         (self.effects.pusher != PusherKind::None).then_some(self.pusher.position)
-    }
-
-    /// The uniform section as a spring of one segment.
-    pub(crate) fn uniform_spring(&self) -> Segments {
-        let Beam {
-            length,
-            width,
-            thickness,
-            ..
-        } = self.beam;
-        Segments {
-            segments: vec![Segment {
-                length,
-                width: [width; 2],
-                thickness: [thickness; 2],
-                youngs_modulus: None,
-                density: None,
-            }],
-            ..Segments::default()
-        }
     }
 }
 

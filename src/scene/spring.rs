@@ -306,11 +306,6 @@ impl GivenMode {
         (std::f64::consts::TAU * self.frequency).powi(2)
     }
 
-    /// Static deflection of the contact point in this mode per force there, m/N.
-    pub fn compliance(&self) -> f64 {
-        self.contact * self.contact / self.omega_squared()
-    }
-
     /// What a file tells of it.
     pub(crate) fn keys(&mut self) -> [Key<'_>; 7] {
         let displacement = |name| field(name, "1/sqrt(kg)", -1e9, 1e9);

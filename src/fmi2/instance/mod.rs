@@ -63,10 +63,7 @@ struct Told {
 pub(super) type StepFinished = (fmi2StepFinished, fmi2ComponentEnvironment);
 
 impl Instance {
-    /// An instance with start values.
-    ///
-    /// # Errors
-    /// A [`SceneError`] if the spring that the component carries is none.
+    /// An instance with start values, and the spring that the component may carry.
     pub(super) fn new(
         logger: Logger,
         step_finished: StepFinished,
