@@ -1,6 +1,5 @@
 //! A running simulation: model, state, and workspace of the steps.
 
-use crate::assembly::Roles;
 use crate::beam::spring;
 use crate::chatter::{Criterion, Interruptions, Summary};
 use crate::conduction;
@@ -197,14 +196,7 @@ impl Simulation {
     /// A real output or calculated parameter, in its SI unit.
     pub fn real(&self, output: RealOutput) -> f64 {
         let Self { model, motion, .. } = self;
-        let Roles {
-            parallel,
-            second,
-            core,
-            pusher,
-            fixed,
-            ..
-        } = model.roles;
+        let roles = &model.roles;
         let (state, contact) = (motion.state(), || motion.link(model, CONTACT));
         let at = |role: Option<usize>| role.map_or_else(LinkNow::default, |index| motion.link(model, index));
         match output {
@@ -219,45 +211,45 @@ impl Simulation {
             | RealOutput::SecondResistance => conduction::output(model, motion, output),
             RealOutput::StepMinimumForce => self.range(Some(CONTACT)).least,
             RealOutput::StepMaximumForce => self.range(Some(CONTACT)).greatest,
-            RealOutput::StepMinimumGap => match self.extremes().filter(|_| second.is_some()) {
+            RealOutput::StepMinimumGap => match self.extremes().filter(|_| roles.second.is_some()) {
                 Some(extremes) => -extremes.nearest,
                 None => 0.0,
             },
-            RealOutput::ParallelForce => at(parallel).force,
-            RealOutput::ParallelLastOpening => self.event(parallel, |link| link.last_opening),
-            RealOutput::ParallelLastClosing => self.event(parallel, |link| link.last_closing),
-            RealOutput::ParallelMinimumForce => self.range(parallel).least,
-            RealOutput::ParallelMaximumForce => self.range(parallel).greatest,
-            RealOutput::PusherForce => at(pusher).force,
-            RealOutput::ArmatureDisplacement => model.preload.armature.place + at(core).approach,
-            RealOutput::ArmatureVelocity => at(core).rate,
+            RealOutput::ParallelForce => at(roles.parallel).force,
+            RealOutput::ParallelLastOpening => self.event(roles.parallel, |link| link.last_opening),
+            RealOutput::ParallelLastClosing => self.event(roles.parallel, |link| link.last_closing),
+            RealOutput::ParallelMinimumForce => self.range(roles.parallel).least,
+            RealOutput::ParallelMaximumForce => self.range(roles.parallel).greatest,
+            RealOutput::PusherForce => at(roles.pusher).force,
+            RealOutput::ArmatureDisplacement => model.preload.armature.place + at(roles.core).approach,
+            RealOutput::ArmatureVelocity => at(roles.core).rate,
             RealOutput::ArmatureGap => {
-                let link = core.and_then(|index| model.links.get(index));
-                link.map_or(0.0, |link| -(link.approach + at(core).approach))
+                let link = roles.core.and_then(|index| model.links.get(index));
+                link.map_or(0.0, |link| -(link.approach + at(roles.core).approach))
             }
-            RealOutput::ArmatureLastRelease => self.event(core, |link| link.last_opening),
-            RealOutput::StepMinimumStopForce => self.range(core).least,
-            RealOutput::StepMinimumPusherForce => self.range(pusher).least,
-            RealOutput::SecondForce => at(second).force,
-            RealOutput::SecondLastOpening => self.event(second, |link| link.last_opening),
-            RealOutput::SecondLastClosing => self.event(second, |link| link.last_closing),
-            RealOutput::SecondMinimumForce => self.range(second).least,
-            RealOutput::SecondMaximumForce => self.range(second).greatest,
+            RealOutput::ArmatureLastRelease => self.event(roles.core, |link| link.last_opening),
+            RealOutput::StepMinimumStopForce => self.range(roles.core).least,
+            RealOutput::StepMinimumPusherForce => self.range(roles.pusher).least,
+            RealOutput::SecondForce => at(roles.second).force,
+            RealOutput::SecondLastOpening => self.event(roles.second, |link| link.last_opening),
+            RealOutput::SecondLastClosing => self.event(roles.second, |link| link.last_closing),
+            RealOutput::SecondMinimumForce => self.range(roles.second).least,
+            RealOutput::SecondMaximumForce => self.range(roles.second).greatest,
             RealOutput::ChatterLongestFalseMake => self.makes(Some(CONTACT)).longest,
             RealOutput::ChatterTotalFalseMake => self.makes(Some(CONTACT)).total,
-            RealOutput::SecondLongestFalseMake => self.makes(second).longest,
-            RealOutput::SecondTotalFalseMake => self.makes(second).total,
+            RealOutput::SecondLongestFalseMake => self.makes(roles.second).longest,
+            RealOutput::SecondTotalFalseMake => self.makes(roles.second).total,
             RealOutput::ChatterLongestInterruption => self.interruptions().longest,
             RealOutput::ChatterTotalInterruption => self.interruptions().total,
             RealOutput::EnergyBalance => state.energy_balance,
             RealOutput::SolverForceError => self.force_error(),
             RealOutput::ContactIndentation => model.preload.indentation + contact().approach,
             RealOutput::TipDisplacement => {
-                model.preload.deflection + motion.support().0 + at(fixed).approach - contact().approach
+                model.preload.deflection + motion.support().0 + at(roles.fixed).approach - contact().approach
             }
-            RealOutput::TipVelocity => motion.support().1 + at(fixed).rate - contact().rate,
-            RealOutput::FixedDisplacement => model.preload.fixed_deflection + at(fixed).approach,
-            RealOutput::FixedVelocity => at(fixed).rate,
+            RealOutput::TipVelocity => motion.support().1 + at(roles.fixed).rate - contact().rate,
+            RealOutput::FixedDisplacement => model.preload.fixed_deflection + at(roles.fixed).approach,
+            RealOutput::FixedVelocity => at(roles.fixed).rate,
             RealOutput::ContactLastOpening => self.event(Some(CONTACT), |link| link.last_opening),
             RealOutput::ContactLastClosing => self.event(Some(CONTACT), |link| link.last_closing),
             RealOutput::ContactTangentialForce => motion.friction(model).0,
@@ -299,25 +291,18 @@ impl Simulation {
     /// for outputs that are not continuous; 0 at the start.
     pub fn rate(&self, output: RealOutput) -> Option<f64> {
         let Self { model, motion, .. } = self;
-        let Roles {
-            parallel,
-            second,
-            core,
-            pusher,
-            fixed,
-            ..
-        } = model.roles;
+        let roles = &model.roles;
         // Of force and velocity.
         let rates = |role: Option<usize>| role.map_or((0.0, 0.0), |index| motion.link_rates(model, index));
         let along = || motion.friction_rates(model);
         Some(match output {
             RealOutput::ContactForce => rates(Some(CONTACT)).0,
-            RealOutput::ParallelForce => rates(parallel).0,
-            RealOutput::SecondForce => rates(second).0,
-            RealOutput::PusherForce => rates(pusher).0,
+            RealOutput::ParallelForce => rates(roles.parallel).0,
+            RealOutput::SecondForce => rates(roles.second).0,
+            RealOutput::PusherForce => rates(roles.pusher).0,
             RealOutput::ContactElasticForce => motion.elastic_force(model).1,
             RealOutput::ArmatureDisplacement => self.real(RealOutput::ArmatureVelocity),
-            RealOutput::ArmatureVelocity => rates(core).1,
+            RealOutput::ArmatureVelocity => rates(roles.core).1,
             RealOutput::ArmatureGap => -self.real(RealOutput::ArmatureVelocity),
             RealOutput::ContactConductance
             | RealOutput::ContactResistance
@@ -328,8 +313,8 @@ impl Simulation {
             RealOutput::ContactIndentation => motion.link(model, CONTACT).rate,
             RealOutput::TipDisplacement => self.real(RealOutput::TipVelocity),
             RealOutput::FixedDisplacement => self.real(RealOutput::FixedVelocity),
-            RealOutput::TipVelocity => rates(fixed).1 - rates(Some(CONTACT)).1,
-            RealOutput::FixedVelocity => rates(fixed).1,
+            RealOutput::TipVelocity => rates(roles.fixed).1 - rates(Some(CONTACT)).1,
+            RealOutput::FixedVelocity => rates(roles.fixed).1,
             RealOutput::ContactTangentialForce => along().0,
             RealOutput::ContactSlip => along().1.way,
             RealOutput::ContactSlipDistance => along().1.distance,
