@@ -86,18 +86,19 @@ impl Springs {
 
     /// Deflection of the moving tip per force there, m/N, under an axial compression of the moving one (N).
     pub fn tip_compliance(&self, axial_force: f64) -> f64 {
-        let whole = self.moving.statics.tip_compliance(axial_force);
+        self.moving.statics.tip_compliance(axial_force) + self.tongue_compliance(axial_force)
+    }
+
+    /// What tongues add to that of the spring as a whole, m/N.
+    fn tongue_compliance(&self, axial_force: f64) -> f64 {
         let tongues = self.tongues.as_ref();
-        tongues.map_or(whole, |tongues| whole + tongues.compliance(axial_force))
+        tongues.map_or(0.0, |tongues| tongues.spring.statics.tip_compliance(axial_force))
     }
 
     /// Deflection of the moving spring at a parallel contact per load, under an axial compression of it (N).
     pub(crate) fn at_parallel(&self, axial_force: f64) -> AtPlace {
         let whole = self.moving.statics.at_parallel(axial_force);
-        let tongues = self
-            .tongues
-            .as_ref()
-            .map_or(0.0, |tongues| tongues.compliance(axial_force));
+        let tongues = self.tongue_compliance(axial_force);
         AtPlace {
             own: whole.own + tongues,
             across: whole.across - tongues,
@@ -117,7 +118,7 @@ impl Springs {
         let needed = [
             most(&|blow| self.moving.count(blow, tolerance)),
             fixed.map_or(0, |fixed| fixed.spring.count(&fixed.blow(own), tolerance)),
-            tongues.map_or(0, |tongues| most(&|blow| tongues.count(blow, tolerance))),
+            tongues.map_or(0, |tongues| most(&|blow| tongues.spring.count(blow, tolerance))),
         ];
         let instead = |count: usize| if count == 0 || asked == 0 { count } else { asked };
         within(needed.map(instead), self.room())

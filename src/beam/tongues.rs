@@ -7,7 +7,6 @@
 
 use std::sync::Arc;
 
-use crate::beam::mode_count::Blow;
 use crate::beam::spring::{Basis, Spring};
 use crate::scene::Scene;
 use crate::scene::spring::{PointMass, Segment, Segments, Shape, SpringFile};
@@ -18,7 +17,8 @@ use crate::variables::PusherKind;
 pub struct Tongues {
     /// The scene with both tongues, side by side from the fork on, in the place of the spring.
     scene: Scene,
-    spring: Spring,
+    /// Its static compliance is the deflection of a contact per force on it less the same force on the other.
+    pub(super) spring: Spring,
 }
 
 impl Tongues {
@@ -39,16 +39,6 @@ impl Tongues {
         own.effects.pusher = PusherKind::None;
         let spring = Spring::new(&own);
         Some(Self { scene: own, spring })
-    }
-
-    /// Deflection of a contact per force on it less the same force on the other, beyond that of the spring as a whole, m/N.
-    pub fn compliance(&self, axial_force: f64) -> f64 {
-        self.spring.statics.tip_compliance(axial_force)
-    }
-
-    /// Number of modes for a tolerance.
-    pub fn count(&self, blow: &Blow, tolerance: f64) -> usize {
-        self.spring.count(blow, tolerance)
     }
 
     /// Their modes under an axial compression of both (N); `None` at or above the buckling load.
