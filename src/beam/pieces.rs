@@ -42,23 +42,20 @@ impl Piece {
 
     /// Both parts, cut at a share of the length; what sits at the end stays there.
     fn cut(self, share: f64) -> [Self; 2] {
-        let halves = |[start, end]: [f64; 2]| {
-            let middle = start + (end - start) * share;
-            ([start, middle], [middle, end])
-        };
-        let (width, thickness) = (halves(self.width), halves(self.thickness));
+        let middle = |[start, end]: [f64; 2]| start + (end - start) * share;
+        let (width, thickness) = (middle(self.width), middle(self.thickness));
         let first = Self {
             length: self.length * share,
-            width: width.0,
-            thickness: thickness.0,
+            width: [self.width[0], width],
+            thickness: [self.thickness[0], thickness],
             mass: 0.0,
             inertia: 0.0,
             ..self
         };
         let last = Self {
             length: self.length * (1.0 - share),
-            width: width.1,
-            thickness: thickness.1,
+            width: [width, self.width[1]],
+            thickness: [thickness, self.thickness[1]],
             ..self
         };
         [first, last]

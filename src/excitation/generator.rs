@@ -57,18 +57,15 @@ impl Generator {
     /// The generator of the scene.
     pub fn new(scene: &Scene) -> Self {
         let excitation = &scene.excitation;
-        let shakes = match scene.effects.excitation {
-            ExcitationKind::None => false,
-            ExcitationKind::Random => excitation.spectral_density > 0.0,
-            ExcitationKind::Sine | ExcitationKind::HalfSine | ExcitationKind::LogSweep => excitation.amplitude != 0.0,
-        };
         match scene.effects.excitation {
-            _ if !shakes => Self::None,
-            ExcitationKind::None => Self::None,
+            ExcitationKind::Random if excitation.spectral_density > 0.0 => {
+                Self::Random(Box::new(Random::new(excitation)))
+            }
+            ExcitationKind::Random | ExcitationKind::None => Self::None,
+            _ if excitation.amplitude == 0.0 => Self::None,
             ExcitationKind::Sine => Self::Sine(Sine::new(excitation)),
             ExcitationKind::HalfSine => Self::Sine(Sine::half(excitation)),
             ExcitationKind::LogSweep => Self::LogSweep(LogSweep::new(excitation)),
-            ExcitationKind::Random => Self::Random(Box::new(Random::new(excitation))),
         }
     }
 

@@ -34,12 +34,10 @@ impl Category {
     }
 }
 
-/// The importer's log callback, and the categories it has enabled.
-/// Errors and warnings are shown from the start, independent of `loggingOn`: that flag is for debug messages, and a
-/// call that fails must say why (by the standard, the reason for fmi2Discard is logged with `loggingOn` only, which
-/// importers leave off by default). With `loggingOn` events are shown too, but not the solver, which logs every step:
-/// some importers always set the flag. `fmi2SetDebugLogging` with named categories shows only these (`loggingOn`
-/// true), or hides these (false); without categories, true shows all and false hides the debug messages.
+/// The importer's log callback, and the categories that it shows ([`fmi2SetDebugLogging`](super::fmi2SetDebugLogging)).
+/// Errors and warnings are shown from the start, independent of `loggingOn`: a call that fails must say why (by the standard, the
+/// reason for fmi2Discard is logged with `loggingOn` only, which importers leave off by default). With `loggingOn` events are shown
+/// too, but not the solver, which logs every step: some importers always set the flag.
 #[derive(Debug)]
 pub(super) struct Logger {
     callback: fmi2CallbackLogger,

@@ -122,7 +122,6 @@ pub(crate) enum Slot<'a> {
 
 const TOTAL: Field = field("length of all segments", "m", SHORTEST, LONGEST);
 pub(crate) const CONTACT_POSITION: Field = field("contact_position", "m", SHORTEST, LONGEST);
-pub(crate) const FORK_POSITION: Field = field("fork_position", "m", 0.0, LONGEST);
 pub(crate) const CLAMP_STIFFNESS: Field = field("clamp_stiffness", "N.m/rad", 1e-9, 1e9);
 pub(crate) const COMPLIANCE: Field = field("compliance", "m/N", 1e-9, 1e6);
 pub(crate) const PARALLEL_COMPLIANCE: Field = field("parallel_compliance", "m/N", 1e-9, 1e6);
@@ -200,14 +199,10 @@ impl Segments {
         self.segments.iter().map(|segment| segment.length).sum()
     }
 
-    /// Distance of the contact from the clamp, m.
-    pub(crate) fn contact(&self) -> f64 {
-        self.contact_position.unwrap_or(self.length())
-    }
-
-    /// Range of the place where the spring forks.
-    pub(crate) fn before_contact(&self, position: Field) -> Field {
-        position.up_to(self.contact() - TONGUE)
+    /// The place where the spring forks: before the contact.
+    pub(crate) fn fork(&self) -> Field {
+        let contact = self.contact_position.unwrap_or(self.length());
+        field("fork_position", "m", 0.0, contact - TONGUE)
     }
 
     pub(super) fn check(&self) -> Result<(), SceneError> {
@@ -220,7 +215,7 @@ impl Segments {
         let mut masses = self.masses.iter().copied();
         masses.try_for_each(|mut mass| check(mass.keys(length)))?;
         CONTACT_POSITION.up_to(length).check_any(self.contact_position)?;
-        self.before_contact(FORK_POSITION).check_any(self.fork_position)?;
+        self.fork().check_any(self.fork_position)?;
         CLAMP_STIFFNESS.check_any(self.clamp_stiffness)
     }
 }

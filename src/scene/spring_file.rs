@@ -41,8 +41,8 @@ use toml_parser::lexer::TokenKind;
 use crate::error::SceneError;
 use crate::scene::document::{Entry, located, of_file, parsed};
 use crate::scene::spring::{
-    CLAMP_STIFFNESS, COMPLIANCE, CONTACT_POSITION, FORK_POSITION, GivenMode, Modes, PARALLEL_COMPLIANCE, PointMass,
-    Segment, Segments, Shape, SpringFile,
+    CLAMP_STIFFNESS, COMPLIANCE, CONTACT_POSITION, GivenMode, Modes, PARALLEL_COMPLIANCE, PointMass, Segment, Segments,
+    Shape, SpringFile,
 };
 
 /// Largest file, bytes.
@@ -129,7 +129,7 @@ fn segments(top: &Entry) -> Result<Segments, SceneError> {
     };
     let length = spring.length();
     spring.contact_position = top.optional(CONTACT_POSITION.up_to(length))?;
-    spring.fork_position = top.optional(spring.before_contact(FORK_POSITION))?;
+    spring.fork_position = top.optional(spring.fork())?;
     spring.masses = top.entries("mass", 0, |entry| {
         let mut mass = PointMass::default();
         entry.fill(mass.keys(length)).map(|()| mass)
