@@ -15,10 +15,9 @@ const SECOND: Beside = ("effects.secondContact = true", "effects.secondContact =
 const PARALLEL: Beside = ("effects.parallelContact = true", "effects.parallelContact = false");
 const NO_RESISTANCE: Beside = ("effects.resistance = None", "any other effects.resistance");
 
-/// Contact laws that do not begin at the preload of the first contact, with a tangential stiffness that follows the normal one.
-const POWERS: &str = "Hertz and Rough";
+const TANGENTIAL: &str = "Hertz and Rough, whose tangential stiffness follows that along the normal";
+const POWERS: &str = "Hertz and Rough, which are no laws about the preload of the first contact";
 
-/// Axial forces that a change of the deflection does not change.
 const CONSTANT: &str = "None, FromPreload and Prescribed, which are constant";
 
 impl Scene {
@@ -32,7 +31,7 @@ impl Scene {
         let contacts = [(effects.second_contact, SECOND), (effects.parallel_contact, PARALLEL)];
         let linear = matches!(effects.contact_law, ContactLawKind::Linearised | ContactLawKind::Bonded);
         let follows = effects.axial_force == AxialForceKind::FromDeflection;
-        refuse(linear && rubs, &law, POWERS, FRICTION)?;
+        refuse(linear && rubs, &law, TANGENTIAL, FRICTION)?;
         for (has, contact) in contacts {
             refuse(linear && has, &law, POWERS, contact)?;
             refuse(rubs && has, contact.0, "false", FRICTION)?;
