@@ -30,6 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     fs::write(out.join("variables.rs"), variables(&document, &guid, &plain_guid)?)?;
     let list = element(&document, "ModelVariables")?;
     fs::write(out.join("scene.rs"), scene::scene(&document, &list)?)?;
+    fs::write(out.join("inputs.rs"), scene::inputs(&document, &list)?)?;
     header(&out, &constants(&document, &guid)?)
 }
 

@@ -5,6 +5,8 @@ use std::error::Error;
 
 use roxmltree::{Document, Node};
 
+use crate::declared;
+
 /// The plain description. What the numbers stand for moves to the descriptions of the variables.
 pub fn description(xml: &str) -> Result<String, Box<dyn Error>> {
     let document = Document::parse(xml)?;
@@ -49,11 +51,9 @@ fn numbers<'a>(document: &'a Document, value: &Node) -> Vec<(&'a str, &'a str)> 
     if value.has_tag_name("Boolean") {
         return vec![("0", "false"), ("1", "true")];
     }
-    let definitions = document.descendants().filter(|node| {
-        let name = value.attribute("declaredType");
-        name.is_some() && node.has_tag_name("SimpleType") && node.attribute("name") == name
-    });
-    let items = definitions.flat_map(|definition| definition.descendants());
+    let items = declared(document, *value)
+        .into_iter()
+        .flat_map(|definition| definition.descendants());
     items
         .filter_map(|item| Some((item.attribute("value")?, item.attribute("name")?)))
         .collect()

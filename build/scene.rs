@@ -1,4 +1,5 @@
-//! The parameters of the description as Rust structs, one for each group of names, with the start values and access by variable.
+//! The parameters of the description as Rust structs, one for each group of names, with the start values and access by variable; and
+//! the inputs.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -40,11 +41,34 @@ struct Arms {
     write: String,
 }
 
+/// The fields of a struct, and their start values.
+#[derive(Default)]
+struct Fields {
+    code: String,
+    starts: String,
+}
+
+impl Fields {
+    fn add(&mut self, doc: &str, field: &str, kind: &str, start: &str) -> Result<(), Box<dyn Error>> {
+        writeln!(self.code, "    /// {doc}.\n    pub {field}: {kind},")?;
+        Ok(write!(self.starts, "{field}: {start}, ")?)
+    }
+}
+
+/// What is said of a variable, with its unit.
+fn doc(document: &Document, variable: Node, value: Node) -> Result<String, Box<dyn Error>> {
+    let note = match unit(document, value) {
+        "" => String::new(),
+        unit => format!(" \\[{unit}\\]"),
+    };
+    let (name, description) = (attribute(variable, "name")?, attribute(variable, "description")?);
+    Ok(format!("`{name}`: {description}{note}"))
+}
+
 /// The code of the structs and of the access to their fields.
 pub fn scene(document: &Document, list: &Node) -> Result<String, Box<dyn Error>> {
-    let mut groups: BTreeMap<&str, String> = BTreeMap::new();
-    let mut inner: BTreeMap<(&str, &str), String> = BTreeMap::new();
-    let (mut starts, mut inner_starts) = (groups.clone(), inner.clone());
+    let mut groups: BTreeMap<&str, Fields> = BTreeMap::new();
+    let mut inner: BTreeMap<(&str, &str), Fields> = BTreeMap::new();
     let mut arms: BTreeMap<&str, Arms> = BTreeMap::new();
     let mut choices = String::new();
     for variable in list.children().filter(Node::is_element) {
@@ -54,23 +78,17 @@ pub fn scene(document: &Document, list: &Node) -> Result<String, Box<dyn Error>>
             continue;
         }
         let (rust, start) = start(document, value)?;
-        let note = match unit(document, value) {
-            "" => String::new(),
-            unit => format!(" \\[{unit}\\]"),
-        };
-        let doc = format!("    /// `{name}`: {}{note}.\n", attribute(variable, "description")?);
+        let doc = doc(document, variable, value)?;
         let parts: Vec<_> = name.split('.').collect();
         let path = match parts[..] {
             [group, field] => {
                 let field = snake(field);
-                writeln!(groups.entry(group).or_default(), "{doc}    pub {field}: {rust},")?;
-                write!(starts.entry(group).or_default(), "{field}: {start}, ")?;
+                groups.entry(group).or_default().add(&doc, &field, &rust, &start)?;
                 format!("{group}.{field}")
             }
             [group, of, field] => {
-                let (field, key) = (snake(field), (group, of));
-                writeln!(inner.entry(key).or_default(), "{doc}    pub {field}: {rust},")?;
-                write!(inner_starts.entry(key).or_default(), "{field}: {start}, ")?;
+                let field = snake(field);
+                inner.entry((group, of)).or_default().add(&doc, &field, &rust, &start)?;
                 format!("{group}.{of}.{field}")
             }
             _ => return Err(format!("{name}: build/scene.rs knows groups within groups only").into()),
@@ -92,7 +110,7 @@ pub fn scene(document: &Document, list: &Node) -> Result<String, Box<dyn Error>>
             writeln!(write, "            {kind}Parameter::{variant} => &mut self.{path},")?;
         }
     }
-    let mut code = structs(&groups, &starts, &inner, &inner_starts)?;
+    let mut code = structs(groups, &inner)?;
     access(&mut code, &arms)?;
     writeln!(
         code,
@@ -104,40 +122,30 @@ pub fn scene(document: &Document, list: &Node) -> Result<String, Box<dyn Error>>
 
 /// The structs with their start values.
 fn structs(
-    groups: &BTreeMap<&str, String>,
-    starts: &BTreeMap<&str, String>,
-    inner: &BTreeMap<(&str, &str), String>,
-    inner_starts: &BTreeMap<(&str, &str), String>,
+    mut groups: BTreeMap<&str, Fields>,
+    inner: &BTreeMap<(&str, &str), Fields>,
 ) -> Result<String, Box<dyn Error>> {
     const DERIVE: &str = "#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]\n";
     let (kind, doc) = INNER;
     let (mut code, mut fields, mut all) = (String::new(), String::new(), String::new());
     for (group, doc) in GROUPS {
-        let own = groups.get(group).ok_or(format!("no parameters {group}"))?;
-        let of = || inner.keys().filter(|(outer, _)| *outer == group);
-        let (mut inside, mut inside_starts) = (String::new(), String::new());
-        for key in of() {
-            let (_, of) = key;
-            writeln!(inside, "    /// `{group}.{of}`.\n    pub {of}: {kind},")?;
-            write!(inside_starts, "{of}: {kind} {{ {} }}, ", inner_starts[key])?;
+        let mut own = groups.remove(group).ok_or(format!("no parameters {group}"))?;
+        for ((outer, of), inside) in inner {
+            if *outer == group {
+                let start = format!("{kind} {{ {} }}", inside.starts);
+                own.add(&format!("`{group}.{of}`"), of, kind, &start)?;
+            }
         }
         let name = camel(group);
-        writeln!(code, "/// {doc}\n{DERIVE}pub struct {name} {{\n{own}{inside}}}")?;
+        writeln!(code, "/// {doc}\n{DERIVE}pub struct {name} {{\n{}}}", own.code)?;
         writeln!(fields, "    /// {doc}\n    pub {group}: {name},")?;
-        writeln!(
-            all,
-            "            {group}: {name} {{ {}{inside_starts}}},",
-            starts[group]
-        )?;
+        writeln!(all, "            {group}: {name} {{ {}}},", own.starts)?;
     }
-    if let Some(group) = groups
-        .keys()
-        .find(|group| GROUPS.iter().all(|(known, _)| known != *group))
-    {
+    if let Some(group) = groups.keys().next() {
         return Err(format!("build/scene.rs says nothing of the parameters {group}").into());
     }
     if let Some(first) = inner.values().next() {
-        writeln!(code, "/// {doc}\n{DERIVE}pub struct {kind} {{\n{first}}}")?;
+        writeln!(code, "/// {doc}\n{DERIVE}pub struct {kind} {{\n{}}}", first.code)?;
     }
     writeln!(
         code,
@@ -176,4 +184,32 @@ fn access(code: &mut String, arms: &BTreeMap<&str, Arms>) -> Result<(), Box<dyn 
          }}\n        Some(())\n    }}\n}}"
     )?;
     Ok(())
+}
+
+/// The code of the inputs: their values and rates, with the start values, and access to both by variable.
+pub fn inputs(document: &Document, list: &Node) -> Result<String, Box<dyn Error>> {
+    let (mut values, mut rates, mut arms) = (Fields::default(), Fields::default(), String::new());
+    for variable in list.children().filter(Node::is_element) {
+        let value = variable.first_element_child().ok_or("a variable without a type")?;
+        if attribute(variable, "causality")? != "input" {
+            continue;
+        }
+        let name = attribute(variable, "name")?;
+        let (field, variant, (_, start)) = (snake(name), camel(name), start(document, value)?);
+        values.add(&doc(document, variable, value)?, &field, "f64", &start)?;
+        let of = format!("Rate of `{name}` \\[{} per s\\]", unit(document, value));
+        rates.add(&of, &format!("{field}_rate"), "f64", "0.0")?;
+        writeln!(
+            arms,
+            "            RealInput::{variant} => (&mut self.{field}, &mut self.{field}_rate),"
+        )?;
+    }
+    Ok(format!(
+        "/// Values of the inputs and their rates. SI units. With rates of 0 the inputs are held, and displacements lag one step\n\
+         /// behind.\n#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]\npub struct Inputs {{\n{}{}}}\n\
+         impl Default for Inputs {{\n    /// The start values of `modelDescription.xml`.\n    fn default() -> Self {{\n        \
+         Self {{ {}{}}}\n    }}\n}}\nimpl Inputs {{\n    /// An input and its rate.\n    fn course_mut(&mut self, input: \
+         RealInput) -> (&mut f64, &mut f64) {{\n        match input {{\n{arms}        }}\n    }}\n}}\n",
+        values.code, rates.code, values.starts, rates.starts
+    ))
 }

@@ -11,11 +11,10 @@
 
 use crate::beam::mode::Mode;
 use crate::contact::power::Power;
-use crate::error::SceneError;
 use crate::magnet::{Magnet, damping_ratio};
 use crate::math::roots;
-use crate::scene::Scene;
-use crate::variables::{PusherKind, RealParameter};
+use crate::scene::{self, Scene};
+use crate::variables::PusherKind;
 
 /// Places between the stops at which the armature is looked for where it is at neither.
 const PLACES: u32 = 200;
@@ -23,20 +22,11 @@ const PLACES: u32 = 200;
 /// Constants of the armature.
 #[derive(Clone, Copy, Debug)]
 pub struct Armature {
-    mass: f64,
-    stiffness: f64,
-    damping: f64,
-    return_force: f64,
-    unbalance: f64,
+    /// As the scene gives it.
+    pub given: scene::Armature,
     gravity: f64,
     /// The magnet.
     pub magnet: Magnet,
-    /// Position at the rest stop p_0, m.
-    pub rest: f64,
-    /// Position at the core p_1, m.
-    pub core: f64,
-    stop_stiffness: f64,
-    stop_restitution: f64,
 }
 
 /// The armature in its equilibrium.
@@ -54,47 +44,26 @@ pub struct AtRest {
 
 impl Armature {
     /// That of a scene, if it has one.
-    ///
-    /// # Errors
-    /// A [`SceneError`] if its positions leave it no room.
-    pub fn new(scene: &Scene) -> Result<Option<Self>, SceneError> {
-        if scene.effects.pusher != PusherKind::Armature {
-            return Ok(None);
-        }
-        let given = &scene.armature;
-        if given.core_position <= given.rest_position {
-            let allowed = format!(
-                "allowed is more than armature.restPosition = {} m",
-                crate::error::number(given.rest_position)
-            );
-            let variable = RealParameter::ArmatureCorePosition.variable();
-            return Err(SceneError::out_of_range(variable, given.core_position, allowed));
-        }
-        Ok(Some(Self {
-            mass: given.mass,
-            stiffness: given.stiffness,
-            damping: given.damping,
-            return_force: given.return_force,
-            unbalance: given.unbalance,
+    pub fn new(scene: &Scene) -> Option<Self> {
+        let given = scene.armature;
+        (scene.effects.pusher == PusherKind::Armature).then_some(Self {
+            given,
             gravity: scene.environment.gravity,
             magnet: Magnet {
                 hold: given.hold_force,
                 constant: given.gap_constant,
             },
-            rest: given.rest_position,
-            core: given.core_position,
-            stop_stiffness: given.stop_stiffness,
-            stop_restitution: given.stop_restitution,
-        }))
+        })
     }
 
     /// As a mode.
     pub fn mode(&self) -> Mode {
-        let root = self.mass.sqrt();
+        let given = &self.given;
+        let root = given.mass.sqrt();
         Mode {
-            omega_squared: self.stiffness / self.mass,
-            damping: self.damping / self.mass,
-            participation: -self.unbalance * root,
+            omega_squared: given.stiffness / given.mass,
+            damping: given.damping / given.mass,
+            participation: -given.unbalance * root,
             pusher: 1.0 / root,
             armature: 1.0 / root,
             ..Mode::default()
@@ -103,26 +72,28 @@ impl Armature {
 
     /// The law of a stop.
     pub fn stop(&self) -> Power {
-        let critical = 2.0 * (self.stop_stiffness * self.mass).sqrt();
-        Power::linear(self.stop_stiffness, critical * damping_ratio(self.stop_restitution))
+        let given = &self.given;
+        let critical = 2.0 * (given.stop_stiffness * given.mass).sqrt();
+        Power::linear(given.stop_stiffness, critical * damping_ratio(given.stop_restitution))
     }
 
     /// Where it rests with this current of the coil (relative), and with the force of the pusher at a place (m); `None` where
     /// nothing holds it.
     pub fn at_rest(&self, current: f64, pushed: impl Fn(f64) -> f64) -> Option<AtRest> {
-        let stop = self.stop_stiffness;
+        let given = &self.given;
+        let (stop, rest, core) = (given.stop_stiffness, given.rest_position, given.core_position);
         let load = |p: f64| {
-            let spring = self.return_force + self.stiffness * (p - self.rest);
-            self.magnet.force(self.core - p, current).0 - spring - pushed(p) + self.unbalance * self.mass * self.gravity
+            let spring = given.return_force + given.stiffness * (p - rest);
+            self.magnet.force(core - p, current).0 - spring - pushed(p) + given.unbalance * given.mass * self.gravity
         };
-        let stops = |p: f64| stop * (self.rest - p).max(0.0) - stop * (p - self.core).max(0.0);
+        let stops = |p: f64| stop * (rest - p).max(0.0) - stop * (p - core).max(0.0);
         let balance = |p: f64| load(p) + stops(p);
         // As far as a stop gives way under all that draws, and under all that presses back.
-        let beyond = (load(self.core).abs() + load(self.rest).abs()) / stop + 1e-9 * (self.core - self.rest);
-        let at_core = || roots::bracketed(balance, self.core, self.core + beyond);
-        let at_rest = || roots::bracketed(balance, self.rest - beyond, self.rest);
+        let beyond = (load(core).abs() + load(rest).abs()) / stop + 1e-9 * (core - rest);
+        let at_core = || roots::bracketed(balance, core, core + beyond);
+        let at_rest = || roots::bracketed(balance, rest - beyond, rest);
         let between = || {
-            let place = |n: u32| self.rest + (self.core - self.rest) * f64::from(n) / f64::from(PLACES);
+            let place = |n: u32| rest + (core - rest) * f64::from(n) / f64::from(PLACES);
             (0..PLACES).find_map(|n| roots::bracketed(balance, place(n), place(n + 1)))
         };
         let place = if current == 0.0 {
@@ -132,9 +103,9 @@ impl Armature {
         }?;
         Some(AtRest {
             place,
-            core_force: stop * (place - self.core).max(0.0),
-            rest_force: stop * (self.rest - place).max(0.0),
-            magnet_force: self.magnet.force(self.core - place, current).0,
+            core_force: stop * (place - core).max(0.0),
+            rest_force: stop * (rest - place).max(0.0),
+            magnet_force: self.magnet.force(core - place, current).0,
         })
     }
 }

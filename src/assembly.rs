@@ -143,17 +143,17 @@ impl Assembly {
         self.roles.core = Some(self.link(Link {
             sense: -1.0,
             force: at.core_force,
-            approach: at.place - armature.core,
+            approach: at.place - armature.given.core_position,
             ..Link::passive("core", stop, port)
         }));
         self.link(Link {
             force: at.rest_force,
-            approach: armature.rest - at.place,
+            approach: armature.given.rest_position - at.place,
             ..Link::passive("rest stop", stop, port)
         });
         self.link(Link {
             force: at.magnet_force,
-            approach: armature.core - at.place,
+            approach: armature.given.core_position - at.place,
             ..Link::passive("magnet", LinkLaw::Magnet(armature.magnet), port)
         });
     }

@@ -21,7 +21,7 @@ impl Conducting {
     /// The circuit of a contact; `None` without the contact or a resistance.
     fn of(model: &Model, motion: &Motion, role: Option<usize>) -> Option<Self> {
         let electrical = model.links.get(role?)?.electrical?;
-        let contacts = [role, model.parallel().filter(|_| role == Some(CONTACT))];
+        let contacts = [role, model.roles.parallel.filter(|_| role == Some(CONTACT))];
         let spots =
             contacts.map(|contact| contact.map_or(0.0, |index| electrical.spot(motion.link(model, index).force)));
         Some(Self {
@@ -61,40 +61,34 @@ impl Conducting {
 /// The contact of the circuit that an output is of.
 fn role(model: &Model, output: RealOutput) -> Option<usize> {
     match output {
-        RealOutput::SecondConductance | RealOutput::SecondResistance => model.second(),
+        RealOutput::SecondConductance | RealOutput::SecondResistance => model.roles.second,
         _ => Some(CONTACT),
     }
 }
 
 /// A real output of the circuits, in its SI unit.
 pub(crate) fn output(model: &Model, motion: &Motion, output: RealOutput) -> f64 {
+    let scene = &model.scene;
     let Some(circuit) = Conducting::of(model, motion, role(model, output)) else {
-        return if output == RealOutput::ContactTemperature {
-            model.scene.environment.temperature
-        } else {
-            0.0
-        };
+        let warm = output == RealOutput::ContactTemperature;
+        return if warm { scene.environment.temperature } else { 0.0 };
     };
-    let Conducting {
-        electrical,
-        conductance,
-        ..
-    } = circuit;
+    let (electrical, conductance) = (&circuit.electrical, circuit.conductance);
     match output {
         RealOutput::ContactConductance | RealOutput::SecondConductance => conductance,
         RealOutput::ContactResistance | RealOutput::SecondResistance => 1.0 / conductance,
         RealOutput::ContactVoltage => {
-            let highest = model.scene.contact.open_voltage;
+            let highest = scene.contact.open_voltage;
             (motion.current / conductance).clamp(-highest, highest)
         }
-        RealOutput::ContactTemperature if model.scene.effects.heating => {
+        RealOutput::ContactTemperature if scene.effects.heating => {
             let force = motion.link(model, CONTACT).force;
-            electrical.temperature(&model.scene, force, motion.current * circuit.share())
+            electrical.temperature(scene, force, motion.current * circuit.share())
         }
-        RealOutput::ContactTemperature => model.scene.environment.temperature,
-        RealOutput::StepMaximumResistance if model.scene.effects.extremes => {
+        RealOutput::ContactTemperature => scene.environment.temperature,
+        RealOutput::StepMaximumResistance if scene.effects.extremes => {
             let mut extremes = motion.extremes(model);
-            1.0 / match model.parallel() {
+            1.0 / match model.roles.parallel {
                 Some(_) => electrical.beside(extremes.pair),
                 None => electrical.conductance(extremes.of(CONTACT).least),
             }

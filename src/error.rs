@@ -8,37 +8,28 @@ use crate::variables::Variable;
 
 /// A scene that cannot be simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages tell what the fields are")]
 pub enum SceneError {
     /// A value outside its range, or not a number.
     #[error("{name} = {}{}: not allowed, {allowed}", number(*value), spaced(unit))]
     OutOfRange {
-        /// Name of the variable or key.
         name: &'static str,
-        /// The value refused.
         value: f64,
-        /// Unit of value and range.
         unit: &'static str,
-        /// The range allowed.
         allowed: String,
     },
     /// A choice that the enumeration does not have.
     #[error("{name} = {value}: no such choice, allowed are {allowed}")]
     UnknownChoice {
-        /// Name of the variable.
         name: &'static str,
-        /// The requested choice.
         value: String,
-        /// The existing choices.
         allowed: String,
     },
     /// A name that no variable of the expected kind has.
     #[error("{name}: no such {what}; similar: {nearest}")]
     UnknownName {
-        /// The unknown name.
         name: String,
-        /// The expected kind: parameter, input or output.
         what: &'static str,
-        /// The most similar names.
         nearest: String,
     },
     /// Brackets inside each other that are more than a file may have.
@@ -50,11 +41,8 @@ pub enum SceneError {
     /// A value of the wrong type.
     #[error("{name} = {value}: wrong type, allowed is {allowed}")]
     WrongType {
-        /// Name of the variable or key.
         name: String,
-        /// The value given.
         value: String,
-        /// The type allowed.
         allowed: &'static str,
     },
     /// An axial force above the buckling load of the spring without contact.
@@ -62,70 +50,14 @@ pub enum SceneError {
         "{name} = {} N: the spring buckles once the contact opens, allowed is less than {} N",
         number(*value), number(*limit)
     )]
-    Buckled {
-        /// The variable or result that holds the force.
-        name: &'static str,
-        /// The axial force, N.
-        value: f64,
-        /// The buckling load of the cantilever, N.
-        limit: f64,
-    },
-    /// A random acceleration whose frequency band is empty.
-    #[error(
-        "excitation.endFrequency = {} Hz with excitation.frequency = {} Hz: empty band for \
-         effects.excitation = Random, allowed is excitation.endFrequency above excitation.frequency",
-        number(*end_frequency), number(*frequency)
-    )]
-    NoBand {
-        /// Lower limit, Hz.
-        frequency: f64,
-        /// Upper limit, Hz.
-        end_frequency: f64,
-    },
-    /// Counting of interruptions, which are defined by the resistance, without a resistance.
-    #[error("effects.chatter = true: not allowed with effects.resistance = None, allowed is false")]
-    NoResistance,
-    /// A linear contact law beside another contact.
-    #[error(
-        "effects.contactLaw: Linearised and Bonded are laws about the preload of the first contact; allowed with {0} = true are \
-         Hertz and Rough"
-    )]
-    LinearBesideOther(&'static str),
+    Buckled { name: &'static str, value: f64, limit: f64 },
     /// Two things that cannot be combined.
-    #[error("{name} = {choice}: not allowed with {other}, allowed is {allowed}; or {instead}")]
+    #[error("{choice}: not allowed with {other}, allowed is {allowed}; or {instead}")]
     NotTogether {
-        /// The choice.
-        name: &'static str,
-        /// Its value.
-        choice: &'static str,
-        /// The other.
-        other: &'static str,
-        /// What that may be.
-        instead: &'static str,
-        /// What it may be.
+        choice: String,
         allowed: &'static str,
-    },
-    /// Friction on a spring that is given by modes without rotation.
-    #[error(
-        "effects.friction = Coulomb: not allowed with beam.file = {file}, which gives modes without rotation; allowed with a \
-         rotation of the contact in each [[mode]]"
-    )]
-    NoRotation {
-        /// The spring file.
-        file: String,
-    },
-    /// A pusher or a parallel contact on a spring that is given by modes without its place.
-    #[error(
-        "{effect}: not allowed with beam.file = {file}, which gives modes without {place}; allowed with the displacement there, \
-         {place}, in each [[mode]]"
-    )]
-    NoPlace {
-        /// What touches the spring.
-        effect: &'static str,
-        /// Its entry in a mode.
-        place: &'static str,
-        /// The spring file.
-        file: String,
+        other: String,
+        instead: &'static str,
     },
     /// Friction so strong that the contact jams as it closes: no preload with it at its limit.
     #[error(
@@ -134,13 +66,9 @@ pub enum SceneError {
         number(*coefficient), number(*height), number(*limit), number(*initial)
     )]
     Jams {
-        /// The coefficient.
         coefficient: f64,
-        /// The height, m.
         height: f64,
-        /// Their product from which on there is no equilibrium, m.
         limit: f64,
-        /// Share of the limit at the preload.
         initial: f64,
     },
     /// A second contact that the moving contact touches at the preload, or that touches the first.
@@ -149,49 +77,24 @@ pub enum SceneError {
          than {} m for the spring to lie between both contacts",
         number(*gap), number(*displacement), number(*least)
     )]
-    NoGap {
-        /// The gap, m.
-        gap: f64,
-        /// Displacement of the second fixed contact at the start, m.
-        displacement: f64,
-        /// What has to be left, m: the indentation of the first contact at the preload.
-        least: f64,
-    },
+    NoGap { gap: f64, displacement: f64, least: f64 },
     /// A linear contact law without a contact force to linearise about.
     #[error("effects.contactLaw: Linearised and Bonded need a contact that is closed at rest, preload.force is 0 N")]
     NoPreload,
     /// A scene for which a quantity of the model is not finite.
     #[error("{name} is {} for this scene: this combination of parameters is too extreme", number(*value))]
-    NotFinite {
-        /// The quantity.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-    },
+    NotFinite { name: &'static str, value: f64 },
     /// A scene file that lacks a key.
     #[error("{name}: missing; expected {allowed}")]
-    MissingKey {
-        /// Name of the key.
-        name: &'static str,
-        /// The expected value.
-        allowed: &'static str,
-    },
+    MissingKey { name: &'static str, allowed: &'static str },
     /// A name given twice.
     #[error("{name}: given twice, allowed is {allowed}")]
-    GivenTwice {
-        /// The name.
-        name: String,
-        /// Where it may be given.
-        allowed: &'static str,
-    },
-    /// A key that a spring file does not have.
+    GivenTwice { name: String, allowed: &'static str },
+    /// A key that a file does not have.
     #[error("{name}: no such key, allowed are {allowed}{}", meant(*nearest))]
     UnknownKey {
-        /// The unknown key.
         name: String,
-        /// The keys allowed there.
         allowed: String,
-        /// The one of them that it may be meant to be.
         nearest: Option<&'static str>,
     },
     /// Modes of a spring that are more compliant than the whole spring.
@@ -200,43 +103,14 @@ pub enum SceneError {
          modes and compliance contradict each other",
         number(*compliance), number(*held)
     )]
-    Contradiction {
-        /// The static compliance given, m/N.
-        compliance: f64,
-        /// That of the modes, m/N.
-        held: f64,
-    },
-    /// An axial force on a spring that is given by its modes.
-    #[error(
-        "effects.axialForce = {choice}: not allowed with beam.file = {file}, which gives modes: an axial force needs the \
-         geometry of the spring; allowed is None"
-    )]
-    NeedsGeometry {
-        /// The choice.
-        choice: &'static str,
-        /// The spring file.
-        file: String,
-    },
+    Contradiction { compliance: f64, held: f64 },
     /// Any of these, with the entry of a list that it is in.
     #[error("{entry}: {error}")]
-    InEntry {
-        /// Name and number of the entry, counted from 1.
-        entry: String,
-        /// What is wrong there.
-        error: Box<SceneError>,
-    },
+    InEntry { entry: String, error: Box<SceneError> },
     /// Any of these, with its line of the scene file or table.
     #[error("line {line}: {error}")]
-    AtLine {
-        /// Line, counted from 1.
-        line: usize,
-        /// What is wrong there.
-        error: Box<SceneError>,
-    },
-    /// A scene file that is not TOML, or with a key or a type of value that scene files do not have.
-    #[error("not a scene file: {0}")]
-    Syntax(String),
-    /// A spring file that is not TOML.
+    AtLine { line: usize, error: Box<SceneError> },
+    /// A file that is not TOML.
     #[error("not TOML: {0}")]
     Toml(String),
     /// A table of inputs that is not CSV, or has no rows.
@@ -244,35 +118,22 @@ pub enum SceneError {
     InputTable(String),
     /// Any of these, with the file it is in.
     #[error("{}", in_file(file, error))]
-    InFile {
-        /// Path of the file.
-        file: String,
-        /// What is wrong there.
-        error: Box<SceneError>,
-    },
+    InFile { file: String, error: Box<SceneError> },
     /// A file that cannot be read.
     #[error("{file}: cannot be read: {cause}")]
-    Unreadable {
-        /// Path of the file.
-        file: String,
-        /// The message of the operating system.
-        cause: String,
-    },
+    Unreadable { file: String, cause: String },
 }
 
 /// What a user should know of a scene that can be simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages tell what the fields are")]
 pub enum Remark {
     /// A dimension of the uniform section, set beside a spring file.
     #[error("{name} = {}{}: not used, the spring is that of beam.file = {file}", number(*value), spaced(unit))]
     NotUsed {
-        /// Name of the parameter.
         name: &'static str,
-        /// Its value.
         value: f64,
-        /// Its unit.
         unit: &'static str,
-        /// The spring file.
         file: String,
     },
     /// A spring bent so far that a linear beam misses a part of its force.
@@ -282,13 +143,9 @@ pub enum Remark {
         number(*overtravel), number(*length)
     )]
     BentFar {
-        /// `contact.overtravel`, m.
         overtravel: f64,
-        /// Length of the spring, m.
         length: f64,
-        /// Deflection of the tip at the preload over the length, 1.
         bent: f64,
-        /// What the linear beam misses of the force, %.
         stiffer: f64,
     },
     /// Friction between contacts that are much softer or much stiffer at first touch than those of Hertz.
@@ -297,12 +154,7 @@ pub enum Remark {
          not promised for its friction, nor does solver.forceError tell; from {} to {} it is",
         number(*exponent), number(range.start), number(range.end)
     )]
-    FrictionAtTouch {
-        /// `contact.stiffnessExponent`.
-        exponent: f64,
-        /// Those for which the tolerance is promised.
-        range: Range<f64>,
-    },
+    FrictionAtTouch { exponent: f64, range: Range<f64> },
     /// Friction with which slip is unstable.
     #[error(
         "effects.friction = Coulomb: slip {} the clamp is unstable with friction.coefficient = {} and tip.contactHeight = {} m: at \
@@ -312,17 +164,11 @@ pub enum Remark {
         if *away { "away from" } else { "towards" }, number(*coefficient), number(*height), sounding(*frequency)
     )]
     UnstableSlip {
-        /// Whether it slips away from the clamp, or towards it.
         away: bool,
-        /// Contact force, N: that of the preload, or where it is stable then a multiple or a part of it.
         force: f64,
-        /// Growth rate, 1/s.
         growth: f64,
-        /// Frequency, Hz; 0: it moves away without vibrating.
         frequency: f64,
-        /// `friction.coefficient`.
         coefficient: f64,
-        /// `tip.contactHeight`, m.
         height: f64,
     },
     /// Modes that end below what a blow excites.
@@ -331,13 +177,9 @@ pub enum Remark {
          forces of blows, and what rings on after them, are right only as far as the modes reach"
     )]
     FewModes {
-        /// The parameter.
         name: &'static str,
-        /// The spring file.
         file: String,
-        /// Frequency of the highest mode, Hz.
         highest: f64,
-        /// Frequency up to which the spring is excited, Hz.
         reached: f64,
     },
 }
@@ -402,6 +244,7 @@ pub struct StepError {
 
 /// Why a communication step could not be integrated.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages tell what the fields are")]
 pub enum StepErrorCause {
     /// A step size that is not a positive finite number.
     #[error("the communication step size must be positive and finite")]
@@ -411,23 +254,13 @@ pub enum StepErrorCause {
     Budget,
     /// A time so large that the spacing of floating-point numbers exceeds what the motion or the communication step needs.
     #[error("the floating-point spacing of time is {spacing:e} s, allowed is {allowed:e} s")]
-    Resolution {
-        /// Spacing of floating-point numbers at the end of the communication step, s.
-        spacing: f64,
-        /// The largest spacing allowed, s.
-        allowed: f64,
-    },
+    Resolution { spacing: f64, allowed: f64 },
     /// A fixed contact faster than light.
     #[error("support.displacement would move at {0:e} m/s, allowed is the speed of light")]
     Speed(f64),
     /// Two fixed contacts that touch.
     #[error("second.displacement = {} m brings the second fixed contact to the first, allowed is less than {} m", number(*displacement), number(*limit))]
-    NoRoom {
-        /// The displacement, m.
-        displacement: f64,
-        /// That at which they touch, m.
-        limit: f64,
-    },
+    NoRoom { displacement: f64, limit: f64 },
     /// A number in the state is no longer finite.
     #[error("the state is no longer finite")]
     NotFinite,

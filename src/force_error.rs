@@ -173,13 +173,9 @@ impl ForceError {
         deviation.q.iter().chain(&deviation.v).all(|number| number.is_finite())
             && forces.iter().all(|force| force.is_finite())
             && growth.is_finite()
-            && (0.0..f64::INFINITY).contains(greatest)
-            && (0.0..f64::INFINITY).contains(largest)
-            && (0.0..f64::INFINITY).contains(largest_growth)
-            && (0.0..f64::INFINITY).contains(by_slip)
-            && (0.0..f64::INFINITY).contains(largest_by_slip)
-            && (0.0..f64::INFINITY).contains(size)
-            && (0.0..f64::INFINITY).contains(by_deviation)
-            && (0.0..f64::INFINITY).contains(unresolved)
+            && [greatest, largest, largest_growth, by_slip]
+                .into_iter()
+                .chain([largest_by_slip, size, by_deviation, unresolved])
+                .all(|number| (0.0..f64::INFINITY).contains(number))
     }
 }

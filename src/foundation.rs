@@ -1,59 +1,47 @@
-//! What a model stands on, found one after the other from a scene: springs, preload, contact laws, modes, lowest frequency.
+//! How a model follows from a scene, one after the other: springs, preload, contact laws, modes, lowest frequency.
 
-use crate::armature::Armature;
-use crate::assembly::{Assembly, Laws};
+use crate::assembly::{Assembly, Laws, Roles};
 use crate::beam::axial::Feedback;
-use crate::beam::mode::Mode;
+use crate::beam::mode::{MAX_MODES, Mode};
 use crate::beam::mode_count::Blow;
-use crate::beam::resolution::Resolution;
-use crate::beam::section::Section;
 use crate::beam::spring::Basis;
 use crate::beam::springs::{Counts, Springs};
-use crate::contact::friction;
+use crate::closed_loop::system::ClosedLoop;
 use crate::contact::law::Law;
 use crate::contact::linear::Linear;
 use crate::contact::power::Power;
 use crate::error::SceneError;
+use crate::excitation::generator::Generator;
+use crate::force_error::Slowest;
+use crate::integrator::tolerance::Tolerance;
+use crate::math::simd::{Simd, apart};
+use crate::model::Model;
 use crate::preload::{Initial, Preload};
 use crate::scene::Scene;
 use crate::variables::{AxialForceKind, ContactLawKind, RealParameter};
 
-/// What a model stands on.
-pub struct Foundation {
-    /// See [`Model::section`](crate::model::Model::section).
-    pub section: Section,
-    /// The static equilibrium.
-    pub preload: Preload,
-    /// The laws of the contacts.
-    pub laws: Laws,
-    /// The modes of one body after the other, frequency ascending in each.
-    pub modes: Vec<Mode>,
-    /// What the modes left out do.
-    pub resolution: Resolution,
-    /// The axial force, if it follows the deflection continuously.
-    pub axial: Option<Box<Feedback>>,
-    /// The armature, if there is one.
-    pub armature: Option<Armature>,
-    /// Force scale of the tolerance, N.
-    pub force_scale: f64,
-    /// Lowest angular frequency about the preload, rad/s, if there is one.
-    pub frequency: Option<f64>,
-    /// See [`Springs::missed`].
-    pub missed: Option<(f64, f64, bool)>,
-    /// Length of the spring, if it is known, m.
-    pub spring_length: Option<f64>,
-}
+impl Model {
+    /// The model of a scene, with the fixed contact displaced by `support` (m) at the start.
+    ///
+    /// # Errors
+    /// A [`SceneError`] if the scene cannot be simulated.
+    pub fn new(scene: &Scene, support: f64) -> Result<Self, SceneError> {
+        let initial = Initial {
+            displacements: [support, 0.0, 0.0],
+            ..Initial::default()
+        };
+        Ok(*Self::starting(scene, &initial)?)
+    }
 
-impl Foundation {
-    /// That of a scene with these inputs at the start.
+    /// The model of a scene, with these inputs at the start: springs, preload, contact laws, modes, and the rest of it.
     ///
     /// # Errors
     /// A [`SceneError`] if the scene cannot be simulated.
     #[inline(never)]
-    pub fn of(scene: &Scene, initial: &Initial) -> Result<Box<Self>, SceneError> {
+    pub fn starting(scene: &Scene, initial: &Initial) -> Result<Box<Self>, SceneError> {
         scene.validate()?;
-        friction::check(scene)?;
-        let springs = Springs::new(scene)?;
+        scene.check_combinations()?;
+        let springs = Springs::new(scene);
         let (spring, section) = (&springs.moving, springs.moving.section);
         let power = Power::of(scene);
         let (parallel, second) = (Power::of_parallel(scene), Power::of_second(scene));
@@ -87,19 +75,49 @@ impl Foundation {
             .as_ref()
             .and_then(|axial| axial.frequency(&modes, preload.contact_stiffness))
             .or_else(|| frequency((scene, &springs, &preload), laws, initial.coil));
-        Ok(Box::new(Self {
-            section,
-            preload,
-            laws,
-            modes,
-            resolution,
-            axial,
-            armature: springs.armature,
-            force_scale,
-            frequency,
-            missed: springs.missed(&own),
-            spring_length: spring.length(),
-        }))
+        let generator = Generator::new(scene);
+        let closed_loop = match laws.contact {
+            Law::Linear(contact) if generator.is_harmonic() && is_linear(scene) && is_rayleigh(scene, &modes) => {
+                ClosedLoop::new(scene, (&modes, &resolution), contact, &generator).map(Box::new)
+            }
+            _ => None,
+        };
+        let at_contact = modes.iter().find(|mode| mode.tip != 0.0);
+        let memory = at_contact.map_or(0.0, |mode| 1.0 / mode.omega_squared.sqrt());
+        // Out of line, since it is large on the stack.
+        let build = || {
+            Box::new(Self {
+                law: laws.contact,
+                ports: Vec::new(),
+                links: Vec::new(),
+                roles: Roles::default(),
+                participations: [0.0; MAX_MODES],
+                slowest: Slowest::default(),
+                resolution,
+                inertia: inertia(&modes),
+                memory,
+                compliance: modes.iter().map(Mode::compliance).sum(),
+                scene: scene.clone(),
+                section,
+                preload,
+                modes,
+                axial,
+                closed_loop,
+                generator,
+                initial: *initial,
+                missed: springs.missed(&own),
+                spring_length: spring.length(),
+                armature: springs.armature,
+                force_scale,
+                unstable_slip: Vec::new(),
+                tolerance: Tolerance::new(tolerance, force_scale),
+                frequency: frequency.map_or(0.0, |omega| omega / std::f64::consts::TAU),
+                simd: Simd::detect(),
+            })
+        };
+        let mut model = apart(build);
+        model.link(laws);
+        Ok(model)
     }
 }
 
@@ -107,12 +125,6 @@ impl Foundation {
 fn law(scene: &Scene, power: Power, preload: &Preload) -> Result<Law, SceneError> {
     match scene.effects.contact_law {
         ContactLawKind::Hertz | ContactLawKind::Rough => Ok(Law::Power(power)),
-        ContactLawKind::Linearised | ContactLawKind::Bonded if scene.effects.second_contact => {
-            Err(SceneError::LinearBesideOther("effects.secondContact"))
-        }
-        ContactLawKind::Linearised | ContactLawKind::Bonded if scene.effects.parallel_contact => {
-            Err(SceneError::LinearBesideOther("effects.parallelContact"))
-        }
         ContactLawKind::Linearised | ContactLawKind::Bonded if preload.force <= 0.0 => Err(SceneError::NoPreload),
         kind @ (ContactLawKind::Linearised | ContactLawKind::Bonded) => Ok(Law::Linear(Linear {
             stiffness: preload.contact_stiffness,
@@ -145,10 +157,8 @@ fn counts(
         .map(|_| Power::linear(scene.pusher.stiffness, scene.pusher.damping));
     let blow = |power: Power| blow(scene, bending_force, &power);
     let others = [parallel, second, pusher].map(|power| power.map_or(*own, blow));
-    springs
-        .counts(own, &others, scene.solver.effective_tolerance())
-        .or(usize::try_from(scene.solver.modes).unwrap_or_default())
-        .within_room(springs.room())
+    let asked = usize::try_from(scene.solver.modes).unwrap_or_default();
+    springs.counts(own, &others, scene.solver.effective_tolerance(), asked)
 }
 
 /// A blow as the scene may have it.
@@ -170,4 +180,29 @@ fn blow(scene: &Scene, bending_force: f64, power: &Power) -> Blow {
 /// Force of the springs bent by the overtravel, at least by 0.1 mm, N: of one of them 3 E I max(|s|, 0.1 mm) / L^3.
 fn bending_force(scene: &Scene, springs: &Springs) -> f64 {
     springs.stiffness() * scene.contact.overtravel.abs().max(1e-4)
+}
+
+/// Force at the held tip per base acceleration that varies slowly, kg.
+fn inertia(modes: &[Mode]) -> f64 {
+    let tip = |load: fn(&Mode) -> f64| -> f64 {
+        let parts = modes.iter().map(|mode| mode.tip * load(mode) / mode.omega_squared);
+        parts.sum()
+    };
+    (tip(|mode| mode.participation) / tip(|mode| mode.tip)).abs()
+}
+
+/// Whether nothing but the contact law can keep the scene from being linear, and nothing within a step is requested.
+fn is_linear(scene: &Scene) -> bool {
+    scene.effects.axial_force != AxialForceKind::FromDeflection
+        && scene.fixed_spring.is_none()
+        && scene.pushed_at().is_none()
+        && !scene.effects.extremes
+}
+
+/// Whether all damping is Rayleigh's, as exact steps need it.
+fn is_rayleigh(scene: &Scene, modes: &[Mode]) -> bool {
+    let (alpha, beta) = (scene.beam.mass_damping, scene.beam.stiffness_damping);
+    modes
+        .iter()
+        .all(|mode| mode.damping == alpha + beta * mode.omega_squared)
 }

@@ -11,11 +11,9 @@ use crate::beam::section::Section;
 use crate::closed_loop::system::ClosedLoop;
 use crate::contact::friction::{Friction, Slip};
 use crate::contact::law::Law;
-use crate::electrical::ElectricalContact;
-use crate::error::{Remark, SceneError};
+use crate::error::Remark;
 use crate::excitation::generator::Generator;
 use crate::force_error::Slowest;
-use crate::foundation::Foundation;
 use crate::integrator::step_length::StepLengths;
 use crate::integrator::tolerance::Tolerance;
 use crate::link::{Link, LinkLaw, MAX_LINKS, Port};
@@ -25,7 +23,7 @@ use crate::scene::Scene;
 use crate::scene::spring::SpringFile;
 use crate::slip_stability::{self, Unstable};
 use crate::state::{LinkState, State};
-use crate::variables::{AxialForceKind, ContactLawKind, RealParameter, StringParameter};
+use crate::variables::{ContactLawKind, RealParameter, StringParameter};
 
 /// Deflection at the preload, in lengths of the spring, above which the user is told what a linear beam misses, 1.
 const BENT_FAR: f64 = 0.1;
@@ -42,13 +40,13 @@ pub struct Model {
     /// The uniform section of the spring, or that of a spring as stiff at its contact.
     pub(crate) section: Section,
     /// The law of the first contact.
-    law: Law,
+    pub(crate) law: Law,
     /// Where forces act on the modes.
     pub(crate) ports: Vec<Port>,
     /// The laws of these forces.
     pub(crate) links: Vec<Link>,
     /// Which link is what, beside the contact.
-    roles: Roles,
+    pub(crate) roles: Roles,
     /// Load on each mode per base acceleration, with opposite sign.
     pub(crate) participations: Modal,
     /// The static equilibrium, the reference of the motion.
@@ -67,7 +65,7 @@ pub struct Model {
     /// What is part of the preload of the inputs at the start.
     pub(crate) initial: Initial,
     /// The armature, if there is one.
-    armature: Option<Armature>,
+    pub(crate) armature: Option<Armature>,
     /// Force scale of the tolerance, N: max(F_0, 3 E I max(|s|, 0.1 mm) / L^3).
     pub(crate) force_scale: f64,
     /// What the modes left out do.
@@ -82,9 +80,9 @@ pub struct Model {
     pub(crate) frequency: f64,
     /// Frequency of the highest mode of a spring file, and that up to which a blow excites the spring, if higher, Hz; and whether
     /// it is the fixed contact's.
-    missed: Option<(f64, f64, bool)>,
+    pub(crate) missed: Option<(f64, f64, bool)>,
     /// Length of the spring, if it is known, m.
-    spring_length: Option<f64>,
+    pub(crate) spring_length: Option<f64>,
     /// The directions in which slip is unstable.
     pub(crate) unstable_slip: Vec<Unstable>,
     /// The errors allowed.
@@ -109,82 +107,8 @@ pub struct Parts {
 }
 
 impl Model {
-    /// The model of a scene, with the fixed contact displaced by `support` (m) at the start.
-    ///
-    /// # Errors
-    /// A [`SceneError`] if the scene cannot be simulated.
-    pub fn new(scene: &Scene, support: f64) -> Result<Self, SceneError> {
-        let initial = Initial {
-            displacements: [support, 0.0, 0.0],
-            ..Initial::default()
-        };
-        Ok(*Self::starting(scene, &initial)?)
-    }
-
-    /// The model of a scene, with these inputs at the start.
-    ///
-    /// # Errors
-    /// A [`SceneError`] if the scene cannot be simulated.
-    pub fn starting(scene: &Scene, initial: &Initial) -> Result<Box<Self>, SceneError> {
-        let foundation = Foundation::of(scene, initial)?;
-        let generator = Generator::new(scene)?;
-        let (law, modes) = (foundation.laws.contact, &foundation.modes);
-        if scene.effects.chatter && ElectricalContact::new(scene, &law).is_none() {
-            return Err(SceneError::NoResistance);
-        }
-        let closed_loop = match law {
-            Law::Linear(contact) if generator.is_harmonic() && is_linear(scene) && is_rayleigh(scene, modes) => {
-                ClosedLoop::new(scene, (modes, &foundation.resolution), contact, &generator).map(Box::new)
-            }
-            _ => None,
-        };
-        Ok(Self::on(*foundation, (scene, initial), generator, closed_loop))
-    }
-
-    /// The model on this foundation: out of line, since it is large on the stack.
-    #[inline(never)]
-    fn on(
-        foundation: Foundation,
-        (scene, initial): (&Scene, &Initial),
-        generator: Generator,
-        closed_loop: Option<Box<ClosedLoop>>,
-    ) -> Box<Self> {
-        let Foundation { modes, laws, .. } = foundation;
-        let at_contact = modes.iter().find(|mode| mode.tip != 0.0);
-        let mut model = Box::new(Self {
-            law: laws.contact,
-            ports: Vec::new(),
-            links: Vec::new(),
-            roles: Roles::default(),
-            participations: [0.0; MAX_MODES],
-            slowest: Slowest::default(),
-            resolution: foundation.resolution,
-            inertia: inertia(&modes),
-            memory: at_contact.map_or(0.0, |mode| 1.0 / mode.omega_squared.sqrt()),
-            compliance: modes.iter().map(Mode::compliance).sum(),
-            scene: scene.clone(),
-            section: foundation.section,
-            preload: foundation.preload,
-            modes,
-            axial: foundation.axial,
-            closed_loop,
-            generator,
-            initial: *initial,
-            armature: foundation.armature,
-            force_scale: foundation.force_scale,
-            unstable_slip: Vec::new(),
-            tolerance: Tolerance::new(scene.solver.effective_tolerance(), foundation.force_scale),
-            frequency: foundation.frequency.map_or(0.0, |omega| omega / std::f64::consts::TAU),
-            missed: foundation.missed,
-            spring_length: foundation.spring_length,
-            simd: Simd::detect(),
-        });
-        model.link(laws);
-        model
-    }
-
     /// Sets ports and links, with these laws of the contacts.
-    fn link(&mut self, laws: Laws) {
+    pub(crate) fn link(&mut self, laws: Laws) {
         for (participation, mode) in self.participations.iter_mut().zip(&self.modes) {
             *participation = mode.participation;
         }
@@ -204,7 +128,7 @@ impl Model {
     #[must_use]
     pub fn with(mut self, change: impl FnOnce(&mut Parts)) -> Self {
         let law_of = |role: Option<usize>| self.links.get(role?)?.contact().copied();
-        let (parallel, second) = (law_of(self.parallel()), law_of(self.second()));
+        let (parallel, second) = (law_of(self.roles.parallel), law_of(self.roles.second));
         let mut parts = Parts {
             law: *self.law(),
             modes: self.modes,
@@ -317,40 +241,9 @@ impl Model {
         &self.law
     }
 
-    /// The index of the parallel contact, where there is one.
-    pub(crate) fn parallel(&self) -> Option<usize> {
-        self.roles.parallel
-    }
-
-    /// The index of the second contact, where there is one.
-    #[inline(always)]
-    pub(crate) fn second(&self) -> Option<usize> {
-        self.roles.second
-    }
-
-    /// The index of the pusher, where there is one.
-    pub(crate) fn pusher(&self) -> Option<usize> {
-        self.roles.pusher
-    }
-
-    /// The index of the armature's core, where there is one.
-    pub(crate) fn core(&self) -> Option<usize> {
-        self.roles.core
-    }
-
-    /// What the user calls a link.
-    pub fn name_of(&self, link: usize) -> &'static str {
-        self.links.get(link).map_or("", |link| link.name)
-    }
-
-    /// The index of the displacement of the fixed contact on its spring, where it has one.
-    pub(crate) fn fixed(&self) -> Option<usize> {
-        self.roles.fixed
-    }
-
     /// Distance of both fixed contacts with the second displaced by so much (m); infinite where there is one.
     pub(crate) fn room(&self, displacement: f64) -> f64 {
-        if self.second().is_some() {
+        if self.roles.second.is_some() {
             self.scene.second.gap - displacement - self.preload.indentation
         } else {
             f64::INFINITY
@@ -476,29 +369,4 @@ impl Model {
     pub fn first_step(&self, time: f64) -> f64 {
         (0.02 / self.frequency.max(1.0)).min(0.1 * self.generator.longest_step(time))
     }
-}
-
-/// Force at the held tip per base acceleration that varies slowly, kg.
-fn inertia(modes: &[Mode]) -> f64 {
-    let tip = |load: fn(&Mode) -> f64| -> f64 {
-        let parts = modes.iter().map(|mode| mode.tip * load(mode) / mode.omega_squared);
-        parts.sum()
-    };
-    (tip(|mode| mode.participation) / tip(|mode| mode.tip)).abs()
-}
-
-/// Whether nothing but the contact law can keep the scene from being linear, and nothing within a step is requested.
-fn is_linear(scene: &Scene) -> bool {
-    scene.effects.axial_force != AxialForceKind::FromDeflection
-        && scene.fixed_spring.is_none()
-        && scene.pushed_at().is_none()
-        && !scene.effects.extremes
-}
-
-/// Whether all damping is Rayleigh's, as exact steps need it.
-fn is_rayleigh(scene: &Scene, modes: &[Mode]) -> bool {
-    let (alpha, beta) = (scene.beam.mass_damping, scene.beam.stiffness_damping);
-    modes
-        .iter()
-        .all(|mode| mode.damping == alpha + beta * mode.omega_squared)
 }

@@ -79,47 +79,6 @@ impl Default for Initial {
     }
 }
 
-/// A pusher at rest against the spring.
-#[derive(Clone, Copy, Debug)]
-struct Pusher {
-    /// Where it would touch the unloaded spring, towards the contact, m.
-    place: f64,
-    /// Of the touch, N/m.
-    stiffness: f64,
-    /// Share of friction in its turning the spring: tangential force times height per contact force, m.
-    lever: f64,
-    gravity: f64,
-}
-
-impl Pusher {
-    fn of(scene: &Scene, displacement: f64) -> Option<Self> {
-        scene.pushed_at().map(|_| Self {
-            place: displacement,
-            stiffness: scene.pusher.stiffness,
-            lever: tangential_share(scene).map_or(0.0, |share| share * scene.tip.contact_height),
-            gravity: scene.environment.gravity,
-        })
-    }
-
-    /// Force of a pusher (N), and its overlap with the spring (m), under the forces of both contacts and an axial force (N).
-    fn press(&self, springs: &Springs, [force, parallel]: [f64; 2], axial_force: f64) -> (f64, f64) {
-        let by = springs.moving.statics.at_pusher(axial_force);
-        let by_parallel = if parallel > 0.0 {
-            springs.at_parallel(axial_force).pushed * parallel
-        } else {
-            0.0
-        };
-        // Of the spring without the pusher, which is where it pushes.
-        let spring = (by.across + self.lever * by.turning) * force + by_parallel + by.sag * self.gravity;
-        let alone = self.place + spring;
-        if alone <= 0.0 {
-            return (0.0, alone);
-        }
-        let force = alone / (1.0 / self.stiffness + by.own);
-        (force, force / self.stiffness)
-    }
-}
-
 impl Preload {
     /// Equilibrium of the scene with these inputs, with these laws of the contact and of a parallel one.
     ///
@@ -162,7 +121,8 @@ struct Pressed<'a> {
     springs: &'a Springs,
     law: &'a Power,
     parallel: Option<&'a Power>,
-    pusher: Option<Pusher>,
+    /// Where the pusher would touch the unloaded spring, towards the contact, m.
+    pushed: Option<f64>,
     /// Friction force per contact force, 1.
     share: Option<f64>,
     /// Overtravel with what inputs and the deflection of the fixed contact's spring alone add, m.
@@ -187,7 +147,7 @@ impl<'a> Pressed<'a> {
             springs,
             law,
             parallel,
-            pusher: Pusher::of(scene, pushed),
+            pushed: scene.pushed_at().map(|_| pushed),
             share: tangential_share(scene),
             overtravel: scene.contact.overtravel + support + fixed_alone,
             fixed_alone,
@@ -224,10 +184,29 @@ impl<'a> Pressed<'a> {
         })
     }
 
-    /// Force of the pusher (N) and its overlap (m) under the forces of both contacts and an axial force (N).
-    fn press(&self, forces: [f64; 2], n: f64) -> (f64, f64) {
-        self.pusher
-            .map_or((0.0, 0.0), |pusher| pusher.press(self.springs, forces, n))
+    /// Force of the pusher (N) and its overlap with the spring (m), 0 without one, under the forces of both contacts and an axial
+    /// force (N).
+    fn press(&self, [force, parallel]: [f64; 2], n: f64) -> (f64, f64) {
+        let Some(place) = self.pushed else {
+            return (0.0, 0.0);
+        };
+        let by = self.springs.moving.statics.at_pusher(n);
+        let by_parallel = if parallel > 0.0 {
+            self.springs.at_parallel(n).pushed * parallel
+        } else {
+            0.0
+        };
+        // Friction turns the spring as it presses the contact.
+        let lever = self.share.map_or(0.0, |share| share * self.scene.tip.contact_height);
+        // Of the spring without the pusher, which is where it pushes.
+        let spring = (by.across + lever * by.turning) * force + by_parallel + by.sag * self.scene.environment.gravity;
+        let alone = place + spring;
+        if alone <= 0.0 {
+            return (0.0, alone);
+        }
+        let stiffness = self.scene.pusher.stiffness;
+        let force = alone / (1.0 / stiffness + by.own);
+        (force, force / stiffness)
     }
 
     /// What gravity, pusher and the parallel contact do to the tip under the forces of both contacts and an axial force (N), m.
@@ -240,7 +219,7 @@ impl<'a> Pressed<'a> {
         } else {
             by_gravity
         };
-        match self.pusher {
+        match self.pushed {
             Some(_) => alone - statics.at_pusher(n).across * self.press(forces, n).0,
             None => alone,
         }

@@ -1,10 +1,11 @@
 //! What follows from the motion of the modes: the links of a state.
 
-use crate::contact::friction::Phase;
+use crate::contact::friction::{Friction, Phase, Slip};
+use crate::contact::power::Power;
 use crate::link::{CONTACT, LinkLaw};
 use crate::math::simd::Separate;
 use crate::model::Model;
-use crate::state::State;
+use crate::state::{LinkState, State};
 
 impl Model {
     /// Sets approaches, forces, and whether contacts are closed, stick or slip, as they follow from the motion of the modes.
@@ -28,19 +29,23 @@ impl Model {
         self.settle_friction(state);
     }
 
+    /// Friction, the law of the contact that rubs, that contact in a state, and there the link of friction and the slip.
+    fn rubbing<'a>(
+        &self,
+        state: &'a mut State,
+    ) -> Option<(&Friction, &Power, LinkState, &'a mut LinkState, &'a mut Slip)> {
+        let (index, friction) = self.friction()?;
+        let contact = *state.links.get(CONTACT)?;
+        let along = state.links.get_mut(index)?;
+        Some((friction, self.law().power()?, contact, along, &mut state.slip))
+    }
+
     /// Sets friction force and phase as they follow from the motion: after a jump, a closing, or in another phase than
     /// before.
     pub(crate) fn settle_friction(&self, state: &mut State) {
-        let (Some((index, friction)), Some(law)) = (self.friction(), self.law().power()) else {
+        let Some((friction, law, contact, along, slip)) = self.rubbing(state) else {
             return;
         };
-        let Some(contact) = state.links.get(CONTACT).copied() else {
-            return;
-        };
-        let Some(along) = state.links.get_mut(index) else {
-            return;
-        };
-        let slip = &mut state.slip;
         let (displacement, rate) = (-along.approach, -along.rate);
         if !contact.closed {
             (along.force, slip.way, slip.phase) = (0.0, displacement, Phase::Stick);
@@ -76,14 +81,13 @@ impl Model {
     /// Begins or ends slip. The trial force is then the limit, to the last digit.
     pub(crate) fn change_phase(&self, state: &mut State, phase: Phase) {
         let before = state.slip.phase.sign();
-        if let (Some((index, friction)), Some(law), Some(sign)) =
-            (self.friction(), self.law().power(), phase.sign().or(before))
-            && let (Some(contact), Some(along)) = (state.links.get(CONTACT), state.links.get(index))
+        if let Some(sign) = phase.sign().or(before)
+            && let Some((friction, law, contact, along, slip)) = self.rubbing(state)
         {
             let d = self.preload.indentation + contact.approach;
             let limit = friction.limit_deflection(law, sign, d, contact.rate);
             let lag = law.damping * -along.rate;
-            state.slip.way = -along.approach - (limit - lag);
+            slip.way = -along.approach - (limit - lag);
         }
         state.slip.phase = phase;
         self.set_friction_force(state);
@@ -94,13 +98,7 @@ impl Model {
 
     /// Sets the friction force of the phase of a state at its motion.
     pub(crate) fn set_friction_force(&self, state: &mut State) {
-        let (Some((index, friction)), Some(law)) = (self.friction(), self.law().power()) else {
-            return;
-        };
-        let (Some(contact), slip) = (state.links.get(CONTACT).copied(), state.slip) else {
-            return;
-        };
-        let Some(along) = state.links.get_mut(index) else {
+        let Some((friction, law, contact, along, slip)) = self.rubbing(state) else {
             return;
         };
         along.force = match slip.phase.sign() {

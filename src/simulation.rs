@@ -76,7 +76,7 @@ impl Simulation {
             });
         }
         let mut motion = Motion::at_rest(&model, start_time);
-        if model.second().is_some() {
+        if model.roles.second.is_some() {
             for state in [&mut motion.start, &mut motion.end] {
                 state.displacements = [0.0, displacement, 0.0];
                 for (link, at) in model.links.iter().zip(&mut state.links) {
@@ -196,9 +196,9 @@ impl Simulation {
     /// A real output or calculated parameter, in its SI unit.
     pub fn real(&self, output: RealOutput) -> f64 {
         let Self { model, motion, .. } = self;
+        let roles = &model.roles;
         let (state, contact) = (motion.state(), || motion.link(model, CONTACT));
         let at = |role: Option<usize>| role.map_or_else(LinkNow::default, |index| motion.link(model, index));
-        let fixed = || at(model.fixed());
         match output {
             RealOutput::ContactForce => contact().force,
             RealOutput::ContactElasticForce => motion.elastic_force(model).0,
@@ -211,45 +211,45 @@ impl Simulation {
             | RealOutput::SecondResistance => conduction::output(model, motion, output),
             RealOutput::StepMinimumForce => self.range(Some(CONTACT)).least,
             RealOutput::StepMaximumForce => self.range(Some(CONTACT)).greatest,
-            RealOutput::StepMinimumGap => match self.extremes().filter(|_| model.second().is_some()) {
+            RealOutput::StepMinimumGap => match self.extremes().filter(|_| roles.second.is_some()) {
                 Some(extremes) => -extremes.nearest,
                 None => 0.0,
             },
-            RealOutput::ParallelForce => at(model.parallel()).force,
-            RealOutput::ParallelLastOpening => self.event(model.parallel(), |link| link.last_opening),
-            RealOutput::ParallelLastClosing => self.event(model.parallel(), |link| link.last_closing),
-            RealOutput::ParallelMinimumForce => self.range(model.parallel()).least,
-            RealOutput::ParallelMaximumForce => self.range(model.parallel()).greatest,
-            RealOutput::PusherForce => at(model.pusher()).force,
-            RealOutput::ArmatureDisplacement => model.preload.armature.place + at(model.core()).approach,
-            RealOutput::ArmatureVelocity => at(model.core()).rate,
+            RealOutput::ParallelForce => at(roles.parallel).force,
+            RealOutput::ParallelLastOpening => self.event(roles.parallel, |link| link.last_opening),
+            RealOutput::ParallelLastClosing => self.event(roles.parallel, |link| link.last_closing),
+            RealOutput::ParallelMinimumForce => self.range(roles.parallel).least,
+            RealOutput::ParallelMaximumForce => self.range(roles.parallel).greatest,
+            RealOutput::PusherForce => at(roles.pusher).force,
+            RealOutput::ArmatureDisplacement => model.preload.armature.place + at(roles.core).approach,
+            RealOutput::ArmatureVelocity => at(roles.core).rate,
             RealOutput::ArmatureGap => {
-                let core = model.core().and_then(|index| model.links.get(index));
-                core.map_or(0.0, |core| -(core.approach + at(model.core()).approach))
+                let link = roles.core.and_then(|index| model.links.get(index));
+                link.map_or(0.0, |link| -(link.approach + at(roles.core).approach))
             }
-            RealOutput::ArmatureLastRelease => self.event(model.core(), |link| link.last_opening),
-            RealOutput::StepMinimumStopForce => self.range(model.core()).least,
-            RealOutput::StepMinimumPusherForce => self.range(model.pusher()).least,
-            RealOutput::SecondForce => at(model.second()).force,
-            RealOutput::SecondLastOpening => self.event(model.second(), |link| link.last_opening),
-            RealOutput::SecondLastClosing => self.event(model.second(), |link| link.last_closing),
-            RealOutput::SecondMinimumForce => self.range(model.second()).least,
-            RealOutput::SecondMaximumForce => self.range(model.second()).greatest,
+            RealOutput::ArmatureLastRelease => self.event(roles.core, |link| link.last_opening),
+            RealOutput::StepMinimumStopForce => self.range(roles.core).least,
+            RealOutput::StepMinimumPusherForce => self.range(roles.pusher).least,
+            RealOutput::SecondForce => at(roles.second).force,
+            RealOutput::SecondLastOpening => self.event(roles.second, |link| link.last_opening),
+            RealOutput::SecondLastClosing => self.event(roles.second, |link| link.last_closing),
+            RealOutput::SecondMinimumForce => self.range(roles.second).least,
+            RealOutput::SecondMaximumForce => self.range(roles.second).greatest,
             RealOutput::ChatterLongestFalseMake => self.makes(Some(CONTACT)).longest,
             RealOutput::ChatterTotalFalseMake => self.makes(Some(CONTACT)).total,
-            RealOutput::SecondLongestFalseMake => self.makes(model.second()).longest,
-            RealOutput::SecondTotalFalseMake => self.makes(model.second()).total,
+            RealOutput::SecondLongestFalseMake => self.makes(roles.second).longest,
+            RealOutput::SecondTotalFalseMake => self.makes(roles.second).total,
             RealOutput::ChatterLongestInterruption => self.interruptions().longest,
             RealOutput::ChatterTotalInterruption => self.interruptions().total,
             RealOutput::EnergyBalance => state.energy_balance,
             RealOutput::SolverForceError => self.force_error(),
             RealOutput::ContactIndentation => model.preload.indentation + contact().approach,
             RealOutput::TipDisplacement => {
-                model.preload.deflection + motion.support().0 + fixed().approach - contact().approach
+                model.preload.deflection + motion.support().0 + at(roles.fixed).approach - contact().approach
             }
-            RealOutput::TipVelocity => motion.support().1 + fixed().rate - contact().rate,
-            RealOutput::FixedDisplacement => model.preload.fixed_deflection + fixed().approach,
-            RealOutput::FixedVelocity => fixed().rate,
+            RealOutput::TipVelocity => motion.support().1 + at(roles.fixed).rate - contact().rate,
+            RealOutput::FixedDisplacement => model.preload.fixed_deflection + at(roles.fixed).approach,
+            RealOutput::FixedVelocity => at(roles.fixed).rate,
             RealOutput::ContactLastOpening => self.event(Some(CONTACT), |link| link.last_opening),
             RealOutput::ContactLastClosing => self.event(Some(CONTACT), |link| link.last_closing),
             RealOutput::ContactTangentialForce => motion.friction(model).0,
@@ -291,18 +291,18 @@ impl Simulation {
     /// for outputs that are not continuous; 0 at the start.
     pub fn rate(&self, output: RealOutput) -> Option<f64> {
         let Self { model, motion, .. } = self;
+        let roles = &model.roles;
         // Of force and velocity.
         let rates = |role: Option<usize>| role.map_or((0.0, 0.0), |index| motion.link_rates(model, index));
         let along = || motion.friction_rates(model);
-        let fixed_acceleration = || rates(model.fixed()).1;
         Some(match output {
             RealOutput::ContactForce => rates(Some(CONTACT)).0,
-            RealOutput::ParallelForce => rates(model.parallel()).0,
-            RealOutput::SecondForce => rates(model.second()).0,
-            RealOutput::PusherForce => rates(model.pusher()).0,
+            RealOutput::ParallelForce => rates(roles.parallel).0,
+            RealOutput::SecondForce => rates(roles.second).0,
+            RealOutput::PusherForce => rates(roles.pusher).0,
             RealOutput::ContactElasticForce => motion.elastic_force(model).1,
             RealOutput::ArmatureDisplacement => self.real(RealOutput::ArmatureVelocity),
-            RealOutput::ArmatureVelocity => rates(model.core()).1,
+            RealOutput::ArmatureVelocity => rates(roles.core).1,
             RealOutput::ArmatureGap => -self.real(RealOutput::ArmatureVelocity),
             RealOutput::ContactConductance
             | RealOutput::ContactResistance
@@ -313,42 +313,14 @@ impl Simulation {
             RealOutput::ContactIndentation => motion.link(model, CONTACT).rate,
             RealOutput::TipDisplacement => self.real(RealOutput::TipVelocity),
             RealOutput::FixedDisplacement => self.real(RealOutput::FixedVelocity),
-            RealOutput::TipVelocity => fixed_acceleration() - rates(Some(CONTACT)).1,
-            RealOutput::FixedVelocity => fixed_acceleration(),
+            RealOutput::TipVelocity => rates(roles.fixed).1 - rates(Some(CONTACT)).1,
+            RealOutput::FixedVelocity => rates(roles.fixed).1,
             RealOutput::ContactTangentialForce => along().0,
             RealOutput::ContactSlip => along().1.way,
             RealOutput::ContactSlipDistance => along().1.distance,
             RealOutput::FrictionEnergy => along().1.dissipated,
-            RealOutput::ContactLastOpening
-            | RealOutput::ContactLastClosing
-            | RealOutput::StepMinimumForce
-            | RealOutput::StepMaximumForce
-            | RealOutput::StepMaximumResistance
-            | RealOutput::StepMinimumGap
-            | RealOutput::StepMinimumPusherForce
-            | RealOutput::StepMinimumStopForce
-            | RealOutput::ArmatureLastRelease
-            | RealOutput::ParallelLastOpening
-            | RealOutput::ParallelLastClosing
-            | RealOutput::ParallelMinimumForce
-            | RealOutput::ParallelMaximumForce
-            | RealOutput::SecondLastOpening
-            | RealOutput::SecondLastClosing
-            | RealOutput::SecondMinimumForce
-            | RealOutput::SecondMaximumForce
-            | RealOutput::ChatterLongestFalseMake
-            | RealOutput::ChatterTotalFalseMake
-            | RealOutput::SecondLongestFalseMake
-            | RealOutput::SecondTotalFalseMake
-            | RealOutput::ChatterLongestInterruption
-            | RealOutput::ChatterTotalInterruption
-            | RealOutput::EnergyBalance
-            | RealOutput::SolverForceError
-            | RealOutput::PreloadForce
-            | RealOutput::PreloadIndentation
-            | RealOutput::PreloadContactStiffness
-            | RealOutput::PreloadAxialForce
-            | RealOutput::PreloadFrequency => return None,
+            // All that the description does not declare as continuous (`tests/derivatives.rs`).
+            _ => return None,
         })
     }
 
@@ -380,7 +352,7 @@ impl Simulation {
             IntegerOutput::SolverIterations => count(self.state().iterations),
             IntegerOutput::ChatterCount => count(self.interruptions().count),
             IntegerOutput::ChatterFalseMakes => count(self.makes(Some(CONTACT)).count),
-            IntegerOutput::SecondFalseMakes => count(self.makes(self.model.second()).count),
+            IntegerOutput::SecondFalseMakes => count(self.makes(self.model.roles.second).count),
             IntegerOutput::SolverModesUsed => count(self.model.modes.len() as u64),
         }
     }
@@ -399,9 +371,9 @@ impl Simulation {
     pub fn boolean(&self, output: BooleanOutput) -> bool {
         let index = match output {
             BooleanOutput::ContactClosed => Some(CONTACT),
-            BooleanOutput::ParallelClosed => self.model.parallel(),
-            BooleanOutput::SecondClosed => self.model.second(),
-            BooleanOutput::PusherClosed => self.model.pusher(),
+            BooleanOutput::ParallelClosed => self.model.roles.parallel,
+            BooleanOutput::SecondClosed => self.model.roles.second,
+            BooleanOutput::PusherClosed => self.model.roles.pusher,
         };
         index.is_some_and(|index| {
             let closed = self.motion.state().links.get(index).is_some_and(|link| link.closed);

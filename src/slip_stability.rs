@@ -79,23 +79,20 @@ pub(crate) static KNOWN: Home<Known> = Home::new();
 /// Unstable slip, in each direction in which it is, about the usual contact force (N).
 pub(crate) fn unstable(modes: &[Mode], friction: &Friction, law: &Power, usual: f64) -> Vec<Unstable> {
     let of = (modes.to_vec(), *friction, *law, usual);
-    Shared::of(&KNOWN).of(of, |(modes, friction, law, usual)| found(modes, friction, law, *usual))
-}
-
-fn found(modes: &[Mode], friction: &Friction, law: &Power, usual: f64) -> Vec<Unstable> {
-    let along = |slip: Phase| {
-        let loads = loads(modes, friction, slip)?;
-        let growing = FORCES.map(|share| {
-            let value = fastest(modes, &loads, law, share * usual);
-            value.map_or((0.0, 0.0), |value| (value.re, value.im.abs() / TAU))
-        });
-        let unstable = growing.iter().any(|(rate, _)| *rate > 0.0);
-        unstable.then_some(Unstable { slip, usual, growing })
-    };
-    [Phase::SlipBack, Phase::SlipForth]
-        .into_iter()
-        .filter_map(along)
-        .collect()
+    Shared::of(&KNOWN).of(of, |(modes, friction, law, usual)| {
+        let usual = *usual;
+        let along = |slip: Phase| {
+            let loads = loads(modes, friction, slip)?;
+            let growing = FORCES.map(|share| {
+                let value = fastest(modes, &loads, law, share * usual);
+                value.map_or((0.0, 0.0), |value| (value.re, value.im.abs() / TAU))
+            });
+            let unstable = growing.iter().any(|(rate, _)| *rate > 0.0);
+            unstable.then_some(Unstable { slip, usual, growing })
+        };
+        let ways = [Phase::SlipBack, Phase::SlipForth];
+        ways.into_iter().filter_map(along).collect()
+    })
 }
 
 /// The load `u_i` on each mode per contact force, 1/sqrt(kg); `None` if none is against the displacement of its tip. Then slip is

@@ -196,7 +196,7 @@ fn modes_of_a_forked_spring_are_that_spring() {
         modes.modes[3].parallel = None;
     }
     let refused = Simulation::new(&given, &Inputs::default(), 0.0).unwrap_err();
-    assert!(matches!(refused, SceneError::NoPlace { .. }), "{refused}");
+    assert!(matches!(refused, SceneError::NotTogether { .. }), "{refused}");
 }
 
 /// Also where one contact alone, or the bend that it makes, is far from what both hold.

@@ -55,7 +55,7 @@ fn rig(exponent: f64, ratios: [f64; 2], [frequency, level, phase]: [f64; 3]) -> 
             contact_stiffness: STIFFNESS,
             ..Preload::default()
         };
-        parts.generator = Generator::new(&scene).unwrap();
+        parts.generator = Generator::new(&scene);
     }))
 }
 

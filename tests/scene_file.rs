@@ -72,19 +72,10 @@ fn an_unknown_name_is_reported_with_its_line_and_the_nearest_names() {
         omitted.starts_with("line 6: overtravel: no such parameter; similar: contact.overtravel,"),
         "{omitted}"
     );
-    let key = message("communicationStepp = 1\n");
-    assert!(
-        key.starts_with(
-            "line 4: not a scene file: unknown field `communicationStepp`, expected one of `title`, `stop`"
-        ),
-        "{key}"
-    );
-    assert!(
-        key.ends_with(
-            "unknown field `communicationStepp`, expected one of \
-             `title`, `stop`, `communicationStep`, `outputs`, `parameters`, `inputs`"
-        ),
-        "{key}"
+    assert_eq!(
+        message("communicationStepp = 1\n"),
+        "line 4: communicationStepp: no such key, allowed are title, stop, communicationStep, outputs, parameters, inputs; did \
+         you mean communicationStep?"
     );
     // An output is not a parameter, and a parameter not an input.
     assert!(message("[parameters]\ncontact.force = 1\n").contains("contact.force: no such parameter"));
@@ -167,23 +158,21 @@ fn a_value_of_the_wrong_type_is_reported_with_the_type_expected() {
     ] {
         assert_eq!(message(&format!("[parameters]\n{rest}\n")), expected);
     }
-    // What is no number, text or table at all, TOML's reader tells.
     for (rest, line, expected) in [
-        ("inputs = 3", 4, "invalid type: integer `3`, expected a map"),
-        ("title = 3", 4, "invalid type: integer `3`, expected a string"),
+        ("inputs = 3", 4, "inputs = 3: wrong type, allowed is a table"),
+        ("title = 3", 4, "title = 3: wrong type, allowed is a string"),
         (
             "[parameters]\nbeam.length = [1]",
             5,
-            "invalid type: sequence, expected a number, true or false, a string or a table",
+            "beam.length = array: wrong type, allowed is a number",
         ),
         (
             "[parameters]\nbeam.length = 1979-05-27",
             5,
-            "invalid type: date or time, expected a number, true or false, a string or a table",
+            "beam.length = 1979-05-27: wrong type, allowed is a number",
         ),
     ] {
-        let message = message(rest);
-        assert_eq!(message, format!("line {line}: not a scene file: {expected}"));
+        assert_eq!(message(rest), format!("line {line}: {expected}"));
     }
 }
 
@@ -212,7 +201,7 @@ fn the_run_must_have_a_length_and_a_step() {
         parse("stop = 1\ncommunicationStep = 0\noutputs = []"),
         "line 2: communicationStep = 0 s: not allowed, allowed is any positive finite number"
     );
-    assert!(parse("stop = = 1").starts_with("line 1: not a scene file: "));
+    assert!(parse("stop = = 1").starts_with("line 1: not TOML: "));
 }
 
 #[test]

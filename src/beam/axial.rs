@@ -55,12 +55,7 @@ impl Feedback {
             .collect();
         let at_rest = |mode: &Mode| (mode.tip * preload.force - mode.participation * gravity) / mode.omega_squared;
         let mut slopes = [0.0; MAX_MODES];
-        for (mode, row) in modes.iter().zip(&geometric) {
-            let q = at_rest(mode);
-            for (slope, entry) in slopes.iter_mut().zip(row) {
-                *slope += entry * q;
-            }
-        }
+        add_rows(&mut slopes, &geometric, modes.iter().map(at_rest));
         Self {
             section: *section,
             deflection: preload.deflection,
@@ -90,11 +85,7 @@ impl Feedback {
     pub fn loads(&self, modes: &[Mode], states: &[ModeState]) -> Modal {
         let y: f64 = modes.iter().zip(states).map(|(mode, at)| mode.tip * at.q).sum();
         let mut slopes = self.slopes;
-        for (row, at) in self.geometric.iter().zip(states) {
-            for (slope, entry) in slopes.iter_mut().zip(row) {
-                *slope += entry * at.q;
-            }
-        }
+        add_rows(&mut slopes, &self.geometric, states.iter().map(|at| at.q));
         let change = self.change(y);
         slopes.map(|slope| change * slope)
     }
@@ -122,23 +113,27 @@ impl Feedback {
     /// (N/m) at the tip: of the tangent `diag(omega_i^2) + (k T_i - N' g_i) T_j`, whose inverse Sherman and Morrison
     /// give.
     pub fn frequency(&self, modes: &[Mode], stiffness: f64) -> Option<f64> {
-        let count = modes.len();
         let slope = self.slope(0.0);
-        let compliant = DVector::from_iterator(count, modes.iter().map(|mode| mode.tip / mode.omega_squared));
-        let pushed = DVector::from_iterator(
-            count,
-            modes
-                .iter()
-                .zip(&self.slopes)
-                .map(|(mode, g)| (stiffness * mode.tip - slope * g) / mode.omega_squared),
-        );
-        let tips = DVector::from_iterator(count, modes.iter().map(|mode| mode.tip));
-        let mut inverse = DMatrix::from_diagonal(&DVector::from_iterator(
-            count,
-            modes.iter().map(|mode| 1.0 / mode.omega_squared),
-        ));
+        let vector = |entry: &dyn Fn(&Mode, f64) -> f64| {
+            let entries = modes.iter().zip(&self.slopes).map(|(mode, g)| entry(mode, *g));
+            DVector::from_iterator(modes.len(), entries)
+        };
+        let compliant = vector(&|mode, _| mode.tip / mode.omega_squared);
+        let pushed = vector(&|mode, g| (stiffness * mode.tip - slope * g) / mode.omega_squared);
+        let tips = vector(&|mode, _| mode.tip);
+        let mut inverse = DMatrix::from_diagonal(&vector(&|mode, _| 1.0 / mode.omega_squared));
         inverse.ger(-1.0 / (1.0 + tips.dot(&pushed)), &pushed, &compliant, 1.0);
         let largest = inverse.complex_eigenvalues().iter().map(|mu| mu.re).fold(0.0, f64::max);
         (largest > 0.0).then(|| 1.0 / largest.sqrt())
+    }
+}
+
+/// Adds the rows, each times its displacement.
+#[inline(always)]
+fn add_rows(sums: &mut Modal, rows: &[Modal], displacements: impl Iterator<Item = f64>) {
+    for (row, q) in rows.iter().zip(displacements) {
+        for (sum, entry) in sums.iter_mut().zip(row) {
+            *sum += entry * q;
+        }
     }
 }

@@ -7,6 +7,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::beam::mode::Mode;
 use crate::beam::section::Section;
 use crate::math::legendre;
 
@@ -19,38 +20,18 @@ pub struct Space {
     pub(crate) geometric: DMatrix<f64>,
     /// Integral of each function over xi.
     pub(crate) load: DVector<f64>,
-    /// Value of each function at the tip.
-    pub(crate) tip: DVector<f64>,
-    /// Slope with respect to xi of each function at the tip.
-    pub(crate) tip_slope: DVector<f64>,
-    /// Value of each function at the pusher.
-    pub(crate) pusher: DVector<f64>,
-    /// Value of each function at a parallel contact.
-    pub(crate) parallel: DVector<f64>,
+    /// What each function does, with rotations by xi.
+    pub(crate) at: Places,
 }
 
 /// What functions do at the places of a spring that are asked for: deflection (m) and rotation at the tip, deflection at the
 /// pusher and at a parallel contact (m).
-pub(super) struct Places {
-    pub(super) tip: DVector<f64>,
-    pub(super) slope: DVector<f64>,
-    pub(super) pusher: DVector<f64>,
-    pub(super) parallel: DVector<f64>,
-}
-
-/// One mode, normalised to a modal mass of 1 kg.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mode {
-    /// Square of the angular frequency, 1/s2.
-    pub omega_squared: f64,
-    /// Displacement of the tip, 1/sqrt(kg).
-    pub tip: f64,
-    /// Modal force per base acceleration, sqrt(kg).
-    pub participation: f64,
-    /// Rotation at the tip, 1/(m sqrt(kg)).
-    pub rotation: f64,
-    /// Displacement at the pusher, 1/sqrt(kg).
-    pub pusher: f64,
+#[derive(Clone, Debug)]
+pub(crate) struct Places {
+    pub(crate) tip: DVector<f64>,
+    pub(crate) slope: DVector<f64>,
+    pub(crate) pusher: DVector<f64>,
+    pub(crate) parallel: DVector<f64>,
 }
 
 impl Space {
@@ -61,10 +42,12 @@ impl Space {
             mass: DMatrix::zeros(count, count),
             geometric: DMatrix::zeros(count, count),
             load: DVector::zeros(count),
-            tip: functions(1.0).0,
-            parallel: functions(1.0).0,
-            tip_slope: functions(1.0).1,
-            pusher: DVector::zeros(count),
+            at: Places {
+                tip: functions(1.0).0,
+                slope: functions(1.0).1,
+                pusher: DVector::zeros(count),
+                parallel: functions(1.0).0,
+            },
         };
         // Degree 2 (count + 1) is integrated exactly.
         for (x, weight) in legendre::gauss(count + 2) {
@@ -86,38 +69,40 @@ impl Space {
         load: DVector<f64>,
         places: Places,
     ) -> Self {
-        let half_mass = section.mass_per_length * section.length / 2.0;
-        let half_stiffness = 8.0 * section.bending_stiffness / section.length.powi(3);
+        let (half_mass, half_stiffness) = section.halves();
+        let root = half_stiffness.sqrt();
         Self {
             mass: mass * (half_stiffness / half_mass),
             geometric: slopes * (half_stiffness * section.length / 2.0),
-            load: load * (half_stiffness.sqrt() / half_mass),
-            tip_slope: places.slope * (half_stiffness.sqrt() * section.length / 2.0),
-            tip: places.tip * half_stiffness.sqrt(),
-            pusher: places.pusher * half_stiffness.sqrt(),
-            parallel: places.parallel * half_stiffness.sqrt(),
+            load: load * (root / half_mass),
+            at: Places {
+                tip: places.tip * root,
+                slope: places.slope * (root * section.length / 2.0),
+                pusher: places.pusher * root,
+                parallel: places.parallel * root,
+            },
         }
     }
 
     /// The factors of [`Space::with`]'s functions in the shape under unit force at the tip and an axial compression (N);
     /// `None` at or above the buckling load.
     pub(super) fn deflections(&self, section: &Section, axial_force: f64) -> Option<DVector<f64>> {
-        let half_stiffness = 8.0 * section.bending_stiffness / section.length.powi(3);
+        let (_, half_stiffness) = section.halves();
         let rigidity = self.rigidity(section, axial_force, 0.0);
-        Some(rigidity.cholesky()?.solve(&self.tip) / half_stiffness.sqrt())
+        Some(rigidity.cholesky()?.solve(&self.at.tip) / half_stiffness.sqrt())
     }
 
     /// Stiffness under the axial compression (N) with an elastic support of `stiffness` (N/m) at the tip.
     fn rigidity(&self, section: &Section, axial_force: f64, stiffness: f64) -> DMatrix<f64> {
-        let half_stiffness = 8.0 * section.bending_stiffness / section.length.powi(3);
-        let count = self.tip.len();
+        let (_, half_stiffness) = section.halves();
+        let count = self.at.tip.len();
         let compression = axial_force * section.length * section.length / (4.0 * section.bending_stiffness);
         let mut rigidity = DMatrix::identity(count, count) - &self.geometric * compression;
-        rigidity.ger(stiffness / half_stiffness, &self.tip, &self.tip, 1.0);
+        rigidity.ger(stiffness / half_stiffness, &self.at.tip, &self.at.tip, 1.0);
         rigidity
     }
 
-    /// The modes of the section under the axial compression (N) with an elastic support of `stiffness` (N/m) at the
+    /// The modes without damping of the section under the axial compression (N) with an elastic support of `stiffness` (N/m) at the
     /// tip, frequency ascending; `None` at or above the buckling load.
     pub fn modes(&self, section: &Section, axial_force: f64, stiffness: f64) -> Option<Vec<Mode>> {
         let modes = self.modes_with_shapes(section, axial_force, stiffness)?;
@@ -131,19 +116,18 @@ impl Space {
         axial_force: f64,
         stiffness: f64,
     ) -> Option<Vec<(Mode, DVector<f64>)>> {
-        let Section {
-            length,
-            bending_stiffness,
-            mass_per_length,
-            tip_mass,
-            tip_inertia,
-        } = *section;
-        let half_mass = mass_per_length * length / 2.0;
-        let half_stiffness = 8.0 * bending_stiffness / length.powi(3);
+        let (length, tip_mass) = (section.length, section.tip_mass);
+        let (half_mass, half_stiffness) = section.halves();
+        let Places {
+            tip,
+            slope,
+            pusher,
+            parallel,
+        } = &self.at;
         let mut mass = self.mass.clone();
-        mass.ger(tip_mass / half_mass, &self.tip, &self.tip, 1.0);
-        let inertia = 4.0 * tip_inertia / (length * length * half_mass);
-        mass.ger(inertia, &self.tip_slope, &self.tip_slope, 1.0);
+        mass.ger(tip_mass / half_mass, tip, tip, 1.0);
+        let inertia = 4.0 * section.tip_inertia / (length * length * half_mass);
+        mass.ger(inertia, slope, slope, 1.0);
         let factor = self.rigidity(section, axial_force, stiffness).cholesky()?;
         // Eigenvalues mu of R^-1 M R^-T are 1/omega^2: the low modes, which matter most, have full relative accuracy.
         let half = factor.l_dirty().solve_lower_triangular(&mass)?;
@@ -159,13 +143,15 @@ impl Space {
                 // Rounding leaves only the order of magnitude of the highest of many modes.
                 let mu = mu.max(f64::EPSILON * largest);
                 let normalisation = 1.0 / (mu * half_mass).sqrt();
-                let tip = shape.dot(&self.tip) * normalisation;
+                let tip = shape.dot(tip) * normalisation;
                 let mode = Mode {
                     omega_squared: half_stiffness / (half_mass * mu),
                     tip,
                     participation: half_mass * shape.dot(&self.load) * normalisation + tip_mass * tip,
-                    rotation: 2.0 / length * shape.dot(&self.tip_slope) * normalisation,
-                    pusher: shape.dot(&self.pusher) * normalisation,
+                    rotation: 2.0 / length * shape.dot(slope) * normalisation,
+                    pusher: shape.dot(pusher) * normalisation,
+                    parallel: shape.dot(parallel) * normalisation,
+                    ..Mode::default()
                 };
                 (mode, shape * normalisation)
             })

@@ -83,10 +83,9 @@ impl Given {
                     tip: mode.contact,
                     participation: mode.participation,
                     rotation: mode.rotation.unwrap_or_default(),
-                    fixed: 0.0,
                     pusher: mode.pusher.unwrap_or_default(),
                     parallel: mode.parallel.unwrap_or_default(),
-                    armature: 0.0,
+                    ..Mode::default()
                 }
             })
             .collect();

@@ -42,14 +42,6 @@ pub struct Bend {
     pub ends: Vec<(f64, f64)>,
 }
 
-/// Transverse forces and moments on a spring.
-struct Load {
-    /// Force per length at the nodes, N/m.
-    density: Vec<f64>,
-    /// Force (N) and moment (N m) at the end of each stretch.
-    ends: Vec<(f64, f64)>,
-}
-
 impl Mesh {
     /// With enough nodes for `count` functions.
     pub fn new(spring: &Pieces, count: usize) -> Self {
@@ -98,11 +90,12 @@ impl Mesh {
         bend
     }
 
-    /// The spring under a load: the moments from the free end on.
-    fn under(&self, load: &Load) -> Bend {
+    /// The spring under a force per length at the nodes (N/m), and a force (N) and a moment (N m) at the end of each stretch: the
+    /// moments from the free end on.
+    fn under(&self, density: &[f64], ends: impl DoubleEndedIterator<Item = (f64, f64)> + ExactSizeIterator) -> Bend {
         let (mut shear, mut moment) = (0.0, 0.0);
         let mut parts = Vec::with_capacity(self.stretches.len());
-        let loads = load.density.chunks_exact(self.rule.len()).zip(&load.ends);
+        let loads = density.chunks_exact(self.rule.len()).zip(ends);
         for (stretch, (density, (force, couple))) in self.stretches.iter().zip(loads).rev() {
             shear += force;
             moment += couple;
@@ -130,10 +123,7 @@ impl Mesh {
     /// Under a force (N) and a moment (N m) at the end of one stretch.
     fn loaded(&self, stretch: usize, force: f64, moment: f64) -> Bend {
         let ends = (0..self.stretches.len()).map(|at| if at == stretch { (force, moment) } else { (0.0, 0.0) });
-        self.under(&Load {
-            density: vec![0.0; self.stretches.len() * self.rule.len()],
-            ends: ends.collect(),
-        })
+        self.under(&vec![0.0; self.stretches.len() * self.rule.len()], ends)
     }
 
     /// Under unit force at the contact.
@@ -159,31 +149,27 @@ impl Mesh {
 
     /// Under the inertia of unit acceleration, and of unit angular acceleration about the clamp.
     pub fn shaken(&self) -> [Bend; 2] {
-        let mut start = 0.0;
-        let mut rigid = [self.bent(0.0, Vec::new()), self.bent(0.0, Vec::new())];
-        let [moved, turned] = &mut rigid;
-        moved.ends.clear();
-        turned.ends.clear();
+        let (mut start, mut places, mut ends) = (0.0, Vec::new(), Vec::new());
         for stretch in &self.stretches {
-            moved.deflection.extend(self.rule.nodes.iter().map(|_| 1.0));
-            turned
-                .deflection
-                .extend(self.rule.nodes.iter().map(|x| start + stretch.half * (x + 1.0)));
+            places.extend(self.rule.nodes.iter().map(|x| start + stretch.half * (x + 1.0)));
             start += 2.0 * stretch.half;
-            moved.ends.push((1.0, 0.0));
-            turned.ends.push((start, 1.0));
+            ends.push((start, 1.0));
         }
-        rigid.map(|bend| self.swung(&bend))
+        let moved = self.accelerated(&vec![1.0; places.len()], &vec![(1.0, 0.0); ends.len()]);
+        [moved, self.accelerated(&places, &ends)]
     }
 
     /// Under the inertia of an acceleration of this shape.
-    pub fn swung(&self, acceleration: &Bend) -> Bend {
+    pub fn swung(&self, shape: &Bend) -> Bend {
+        self.accelerated(&shape.deflection, &shape.ends)
+    }
+
+    /// Under the inertia of these accelerations of the nodes (m/s2), and of the ends with angular ones (1/s2).
+    fn accelerated(&self, nodes: &[f64], ends: &[(f64, f64)]) -> Bend {
         let masses = self.stretches.iter().flat_map(|stretch| &stretch.mass_per_length);
-        let ends = self.stretches.iter().zip(&acceleration.ends);
-        self.under(&Load {
-            density: masses.zip(&acceleration.deflection).map(|(m, a)| m * a).collect(),
-            ends: ends.map(|(at, (a, turn))| (at.mass * a, at.inertia * turn)).collect(),
-        })
+        let density: Vec<_> = masses.zip(nodes).map(|(m, a)| m * a).collect();
+        let ends = self.stretches.iter().zip(ends);
+        self.under(&density, ends.map(|(at, (a, turn))| (at.mass * a, at.inertia * turn)))
     }
 
     /// Under what unit axial compression between clamp and contact does in this shape.

@@ -61,24 +61,15 @@ impl Blow {
         reason = "a small positive count, saturating"
     )]
     pub fn modes(&self, section: &Section, tolerance: f64) -> usize {
-        let digits = self.first_digits(section) - tolerance.log10();
-        let count = digits * self.per_digit(section);
-        (LANES * (count / LANES as f64).ceil().max(3.0) as usize).min(MOST)
-    }
-
-    /// Modes per digit, 1.
-    fn per_digit(&self, section: &Section) -> f64 {
-        let steepness = if self.steep { STEEP } else { 1.0 };
-        steepness * PER_DIGIT * self.wave_number(section).sqrt()
-    }
-
-    /// Digits that a tolerance of 1 takes already, 1.
-    fn first_digits(&self, section: &Section) -> f64 {
         let first = 3.516 * section.rate();
         let damping = 0.5 * (self.mass_damping / first + self.stiffness_damping * first);
         // Undamped springs ring for ever, and no number of modes is right for that.
         let ringing = if damping > 0.0 { RINGING / damping } else { 1.0 };
-        FIRST_DIGITS + ringing.log10().clamp(0.0, 1.0)
+        let digits = FIRST_DIGITS + ringing.log10().clamp(0.0, 1.0) - tolerance.log10();
+        let steepness = if self.steep { STEEP } else { 1.0 };
+        let per_digit = steepness * PER_DIGIT * self.wave_number(section).sqrt();
+        let count = digits * per_digit;
+        (LANES * (count / LANES as f64).ceil().max(3.0) as usize).min(MOST)
     }
 
     /// The largest wave number `x` that the blow excites, 1 / L.

@@ -42,23 +42,20 @@ impl Piece {
 
     /// Both parts, cut at a share of the length; what sits at the end stays there.
     fn cut(self, share: f64) -> [Self; 2] {
-        let halves = |[start, end]: [f64; 2]| {
-            let middle = start + (end - start) * share;
-            ([start, middle], [middle, end])
-        };
-        let (width, thickness) = (halves(self.width), halves(self.thickness));
+        let middle = |[start, end]: [f64; 2]| start + (end - start) * share;
+        let (width, thickness) = (middle(self.width), middle(self.thickness));
         let first = Self {
             length: self.length * share,
-            width: width.0,
-            thickness: thickness.0,
+            width: [self.width[0], width],
+            thickness: [self.thickness[0], thickness],
             mass: 0.0,
             inertia: 0.0,
             ..self
         };
         let last = Self {
             length: self.length * (1.0 - share),
-            width: width.1,
-            thickness: thickness.1,
+            width: [width, self.width[1]],
+            thickness: [thickness, self.thickness[1]],
             ..self
         };
         [first, last]
@@ -134,27 +131,24 @@ impl Pieces {
             rest.graded(&mut pieces);
             start = end;
         }
-        let (mut end, mut before_contact) = (0.0, 0);
-        let mut before_pusher = scene.pushed_at().map(|position| (position, 0));
+        let (mut end, mut ends) = (0.0, Vec::new());
         for piece in &mut pieces {
             let start = end;
             end += piece.length;
-            before_contact += usize::from(end <= contact + same);
-            if let Some((position, before)) = &mut before_pusher {
-                *before += usize::from(end <= *position + same);
-            }
-            for &(_, mass, inertia) in carried
+            ends.push(end);
+            let here = carried
                 .iter()
-                .filter(|(at, ..)| *at > start + same && *at <= end + same)
-            {
+                .filter(|(at, ..)| *at > start + same && *at <= end + same);
+            for (_, mass, inertia) in here {
                 piece.mass += mass;
                 piece.inertia += inertia;
             }
         }
+        let before = |position: f64| ends.iter().filter(|end| **end <= position + same).count();
         Self {
             parts: pieces,
-            before_contact,
-            before_pusher: before_pusher.map(|(_, before)| before),
+            before_contact: before(contact),
+            before_pusher: scene.pushed_at().map(before),
             clamp_flexibility: spring.clamp_stiffness.map_or(0.0, f64::recip),
         }
     }

@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 
 use crate::beam::characteristic;
-use crate::beam::galerkin::{self, Space};
+use crate::beam::galerkin::Space;
 use crate::beam::given::Given;
 use crate::beam::mode::{Last, MAX_MODES, Mode, SPRINGS};
 use crate::beam::mode_count::{Blow, MOST};
@@ -11,12 +11,11 @@ use crate::beam::pieces::Pieces;
 use crate::beam::ritz;
 use crate::beam::section::Section;
 use crate::beam::statics::{Statics, axial_force_from_deflection};
-use crate::error::SceneError;
 use crate::math::simd::LANES;
-use crate::scene::spring::{Segments, Shape, SpringFile};
-use crate::scene::{Scene, choices};
+use crate::scene::spring::{Segment, Segments, Shape};
+use crate::scene::{Beam, Scene};
 use crate::shared::{Found, Home, Shared};
-use crate::variables::{AxialForceKind, EnumerationParameter, PusherKind, RealParameter};
+use crate::variables::AxialForceKind;
 
 /// A spring with its rivet.
 #[derive(Clone, Debug)]
@@ -59,31 +58,21 @@ const FREQUENCY_TERMS: usize = 32;
 
 impl Spring {
     /// The spring of a scene.
-    ///
-    /// # Errors
-    /// A [`SceneError`] if a spring given by modes is to have an axial force.
-    pub fn new(scene: &Scene) -> Result<Self, SceneError> {
-        check_pusher(scene)?;
-        let Some(file) = &scene.spring else {
-            return Ok(if scene.pushed_at().is_some() {
-                Self::of_segments(&scene.uniform_spring(), scene)
-            } else {
-                Self::uniform(&Section::new(scene))
-            });
-        };
-        match &file.shape {
-            Shape::Segments(segments) => Ok(Self::of_segments(segments, scene)),
-            Shape::Modes(modes) => {
-                no_axial_force(scene, file)?;
+    pub fn new(scene: &Scene) -> Self {
+        match scene.spring.as_ref().map(|file| &file.shape) {
+            None if scene.pushed_at().is_some() => Self::of_segments(&uniform(&scene.beam), scene),
+            None => Self::uniform(&Section::new(scene)),
+            Some(Shape::Segments(segments)) => Self::of_segments(segments, scene),
+            Some(Shape::Modes(modes)) => {
                 let given = Given::new(modes);
                 let section = given.equivalent();
                 let space = given.space(&given.modes(MAX_MODES, (0.0, 0.0)));
-                Ok(Self {
+                Self {
                     section,
                     buckling_load: f64::INFINITY,
                     statics: Statics::of(&section, space),
                     form: Form::Modes(given),
-                })
+                }
             }
         }
     }
@@ -161,7 +150,7 @@ impl Spring {
             return Some(Basis {
                 space: given.space(&modes),
                 shapes: Vec::new(),
-                last: given.last(&modes).map(of_this).collect(),
+                last: given.last(&modes).map(|last| [last, NONE, NONE]).collect(),
                 modes,
             });
         }
@@ -172,30 +161,14 @@ impl Spring {
                 let space = form.space(section, *count, *axial_force, *rubs)?;
                 Some((space.modes_with_shapes(section, *axial_force, 0.0)?, space))
             })?;
-        let (modes, shapes) = undamped
-            .into_iter()
-            .map(|(mode, shape)| {
-                let mode = Mode {
-                    omega_squared: mode.omega_squared,
-                    damping: alpha + beta * mode.omega_squared,
-                    tip: mode.tip,
-                    participation: mode.participation,
-                    rotation: mode.rotation,
-                    fixed: 0.0,
-                    pusher: mode.pusher,
-                    parallel: mode.tip,
-                    armature: 0.0,
-                };
-                (mode, shape)
-            })
-            .unzip();
-        let shapes: Vec<DVector<f64>> = shapes;
-        let root = (8.0 * self.section.bending_stiffness / self.section.length.powi(3)).sqrt();
-        let last = shapes
-            .iter()
-            .map(|shape| of_this(last_of(shape).map(|entry| root * entry)));
+        let (mut modes, shapes): (Vec<Mode>, Vec<DVector<f64>>) = undamped.into_iter().unzip();
+        for mode in &mut modes {
+            mode.damping = alpha + beta * mode.omega_squared;
+        }
+        let root = self.section.halves().1.sqrt();
+        let last = shapes.iter().map(|shape| last_of(shape).map(|entry| root * entry));
         Some(Basis {
-            last: last.collect(),
+            last: last.map(|last| [last, NONE, NONE]).collect(),
             modes,
             shapes,
             space,
@@ -247,72 +220,30 @@ pub struct Known {
 type Asked = (usize, f64, bool);
 
 /// Modes with their shapes in a space.
-type Undamped = (Vec<(galerkin::Mode, DVector<f64>)>, Space);
+type Undamped = (Vec<(Mode, DVector<f64>)>, Space);
 
 /// Where that is.
 pub static KNOWN: Home<Known> = Home::new();
 
-/// Coefficients of the first spring alone.
-fn of_this(last: Last) -> [Last; SPRINGS] {
-    let mut all = [Last::default(); SPRINGS];
-    all[0] = last;
-    all
+/// The uniform section as a spring of one segment.
+fn uniform(beam: &Beam) -> Segments {
+    let segment = Segment {
+        length: beam.length,
+        width: [beam.width; 2],
+        thickness: [beam.thickness; 2],
+        ..Segment::default()
+    };
+    Segments {
+        segments: vec![segment],
+        ..Segments::default()
+    }
 }
+
+/// Of springs that a mode is not of.
+const NONE: Last = [0.0; LANES];
 
 /// The last entries of a shape.
 fn last_of(shape: &DVector<f64>) -> Last {
     let place = |k: usize| (shape.len() + k).checked_sub(LANES);
     std::array::from_fn(|k| place(k).and_then(|place| shape.get(place)).copied().unwrap_or_default())
-}
-
-/// A pusher touches the spring somewhere, and leaves the axial force as it is.
-fn check_pusher(scene: &Scene) -> Result<(), SceneError> {
-    let Some(position) = scene.pushed_at() else {
-        return Ok(());
-    };
-    let pusher = match scene.effects.pusher {
-        PusherKind::Armature => "effects.pusher = Armature",
-        PusherKind::Prescribed | PusherKind::None => "effects.pusher = Prescribed",
-    };
-    scene.keeps_axial_force(pusher, "effects.pusher = None")?;
-    let length = match scene.spring.as_ref().map(|file| (file, &file.shape)) {
-        None => scene.beam.length,
-        Some((_, Shape::Segments(segments))) => segments.length(),
-        Some((file, Shape::Modes(modes))) => {
-            let touched = modes.modes.iter().all(|mode| mode.pusher.is_some());
-            let file = file.name.clone();
-            return touched.then_some(()).ok_or(SceneError::NoPlace {
-                effect: "effects.pusher",
-                place: "pusher",
-                file,
-            });
-        }
-    };
-    if position <= length {
-        return Ok(());
-    }
-    let allowed = format!(
-        "allowed is at most the length of the spring, {} m",
-        crate::error::number(length)
-    );
-    Err(SceneError::out_of_range(
-        RealParameter::PusherPosition.variable(),
-        position,
-        allowed,
-    ))
-}
-
-/// A spring given by modes has no geometry on which an axial force could act.
-fn no_axial_force(scene: &Scene, file: &SpringFile) -> Result<(), SceneError> {
-    let kind = scene.effects.axial_force;
-    if kind == AxialForceKind::None {
-        return Ok(());
-    }
-    let choice = choices(EnumerationParameter::EffectsAxialForce)
-        .iter()
-        .find(|(_, number)| *number == kind as i32);
-    Err(SceneError::NeedsGeometry {
-        choice: choice.map_or("", |(label, _)| *label),
-        file: file.name.clone(),
-    })
 }

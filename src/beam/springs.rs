@@ -22,7 +22,6 @@ use crate::beam::spring::{Basis, Spring};
 use crate::beam::statics::AtPlace;
 use crate::beam::tongues::Tongues;
 use crate::contact::friction::tangential_share;
-use crate::error::SceneError;
 use crate::math::simd::LANES;
 use crate::scene::{Beam, Scene, Tip};
 use crate::variables::{AxialForceKind, PusherKind};
@@ -44,66 +43,36 @@ pub struct Springs {
     pub armature: Option<Armature>,
 }
 
-/// Numbers of modes of both springs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Counts {
-    /// Of the moving one.
-    pub moving: usize,
-    /// Of that of the fixed contact.
-    pub fixed: usize,
-    /// Of the tongues against each other.
-    pub tongues: usize,
-}
+/// Numbers of modes: of the moving spring, of that of the fixed contact, and of the tongues against each other.
+pub type Counts = [usize; SPRINGS];
 
-impl Counts {
-    /// This number of each, where there are any; 0: as it is.
-    #[must_use]
-    pub fn or(self, asked: usize) -> Self {
-        let instead = |count: usize| if count == 0 || asked == 0 { count } else { asked };
-        Self {
-            moving: instead(self.moving),
-            fixed: instead(self.fixed),
-            tongues: instead(self.tongues),
-        }
+/// As many as there is room for, in the same ratio.
+fn within([moving, fixed, tongues]: Counts, room: usize) -> Counts {
+    let (others, sum) = (fixed + tongues, moving + fixed + tongues);
+    if sum <= room {
+        return [moving, fixed, tongues];
     }
-
-    /// As many as there is room for, in the same ratio.
-    #[must_use]
-    pub fn within_room(self, room: usize) -> Self {
-        let Self { moving, fixed, tongues } = self;
-        let (others, sum) = (fixed + tongues, moving + fixed + tongues);
-        if sum <= room {
-            return self;
-        }
-        let share = |count: usize, room: usize, sum: usize| room * count / sum / LANES * LANES;
-        let most = room - others.min(2 * LANES);
-        let moving = share(moving, room, sum).clamp(LANES.min(most), most);
-        let room = room - moving;
-        let fixed = match (fixed, tongues) {
-            (_, 0) => room,
-            (0, _) => 0,
-            _ => share(fixed, room, others).clamp(LANES, room - LANES),
-        };
-        Self {
-            moving,
-            fixed: fixed.min(room),
-            tongues: if tongues == 0 { 0 } else { room - fixed },
-        }
-    }
+    let share = |count: usize, room: usize, sum: usize| room * count / sum / LANES * LANES;
+    let most = room - others.min(2 * LANES);
+    let moving = share(moving, room, sum).clamp(LANES.min(most), most);
+    let room = room - moving;
+    let fixed = match (fixed, tongues) {
+        (_, 0) => room,
+        (0, _) => 0,
+        _ => share(fixed, room, others).clamp(LANES, room - LANES),
+    };
+    [moving, fixed.min(room), if tongues == 0 { 0 } else { room - fixed }]
 }
 
 impl Springs {
     /// Those of a scene.
-    ///
-    /// # Errors
-    /// A [`SceneError`] if a spring cannot have the axial force that it is to have.
-    pub fn new(scene: &Scene) -> Result<Self, SceneError> {
-        Ok(Self {
-            moving: Spring::new(scene)?,
-            fixed: FixedSpring::new(scene)?,
-            tongues: Tongues::new(scene)?,
-            armature: Armature::new(scene)?,
-        })
+    pub fn new(scene: &Scene) -> Self {
+        Self {
+            moving: Spring::new(scene),
+            fixed: FixedSpring::new(scene),
+            tongues: Tongues::new(scene),
+            armature: Armature::new(scene),
+        }
     }
 
     /// Static stiffness of both at the contact, N/m.
@@ -117,18 +86,19 @@ impl Springs {
 
     /// Deflection of the moving tip per force there, m/N, under an axial compression of the moving one (N).
     pub fn tip_compliance(&self, axial_force: f64) -> f64 {
-        let whole = self.moving.statics.tip_compliance(axial_force);
+        self.moving.statics.tip_compliance(axial_force) + self.tongue_compliance(axial_force)
+    }
+
+    /// What tongues add to that of the spring as a whole, m/N.
+    fn tongue_compliance(&self, axial_force: f64) -> f64 {
         let tongues = self.tongues.as_ref();
-        tongues.map_or(whole, |tongues| whole + tongues.compliance(axial_force))
+        tongues.map_or(0.0, |tongues| tongues.spring.statics.tip_compliance(axial_force))
     }
 
     /// Deflection of the moving spring at a parallel contact per load, under an axial compression of it (N).
     pub(crate) fn at_parallel(&self, axial_force: f64) -> AtPlace {
         let whole = self.moving.statics.at_parallel(axial_force);
-        let tongues = self
-            .tongues
-            .as_ref()
-            .map_or(0.0, |tongues| tongues.compliance(axial_force));
+        let tongues = self.tongue_compliance(axial_force);
         AtPlace {
             own: whole.own + tongues,
             across: whole.across - tongues,
@@ -136,20 +106,22 @@ impl Springs {
         }
     }
 
-    /// Numbers of modes for a tolerance in blows of the contact, and of others on the moving spring.
-    pub fn counts(&self, own: &Blow, others: &[Blow], tolerance: f64) -> Counts {
-        let count = |most: usize, blow| self.moving.count(blow, tolerance).max(most);
-        Counts {
-            moving: others.iter().fold(count(0, own), count),
-            fixed: self
-                .fixed
-                .as_ref()
-                .map_or(0, |fixed| fixed.spring.count(&fixed.blow(own), tolerance)),
-            tongues: self.tongues.as_ref().map_or(0, |tongues| {
-                let blows = [own].into_iter().chain(others);
-                blows.fold(0, |most, blow| tongues.count(blow, tolerance).max(most))
-            }),
-        }
+    /// Numbers of modes for a tolerance in blows of the contact, and of others on the moving spring; where `asked` is not 0 that
+    /// number of each that there is.
+    pub fn counts(&self, own: &Blow, others: &[Blow], tolerance: f64, asked: usize) -> Counts {
+        let most = |count: &dyn Fn(&Blow) -> usize| {
+            let blows = [own].into_iter().chain(others);
+            blows.fold(0, |most, blow| count(blow).max(most))
+        };
+        let fixed = self.fixed.as_ref();
+        let tongues = self.tongues.as_ref();
+        let needed = [
+            most(&|blow| self.moving.count(blow, tolerance)),
+            fixed.map_or(0, |fixed| fixed.spring.count(&fixed.blow(own), tolerance)),
+            tongues.map_or(0, |tongues| most(&|blow| tongues.spring.count(blow, tolerance))),
+        ];
+        let instead = |count: usize| if count == 0 || asked == 0 { count } else { asked };
+        within(needed.map(instead), self.room())
     }
 
     /// What modes left out do in a blow of the contact.
@@ -162,25 +134,22 @@ impl Springs {
     /// Frequencies of the highest mode of a spring given by modes and up to which a blow excites it, where that is higher,
     /// Hz; and whether it is the fixed contact's.
     pub fn missed(&self, blow: &Blow) -> Option<(f64, f64, bool)> {
-        let moving = self
-            .moving
-            .missed(blow)
-            .map(|(highest, reached)| (highest, reached, false));
-        moving.or_else(|| {
+        let fixed = || {
             let fixed = self.fixed.as_ref()?;
-            let (highest, reached) = fixed.spring.missed(&fixed.blow(blow))?;
-            Some((highest, reached, true))
-        })
+            Some((fixed.spring.missed(&fixed.blow(blow))?, true))
+        };
+        let missed = self.moving.missed(blow).map(|missed| (missed, false)).or_else(fixed);
+        missed.map(|((highest, reached), is_fixed)| (highest, reached, is_fixed))
     }
 
     /// The damped modes of both, frequency ascending, under an axial compression of the moving one (N); the rest of the basis is
     /// that of the moving one. `None` at or above the buckling load.
-    pub fn modes(&self, scene: &Scene, counts: Counts, axial_force: f64) -> Option<Basis> {
-        let mut basis = self.moving.modes(scene, counts.moving, axial_force)?;
+    pub fn modes(&self, scene: &Scene, [moving, fixed, tongues]: Counts, axial_force: f64) -> Option<Basis> {
+        let mut basis = self.moving.modes(scene, moving, axial_force)?;
         if self.fixed.is_some() || self.tongues.is_some() || self.armature.is_some() {
-            let fixed = self.fixed.as_ref().and_then(|fixed| fixed.modes(counts.fixed));
-            let tongues = self.tongues.as_ref();
-            let tongues = tongues.and_then(|tongues| tongues.modes(counts.tongues, axial_force));
+            let fixed = self.fixed.as_ref().and_then(|spring| spring.modes(fixed));
+            let own = self.tongues.as_ref();
+            let tongues = own.and_then(|own| own.modes(tongues, axial_force));
             // Modes of others have no part in the shapes of the moving spring.
             let size = basis.shapes.first().map_or(0, DVector::len);
             let shapes = basis.shapes.drain(..).chain(std::iter::repeat(DVector::zeros(size)));
@@ -213,13 +182,10 @@ impl Springs {
 
     /// Modes for the lowest frequency of all.
     pub fn many_modes(&self, scene: &Scene, axial_force: f64) -> Option<Vec<Mode>> {
-        let counts = Counts {
-            moving: FREQUENCY_MODES,
-            fixed: self.fixed.as_ref().map_or(0, |_| FREQUENCY_MODES),
-            tongues: self.tongues.as_ref().map_or(0, |_| FREQUENCY_MODES),
-        };
-        self.modes(scene, counts.within_room(self.room()), axial_force)
-            .map(|basis| basis.modes)
+        let others = [self.fixed.is_some(), self.tongues.is_some()];
+        let [fixed, tongues] = others.map(|has| if has { FREQUENCY_MODES } else { 0 });
+        let counts = within([FREQUENCY_MODES, fixed, tongues], self.room());
+        self.modes(scene, counts, axial_force).map(|basis| basis.modes)
     }
 }
 
@@ -232,14 +198,10 @@ pub struct FixedSpring {
 }
 
 impl FixedSpring {
-    /// That of a scene, if it has one; refused beside an axial force that follows the deflection.
-    fn new(scene: &Scene) -> Result<Option<Self>, SceneError> {
-        let Some(file) = &scene.fixed_spring else {
-            return Ok(None);
-        };
-        scene.keeps_axial_force("fixed.file", "no fixed.file")?;
+    /// That of a scene, if it has one.
+    fn new(scene: &Scene) -> Option<Self> {
         let mut own = Scene {
-            spring: Some(file.clone()),
+            spring: Some(scene.fixed_spring.clone()?),
             fixed_spring: None,
             tip: Tip {
                 mass: 0.0,
@@ -257,8 +219,8 @@ impl FixedSpring {
         own.effects.axial_force = AxialForceKind::None;
         own.effects.pusher = PusherKind::None;
         own.effects.parallel_contact = false;
-        let spring = Spring::new(&own)?;
-        Ok(Some(Self { scene: own, spring }))
+        let spring = Spring::new(&own);
+        Some(Self { scene: own, spring })
     }
 
     /// Deflection that opens the contact, per contact force with the share of friction that comes with it, m/N.

@@ -54,11 +54,11 @@ impl Term {
         let shapes = eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter());
         let term = |(&sigma, shape): (&f64, DVectorView<f64>)| Self {
             sigma,
-            tip: shape.dot(&space.tip),
-            slope: shape.dot(&space.tip_slope),
+            tip: shape.dot(&space.at.tip),
+            slope: shape.dot(&space.at.slope),
             load: shape.dot(&space.load),
-            pusher: shape.dot(&space.pusher),
-            parallel: shape.dot(&space.parallel),
+            pusher: shape.dot(&space.at.pusher),
+            parallel: shape.dot(&space.at.parallel),
         };
         shapes.map(term).collect()
     }
@@ -70,11 +70,8 @@ impl Statics {
         // The same numbers for every section: found once in a process, and nothing that would have to be freed.
         static TERMS_OF_ALL: OnceLock<[Term; TERMS]> = OnceLock::new();
         let terms = TERMS_OF_ALL.get_or_init(|| {
-            let mut terms = [Term::default(); TERMS];
-            for (entry, term) in terms.iter_mut().zip(Term::of(Space::new(TERMS))) {
-                *entry = term;
-            }
-            terms
+            let mut terms = Term::of(Space::new(TERMS)).into_iter();
+            std::array::from_fn(|_| terms.next().unwrap_or_default())
         });
         Self {
             section: *section,
@@ -132,7 +129,7 @@ impl Statics {
     }
 
     fn under_gravity(&self, axial_force: f64, place: impl Fn(&Term) -> f64) -> f64 {
-        let half_mass = self.section.mass_per_length * self.section.length / 2.0;
+        let (half_mass, _) = self.section.halves();
         let tip_mass = self.section.tip_mass;
         -self.sum(axial_force, |term| {
             place(term) * (half_mass * term.load + tip_mass * term.tip)

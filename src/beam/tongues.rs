@@ -7,9 +7,7 @@
 
 use std::sync::Arc;
 
-use crate::beam::mode_count::Blow;
 use crate::beam::spring::{Basis, Spring};
-use crate::error::SceneError;
 use crate::scene::Scene;
 use crate::scene::spring::{PointMass, Segment, Segments, Shape, SpringFile};
 use crate::variables::PusherKind;
@@ -19,50 +17,28 @@ use crate::variables::PusherKind;
 pub struct Tongues {
     /// The scene with both tongues, side by side from the fork on, in the place of the spring.
     scene: Scene,
-    spring: Spring,
+    /// Its static compliance is the deflection of a contact per force on it less the same force on the other.
+    pub(super) spring: Spring,
 }
 
 impl Tongues {
     /// Those of a scene, if its spring forks and both contacts are used.
-    ///
-    /// # Errors
-    /// [`SceneError::NoPlace`] for a spring given by modes that do not tell where the parallel contact is,
-    /// [`SceneError::NotTogether`] beside friction or an axial force that follows the deflection.
-    pub fn new(scene: &Scene) -> Result<Option<Self>, SceneError> {
-        if !scene.effects.parallel_contact {
-            return Ok(None);
-        }
-        check(scene)?;
-        let Some((name, segments)) = scene.spring.as_ref().and_then(|file| match &file.shape {
-            Shape::Segments(segments) => Some((&file.name, segments)),
-            Shape::Modes(_) => None,
-        }) else {
-            return Ok(None);
-        };
-        let Some(fork) = segments.fork_position else {
-            return Ok(None);
+    pub fn new(scene: &Scene) -> Option<Self> {
+        let file = scene.spring.as_ref().filter(|_| scene.effects.parallel_contact)?;
+        let Shape::Segments(segments) = &file.shape else {
+            return None;
         };
         let mut own = Scene {
             spring: Some(Arc::new(SpringFile {
-                name: name.clone(),
-                shape: Shape::Segments(beyond(segments, fork)),
+                name: file.name.clone(),
+                shape: Shape::Segments(beyond(segments, segments.fork_position?)),
             })),
             fixed_spring: None,
             ..scene.clone()
         };
         own.effects.pusher = PusherKind::None;
-        let spring = Spring::new(&own)?;
-        Ok(Some(Self { scene: own, spring }))
-    }
-
-    /// Deflection of a contact per force on it less the same force on the other, beyond that of the spring as a whole, m/N.
-    pub fn compliance(&self, axial_force: f64) -> f64 {
-        self.spring.statics.tip_compliance(axial_force)
-    }
-
-    /// Number of modes for a tolerance.
-    pub fn count(&self, blow: &Blow, tolerance: f64) -> usize {
-        self.spring.count(blow, tolerance)
+        let spring = Spring::new(&own);
+        Some(Self { scene: own, spring })
     }
 
     /// Their modes under an axial compression of both (N); `None` at or above the buckling load.
@@ -72,32 +48,6 @@ impl Tongues {
             (mode.parallel, mode.participation) = (-mode.tip, 0.0);
         }
         Some(basis)
-    }
-}
-
-/// Refuses what does not go with a parallel contact.
-fn check(scene: &Scene) -> Result<(), SceneError> {
-    const EFFECT: &str = "effects.parallelContact = true";
-    scene.keeps_axial_force(EFFECT, "effects.parallelContact = false")?;
-    if scene.rubs() {
-        return Err(SceneError::NotTogether {
-            name: "effects.parallelContact",
-            choice: "true",
-            other: "effects.friction = Coulomb",
-            instead: "effects.friction = None",
-            allowed: "false",
-        });
-    }
-    let Some(file) = &scene.spring else {
-        return Ok(());
-    };
-    match &file.shape {
-        Shape::Modes(modes) if modes.modes.iter().any(|mode| mode.parallel.is_none()) => Err(SceneError::NoPlace {
-            effect: EFFECT,
-            place: "parallel",
-            file: file.name.clone(),
-        }),
-        _ => Ok(()),
     }
 }
 

@@ -35,10 +35,7 @@ impl DensePropagator {
     }
 
     /// Computes the coefficients for a length (s) in place; the last of the nodes is the end of the step.
-    #[expect(
-        clippy::indexing_slicing,
-        reason = "every index runs over the fixed size of the arrays"
-    )]
+    #[expect(clippy::indexing_slicing, reason = "arrays of fixed size")]
     pub(crate) fn fill(&mut self, length: f64, closed_loop: &ClosedLoop, generator: &Generator, nodes: &Nodal<LONG>) {
         let count = closed_loop.oscillators.len();
         for (k, node) in nodes.iter().enumerate() {

@@ -1,6 +1,7 @@
 //! Eigenvectors of the beam with a linear contact, pair by pair of eigenvalues.
 
 use crate::closed_loop::eigenvalues;
+use crate::closed_loop::oscillator::Oscillator;
 use crate::closed_loop::problem::{Number, Pair, Problem, Root};
 
 /// Share of one mode in the motion of a pair. A function `f(l)` on a pair is given as `f_0 + f_1 l`, by `[f_0, f_1]`.
@@ -19,14 +20,8 @@ pub struct Component {
 /// A pair as a damped oscillator `x'' + c x' + nu x = 0` with its eigenvectors.
 #[derive(Clone, Debug)]
 pub struct EigenPair {
-    /// nu, the product of the zeros, 1/s2.
-    pub omega_squared: f64,
-    /// c, minus their sum, 1/s.
-    pub damping: f64,
-    /// The zeros if real and distinct, 1/s, each with its share of `force`.
-    pub apart: Option<[(f64, f64); 2]>,
-    /// Contact force per x and per x'.
-    pub force: [f64; 2],
+    /// The oscillator without loads: nu is the product of the zeros, c minus their sum.
+    pub oscillator: Oscillator,
     /// Mode by mode.
     pub components: Vec<Component>,
 }
@@ -62,10 +57,12 @@ impl Problem {
         let x = |[f0, f1]: [f64; 2]| (d * f0 - b * f1) / determinant;
         let x_rate = |[f0, f1]: [f64; 2]| (a * f1 - c * f0) / determinant;
         EigenPair {
-            omega_squared: mean * mean - square,
-            damping: -2.0 * mean,
-            apart: None,
-            force: [1.0, 0.0],
+            oscillator: Oscillator {
+                omega_squared: mean * mean - square,
+                damping: -2.0 * mean,
+                force: [1.0, 0.0],
+                ..Oscillator::default()
+            },
             components: vectors
                 .into_iter()
                 .map(|[q, left]| Component {
@@ -102,10 +99,13 @@ impl Problem {
         let s2 = (1.0 / product(&fast, &fast).sqrt()).copysign(product(&slow, &fast));
         let (n1, n2) = (n1 * s1, n2 * s2);
         EigenPair {
-            omega_squared: l1 * l2,
-            damping: -(l1 + l2),
-            apart: Some([(l1, s1), (l2, s2)]),
-            force: linear(s1, s2),
+            oscillator: Oscillator {
+                omega_squared: l1 * l2,
+                damping: -(l1 + l2),
+                apart: Some([(l1, s1), (l2, s2)]),
+                force: linear(s1, s2),
+                ..Oscillator::default()
+            },
             components: slow
                 .into_iter()
                 .zip(fast)

@@ -11,7 +11,7 @@ use crate::math::free_motion::FreeMotion;
 pub type Coordinates = [f64; 2 * MAX_MODES];
 
 /// A pair of eigenvalues as the oscillator `x'' + c x' + nu x = 0`.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Oscillator {
     /// nu, 1/s2.
     pub(crate) omega_squared: f64,

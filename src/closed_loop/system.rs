@@ -39,12 +39,9 @@ pub struct ClosedLoop {
     pub(crate) tip: Box<[Coordinates; 2]>,
     /// What the modes left out do, of the motion of each oscillator.
     pub(crate) resolution: Resolution,
-    /// Particular solution at its start, under unit base acceleration and under one that grows linearly with time.
-    acceleration: Box<Coordinates>,
-    jerk: Box<Coordinates>,
-    /// The same under a tip force.
-    force: Box<Coordinates>,
-    growth: Box<Coordinates>,
+    /// Particular solutions at their start: under unit base acceleration, under one that grows linearly with time, and the same
+    /// under a tip force.
+    particular: Box<[Coordinates; 4]>,
     /// Steady state under the generator with unit amplitude, per sine and per cosine of its phase; zero at a resonance
     /// without damping.
     steady: Box<[Coordinates; 2]>,
@@ -124,12 +121,9 @@ impl ClosedLoop {
         let oscillators: Vec<Oscillator> = pairs
             .iter()
             .map(|pair| Oscillator {
-                omega_squared: pair.omega_squared,
-                damping: pair.damping,
                 load: load(pair, |mode| -mode.participation),
                 push: load(pair, |mode| mode.tip),
-                apart: pair.apart,
-                force: pair.force,
+                ..pair.oscillator
             })
             .collect();
         let component = |pair: usize, mode: usize| pairs.get(pair % count)?.components.get(mode / 2);
@@ -151,10 +145,7 @@ impl ClosedLoop {
             oscillators,
             tip: zeroed_box(),
             resolution: Resolution::default(),
-            acceleration: zeroed_box(),
-            jerk: zeroed_box(),
-            force: zeroed_box(),
-            growth: zeroed_box(),
+            particular: zeroed_box(),
             steady: zeroed_box(),
             forces: [0.0; 5],
         };
@@ -162,17 +153,13 @@ impl ClosedLoop {
         closed_loop.set_tip(modes, resolution);
         let force = |motion: &Coordinates| closed_loop.force_of(motion);
         let [per_sine, per_cosine] = closed_loop.steady.each_ref().map(force);
-        closed_loop.forces = [
-            force(&closed_loop.acceleration),
-            force(&closed_loop.jerk),
-            force(&closed_loop.force),
-            force(&closed_loop.growth),
-            if resonant {
-                f64::INFINITY
-            } else {
-                per_sine.hypot(per_cosine)
-            },
-        ];
+        let [acceleration, jerk, push, growth] = closed_loop.particular.each_ref().map(force);
+        let generated = if resonant {
+            f64::INFINITY
+        } else {
+            per_sine.hypot(per_cosine)
+        };
+        closed_loop.forces = [acceleration, jerk, push, growth, generated];
         closed_loop.is_exact(modes).then_some(closed_loop)
     }
 
@@ -180,11 +167,11 @@ impl ClosedLoop {
     fn set_particular(&mut self, generator: &Generator) -> bool {
         let (mut resonant, count) = (false, self.oscillators.len());
         for (n, oscillator) in self.oscillators.iter().enumerate() {
-            let Oscillator { load, push, .. } = *oscillator;
-            set(&mut self.acceleration, n, count, oscillator.at_rest(load));
-            set(&mut self.jerk, n, count, oscillator.at_ramp(load));
-            set(&mut self.force, n, count, oscillator.at_rest(push));
-            set(&mut self.growth, n, count, oscillator.at_ramp(push));
+            let motions = [oscillator.load, oscillator.push].into_iter();
+            let motions = motions.flat_map(|load| [oscillator.at_rest(load), oscillator.at_ramp(load)]);
+            for (particular, motion) in self.particular.iter_mut().zip(motions) {
+                set(particular, n, count, motion);
+            }
             if let Some(frequency) = generator.frequency() {
                 let steady = oscillator.loaded(oscillator.steady(frequency));
                 resonant |= !steady.iter().all(|motion| motion.is_finite());
@@ -329,8 +316,9 @@ impl ClosedLoop {
         let (a, j) = (sign * steady.acceleration, sign * steady.jerk);
         let (f, g) = (sign * steady.force, sign * steady.growth);
         let count = 2 * self.oscillators.len();
-        let by_base = self.acceleration.iter().zip(&*self.jerk);
-        let by_tip = self.force.iter().zip(&*self.growth);
+        let [acceleration, jerk, force, growth] = &*self.particular;
+        let by_base = acceleration.iter().zip(jerk);
+        let by_tip = force.iter().zip(growth);
         let columns = by_base.zip(by_tip);
         for (motion, ((acceleration, jerk), (force, growth))) in motion.iter_mut().zip(columns).take(count) {
             *motion += a * acceleration + j * jerk + f * force + g * growth;

@@ -39,10 +39,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::beam::mode::Mode;
 use crate::contact::power::Power;
-use crate::error::SceneError;
-use crate::scene::spring::Shape;
-use crate::scene::{Contact, Scene, choices};
-use crate::variables::{ContactLawKind, EnumerationParameter};
+use crate::scene::{Contact, Scene};
 
 /// Constants of friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -205,49 +202,4 @@ fn stiffness_ratio(contact: &Contact) -> f64 {
         .map(|material| (2.0 - material.poisson_ratio) * 2.0 * (1.0 + material.poisson_ratio) / material.youngs_modulus)
         .sum();
     4.0 * normal / tangential
-}
-
-/// Refuses what friction cannot be combined with.
-///
-/// # Errors
-/// [`SceneError::NotTogether`] or [`SceneError::NoRotation`].
-pub(crate) fn check(scene: &Scene) -> Result<(), SceneError> {
-    if !scene.rubs() {
-        return Ok(());
-    }
-    let named = |parameter: EnumerationParameter| {
-        let chosen = scene.enumeration(parameter);
-        let choice = choices(parameter).iter().find(|(_, number)| *number == chosen);
-        choice.map_or("", |(label, _)| *label)
-    };
-    if !matches!(scene.effects.contact_law, ContactLawKind::Hertz | ContactLawKind::Rough) {
-        return Err(SceneError::NotTogether {
-            other: "effects.friction = Coulomb",
-            instead: "effects.friction = None",
-            name: "effects.contactLaw",
-            choice: named(EnumerationParameter::EffectsContactLaw),
-            allowed: "Hertz and Rough, whose tangential stiffness follows that along the normal",
-        });
-    }
-    if scene.effects.second_contact {
-        return Err(SceneError::NotTogether {
-            other: "effects.friction = Coulomb",
-            instead: "effects.friction = None",
-            name: "effects.secondContact",
-            choice: "true",
-            allowed: "false",
-        });
-    }
-    scene.keeps_axial_force("effects.friction = Coulomb", "effects.friction = None")?;
-    match &scene.spring {
-        Some(file) => match &file.shape {
-            Shape::Modes(modes) if modes.modes.iter().any(|mode| mode.rotation.is_none()) => {
-                Err(SceneError::NoRotation {
-                    file: file.name.clone(),
-                })
-            }
-            _ => Ok(()),
-        },
-        None => Ok(()),
-    }
 }

@@ -1,7 +1,7 @@
 //! The contact law of a scene.
 
 use crate::contact::linear::Linear;
-use crate::contact::power::Power;
+use crate::contact::power::{HERTZ, Power};
 use crate::contact::{Branch, Branches};
 use crate::math::nodal::Nodal;
 
@@ -35,7 +35,7 @@ impl Law {
     /// Whether the engagement of bodies that approach this fast (m/s), or faster, is their way alone.
     pub(crate) fn engages_by_way(&self, slowest: f64) -> bool {
         match self {
-            Self::Power(power) => power.engages_by_way(slowest),
+            Self::Power(power) => power.by_rate() * slowest >= -power.least,
             Self::Linear(linear) => linear.damping == 0.0,
         }
     }
@@ -108,21 +108,6 @@ impl Law {
         }
     }
 
-    /// As hard and as damped as the harder and the more damped of two of the same kind.
-    #[must_use]
-    pub fn hardest(&self, other: &Self) -> Self {
-        match (self, other) {
-            (Self::Power(a), Self::Power(b)) => Self::Power(Power {
-                coefficient: a.coefficient.max(b.coefficient),
-                exponent: a.exponent,
-                damping: a.damping.max(b.damping),
-                traces: a.traces.min(b.traces),
-                least: a.least.min(b.least),
-            }),
-            _ => *self,
-        }
-    }
-
     /// Whether the contact can bear tension.
     pub fn never_opens(&self) -> bool {
         matches!(self, Self::Linear(linear) if linear.bonded)
@@ -150,7 +135,8 @@ impl Law {
     /// Whether the force of its damper grows more steeply at first touch than a root of time, `d^(p-1)` with `1 < p < 3/2`: nearly
     /// a jump, which no polynomial follows.
     pub(crate) fn is_steep_at_touch(&self) -> bool {
-        self.power().is_some_and(Power::is_steep_at_touch)
+        let steep = |power: &Power| power.damping > 0.0 && power.exponent > 1.0 && power.exponent < HERTZ;
+        self.power().is_some_and(steep)
     }
 
     /// Static indentation beyond first touch under `force` (N), m.

@@ -18,14 +18,11 @@ pub struct Branch {
     pub damping: f64,
 }
 
-/// The same at several motions.
+/// The same at several motions, field by field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Branches<const S: usize> {
-    /// See [`Branch::force`].
     pub(crate) forces: Nodal<S>,
-    /// See [`Branch::stiffness`].
     pub(crate) stiffness: Nodal<S>,
-    /// See [`Branch::damping`].
     pub(crate) damping: Nodal<S>,
 }
 

@@ -2,47 +2,40 @@
 
 use std::f64::consts::TAU;
 
-use crate::error::SceneError;
 use crate::excitation::random::{Piece, Random};
 use crate::excitation::sine::Sine;
 use crate::excitation::sweep::LogSweep;
-use crate::excitation::waveform::{Accelerations, Rotation};
-use crate::excitation::window::Window;
+use crate::excitation::waveform::{Accelerations, Window};
 use crate::math::nodal::{Nodal, scaled};
 use crate::math::simd::Simd;
 use crate::scene::Scene;
 use crate::variables::ExcitationKind;
 
 /// Coefficients of a generator over a step, which depend on the step length only.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Turns<const S: usize> {
-    /// No generator.
-    None,
-    /// Rotation of a sine.
-    Sine(Rotation<S>),
-    /// Nodes, s from the start of the step.
-    Times(Nodal<S>),
+#[derive(Clone, Debug)]
+pub struct Turns<const S: usize> {
+    /// Of a sine: sines and cosines of the phase advance from the start of the step to its nodes.
+    rotation: [Nodal<S>; 2],
+    /// Of another waveform: nodes, s from the start of the step.
+    times: Nodal<S>,
 }
 
 impl<const S: usize> Turns<S> {
-    /// Allocates for the generator.
-    pub fn room(generator: &Generator) -> Self {
-        match generator {
-            Generator::None => Self::None,
-            Generator::Sine(_) => Self::Sine(Rotation::ZERO),
-            Generator::LogSweep(_) | Generator::Random(_) => Self::Times([0.0; S]),
-        }
-    }
+    /// Room for them.
+    pub const NONE: Self = Self {
+        rotation: [[0.0; S]; 2],
+        times: [0.0; S],
+    };
 
     /// Computes the coefficients for a step of `length` seconds with these nodes in place.
     pub fn fill(&mut self, generator: &Generator, length: f64, nodes: &Nodal<S>) {
-        match (generator, self) {
-            (Generator::Sine(sine), Self::Sine(rotation)) => {
+        match generator {
+            Generator::Sine(sine) => {
                 let angles = scaled(nodes, TAU * sine.frequency * length);
-                (rotation.sin, rotation.cos) = (angles.map(f64::sin), angles.map(f64::cos));
+                self.rotation = [angles.map(f64::sin), angles.map(f64::cos)];
             }
-            (Generator::LogSweep(_) | Generator::Random(_), Self::Times(times)) => *times = scaled(nodes, length),
-            (Generator::None | Generator::Sine(_) | Generator::LogSweep(_) | Generator::Random(_), _) => {}
+            Generator::LogSweep(_) | Generator::Random(_) => self.times = scaled(nodes, length),
+            Generator::None => {}
         }
     }
 }
@@ -62,30 +55,18 @@ pub enum Generator {
 
 impl Generator {
     /// The generator of the scene.
-    ///
-    /// # Errors
-    /// [`SceneError::NoBand`] for a random acceleration without a band of frequencies.
-    pub fn new(scene: &Scene) -> Result<Self, SceneError> {
+    pub fn new(scene: &Scene) -> Self {
         let excitation = &scene.excitation;
-        let shakes = match scene.effects.excitation {
-            ExcitationKind::None => false,
-            ExcitationKind::Random => excitation.spectral_density > 0.0,
-            ExcitationKind::Sine | ExcitationKind::HalfSine | ExcitationKind::LogSweep => excitation.amplitude != 0.0,
-        };
-        Ok(match scene.effects.excitation {
-            ExcitationKind::Random if excitation.end_frequency <= excitation.frequency => {
-                return Err(SceneError::NoBand {
-                    frequency: excitation.frequency,
-                    end_frequency: excitation.end_frequency,
-                });
+        match scene.effects.excitation {
+            ExcitationKind::Random if excitation.spectral_density > 0.0 => {
+                Self::Random(Box::new(Random::new(excitation)))
             }
-            _ if !shakes => Self::None,
-            ExcitationKind::None => Self::None,
+            ExcitationKind::Random | ExcitationKind::None => Self::None,
+            _ if excitation.amplitude == 0.0 => Self::None,
             ExcitationKind::Sine => Self::Sine(Sine::new(excitation)),
             ExcitationKind::HalfSine => Self::Sine(Sine::half(excitation)),
             ExcitationKind::LogSweep => Self::LogSweep(LogSweep::new(excitation)),
-            ExcitationKind::Random => Self::Random(Box::new(Random::new(excitation))),
-        })
+        }
     }
 
     /// Acceleration at an instant (s) within the window, m/s2.
@@ -150,18 +131,17 @@ impl Generator {
         piece: &mut Piece,
     ) -> Accelerations<S> {
         let mut nodes = [0.0; S];
-        let start = match (self, turns) {
-            (Self::None, _) => 0.0,
-            (Self::Sine(_), Turns::Sine(rotation)) => {
+        let start = match self {
+            Self::None => 0.0,
+            Self::Sine(_) => {
                 let (sin, cos) = self.phasor(time);
-                for ((node, to_sin), to_cos) in nodes.iter_mut().zip(&rotation.sin).zip(&rotation.cos) {
+                let [sines, cosines] = &turns.rotation;
+                for ((node, to_sin), to_cos) in nodes.iter_mut().zip(sines).zip(cosines) {
                     *node = sin * to_cos + cos * to_sin;
                 }
                 sin
             }
-            (Self::Sine(_) | Self::LogSweep(_) | Self::Random(_), _) => {
-                self.over_step_out_of_line(simd, time, turns, piece, &mut nodes)
-            }
+            Self::LogSweep(_) | Self::Random(_) => self.over_step_out_of_line(simd, time, turns, piece, &mut nodes),
         };
         Accelerations { start, nodes }
     }
@@ -177,12 +157,10 @@ impl Generator {
         piece: &mut Piece,
         nodes: &mut Nodal<S>,
     ) -> f64 {
-        let found = match (self, turns) {
-            (Self::LogSweep(sweep), Turns::Times(times)) if self.is_active(time) => sweep.over_step(time, times),
-            (Self::Random(random), Turns::Times(times)) if self.is_active(time) => {
-                random.over_step(simd, time, times, piece)
-            }
-            (Self::None | Self::Sine(_) | Self::LogSweep(_) | Self::Random(_), _) => return 0.0,
+        let found = match self {
+            Self::LogSweep(sweep) if self.is_active(time) => sweep.over_step(time, &turns.times),
+            Self::Random(random) if self.is_active(time) => random.over_step(simd, time, &turns.times, piece),
+            Self::None | Self::Sine(_) | Self::LogSweep(_) | Self::Random(_) => return 0.0,
         };
         *nodes = found.nodes;
         found.start
@@ -224,9 +202,9 @@ mod tests {
     #[test]
     fn nodes_agree_with_direct_evaluation() {
         fn check<const S: usize>(scene: &Scene, time: f64, length: f64) {
-            let generator = Generator::new(scene).unwrap();
+            let generator = Generator::new(scene);
             let nodes = Collocation::<S>::default().nodes;
-            let mut turns = Turns::<S>::room(&generator);
+            let mut turns = Turns::<S>::NONE;
             let e = &scene.excitation;
             let highest = match scene.effects.excitation {
                 ExcitationKind::HalfSine => 0.5 / e.duration,

@@ -1,6 +1,6 @@
 //! Base acceleration: generated inside the component, and from the inputs ([`drive`]).
 //!
-//! One file per waveform: [`sine`], also the half sine; [`sweep`]; [`random`]. A generator acts within its [`window`].
+//! One file per waveform: [`sine`], also the half sine; [`sweep`]; [`random`]. A generator acts within its [`Window`](waveform::Window).
 
 pub mod drive;
 pub mod generator;
@@ -8,4 +8,3 @@ pub mod random;
 pub mod sine;
 pub mod sweep;
 pub mod waveform;
-pub mod window;

@@ -11,8 +11,7 @@ use std::f64::consts::TAU;
 
 use bytemuck::zeroed_box;
 
-use crate::excitation::waveform::Accelerations;
-use crate::excitation::window::Window;
+use crate::excitation::waveform::{Accelerations, Window};
 use crate::math::nodal::{Nodal, add, add_products};
 use crate::math::simd::{Arithmetic, Separate, Simd, compiled_for};
 use crate::scene::Excitation;
@@ -116,11 +115,9 @@ impl Random {
             for (k, (factors, value)) in factors.iter_mut().zip(values).enumerate() {
                 let sign = if k % 4 < 2 { amplitude } else { -amplitude };
                 let factor = if k == 0 { sign } else { 2.0 * sign };
-                factors
-                    .iter_mut()
-                    .skip(j)
-                    .take(1)
-                    .for_each(|entry| *entry = factor * value);
+                if let Some(entry) = factors.get_mut(j) {
+                    *entry = factor * value;
+                }
             }
         }
         for (high, low) in highs.iter_mut().zip(lows) {

@@ -2,8 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::excitation::waveform::{displacement_limit, limited, turned};
-use crate::excitation::window::Window;
+use crate::excitation::waveform::{Window, displacement_limit, limited, turned};
 use crate::scene::Excitation;
 
 /// `A sin(2 pi f tau + phase)`, `tau = t - t0`, within its window.

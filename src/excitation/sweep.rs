@@ -5,8 +5,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::excitation::waveform::{Accelerations, displacement_limit, limited, turned};
-use crate::excitation::window::Window;
+use crate::excitation::waveform::{Accelerations, Window, displacement_limit, limited, turned};
 use crate::math::nodal::Nodal;
 use crate::scene::Excitation;
 

@@ -1,4 +1,4 @@
-//! Common to the waveforms: values over a step, accurate phases, and the displacement limit.
+//! Common to the waveforms: values over a step, the interval in which they act, accurate phases, and the displacement limit.
 
 use std::f64::consts::TAU;
 
@@ -14,21 +14,41 @@ pub struct Accelerations<const S: usize> {
     pub nodes: Nodal<S>,
 }
 
-/// Sines and cosines of the phase advance from the start of a step to its nodes.
+/// The interval of time in which a generator acts, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rotation<const S: usize> {
-    /// Sines.
-    pub(crate) sin: Nodal<S>,
-    /// Cosines.
-    pub(crate) cos: Nodal<S>,
+pub struct Window {
+    /// t0.
+    pub start: f64,
+    /// Infinite if there is no end.
+    pub end: f64,
 }
 
-impl<const S: usize> Rotation<S> {
-    /// Not computed yet.
-    pub(crate) const ZERO: Self = Self {
-        sin: [0.0; S],
-        cos: [0.0; S],
-    };
+impl From<f64> for Window {
+    /// From the instant (s) on, without an end.
+    fn from(start: f64) -> Self {
+        Self {
+            start,
+            end: f64::INFINITY,
+        }
+    }
+}
+
+impl Window {
+    /// Whether it is open at `time` (s) and just after it.
+    pub fn is_open_after(&self, time: f64) -> bool {
+        self.start <= time && time < self.end
+    }
+
+    /// Whether it is open at `time` (s) and just before it.
+    pub fn is_open_before(&self, time: f64) -> bool {
+        self.start < time && time <= self.end
+    }
+
+    /// The next instant after `time` (s) at which it opens or closes.
+    pub fn next_end(&self, time: f64) -> Option<f64> {
+        let next = if self.start > time { self.start } else { self.end };
+        (next > time && next < f64::INFINITY).then_some(next)
+    }
 }
 
 /// Phase advance at `frequency` (Hz) over a time (s) in turns, without whole ones, which are removed before rounding:

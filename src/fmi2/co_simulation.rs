@@ -24,15 +24,13 @@ pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
     order: *const fmi2Integer,
     value: *const fmi2Real,
 ) -> fmi2Status {
-    let body = |instance: &mut Instance| {
-        // SAFETY: the contract of the module.
-        let (references, orders) = unsafe { (array(vr, nvr, "vr")?, array(order, nvr, "order")?) };
-        // SAFETY: the contract of the module.
-        let values = unsafe { array(value, nvr, "value") }?;
-        instance.set_input_derivatives(references, orders, values)
-    };
     // SAFETY: the contract of the module.
-    unsafe { call(c, states::SET_REAL_INPUT_DERIVATIVES, body) }
+    unsafe {
+        call(c, states::SET_REAL_INPUT_DERIVATIVES, |instance| {
+            let (references, orders) = (array(vr, nvr, "vr")?, array(order, nvr, "order")?);
+            instance.set_input_derivatives(references, orders, array(value, nvr, "value")?)
+        })
+    }
 }
 
 /// Reads first derivatives of outputs at the communication point, as limits from the left; 0 before the first step, and
@@ -45,18 +43,17 @@ pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
     order: *const fmi2Integer,
     value: *mut fmi2Real,
 ) -> fmi2Status {
-    let body = |instance: &mut Instance| {
-        // SAFETY: the contract of the module.
-        let (references, orders) = unsafe { (array(vr, nvr, "vr")?, array(order, nvr, "order")?) };
-        // SAFETY: the contract of the module.
-        let values = unsafe { array_mut(value, nvr, "value") }?;
-        for ((&reference, &order), value) in references.iter().zip(orders).zip(values) {
-            value.write(instance.output_derivative(reference, order)?);
-        }
-        Ok(())
-    };
     // SAFETY: the contract of the module.
-    unsafe { call(c, states::GET_REAL_OUTPUT_DERIVATIVES, body) }
+    unsafe {
+        call(c, states::GET_REAL_OUTPUT_DERIVATIVES, |instance| {
+            let (references, orders) = (array(vr, nvr, "vr")?, array(order, nvr, "order")?);
+            let values = array_mut(value, nvr, "value")?;
+            for ((&reference, &order), value) in references.iter().zip(orders).zip(values) {
+                value.write(instance.output_derivative(reference, order)?);
+            }
+            Ok(())
+        })
+    }
 }
 
 /// Advances to the end of one communication step. `currentCommunicationPoint` must equal the time of the instance up to
@@ -73,7 +70,7 @@ pub unsafe extern "C" fn fmi2DoStep(
 ) -> fmi2Status {
     let mut finished = (None, std::ptr::null_mut());
     let body = |instance: &mut Instance| {
-        finished = instance.step_finished();
+        finished = instance.step_finished;
         instance.step(currentCommunicationPoint, communicationStepSize)
     };
     // SAFETY: the contract of the module.
@@ -90,9 +87,8 @@ pub unsafe extern "C" fn fmi2DoStep(
 /// Always an error: a step is complete when `fmi2DoStep` returns.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2CancelStep(c: fmi2Component) -> fmi2Status {
-    let body = |_: &mut Instance| Ok(());
     // SAFETY: the contract of the module.
-    unsafe { call(c, states::CANCEL_STEP, body) }
+    unsafe { call(c, states::CANCEL_STEP, |_| Ok(())) }
 }
 
 /// Returns a status value, or `fmi2Discard` if there is none.
@@ -106,14 +102,14 @@ unsafe fn status<T>(
     value: *mut T,
     answer: impl Fn(&Instance) -> Option<T>,
 ) -> fmi2Status {
-    let body = |instance: &mut Instance| {
-        // SAFETY: passed on to the caller.
-        let place = unsafe { place(value, "value") }?;
-        place.write(answer(instance).ok_or(Failure::StatusKind(kind))?);
-        Ok(())
-    };
     // SAFETY: passed on to the caller.
-    unsafe { call(c, function, body) }
+    unsafe {
+        call(c, function, |instance| {
+            let place = place(value, "value")?;
+            place.write(answer(instance).ok_or(Failure::StatusKind(kind))?);
+            Ok(())
+        })
+    }
 }
 
 /// Always `fmi2Discard`: no step is ever pending.
@@ -126,7 +122,7 @@ pub unsafe extern "C" fn fmi2GetStatus(c: fmi2Component, s: fmi2StatusKind, valu
 /// The last successful time, also after a failed step.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetRealStatus(c: fmi2Component, s: fmi2StatusKind, value: *mut fmi2Real) -> fmi2Status {
-    let answer = |instance: &Instance| (s == fmi2LastSuccessfulTime).then(|| instance.time());
+    let answer = |instance: &Instance| (s == fmi2LastSuccessfulTime).then_some(instance.time);
     // SAFETY: the contract of the module.
     unsafe { status(c, states::GET_REAL_STATUS, s, value, answer) }
 }

@@ -15,7 +15,7 @@ use super::failure::Failure;
 use super::instance::Instance;
 use super::logger::Logger;
 use super::resources::{self, Identity};
-use super::states;
+use super::states::{self, State};
 use super::types::{
     fmi2Boolean, fmi2CallbackFunctions, fmi2CoSimulation, fmi2Component, fmi2Error, fmi2False, fmi2Real, fmi2Status,
     fmi2String, fmi2Type,
@@ -46,18 +46,14 @@ pub unsafe extern "C" fn fmi2SetDebugLogging(
     nCategories: size_t,
     categories: *const fmi2String,
 ) -> fmi2Status {
-    let body = |instance: &mut Instance| {
-        // SAFETY: the contract of the module.
-        let categories = unsafe { array(categories, nCategories, "categories") }?;
-        let categories = categories
-            .iter()
-            // SAFETY: the contract of the module.
-            .map(|category| unsafe { text(*category, "categories") })
-            .collect::<Result<Vec<_>, _>>()?;
-        instance.choose_logging(loggingOn != fmi2False, &categories)
-    };
     // SAFETY: the contract of the module.
-    unsafe { call(c, states::SET_DEBUG_LOGGING, body) }
+    unsafe {
+        call(c, states::SET_DEBUG_LOGGING, |instance| {
+            let categories = array(categories, nCategories, "categories")?.iter();
+            let categories = categories.map(|category| text(*category, "categories"));
+            instance.choose_logging(loggingOn != fmi2False, &categories.collect::<Result<Vec<_>, _>>()?)
+        })
+    }
 }
 
 /// Creates an instance. Returns null if the name is missing, the type is not co-simulation, or the GUID belongs to
@@ -79,9 +75,13 @@ pub unsafe extern "C" fn fmi2Instantiate(
         return ptr::null_mut();
     };
     // SAFETY: the contract of the module.
-    let (name, guid) = unsafe { (text(instanceName, "instanceName"), text(fmuGUID, "fmuGUID")) };
-    // SAFETY: the contract of the module.
-    let resources = unsafe { text(fmuResourceLocation, "fmuResourceLocation") };
+    let [name, guid, resources] = unsafe {
+        [
+            text(instanceName, "instanceName"),
+            text(fmuGUID, "fmuGUID"),
+            text(fmuResourceLocation, "fmuResourceLocation"),
+        ]
+    };
     let resources = resources.ok().and_then(|text| resources::folder(text.to_str().ok()?));
     let name = name.ok().filter(|name| !name.is_empty());
     let logger = |on| Logger::new(functions, name.unwrap_or(c"RelayContact"), on);
@@ -158,7 +158,7 @@ pub unsafe extern "C" fn fmi2SetupExperiment(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2EnterInitializationMode(c: fmi2Component) -> fmi2Status {
     let body = |instance: &mut Instance| {
-        instance.enter_initialization_mode();
+        instance.state = State::InitializationMode;
         Ok(())
     };
     // SAFETY: the contract of the module.
@@ -176,7 +176,7 @@ pub unsafe extern "C" fn fmi2ExitInitializationMode(c: fmi2Component) -> fmi2Sta
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2Terminate(c: fmi2Component) -> fmi2Status {
     let body = |instance: &mut Instance| {
-        instance.terminate();
+        instance.state = State::Terminated;
         Ok(())
     };
     // SAFETY: the contract of the module.

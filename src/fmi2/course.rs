@@ -9,6 +9,7 @@ use libc::size_t;
 use super::entry::{array, array_mut, call};
 use super::failure::Failure;
 use super::instance::Instance;
+use super::instance::variables::Value;
 use super::states;
 use super::types::{fmi2Component, fmi2Real, fmi2Status, fmi2ValueReference, fmi2Warning};
 
@@ -31,21 +32,20 @@ pub unsafe extern "C" fn relayContactFollow(
     values: *mut fmi2Real,
 ) -> fmi2Status {
     let size = |rows: size_t, columns: size_t, name| rows.checked_mul(columns).ok_or(Failure::Pointer(name));
-    let body = |instance: &mut Instance| {
-        let (given, taken) = (
-            size(nTimes, nInputs, "courses")?,
-            size(nTimes.saturating_sub(1), nOutputs, "values")?,
-        );
-        // SAFETY: the contract of the module.
-        let (times, inputs) = unsafe { (array(times, nTimes, "times")?, array(inputs, nInputs, "inputs")?) };
-        // SAFETY: the contract of the module.
-        let (courses, outputs) = unsafe { (array(courses, given, "courses")?, array(outputs, nOutputs, "outputs")?) };
-        // SAFETY: the contract of the module.
-        let values = unsafe { array_mut(values, taken, "values") }?;
-        follow(instance, times, (inputs, courses), (outputs, values))
-    };
     // SAFETY: the contract of the module.
-    unsafe { call(c, states::DO_STEP, body) }
+    unsafe {
+        call(c, states::DO_STEP, |instance| {
+            let given = size(nTimes, nInputs, "courses")?;
+            let taken = size(nTimes.saturating_sub(1), nOutputs, "values")?;
+            let times = array(times, nTimes, "times")?;
+            let (inputs, courses) = (array(inputs, nInputs, "inputs")?, array(courses, given, "courses")?);
+            let (outputs, values) = (
+                array(outputs, nOutputs, "outputs")?,
+                array_mut(values, taken, "values")?,
+            );
+            follow(instance, times, (inputs, courses), (outputs, values))
+        })
+    }
 }
 
 /// Does the steps; inputs and outputs come with their rows.
@@ -74,24 +74,18 @@ fn follow(
             for ((rate, begin), end) in rates.iter_mut().zip(begin).zip(end) {
                 *rate = (end - begin) / length;
             }
-            instance.set_reals(inputs, begin)?;
+            instance.set(inputs, begin.iter().map(|value| Ok(Value::Real(*value))))?;
             instance.set_input_derivatives(inputs, &orders, &rates)?;
         }
-        done(instance, |instance| instance.step(now, length))?;
+        if let Err(failure) = instance.step(now, length) {
+            if failure.status() != fmi2Warning {
+                return Err(failure);
+            }
+            instance.fail(states::DO_STEP, &failure);
+        }
         for (&output, value) in outputs.iter().zip(values.by_ref()) {
             value.write(instance.number(output)?);
         }
     }
     Ok(())
-}
-
-/// A step; what is only a warning is logged.
-fn done(instance: &mut Instance, step: impl FnOnce(&mut Instance) -> Result<(), Failure>) -> Result<(), Failure> {
-    match step(instance) {
-        Err(failure) if failure.status() == fmi2Warning => {
-            instance.fail(states::DO_STEP, &failure);
-            Ok(())
-        }
-        result => result,
-    }
 }

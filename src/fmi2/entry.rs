@@ -81,15 +81,16 @@ pub(super) unsafe fn call(
     // SAFETY: the guard held IDLE, so the memory came from `hand_out`; it holds BUSY now, so nobody else has a reference.
     let (guard, instance) = unsafe { (&(*handle).guard, &mut *(*handle).instance.get()) };
     let status = with_default(|| {
-        let result = if function.allowed.contains(&instance.state()) {
+        let result = if function.allowed.contains(&instance.state) {
             catch_unwind(AssertUnwindSafe(|| body(instance))).unwrap_or_else(|panic| {
-                instance.abandon();
+                // It may be inconsistent.
+                instance.simulation = None;
                 Err(Failure::Panic(panic_text(panic.as_ref())))
             })
         } else {
             Err(Failure::CallOrder {
                 function,
-                state: instance.state(),
+                state: instance.state,
             })
         };
         match result {
@@ -189,7 +190,7 @@ mod tests {
             .unwrap(),
         );
         let state = |instance: &mut Instance, expected| {
-            assert_eq!(instance.state(), expected);
+            assert_eq!(instance.state, expected);
             Ok(())
         };
         // SAFETY: the component was handed out above and is freed at the end.

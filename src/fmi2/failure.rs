@@ -126,25 +126,8 @@ impl Failure {
             | Self::Remarks(_)
             | Self::Category(_) => fmi2Warning,
             Self::Value(_) | Self::StatusKind(_) => fmi2Discard,
-            Self::CallOrder { .. }
-            | Self::Pointer(_)
-            | Self::UnknownReference { .. }
-            | Self::NotSettable { .. }
-            | Self::NotComputed { .. }
-            | Self::Preview(_)
-            | Self::Initialisation(_)
-            | Self::Step(_)
-            | Self::Course(_)
-            | Self::Argument { .. }
-            | Self::Order { .. }
-            | Self::NoDerivative { .. }
-            | Self::Unsupported(_)
-            | Self::ForeignState(_)
-            | Self::Serialized(_)
-            | Self::Size { .. }
-            | Self::Memory(_)
-            // Not fmi2Fatal: instances share nothing, and a reset rebuilds this one.
-            | Self::Panic(_) => fmi2Error,
+            // Not fmi2Fatal: instances share nothing, and a reset rebuilds this one, also after a panic.
+            _ => fmi2Error,
         }
     }
 

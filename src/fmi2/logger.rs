@@ -32,23 +32,12 @@ impl Category {
             Solver => c"logSolver",
         }
     }
-
-    /// Messages of a status, shown without debug logging.
-    fn of_status(status: fmi2Status) -> Self {
-        if status >= fmi2Error {
-            StatusError
-        } else {
-            StatusWarning
-        }
-    }
 }
 
-/// The importer's log callback, and the categories it has enabled.
-/// Errors and warnings are shown from the start, independent of `loggingOn`: that flag is for debug messages, and a
-/// call that fails must say why (by the standard, the reason for fmi2Discard is logged with `loggingOn` only, which
-/// importers leave off by default). With `loggingOn` events are shown too, but not the solver, which logs every step:
-/// some importers always set the flag. `fmi2SetDebugLogging` with named categories shows only these (`loggingOn`
-/// true), or hides these (false); without categories, true shows all and false hides the debug messages.
+/// The importer's log callback, and the categories that it shows ([`fmi2SetDebugLogging`](super::fmi2SetDebugLogging)).
+/// Errors and warnings are shown from the start, independent of `loggingOn`: a call that fails must say why (by the standard, the
+/// reason for fmi2Discard is logged with `loggingOn` only, which importers leave off by default). With `loggingOn` events are shown
+/// too, but not the solver, which logs every step: some importers always set the flag.
 #[derive(Debug)]
 pub(super) struct Logger {
     callback: fmi2CallbackLogger,
@@ -77,10 +66,7 @@ impl Logger {
         self.shown = self.initially;
     }
 
-    /// Selects what is shown. An unknown category changes nothing.
-    ///
-    /// # Errors
-    /// The first category that is not declared.
+    /// Selects what is shown; the first category that is not declared changes nothing, and is returned.
     pub(super) fn choose<'a>(&mut self, on: bool, categories: &[&'a CStr]) -> Result<(), &'a CStr> {
         let known = Category::ALL.map(Category::name);
         if let Some(unknown) = categories.iter().find(|category| !known.contains(category)) {
@@ -105,18 +91,18 @@ impl Logger {
 
     /// Whether messages of a category are shown.
     fn shows(&self, category: Category) -> bool {
-        let [errors, warnings, events, solver] = self.shown;
-        match category {
-            StatusError => errors,
-            StatusWarning => warnings,
-            Events => events,
-            Solver => solver,
-        }
+        let mut all = Category::ALL.iter().zip(self.shown);
+        all.any(|(known, shown)| *known == category && shown)
     }
 
     /// Passes the message of a failed call to the importer.
     pub(super) fn log_status(&self, status: fmi2Status, message: &str) {
-        self.log(Category::of_status(status), status, message);
+        let category = if status >= fmi2Error {
+            StatusError
+        } else {
+            StatusWarning
+        };
+        self.log(category, status, message);
     }
 
     /// Passes a message to the importer.

@@ -27,19 +27,20 @@ pub(super) fn model(logger: &Logger, model: &Model) {
     logger.log(Category::Solver, fmi2OK, &text);
 }
 
-/// A communication step, with the counters `before` it.
-#[cold]
-pub(super) fn step(logger: &Logger, simulation: &Simulation, before: Effort) {
-    events(logger, simulation);
-    before.report(logger, simulation);
+/// Steps, rejected steps and iterations so far.
+pub(super) fn effort(simulation: &Simulation) -> [u64; 3] {
+    let state = simulation.state();
+    [state.steps, state.rejected_steps, state.iterations]
 }
 
-/// Its openings and closings.
-fn events(logger: &Logger, simulation: &Simulation) {
+/// A communication step: its openings and closings, and the increase of the effort since `before`.
+#[cold]
+pub(super) fn step(logger: &Logger, simulation: &Simulation, before: [u64; 3]) {
     let (events, left_out) = simulation.events();
     for event in events {
         let verb = if event.closes { "closes" } else { "opens" };
-        let which = simulation.model().name_of(event.link);
+        let link = simulation.model().links.get(event.link);
+        let which = link.map_or("", |link| link.name);
         let text = format!("fmi2DoStep: the {which} {verb} at {} s", number(event.time));
         logger.log(Category::Events, fmi2OK, &text);
     }
@@ -47,36 +48,13 @@ fn events(logger: &Logger, simulation: &Simulation) {
         let text = format!("fmi2DoStep: {left_out} more openings and closings in this step");
         logger.log(Category::Events, fmi2OK, &text);
     }
-}
-
-/// Counters of the integration.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Effort {
-    steps: u64,
-    rejected: u64,
-    iterations: u64,
-}
-
-impl Effort {
-    pub(super) fn of(simulation: &Simulation) -> Self {
-        let state = simulation.state();
-        Self {
-            steps: state.steps,
-            rejected: state.rejected_steps,
-            iterations: state.iterations,
-        }
-    }
-
-    /// Their increase since then.
-    fn report(self, logger: &Logger, simulation: &Simulation) {
-        let now = Self::of(simulation);
-        let text = format!(
-            "fmi2DoStep: to {} s: {} steps, {} rejected, {} iterations",
-            number(simulation.time()),
-            now.steps.saturating_sub(self.steps),
-            now.rejected.saturating_sub(self.rejected),
-            now.iterations.saturating_sub(self.iterations)
-        );
-        logger.log(Category::Solver, fmi2OK, &text);
-    }
+    let ([steps, rejected, iterations], time) = (effort(simulation), number(simulation.time()));
+    let [steps_before, rejected_before, iterations_before] = before;
+    let text = format!(
+        "fmi2DoStep: to {time} s: {} steps, {} rejected, {} iterations",
+        steps.saturating_sub(steps_before),
+        rejected.saturating_sub(rejected_before),
+        iterations.saturating_sub(iterations_before)
+    );
+    logger.log(Category::Solver, fmi2OK, &text);
 }

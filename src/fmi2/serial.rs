@@ -16,7 +16,7 @@ use crate::variables::GUID;
 const MAGIC: &[u8] = b"relay\0st";
 
 /// Incremented whenever the contents change.
-const VERSION: u32 = 5;
+const VERSION: u32 = 6;
 
 /// Largest number of bytes: no state of a spring with as many entries as it may have takes a quarter of it.
 const LARGEST: usize = 1 << 20;

@@ -48,76 +48,50 @@ pub struct Function {
     pub allowed: &'static [State],
 }
 
-const fn function(name: &'static str, allowed: &'static [State]) -> Function {
-    Function { name, allowed }
-}
-
 const ANY: &[State] = State::ALL;
 const READABLE: &[State] = ANY;
 const SETTABLE: &[State] = &[Instantiated, InitializationMode, StepComplete];
 const STATUS: &[State] = &[StepComplete, Terminated, Error];
 
-pub(super) const SET_DEBUG_LOGGING: Function = function("fmi2SetDebugLogging", ANY);
-pub(super) const SETUP_EXPERIMENT: Function = function("fmi2SetupExperiment", &[Instantiated]);
-pub(super) const ENTER_INITIALIZATION_MODE: Function = function("fmi2EnterInitializationMode", &[Instantiated]);
-pub(super) const EXIT_INITIALIZATION_MODE: Function = function("fmi2ExitInitializationMode", &[InitializationMode]);
-pub(super) const TERMINATE: Function = function("fmi2Terminate", &[StepComplete]);
-pub(super) const RESET: Function = function("fmi2Reset", ANY);
-pub(super) const GET_REAL: Function = function("fmi2GetReal", READABLE);
-pub(super) const GET_INTEGER: Function = function("fmi2GetInteger", READABLE);
-pub(super) const GET_BOOLEAN: Function = function("fmi2GetBoolean", READABLE);
-pub(super) const GET_STRING: Function = function("fmi2GetString", READABLE);
-pub(super) const SET_REAL: Function = function("fmi2SetReal", SETTABLE);
-pub(super) const SET_INTEGER: Function = function("fmi2SetInteger", SETTABLE);
-pub(super) const SET_BOOLEAN: Function = function("fmi2SetBoolean", SETTABLE);
-pub(super) const SET_STRING: Function = function("fmi2SetString", SETTABLE);
-pub(super) const GET_FMU_STATE: Function = function("fmi2GetFMUstate", ANY);
-pub(super) const SET_FMU_STATE: Function = function("fmi2SetFMUstate", ANY);
-pub(super) const FREE_FMU_STATE: Function = function("fmi2FreeFMUstate", ANY);
-pub(super) const SERIALIZED_FMU_STATE_SIZE: Function = function("fmi2SerializedFMUstateSize", ANY);
-pub(super) const SERIALIZE_FMU_STATE: Function = function("fmi2SerializeFMUstate", ANY);
-pub(super) const DE_SERIALIZE_FMU_STATE: Function = function("fmi2DeSerializeFMUstate", ANY);
-pub(super) const GET_DIRECTIONAL_DERIVATIVE: Function = function("fmi2GetDirectionalDerivative", ANY);
-pub(super) const SET_REAL_INPUT_DERIVATIVES: Function = function("fmi2SetRealInputDerivatives", SETTABLE);
-pub(super) const GET_REAL_OUTPUT_DERIVATIVES: Function = function("fmi2GetRealOutputDerivatives", STATUS);
-pub(super) const DO_STEP: Function = function("fmi2DoStep", &[StepComplete]);
-pub(super) const CANCEL_STEP: Function = function("fmi2CancelStep", &[]);
-pub(super) const GET_STATUS: Function = function("fmi2GetStatus", STATUS);
-pub(super) const GET_REAL_STATUS: Function = function("fmi2GetRealStatus", STATUS);
-pub(super) const GET_INTEGER_STATUS: Function = function("fmi2GetIntegerStatus", STATUS);
-pub(super) const GET_BOOLEAN_STATUS: Function = function("fmi2GetBooleanStatus", STATUS);
-pub(super) const GET_STRING_STATUS: Function = function("fmi2GetStringStatus", STATUS);
+/// Makes of each function a constant, and a table of all.
+macro_rules! functions {
+    ($($constant:ident = $name:literal, $allowed:expr;)*) => {
+        $(pub(super) const $constant: Function = Function { name: $name, allowed: $allowed };)*
 
-/// Every function of an instance except `fmi2FreeInstance`, which is always allowed and has no status.
-pub const TABLE: [Function; 30] = [
-    SET_DEBUG_LOGGING,
-    SETUP_EXPERIMENT,
-    ENTER_INITIALIZATION_MODE,
-    EXIT_INITIALIZATION_MODE,
-    TERMINATE,
-    RESET,
-    GET_REAL,
-    GET_INTEGER,
-    GET_BOOLEAN,
-    GET_STRING,
-    SET_REAL,
-    SET_INTEGER,
-    SET_BOOLEAN,
-    SET_STRING,
-    GET_FMU_STATE,
-    SET_FMU_STATE,
-    FREE_FMU_STATE,
-    SERIALIZED_FMU_STATE_SIZE,
-    SERIALIZE_FMU_STATE,
-    DE_SERIALIZE_FMU_STATE,
-    GET_DIRECTIONAL_DERIVATIVE,
-    SET_REAL_INPUT_DERIVATIVES,
-    GET_REAL_OUTPUT_DERIVATIVES,
-    DO_STEP,
-    CANCEL_STEP,
-    GET_STATUS,
-    GET_REAL_STATUS,
-    GET_INTEGER_STATUS,
-    GET_BOOLEAN_STATUS,
-    GET_STRING_STATUS,
-];
+        /// Every function of an instance except `fmi2FreeInstance`, which is always allowed and has no status.
+        pub const TABLE: &[Function] = &[$($constant),*];
+    };
+}
+
+functions! {
+    SET_DEBUG_LOGGING = "fmi2SetDebugLogging", ANY;
+    SETUP_EXPERIMENT = "fmi2SetupExperiment", &[Instantiated];
+    ENTER_INITIALIZATION_MODE = "fmi2EnterInitializationMode", &[Instantiated];
+    EXIT_INITIALIZATION_MODE = "fmi2ExitInitializationMode", &[InitializationMode];
+    TERMINATE = "fmi2Terminate", &[StepComplete];
+    RESET = "fmi2Reset", ANY;
+    GET_REAL = "fmi2GetReal", READABLE;
+    GET_INTEGER = "fmi2GetInteger", READABLE;
+    GET_BOOLEAN = "fmi2GetBoolean", READABLE;
+    GET_STRING = "fmi2GetString", READABLE;
+    SET_REAL = "fmi2SetReal", SETTABLE;
+    SET_INTEGER = "fmi2SetInteger", SETTABLE;
+    SET_BOOLEAN = "fmi2SetBoolean", SETTABLE;
+    SET_STRING = "fmi2SetString", SETTABLE;
+    GET_FMU_STATE = "fmi2GetFMUstate", ANY;
+    SET_FMU_STATE = "fmi2SetFMUstate", ANY;
+    FREE_FMU_STATE = "fmi2FreeFMUstate", ANY;
+    SERIALIZED_FMU_STATE_SIZE = "fmi2SerializedFMUstateSize", ANY;
+    SERIALIZE_FMU_STATE = "fmi2SerializeFMUstate", ANY;
+    DE_SERIALIZE_FMU_STATE = "fmi2DeSerializeFMUstate", ANY;
+    GET_DIRECTIONAL_DERIVATIVE = "fmi2GetDirectionalDerivative", ANY;
+    SET_REAL_INPUT_DERIVATIVES = "fmi2SetRealInputDerivatives", SETTABLE;
+    GET_REAL_OUTPUT_DERIVATIVES = "fmi2GetRealOutputDerivatives", STATUS;
+    DO_STEP = "fmi2DoStep", &[StepComplete];
+    CANCEL_STEP = "fmi2CancelStep", &[];
+    GET_STATUS = "fmi2GetStatus", STATUS;
+    GET_REAL_STATUS = "fmi2GetRealStatus", STATUS;
+    GET_INTEGER_STATUS = "fmi2GetIntegerStatus", STATUS;
+    GET_BOOLEAN_STATUS = "fmi2GetBooleanStatus", STATUS;
+    GET_STRING_STATUS = "fmi2GetStringStatus", STATUS;
+}

@@ -1,13 +1,13 @@
 //! Reading and setting variables.
 
 use std::ffi::CStr;
-use std::mem::MaybeUninit;
 
 use libc::size_t;
 
 use super::entry::{array, array_mut, call, text};
 use super::failure::Failure;
 use super::instance::Instance;
+use super::instance::variables::Value;
 use super::states::{self, Function};
 use super::types::{
     fmi2Boolean, fmi2Component, fmi2False, fmi2Integer, fmi2Real, fmi2Status, fmi2String, fmi2True, fmi2ValueReference,
@@ -25,37 +25,37 @@ unsafe fn get<T>(
     value: *mut T,
     read: impl Fn(&mut Instance, u32) -> Result<T, Failure>,
 ) -> fmi2Status {
-    let body = |instance: &mut Instance| {
-        // SAFETY: passed on to the caller.
-        let (references, values) = unsafe { (array(vr, nvr, "vr")?, array_mut(value, nvr, "value")?) };
-        for (&reference, value) in references.iter().zip(values) {
-            MaybeUninit::write(value, read(instance, reference)?);
-        }
-        Ok(())
-    };
     // SAFETY: passed on to the caller.
-    unsafe { call(c, function, body) }
+    unsafe {
+        call(c, function, |instance| {
+            let (references, values) = (array(vr, nvr, "vr")?, array_mut(value, nvr, "value")?);
+            for (&reference, value) in references.iter().zip(values) {
+                value.write(read(instance, reference)?);
+            }
+            Ok(())
+        })
+    }
 }
 
 /// Sets the values of the references, all or none.
 ///
 /// # Safety
 /// The contract of the module.
-unsafe fn set<T>(
+unsafe fn set<'a, T: Copy>(
     c: fmi2Component,
     function: Function,
     vr: *const fmi2ValueReference,
     nvr: size_t,
     value: *const T,
-    write: impl Fn(&mut Instance, &[u32], &[T]) -> Result<(), Failure>,
+    read: impl Fn(T) -> Result<Value<'a>, Failure>,
 ) -> fmi2Status {
-    let body = |instance: &mut Instance| {
-        // SAFETY: passed on to the caller.
-        let (references, values) = unsafe { (array(vr, nvr, "vr")?, array(value, nvr, "value")?) };
-        write(instance, references, values)
-    };
     // SAFETY: passed on to the caller.
-    unsafe { call(c, function, body) }
+    unsafe {
+        call(c, function, |instance| {
+            let (references, values) = (array(vr, nvr, "vr")?, array(value, nvr, "value")?);
+            instance.set(references, values.iter().map(|value| read(*value)))
+        })
+    }
 }
 
 /// Reads real variables.
@@ -120,7 +120,7 @@ pub unsafe extern "C" fn fmi2SetReal(
     value: *const fmi2Real,
 ) -> fmi2Status {
     // SAFETY: the contract of the module.
-    unsafe { set(c, states::SET_REAL, vr, nvr, value, Instance::set_reals) }
+    unsafe { set(c, states::SET_REAL, vr, nvr, value, |value| Ok(Value::Real(value))) }
 }
 
 /// Sets integer and enumeration parameters. A value that is not allowed gives `fmi2Discard`, and none is set.
@@ -132,7 +132,11 @@ pub unsafe extern "C" fn fmi2SetInteger(
     value: *const fmi2Integer,
 ) -> fmi2Status {
     // SAFETY: the contract of the module.
-    unsafe { set(c, states::SET_INTEGER, vr, nvr, value, Instance::set_integers) }
+    unsafe {
+        set(c, states::SET_INTEGER, vr, nvr, value, |value| {
+            Ok(Value::Integer(value))
+        })
+    }
 }
 
 /// Sets Boolean parameters. Every value except `fmi2False` is true.
@@ -143,8 +147,9 @@ pub unsafe extern "C" fn fmi2SetBoolean(
     nvr: size_t,
     value: *const fmi2Boolean,
 ) -> fmi2Status {
+    let read = |value| Ok(Value::Boolean(value != fmi2False));
     // SAFETY: the contract of the module.
-    unsafe { set(c, states::SET_BOOLEAN, vr, nvr, value, Instance::set_booleans) }
+    unsafe { set(c, states::SET_BOOLEAN, vr, nvr, value, read) }
 }
 
 /// Sets string parameters. A file that cannot be read or is wrong gives `fmi2Discard`, and none is set.
@@ -155,11 +160,8 @@ pub unsafe extern "C" fn fmi2SetString(
     nvr: size_t,
     value: *const fmi2String,
 ) -> fmi2Status {
-    let write = |instance: &mut Instance, references: &[u32], values: &[fmi2String]| {
-        // SAFETY: the contract of the module.
-        let values = values.iter().map(|value| unsafe { text(*value, "value") });
-        instance.set_strings(references, &values.collect::<Result<Vec<_>, _>>()?)
-    };
     // SAFETY: the contract of the module.
-    unsafe { set(c, states::SET_STRING, vr, nvr, value, write) }
+    let read = |value| unsafe { text(value, "value") }.map(Value::Text);
+    // SAFETY: the contract of the module.
+    unsafe { set(c, states::SET_STRING, vr, nvr, value, read) }
 }

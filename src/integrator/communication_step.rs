@@ -280,8 +280,8 @@ fn displaced(model: &Model, inputs: &Inputs, time: f64, size: f64) -> Result<Way
     let [support, second, pusher] = inputs.displacements_after(size);
     let initial = model.initial.displacements;
     let present = |link: Option<usize>, displacement: f64| link.map_or(0.0, |_| displacement);
-    let prescribed = model.pusher().filter(|_| model.core().is_none());
-    let second = present(model.second(), second);
+    let prescribed = model.roles.pusher.filter(|_| model.roles.core.is_none());
+    let second = present(model.roles.second, second);
     let room = model.room(second);
     let (displacement, limit) = (second, second + room);
     let cause = StepErrorCause::NoRoom { displacement, limit };

@@ -41,7 +41,7 @@ const SAMPLES: u32 = 8;
 
 /// Contact and parallel contact, where there are both, and what their spots conduct.
 fn pair(model: &Model) -> Option<[(usize, ElectricalContact); 2]> {
-    let parallel = model.parallel()?;
+    let parallel = model.roles.parallel?;
     let of = |index: usize| Some((index, model.links.get(index)?.electrical?));
     Some([of(CONTACT)?, of(parallel)?])
 }

@@ -382,7 +382,7 @@ impl Motion {
         for (index, force) in forces.iter_mut().enumerate().take(model.links.len()) {
             *force = self.link(model, index).force;
         }
-        let second = model.second().and_then(|index| {
+        let second = model.roles.second.and_then(|index| {
             let link = model.links.get(index)?;
             Some(link.approach + self.link(model, index).approach)
         });
@@ -431,7 +431,7 @@ impl Motion {
             } else {
                 extremes.of(index).add(0.0);
             }
-            if model.second() == Some(index) {
+            if model.roles.second == Some(index) {
                 let turns = turning_points_between(model.simd, &dense.approach, from, to);
                 for y in turns.iter().chain([from, to]) {
                     extremes.approach(link.approach + value_and_slope(&dense.approach, y).0);

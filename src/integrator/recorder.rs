@@ -57,7 +57,7 @@ impl Recorder<'_> {
         target: &Target,
         passages: &Passages,
     ) {
-        let second = model.second();
+        let second = model.roles.second;
         let touches = state.touches_now();
         let read = self.reads_before(target.time) || self.dense.is_some() && second.is_some();
         for (index, (link, at)) in model.links.iter().zip(&mut state.links).enumerate() {

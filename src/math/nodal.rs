@@ -19,10 +19,7 @@ impl<const S: usize> Singled<S> {
     const ONES: [Nodal<S>; S] = Self::table(1.0, 0.0);
     const ZEROES: [Nodal<S>; S] = Self::table(0.0, 1.0);
 
-    #[expect(
-        clippy::indexing_slicing,
-        reason = "every index runs over the fixed size of the arrays"
-    )]
+    #[expect(clippy::indexing_slicing, reason = "arrays of fixed size")]
     const fn table(one: f64, others: f64) -> [Nodal<S>; S] {
         let mut table = [[others; S]; S];
         let mut node = 0;

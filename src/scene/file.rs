@@ -16,21 +16,25 @@
 //! file = "closing.csv"        # further inputs over time, in the same folder: see `input_table`
 //! ```
 
-use crate::scene::names::{Role, list, located, variable};
-use std::collections::BTreeMap;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
-use std::{fmt, fs};
 
-use serde::de::{self, Deserialize, Deserializer, MapAccess, Unexpected, Visitor};
 use toml::Spanned;
-use toml::de::ValueDeserializer;
+use toml::de::DeValue;
 
 use crate::error::SceneError;
 use crate::inputs::Inputs;
+use crate::scene::document::{Entry, Value, of_file, parsed};
 use crate::scene::input_table::InputTable;
+use crate::scene::names::{Role, list, variable};
 use crate::scene::{Scene, choices};
 use crate::variables::{Group, Variable};
+
+/// The key of the input table among the inputs.
+const FILE: &str = "file";
+
+const OUTPUTS: &str = "a list of output names";
 
 /// A scene file, read and checked: all names exist, all values are in range.
 #[derive(Clone, Debug)]
@@ -53,72 +57,6 @@ pub struct SceneFile {
     folder: PathBuf,
 }
 
-/// The file as parsed; names and values of variables are checked afterwards.
-#[derive(serde::Deserialize)]
-#[serde(rename_all = "camelCase", deny_unknown_fields)]
-struct Document {
-    #[serde(default)]
-    title: String,
-    stop: Option<Spanned<Value>>,
-    communication_step: Option<Spanned<Value>>,
-    outputs: Option<Vec<Spanned<String>>>,
-    #[serde(default)]
-    parameters: Table,
-    #[serde(default)]
-    inputs: Table,
-}
-
-/// Keys with their position in the file, from which errors get their line.
-type Table = BTreeMap<Spanned<String>, Value>;
-
-enum Value {
-    Integer(i64),
-    Real(f64),
-    Boolean(bool),
-    Text(String),
-    Table(Table),
-}
-
-impl<'de> Deserialize<'de> for Value {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct ValueVisitor;
-        impl<'de> Visitor<'de> for ValueVisitor {
-            type Value = Value;
-
-            fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-                formatter.write_str("a number, true or false, a string or a table")
-            }
-
-            fn visit_i64<E>(self, value: i64) -> Result<Value, E> {
-                Ok(Value::Integer(value))
-            }
-
-            fn visit_f64<E>(self, value: f64) -> Result<Value, E> {
-                Ok(Value::Real(value))
-            }
-
-            fn visit_bool<E>(self, value: bool) -> Result<Value, E> {
-                Ok(Value::Boolean(value))
-            }
-
-            fn visit_str<E>(self, value: &str) -> Result<Value, E> {
-                Ok(Value::Text(value.to_owned()))
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Value, A::Error> {
-                let mut table = Table::new();
-                // A date is also a map, the only one whose key has no position.
-                let no_place = |_| de::Error::invalid_type(Unexpected::Other("date or time"), &self);
-                while let Some(key) = map.next_key().map_err(no_place)? {
-                    table.insert(key, map.next_value()?);
-                }
-                Ok(Value::Table(table))
-            }
-        }
-        deserializer.deserialize_any(ValueVisitor)
-    }
-}
-
 impl FromStr for SceneFile {
     type Err = SceneError;
 
@@ -137,45 +75,51 @@ impl SceneFile {
     /// # Errors
     /// The first [`SceneError`] found, with its file and line; a missing key has no line.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
-        let file = || path.display().to_string();
-        let text = fs::read_to_string(path).map_err(|error| SceneError::Unreadable {
-            file: file(),
-            cause: error.to_string(),
-        })?;
         let folder = path.parent().unwrap_or(Path::new(""));
-        Self::parse(&text, folder).map_err(|error| SceneError::InFile {
-            file: file(),
-            error: Box::new(error),
-        })
+        of_file(path, fs::read_to_string(path), |text| Self::parse(text, folder))
     }
 
     fn parse(text: &str, folder: &Path) -> Result<Self, SceneError> {
-        let mut document: Document = toml::from_str(text).map_err(|error| {
-            let place = error.span().unwrap_or_default();
-            located(text, &place, SceneError::Syntax(error.message().to_owned()))
-        })?;
+        let document = parsed(text)?;
+        let top = Entry::whole(text, &document);
+        top.knows(&["title", "stop", "communicationStep", "outputs", "parameters", "inputs"])?;
         let missing = |name, allowed| SceneError::MissingKey { name, allowed };
-        let seconds = |name, value: Option<Spanned<Value>>| {
-            let value = value.ok_or(missing(name, "a positive number of seconds"))?;
-            at_line(text, &value, positive(name, value.get_ref()))
+        let seconds = |name| {
+            let value = top.value(name).ok_or(missing(name, "a positive number of seconds"))?;
+            value.at(positive(name, value))
         };
-        let output = |name: &Spanned<String>| at_line(text, name, variable(Role::Output, name.get_ref()));
-        let outputs = document.outputs.ok_or(missing("outputs", "a list of output names"))?;
-        let table = document.inputs.iter().find(|(key, _)| key.get_ref() == "file");
-        let table = table.map(|(key, value)| at_line(text, key, input_table(folder, value)));
+        let table = |name| {
+            let value = top.value(name);
+            value.map(|value| value.at(value.table(name, "a table"))).transpose()
+        };
+        let (parameters, inputs) = (table("parameters")?, table("inputs")?);
+        let title = top.value("title");
+        let title = title
+            .map(|value| value.at(value.string("title", "a string")))
+            .transpose()?;
+        let outputs = top.value("outputs").ok_or(missing("outputs", OUTPUTS))?;
+        let outputs = outputs.at(outputs.list("outputs", OUTPUTS))?.map(|output| {
+            let name = output.string("outputs", OUTPUTS);
+            output.at(name.and_then(|name| variable(Role::Output, name)))
+        });
+        let driving = inputs.as_ref().and_then(|inputs| inputs.value(FILE));
+        let driving = driving.map(|value| {
+            let name = value.string(FILE, "the path of an input table, as a string");
+            value.at(name.and_then(|name| InputTable::read(&folder.join(name))))
+        });
         let mut file = Self {
-            title: document.title,
-            stop: seconds("stop", document.stop)?,
-            communication_step: seconds("communicationStep", document.communication_step)?,
-            outputs: outputs.iter().map(output).collect::<Result<_, _>>()?,
+            title: title.unwrap_or_default().to_owned(),
+            stop: seconds("stop")?,
+            communication_step: seconds("communicationStep")?,
+            outputs: outputs.collect::<Result<_, _>>()?,
             scene: Scene::default(),
             inputs: Inputs::default(),
-            table: table.transpose()?.unwrap_or_default(),
+            table: driving.transpose()?.unwrap_or_default(),
             folder: folder.to_owned(),
         };
-        document.inputs.retain(|key, _| key.get_ref() != "file");
-        file.apply(Role::Parameter, text, "", &document.parameters)?;
-        file.apply(Role::Input, text, "", &document.inputs)?;
+        for (role, table) in [(Role::Parameter, parameters), (Role::Input, inputs)] {
+            table.map_or(Ok(()), |table| file.apply(role, "", &table))?;
+        }
         Ok(file)
     }
 
@@ -215,31 +159,34 @@ impl SceneFile {
             self.outputs = outputs.collect::<Result<_, _>>()?;
             return Ok(());
         }
-        let parsed = ValueDeserializer::parse(value).and_then(Value::deserialize);
-        let value = parsed.unwrap_or_else(|_| Value::Text(value.to_owned()));
+        let parsed = DeValue::parse(value);
+        let node = parsed.unwrap_or_else(|_| Spanned::new(0..value.len(), DeValue::String(value.into())));
+        let value = Value {
+            text: value,
+            node: &node,
+        };
         match name {
-            "stop" => self.stop = positive("stop", &value)?,
-            "communicationStep" => self.communication_step = positive("communicationStep", &value)?,
-            _ => self.set_variable(Role::Settable, name, &value)?,
+            "stop" => self.stop = positive("stop", value)?,
+            "communicationStep" => self.communication_step = positive("communicationStep", value)?,
+            _ => self.set_variable(Role::Settable, name, value)?,
         }
         Ok(())
     }
 
     /// Sets every variable of a table, nested tables as dotted names.
-    fn apply(&mut self, role: Role, text: &str, prefix: &str, table: &Table) -> Result<(), SceneError> {
-        table.iter().try_for_each(|(key, value)| {
-            let name = format!("{prefix}{key}");
-            match value {
-                Value::Table(table) => self.apply(role, text, &format!("{name}."), table),
-                value => at_line(text, key, self.set_variable(role, &name, value)),
-            }
+    fn apply(&mut self, role: Role, prefix: &str, table: &Entry) -> Result<(), SceneError> {
+        let mut named = table.values().map(|(key, value)| (format!("{prefix}{key}"), value));
+        named.try_for_each(|(name, value)| match value.table(&name, "a table") {
+            Ok(table) => self.apply(role, &format!("{name}."), &table),
+            Err(_) if matches!(role, Role::Input) && name == FILE => Ok(()),
+            Err(_) => value.at(self.set_variable(role, &name, value)),
         })
     }
 
-    fn set_variable(&mut self, role: Role, name: &str, value: &Value) -> Result<(), SceneError> {
+    fn set_variable(&mut self, role: Role, name: &str, value: Value) -> Result<(), SceneError> {
         let variable = variable(role, name)?;
         match variable.group {
-            Group::RealParameter(parameter) => self.scene.set_real(parameter, number(name, value)?),
+            Group::RealParameter(parameter) => self.scene.set_real(parameter, value.number(name)?),
             Group::RealInput(input) => {
                 if matches!(role, Role::Input) && self.table.drives(input) {
                     return Err(SceneError::GivenTwice {
@@ -247,40 +194,26 @@ impl SceneFile {
                         allowed: "either a value here or a column of the file",
                     });
                 }
-                self.inputs.set_real(input, number(name, value)?)?;
+                self.inputs.set_real(input, value.number(name)?)?;
                 self.table.release(input);
                 Ok(())
             }
-            Group::IntegerParameter(parameter) => {
-                let number = match value {
-                    Value::Integer(value) => i32::try_from(*value).ok(),
-                    _ => None,
-                };
-                let number = number.ok_or_else(|| wrong_type(name, value, "a whole number"))?;
-                self.scene.set_integer(parameter, number)
-            }
+            Group::IntegerParameter(parameter) => self.scene.set_integer(parameter, value.whole(name)?),
             Group::BooleanParameter(parameter) => {
-                let Value::Boolean(value) = value else {
-                    return Err(wrong_type(name, value, "true or false"));
-                };
-                self.scene.set_boolean(parameter, *value);
+                self.scene.set_boolean(parameter, value.boolean(name)?);
                 Ok(())
             }
             Group::StringParameter(parameter) => {
-                let Value::Text(text) = value else {
-                    return Err(wrong_type(name, value, "a string"));
-                };
-                self.scene.set_string(parameter, text, &self.folder)
+                let file = value.string(name, "a string")?;
+                self.scene.set_string(parameter, file, &self.folder)
             }
             Group::EnumerationParameter(parameter) => {
-                let Value::Text(choice) = value else {
-                    return Err(wrong_type(name, value, "the name of a choice, as a string"));
-                };
+                let choice = value.string(name, "the name of a choice, as a string")?;
                 let choices = choices(parameter);
-                let known = choices.iter().find(|(label, _)| label == choice);
+                let known = choices.iter().find(|(label, _)| *label == choice);
                 let (_, number) = known.ok_or_else(|| SceneError::UnknownChoice {
                     name: variable.name,
-                    value: choice.clone(),
+                    value: choice.to_owned(),
                     allowed: list(choices.iter().map(|(label, _)| *label)),
                 })?;
                 self.scene.set_enumeration(parameter, *number)
@@ -290,24 +223,8 @@ impl SceneFile {
     }
 }
 
-/// The input table named by the key `file`.
-fn input_table(folder: &Path, value: &Value) -> Result<InputTable, SceneError> {
-    match value {
-        Value::Text(name) => InputTable::read(&folder.join(name)),
-        _ => Err(wrong_type("file", value, "the path of an input table, as a string")),
-    }
-}
-
-fn number(name: &str, value: &Value) -> Result<f64, SceneError> {
-    match value {
-        Value::Integer(value) => Ok(*value as f64),
-        Value::Real(value) => Ok(*value),
-        Value::Boolean(_) | Value::Text(_) | Value::Table(_) => Err(wrong_type(name, value, "a number")),
-    }
-}
-
-fn positive(name: &'static str, value: &Value) -> Result<f64, SceneError> {
-    let value = number(name, value)?;
+fn positive(name: &'static str, value: Value) -> Result<f64, SceneError> {
+    let value = value.number(name)?;
     if value > 0.0 && value.is_finite() {
         Ok(value)
     } else {
@@ -318,24 +235,4 @@ fn positive(name: &'static str, value: &Value) -> Result<f64, SceneError> {
             allowed: "allowed is any positive finite number".into(),
         })
     }
-}
-
-fn wrong_type(name: &str, value: &Value, allowed: &'static str) -> SceneError {
-    let value = match value {
-        Value::Integer(value) => value.to_string(),
-        Value::Real(value) => format!("{value:?}"),
-        Value::Boolean(value) => value.to_string(),
-        Value::Text(value) => format!("{value:?}"),
-        Value::Table(_) => "{...}".to_owned(),
-    };
-    SceneError::WrongType {
-        name: name.to_owned(),
-        value,
-        allowed,
-    }
-}
-
-/// Adds the line of a position to an error.
-fn at_line<T, U>(text: &str, place: &Spanned<U>, result: Result<T, SceneError>) -> Result<T, SceneError> {
-    result.map_err(|error| located(text, &place.span(), error))
 }

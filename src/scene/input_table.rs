@@ -15,6 +15,7 @@ use csv::{ReaderBuilder, StringRecord, Trim};
 use crate::error::SceneError;
 use crate::inputs::Inputs;
 use crate::scene::check_range;
+use crate::scene::document::of_file;
 use crate::scene::names::{Role, variable};
 use crate::variables::{Group, RealInput};
 
@@ -27,11 +28,8 @@ pub struct InputTable {
     columns: Vec<(RealInput, Vec<f64>)>,
 }
 
-/// Meaning of a column.
-enum Column {
-    Time,
-    Input(RealInput),
-}
+/// Meaning of a column: an input, or the time.
+type Column = Option<RealInput>;
 
 impl InputTable {
     /// Reads a file.
@@ -39,17 +37,7 @@ impl InputTable {
     /// # Errors
     /// The first [`SceneError`] found, with the file, the line and the column's name.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
-        let file = path.display().to_string();
-        match fs::read_to_string(path) {
-            Ok(text) => Self::parse(&text).map_err(|error| SceneError::InFile {
-                file,
-                error: Box::new(error),
-            }),
-            Err(error) => Err(SceneError::Unreadable {
-                file,
-                cause: error.to_string(),
-            }),
-        }
+        of_file(path, fs::read_to_string(path), Self::parse)
     }
 
     fn parse(text: &str) -> Result<Self, SceneError> {
@@ -57,13 +45,10 @@ impl InputTable {
         let mut reader = ReaderBuilder::new().trim(Trim::All).from_reader(text.as_bytes());
         let head = reader.headers().map_err(syntax)?.clone();
         let columns = at_line(text, &head, columns(&head))?;
-        let inputs = columns.iter().filter_map(|column| match column {
-            Column::Input(input) => Some((*input, Vec::new())),
-            Column::Time => None,
-        });
+        let inputs = columns.iter().flatten();
         let mut table = Self {
             times: Vec::new(),
-            columns: inputs.collect(),
+            columns: inputs.map(|input| (*input, Vec::new())).collect(),
         };
         for record in reader.records() {
             let record = record.map_err(syntax)?;
@@ -80,7 +65,7 @@ impl InputTable {
         let mut rows = self.columns.iter_mut();
         for (column, field) in columns.iter().zip(record) {
             match column {
-                Column::Time => {
+                None => {
                     let time = number("time", field)?;
                     let last = self.times.last().copied().unwrap_or(f64::NEG_INFINITY);
                     if !(time > last && time.is_finite()) {
@@ -96,7 +81,7 @@ impl InputTable {
                     }
                     self.times.push(time);
                 }
-                Column::Input(input) => {
+                Some(input) => {
                     let value = number(input.variable().name, field)?;
                     check_range(input.variable(), value, false)?;
                     if let Some((_, values)) = rows.next() {
@@ -157,15 +142,15 @@ fn columns(head: &StringRecord) -> Result<Vec<Column>, SceneError> {
         }
         seen.push(name);
         if name == "time" {
-            return Ok(Column::Time);
+            return Ok(None);
         }
         match variable(Role::Input, name)?.group {
-            Group::RealInput(input) => Ok(Column::Input(input)),
+            Group::RealInput(input) => Ok(Some(input)),
             _ => Err(SceneError::InputTable(format!("{name} is not an input"))),
         }
     });
     let columns = columns.collect::<Result<Vec<_>, _>>()?;
-    if !columns.iter().any(|column| matches!(column, Column::Time)) {
+    if !columns.contains(&None) {
         return Err(SceneError::MissingKey {
             name: "time",
             allowed: "a column of times in s",

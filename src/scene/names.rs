@@ -1,6 +1,4 @@
-//! The variable names allowed in a scene file or an input table, and the lines of errors in files.
-
-use std::ops::Range;
+//! The variable names allowed in a scene file or an input table.
 
 use crate::error::SceneError;
 use crate::variables::{Group, VARIABLES, Variable};
@@ -17,13 +15,9 @@ pub(crate) enum Role {
 impl Role {
     fn covers(self, variable: &Variable) -> bool {
         match variable.group {
-            Group::RealParameter(_)
-            | Group::IntegerParameter(_)
-            | Group::BooleanParameter(_)
-            | Group::StringParameter(_)
-            | Group::EnumerationParameter(_) => matches!(self, Self::Parameter | Self::Settable),
             Group::RealInput(_) => matches!(self, Self::Input | Self::Settable),
             Group::RealOutput(_) | Group::IntegerOutput(_) | Group::BooleanOutput(_) => matches!(self, Self::Output),
+            _ => matches!(self, Self::Parameter | Self::Settable),
         }
     }
 
@@ -60,12 +54,4 @@ pub(crate) fn variable(role: Role, name: &str) -> Result<&'static Variable, Scen
 /// Names separated by commas.
 pub(crate) fn list(names: impl Iterator<Item = &'static str>) -> String {
     names.collect::<Vec<_>>().join(", ")
-}
-
-/// Adds the line of a place in a text to an error.
-pub(crate) fn located(text: &str, place: &Range<usize>, error: SceneError) -> SceneError {
-    SceneError::AtLine {
-        line: 1 + text.bytes().take(place.start).filter(|byte| *byte == b'\n').count(),
-        error: Box::new(error),
-    }
 }

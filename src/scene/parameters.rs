@@ -8,8 +8,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::SceneError;
-use crate::scene::spring::{Segment, Segments, SpringFile};
+use crate::scene::spring::SpringFile;
 use crate::variables::{
     AxialForceKind, BooleanParameter, ContactLawKind, EnumerationParameter, ExcitationKind, FrictionKind,
     IntegerParameter, PusherKind, RealParameter, ResistanceKind,
@@ -26,40 +25,6 @@ impl Scene {
     /// Distance from the clamp at which a pusher presses the spring, m, where there is one.
     pub(crate) fn pushed_at(&self) -> Option<f64> {
         (self.effects.pusher != PusherKind::None).then_some(self.pusher.position)
-    }
-
-    /// Refuses an axial force that follows the deflection beside `other`, which may be `instead`.
-    pub(crate) fn keeps_axial_force(&self, other: &'static str, instead: &'static str) -> Result<(), SceneError> {
-        if self.effects.axial_force != AxialForceKind::FromDeflection {
-            return Ok(());
-        }
-        Err(SceneError::NotTogether {
-            name: "effects.axialForce",
-            choice: "FromDeflection",
-            other,
-            instead,
-            allowed: "None, FromPreload and Prescribed, which are constant",
-        })
-    }
-
-    /// The uniform section as a spring of one segment.
-    pub(crate) fn uniform_spring(&self) -> Segments {
-        let Beam {
-            length,
-            width,
-            thickness,
-            ..
-        } = self.beam;
-        Segments {
-            segments: vec![Segment {
-                length,
-                width: [width; 2],
-                thickness: [thickness; 2],
-                youngs_modulus: None,
-                density: None,
-            }],
-            ..Segments::default()
-        }
     }
 }
 

@@ -39,7 +39,7 @@ pub struct Segments {
 }
 
 /// A stretch whose width and thickness are constant or change linearly.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Segment {
     /// Length, m.
     pub length: f64,
@@ -54,7 +54,7 @@ pub struct Segment {
 }
 
 /// A mass on the spring.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PointMass {
     /// Distance from the clamp, m.
     pub position: f64,
@@ -76,7 +76,7 @@ pub struct Modes {
 }
 
 /// A mode, normalised to a modal mass of 1 kg.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GivenMode {
     /// Frequency, Hz.
     pub frequency: f64,
@@ -107,37 +107,24 @@ const fn field(name: &'static str, unit: &'static str, min: f64, max: f64) -> Fi
     Field { name, unit, min, max }
 }
 
-pub(crate) const LENGTH: Field = field("length", "m", 1e-6, 0.2);
-pub(crate) const WIDTH: [Field; 3] = ends(["width", "width_start", "width_end"], 1e-5, 1.0);
-pub(crate) const THICKNESS: [Field; 3] = ends(["thickness", "thickness_start", "thickness_end"], 1e-6, 5e-3);
-pub(crate) const YOUNGS_MODULUS: Field = field("youngs_modulus", "Pa", 1e8, 1e13);
-pub(crate) const DENSITY: Field = field("density", "kg/m3", 1.0, 1e5);
-pub(crate) const POSITION: Field = field("position", "m", 1e-6, LONGEST);
-pub(crate) const MASS: Field = field("mass", "kg", 0.0, 0.1);
-pub(crate) const ROTARY_INERTIA: Field = field("rotary_inertia", "kg.m2", 0.0, 1e-4);
+/// A key, and where its value goes.
+pub(crate) type Key<'a> = (Field, Slot<'a>);
+
+/// Where the value of a key goes.
+pub(crate) enum Slot<'a> {
+    Needed(&'a mut f64),
+    /// Zero without the key.
+    OrZero(&'a mut f64),
+    Optional(&'a mut Option<f64>),
+    /// Values at start and end: of this key where they are the same, else of two others.
+    Ends(&'a mut [f64; 2], [&'static str; 2]),
+}
+
 const TOTAL: Field = field("length of all segments", "m", SHORTEST, LONGEST);
 pub(crate) const CONTACT_POSITION: Field = field("contact_position", "m", SHORTEST, LONGEST);
-pub(crate) const FORK_POSITION: Field = field("fork_position", "m", 0.0, LONGEST);
 pub(crate) const CLAMP_STIFFNESS: Field = field("clamp_stiffness", "N.m/rad", 1e-9, 1e9);
 pub(crate) const COMPLIANCE: Field = field("compliance", "m/N", 1e-9, 1e6);
 pub(crate) const PARALLEL_COMPLIANCE: Field = field("parallel_compliance", "m/N", 1e-9, 1e6);
-pub(crate) const FREQUENCY: Field = field("frequency", "Hz", 1e-3, 1e9);
-pub(crate) const CONTACT: Field = field("contact", "1/sqrt(kg)", -1e9, 1e9);
-pub(crate) const PARTICIPATION: Field = field("participation", "sqrt(kg)", -1.0, 1.0);
-pub(crate) const DAMPING: Field = field("damping", "1", 0.0, 100.0);
-pub(crate) const PUSHER: Field = field("pusher", "1/sqrt(kg)", -1e9, 1e9);
-pub(crate) const PARALLEL: Field = field("parallel", "1/sqrt(kg)", -1e9, 1e9);
-pub(crate) const ROTATION: Field = field("rotation", "1/(m sqrt(kg))", -1e12, 1e12);
-
-/// The value itself, that at the start, that at the end.
-const fn ends(names: [&'static str; 3], min: f64, max: f64) -> [Field; 3] {
-    let [whole, start, end] = names;
-    [
-        field(whole, "m", min, max),
-        field(start, "m", min, max),
-        field(end, "m", min, max),
-    ]
-}
 
 /// Lengths of a spring up to its contact, m.
 const SHORTEST: f64 = 1e-3;
@@ -174,6 +161,15 @@ impl Field {
         })
     }
 
+    fn check_any(self, value: Option<f64>) -> Result<(), SceneError> {
+        value.map_or(Ok(()), |value| self.check(value))
+    }
+
+    /// Of another name.
+    pub(crate) fn named(self, name: &'static str) -> Self {
+        Self { name, ..self }
+    }
+
     /// With another upper end.
     pub(crate) fn up_to(self, max: f64) -> Self {
         Self { max, ..self }
@@ -203,60 +199,61 @@ impl Segments {
         self.segments.iter().map(|segment| segment.length).sum()
     }
 
-    /// Range of a position on the spring.
-    pub(crate) fn on_spring(&self, position: Field) -> Field {
-        position.up_to(self.length())
-    }
-
-    /// Distance of the contact from the clamp, m.
-    pub(crate) fn contact(&self) -> f64 {
-        self.contact_position.unwrap_or(self.length())
-    }
-
-    /// Range of the place where the spring forks.
-    pub(crate) fn before_contact(&self, position: Field) -> Field {
-        position.up_to(self.contact() - TONGUE)
+    /// The place where the spring forks: before the contact.
+    pub(crate) fn fork(&self) -> Field {
+        let contact = self.contact_position.unwrap_or(self.length());
+        field("fork_position", "m", 0.0, contact - TONGUE)
     }
 
     pub(super) fn check(&self) -> Result<(), SceneError> {
         count("segment", self.segments.len(), 1)?;
         count("mass", self.masses.len(), 0)?;
-        for segment in &self.segments {
-            segment.check()?;
-        }
-        TOTAL.check(self.length())?;
-        for mass in &self.masses {
-            mass.check(self)?;
-        }
-        self.contact_position
-            .map_or(Ok(()), |position| self.on_spring(CONTACT_POSITION).check(position))?;
-        self.fork_position
-            .map_or(Ok(()), |position| self.before_contact(FORK_POSITION).check(position))?;
-        self.clamp_stiffness
-            .map_or(Ok(()), |stiffness| CLAMP_STIFFNESS.check(stiffness))
+        let mut segments = self.segments.iter().copied();
+        segments.try_for_each(|mut segment| check(segment.keys()))?;
+        let length = self.length();
+        TOTAL.check(length)?;
+        let mut masses = self.masses.iter().copied();
+        masses.try_for_each(|mut mass| check(mass.keys(length)))?;
+        CONTACT_POSITION.up_to(length).check_any(self.contact_position)?;
+        self.fork().check_any(self.fork_position)?;
+        CLAMP_STIFFNESS.check_any(self.clamp_stiffness)
     }
 }
 
 impl Segment {
-    fn check(&self) -> Result<(), SceneError> {
-        LENGTH.check(self.length)?;
-        for (field, value) in WIDTH.iter().skip(1).zip(self.width) {
-            field.check(value)?;
-        }
-        for (field, value) in THICKNESS.iter().skip(1).zip(self.thickness) {
-            field.check(value)?;
-        }
-        self.youngs_modulus
-            .map_or(Ok(()), |modulus| YOUNGS_MODULUS.check(modulus))?;
-        self.density.map_or(Ok(()), |density| DENSITY.check(density))
+    /// What a file tells of it.
+    pub(crate) fn keys(&mut self) -> [Key<'_>; 5] {
+        let thickness = ["thickness_start", "thickness_end"];
+        [
+            (field("length", "m", 1e-6, 0.2), Slot::Needed(&mut self.length)),
+            (
+                field("width", "m", 1e-5, 1.0),
+                Slot::Ends(&mut self.width, ["width_start", "width_end"]),
+            ),
+            (
+                field("thickness", "m", 1e-6, 5e-3),
+                Slot::Ends(&mut self.thickness, thickness),
+            ),
+            (
+                field("youngs_modulus", "Pa", 1e8, 1e13),
+                Slot::Optional(&mut self.youngs_modulus),
+            ),
+            (field("density", "kg/m3", 1.0, 1e5), Slot::Optional(&mut self.density)),
+        ]
     }
 }
 
 impl PointMass {
-    fn check(&self, spring: &Segments) -> Result<(), SceneError> {
-        spring.on_spring(POSITION).check(self.position)?;
-        MASS.check(self.mass)?;
-        ROTARY_INERTIA.check(self.rotary_inertia)
+    /// What a file tells of it, on a spring of this length (m).
+    pub(crate) fn keys(&mut self, length: f64) -> [Key<'_>; 3] {
+        [
+            (field("position", "m", 1e-6, length), Slot::Needed(&mut self.position)),
+            (field("mass", "kg", 0.0, 0.1), Slot::Needed(&mut self.mass)),
+            (
+                field("rotary_inertia", "kg.m2", 0.0, 1e-4),
+                Slot::OrZero(&mut self.rotary_inertia),
+            ),
+        ]
     }
 }
 
@@ -283,12 +280,10 @@ impl Modes {
 
     pub(super) fn check(&self) -> Result<(), SceneError> {
         COMPLIANCE.check(self.compliance)?;
-        self.parallel_compliance
-            .map_or(Ok(()), |compliance| PARALLEL_COMPLIANCE.check(compliance))?;
+        PARALLEL_COMPLIANCE.check_any(self.parallel_compliance)?;
         count("mode", self.modes.len(), 1)?;
-        for mode in &self.modes {
-            mode.check()?;
-        }
+        let mut modes = self.modes.iter().copied();
+        modes.try_for_each(|mut mode| check(mode.keys()))?;
         let of_parallel = self.held_by(|mode| mode.parallel.unwrap_or_default());
         let parallel = self.parallel_compliance.map(|compliance| (compliance, of_parallel));
         for (compliance, held) in [(self.compliance, self.held())].into_iter().chain(parallel) {
@@ -306,20 +301,35 @@ impl GivenMode {
         (std::f64::consts::TAU * self.frequency).powi(2)
     }
 
-    /// Static deflection of the contact point in this mode per force there, m/N.
-    pub fn compliance(&self) -> f64 {
-        self.contact * self.contact / self.omega_squared()
+    /// What a file tells of it.
+    pub(crate) fn keys(&mut self) -> [Key<'_>; 7] {
+        let displacement = |name| field(name, "1/sqrt(kg)", -1e9, 1e9);
+        let rotation = field("rotation", "1/(m sqrt(kg))", -1e12, 1e12);
+        [
+            (field("frequency", "Hz", 1e-3, 1e9), Slot::Needed(&mut self.frequency)),
+            (displacement("contact"), Slot::Needed(&mut self.contact)),
+            (
+                field("participation", "sqrt(kg)", -1.0, 1.0),
+                Slot::Needed(&mut self.participation),
+            ),
+            (field("damping", "1", 0.0, 100.0), Slot::Optional(&mut self.damping)),
+            (rotation, Slot::Optional(&mut self.rotation)),
+            (displacement("pusher"), Slot::Optional(&mut self.pusher)),
+            (displacement("parallel"), Slot::Optional(&mut self.parallel)),
+        ]
     }
+}
 
-    fn check(&self) -> Result<(), SceneError> {
-        FREQUENCY.check(self.frequency)?;
-        CONTACT.check(self.contact)?;
-        PARTICIPATION.check(self.participation)?;
-        self.damping.map_or(Ok(()), |damping| DAMPING.check(damping))?;
-        self.pusher.map_or(Ok(()), |pusher| PUSHER.check(pusher))?;
-        self.parallel.map_or(Ok(()), |parallel| PARALLEL.check(parallel))?;
-        self.rotation.map_or(Ok(()), |rotation| ROTATION.check(rotation))
-    }
+/// Refuses values out of range.
+fn check<const N: usize>(keys: [Key; N]) -> Result<(), SceneError> {
+    keys.into_iter().try_for_each(|(field, slot)| match slot {
+        Slot::Needed(value) | Slot::OrZero(value) => field.check(*value),
+        Slot::Optional(value) => field.check_any(*value),
+        Slot::Ends([at_start, at_end], [start, end]) => {
+            field.named(start).check(*at_start)?;
+            field.named(end).check(*at_end)
+        }
+    })
 }
 
 /// Refuses too few or too many entries.

@@ -33,20 +33,16 @@
 
 use std::fs::File;
 use std::io::Read;
-use std::ops::Range;
 use std::path::Path;
 
-use toml::Spanned;
-use toml::de::{DeTable, DeValue};
 use toml_parser::Source;
 use toml_parser::lexer::TokenKind;
 
 use crate::error::SceneError;
-use crate::scene::names::located;
+use crate::scene::document::{Entry, located, of_file, parsed};
 use crate::scene::spring::{
-    CLAMP_STIFFNESS, COMPLIANCE, CONTACT, CONTACT_POSITION, DAMPING, DENSITY, FORK_POSITION, FREQUENCY, Field,
-    GivenMode, LENGTH, MASS, Modes, PARALLEL, PARALLEL_COMPLIANCE, PARTICIPATION, POSITION, PUSHER, PointMass,
-    ROTARY_INERTIA, ROTATION, Segment, Segments, Shape, SpringFile, THICKNESS, WIDTH, YOUNGS_MODULUS, count,
+    CLAMP_STIFFNESS, COMPLIANCE, CONTACT_POSITION, GivenMode, Modes, PARALLEL_COMPLIANCE, PointMass, Segment, Segments,
+    Shape, SpringFile,
 };
 
 /// Largest file, bytes.
@@ -56,9 +52,6 @@ const LARGEST: u64 = 1 << 20;
 /// small.
 const DEEPEST: usize = 2;
 
-/// Likeness by Jaro and Winkler from which on a key may be meant: `thicknes` and `thickness` have 0.98, `segment` and `mode` 0.54.
-const NEAR: f64 = 0.8;
-
 impl SpringFile {
     /// Reads the file `name`; a relative name is one in `folder`.
     ///
@@ -66,12 +59,7 @@ impl SpringFile {
     /// The first [`SceneError`] found, with file, line and entry.
     pub fn read(folder: &Path, name: &str) -> Result<Self, SceneError> {
         let path = folder.join(name);
-        let file = || path.display().to_string();
-        let text = text(&path).map_err(|cause| SceneError::Unreadable { file: file(), cause })?;
-        let shape = shape(&text).map_err(|error| SceneError::InFile {
-            file: file(),
-            error: Box::new(error),
-        })?;
+        let shape = of_file(&path, text(&path), shape)?;
         Ok(Self {
             name: name.to_owned(),
             shape,
@@ -96,19 +84,8 @@ pub(crate) fn text(path: &Path) -> Result<String, String> {
 /// The spring of a text.
 fn shape(text: &str) -> Result<Shape, SceneError> {
     check_nesting(text)?;
-    let document = DeTable::parse(text).map_err(|error| {
-        let error_there = SceneError::Toml(error.message().to_owned());
-        match error.span() {
-            Some(place) => located(text, &place, error_there),
-            None => error_there,
-        }
-    })?;
-    let top = Entry {
-        text,
-        name: None,
-        place: 0..0,
-        table: document.get_ref(),
-    };
+    let document = parsed(text)?;
+    let top = Entry::whole(text, &document);
     if top.value("mode").is_some() || top.value("compliance").is_some() {
         modes(&top).map(Shape::Modes)
     } else {
@@ -143,46 +120,22 @@ fn segments(top: &Entry) -> Result<Segments, SceneError> {
         "clamp_stiffness",
     ])?;
     let mut spring = Segments {
-        segments: top.list("segment", 1, segment)?,
+        segments: top.entries("segment", 1, |entry| {
+            let mut segment = Segment::default();
+            entry.fill(segment.keys()).map(|()| segment)
+        })?,
         clamp_stiffness: top.optional(CLAMP_STIFFNESS)?,
         ..Segments::default()
     };
-    spring.contact_position = top.optional(spring.on_spring(CONTACT_POSITION))?;
-    spring.fork_position = top.optional(spring.before_contact(FORK_POSITION))?;
-    spring.masses = top.list("mass", 0, |entry| point_mass(entry, spring.on_spring(POSITION)))?;
+    let length = spring.length();
+    spring.contact_position = top.optional(CONTACT_POSITION.up_to(length))?;
+    spring.fork_position = top.optional(spring.fork())?;
+    spring.masses = top.entries("mass", 0, |entry| {
+        let mut mass = PointMass::default();
+        entry.fill(mass.keys(length)).map(|()| mass)
+    })?;
     // The sum of the lengths has no line of its own.
     spring.check().map(|()| spring)
-}
-
-fn segment(entry: &Entry) -> Result<Segment, SceneError> {
-    let known = [
-        "length",
-        "width",
-        "width_start",
-        "width_end",
-        "thickness",
-        "thickness_start",
-        "thickness_end",
-        "youngs_modulus",
-        "density",
-    ];
-    entry.knows(&known)?;
-    Ok(Segment {
-        length: entry.required(LENGTH)?,
-        width: entry.ends(WIDTH)?,
-        thickness: entry.ends(THICKNESS)?,
-        youngs_modulus: entry.optional(YOUNGS_MODULUS)?,
-        density: entry.optional(DENSITY)?,
-    })
-}
-
-fn point_mass(entry: &Entry, position: Field) -> Result<PointMass, SceneError> {
-    entry.knows(&["position", "mass", "rotary_inertia"])?;
-    Ok(PointMass {
-        position: entry.required(position)?,
-        mass: entry.required(MASS)?,
-        rotary_inertia: entry.optional(ROTARY_INERTIA)?.unwrap_or_default(),
-    })
 }
 
 fn modes(top: &Entry) -> Result<Modes, SceneError> {
@@ -190,158 +143,12 @@ fn modes(top: &Entry) -> Result<Modes, SceneError> {
     let spring = Modes {
         compliance: top.required(COMPLIANCE)?,
         parallel_compliance: top.optional(PARALLEL_COMPLIANCE)?,
-        modes: top.list("mode", 1, mode)?,
+        modes: top.entries("mode", 1, |entry| {
+            let mut mode = GivenMode::default();
+            entry.fill(mode.keys()).map(|()| mode)
+        })?,
     };
-    let place = top.value("compliance").map_or(0..0, Spanned::span);
+    let place = top.value("compliance").map_or(0..0, |value| value.node.span());
     top.at(&place, spring.check())?;
     Ok(spring)
-}
-
-fn mode(entry: &Entry) -> Result<GivenMode, SceneError> {
-    entry.knows(&[
-        "frequency",
-        "contact",
-        "participation",
-        "damping",
-        "rotation",
-        "pusher",
-        "parallel",
-    ])?;
-    Ok(GivenMode {
-        frequency: entry.required(FREQUENCY)?,
-        contact: entry.required(CONTACT)?,
-        participation: entry.required(PARTICIPATION)?,
-        damping: entry.optional(DAMPING)?,
-        rotation: entry.optional(ROTATION)?,
-        pusher: entry.optional(PUSHER)?,
-        parallel: entry.optional(PARALLEL)?,
-    })
-}
-
-/// A table of the file: the whole, or an entry of a list.
-struct Entry<'a> {
-    text: &'a str,
-    /// `segment 2`; none for the whole.
-    name: Option<String>,
-    place: Range<usize>,
-    table: &'a DeTable<'a>,
-}
-
-impl<'a> Entry<'a> {
-    fn value(&self, key: &str) -> Option<&'a Spanned<DeValue<'a>>> {
-        self.table.get(key)
-    }
-
-    /// Adds line and entry to an error.
-    fn at<T>(&self, place: &Range<usize>, result: Result<T, SceneError>) -> Result<T, SceneError> {
-        result.map_err(|error| {
-            let error = match &self.name {
-                None => error,
-                Some(entry) => SceneError::InEntry {
-                    entry: entry.clone(),
-                    error: Box::new(error),
-                },
-            };
-            located(self.text, place, error)
-        })
-    }
-
-    /// Refuses other keys than these.
-    fn knows(&self, keys: &[&'static str]) -> Result<(), SceneError> {
-        let unknown = self.table.keys().filter(|key| !keys.contains(&key.get_ref().as_ref()));
-        unknown.min_by_key(|key| key.span().start).map_or(Ok(()), |key| {
-            let name = key.get_ref().to_string();
-            let likeness = |known: &str| strsim::jaro_winkler(&name, known);
-            let near = keys.iter().copied().filter(|known| likeness(known) > NEAR);
-            let error = SceneError::UnknownKey {
-                nearest: near.max_by(|a, b| likeness(a).total_cmp(&likeness(b))),
-                allowed: keys.join(", "),
-                name,
-            };
-            self.at(&key.span(), Err(error))
-        })
-    }
-
-    fn optional(&self, field: Field) -> Result<Option<f64>, SceneError> {
-        let Some(value) = self.value(field.name) else {
-            return Ok(None);
-        };
-        let number = number(field.name, value.get_ref()).and_then(|number| field.check(number).map(|()| number));
-        self.at(&value.span(), number).map(Some)
-    }
-
-    fn required(&self, field: Field) -> Result<f64, SceneError> {
-        let missing = SceneError::MissingKey {
-            name: field.name,
-            allowed: "a number",
-        };
-        self.optional(field)?
-            .map_or_else(|| self.at(&self.place, Err(missing)), Ok)
-    }
-
-    /// A value that is constant, or those at start and end.
-    fn ends(&self, [constant, start, end]: [Field; 3]) -> Result<[f64; 2], SceneError> {
-        let varies = [start, end].iter().any(|field| self.value(field.name).is_some());
-        match self.value(constant.name) {
-            Some(value) if varies => {
-                let error = SceneError::GivenTwice {
-                    name: constant.name.to_owned(),
-                    allowed: "either one value, or one at the start and one at the end",
-                };
-                self.at(&value.span(), Err(error))
-            }
-            None if varies => Ok([self.required(start)?, self.required(end)?]),
-            _ => self.required(constant).map(|value| [value; 2]),
-        }
-    }
-
-    /// The entries `[[name]]`.
-    fn list<T>(
-        &self,
-        name: &'static str,
-        least: usize,
-        read: impl Fn(&Entry) -> Result<T, SceneError>,
-    ) -> Result<Vec<T>, SceneError> {
-        let Some(value) = self.value(name) else {
-            count(name, 0, least)?;
-            return Ok(Vec::new());
-        };
-        let wrong = |value: &Spanned<DeValue>| {
-            let error = SceneError::WrongType {
-                name: name.to_owned(),
-                value: value.get_ref().type_str().to_owned(),
-                allowed: "tables, each under its name in double brackets",
-            };
-            located(self.text, &value.span(), error)
-        };
-        let entries = value.get_ref().as_array().ok_or_else(|| wrong(value))?;
-        self.at(&value.span(), count(name, entries.len(), least))?;
-        let entries = entries.iter().enumerate().map(|(index, entry)| {
-            read(&Entry {
-                text: self.text,
-                name: Some(format!("{name} {}", index + 1)),
-                place: entry.span(),
-                table: entry.get_ref().as_table().ok_or_else(|| wrong(entry))?,
-            })
-        });
-        entries.collect()
-    }
-}
-
-fn number(name: &str, value: &DeValue) -> Result<f64, SceneError> {
-    let number = match value {
-        DeValue::Float(float) => float.as_str().parse().ok(),
-        DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
-            .ok()
-            .map(|integer| integer as f64),
-        _ => None,
-    };
-    number.ok_or_else(|| SceneError::WrongType {
-        name: name.to_owned(),
-        value: match value {
-            DeValue::String(text) => format!("{text:?}"),
-            other => other.type_str().to_owned(),
-        },
-        allowed: "a number",
-    })
 }

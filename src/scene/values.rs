@@ -12,6 +12,14 @@ use crate::variables::{
 };
 
 impl Scene {
+    /// A choice as messages name it, such as `effects.friction = Coulomb`.
+    pub(crate) fn chosen(&self, parameter: EnumerationParameter) -> String {
+        let number = self.enumeration(parameter);
+        let mut choice = choices(parameter).iter().filter(|(_, value)| *value == number);
+        let label = choice.next().map_or("", |(label, _)| label);
+        format!("{} = {label}", parameter.variable().name)
+    }
+
     /// Sets a Boolean parameter.
     pub fn set_boolean(&mut self, parameter: BooleanParameter, value: bool) {
         *self.boolean_mut(parameter) = value;

@@ -39,7 +39,7 @@ impl Rig {
 
     /// The same with a sine base acceleration from time 0: amplitude (m/s2) and frequency (Hz).
     pub fn shaken(model: Model, amplitude: f64, frequency: f64) -> Self {
-        let generator = Generator::new(&shaken(amplitude, frequency)).expect("a sine");
+        let generator = Generator::new(&shaken(amplitude, frequency));
         Self::new(model.with(|parts| parts.generator = generator))
     }
 

@@ -63,7 +63,7 @@ fn pulling(mut scene: Scene) -> Scene {
 }
 
 fn generator(scene: &Scene) -> Generator {
-    Generator::new(scene).unwrap()
+    Generator::new(scene)
 }
 
 /// Force, and the counted steps, after communication steps to these instants from 0 on.

@@ -103,7 +103,7 @@ fn bytes_that_are_no_state_are_an_error_that_says_which() {
         bytes
     };
     expect(&with(2, 1), "not made by this component");
-    expect(&with(8, 2), "its format is version 7, allowed is 5");
+    expect(&with(8, 2), "its format is version 4, allowed is 6");
     expect(&with(20, 1), "belongs to the component");
     for at in 58..bytes.len() {
         expect(&with(at, 1), "checksum");

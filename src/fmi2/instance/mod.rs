@@ -1,7 +1,7 @@
 //! One instance of the component: the values set, the simulation once it exists, and the state in the life cycle.
 
 pub(super) mod snapshot;
-mod variables;
+pub(super) mod variables;
 
 use std::ffi::{CStr, CString};
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use snapshot::{Experiment, LARGEST_TOLERANCE, SavedMotion, Snapshot};
 
 use super::failure::Failure;
 use super::logger::Logger;
-use super::report::{self, Effort};
+use super::report;
 use super::resources::Identity;
 use super::saved::SavedStates;
 use super::states::{Function, State};
@@ -23,16 +23,16 @@ use crate::variables::StringParameter;
 
 #[derive(Debug)]
 pub(super) struct Instance {
-    state: State,
+    pub(super) state: State,
     scene: Scene,
     inputs: Inputs,
     experiment: Experiment,
     /// In Initialization Mode: created when an output is read, dropped when a value is set.
-    simulation: Option<Box<Simulation>>,
+    pub(super) simulation: Option<Box<Simulation>>,
     /// For the next one after a reset.
     _kept: Kept,
     /// The last successful time, s.
-    time: f64,
+    pub(super) time: f64,
     logger: Logger,
     /// The folder of the component's resources.
     resources: Option<PathBuf>,
@@ -43,8 +43,9 @@ pub(super) struct Instance {
     /// The strings read last, one of each variable.
     texts: [CString; StringParameter::ALL.len()],
     told: Told,
-    step_finished: StepFinished,
-    saved_states: SavedStates,
+    pub(super) step_finished: StepFinished,
+    /// Those made by this instance.
+    pub(super) saved_states: SavedStates,
 }
 
 /// What the importer has been told, which is told once.
@@ -62,10 +63,7 @@ struct Told {
 pub(super) type StepFinished = (fmi2StepFinished, fmi2ComponentEnvironment);
 
 impl Instance {
-    /// An instance with start values.
-    ///
-    /// # Errors
-    /// A [`SceneError`] if the spring that the component carries is none.
+    /// An instance with start values, and the spring that the component may carry.
     pub(super) fn new(
         logger: Logger,
         step_finished: StepFinished,
@@ -111,23 +109,6 @@ impl Instance {
         scene.set_string(parameter, value, self.resources.as_deref().unwrap_or(Path::new("")))
     }
 
-    pub(super) fn state(&self) -> State {
-        self.state
-    }
-
-    pub(super) fn time(&self) -> f64 {
-        self.time
-    }
-
-    pub(super) fn step_finished(&self) -> StepFinished {
-        self.step_finished
-    }
-
-    /// The saved states made by this instance.
-    pub(super) fn saved_states(&mut self) -> &mut SavedStates {
-        &mut self.saved_states
-    }
-
     /// Logs a failure, changes the state accordingly, and returns its status.
     pub(super) fn fail(&mut self, function: Function, failure: &Failure) -> fmi2Status {
         if failure.ends_instance() {
@@ -137,11 +118,6 @@ impl Instance {
         self.logger.log_status(status, &format!("{}: {failure}", function.name));
         // Importers end a run at fmi2Warning, so what was done is fmi2OK: the log and `solver.forceError` tell the rest.
         if status == fmi2Warning { fmi2OK } else { status }
-    }
-
-    /// Drops a simulation that may be inconsistent.
-    pub(super) fn abandon(&mut self) {
-        self.simulation = None;
     }
 
     pub(super) fn choose_logging(&mut self, on: bool, categories: &[&CStr]) -> Result<(), Failure> {
@@ -183,10 +159,6 @@ impl Instance {
         }
     }
 
-    pub(super) fn enter_initialization_mode(&mut self) {
-        self.state = State::InitializationMode;
-    }
-
     pub(super) fn exit_initialization_mode(&mut self) -> Result<(), Failure> {
         self.prepare().map_err(Failure::Initialisation)?;
         self.state = State::StepComplete;
@@ -204,10 +176,6 @@ impl Instance {
         } else {
             Err(Failure::Remarks(remarks))
         }
-    }
-
-    pub(super) fn terminate(&mut self) {
-        self.state = State::Terminated;
     }
 
     /// Restores the state after instantiation. States that the importer has saved remain.
@@ -316,7 +284,7 @@ impl Instance {
         let Some(simulation) = &mut self.simulation else {
             return Err(Failure::Panic("no simulation after initialisation".to_owned()));
         };
-        let before = self.logger.debugs().then(|| Effort::of(simulation));
+        let before = self.logger.debugs().then(|| report::effort(simulation));
         simulation.step(&self.inputs, start, size).map_err(Failure::Step)?;
         self.time = simulation.time();
         if !held {

@@ -6,11 +6,29 @@ use super::Instance;
 use crate::error::SceneError;
 use crate::fmi2::failure::Failure;
 use crate::fmi2::states::State;
-use crate::fmi2::types::{fmi2Boolean, fmi2False};
-use crate::inputs::Inputs;
 use crate::scene::Scene;
 use crate::simulation::Simulation;
 use crate::variables::{Group, Variable};
+
+/// A value to be set.
+#[derive(Clone, Copy)]
+pub(in crate::fmi2) enum Value<'a> {
+    Real(f64),
+    Integer(i32),
+    Boolean(bool),
+    Text(&'a CStr),
+}
+
+impl Value<'_> {
+    fn kind(self) -> &'static str {
+        match self {
+            Self::Real(_) => "Real",
+            Self::Integer(_) => "Integer",
+            Self::Boolean(_) => "Boolean",
+            Self::Text(_) => "String",
+        }
+    }
+}
 
 impl Instance {
     /// The simulation to read the output `variable` from.
@@ -26,27 +44,20 @@ impl Instance {
 
     pub(in crate::fmi2) fn real(&mut self, reference: u32) -> Result<f64, Failure> {
         let variable = find("Real", reference)?;
-        let is_real = matches!(
-            variable.group,
-            Group::RealOutput(_) | Group::RealInput(_) | Group::RealParameter(_)
-        );
-        if is_real || self.plain {
-            self.number_of(variable, reference)
-        } else {
-            Err(wrong_type("Real", variable))
+        match variable.group {
+            Group::RealOutput(output) => Ok(self.computed(variable)?.real(output)),
+            Group::RealInput(input) => Ok(self.inputs.real(input)),
+            Group::RealParameter(parameter) => Ok(self.scene.real(parameter)),
+            _ if self.plain => self.number(reference),
+            _ => Err(wrong_type("Real", variable)),
         }
     }
 
     /// The value of a variable as a real: a choice by its number, true as 1.
     pub(in crate::fmi2) fn number(&mut self, reference: u32) -> Result<f64, Failure> {
-        self.number_of(find("Real", reference)?, reference)
-    }
-
-    fn number_of(&mut self, variable: &Variable, reference: u32) -> Result<f64, Failure> {
+        let variable = find("Real", reference)?;
         match variable.group {
-            Group::RealOutput(output) => Ok(self.computed(variable)?.real(output)),
-            Group::RealInput(input) => Ok(self.inputs.real(input)),
-            Group::RealParameter(parameter) => Ok(self.scene.real(parameter)),
+            Group::RealOutput(_) | Group::RealInput(_) | Group::RealParameter(_) => self.real(reference),
             Group::BooleanOutput(_) | Group::BooleanParameter(_) => {
                 self.boolean(reference).map(|value| f64::from(u8::from(value)))
             }
@@ -74,23 +85,51 @@ impl Instance {
         }
     }
 
-    /// Sets real inputs and parameters; all of them or, on an error, none.
-    pub(in crate::fmi2) fn set_reals(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
+    /// Sets inputs and parameters; all of them or, on an error, none.
+    pub(in crate::fmi2) fn set<'a>(
+        &mut self,
+        references: &[u32],
+        values: impl Iterator<Item = Result<Value<'a>, Failure>>,
+    ) -> Result<(), Failure> {
         let (mut scene, mut inputs) = (self.scene.clone(), self.inputs);
-        for (&reference, &value) in references.iter().zip(values) {
-            let variable = find("Real", reference)?;
-            match variable.group {
-                Group::RealInput(input) => inputs.set_real(input, value).map_err(Failure::Value)?,
-                Group::RealParameter(parameter) => {
-                    self.check_fixed(variable)?;
-                    scene.set_real(parameter, value).map_err(Failure::Value)?;
+        for (&reference, value) in references.iter().zip(values) {
+            let value = value?;
+            let variable = find(value.kind(), reference)?;
+            let fixed = || self.check_fixed(variable);
+            let set = match (variable.group, value) {
+                (Group::RealInput(input), Value::Real(value)) => inputs.set_real(input, value),
+                (Group::RealParameter(parameter), Value::Real(value)) => {
+                    fixed().map(|()| scene.set_real(parameter, value))?
                 }
-                Group::RealOutput(_) => return Err(self.output_set(variable)),
-                _ if self.plain => self.set_number(&mut scene, variable, value)?,
-                _ => return Err(wrong_type("Real", variable)),
-            }
+                (Group::IntegerParameter(parameter), Value::Integer(value)) => {
+                    fixed().map(|()| scene.set_integer(parameter, value))?
+                }
+                (Group::EnumerationParameter(parameter), Value::Integer(value)) => {
+                    fixed().map(|()| scene.set_enumeration(parameter, value))?
+                }
+                (Group::BooleanParameter(parameter), Value::Boolean(value)) => {
+                    fixed().map(|()| scene.set_boolean(parameter, value))?;
+                    Ok(())
+                }
+                (Group::StringParameter(parameter), Value::Text(value)) => {
+                    fixed()?;
+                    path_text(variable, value).and_then(|path| self.set_string(&mut scene, parameter, path))
+                }
+                (Group::RealOutput(_), Value::Real(_))
+                | (Group::IntegerOutput(_), Value::Integer(_))
+                | (Group::BooleanOutput(_), Value::Boolean(_)) => return Err(self.output_set(variable)),
+                (_, Value::Real(value)) if self.plain => {
+                    self.set_number(&mut scene, variable, value)?;
+                    Ok(())
+                }
+                _ => return Err(wrong_type(value.kind(), variable)),
+            };
+            set.map_err(Failure::Value)?;
         }
-        self.take_over(scene, inputs);
+        (self.scene, self.inputs) = (scene, inputs);
+        if self.state == State::InitializationMode {
+            self.simulation = None;
+        }
         Ok(())
     }
 
@@ -117,46 +156,6 @@ impl Instance {
         set.map_err(Failure::Value)
     }
 
-    /// Sets integer and enumeration parameters; all of them or, on an error, none.
-    pub(in crate::fmi2) fn set_integers(&mut self, references: &[u32], values: &[i32]) -> Result<(), Failure> {
-        let mut scene = self.scene.clone();
-        for (&reference, &value) in references.iter().zip(values) {
-            let variable = find("Integer", reference)?;
-            match variable.group {
-                Group::IntegerParameter(parameter) => {
-                    self.check_fixed(variable)?;
-                    scene.set_integer(parameter, value).map_err(Failure::Value)?;
-                }
-                Group::EnumerationParameter(parameter) => {
-                    self.check_fixed(variable)?;
-                    scene.set_enumeration(parameter, value).map_err(Failure::Value)?;
-                }
-                Group::IntegerOutput(_) => return Err(self.output_set(variable)),
-                _ => return Err(wrong_type("Integer", variable)),
-            }
-        }
-        self.take_over(scene, self.inputs);
-        Ok(())
-    }
-
-    /// Sets Boolean parameters; all of them or, on an error, none.
-    pub(in crate::fmi2) fn set_booleans(&mut self, references: &[u32], values: &[fmi2Boolean]) -> Result<(), Failure> {
-        let mut scene = self.scene.clone();
-        for (&reference, &value) in references.iter().zip(values) {
-            let variable = find("Boolean", reference)?;
-            match variable.group {
-                Group::BooleanParameter(parameter) => {
-                    self.check_fixed(variable)?;
-                    scene.set_boolean(parameter, value != fmi2False);
-                }
-                Group::BooleanOutput(_) => return Err(self.output_set(variable)),
-                _ => return Err(wrong_type("Boolean", variable)),
-            }
-        }
-        self.take_over(scene, self.inputs);
-        Ok(())
-    }
-
     /// The value of a string parameter, kept until it is read again: a call may ask for all, and for the same one twice.
     pub(in crate::fmi2) fn string(&mut self, reference: u32) -> Result<&CStr, Failure> {
         let variable = find("String", reference)?;
@@ -174,24 +173,6 @@ impl Instance {
             }
             _ => Err(wrong_type("String", variable)),
         }
-    }
-
-    /// Sets string parameters; all of them or, on an error, none.
-    pub(in crate::fmi2) fn set_strings(&mut self, references: &[u32], values: &[&CStr]) -> Result<(), Failure> {
-        let mut scene = self.scene.clone();
-        for (&reference, value) in references.iter().zip(values) {
-            let variable = find("String", reference)?;
-            match variable.group {
-                Group::StringParameter(parameter) => {
-                    self.check_fixed(variable)?;
-                    let text = path_text(variable, value).map_err(Failure::Value)?;
-                    self.set_string(&mut scene, parameter, text).map_err(Failure::Value)?;
-                }
-                _ => return Err(wrong_type("String", variable)),
-            }
-        }
-        self.take_over(scene, self.inputs);
-        Ok(())
     }
 
     /// Sets first derivatives of continuous inputs; all of them or, on an error, none. Higher ones have no effect.
@@ -236,13 +217,6 @@ impl Instance {
         };
         first_order(variable, order)?;
         Ok(rate)
-    }
-
-    fn take_over(&mut self, scene: Scene, inputs: Inputs) {
-        (self.scene, self.inputs) = (scene, inputs);
-        if self.state == State::InitializationMode {
-            self.simulation = None;
-        }
     }
 
     /// Fixed parameters can be set until initialisation ends.

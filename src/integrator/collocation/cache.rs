@@ -106,7 +106,7 @@ impl<const S: usize> Cache<S> {
     /// The coefficients for a length, with the base acceleration of a step from `time` (s) on.
     pub fn prepare(&mut self, time: f64, length: f64, recurring: bool, model: &Model) -> Prepared<'_, S> {
         let collocation = self.common.polynomials(self.variable);
-        let place = self.places.place(length, recurring, &model.generator);
+        let place = self.places.place(length, recurring);
         if self.places.length(place).to_bits() != length.to_bits() {
             self.places.fill(place, length, model, collocation, &mut self.sums);
         }

@@ -52,7 +52,8 @@ impl Unknowns {
         let friction = model.friction();
         // On its core the armature has no gap, and the magnet a constant force.
         let seated = model
-            .core()
+            .roles
+            .core
             .is_some_and(|core| state.links.get(core).is_some_and(|at| at.closed));
         for (index, (link, at)) in model.links.iter().zip(&state.links).enumerate() {
             let Some((rubbing, friction)) = friction.filter(|_| index == CONTACT) else {

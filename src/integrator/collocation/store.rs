@@ -162,10 +162,10 @@ impl<const S: usize> Store<S> {
     }
 
     /// The place for the coefficients of a length, `recurring`: one that is kept.
-    pub(super) fn place(&mut self, length: f64, recurring: bool, generator: &Generator) -> usize {
+    pub(super) fn place(&mut self, length: f64, recurring: bool) -> usize {
         if self.lengths.is_empty() {
             // That of a length that does not recur.
-            self.add(generator);
+            self.add();
         }
         let slot = slot(length);
         let Some(place) = self.of_slot.get(slot).filter(|_| recurring) else {
@@ -175,7 +175,7 @@ impl<const S: usize> Store<S> {
             return usize::from(*place);
         }
         // There is one for each slot.
-        let place = self.add(generator);
+        let place = self.add();
         if let (Some(entry), Ok(place)) = (self.of_slot.get_mut(slot), u8::try_from(place)) {
             *entry = place;
         }
@@ -202,14 +202,14 @@ impl<const S: usize> Store<S> {
     /// Makes it one for steps with this generator.
     pub(super) fn turn(&mut self, generator: &Generator, nodes: &Nodal<S>) {
         for (turns, length) in self.turns.iter_mut().zip(&self.lengths) {
-            *turns = Turns::room(generator);
+            *turns = Turns::NONE;
             turns.fill(generator, *length, nodes);
         }
     }
 
     /// Makes a place, for no length yet; returns its index. Out of line, for the sake of the stack.
     #[inline(never)]
-    fn add(&mut self, generator: &Generator) -> usize {
+    fn add(&mut self) -> usize {
         let place = self.lengths.len();
         let (sizes, places) = (&self.sizes, place + 1);
         self.rows.resize_with(places * sizes.rows, NodeRows::zeroed);
@@ -217,7 +217,7 @@ impl<const S: usize> Store<S> {
         self.columns.resize_with(places * sizes.columns, ModeColumns::zeroed);
         self.following.resize(places * sizes.following, [0.0; S]);
         self.ends.resize_with(places * sizes.ends, EndGroup::zeroed);
-        self.turns.push(Turns::room(generator));
+        self.turns.push(Turns::NONE);
         self.lengths.push(0.0);
         place
     }

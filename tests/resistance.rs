@@ -1,0 +1,107 @@
+//! Resistance and temperature of a contact against published values and closed forms.
+
+use relay_contact::reference::{ElectricalContact, Law, Power, reduced_modulus};
+use relay_contact::scene::Scene;
+use relay_contact::variables::{ContactLawKind, ResistanceKind};
+
+fn scene(kind: ResistanceKind) -> Scene {
+    let mut scene = Scene::default();
+    scene.effects.resistance = kind;
+    scene
+}
+
+fn of(scene: &Scene) -> Option<ElectricalContact> {
+    let law = match scene.effects.contact_law {
+        ContactLawKind::Rough => Power::rough(&scene.contact),
+        _ => Power::hertz(&scene.contact),
+    };
+    ElectricalContact::new(scene, &Law::Power(law))
+}
+
+#[test]
+fn published_values() {
+    let electrical = of(&scene(ResistanceKind::PowerLaw)).unwrap();
+    // The power law at the ends of the published waveform, 34.25 and 63.9 mOhm.
+    assert!((1.0 / electrical.conductance(0.200_149) - 34.252e-3).abs() < 1e-6);
+    assert!((1.0 / electrical.conductance(0.103_905) - 63.90e-3).abs() < 1e-4);
+    let holm = of(&scene(ResistanceKind::Holm)).unwrap();
+    // (2.2e-8 / 2) sqrt(pi 0.785e9 / 0.152) by hand.
+    assert!((1.0 / holm.conductance(0.152) - 1.401e-3).abs() < 1e-6);
+    assert!(of(&scene(ResistanceKind::None)).is_none());
+}
+
+#[test]
+fn stiffness_gives_resistance() {
+    // A circle of Hertz: R = rho / (2 a), a = sqrt(R d), at 0.152 N.
+    let mut smooth = scene(ResistanceKind::Barber);
+    let d = Power::hertz(&smooth.contact).indentation(0.152);
+    let circle = 0.5 * smooth.resistance.resistivity / (smooth.contact.curvature_radius * d).sqrt();
+    let found = 1.0 / of(&smooth).unwrap().conductance(0.152);
+    assert!((found / circle - 1.0).abs() < 1e-9, "{found} {circle}");
+    // Rough: rho E* / k_r at F_r, and as k there.
+    smooth.effects.contact_law = ContactLawKind::Rough;
+    let rough = of(&smooth).unwrap();
+    let at_given = smooth.resistance.resistivity * reduced_modulus(&smooth.contact) / 4.37e4;
+    for (force, factor) in [
+        (0.152, 1.0),
+        (0.304, 2_f64.powf(0.54)),
+        (0.01, (0.01_f64 / 0.152).powf(0.54)),
+    ] {
+        let found = 1.0 / rough.conductance(force);
+        assert!((found * factor / at_given - 1.0).abs() < 1e-9, "{found} at {force} N");
+    }
+    // Linear: one resistance while closed, so that any force is enough, or none.
+    smooth.contact.stiffness_exponent = 0.0;
+    let linear = of(&smooth).unwrap();
+    assert_eq!(linear.conductance(1e-9), linear.conductance(1.0));
+    assert_eq!(linear.force_at(60.0), f64::MIN_POSITIVE);
+    assert_eq!(linear.force_at(1e-3), f64::INFINITY);
+}
+
+#[test]
+fn the_force_at_a_threshold_is_where_the_resistance_passes_it() {
+    for kind in [ResistanceKind::PowerLaw, ResistanceKind::Holm, ResistanceKind::Barber] {
+        for film in [0.0, 0.5] {
+            let mut scene = scene(kind);
+            scene.resistance.film = film;
+            let electrical = of(&scene).unwrap();
+            for threshold in [1.0, 60.0, 1e6, 9e8] {
+                let force = electrical.force_at(threshold);
+                let found = 1.0 / electrical.conductance(force);
+                assert!(
+                    (found / threshold - 1.0).abs() < 1e-9,
+                    "{kind:?} {film} {threshold}: {found}"
+                );
+            }
+            assert_eq!(electrical.force_at(1e9), 0.0);
+            assert_eq!(electrical.force_at(2e9), 0.0);
+        }
+    }
+    let mut filmed = scene(ResistanceKind::PowerLaw);
+    filmed.resistance.film = 100.0;
+    assert_eq!(of(&filmed).unwrap().force_at(60.0), f64::INFINITY);
+}
+
+#[test]
+fn the_melting_voltage_gives_the_melting_temperature() {
+    let scene = scene(ResistanceKind::PowerLaw);
+    let electrical = of(&scene).unwrap();
+    // 0.37 V: sqrt(298.15^2 + 0.37^2 / (4 2.45e-8)) = 1218.9 K, near the melting point of silver (1235 K).
+    assert!((electrical.temperature(&scene, 0.15, 1e3) - 1218.9).abs() < 0.1);
+    assert_eq!(electrical.temperature(&scene, 0.15, 0.0), 298.15);
+    assert_eq!(electrical.temperature(&scene, 0.0, 1e3), 298.15);
+    // A source of less than that, and its derivatives: 0.1 V gives sqrt(298.15^2 + 0.1^2 / (4 2.45e-8)).
+    let mut weak = scene.clone();
+    weak.contact.open_voltage = 0.1;
+    assert!((electrical.temperature(&weak, 0.15, 1e3) - 436.960).abs() < 1e-3);
+    assert_eq!(electrical.temperature_slopes(&weak, 0.15, 1e3), (0.0, 0.0));
+    // Below it the derivatives are the slopes.
+    let (force, current, step) = (0.15, -3.0, 1e-6);
+    let slopes = electrical.temperature_slopes(&scene, force, current);
+    let by_force =
+        electrical.temperature(&scene, force + step, current) - electrical.temperature(&scene, force - step, current);
+    let by_current =
+        electrical.temperature(&scene, force, current - step) - electrical.temperature(&scene, force, current + step);
+    assert!((by_force / (2.0 * step) / slopes.0 - 1.0).abs() < 1e-6, "{slopes:?}");
+    assert!((by_current / (2.0 * step) / slopes.1 - 1.0).abs() < 1e-6, "{slopes:?}");
+}
