@@ -7,7 +7,6 @@ follow; how well is told by draws that are left out in turn. The margins of very
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import RBFInterpolator
 from scipy.special import betaincinv
 
 from relay_contact.component import Array
@@ -30,6 +29,12 @@ def terms(scores: Array, count: int) -> Array:
     return np.column_stack([np.ones(len(scores)), scores, scores**2, *products])
 
 
+def distances(scores: Array, others: Array) -> Array:
+    """Return how far rows of scores are from others."""
+    squares = (scores**2).sum(axis=1)[:, None] + (others**2).sum(axis=1) - 2 * scores @ others.T
+    return np.sqrt(np.maximum(squares, 0.0))
+
+
 @dataclass(frozen=True)
 class Surface:
     """A quantity over the scores of parameters, by its values in some draws."""
@@ -45,8 +50,10 @@ class Surface:
         plane, *_ = np.linalg.lstsq(terms(self.scores, count), self.values)
         left = self.values - terms(self.scores, count) @ plane
         # Distances as radial functions, and a constant.
-        between = RBFInterpolator(self.scores, left, kernel="linear", degree=0)
-        return np.asarray(terms(scores, count) @ plane + between(scores))
+        corner = np.ones((count, 1))
+        between = np.block([[distances(self.scores, self.scores), corner], [corner.T, np.zeros((1, 1))]])
+        *radial, constant = np.linalg.solve(between, np.append(left, 0.0))
+        return np.asarray(terms(scores, count) @ plane + distances(scores, self.scores) @ radial + constant)
 
     @property
     def error(self) -> float:
