@@ -22,6 +22,9 @@ from relay_contact.qualification.standards import Contacts
 TOLERANCE = 1e-5  # solver.tolerance, which levels feel by less than their resolution
 GROWS = 1.5  # power of the time for which a contact fails that grows with the level; 2, did it not bounce
 WATCHED = 10  # periods
+GENTLY, SOON, AT_ONCE = (1.0, 1.0), (0.4, 1.3), (0.0, 1.0)
+"""Times in which a vibration rises, and for which it goes on until the start is forgotten, in those that it takes to
+settle. Soon: with less swing off the resonance, where only the level matters that fails."""
 SAMPLES = 64  # of the gap of an open first contact in a period: 0.1 % of its least value may be missed
 PIECES = 16  # of a period of a rise, over each of which base.acceleration is linear
 SUDDEN = 3.0  # factor of its level from which on a vibration may start suddenly: the contact does not fail
@@ -173,27 +176,26 @@ def steady(specimen: Specimen, frequency: float, amplitude: float, gently: bool)
     The length is the longest since the start of the vibration, what is left the least after it is forgotten. Gently:
     raised from rest.
     """
-    return vibrated(specimen, frequency, amplitude, gently)[:2]
+    return vibrated(specimen, frequency, amplitude, GENTLY if gently else AT_ONCE)[:2]
 
 
 def vibrated(
-    specimen: Specimen, frequency: float, amplitude: float, gently: bool
+    specimen: Specimen, frequency: float, amplitude: float, start: tuple[float, float]
 ) -> tuple[Lengths, list[float], float]:
     """Return what `steady` does, and `Specimen.ahead`."""
     sine: Values = {"effects.excitation": "Sine", "excitation.frequency": frequency, "excitation.amplitude": amplitude}
-    periods = int(np.ceil(max(2.0, specimen.response.settling() * frequency)))
+    settling = max(2.0, specimen.response.settling() * frequency)
+    rising, steadily = (int(np.ceil(part * settling)) for part in start)
     with specimen.start(sine) as contact, contact.explained():
-        time = 0.0
-        if gently:
-            contact.rise(frequency, amplitude, periods, PIECES)
-            time = periods / frequency
-        contact.step(time, periods / frequency)
+        if rising:
+            contact.rise(frequency, amplitude, rising, PIECES)
+        contact.step(rising / frequency, steadily / frequency)
 
         def totals() -> dict[str, float]:
             return {name: contact.get(total) for name, (_, total, _) in specimen.monitors.items()}
 
         before = totals()
-        time += periods / frequency
+        time = (rising + steadily) / frequency
         pieces = WATCHED * (SAMPLES if specimen.sampled else 1)
         step = 1 / frequency * WATCHED / pieces
         rows = contact.drive(time + step * np.arange(pieces + 1.0), {}, specimen.watched)
@@ -224,7 +226,7 @@ def sine_tried(specimen: Specimen, test: Sine, frequency: float) -> Tried:
     amplitude = float(test.amplitude(np.array(frequency)))
 
     def tried(factor: float) -> tuple[Lengths, float]:
-        lengths, _, ahead = vibrated(specimen, frequency, factor * amplitude, True)
+        lengths, _, ahead = vibrated(specimen, frequency, factor * amplitude, SOON)
         return specimen.own(lengths), ahead
 
     return tried
@@ -372,7 +374,7 @@ def pieces(specimen: Specimen, course: Course, sign: float, count: int = DIPS) -
         near = np.interp(time, whole.time, whole.acceleration, left=0.0, right=0.0)
         dip, longer, own = deepest(sign * response.change(near)[since : len(near)])
         now = STEP * (first + own)
-        begin = max(now - before, 0.0)
+        begin = max(now - 0.8 * before, 0.0)
         part = whole.part(begin, now + lasting + AFTER)
         found.append((dip, Piece(part, response.reserve / dip, begin - lead, longer)))
         level[max(0, at - round(before / step)) : at + round(before / step)] = np.inf
