@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.fft import next_fast_len
 
 from relay_contact.component import Array, Component, Contact, Values
 from relay_contact.figures import GRAVITY as G
@@ -16,7 +15,7 @@ from relay_contact.many import side_by_side
 from relay_contact.qualification.excitation import BAND, STEP, Breakpoint, Course, Random, Sine, overall, straight
 from relay_contact.qualification.level import Lengths, Tried, threshold
 from relay_contact.qualification.parts import CLOSED, CONTACT, OPEN, Part, Rest, at_rest, parts
-from relay_contact.qualification.response import Response, stays
+from relay_contact.qualification.response import Response, fast, stays
 from relay_contact.qualification.standards import Contacts
 
 TOLERANCE = 1e-5  # solver.tolerance, which levels feel by less than their resolution
@@ -392,7 +391,7 @@ class Noise(Course):
     def change(self, response: Response) -> tuple[Array, float]:
         """Return the change of force or gap at even times by linear theory, and how far (s) these are apart."""
         frequency = np.arange(len(self.spectrum)) / RECORD
-        count = next_fast_len(EVENLY * len(frequency), real=True)
+        count = fast(EVENLY * len(frequency))
         changed = self.spectrum * np.interp(frequency, response.frequency, response.transfer)
         return np.fft.irfft(changed, count, norm="forward"), RECORD / count
 
