@@ -12,7 +12,7 @@ linear: whatever fails first does so at its own level.
 """
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -163,6 +163,7 @@ def stays(change: Array, opening: float) -> Array:
     return np.maximum(most[: len(most) - rest], most[rest:])
 
 
+@cache
 def fast(count: int) -> int:
     """Return the least count from this one on with which a Fourier transform is fast: of factors 2, 3 and 5 alone."""
     odd = [3**three * 5**five for three in range(9) for five in range(7)]
