@@ -14,10 +14,11 @@ from relay_contact.schema import STRICT, Table, within
 # scipy has them too, and takes longer to import than a test.
 below = np.vectorize(lambda score: erfc(-score / sqrt(2)) / 2, otypes=[float])
 """Chance that a standard normal distribution is below a score."""
-score = np.vectorize(NormalDist().inv_cdf, otypes=[float])
+quantile = np.vectorize(NormalDist().inv_cdf, otypes=[float])
 """Score that it is below with a chance."""
 LIMITS = (0.025, 0.975)
-TWO_SIDED = float(score(LIMITS[1]))
+SCORES = quantile(LIMITS)
+TWO_SIDED = float(SCORES[1])
 """Standard deviations from the middle of a normal distribution to the limits of 95 %."""
 LEAST = 0.01
 """Part of its value that a drawn parameter has at least, so that none changes its sign."""
@@ -83,14 +84,14 @@ class Distribution:
 
     def half(self, value: float) -> float:
         """Return half of the interval of 95 %, as a part of the value."""
-        low, high = self.factor(score(LIMITS), value)
+        low, high = self.factor(SCORES, value)
         return float(high - low) / 2
 
     def told(self, value: float) -> str:
         """Describe it."""
         if self.distribution == "normal":
             return f"± {100 * (self.part or 0.0):.3g} %"
-        low, high = (100 * (each - 1) for each in self.factor(score(LIMITS), value))
+        low, high = (100 * (each - 1) for each in self.factor(SCORES, value))
         return f"{low:+.3g} to {high:+.3g} % ({self.distribution})"
 
 

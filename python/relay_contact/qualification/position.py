@@ -13,7 +13,7 @@ import numpy as np
 from relay_contact.component import Array, Component, Values
 from relay_contact.many import side_by_side
 from relay_contact.qualification import statistics
-from relay_contact.qualification.distributions import LEAST, TWO_SIDED, below, score
+from relay_contact.qualification.distributions import LEAST, TWO_SIDED, below, quantile
 from relay_contact.qualification.excitation import Random, Sine, Test, Transient
 from relay_contact.qualification.level import ROUGHLY, threshold
 from relay_contact.qualification.parts import CONTACT, Rest, at_rest
@@ -183,7 +183,7 @@ class Position:
         if not count:
             return np.zeros((1, 0))
         ends = TWO_SIDED * np.eye(count)
-        return np.vstack((np.zeros(count), ends, -ends, score(spread(draws, count))))
+        return np.vstack((np.zeros(count), ends, -ends, quantile(spread(draws, count))))
 
     @cached_property
     def root(self) -> Array:

@@ -274,7 +274,7 @@ def uncertainties(
             used = [distribution.part == 0]
             for position, values in positions.items():
                 start = component.value(values, name)
-                ends = [start, start] if not start else start * distribution.factor(distributions.score(distributions.LIMITS), start)
+                ends = [start, start] if not start else start * distribution.factor(distributions.SCORES, start)
                 for end in ends:
                     used.append(blow(component, values, {name: float(end)}) != rest[position])
             if not any(used):

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 from functools import cache, lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 from numpy.fft import fft, ifft, irfft, rfft
+from numpy.typing import NDArray
 
 from relay_contact.component import Array, Component, Contact, Values
 from relay_contact.figures import GRAVITY as G

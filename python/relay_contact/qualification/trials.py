@@ -7,7 +7,6 @@ from threading import Lock
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from relay_contact.component import Array, Component, Contact, Values
 from relay_contact.figures import GRAVITY as G
@@ -443,7 +442,6 @@ def middle_dip(specimen: Specimen, dips: list[Piece]) -> tuple[float, list[str],
 
     That is, of the largest dips of a record of noise, the one whose part is neither least nor greatest.
     """
-
     # A search begins with the level that was just tried.
     trials = {piece.begin: cache(piece.tried(specimen, 1.0)) for piece in dips}
 
