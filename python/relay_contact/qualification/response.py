@@ -166,7 +166,7 @@ def stays(change: Array, opening: float) -> Array:
 @cache
 def fast(count: int) -> int:
     """Return the least count from this one on with which a Fourier transform is fast: of factors 2, 3 and 5 alone."""
-    odd = [3**three * 5**five for three in range(9) for five in range(7)]
+    odd: list[int] = [3**three * 5**five for three in range(9) for five in range(7)]
     return min(each << (-(-count // each) - 1).bit_length() for each in odd)
 
 

@@ -32,7 +32,7 @@ def terms(scores: Array, count: int) -> Array:
 def distances(scores: Array, others: Array) -> Array:
     """Return how far rows of scores are from others."""
     squares = (scores**2).sum(axis=1)[:, None] + (others**2).sum(axis=1) - 2 * scores @ others.T
-    return np.sqrt(np.maximum(squares, 0.0))
+    return np.asarray(np.sqrt(np.maximum(squares, 0.0)))
 
 
 @dataclass(frozen=True)

@@ -178,7 +178,7 @@ def steady(specimen: Specimen, frequency: float, amplitude: float, gently: bool)
 
 
 def vibrated(
-    specimen: Specimen, frequency: float, amplitude: float, start: tuple[float, float]
+    specimen: Specimen, frequency: float, amplitude: float, start: tuple[float, float] = SOON
 ) -> tuple[Lengths, list[float], float]:
     """Return what `steady` does, and `Specimen.ahead`."""
     sine: Values = {"effects.excitation": "Sine", "excitation.frequency": frequency, "excitation.amplitude": amplitude}
@@ -224,7 +224,7 @@ def sine_tried(specimen: Specimen, test: Sine, frequency: float) -> Tried:
     amplitude = float(test.amplitude(np.array(frequency)))
 
     def tried(factor: float) -> tuple[Lengths, float]:
-        lengths, _, ahead = vibrated(specimen, frequency, factor * amplitude, SOON)
+        lengths, _, ahead = vibrated(specimen, frequency, factor * amplitude)
         return specimen.own(lengths), ahead
 
     return tried
