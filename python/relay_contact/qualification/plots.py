@@ -66,7 +66,7 @@ def breadth(texts: list[str], size: float) -> float:
     """Return the width (inches) of the longest of some texts, which may have several lines."""
     font = FontProperties(size=size)
     lines = [line for text in texts for line in text.splitlines()]
-    return max(text_to_path.get_text_width_height_descent(line, font, ismath=False)[0] for line in lines) / 72
+    return max((text_to_path.get_text_width_height_descent(line, font, False)[0] for line in lines), default=0.0) / 72
 
 
 def sketch(position: Finding, parameters: dict[str, float]) -> Figure:
