@@ -34,6 +34,7 @@ LEFT, RIGHT, BOTTOM, TOP = 0.6, 0.06, 0.45, 0.27  # inches beside panels, of lab
 OFF = 0.17  # inches, of a label from the edge of the figure
 BETWEEN = 0.34  # inches from panel to panel
 KEY = 0.45  # inches, of a legend beside its texts
+BESIDE: dict[str, Any] = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0), "borderaxespad": 0.0}
 
 SHALLOWEST = 1e-8
 """Part of the largest density from which on it is drawn."""
@@ -165,16 +166,11 @@ def above(axes: Axes, title: str) -> None:
     axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.99), ncols=4, borderaxespad=0.2, handlelength=2)
 
 
-def beside(figure: Figure, labels: list[str]) -> Axes:
-    """Add a panel with room for a legend of these labels to its right, off the data."""
+def beside(figure: Figure, labels: list[str], title: str) -> Axes:
+    """Add a panel with its title, and room for a legend of these labels to its right, off the data."""
     (axes,) = panels(figure, right=KEY + breadth(labels, mpl.rcParams["legend.fontsize"]))
-    return axes
-
-
-def finished(axes: Axes, title: str) -> None:
-    """Write the title at the left above a panel, and the legend to the right of it."""
     axes.set_title(title, loc="left", y=1.0)
-    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0)
+    return axes
 
 
 def sweeps(rows: list[Axes], findings: list[Finding], contacts: Contacts) -> None:
@@ -243,17 +239,15 @@ def courses(figure: Figure, findings: list[Finding], title: str) -> None:
     both = any(OPEN in finding.margin.failed for finding in findings) and name == CLOSED
     ends = np.array((-3.0 if both else -0.2, 3.0)) * scale * rest
     labels = [fill(f"{finding.named}: {failures(finding.margin)}", 34) for finding in findings]
-    axes = beside(figure, labels)
+    axes = beside(figure, labels, title + "; below 0: force of the open contact" * both)
     for number, (finding, label) in enumerate(zip(findings, labels, strict=True)):
         time, course = (np.array(finding.margin.curves[each]) for each in ("time", "course"))
         axes.plot(1e3 * time, scale * course, label=label, **styled(number, len(time)))
         clipped(axes, 1e3 * time, scale * course, ends, unit, STYLES[number % len(STYLES)]["color"])
     axes.axhline(scale * rest, color=GREY, linestyle=":", label="at rest")
     axes.axhline(0.0, color=GREY, linewidth=0.6)
-    if both:
-        title += "; below 0: force of the open contact"
     axes.set(xlabel="time [ms]", ylabel=f"{'gap' if name == OPEN else 'force'} [{unit}]", ylim=ends)
-    finished(axes, title)
+    axes.legend(**BESIDE)
 
 
 def clipped(axes: Axes, time: Array, course: Array, ends: Array, unit: str, colour: str) -> None:
@@ -306,18 +300,17 @@ def record(finding: Finding) -> Figure:
 
 def wear(figure: Figure, findings: list[Finding]) -> None:
     """Draw the margins over the overtravel, or the gap of a contact that is open alone."""
-    axes = beside(figure, [finding.named for finding in findings])
+    first = findings[0].margin
+    over, why = ("gap", "") if is_open(first) else ("overtravel", ", which wear takes away")
+    axes = beside(figure, [finding.named for finding in findings], f"Margins over the {over}{why}")
     for number, finding in enumerate(findings):
         own = finding.margin.wear
         style = styled(number, len(own["margin"])) | {"markevery": 1}
         axes.plot(1e3 * np.array(own["overtravel"]), own["margin"], label=finding.named, **style)
-    first = findings[0].margin
     axes.axhline(1.0, color=GREY, linewidth=1)
     axes.axvline(1e3 * first.overtravel, color=GREY, linestyle=":", label="as it is")
-    over = "gap" if is_open(first) else "overtravel"
-    why = "" if is_open(first) else ", which wear takes away"
     axes.set(xlabel=f"{over} [mm]", ylabel="margin", ylim=(0, None))
-    finished(axes, f"Margins over the {over}{why}")
+    axes.legend(**BESIDE)
 
 
 def position_figures(tests: list[Tested], contacts: Contacts) -> list[Figure]:
