@@ -102,7 +102,7 @@ class Spring:
         """Give the amplitude of a sine, raised gently, at which the contact opens, m/s2."""
         specimen, response = self.specimen, self.specimen.response
         guess = response.reserve / float(np.interp(frequency, response.frequency, response.gain))
-        return threshold(lambda level: vibrated(specimen, frequency, level, True)[::2], guess)[0]
+        return threshold(lambda level: vibrated(specimen, frequency, level)[::2], guess)[0]
 
 
 @dataclass

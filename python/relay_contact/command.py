@@ -1,6 +1,7 @@
 """The command `relay-contact`."""
 
 import argparse
+import gc
 import math
 import sys
 import warnings
@@ -136,6 +137,8 @@ def qualify_relay(given: argparse.Namespace) -> None:
         raise RelayContactError("--standard, --history: one of them is needed, the tests of a standard or a record")
     asked = Path(given.standard).stem if given.standard else Path(given.history[0]).stem
     folder = given.out or Path(f"qualification-{Path(given.relay).stem}-{asked}")
+    # What was imported stays: garbage is sought in the rest.
+    gc.freeze()
     found = qualify(
         given.relay, given.standard, out=folder, tests=given.test, history=given.history, unit=given.unit,
         rate=given.rate, quick=given.quick, workers=given.workers, cluster=given.cluster,

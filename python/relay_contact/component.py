@@ -105,7 +105,7 @@ class Component:
         if folder is None:
             folder = Path(mkdtemp())
             weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
-        self.folder: str = extract(str(self.path), str(folder))
+        self.folder: str = extract(str(self.path), str(folder), lambda name: not name.startswith("documentation/"))
         self.warnings: dict[str, str] = {}
         """The first warning of each kind since this was cleared, of all instances."""
         self.told: set[str] = set()

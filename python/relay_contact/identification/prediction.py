@@ -234,7 +234,7 @@ class Laboratory:
         response = respond(self.component, asked, monitor.threshold)
         specimen = Specimen(self.component, alone, monitor, response)
         levels = [
-            threshold(lambda level, at=float(frequency): vibrated(specimen, at, level, True)[::2], float(guess))[0]  # type: ignore[misc]
+            threshold(lambda level, at=float(frequency): vibrated(specimen, at, level)[::2], float(guess))[0]  # type: ignore[misc]
             for frequency, guess in zip(measurement.over, linear, strict=True)
         ]
         return np.array(levels) / linear

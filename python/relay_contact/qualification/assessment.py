@@ -38,11 +38,9 @@ def springs_of(values: Values) -> dict[str, bytes]:
     return {name: path.read_bytes() for name, path in files.items()}
 
 
-def key(position: Position, test: Test, points: int) -> str:
+def key(programs: bytes, position: Position, test: Test, points: int) -> str:
     """Return a name for a test that changes with all that its result depends on."""
-    text = hashlib.sha256(position.component.path.read_bytes())
-    for path in sorted((HERE / "qualification").glob("*.py")):
-        text.update(path.read_bytes())
+    text = hashlib.sha256(programs)
     for name, spring in springs_of(position.values).items():
         text.update(name.encode() + spring)
     values = {name: value for name, value in position.values.items() if name not in SPRING_FILES}
@@ -105,10 +103,12 @@ def assess(
     """
     (folder / "parts").mkdir(parents=True, exist_ok=True)
     jobs: list[Job] = []
+    files = component.path, *sorted((HERE / "qualification").glob("*.py"))
+    programs = hashlib.sha256(b"".join(path.read_bytes() for path in files)).digest()
     for position, tests in positions(component, relay, standard):
         own = points if position.model is relay.models[0] else min(points, FEW)
         for test in tests:
-            jobs.append((folder / "parts" / f"{key(position, test, own)}.json", position, test, own))
+            jobs.append((folder / "parts" / f"{key(programs, position, test, own)}.json", position, test, own))
     todo = [job for job in jobs if not job[0].exists()]
     for _ in range(len(jobs) - len(todo)):
         tell("")

@@ -1,17 +1,24 @@
 """How uncertain parameters are distributed, by name, and correlated; as the files of relays give them."""
 
+from math import erfc, sqrt
+from statistics import NormalDist
 from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field, TypeAdapter, ValidationError, model_validator
 from pydantic.dataclasses import dataclass
-from scipy.special import ndtr, ndtri
 
 from relay_contact.component import Array
 from relay_contact.schema import STRICT, Table, within
 
+# scipy has them too, and takes longer to import than a test.
+below = np.vectorize(lambda score: erfc(-score / sqrt(2)) / 2, otypes=[float])
+"""Chance that a standard normal distribution is below a score."""
+quantile = np.vectorize(NormalDist().inv_cdf, otypes=[float])
+"""Score that it is below with a chance."""
 LIMITS = (0.025, 0.975)
-TWO_SIDED = float(ndtri(LIMITS[1]))
+SCORES = quantile(LIMITS)
+TWO_SIDED = float(SCORES[1])
 """Standard deviations from the middle of a normal distribution to the limits of 95 %."""
 LEAST = 0.01
 """Part of its value that a drawn parameter has at least, so that none changes its sign."""
@@ -60,7 +67,7 @@ class Distribution:
 
     def factor(self, score: Array, value: float) -> Array:
         """Return the parameter in parts of its value, for scores of a standard normal distribution."""
-        chance = ndtr(score)
+        chance = below(score)
         match self.distribution:
             case "normal":
                 found = 1 + (self.part or 0.0) * np.asarray(score) / TWO_SIDED
@@ -77,14 +84,14 @@ class Distribution:
 
     def half(self, value: float) -> float:
         """Return half of the interval of 95 %, as a part of the value."""
-        low, high = self.factor(ndtri(LIMITS), value)
+        low, high = self.factor(SCORES, value)
         return float(high - low) / 2
 
     def told(self, value: float) -> str:
         """Describe it."""
         if self.distribution == "normal":
             return f"± {100 * (self.part or 0.0):.3g} %"
-        low, high = (100 * (each - 1) for each in self.factor(ndtri(LIMITS), value))
+        low, high = (100 * (each - 1) for each in self.factor(SCORES, value))
         return f"{low:+.3g} to {high:+.3g} % ({self.distribution})"
 
 

@@ -3,10 +3,13 @@
 from textwrap import fill
 from typing import Any
 
+import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
 from matplotlib.patches import Rectangle
+from matplotlib.textpath import text_to_path
 
 from relay_contact.component import Array
 from relay_contact.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, three
@@ -27,6 +30,11 @@ LINES = {"pass": GREEN, "FAIL": RED, "undecided": ORANGE}
 DASHES = {CLOSED: "-", OPEN: "--", CORE: ":", STOP: ":", PUSHER: "-."}
 PARTS = {CONTACT: "s", CORE: "^", STOP: "^", PUSHER: "v"}
 WIDTH = 8.27  # inches: a page of A4
+LEFT, RIGHT, BOTTOM, TOP = 0.6, 0.06, 0.45, 0.27  # inches beside panels, of labels and titles
+OFF = 0.17  # inches, of a label from the edge of the figure
+BETWEEN = 0.34  # inches from panel to panel
+KEY = 0.45  # inches, of a legend beside its texts
+BESIDE: dict[str, Any] = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0), "borderaxespad": 0.0}
 
 SHALLOWEST = 1e-8
 """Part of the largest density from which on it is drawn."""
@@ -38,10 +46,34 @@ def styled(number: int, count: int) -> dict[str, Any]:
     return style | {"markevery": (int(count / MARKS * number / len(STYLES)), max(1, count // MARKS)), "linewidth": 1}
 
 
+def panels(figure: Figure, count: int = 1, left: float = LEFT, right: float = RIGHT) -> list[Axes]:
+    """Add panels one above the other, so far (inches) from the sides.
+
+    Their places are given: matplotlib would draw all twice more to find them.
+    """
+    height = figure.get_figheight()
+    each = (height - TOP - BOTTOM - (count - 1) * BETWEEN) / count
+    found = []
+    for row in reversed(range(count)):
+        low = BOTTOM + row * (each + BETWEEN)
+        axes = figure.add_axes((left / WIDTH, low / height, 1 - (left + right) / WIDTH, each / height))
+        axes.xaxis.set_label_coords(0.5, (OFF - low) / each)
+        axes.yaxis.set_label_coords((OFF - left) / (WIDTH - left - right), 0.5)
+        found.append(axes)
+    return found
+
+
+def breadth(texts: list[str], size: float) -> float:
+    """Return the width (inches) of the longest of some texts, which may have several lines."""
+    font = FontProperties(size=size)
+    lines = [line for text in texts for line in text.splitlines()]
+    return max((text_to_path.get_text_width_height_descent(line, font, False)[0] for line in lines), default=0.0) / 72
+
+
 def sketch(position: Finding, parameters: dict[str, float]) -> Figure:
     """Draw what is judged: a spring that is clamped and rests on its contact, both shaken by the base."""
-    figure = Figure(figsize=(WIDTH, 2.0), layout="constrained")
-    axes = figure.subplots()
+    figure = Figure(figsize=(WIDTH, 2.0))
+    axes = figure.add_axes((0, 0, 1, 1))
     axes.set(xlim=(-1.2, 11.5), ylim=(-1.35, 1.5))
     axes.axis("off")
     along = np.linspace(0, 8, 50)
@@ -90,12 +122,16 @@ def held(axes: Axes, rest: dict[str, float]) -> None:
 def margins(tests: list[Tested]) -> Figure:
     """Draw all margins on one scale, of each model."""
     judged = [(tested, each) for tested in tests for each in tested.models if each.judged]
-    figure = Figure(figsize=(WIDTH, 1.0 + 0.24 * len(judged)), layout="constrained")
-    axes = figure.subplots()
     several = len({tested.first.position for tested in tests}) > 1
     labels = []
+    for tested, each in judged:
+        place = f", {each.position}" if several else ""
+        model = f", {each.model}" if len(tested.models) > 1 else ""
+        labels.append(f"{each.named}{place}{model}: {each.verdict}")
+    figure = Figure(figsize=(WIDTH, 1.0 + 0.24 * len(judged)))
+    (axes,) = panels(figure, left=breadth(labels, mpl.rcParams["font.size"]) + OFF)
     parts: dict[str, None] = {}
-    for row, (tested, each) in enumerate(judged):
+    for row, (_, each) in enumerate(judged):
         colour, own = LINES[each.verdict], each.margin
         axes.plot([max(own.low, 1e-3), own.high], [row, row], color=colour, linewidth=4, solid_capstyle="butt",
                   alpha=0.5)  # fmt: skip
@@ -104,9 +140,6 @@ def margins(tests: list[Tested]) -> Figure:
             if not part.endless:
                 axes.plot(part.margin, row, PARTS[name], color="none", markeredgecolor=GREY, markersize=7)
         parts |= dict.fromkeys(own.parts)
-        place = f", {each.position}" if several else ""
-        model = f", {each.model}" if len(tested.models) > 1 else ""
-        labels.append(f"{each.named}{place}{model}: {each.verdict}")
     axes.set(
         yticks=range(len(judged)),
         yticklabels=labels,
@@ -129,18 +162,20 @@ def margins(tests: list[Tested]) -> Figure:
 
 def above(axes: Axes, title: str) -> None:
     """Write the title at the left above a panel, and its legend beside it, off the data."""
-    axes.set_title(title, loc="left")
+    axes.set_title(title, loc="left", y=1.0)
     axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.99), ncols=4, borderaxespad=0.2, handlelength=2)
 
 
-def beside(axes: Axes) -> None:
-    """Put the legend to the right of a panel, off the data."""
-    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0)
+def beside(figure: Figure, labels: list[str], title: str) -> Axes:
+    """Add a panel with its title, and room for a legend of these labels to its right, off the data."""
+    (axes,) = panels(figure, right=KEY + breadth(labels, mpl.rcParams["legend.fontsize"]))
+    axes.set_title(title, loc="left", y=1.0)
+    return axes
 
 
-def sweeps(panels: list[Axes], findings: list[Finding], contacts: Contacts) -> None:
+def sweeps(rows: list[Axes], findings: list[Finding], contacts: Contacts) -> None:
     """Draw level, what is left of force and gap, and failures over frequency."""
-    level, left, length = panels
+    level, left, length = rows
     most = 0.0
     limits = {CLOSED: contacts.opening, OPEN: contacts.false_make}
     for number, finding in enumerate(findings):
@@ -176,7 +211,7 @@ def sweeps(panels: list[Axes], findings: list[Finding], contacts: Contacts) -> N
     above(length, "Longest failure")
     length.set(ylim=(0, max(1.5e6 * limits[next(iter(findings[0].margin.rest))], 1.25 * most)))
     length.set(ylabel="duration [µs]", xlabel="frequency [Hz]")
-    for axes in panels:
+    for axes in rows:
         axes.set_xscale("log")
         axes.xaxis.set_major_formatter("{x:g}")
         axes.tick_params(labelbottom=axes is length)
@@ -193,7 +228,7 @@ def longest(axes: Axes, frequency: Array, lengths: Array, colour: str) -> None:
     )  # fmt: skip
 
 
-def courses(axes: Axes, findings: list[Finding], title: str) -> None:
+def courses(figure: Figure, findings: list[Finding], title: str) -> None:
     """Draw force or gap over time: of shocks in the worse direction, or around the largest dip.
 
     The blows of closing are many times the force at rest: what is beyond the panel is marked, and its largest value at
@@ -203,18 +238,16 @@ def courses(axes: Axes, findings: list[Finding], title: str) -> None:
     scale, unit = (1e3, "mm") if name == OPEN else (100, "cN")
     both = any(OPEN in finding.margin.failed for finding in findings) and name == CLOSED
     ends = np.array((-3.0 if both else -0.2, 3.0)) * scale * rest
-    for number, finding in enumerate(findings):
+    labels = [fill(f"{finding.named}: {failures(finding.margin)}", 34) for finding in findings]
+    axes = beside(figure, labels, title + "; below 0: force of the open contact" * both)
+    for number, (finding, label) in enumerate(zip(findings, labels, strict=True)):
         time, course = (np.array(finding.margin.curves[each]) for each in ("time", "course"))
-        label = fill(f"{finding.named}: {failures(finding.margin)}", 34)
         axes.plot(1e3 * time, scale * course, label=label, **styled(number, len(time)))
         clipped(axes, 1e3 * time, scale * course, ends, unit, STYLES[number % len(STYLES)]["color"])
     axes.axhline(scale * rest, color=GREY, linestyle=":", label="at rest")
     axes.axhline(0.0, color=GREY, linewidth=0.6)
-    if both:
-        title += "; below 0: force of the open contact"
     axes.set(xlabel="time [ms]", ylabel=f"{'gap' if name == OPEN else 'force'} [{unit}]", ylim=ends)
-    axes.set_title(title, loc="left")
-    beside(axes)
+    axes.legend(**BESIDE)
 
 
 def clipped(axes: Axes, time: Array, course: Array, ends: Array, unit: str, colour: str) -> None:
@@ -265,20 +298,19 @@ def record(finding: Finding) -> Figure:
     return figure
 
 
-def wear(axes: Axes, findings: list[Finding]) -> None:
+def wear(figure: Figure, findings: list[Finding]) -> None:
     """Draw the margins over the overtravel, or the gap of a contact that is open alone."""
+    first = findings[0].margin
+    over, why = ("gap", "") if is_open(first) else ("overtravel", ", which wear takes away")
+    axes = beside(figure, [finding.named for finding in findings], f"Margins over the {over}{why}")
     for number, finding in enumerate(findings):
         own = finding.margin.wear
         style = styled(number, len(own["margin"])) | {"markevery": 1}
         axes.plot(1e3 * np.array(own["overtravel"]), own["margin"], label=finding.named, **style)
-    first = findings[0].margin
     axes.axhline(1.0, color=GREY, linewidth=1)
     axes.axvline(1e3 * first.overtravel, color=GREY, linestyle=":", label="as it is")
-    over = "gap" if is_open(first) else "overtravel"
-    why = "" if is_open(first) else ", which wear takes away"
     axes.set(xlabel=f"{over} [mm]", ylabel="margin", ylim=(0, None))
-    axes.set_title(f"Margins over the {over}{why}", loc="left")
-    beside(axes)
+    axes.legend(**BESIDE)
 
 
 def position_figures(tests: list[Tested], contacts: Contacts) -> list[Figure]:
@@ -289,24 +321,22 @@ def position_figures(tests: list[Tested], contacts: Contacts) -> list[Figure]:
         kinds.setdefault(finding.kind, []).append(finding)
     figures: list[Figure] = []
 
-    def added(panels: int, height: float) -> list[Axes]:
-        figures.append(Figure(figsize=(WIDTH, height), layout="constrained"))
-        found = list(figures[-1].subplots(panels, 1, squeeze=False)[:, 0])
-        figures[-1].align_ylabels()
-        return found
+    def added(height: float) -> Figure:
+        figures.append(Figure(figsize=(WIDTH, height)))
+        return figures[-1]
 
     def height(findings: list[Finding]) -> float:
         return 1.3 + 0.4 * max(2, len(findings))
 
     if "sine" in kinds:
-        sweeps(added(3, 5.6), kinds["sine"], contacts)
+        sweeps(panels(added(5.6), 3), kinds["sine"], contacts)
     if "random" in kinds:
         title = "Random: around the largest dip expected in the time of the test"
-        courses(added(1, height(kinds["random"]))[0], kinds["random"], title)
+        courses(added(height(kinds["random"])), kinds["random"], title)
     if "shock" in kinds:
         way = "closes the contact" if is_open(judged[0].margin) else "opens the contact"
-        courses(added(1, height(kinds["shock"]))[0], kinds["shock"], f"Shock in the direction that {way}")
+        courses(added(height(kinds["shock"])), kinds["shock"], f"Shock in the direction that {way}")
     figures += [record(finding) for kind in ("spectrum", "history") for finding in kinds.get(kind, [])]
     if judged:
-        wear(added(1, height(judged) if len(judged) > 6 else 2.3)[0], judged)
+        wear(added(height(judged) if len(judged) > 6 else 2.3), judged)
     return figures

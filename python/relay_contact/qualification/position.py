@@ -9,12 +9,11 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.special import ndtr, ndtri
 
 from relay_contact.component import Array, Component, Values
 from relay_contact.many import side_by_side
 from relay_contact.qualification import statistics
-from relay_contact.qualification.distributions import LEAST, TWO_SIDED
+from relay_contact.qualification.distributions import LEAST, TWO_SIDED, below, quantile
 from relay_contact.qualification.excitation import Random, Sine, Test, Transient
 from relay_contact.qualification.level import ROUGHLY, threshold
 from relay_contact.qualification.parts import CONTACT, Rest, at_rest
@@ -184,7 +183,7 @@ class Position:
         if not count:
             return np.zeros((1, 0))
         ends = TWO_SIDED * np.eye(count)
-        return np.vstack((np.zeros(count), ends, -ends, ndtri(spread(draws, count))))
+        return np.vstack((np.zeros(count), ends, -ends, quantile(spread(draws, count))))
 
     @cached_property
     def root(self) -> Array:
@@ -318,7 +317,7 @@ class Position:
             return np.ones(len(scores))
         response, lasting = self.specimen.response, self.specimen.lasting
         moments = response.moments(test)
-        found = np.array([response.random(test, lasting, float(each), moments) for each in ndtr(GRID)])
+        found = np.array([response.random(test, lasting, float(each), moments) for each in below(GRID)])
         return np.interp(scores, GRID, found / response.random(test, lasting, moments=moments))
 
     @cached_property

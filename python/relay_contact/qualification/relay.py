@@ -6,7 +6,6 @@ from typing import Annotated, Any
 
 import numpy as np
 from pydantic import Field
-from scipy.special import ndtri
 
 from relay_contact.component import Component, Value, Values, nearest
 from relay_contact.files import RelayContactError, by_name, digest, found, named, read_toml
@@ -275,7 +274,7 @@ def uncertainties(
             used = [distribution.part == 0]
             for position, values in positions.items():
                 start = component.value(values, name)
-                ends = [start, start] if not start else start * distribution.factor(ndtri(distributions.LIMITS), start)
+                ends = [start, start] if not start else start * distribution.factor(distributions.SCORES, start)
                 for end in ends:
                     used.append(blow(component, values, {name: float(end)}) != rest[position])
             if not any(used):

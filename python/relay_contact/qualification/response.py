@@ -12,17 +12,16 @@ linear: whatever fails first does so at its own level.
 """
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache, lru_cache
 
 import numpy as np
+from numpy.fft import fft, ifft, irfft, rfft
 from numpy.typing import NDArray
-from scipy.fft import fft, ifft, irfft, next_fast_len, rfft
-from scipy.ndimage import maximum_filter1d
-from scipy.special import ndtr
 
 from relay_contact.component import Array, Component, Contact, Values
 from relay_contact.figures import GRAVITY as G
 from relay_contact.files import RelayContactError
+from relay_contact.qualification.distributions import below
 from relay_contact.qualification.excitation import BAND, STEP, Course, Random, Sine, Test, Transient
 from relay_contact.qualification.parts import CONTACT, Part, Rest, at_rest, parts
 
@@ -121,7 +120,7 @@ class Response:
             shift, speed = np.cos(phases) @ size, np.sin(phases) @ (2 * np.pi * frequency * size)
             slope = 2 * np.pi * mean * rms
             # Noise and sines are independent: at each phase the crossings are those of noise that moves with them.
-            moving = slope * bell(speed / slope) + speed * ndtr(speed / slope)
+            moving = slope * bell(speed / slope) + speed * below(speed / slope)
 
             def excess(dip: float) -> float:
                 rate = float((bell((dip - shift) / rms) / rms * moving).mean())
@@ -141,7 +140,7 @@ class Response:
 
             return np.asarray(oaconvolve(course, self.answer)) * STEP
         count = len(course) + len(self.answer) - 1
-        size = next_fast_len(count, real=True)
+        size = fast(count)
         return np.asarray(irfft(rfft(course, size) * rfft(self.answer, size), size)[:count]) * STEP
 
     def course(self, course: Course, sign: float, opening: float) -> float:
@@ -157,8 +156,18 @@ def dip(change: Array, opening: float) -> float:
 def stays(change: Array, opening: float) -> Array:
     """Return the level below which a change stays for a time (s) from each step on."""
     dwell = max(1, round(opening / STEP))
-    # Of a window from each step on, not around it.
-    return np.asarray(maximum_filter1d(change, dwell + 1, origin=-((dwell + 1) // 2)))[: len(change) - dwell]
+    most, window = change, 1
+    while 2 * window <= dwell + 1:
+        most, window = np.maximum(most[:-window], most[window:]), 2 * window
+    rest = dwell + 1 - window
+    return np.maximum(most[: len(most) - rest], most[rest:])
+
+
+@cache
+def fast(count: int) -> int:
+    """Return the least count from this one on with which a Fourier transform is fast: of factors 2, 3 and 5 alone."""
+    odd: list[int] = [3**three * 5**five for three in range(9) for five in range(7)]
+    return min(each << (-(-count // each) - 1).bit_length() for each in odd)
 
 
 def settled(answer: Array, part: float = 1e-3) -> float:
@@ -274,7 +283,7 @@ def transformation(length: int) -> tuple[Array, NDArray[np.complex128], NDArray[
     lines = int(count * BAND[1] * STEP) + 1
     frequency = np.arange(lines) / (count * STEP)
     chirp = np.exp(-1j * np.pi / count * np.arange(max(length, lines)) ** 2)
-    size = next_fast_len(length + lines - 1)
+    size = fast(length + lines - 1)
     kernel = fft(1 / np.concatenate((chirp[length - 1 : 0 : -1], chirp[:lines])), size)
     return frequency, chirp[:lines] * STEP / np.sinc(frequency * STEP) ** 2, chirp[:length], kernel
 

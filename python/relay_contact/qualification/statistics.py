@@ -5,10 +5,9 @@ follow; how well is told by draws that are left out in turn. The margins of very
 """
 
 from dataclasses import dataclass
+from math import exp, lgamma, log, log1p
 
 import numpy as np
-from scipy.interpolate import RBFInterpolator
-from scipy.special import betaincinv
 
 from relay_contact.component import Array
 
@@ -30,6 +29,12 @@ def terms(scores: Array, count: int) -> Array:
     return np.column_stack([np.ones(len(scores)), scores, scores**2, *products])
 
 
+def distances(scores: Array, others: Array) -> Array:
+    """Return how far rows of scores are from others."""
+    squares = (scores**2).sum(axis=1)[:, None] + (others**2).sum(axis=1) - 2 * scores @ others.T
+    return np.asarray(np.sqrt(np.maximum(squares, 0.0)))
+
+
 @dataclass(frozen=True)
 class Surface:
     """A quantity over the scores of parameters, by its values in some draws."""
@@ -45,8 +50,10 @@ class Surface:
         plane, *_ = np.linalg.lstsq(terms(self.scores, count), self.values)
         left = self.values - terms(self.scores, count) @ plane
         # Distances as radial functions, and a constant.
-        between = RBFInterpolator(self.scores, left, kernel="linear", degree=0)
-        return np.asarray(terms(scores, count) @ plane + between(scores))
+        corner = np.ones((count, 1))
+        between = np.block([[distances(self.scores, self.scores), corner], [corner.T, np.zeros((1, 1))]])
+        *radial, constant = np.linalg.solve(between, np.append(left, 0.0))
+        return np.asarray(terms(scores, count) @ plane + distances(scores, self.scores) @ radial + constant)
 
     @property
     def error(self) -> float:
@@ -73,9 +80,26 @@ def chance(margins: Array, error: float) -> tuple[float, float, float]:
     number = len(margins)
     fewest, found, most = (int((margins < level).sum()) for level in (1 - error, 1, 1 + error))
     tail = (1 - CONFIDENCE) / 2
-    low = float(betaincinv(fewest, number - fewest + 1, tail)) if fewest else 0.0
-    high = float(betaincinv(most + 1, number - most, 1 - tail)) if most < number else 1.0
+    low = end(fewest, number, tail) if fewest else 0.0
+    high = end(most + 1, number, 1 - tail) if most < number else 1.0
     return found / number, low, high
+
+
+def end(count: int, number: int, chance: float) -> float:
+    """Return the probability of each draw with which so many of a number, or more, have a chance.
+
+    By Newton's method: the logarithm of the chance is concave over that of the probability.
+    """
+    # Of more than these none counts.
+    counts = np.arange(count, min(number, count + int(20 * number**0.5)) + 1)
+    fewest = lgamma(number + 1) - lgamma(count + 1) - lgamma(number - count + 1)
+    ways = fewest + np.append(0.0, np.cumsum(np.log((number - counts[:-1]) / counts[1:])))
+    logarithm, step = log(count / (number + 1)), 1.0
+    while abs(step) > 1e-12:
+        terms = np.exp(ways + counts * logarithm + (number - counts) * log1p(-exp(logarithm)))
+        step = log(chance / terms.sum()) * terms.sum() / (count * terms[0])
+        logarithm += step
+    return exp(logarithm)
 
 
 def first_order(scores: Array, margins: Array, names: list[str]) -> dict[str, float]:

@@ -2,12 +2,11 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cache, cached_property, lru_cache
 from threading import Lock
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.fft import next_fast_len
 
 from relay_contact.component import Array, Component, Contact, Values
 from relay_contact.figures import GRAVITY as G
@@ -15,12 +14,15 @@ from relay_contact.many import side_by_side
 from relay_contact.qualification.excitation import BAND, STEP, Breakpoint, Course, Random, Sine, overall, straight
 from relay_contact.qualification.level import Lengths, Tried, threshold
 from relay_contact.qualification.parts import CLOSED, CONTACT, OPEN, Part, Rest, at_rest, parts
-from relay_contact.qualification.response import Response, stays
+from relay_contact.qualification.response import Response, fast, stays
 from relay_contact.qualification.standards import Contacts
 
 TOLERANCE = 1e-5  # solver.tolerance, which levels feel by less than their resolution
 GROWS = 1.5  # power of the time for which a contact fails that grows with the level; 2, did it not bounce
 WATCHED = 10  # periods
+GENTLY, SOON, AT_ONCE = (1.0, 1.0), (0.4, 1.3), (0.0, 1.0)
+"""Times in which a vibration rises, and for which it goes on until the start is forgotten, in those that it takes to
+settle. Soon: with less swing off the resonance, where only the level matters that fails."""
 SAMPLES = 64  # of the gap of an open first contact in a period: 0.1 % of its least value may be missed
 PIECES = 16  # of a period of a rise, over each of which base.acceleration is linear
 SUDDEN = 3.0  # factor of its level from which on a vibration may start suddenly: the contact does not fail
@@ -172,27 +174,26 @@ def steady(specimen: Specimen, frequency: float, amplitude: float, gently: bool)
     The length is the longest since the start of the vibration, what is left the least after it is forgotten. Gently:
     raised from rest.
     """
-    return vibrated(specimen, frequency, amplitude, gently)[:2]
+    return vibrated(specimen, frequency, amplitude, GENTLY if gently else AT_ONCE)[:2]
 
 
 def vibrated(
-    specimen: Specimen, frequency: float, amplitude: float, gently: bool
+    specimen: Specimen, frequency: float, amplitude: float, start: tuple[float, float] = SOON
 ) -> tuple[Lengths, list[float], float]:
     """Return what `steady` does, and `Specimen.ahead`."""
     sine: Values = {"effects.excitation": "Sine", "excitation.frequency": frequency, "excitation.amplitude": amplitude}
-    periods = int(np.ceil(max(2.0, specimen.response.settling() * frequency)))
+    settling = max(2.0, specimen.response.settling() * frequency)
+    rising, steadily = (int(np.ceil(part * settling)) for part in start)
     with specimen.start(sine) as contact, contact.explained():
-        time = 0.0
-        if gently:
-            contact.rise(frequency, amplitude, periods, PIECES)
-            time = periods / frequency
-        contact.step(time, periods / frequency)
+        if rising:
+            contact.rise(frequency, amplitude, rising, PIECES)
+        contact.step(rising / frequency, steadily / frequency)
 
         def totals() -> dict[str, float]:
             return {name: contact.get(total) for name, (_, total, _) in specimen.monitors.items()}
 
         before = totals()
-        time += periods / frequency
+        time = (rising + steadily) / frequency
         pieces = WATCHED * (SAMPLES if specimen.sampled else 1)
         step = 1 / frequency * WATCHED / pieces
         rows = contact.drive(time + step * np.arange(pieces + 1.0), {}, specimen.watched)
@@ -223,7 +224,7 @@ def sine_tried(specimen: Specimen, test: Sine, frequency: float) -> Tried:
     amplitude = float(test.amplitude(np.array(frequency)))
 
     def tried(factor: float) -> tuple[Lengths, float]:
-        lengths, _, ahead = vibrated(specimen, frequency, factor * amplitude, True)
+        lengths, _, ahead = vibrated(specimen, frequency, factor * amplitude)
         return specimen.own(lengths), ahead
 
     return tried
@@ -358,7 +359,7 @@ def pieces(specimen: Specimen, course: Course, sign: float, count: int = DIPS) -
     before, since = 2 * max(response.settling(), BEFORE), len(response.answer)
     if isinstance(course, Noise):
         level, step = course.change(response)
-        level = sign * level
+        level *= sign
         level[: round(before / step)] = np.inf
     else:
         level, step = stays(sign * response.change(whole.sampled()), lasting), STEP
@@ -371,7 +372,7 @@ def pieces(specimen: Specimen, course: Course, sign: float, count: int = DIPS) -
         near = np.interp(time, whole.time, whole.acceleration, left=0.0, right=0.0)
         dip, longer, own = deepest(sign * response.change(near)[since : len(near)])
         now = STEP * (first + own)
-        begin = max(now - before, 0.0)
+        begin = max(now - 0.8 * before, 0.0)
         part = whole.part(begin, now + lasting + AFTER)
         found.append((dip, Piece(part, response.reserve / dip, begin - lead, longer)))
         level[max(0, at - round(before / step)) : at + round(before / step)] = np.inf
@@ -382,22 +383,16 @@ def pieces(specimen: Specimen, course: Course, sign: float, count: int = DIPS) -
 class Noise(Course):
     """A record of random acceleration, which might be repeated."""
 
-    top: float = 0.0
-    """Frequency (Hz) from which on it has nothing that a contact feels."""
-
-    @cached_property
-    def spectrum(self) -> NDArray[np.complex128]:
-        """Its Fourier transform, straight between samples as it is, in parts of the number of samples."""
-        frequency = np.arange(int(self.top * RECORD) + 1) / RECORD
-        whole = np.fft.rfft(self.acceleration)[: len(frequency)]
-        return np.asarray(whole * np.sinc(frequency * SAMPLE) ** 2 / len(self.time))
+    spectrum: Any = None
+    """Its Fourier transform, straight between samples as it is, in parts of the number of samples; up to the frequency
+    from which on it has nothing that a contact feels."""
 
     def change(self, response: Response) -> tuple[Array, float]:
         """Return the change of force or gap at even times by linear theory, and how far (s) these are apart."""
         frequency = np.arange(len(self.spectrum)) / RECORD
-        count = next_fast_len(EVENLY * len(frequency), real=True)
+        count = fast(EVENLY * len(frequency))
         changed = self.spectrum * np.interp(frequency, response.frequency, response.transfer)
-        return np.fft.irfft(changed, count) * count, RECORD / count
+        return np.fft.irfft(changed, count, norm="forward"), RECORD / count
 
 
 def noise(test: Random) -> tuple[Noise, Noise]:
@@ -421,19 +416,25 @@ def record(
     """
     count = round(RECORD / SAMPLE)
     generator = np.random.default_rng(SEED)
-    normal = generator.standard_normal((2, count // 2 + 1))
-    frequency = np.arange(int(density[-1][0] * RECORD) + 2) / RECORD
-    amplitude = np.sqrt(G**2 * straight(density, frequency) / (4 * RECORD)) * count
-    spectrum = amplitude * (normal[0] + 1j * normal[1])[: len(frequency)]
-    time = SAMPLE * np.arange(count)
-    acceleration = np.fft.irfft(spectrum / np.sinc(frequency * SAMPLE) ** 2, count)
-    most = G * overall(density) * (clipping or np.inf)
+    top = BAND[1] if clipping else max(density[-1][0], *(tone for tone, _ in sines), 0.0)
+    lines = np.arange(int(top * RECORD) + 1) / RECORD
+    real, imaginary = generator.standard_normal((2, count // 2 + 1))[:, : len(lines)]
+    amplitude = np.sqrt(G**2 * straight(density, lines) / (4 * RECORD))
+    known, between = amplitude * (real + 1j * imaginary), np.sinc(lines * SAMPLE) ** 2
+    time = np.arange(float(count))
+    time *= SAMPLE
+    acceleration = np.fft.irfft(known / between, count, norm="forward")
+    if not (clipping or sines):
+        return (Noise(time, acceleration, spectrum=known),) * 2
     tones = np.zeros(count)
     for (tone, level), phase in zip(sines, generator.uniform(0, 2 * np.pi, len(sines)), strict=True):
         tones += G * level / np.sinc(tone * SAMPLE) ** 2 * np.sin(2 * np.pi * tone * time + phase)
-    top = BAND[1] if clipping else max(density[-1][0], *(tone for tone, _ in sines), 0.0)
-    clipped = np.clip(acceleration, -most, most) if clipping else acceleration
-    return Noise(time, acceleration + tones, top=top), Noise(time, clipped + tones, top=top)
+    most = G * overall(density) * (clipping or np.inf)
+    found = [
+        Noise(time, course, spectrum=np.fft.rfft(course, norm="forward")[: len(lines)] * between)
+        for course in (acceleration + tones, *([np.clip(acceleration, -most, most) + tones] if clipping else []))
+    ]
+    return found[0], found[-1]
 
 
 def middle_dip(specimen: Specimen, dips: list[Piece]) -> tuple[float, list[str], Piece]:
@@ -441,13 +442,15 @@ def middle_dip(specimen: Specimen, dips: list[Piece]) -> tuple[float, list[str],
 
     That is, of the largest dips of a record of noise, the one whose part is neither least nor greatest.
     """
+    # A search begins with the level that was just tried.
+    trials = {piece.begin: cache(piece.tried(specimen, 1.0)) for piece in dips}
 
     def sought(piece: Piece, part: float) -> tuple[float, list[str], Piece]:
-        level, failed = piece.threshold(specimen, 1.0, guess=piece.guess * part)
+        level, failed = threshold(trials[piece.begin], piece.guess * part)
         return level / piece.guess, failed, piece
 
     def fails(piece: Piece, part: float) -> bool:
-        return bool(specimen.own(piece.follow(specimen, piece.guess * part)[0]))
+        return bool(trials[piece.begin](piece.guess * part)[0])
 
     one, other, third = dips
     first = sought(one, 1.0)
