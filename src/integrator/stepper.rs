@@ -518,9 +518,14 @@ impl Stepper<'_> {
         }
         let length = if let Event::Slides(_) = cut.event {
             self.progress.changes += 1;
-            // Rounding must not let it change to and fro for ever.
-            let shrink = if self.progress.changes > 1 { MOST_SHRINK } else { 1.0 };
-            self.state.lengths.long.min(shrink * requested)
+            // Polynomials of a shorter step say which of the two it is; rounding must not let it change to and fro for ever.
+            let again = self.progress.changes > 1;
+            let lengths = &mut self.state.lengths;
+            let length = lengths.long.min(if again { MOST_SHRINK * requested } else { requested });
+            if again {
+                lengths.short = lengths.short.min(length);
+            }
+            length
         } else {
             requested
         };
