@@ -1,4 +1,4 @@
-//! The 34 functions of the component, with the types of the standard.
+//! The 34 functions of FMI 2.0 for co-simulation, with the types of the standard.
 
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::Path;
