@@ -243,15 +243,16 @@ def courses(figure: Figure, findings: list[Finding], title: str) -> None:
     for number, (finding, label) in enumerate(zip(findings, labels, strict=True)):
         time, course = (np.array(finding.margin.curves[each]) for each in ("time", "course"))
         axes.plot(1e3 * time, scale * course, label=label, **styled(number, len(time)))
-        clipped(axes, 1e3 * time, scale * course, ends, unit, STYLES[number % len(STYLES)]["color"])
+        clipped(axes, 1e3 * time, scale * course, ends, unit, number)
     axes.axhline(scale * rest, color=GREY, linestyle=":", label="at rest")
     axes.axhline(0.0, color=GREY, linewidth=0.6)
     axes.set(xlabel="time [ms]", ylabel=f"{'gap' if name == OPEN else 'force'} [{unit}]", ylim=ends)
     axes.legend(**BESIDE)
 
 
-def clipped(axes: Axes, time: Array, course: Array, ends: Array, unit: str, colour: str) -> None:
-    """Mark the peaks of a course that are beyond the ends of a panel, and write the largest at each end."""
+def clipped(axes: Axes, time: Array, course: Array, ends: Array, unit: str, number: int) -> None:
+    """Mark the peaks of a course that are beyond the ends of a panel, and write the largest at each end, row by row."""
+    colour = STYLES[number % len(STYLES)]["color"]
     for end, sign, marker in zip(ends, (-1, 1), ("v", "^"), strict=True):
         beyond = sign * course > sign * end
         if not beyond.any():
@@ -261,7 +262,8 @@ def clipped(axes: Axes, time: Array, course: Array, ends: Array, unit: str, colo
         axes.plot(time[peaks], np.full(len(peaks), end), marker, color=colour, markersize=5, clip_on=False)
         most = max(peaks, key=lambda at: sign * course[at])
         value = f"≥ {three(abs(float(course[most])))} {unit}"
-        axes.annotate(value, (time[most], end), (6, -9 * sign), textcoords="offset points", color=colour, fontsize=7)
+        row = (6, -9 * (number + 1) * sign)
+        axes.annotate(value, (time[most], end), row, textcoords="offset points", color=colour, fontsize=7)
 
 
 def record(finding: Finding) -> Figure:
