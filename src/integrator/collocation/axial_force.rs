@@ -9,11 +9,9 @@
 //! position until the sine in the law of the axial force turns to tension. Such motion is integrated like any other, in
 //! shorter steps.
 
-use bytemuck::Zeroable;
-
 use crate::beam::axial::Feedback;
 use crate::beam::mode::Modal;
-use crate::integrator::collocation::coefficients::{ErrorColumn, ModeColumns, StepCoefficients};
+use crate::integrator::collocation::coefficients::{ModeColumns, NodalMotion, StepCoefficients};
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::trial::{AxialLoads, FreeResponse, Source, Trial};
 use crate::integrator::constants::{FORCE_ROUNDING, ITERATIONS};
@@ -91,8 +89,8 @@ impl<'a, const S: usize> Rounds<'a, S> {
 
     /// Effect on the approach of the contact of the defects of base acceleration and loads at the start.
     #[inline(always)]
-    fn error<A: Arithmetic>(&self, free: &FreeResponse<S>) -> ErrorColumn<S> {
-        let mut error = ErrorColumn::zeroed();
+    fn error<A: Arithmetic>(&self, free: &FreeResponse<S>) -> NodalMotion<S> {
+        let mut error = NodalMotion::ZERO;
         for port in self.step.ports().take(1) {
             error.add::<A>(free.start_defect, &port.acceleration.defect);
         }

@@ -5,9 +5,9 @@
     reason = "several arrays have a value for each unknown or node"
 )]
 
-use crate::integrator::collocation::coefficients::StepCoefficients;
+use crate::integrator::collocation::coefficients::{NodalMotion, StepCoefficients};
 use crate::integrator::collocation::elimination::in_use;
-use crate::integrator::collocation::newton::{Linked, NodalMotion, Solution, Tangent, Unknown};
+use crate::integrator::collocation::newton::{Linked, Solution, Tangent, Unknown};
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::Variable;
 use crate::integrator::collocation::trial::{Estimate, FreeResponse, Trial};
@@ -169,15 +169,15 @@ impl<const S: usize, const L: usize> Judged<'_, S, L> {
         let link = &links[index];
         let mut motion = NodalMotion::ZERO;
         if let Some(of_loads) = &free.axial {
-            motion.add_defect::<A>(of_loads, link.sense);
+            motion.add::<A>(link.sense, of_loads);
         } else {
             let of_base = &step.acceleration(link.port).defect;
-            motion.add_defect::<A>(of_base, link.sense * free.start_defect);
+            motion.add::<A>(link.sense * free.start_defect, of_base);
         }
         for (other, defect) in links.iter().zip(&defects.0) {
             if *defect != 0.0 {
                 let column = &step.response(link.port, other.port).defect;
-                motion.add_defect::<A>(column, -link.sense * other.sense * defect);
+                motion.add::<A>(-link.sense * other.sense * defect, column);
             }
         }
         motion
@@ -231,13 +231,11 @@ pub(super) fn estimate_in_flight<const S: usize>(
             free.start_defect.abs()
         };
         let most = |values: &Nodal<S>| greatest(values) * defect;
-        let wrong = most(&rows.displacement)
-            + law.damping() * most(&rows.velocity)
-            + missed_velocity * (model.memory + law.damping());
+        let wrong = most(&rows.d) + law.damping() * most(&rows.rate) + missed_velocity * (model.memory + law.damping());
         let stiffness = law.tangent_stiffness(model.force_scale);
         at_end = at_end.max(stiffness * wrong);
         // At the end the velocity is that of the quadrature.
-        inside = inside.max(stiffness * (wrong + model.memory * most(&rows.velocity)));
+        inside = inside.max(stiffness * (wrong + model.memory * most(&rows.rate)));
     }
     trial.error = Estimate::lasting(at_end);
     trial.slow_error = model.inertia * free.missed_mean;
