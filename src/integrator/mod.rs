@@ -195,8 +195,9 @@
 //!
 //! # Files
 //!
-//! A communication step goes down through these: [`communication_step`], [`stepper`] (steps one after the other: computed on trial,
-//! judged, searched for events, committed), [`collocation`] (one step). [`step_length`]: what the next step is to be. [`workspace`]: room
+//! A communication step goes down through these: [`communication_step`], [`steps`] (one after the other), [`step_end`] (where one
+//! ends: at an event), [`stepper`] (one on trial: computed, judged, committed), [`collocation`]. [`step_length`]: what the next step is
+//! to be. [`workspace`]: room
 //! made once, so that no step allocates. [`State`](crate::state::State) and [`motion`] are all that moves: plain numbers, a saved state
 //! is a copy. The kernel of a step is compiled twice, for any processor and for AVX2 with fused multiply-add
 //! ([`simd`](crate::math::simd)).
@@ -215,11 +216,14 @@ pub mod events;
 pub mod exact_step;
 pub mod extremes;
 pub mod grid;
+pub mod leap;
 pub mod motion;
 pub mod recorder;
 pub mod rest;
+pub mod step_end;
 pub mod step_length;
 pub mod stepper;
+pub mod steps;
 pub mod tolerance;
 pub mod transition;
 pub mod with_contact;

@@ -9,9 +9,10 @@ use crate::closed_loop::dense::{DensePropagator, TipAtNodes};
 use crate::closed_loop::propagator::{ByLength, Propagator};
 use crate::contact::power::Power;
 use crate::error::{StepError, StepErrorCause};
+use crate::excitation::drive::Drive;
 use crate::integrator::collocation::cache::{Cache, Common, OF_LONG, OF_SHORT};
 use crate::integrator::collocation::modal_response::ModeOverStep;
-use crate::integrator::collocation::part::Instant;
+use crate::integrator::collocation::part::{Instant, Whole};
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::Variable;
 use crate::integrator::collocation::trial::{Scratch, Trial};
@@ -22,6 +23,7 @@ use crate::integrator::motion::Motion;
 use crate::math::nodal::{LONG, SHORT};
 use crate::model::Model;
 use crate::shared::Home;
+use crate::state::State;
 
 /// Work that a communication step may take, however long it is, in modes at nodes: each takes some forty instructions, all
 /// together one to three seconds on processors of 2026. Pinned: ÷ 1e5 and × 100, `tests/fmi_api`.
@@ -111,6 +113,24 @@ impl<const S: usize> Room<S> {
             cache: Box::new(Cache::new(model, home, Variable::Time)),
             scratch: Scratch::new(model),
             trial: Some(zeroed_box()),
+        }
+    }
+
+    /// A trial of `length` seconds made in it.
+    pub(crate) fn whole<'a>(
+        &'a self,
+        (model, state, drive): (&'a Model, &'a State, &'a Drive),
+        trial: &'a Trial<S>,
+        length: f64,
+    ) -> Whole<'a, S> {
+        Whole {
+            model,
+            state,
+            drive,
+            collocation: self.cache.collocation(),
+            trial,
+            axial: &self.scratch.axial.loads,
+            length,
         }
     }
 }

@@ -12,7 +12,7 @@ use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::Variable;
 use crate::integrator::collocation::trial::{Estimate, FreeResponse, Trial};
 use crate::integrator::constants::{FORCE_ROUNDING, KINKED, SUM_ROUNDINGS};
-use crate::link::{LinkLaw, MAX_LINKS, Port};
+use crate::link::{Link, LinkLaw, MAX_LINKS};
 use crate::math::nodal::{Nodal, dot, end, greatest};
 use crate::math::simd::Arithmetic;
 use crate::model::Model;
@@ -247,8 +247,8 @@ pub(super) fn estimate_in_flight<const S: usize>(
 /// Whether the error (N) of a trial is explained by rounding of the sums over the modes: after an impact the modal velocities
 /// are large and their sum at the tip is small.
 pub(crate) fn is_rounding<const S: usize>(model: &Model, state: &State, trial: &Trial<S>, error: f64) -> bool {
-    let of_links = model.links.iter().zip(&trial.links).filter_map(|(link, nodes)| {
-        let (displacement, velocity) = sum_rounding(model.ports.get(link.port)?, state);
+    let of_links = model.links.iter().zip(&trial.links).map(|(link, nodes)| {
+        let (displacement, velocity) = sum_rounding(model, link, state);
         let Tangent {
             stiffness,
             damping,
@@ -256,17 +256,19 @@ pub(crate) fn is_rounding<const S: usize>(model: &Model, state: &State, trial: &
         } = nodes.tangent;
         // The force at the first node feeds back only over the time up to it, some 1 / S^2 of the step.
         let reaction = 1.0 + gain / (S * S) as f64;
-        Some((stiffness.abs() * displacement + damping * velocity) / reaction)
+        (stiffness.abs() * displacement + damping * velocity) / reaction
     });
     error <= of_links.sum()
 }
 
-/// Rounding of the displacement (m) and velocity (m/s) of a port, as sums over the modes.
-pub(crate) fn sum_rounding(port: &Port, state: &State) -> (f64, f64) {
+/// Rounding of the displacement (m) and velocity (m/s) of the port of a link, as sums over the modes.
+pub(crate) fn sum_rounding(model: &Model, link: &Link, state: &State) -> (f64, f64) {
     let (mut displacement, mut velocity) = (0.0, 0.0);
-    for (factor, at) in port.shape.iter().zip(&state.modes).take(port.modes.end) {
-        displacement += (factor * at.q).abs();
-        velocity += (factor * at.v).abs();
+    if let Some(port) = model.ports.get(link.port) {
+        for (factor, at) in port.shape.iter().zip(&state.modes).take(port.modes.end) {
+            displacement += (factor * at.q).abs();
+            velocity += (factor * at.v).abs();
+        }
     }
     let rounding = SUM_ROUNDINGS * f64::EPSILON;
     (rounding * displacement, rounding * velocity)

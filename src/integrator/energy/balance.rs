@@ -156,7 +156,6 @@ mod tests {
     use crate::inputs::Inputs;
     use crate::integrator::collocation::polynomial::Collocation;
     use crate::integrator::communication_step::{News, Steps, advance};
-    use crate::integrator::events::interruption::Passages;
     use crate::integrator::grid::Grid;
     use crate::integrator::recorder::Recorder;
     use crate::integrator::stepper::{Progress, Stepper};
@@ -221,7 +220,7 @@ mod tests {
         let mut trial: Box<Trial<S>> = bytemuck::zeroed_box();
         stepper.compute(&mut trial, &target).unwrap();
         change(&mut trial);
-        stepper.commit(&trial, &target, &Passages::default()).unwrap();
+        assert!(stepper.commit(&trial, &target, true).unwrap());
         (state.energy_balance, *trial)
     }
 

@@ -1,7 +1,6 @@
 //! Event location of interruptions: where a contact force passes that of the threshold resistance within a step. The
 //! step goes on.
 
-use crate::integrator::accuracy::inaccuracy;
 use crate::integrator::collocation::part::Whole;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::Variable;
@@ -56,7 +55,7 @@ impl<const S: usize> Locator<'_, S> {
         let polynomial = collocation.through(model.simd, at_start, &nodes.forces);
         let value = |y: f64| excess(value_and_slope(&polynomial, y).0);
         let turns = turning_points(model.simd, &polynomial);
-        let inaccuracy = inaccuracy((model, state), collocation, trial, length);
+        let inaccuracy = self.whole.inaccuracy();
         let is_accurate = inaccuracy <= 1.0;
         if !is_accurate && collocation.variable == Variable::Root {
             return None;

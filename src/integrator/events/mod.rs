@@ -80,7 +80,7 @@ impl<'a, const S: usize> Locator<'a, S> {
     }
 
     /// Computes the modes at an instant (s after the start), by the exact motion under the polynomials of the trial.
-    pub(crate) fn look(&mut self, at: f64) {
+    fn look(&mut self, at: f64) {
         if self.search.looked.replace(at) == Some(at) {
             return;
         }
@@ -89,7 +89,7 @@ impl<'a, const S: usize> Locator<'a, S> {
     }
 
     /// A link there.
-    fn inside(&mut self, index: usize, at: f64) -> Instant {
+    pub(crate) fn inside(&mut self, index: usize, at: f64) -> Instant {
         self.look(at);
         self.whole.link(index, at, &self.search.modes)
     }
@@ -197,9 +197,6 @@ impl<'a, const S: usize> Locator<'a, S> {
 
 /// Rounding of the engagement of a contact by the sums over the modes, m.
 pub(crate) fn motion_rounding(model: &Model, link: &Link, state: &State) -> f64 {
-    let (displacement, velocity) = match model.ports.get(link.port) {
-        Some(port) => sum_rounding(port, state),
-        None => (0.0, 0.0),
-    };
+    let (displacement, velocity) = sum_rounding(model, link, state);
     displacement + link.contact().map_or(0.0, Law::by_rate) * velocity
 }

@@ -202,10 +202,7 @@ impl<'a, const S: usize> Locator<'a, S> {
         else {
             return 0.0;
         };
-        let (displacement, velocity) = match model.ports.get(along.port) {
-            Some(port) => sum_rounding(port, state),
-            None => (0.0, 0.0),
-        };
+        let (displacement, velocity) = sum_rounding(model, along, state);
         let slip = SUM_ROUNDINGS * f64::EPSILON * state.slip.way.abs();
         let moved = slip + displacement + law.damping * velocity;
         let stiffness = law.tangent_stiffness(contact.approach + contact_at.approach);
