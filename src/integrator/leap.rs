@@ -57,7 +57,7 @@ impl Stepper<'_> {
                 if at.closed {
                     locator.first_open(index).is_none()
                 } else {
-                    locator.is_far(index)
+                    locator.near(index).is_none()
                 }
             })
         };

@@ -13,7 +13,6 @@ use crate::excitation::drive::Drive;
 use crate::integrator::collocation::cache::{Cache, Common, OF_LONG, OF_SHORT};
 use crate::integrator::collocation::modal_response::ModeOverStep;
 use crate::integrator::collocation::part::{Instant, Whole};
-use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::Variable;
 use crate::integrator::collocation::trial::{Scratch, Trial};
 use crate::integrator::constants::HALVINGS;
@@ -39,7 +38,7 @@ pub const LENGTHS: usize = 8;
 #[derive(Clone, Debug)]
 pub struct Workspace {
     short: Room<SHORT>,
-    long: Room<LONG>,
+    pub(crate) long: Room<LONG>,
     /// For leaps, where the model allows them.
     pub(crate) leaps: Option<Leaps>,
     /// The half steps of the energy balance.
@@ -48,7 +47,7 @@ pub struct Workspace {
     /// Caches of exact linear steps, without and with dense output.
     pub(crate) propagators: ByLength<Box<Propagator>>,
     /// See [`Workspace::propagators`].
-    dense_propagators: ByLength<DensePropagator>,
+    pub(crate) dense_propagators: ByLength<DensePropagator>,
     /// The motion before a communication step, to which a failed one returns.
     pub(crate) former: Box<Motion>,
     /// Openings and closings of the last communication step.
@@ -170,21 +169,11 @@ impl Workspace {
         }
     }
 
-    /// For exact steps with dense output.
-    pub(crate) fn for_exact_steps(&mut self) -> (&mut ByLength<DensePropagator>, &Collocation<LONG>) {
-        (&mut self.dense_propagators, self.long.cache.collocation())
-    }
-
     /// Exchanges the coefficients of long steps with those of leaps.
     pub(crate) fn exchange(&mut self) {
         if let Some(leaps) = &mut self.leaps {
             mem::swap(&mut leaps.cache, &mut self.long.cache);
         }
-    }
-
-    /// For the half steps of the energy balance.
-    pub(crate) fn for_half_steps(&mut self) -> (&mut Room<LONG>, &mut Trial<LONG>) {
-        (&mut self.long, &mut self.half)
     }
 }
 

@@ -91,9 +91,7 @@ impl<'a, const S: usize> Rounds<'a, S> {
     #[inline(always)]
     fn error<A: Arithmetic>(&self, free: &FreeResponse<S>) -> NodalMotion<S> {
         let mut error = NodalMotion::ZERO;
-        for port in self.step.ports().take(1) {
-            error.add::<A>(free.start_defect, &port.acceleration.defect);
-        }
+        error.add::<A>(free.start_defect, &self.step.acceleration(0).defect);
         let modes = self.model.modes.iter().zip(self.step.columns);
         for (((mode, columns), start), load) in modes.zip(&self.start).zip(&self.room.loads) {
             let ModeColumns { load: response, .. } = columns;
@@ -118,8 +116,7 @@ fn set_motion<const S: usize, A: Arithmetic>(
         let mut load = *load;
         let mut q = [0.0; S];
         for (link, nodes) in model.links.iter().zip(&trial.links) {
-            let b = model.ports.get(link.port).and_then(|port| port.shape.get(i));
-            add::<S, A>(&mut load, link.sense * b.copied().unwrap_or_default(), &nodes.forces);
+            add::<S, A>(&mut load, link.sense * model.displacement(link.port, i), &nodes.forces);
         }
         add::<S, A>(&mut load, -mode.participation, &trial.accelerations);
         add::<S, A>(&mut q, at.q, &columns.q_from_q);

@@ -109,15 +109,6 @@ pub struct ModeColumns<const S: usize> {
     pub load: Response<S>,
 }
 
-/// The coefficients of a port.
-#[derive(Clone, Copy, Debug)]
-pub struct PortCoefficients<'a, const S: usize> {
-    /// Free motion, mode by mode, of the modes that it has a part in.
-    pub modes: &'a [NodeRows<S>],
-    /// Motion per base acceleration that loads the modes with `participation`, and per defect of it.
-    pub acceleration: &'a Response<S>,
-}
-
 impl<const S: usize> NodalMotion<S> {
     pub(crate) const ZERO: Self = Self {
         d: [0.0; S],
@@ -191,21 +182,11 @@ pub(super) const fn responses_before(port: usize) -> usize {
 }
 
 impl<'a, const S: usize> StepCoefficients<'a, S> {
-    /// Those of the ports, one after the other.
+    /// Free motion port by port, each mode by mode, of the modes that the port has a part in.
     #[inline(always)]
-    pub fn ports(&self) -> impl Iterator<Item = PortCoefficients<'a, S>> {
-        let Self {
-            responses,
-            rows,
-            of_port,
-            ..
-        } = *self;
-        of_port.iter().enumerate().filter_map(move |(p, range)| {
-            Some(PortCoefficients {
-                modes: rows.get(range.clone())?,
-                acceleration: responses.get(responses_before(p))?,
-            })
-        })
+    pub fn free_of_ports(&self) -> impl Iterator<Item = &'a [NodeRows<S>]> {
+        let Self { rows, of_port, .. } = *self;
+        of_port.iter().filter_map(|range| rows.get(range.clone()))
     }
 
     /// The free motion of a mode.
@@ -219,7 +200,7 @@ impl<'a, const S: usize> StepCoefficients<'a, S> {
         })
     }
 
-    /// The response of a port to the base acceleration.
+    /// The response of a port to a base acceleration, which loads the modes with their `participation`.
     #[inline(always)]
     #[expect(
         clippy::indexing_slicing,

@@ -59,13 +59,13 @@ fn compute_many<const S: usize, const L: usize>(
 }
 
 /// What a step is computed from.
-pub(super) struct Step<'a, const S: usize> {
-    pub(super) model: &'a Model,
-    pub(super) state: &'a State,
-    pub(super) drive: &'a Drive,
-    pub(super) prepared: Prepared<'a, S>,
-    pub(super) source: Source,
-    pub(super) unknowns: Unknowns,
+struct Step<'a, const S: usize> {
+    model: &'a Model,
+    state: &'a State,
+    drive: &'a Drive,
+    prepared: Prepared<'a, S>,
+    source: Source,
+    unknowns: Unknowns,
 }
 
 impl<const S: usize> Step<'_, S> {
@@ -149,11 +149,12 @@ impl<const S: usize> Step<'_, S> {
             .fold(f64::MIN_POSITIVE, |largest, a| largest.max(a.abs()));
 
         let pushed = scaled(accelerations, -1.0);
-        for ((port, coefficients), motion) in model.ports.iter().zip(step.ports()).zip(&mut free.ports) {
+        let ports = model.ports.iter().zip(step.free_of_ports()).zip(&mut free.ports);
+        for (p, ((port, rows), motion)) in ports.enumerate() {
             // Separate sums for q and v, which the processor computes in parallel.
             let [mut d, mut rate, mut from_v, mut rate_from_v] = [[0.0; S]; 4];
             let states = &state.modes[port.modes.clone()];
-            for (mode, row) in states.iter().zip(coefficients.modes) {
+            for (mode, row) in states.iter().zip(rows) {
                 add::<S, A>(&mut d, mode.q, &row.from_q);
                 add::<S, A>(&mut from_v, mode.v, &row.from_v);
                 add::<S, A>(&mut rate, mode.q, &row.rate_from_q);
@@ -166,7 +167,7 @@ impl<const S: usize> Step<'_, S> {
                 *sum += from_v;
             }
             *motion = NodalMotion { d, rate };
-            motion.respond::<A>(&coefficients.acceleration.columns, &pushed);
+            motion.respond::<A>(&step.acceleration(p).columns, &pushed);
         }
         self.set_known::<A>(trial, &mut free.ports);
         free.start_defect = start_defect;
@@ -229,7 +230,7 @@ impl<const S: usize> Step<'_, S> {
     /// Solves for the unknown forces from the guesses in the trial.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "links of the model, and unknowns in use")]
-    pub(super) fn solve<const L: usize, A: Arithmetic>(
+    fn solve<const L: usize, A: Arithmetic>(
         &self,
         linked: &Linked<S, L>,
         free: &FreeResponse<S>,

@@ -22,7 +22,7 @@ const ON_CUBIC: u32 = 3;
 
 /// An open contact in which a touch is sought.
 #[derive(Clone, Copy)]
-struct Sought<'a> {
+pub(crate) struct Sought<'a> {
     index: usize,
     link: &'a Link,
     law: &'a Law,
@@ -46,12 +46,8 @@ impl Sought<'_> {
 impl<'a, const S: usize> Locator<'a, S> {
     /// Locates the closing of an open contact; `None` if it stays open.
     pub(crate) fn closing(&mut self, index: usize) -> Option<Cut> {
-        let sought = self.sought(index)?;
-        let samples = self.samples(&sought)?;
+        let (sought, samples) = self.near(index)?;
         let samples = samples.get(..S + 1)?;
-        if self.is_distant(&sought, samples) {
-            return None;
-        }
         self.search.swings.set(self.whole, sought.link);
         // The cubic over two intervals is wrong by more than that over each.
         let mut errors = [0.0_f64; LONG + 1];
@@ -74,45 +70,24 @@ impl<'a, const S: usize> Locator<'a, S> {
         })
     }
 
-    /// Whether an open contact is so far that it stays open; a link that is no contact does.
-    pub(crate) fn is_far(&self, index: usize) -> bool {
-        let Some(sought) = self.sought(index) else {
-            return true;
-        };
-        let samples = self.samples(&sought);
-        samples.is_some_and(|samples| {
-            samples
-                .get(..S + 1)
-                .is_some_and(|samples| self.is_distant(&sought, samples))
-        })
-    }
-
-    fn sought(&self, index: usize) -> Option<Sought<'a>> {
-        let (link, start) = self.link(index)?;
-        Some(Sought {
-            index,
-            link,
-            law: link.contact()?,
-            start,
-            unsure: self.unsure(link, start),
-        })
-    }
-
-    /// Samples at the start and the nodes of the trial.
-    fn samples(&self, sought: &Sought) -> Option<[Instant; LONG + 1]> {
+    /// An open contact with samples at the start and the nodes of the trial; `None` where it is so far that it stays open, or no
+    /// contact.
+    pub(crate) fn near(&self, index: usize) -> Option<(Sought<'a>, [Instant; LONG + 1])> {
         let Whole {
             collocation,
             trial,
             length,
             ..
         } = self.whole;
-        let start = Instant {
+        let (link, start) = self.link(index)?;
+        let first = Instant {
             at: 0.0,
-            d: sought.start.approach,
-            rate: sought.start.rate,
+            d: start.approach,
+            rate: start.rate,
         };
-        let mut samples = [start; LONG + 1];
-        let nodes = trial.links.get(sought.index)?;
+        let mut samples = [first; LONG + 1];
+        let (mut lowest, mut highest, mut fastest) = (first.d, first.d, first.rate.abs());
+        let nodes = trial.links.get(index)?;
         let motion = nodes.approaches.iter().zip(&nodes.rates);
         for (entry, (node, (&d, &rate))) in samples.iter_mut().skip(1).zip(collocation.nodes.iter().zip(motion)) {
             *entry = Instant {
@@ -120,18 +95,18 @@ impl<'a, const S: usize> Locator<'a, S> {
                 d,
                 rate,
             };
+            (lowest, highest, fastest) = (lowest.min(d), highest.max(d), fastest.max(rate.abs()));
         }
-        Some(samples)
-    }
-
-    /// Whether the contact is so far that no search is needed.
-    fn is_distant(&self, sought: &Sought, samples: &[Instant]) -> bool {
-        let (mut lowest, mut highest, mut fastest) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
-        for Instant { d, rate, .. } in samples {
-            (lowest, highest, fastest) = (lowest.min(*d), highest.max(*d), fastest.max(rate.abs()));
-        }
-        let reach = DISTANT * (highest - lowest + fastest * self.whole.length);
-        sought.link.engagement(highest + reach, DISTANT * fastest) < 0.0
+        let sought = Sought {
+            index,
+            link,
+            law: link.contact()?,
+            start,
+            unsure: self.unsure(link, start),
+        };
+        let reach = DISTANT * (highest - lowest + fastest * length);
+        let is_far = link.engagement(highest + reach, DISTANT * fastest) < 0.0;
+        (!is_far).then_some((sought, samples))
     }
 
     /// Whether the contact certainly stays open between two open samples, whose cubic is wrong by `error` (m).

@@ -18,7 +18,7 @@ use crate::integrator::constants::ITERATIONS;
 use crate::integrator::tolerance::Tolerance;
 use crate::integrator::workspace::{Budget, Search, work};
 use crate::link::Link;
-use crate::math::prediction::{Prediction, value_and_slope};
+use crate::math::prediction::value_and_slope;
 use crate::math::roots;
 use crate::model::Model;
 use crate::state::{LinkState, State};
@@ -57,21 +57,6 @@ pub(crate) struct Locator<'a, const S: usize> {
     pub(crate) resolution: f64,
 }
 
-/// The polynomials through approach and velocity of a link in a trial.
-struct Course {
-    approach: Prediction,
-    rate: Prediction,
-    length: f64,
-}
-
-impl Course {
-    /// Approach (m) and velocity (m/s) at an instant (s after the start).
-    fn at(&self, at: f64) -> (f64, f64) {
-        let y = at / self.length - 1.0;
-        (value_and_slope(&self.approach, y).0, value_and_slope(&self.rate, y).0)
-    }
-}
-
 impl<'a, const S: usize> Locator<'a, S> {
     /// A link and its state at the start of the trial.
     fn link(&self, index: usize) -> Option<(&'a Link, &'a LinkState)> {
@@ -105,23 +90,6 @@ impl<'a, const S: usize> Locator<'a, S> {
         latest: f64,
         rounding: f64,
     ) -> Instant {
-        let Some(course) = self.course(index) else {
-            return self.inside(index, latest);
-        };
-        let on_polynomials = |at: f64| {
-            let (d, rate) = course.at(at);
-            value(d, rate)
-        };
-        let end = (latest, on_polynomials(latest));
-        let guess = roots::between(on_polynomials, from, end, 1e-12 * self.whole.length);
-        let at = guess.unwrap_or(latest);
-        let near = at - 1e-4 * (at - from.0);
-        let slope = (on_polynomials(at) - on_polynomials(near)) / (at - near);
-        let exact = |_: &Self, now: &Instant| value(now.d, now.rate);
-        self.refined(index, exact, from, (at, slope), latest, rounding)
-    }
-
-    fn course(&self, index: usize) -> Option<Course> {
         let Whole {
             model,
             collocation,
@@ -129,12 +97,22 @@ impl<'a, const S: usize> Locator<'a, S> {
             length,
             ..
         } = self.whole;
-        let (nodes, (_, start)) = trial.links.get(index).zip(self.link(index))?;
-        Some(Course {
-            approach: collocation.through(model.simd, start.approach, &nodes.approaches),
-            rate: collocation.through(model.simd, start.rate, &nodes.rates),
-            length,
-        })
+        let Some((nodes, (_, start))) = trial.links.get(index).zip(self.link(index)) else {
+            return self.inside(index, latest);
+        };
+        let approach = collocation.through(model.simd, start.approach, &nodes.approaches);
+        let rate = collocation.through(model.simd, start.rate, &nodes.rates);
+        let on_polynomials = |at: f64| {
+            let y = at / length - 1.0;
+            value(value_and_slope(&approach, y).0, value_and_slope(&rate, y).0)
+        };
+        let end = (latest, on_polynomials(latest));
+        let guess = roots::between(on_polynomials, from, end, 1e-12 * length);
+        let at = guess.unwrap_or(latest);
+        let near = at - 1e-4 * (at - from.0);
+        let slope = (on_polynomials(at) - on_polynomials(near)) / (at - near);
+        let exact = |_: &Self, now: &Instant| value(now.d, now.rate);
+        self.refined(index, exact, from, (at, slope), latest, rounding)
     }
 
     /// The same on the exact motion, from a guess and the slope there (1/s times the value): by the secant method, then by
