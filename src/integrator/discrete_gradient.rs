@@ -1,7 +1,8 @@
 //! The discrete-gradient step, used where the collocation fails: it always has a solution.
 //!
-//! The contact force is constant over the step: the discrete gradient of the elastic energy between the ends of the
-//! step, plus a damping force against the displacement between them (O. Gonzalez, J. Nonlinear Sci. 6 (1996) 449). With
+//! The contact force is constant over the step: the discrete gradient of the elastic energy `V` between the ends of the
+//! step, `(V(d_1) - V(d_0)) / (d_1 - d_0)`, plus a damping force against the displacement between them (O. Gonzalez,
+//! J. Nonlinear Sci. 6 (1996) 449). With
 //! exact modes the energy is conserved exactly without damping and never grows with damping, for any step length;
 //! opening and closing need no event location. The indentation at the end decreases linearly with the constant force
 //! and the law's mean force increases with the indentation: one monotone scalar equation, solved by a bracketing

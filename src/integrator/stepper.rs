@@ -59,13 +59,11 @@ impl Stepper<'_> {
     where
         Workspace: Rooms<S>,
     {
-        let mut trial = Rooms::<S>::parts(self.workspace)
-            .0
-            .trial
-            .take()
-            .unwrap_or_else(bytemuck::zeroed_box);
+        let (room, _): (&mut Room<S>, _) = self.workspace.parts();
+        let mut trial = room.trial.take().unwrap_or_else(bytemuck::zeroed_box);
         let outcome = work(self, &mut trial);
-        Rooms::<S>::parts(self.workspace).0.trial = Some(trial);
+        let (room, _): (&mut Room<S>, _) = self.workspace.parts();
+        room.trial = Some(trial);
         outcome
     }
 

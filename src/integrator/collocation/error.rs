@@ -34,14 +34,10 @@ pub(super) struct Judged<'a, const S: usize, const L: usize> {
 }
 
 impl<const S: usize, const L: usize> Judged<'_, S, L> {
-    /// Estimates the error that a step adds to the contact force: if it is taken to its end, and if it ends inside.
-    ///
-    /// The polynomials are exact at the nodes; their defect at the start gives the amplitude of the next term, the shape
-    /// that vanishes at the nodes. Its effect on the nodal forces is known to first order ([`Linked::wrong`]). At the end of
-    /// the step, modes slow compared with the step are hardly affected by it (the shape is orthogonal to polynomials of low
-    /// degree); their error is of twice the order, about three times the square of the defect (calibrated with a free mass
-    /// impacting a Hertz contact). Just after first touch or a jump the force is not smooth, and their error is larger.
-    /// Inside the step the shape is not orthogonal to anything: slow modes get its impulse up to there.
+    /// Estimates the error that a step adds to the contact force: if it is taken to its end, and if it ends inside (*Error
+    /// estimate* of [`integrator`](crate::integrator)). What the defects do to the nodal forces is known to first order
+    /// ([`Linked::wrong`]). Inside the step the shape of the estimate is not orthogonal to anything: slow modes get its impulse up to
+    /// there.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "links of the model, and unknowns in use")]
     pub(super) fn estimate<A: Arithmetic>(&self, solution: &Solution<S, L>, trial: &mut Trial<S>) {

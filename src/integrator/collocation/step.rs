@@ -73,8 +73,7 @@ impl<const S: usize> Step<'_, S> {
     fn compute<const L: usize, A: Arithmetic>(&self, trial: &mut Trial<S>, scratch: &mut Scratch<S>) -> Option<()> {
         let Self { model, state, .. } = *self;
         let Prepared { step, collocation, .. } = self.prepared;
-        let mut free = FreeResponse::default();
-        self.set_free_response::<A>(trial, &mut free);
+        let mut free = self.free_response::<A>(trial);
         self.guess::<A>(trial);
         let Scratch { joined, axial } = scratch;
         let linked = Linked::<S, L>::new::<A>((model, state), step, &self.unknowns, joined);
@@ -129,7 +128,7 @@ impl<const S: usize> Step<'_, S> {
     /// the motion, which are set.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "ports and links of the model")]
-    fn set_free_response<A: Arithmetic>(&self, trial: &mut Trial<S>, free: &mut FreeResponse<S>) {
+    fn free_response<A: Arithmetic>(&self, trial: &mut Trial<S>) -> FreeResponse<S> {
         let Self { model, state, .. } = *self;
         let Prepared {
             step,
@@ -149,7 +148,8 @@ impl<const S: usize> Step<'_, S> {
             .fold(f64::MIN_POSITIVE, |largest, a| largest.max(a.abs()));
 
         let pushed = scaled(accelerations, -1.0);
-        let ports = model.ports.iter().zip(step.free_of_ports()).zip(&mut free.ports);
+        let mut motions = [NodalMotion::ZERO; MAX_PORTS];
+        let ports = model.ports.iter().zip(step.free_of_ports()).zip(&mut motions);
         for (p, ((port, rows), motion)) in ports.enumerate() {
             // Separate sums for q and v, which the processor computes in parallel.
             let [mut d, mut rate, mut from_v, mut rate_from_v] = [[0.0; S]; 4];
@@ -169,9 +169,13 @@ impl<const S: usize> Step<'_, S> {
             *motion = NodalMotion { d, rate };
             motion.respond::<A>(&step.acceleration(p).columns, &pushed);
         }
-        self.set_known::<A>(trial, &mut free.ports);
-        free.start_defect = start_defect;
-        free.missed_mean = collocation.quadrature * start_defect * start_defect / largest;
+        self.set_known::<A>(trial, &mut motions);
+        FreeResponse {
+            ports: motions,
+            start_defect,
+            missed_mean: collocation.quadrature * start_defect * start_defect / largest,
+            axial: None,
+        }
     }
 
     /// Sets the forces that do not depend on the motion, and adds the motion that they cause.
@@ -196,17 +200,10 @@ impl<const S: usize> Step<'_, S> {
                 (None, Source::Given) => {}
             }
             if nodes.forces != [0.0; S] {
-                self.push::<A>(link.port, &scaled(&nodes.forces, link.sense), ports);
+                for (p, motion) in ports.iter_mut().take(self.model.ports.len()).enumerate() {
+                    self.respond::<A>(p, (index, 1.0), &nodes.forces, motion);
+                }
             }
-        }
-    }
-
-    /// Adds the motion of the ports under a force at one of them.
-    #[inline(always)]
-    fn push<A: Arithmetic>(&self, port: usize, force: &Nodal<S>, ports: &mut [NodalMotion<S>; MAX_PORTS]) {
-        let Prepared { step, .. } = self.prepared;
-        for (p, motion) in ports.iter_mut().take(self.model.ports.len()).enumerate() {
-            motion.respond::<A>(&step.response(p, port).columns, force);
         }
     }
 
