@@ -152,7 +152,6 @@ impl Stepper<'_> {
             whole: room.whole((self.model, self.state, &self.drive), trial, length),
             search,
             budget: self.budget,
-            tolerance: self.model.tolerance,
             resolution,
         }
     }

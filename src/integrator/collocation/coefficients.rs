@@ -182,11 +182,14 @@ pub(super) const fn responses_before(port: usize) -> usize {
 }
 
 impl<'a, const S: usize> StepCoefficients<'a, S> {
-    /// Free motion port by port, each mode by mode, of the modes that the port has a part in.
+    /// Free motion of a port, mode by mode, of the modes that it has a part in.
     #[inline(always)]
-    pub fn free_of_ports(&self) -> impl Iterator<Item = &'a [NodeRows<S>]> {
-        let Self { rows, of_port, .. } = *self;
-        of_port.iter().filter_map(|range| rows.get(range.clone()))
+    #[expect(
+        clippy::indexing_slicing,
+        reason = "there are coefficients for every port of the model"
+    )]
+    pub fn free_of_port(&self, port: usize) -> &'a [NodeRows<S>] {
+        &self.rows[self.of_port[port].clone()]
     }
 
     /// The free motion of a mode.

@@ -73,7 +73,8 @@ impl<const S: usize> Step<'_, S> {
     fn compute<const L: usize, A: Arithmetic>(&self, trial: &mut Trial<S>, scratch: &mut Scratch<S>) -> Option<()> {
         let Self { model, state, .. } = *self;
         let Prepared { step, collocation, .. } = self.prepared;
-        let mut free = self.free_response::<A>(trial);
+        let mut free = FreeResponse::default();
+        self.set_free_response::<A>(trial, &mut free);
         self.guess::<A>(trial);
         let Scratch { joined, axial } = scratch;
         let linked = Linked::<S, L>::new::<A>((model, state), step, &self.unknowns, joined);
@@ -128,7 +129,7 @@ impl<const S: usize> Step<'_, S> {
     /// the motion, which are set.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "ports and links of the model")]
-    fn free_response<A: Arithmetic>(&self, trial: &mut Trial<S>) -> FreeResponse<S> {
+    fn set_free_response<A: Arithmetic>(&self, trial: &mut Trial<S>, free: &mut FreeResponse<S>) {
         let Self { model, state, .. } = *self;
         let Prepared {
             step,
@@ -148,13 +149,11 @@ impl<const S: usize> Step<'_, S> {
             .fold(f64::MIN_POSITIVE, |largest, a| largest.max(a.abs()));
 
         let pushed = scaled(accelerations, -1.0);
-        let mut motions = [NodalMotion::ZERO; MAX_PORTS];
-        let ports = model.ports.iter().zip(step.free_of_ports()).zip(&mut motions);
-        for (p, ((port, rows), motion)) in ports.enumerate() {
+        for (p, (port, motion)) in model.ports.iter().zip(&mut free.ports).enumerate() {
             // Separate sums for q and v, which the processor computes in parallel.
             let [mut d, mut rate, mut from_v, mut rate_from_v] = [[0.0; S]; 4];
             let states = &state.modes[port.modes.clone()];
-            for (mode, row) in states.iter().zip(rows) {
+            for (mode, row) in states.iter().zip(step.free_of_port(p)) {
                 add::<S, A>(&mut d, mode.q, &row.from_q);
                 add::<S, A>(&mut from_v, mode.v, &row.from_v);
                 add::<S, A>(&mut rate, mode.q, &row.rate_from_q);
@@ -169,13 +168,9 @@ impl<const S: usize> Step<'_, S> {
             *motion = NodalMotion { d, rate };
             motion.respond::<A>(&step.acceleration(p).columns, &pushed);
         }
-        self.set_known::<A>(trial, &mut motions);
-        FreeResponse {
-            ports: motions,
-            start_defect,
-            missed_mean: collocation.quadrature * start_defect * start_defect / largest,
-            axial: None,
-        }
+        self.set_known::<A>(trial, &mut free.ports);
+        free.start_defect = start_defect;
+        free.missed_mean = collocation.quadrature * start_defect * start_defect / largest;
     }
 
     /// Sets the forces that do not depend on the motion, and adds the motion that they cause.

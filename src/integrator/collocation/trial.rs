@@ -106,6 +106,17 @@ pub(crate) struct FreeResponse<const S: usize> {
     pub(crate) axial: Option<NodalMotion<S>>,
 }
 
+impl<const S: usize> Default for FreeResponse<S> {
+    fn default() -> Self {
+        Self {
+            ports: [NodalMotion::ZERO; MAX_PORTS],
+            start_defect: 0.0,
+            missed_mean: 0.0,
+            axial: None,
+        }
+    }
+}
+
 /// Slip at the nodes of a step.
 #[derive(Clone, Copy, Debug, Zeroable)]
 pub struct SlipNodes<const S: usize> {

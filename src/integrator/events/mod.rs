@@ -15,7 +15,6 @@ use crate::contact::law::Law;
 use crate::integrator::collocation::error::sum_rounding;
 use crate::integrator::collocation::part::{Instant, Whole};
 use crate::integrator::constants::ITERATIONS;
-use crate::integrator::tolerance::Tolerance;
 use crate::integrator::workspace::{Budget, Search, work};
 use crate::link::Link;
 use crate::math::prediction::value_and_slope;
@@ -52,7 +51,6 @@ pub(crate) struct Locator<'a, const S: usize> {
     pub(crate) whole: Whole<'a, S>,
     pub(crate) search: &'a mut Search,
     pub(crate) budget: Budget,
-    pub(crate) tolerance: Tolerance,
     /// Rounding of time, s.
     pub(crate) resolution: f64,
 }
@@ -169,7 +167,7 @@ impl<'a, const S: usize> Locator<'a, S> {
         let stiffness = link
             .contact()
             .map_or(1.0, |law| law.tangent_stiffness(model.force_scale));
-        (self.tolerance.located / stiffness).max(motion_rounding(model, link, state))
+        (self.whole.model.tolerance.located / stiffness).max(motion_rounding(model, link, state))
     }
 }
 
