@@ -57,7 +57,7 @@
 //! after a closing, where the force is not smooth, and eight in flight and where they reach [`constants::WORTH`] times as far
 //! ([`step_length`]).
 //!
-//! *Leaps.* Just after a closing the dissipative part of the force is like the root of the time since, `c k d^(1/2) d'`, which no
+//! *Leaps* ([`leap`]). Just after a closing the dissipative part of the force is like the root of the time since, `c k d^(1/2) d'`, which no
 //! polynomial of time follows: steps would have to start at a thousandth of a nanosecond. The first step after a closing therefore
 //! uses polynomials of the root of time ([`collocation::shapes::Variable`]), eight nodes of Radau IIA in that variable, and reaches
 //! as far as its error allows, tens of nanoseconds. Only the integrals of the shapes differ: those of `t^(m/2)` are known, and for a

@@ -58,7 +58,7 @@ impl<const S: usize> Locator<'_, S> {
         }
         let is_brief =
             length <= BRIEF * model.scene.solver.effective_tolerance() * model.scene.chatter.minimum_duration;
-        let unsure = inaccuracy * self.whole.model.tolerance.force;
+        let unsure = inaccuracy * model.tolerance.force;
         if !is_accurate && !must && turns.iter().any(|y| value(y).abs() < unsure) {
             return false;
         }
@@ -82,7 +82,7 @@ impl<const S: usize> Locator<'_, S> {
                 } else {
                     let force = |d, rate| link.force_at(d, rate) - criterion.force;
                     let from = ((1.0 + before.0) * length, before.1);
-                    let rounding = self.whole.model.tolerance.at_opening;
+                    let rounding = model.tolerance.at_opening;
                     let found = self.instant(index, force, from, (1.0 + y) * length, rounding);
                     found.at / length - 1.0
                 };
