@@ -349,6 +349,13 @@ impl Model {
         0.5 * beam + links.sum::<f64>()
     }
 
+    /// Displacement of a port per coordinate of a mode, b_i, 1/sqrt(kg).
+    #[inline(always)]
+    pub(crate) fn displacement(&self, port: usize, mode: usize) -> f64 {
+        let shape = self.ports.get(port).map(|port| &port.shape);
+        shape.and_then(|shape| shape.get(mode)).copied().unwrap_or_default()
+    }
+
     /// Velocity of a port per impulse on it, 1/kg.
     pub(crate) fn mobility_of(&self, port: usize) -> f64 {
         let shape = self.ports.get(port).into_iter().flat_map(|port| &port.shape);

@@ -3,12 +3,13 @@
 use crate::contact::friction::Slip;
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::cache::Cache;
+use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::trial::Trial;
+use crate::integrator::dense_output::DenseSlip;
 use crate::integrator::grid::Target;
 use crate::link::{CONTACT, LinkLaw};
 use crate::math::free_motion::FreeMotion;
 use crate::math::nodal::{Nodal, add_columns, end};
-use crate::math::prediction::Prediction;
 use crate::math::simd::{Separate, compiled_for};
 use crate::model::Model;
 use crate::state::State;
@@ -20,7 +21,7 @@ const EACH: u64 = 4;
 /// to the instant of a closing, at which a wrong instant is a wrong force.
 const READ: f64 = 1e-9;
 
-/// Moves a state, of which the recorder has taken what it needs, to the end of an accepted step.
+/// Moves a state, of which the recorder has taken what it needs, to the end of an accepted step; returns the course of slip over it.
 pub(crate) fn commit<const S: usize>(
     model: &Model,
     state: &mut State,
@@ -28,7 +29,8 @@ pub(crate) fn commit<const S: usize>(
     cache: &Cache<S>,
     trial: &Trial<S>,
     target: &Target,
-) {
+) -> Option<DenseSlip> {
+    let slip = state.slip;
     advance_deviation(model, state, cache, trial, target);
     for ((mode, end), _) in state.modes.iter_mut().zip(&trial.modes).zip(&model.modes) {
         *mode = *end;
@@ -57,6 +59,7 @@ pub(crate) fn commit<const S: usize>(
     state.lengths.last = target.length;
     state.steps += 1;
     state.iterations += trial.iterations;
+    follow_slip(model, (slip, state), cache.collocation(), trial, target.length)
 }
 
 /// Carries the deviation along that tells what errors grow to.
@@ -91,15 +94,14 @@ fn advance_deviation<const S: usize>(
 
 /// Slip at the end of an accepted step of `length` seconds, which began with a `start`: distance and energy; and the courses of slip
 /// and energy over the step.
-pub(crate) fn follow_slip<const S: usize>(
+fn follow_slip<const S: usize>(
     model: &Model,
     (start, state): (Slip, &mut State),
-    cache: &Cache<S>,
+    collocation: &Collocation<S>,
     trial: &Trial<S>,
     length: f64,
-) -> Option<[Prediction; 2]> {
+) -> Option<DenseSlip> {
     let (index, _) = model.friction()?;
-    let collocation = cache.collocation();
     let (link, nodes) = model.links.get(index).zip(trial.links.get(index))?;
     let mut slips = nodes.approaches;
     for (slip, deflection) in slips.iter_mut().zip(&trial.slip.deflections) {
@@ -126,8 +128,8 @@ pub(crate) fn follow_slip<const S: usize>(
         state.slip.dissipated = start.dissipated.max(end(&dissipated));
     }
     model.set_friction_force(state);
-    Some([
-        collocation.through(model.simd, start.way, &slips),
-        collocation.through(model.simd, start.dissipated, &dissipated),
-    ])
+    Some(DenseSlip {
+        slip: collocation.through(model.simd, start.way, &slips),
+        dissipated: collocation.through(model.simd, start.dissipated, &dissipated),
+    })
 }

@@ -1,93 +1,148 @@
 //! The discrete-gradient step, used where the collocation fails: it always has a solution.
 //!
-//! The contact force is constant over the step: the discrete gradient of the elastic energy between the ends of the
-//! step, plus a damping force against the displacement between them (O. Gonzalez, J. Nonlinear Sci. 6 (1996) 449). With
+//! The contact force is constant over the step: the discrete gradient of the elastic energy `V` between the ends of the
+//! step, `(V(d_1) - V(d_0)) / (d_1 - d_0)`, plus a damping force against the displacement between them (O. Gonzalez,
+//! J. Nonlinear Sci. 6 (1996) 449). With
 //! exact modes the energy is conserved exactly without damping and never grows with damping, for any step length;
 //! opening and closing need no event location. The indentation at the end decreases linearly with the constant force
 //! and the law's mean force increases with the indentation: one monotone scalar equation, solved by a bracketing
 //! method.
 
-use crate::excitation::drive::Drive;
+use crate::error::{StepError, StepErrorCause};
 use crate::integrator::collocation::error::sum_rounding;
 use crate::integrator::collocation::step::compute;
 use crate::integrator::collocation::trial::{Source, Trial};
+use crate::integrator::events::Event;
 use crate::integrator::grid::Target;
-use crate::integrator::workspace::{Room, Rooms, Workspace, work};
+use crate::integrator::step_length::StepOutcome;
+use crate::integrator::stepper::Stepper;
+use crate::integrator::workspace::{Room, Rooms, work};
 use crate::math::nodal::SHORT;
 use crate::math::roots;
-use crate::model::Model;
-use crate::state::State;
 
 /// Rounds over the contacts until each force is that of its law under those of the others. One round is enough for one contact.
 const ROUNDS: u32 = 20;
 
-/// Solves for the constant forces of the step to the target; friction keeps the force it has.
-pub(crate) fn solve(
-    model: &Model,
-    state: &State,
-    drive: &Drive,
-    workspace: &mut Workspace,
-    trial: &mut Trial<SHORT>,
-    target: &Target,
-) -> Option<()> {
-    let (room, search) = Rooms::<SHORT>::parts(workspace);
-    search.looked = None;
-    let Room { cache, scratch, .. } = room;
-    let prepared = cache.prepare(state.time, target.length, target.recurring, model);
-    let contacts = |index: &usize| model.links.get(*index).is_some_and(|link| link.contact().is_some());
-    let contacts = || (0..model.links.len()).filter(contacts);
-    for ((nodes, link), at) in trial.links.iter_mut().zip(&model.links).zip(&state.links) {
-        nodes.forces = [at.force - link.force; SHORT];
+impl Stepper<'_> {
+    /// Takes a step with constant forces, which always has a solution.
+    pub(super) fn take_with_constant_force(&mut self, target: &Target) -> Result<StepOutcome, StepError> {
+        self.with_trial(|stepper, trial| stepper.try_with_constant_force(trial, target))
     }
-    let mut trials = 0;
-    let mut under = |trial: &mut Trial<SHORT>, index: usize, force: f64| {
-        trials += 1;
-        let (link, nodes) = model.links.get(index).zip(trial.links.get_mut(index))?;
-        nodes.forces = [force - link.force; SHORT];
-        compute(model, state, drive, prepared, Source::Given, trial, scratch)?;
-        // What its law gives between both ends.
-        let (nodes, at) = trial.links.get(index).zip(state.links.get(index))?;
-        let (moved, mean) = (nodes.end.approach - at.approach, 0.5 * (at.rate + nodes.end.rate));
-        let (rounding, _) = sum_rounding(model.ports.get(link.port)?, state);
-        // Of a step of femtoseconds a contact with much damping would make a force of that rounding.
-        let speed = if (moved - mean * target.length).abs() <= rounding {
-            mean
-        } else {
-            moved / target.length
+
+    fn try_with_constant_force(&mut self, trial: &mut Trial<SHORT>, target: &Target) -> Result<StepOutcome, StepError> {
+        self.solve(trial, target)
+            .ok_or_else(|| self.error(StepErrorCause::NotFinite))?;
+        self.commit(trial, target, true)?;
+        let mut switched = false;
+        for index in 0..self.model.links.len() {
+            switched |= self.switch_after_constant_force(trial, index, target.length);
+        }
+        self.model.settle_friction(self.state);
+        // No polynomial to predict the next step with.
+        self.state.lengths.last = 0.0;
+        Ok(StepOutcome {
+            accepted: true,
+            switched,
+            growth: 2.0,
+            length: target.length,
+        })
+    }
+
+    /// Solves for the constant forces of the step to the target; friction keeps the force it has.
+    fn solve(&mut self, trial: &mut Trial<SHORT>, target: &Target) -> Option<()> {
+        let Self {
+            model,
+            state,
+            workspace,
+            drive,
+            ..
+        } = self;
+        let (room, search) = Rooms::<SHORT>::parts(*workspace);
+        search.looked = None;
+        let Room { cache, scratch, .. } = room;
+        let prepared = cache.prepare(state.time, target.length, target.recurring, model);
+        let contacts = |index: &usize| model.links.get(*index).is_some_and(|link| link.contact().is_some());
+        let contacts = || (0..model.links.len()).filter(contacts);
+        for ((nodes, link), at) in trial.links.iter_mut().zip(&model.links).zip(&state.links) {
+            nodes.forces = [at.force - link.force; SHORT];
+        }
+        let mut trials = 0;
+        let mut under = |trial: &mut Trial<SHORT>, index: usize, force: f64| {
+            trials += 1;
+            let (link, nodes) = model.links.get(index).zip(trial.links.get_mut(index))?;
+            nodes.forces = [force - link.force; SHORT];
+            compute(model, state, drive, prepared, Source::Given, trial, scratch)?;
+            // What its law gives between both ends.
+            let (nodes, at) = trial.links.get(index).zip(state.links.get(index))?;
+            let (moved, mean) = (nodes.end.approach - at.approach, 0.5 * (at.rate + nodes.end.rate));
+            let (rounding, _) = sum_rounding(model, link, state);
+            // Of a step of femtoseconds a contact with much damping would make a force of that rounding.
+            let speed = if (moved - mean * target.length).abs() <= rounding {
+                mean
+            } else {
+                moved / target.length
+            };
+            let [from, to] = [at.approach, nodes.end.approach].map(|deviation| link.approach + deviation);
+            Some(link.contact()?.mean_force(from, to, speed))
         };
-        let [from, to] = [at.approach, nodes.end.approach].map(|deviation| link.approach + deviation);
-        Some(link.contact()?.mean_force(from, to, speed))
-    };
-    let rounds = if contacts().count() > 1 { ROUNDS } else { 1 };
-    for _ in 0..rounds {
-        let mut changed = false;
-        for index in contacts() {
-            let before = trial.links.get(index)?.forces;
-            // Bracket: zero force gives the largest approach and so the largest force of the law.
-            let most = Some(under(trial, index, 0.0)?).filter(|most| most.is_finite())?;
-            let mut excess = |force: f64| under(trial, index, force).map_or(f64::NAN, |law| force - law);
-            let bracket = ((0.0, -most), (most, excess(most)));
-            let force = roots::between(excess, bracket.0, bracket.1, 0.0).unwrap_or(most);
-            under(trial, index, force)?;
-            changed |= trial.links.get(index)?.forces != before;
+        let rounds = if contacts().count() > 1 { ROUNDS } else { 1 };
+        for _ in 0..rounds {
+            let mut changed = false;
+            for index in contacts() {
+                let before = trial.links.get(index)?.forces;
+                // Bracket: zero force gives the largest approach and so the largest force of the law.
+                let most = Some(under(trial, index, 0.0)?).filter(|most| most.is_finite())?;
+                let mut excess = |force: f64| under(trial, index, force).map_or(f64::NAN, |law| force - law);
+                let bracket = ((0.0, -most), (most, excess(most)));
+                let force = roots::between(excess, bracket.0, bracket.1, 0.0).unwrap_or(most);
+                under(trial, index, force)?;
+                changed |= trial.links.get(index)?.forces != before;
+            }
+            if !changed {
+                break;
+            }
         }
-        if !changed {
-            break;
-        }
+        search.work += trials * work::<SHORT>(model, true);
+        Some(())
     }
-    search.work += trials * work::<SHORT>(model, true);
-    Some(())
+
+    /// Opens or closes a contact as it is after a step of `length` seconds with constant forces, and sets its force; whether it
+    /// opens or closes.
+    fn switch_after_constant_force(&mut self, trial: &Trial<SHORT>, index: usize, length: f64) -> bool {
+        let Some((link, nodes)) = self.model.links.get(index).zip(trial.links.get(index)) else {
+            return false;
+        };
+        let (Some(law), end) = (link.contact(), &nodes.end) else {
+            return false;
+        };
+        let closed = link.engagement(end.approach, end.rate) > 0.0;
+        let switched = self.state.links.get(index).is_some_and(|at| at.closed != closed);
+        if switched {
+            self.happen(Event::Switches(index));
+        }
+        if closed && let Some(at) = self.state.links.get_mut(index) {
+            // The velocity at the end belongs to a constant force: if the contact is nearly a rigid dashpot, the law
+            // would overestimate the force.
+            let branch = law.closed_branch(link.approach + end.approach, end.rate);
+            let rigid = branch.damping * self.model.mobility_of(link.port) * length > 1.0;
+            at.force = if rigid { link.force + end.force } else { branch.force };
+        }
+        switched
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::excitation::drive::Drive;
     use crate::integrator::grid::Grid;
     use crate::integrator::recorder::Recorder;
-    use crate::integrator::stepper::{Progress, Stepper};
-    use crate::integrator::workspace::Budget;
+    use crate::integrator::stepper::Progress;
+    use crate::integrator::workspace::{Budget, Workspace};
     use crate::link::CONTACT;
+    use crate::model::Model;
     use crate::scene::Scene;
+    use crate::state::State;
 
     /// The specimen with a gap and without beam damping, thrown at the contact.
     fn thrown(contact_damping: f64) -> (Model, State) {

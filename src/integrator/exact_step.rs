@@ -111,8 +111,8 @@ pub(crate) fn step_ahead(
             state.time = until;
             return true;
         }
-        let (propagators, collocation) = workspace.for_exact_steps();
-        let propagator = propagators.get(length, |propagator| {
+        let collocation = workspace.long.cache.collocation();
+        let propagator = workspace.dense_propagators.get(length, |propagator| {
             propagator.fill(length, start.closed_loop, &model.generator, &collocation.nodes);
         });
         let Some(propagator) = propagator else {

@@ -69,20 +69,7 @@ impl Grid {
     /// The next step from `time` (s), of at most about `requested` seconds, ending at the latest at `corner` (s), the
     /// next discontinuity of the excitation.
     pub fn target(&self, requested: f64, time: f64, corner: Option<f64>) -> Target {
-        if self.free {
-            let length = round_down(requested);
-            let corner = corner.filter(|corner| *corner < time + length);
-            return corner.map_or(
-                Target {
-                    length,
-                    recurring: true,
-                    done: 1.0,
-                    time: time + length,
-                },
-                |corner| self.cut(corner - time, corner),
-            );
-        }
-        if !self.recurs {
+        if self.free || !self.recurs {
             return self.rounded(requested, time, corner);
         }
         let done = if self.done == 0.0 && requested >= self.size {
@@ -108,21 +95,23 @@ impl Grid {
     fn rounded(&self, requested: f64, time: f64, corner: Option<f64>) -> Target {
         let (end, remaining) = (self.end(), self.remaining());
         let shorter = round_down(requested);
-        let (length, done) = if shorter < remaining {
+        let (length, done) = if self.free {
+            (shorter, 1.0)
+        } else if shorter < remaining {
             (shorter, self.done + shorter / self.size)
         } else {
             (round_up(remaining), 1.0)
         };
-        let corner = corner.filter(|corner| *corner < time + length);
-        corner.map_or(
-            Target {
-                length,
-                recurring: true,
-                done,
-                time: time + length,
-            },
-            |corner| self.cut(corner.min(end) - time, corner.min(end)),
-        )
+        if let Some(corner) = corner.filter(|corner| *corner < time + length) {
+            let corner = if self.free { corner } else { corner.min(end) };
+            return self.cut(corner - time, corner);
+        }
+        Target {
+            length,
+            recurring: true,
+            done,
+            time: time + length,
+        }
     }
 
     /// The step of `length` (s) that ends at `time` (s), off the grid.

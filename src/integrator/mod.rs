@@ -57,7 +57,7 @@
 //! after a closing, where the force is not smooth, and eight in flight and where they reach [`constants::WORTH`] times as far
 //! ([`step_length`]).
 //!
-//! *Leaps.* Just after a closing the dissipative part of the force is like the root of the time since, `c k d^(1/2) d'`, which no
+//! *Leaps* ([`leap`]). Just after a closing the dissipative part of the force is like the root of the time since, `c k d^(1/2) d'`, which no
 //! polynomial of time follows: steps would have to start at a thousandth of a nanosecond. The first step after a closing therefore
 //! uses polynomials of the root of time ([`collocation::shapes::Variable`]), eight nodes of Radau IIA in that variable, and reaches
 //! as far as its error allows, tens of nanoseconds. Only the integrals of the shapes differ: those of `t^(m/2)` are known, and for a
@@ -121,12 +121,8 @@
 //!
 //! - *Opening* ([`events::opening`]): the force reaches zero, at a node or in a dip of the polynomial between nodes. With contact
 //!   damping that is before the surfaces part.
-//! - *Closing* ([`events::closing`]): approach and velocity at the nodes define cubics, whose error is estimated from
-//!   neighbouring nodes. Intervals in which the highest point of the cubic, plus that error, plus the amplitudes of modes that
-//!   vibrate faster than the interval, or settle faster after a jump, stays open are clear; others are halved, first on the
-//!   cubic, then by the exact motion. A grazing touch is not missed, as it is by a search for changes of sign. Between an open
-//!   and a closed sample there is one closing where the bodies approach faster than anything unseen could part them. The
-//!   instant itself is found on the cubics of ever nearer samples, to half the shortest step.
+//! - *Closing* ([`events::closing`]): on cubics through approach and velocity at the nodes, with bounds of all that they miss. A
+//!   grazing touch is not missed, as it is by a search for changes of sign.
 //! - *Slip* ([`events::slip`]): the trial force of stick passes Coulomb's limit, or the slip velocity its zero. What is missing there
 //!   would stay in the tangential spring as a wrong friction force.
 //! - *Interruption* ([`events::interruption`]): the step goes on where the force passes that of the threshold resistance. Between the
@@ -159,9 +155,7 @@
 //! is below [`constants::UNREST`] of the tolerance nothing is integrated until something changes.
 //!
 //! *Discrete gradient* ([`discrete_gradient`]): where Newton's method or the error estimate fails repeatedly, and at the shortest step,
-//! each force is taken constant over the step, `(V(d_1) - V(d_0)) / (d_1 - d_0)` with the elastic energy `V` of its law, and a
-//! dissipative part that opposes the motion (O. Gonzalez, J. Nonlinear Sci. 6 (1996) 449). With exact modes energy is then conserved
-//! without damping and never made with it, at any step length. The equation is monotone and always has its solution. Order two.
+//! each force is taken constant over the step. That always has a solution, and makes no energy at any step length. Order two.
 //!
 //! *Energy* ([`energy`]): where nothing dissipates, what a step makes of energy is its error, and is returned by small impulses within
 //! a share of the tolerance. `energy.balance` is the work of the forces by which the polynomials miss the laws.
@@ -195,8 +189,9 @@
 //!
 //! # Files
 //!
-//! A communication step goes down through these: [`communication_step`], [`stepper`] (steps one after the other: computed on trial,
-//! judged, searched for events, committed), [`collocation`] (one step). [`step_length`]: what the next step is to be. [`workspace`]: room
+//! A communication step goes down through these: [`communication_step`], [`steps`] (one after the other), [`step_end`] (where one
+//! ends: at an event), [`stepper`] (one on trial: computed, judged, committed), [`collocation`]. [`step_length`]: what the next step is
+//! to be. [`workspace`]: room
 //! made once, so that no step allocates. [`State`](crate::state::State) and [`motion`] are all that moves: plain numbers, a saved state
 //! is a copy. The kernel of a step is compiled twice, for any processor and for AVX2 with fused multiply-add
 //! ([`simd`](crate::math::simd)).
@@ -215,11 +210,14 @@ pub mod events;
 pub mod exact_step;
 pub mod extremes;
 pub mod grid;
+pub mod leap;
 pub mod motion;
 pub mod recorder;
 pub mod rest;
+pub mod step_end;
 pub mod step_length;
 pub mod stepper;
+pub mod steps;
 pub mod tolerance;
 pub mod transition;
 pub mod with_contact;

@@ -66,10 +66,11 @@ pub(crate) fn rests_until(model: &Model, state: &State, drive: &Drive, end: f64)
     let mut axial = axial.iter().flatten();
     let mut energy = 0.0;
     for (i, (mode, at)) in model.modes.iter().zip(&state.modes).enumerate() {
-        let by_links = model.links.iter().zip(&forces).fold(0.0, |sum, (link, force)| {
-            let port = model.ports.get(link.port);
-            sum + force * port.and_then(|port| port.shape.get(i)).copied().unwrap_or_default()
-        });
+        let by_links = model
+            .links
+            .iter()
+            .zip(&forces)
+            .fold(0.0, |sum, (link, force)| sum + force * model.displacement(link.port, i));
         let load = by_links - mode.participation * acceleration - mode.omega_squared * at.q
             + axial.next().copied().unwrap_or_default();
         let strain = if load == 0.0 {

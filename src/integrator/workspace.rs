@@ -9,10 +9,10 @@ use crate::closed_loop::dense::{DensePropagator, TipAtNodes};
 use crate::closed_loop::propagator::{ByLength, Propagator};
 use crate::contact::power::Power;
 use crate::error::{StepError, StepErrorCause};
+use crate::excitation::drive::Drive;
 use crate::integrator::collocation::cache::{Cache, Common, OF_LONG, OF_SHORT};
 use crate::integrator::collocation::modal_response::ModeOverStep;
-use crate::integrator::collocation::part::Instant;
-use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::collocation::part::{Instant, Whole};
 use crate::integrator::collocation::shapes::Variable;
 use crate::integrator::collocation::trial::{Scratch, Trial};
 use crate::integrator::constants::HALVINGS;
@@ -22,6 +22,7 @@ use crate::integrator::motion::Motion;
 use crate::math::nodal::{LONG, SHORT};
 use crate::model::Model;
 use crate::shared::Home;
+use crate::state::State;
 
 /// Work that a communication step may take, however long it is, in modes at nodes: each takes some forty instructions, all
 /// together one to three seconds on processors of 2026. Pinned: ÷ 1e5 and × 100, `tests/fmi_api`.
@@ -37,7 +38,7 @@ pub const LENGTHS: usize = 8;
 #[derive(Clone, Debug)]
 pub struct Workspace {
     short: Room<SHORT>,
-    long: Room<LONG>,
+    pub(crate) long: Room<LONG>,
     /// For leaps, where the model allows them.
     pub(crate) leaps: Option<Leaps>,
     /// The half steps of the energy balance.
@@ -46,7 +47,7 @@ pub struct Workspace {
     /// Caches of exact linear steps, without and with dense output.
     pub(crate) propagators: ByLength<Box<Propagator>>,
     /// See [`Workspace::propagators`].
-    dense_propagators: ByLength<DensePropagator>,
+    pub(crate) dense_propagators: ByLength<DensePropagator>,
     /// The motion before a communication step, to which a failed one returns.
     pub(crate) former: Box<Motion>,
     /// Openings and closings of the last communication step.
@@ -113,6 +114,24 @@ impl<const S: usize> Room<S> {
             trial: Some(zeroed_box()),
         }
     }
+
+    /// A trial of `length` seconds made in it.
+    pub(crate) fn whole<'a>(
+        &'a self,
+        (model, state, drive): (&'a Model, &'a State, &'a Drive),
+        trial: &'a Trial<S>,
+        length: f64,
+    ) -> Whole<'a, S> {
+        Whole {
+            model,
+            state,
+            drive,
+            collocation: self.cache.collocation(),
+            trial,
+            axial: &self.scratch.axial.loads,
+            length,
+        }
+    }
 }
 
 impl Workspace {
@@ -150,21 +169,11 @@ impl Workspace {
         }
     }
 
-    /// For exact steps with dense output.
-    pub(crate) fn for_exact_steps(&mut self) -> (&mut ByLength<DensePropagator>, &Collocation<LONG>) {
-        (&mut self.dense_propagators, self.long.cache.collocation())
-    }
-
     /// Exchanges the coefficients of long steps with those of leaps.
     pub(crate) fn exchange(&mut self) {
         if let Some(leaps) = &mut self.leaps {
             mem::swap(&mut leaps.cache, &mut self.long.cache);
         }
-    }
-
-    /// For the half steps of the energy balance.
-    pub(crate) fn for_half_steps(&mut self) -> (&mut Room<LONG>, &mut Trial<LONG>) {
-        (&mut self.long, &mut self.half)
     }
 }
 

@@ -9,11 +9,9 @@
 //! position until the sine in the law of the axial force turns to tension. Such motion is integrated like any other, in
 //! shorter steps.
 
-use bytemuck::Zeroable;
-
 use crate::beam::axial::Feedback;
 use crate::beam::mode::Modal;
-use crate::integrator::collocation::coefficients::{ErrorColumn, ModeColumns, StepCoefficients};
+use crate::integrator::collocation::coefficients::{ModeColumns, NodalMotion, StepCoefficients};
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::trial::{AxialLoads, FreeResponse, Source, Trial};
 use crate::integrator::constants::{FORCE_ROUNDING, ITERATIONS};
@@ -91,11 +89,9 @@ impl<'a, const S: usize> Rounds<'a, S> {
 
     /// Effect on the approach of the contact of the defects of base acceleration and loads at the start.
     #[inline(always)]
-    fn error<A: Arithmetic>(&self, free: &FreeResponse<S>) -> ErrorColumn<S> {
-        let mut error = ErrorColumn::zeroed();
-        for port in self.step.ports().take(1) {
-            error.add::<A>(free.start_defect, &port.acceleration.defect);
-        }
+    fn error<A: Arithmetic>(&self, free: &FreeResponse<S>) -> NodalMotion<S> {
+        let mut error = NodalMotion::ZERO;
+        error.add::<A>(free.start_defect, &self.step.acceleration(0).defect);
         let modes = self.model.modes.iter().zip(self.step.columns);
         for (((mode, columns), start), load) in modes.zip(&self.start).zip(&self.room.loads) {
             let ModeColumns { load: response, .. } = columns;
@@ -120,8 +116,7 @@ fn set_motion<const S: usize, A: Arithmetic>(
         let mut load = *load;
         let mut q = [0.0; S];
         for (link, nodes) in model.links.iter().zip(&trial.links) {
-            let b = model.ports.get(link.port).and_then(|port| port.shape.get(i));
-            add::<S, A>(&mut load, link.sense * b.copied().unwrap_or_default(), &nodes.forces);
+            add::<S, A>(&mut load, link.sense * model.displacement(link.port, i), &nodes.forces);
         }
         add::<S, A>(&mut load, -mode.participation, &trial.accelerations);
         add::<S, A>(&mut q, at.q, &columns.q_from_q);

@@ -9,7 +9,7 @@ use crate::excitation::generator::Turns;
 use crate::integrator::collocation::shapes::Shapes;
 use crate::integrator::collocation::superposition::{self, Pair, Sum};
 use crate::math::free_motion::FreeMotion;
-use crate::math::nodal::{Nodal, add, end, scaled};
+use crate::math::nodal::{Nodal, add, add_columns, end, scaled};
 use crate::math::simd::{Arithmetic, LANES, Simd, compiled_for};
 
 /// Free motion of a port at the nodes due to one mode; includes the displacement of the port per coordinate of the mode.
@@ -91,13 +91,11 @@ pub struct Columns<const S: usize> {
     pub velocity: [Nodal<S>; S],
 }
 
-/// Displacement and velocity at the nodes per unit defect at the start: under the shape of the error estimate.
+/// Motion of a link or port at the nodes: displacement and velocity.
 #[derive(Clone, Copy, Debug, Zeroable)]
-pub struct ErrorColumn<const S: usize> {
-    /// Displacement.
-    pub displacement: Nodal<S>,
-    /// Velocity.
-    pub velocity: Nodal<S>,
+pub struct NodalMotion<const S: usize> {
+    pub(crate) d: Nodal<S>,
+    pub(crate) rate: Nodal<S>,
 }
 
 /// Motion of one mode at the nodes.
@@ -111,21 +109,27 @@ pub struct ModeColumns<const S: usize> {
     pub load: Response<S>,
 }
 
-/// The coefficients of a port.
-#[derive(Clone, Copy, Debug)]
-pub struct PortCoefficients<'a, const S: usize> {
-    /// Free motion, mode by mode, of the modes that it has a part in.
-    pub modes: &'a [NodeRows<S>],
-    /// Motion per base acceleration that loads the modes with `participation`, and per defect of it.
-    pub acceleration: &'a Response<S>,
-}
+impl<const S: usize> NodalMotion<S> {
+    pub(crate) const ZERO: Self = Self {
+        d: [0.0; S],
+        rate: [0.0; S],
+    };
 
-impl<const S: usize> ErrorColumn<S> {
+    /// Adds the response to nodal values of a load.
+    #[inline(always)]
+    pub(crate) fn respond<A: Arithmetic>(&mut self, columns: &Columns<S>, load: &Nodal<S>) {
+        // Copies, which stay in registers.
+        let Self { mut d, mut rate } = *self;
+        add_columns::<S, A>(&mut d, &columns.displacement, load);
+        add_columns::<S, A>(&mut rate, &columns.velocity, load);
+        *self = Self { d, rate };
+    }
+
     /// Adds a multiple of another.
     #[inline(always)]
-    pub(super) fn add<A: Arithmetic>(&mut self, factor: f64, other: &Self) {
-        add::<S, A>(&mut self.displacement, factor, &other.displacement);
-        add::<S, A>(&mut self.velocity, factor, &other.velocity);
+    pub(crate) fn add<A: Arithmetic>(&mut self, factor: f64, other: &Self) {
+        add::<S, A>(&mut self.d, factor, &other.d);
+        add::<S, A>(&mut self.rate, factor, &other.rate);
     }
 }
 
@@ -146,8 +150,8 @@ impl<const S: usize> Columns<S> {
 pub struct Response<const S: usize> {
     /// Per nodal values.
     pub columns: Columns<S>,
-    /// Per defect.
-    pub defect: ErrorColumn<S>,
+    /// Per defect: under the shape of the error estimate.
+    pub defect: NodalMotion<S>,
 }
 
 /// The coefficients of a step of one length.
@@ -178,21 +182,14 @@ pub(super) const fn responses_before(port: usize) -> usize {
 }
 
 impl<'a, const S: usize> StepCoefficients<'a, S> {
-    /// Those of the ports, one after the other.
+    /// Free motion of a port, mode by mode, of the modes that it has a part in.
     #[inline(always)]
-    pub fn ports(&self) -> impl Iterator<Item = PortCoefficients<'a, S>> {
-        let Self {
-            responses,
-            rows,
-            of_port,
-            ..
-        } = *self;
-        of_port.iter().enumerate().filter_map(move |(p, range)| {
-            Some(PortCoefficients {
-                modes: rows.get(range.clone())?,
-                acceleration: responses.get(responses_before(p))?,
-            })
-        })
+    #[expect(
+        clippy::indexing_slicing,
+        reason = "there are coefficients for every port of the model"
+    )]
+    pub fn free_of_port(&self, port: usize) -> &'a [NodeRows<S>] {
+        &self.rows[self.of_port[port].clone()]
     }
 
     /// The free motion of a mode.
@@ -206,7 +203,7 @@ impl<'a, const S: usize> StepCoefficients<'a, S> {
         })
     }
 
-    /// The response of a port to the base acceleration.
+    /// The response of a port to a base acceleration, which loads the modes with their `participation`.
     #[inline(always)]
     #[expect(
         clippy::indexing_slicing,
@@ -233,7 +230,7 @@ impl<const S: usize> Response<S> {
     fn values_mut(&mut self) -> impl Iterator<Item = &mut Nodal<S>> {
         let Self { columns, defect } = self;
         let columns = columns.displacement.iter_mut().chain(&mut columns.velocity);
-        columns.chain([&mut defect.displacement, &mut defect.velocity])
+        columns.chain([&mut defect.d, &mut defect.rate])
     }
 
     /// Multiplies it.
@@ -263,7 +260,7 @@ impl<const S: usize> Response<S> {
             for ((displacement, velocity), (q, v)) in nodal.zip(q.nodal.iter().zip(&v.nodal)) {
                 (*displacement, *velocity) = (scaled(q, h * h), scaled(v, h));
             }
-            (defect.displacement, defect.velocity) = (scaled(&q.error, h * h), scaled(&v.error, h));
+            (defect.d, defect.rate) = (scaled(&q.error, h * h), scaled(&v.error, h));
         });
     }
 }

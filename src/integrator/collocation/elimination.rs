@@ -1,5 +1,10 @@
 //! Gauss-Jordan elimination of the few equations of a step: a block of unknowns for each link, a value at each node.
 
+#![expect(
+    clippy::indexing_slicing,
+    reason = "every index runs over the fixed size of the arrays"
+)]
+
 use crate::integrator::constants::SMALL_PIVOT;
 use crate::math::nodal::{Nodal, add, others, scaled, unit};
 use crate::math::simd::{Arithmetic, Separate};
@@ -36,10 +41,6 @@ impl<const S: usize, const L: usize> Equations<S, L> {
 
     /// Factorises by columns, so that inner loops run down columns; the solution for `right` takes its place. Rows are
     /// exchanged within a block only, and only for a small pivot, which occurs in violent steps. `None` if that is zero.
-    #[expect(
-        clippy::indexing_slicing,
-        reason = "every index runs over the fixed size of the arrays"
-    )]
     #[inline(always)]
     pub(super) fn factorise<A: Arithmetic>(&mut self, right: &mut Stacked<S, L>) -> Option<()> {
         let Self {
@@ -78,10 +79,6 @@ impl<const S: usize, const L: usize> Equations<S, L> {
     }
 
     /// Solves the equations that have been factorised.
-    #[expect(
-        clippy::indexing_slicing,
-        reason = "every index runs over the fixed size of the arrays"
-    )]
     #[inline(always)]
     pub(super) fn solve<A: Arithmetic>(&self, right: &mut Stacked<S, L>) {
         for b in 0..in_use::<L>(self.count) {
@@ -99,10 +96,6 @@ impl<const S: usize, const L: usize> Equations<S, L> {
 /// Exchanges row `p` of block `b` with that of the largest pivot in the block, and returns which it is.
 #[cold]
 #[inline(never)]
-#[expect(
-    clippy::indexing_slicing,
-    reason = "every index runs over the fixed size of the arrays"
-)]
 fn exchange<const S: usize, const L: usize>(
     columns: &mut [[Stacked<S, L>; S]; L],
     right: &mut Stacked<S, L>,
@@ -130,10 +123,6 @@ fn set_zero<const S: usize>(values: &mut Nodal<S>, node: usize) {
 
 /// Eliminates row `p` of block `b` of a column from all other rows, and divides it by the pivot, whose inverse the multiplier has
 /// there.
-#[expect(
-    clippy::indexing_slicing,
-    reason = "every index runs over the fixed size of the arrays"
-)]
 #[inline(always)]
 fn eliminate<const S: usize, const L: usize, A: Arithmetic>(
     column: &mut Stacked<S, L>,
@@ -195,10 +184,6 @@ mod tests {
     }
 
     #[test]
-    #[expect(
-        clippy::indexing_slicing,
-        reason = "every index runs over the fixed size of the arrays"
-    )]
     fn blocks_are_one_system() {
         // Three blocks of two, with couplings of both signs: the solution times the matrix is the right-hand side.
         let mut equations = Equations::<2, 3>::new(3);

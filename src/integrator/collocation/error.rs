@@ -5,14 +5,14 @@
     reason = "several arrays have a value for each unknown or node"
 )]
 
-use crate::integrator::collocation::coefficients::StepCoefficients;
+use crate::integrator::collocation::coefficients::{NodalMotion, StepCoefficients};
 use crate::integrator::collocation::elimination::in_use;
-use crate::integrator::collocation::newton::{Linked, NodalMotion, Solution, Tangent, Unknown};
+use crate::integrator::collocation::newton::{Linked, Solution, Tangent, Unknown};
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::Variable;
 use crate::integrator::collocation::trial::{Estimate, FreeResponse, Trial};
 use crate::integrator::constants::{FORCE_ROUNDING, KINKED, SUM_ROUNDINGS};
-use crate::link::{LinkLaw, MAX_LINKS, Port};
+use crate::link::{Link, LinkLaw, MAX_LINKS};
 use crate::math::nodal::{Nodal, dot, end, greatest};
 use crate::math::simd::Arithmetic;
 use crate::model::Model;
@@ -34,14 +34,10 @@ pub(super) struct Judged<'a, const S: usize, const L: usize> {
 }
 
 impl<const S: usize, const L: usize> Judged<'_, S, L> {
-    /// Estimates the error that a step adds to the contact force: if it is taken to its end, and if it ends inside.
-    ///
-    /// The polynomials are exact at the nodes; their defect at the start gives the amplitude of the next term, the shape
-    /// that vanishes at the nodes. Its effect on the nodal forces is known to first order ([`Linked::wrong`]). At the end of
-    /// the step, modes slow compared with the step are hardly affected by it (the shape is orthogonal to polynomials of low
-    /// degree); their error is of twice the order, about three times the square of the defect (calibrated with a free mass
-    /// impacting a Hertz contact). Just after first touch or a jump the force is not smooth, and their error is larger.
-    /// Inside the step the shape is not orthogonal to anything: slow modes get its impulse up to there.
+    /// Estimates the error that a step adds to the contact force: if it is taken to its end, and if it ends inside (*Error
+    /// estimate* of [`integrator`](crate::integrator)). What the defects do to the nodal forces is known to first order
+    /// ([`Linked::wrong`]). Inside the step the shape of the estimate is not orthogonal to anything: slow modes get its impulse up to
+    /// there.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "links of the model, and unknowns in use")]
     pub(super) fn estimate<A: Arithmetic>(&self, solution: &Solution<S, L>, trial: &mut Trial<S>) {
@@ -169,15 +165,15 @@ impl<const S: usize, const L: usize> Judged<'_, S, L> {
         let link = &links[index];
         let mut motion = NodalMotion::ZERO;
         if let Some(of_loads) = &free.axial {
-            motion.add_defect::<A>(of_loads, link.sense);
+            motion.add::<A>(link.sense, of_loads);
         } else {
             let of_base = &step.acceleration(link.port).defect;
-            motion.add_defect::<A>(of_base, link.sense * free.start_defect);
+            motion.add::<A>(link.sense * free.start_defect, of_base);
         }
         for (other, defect) in links.iter().zip(&defects.0) {
             if *defect != 0.0 {
                 let column = &step.response(link.port, other.port).defect;
-                motion.add_defect::<A>(column, -link.sense * other.sense * defect);
+                motion.add::<A>(-link.sense * other.sense * defect, column);
             }
         }
         motion
@@ -231,13 +227,11 @@ pub(super) fn estimate_in_flight<const S: usize>(
             free.start_defect.abs()
         };
         let most = |values: &Nodal<S>| greatest(values) * defect;
-        let wrong = most(&rows.displacement)
-            + law.damping() * most(&rows.velocity)
-            + missed_velocity * (model.memory + law.damping());
+        let wrong = most(&rows.d) + law.damping() * most(&rows.rate) + missed_velocity * (model.memory + law.damping());
         let stiffness = law.tangent_stiffness(model.force_scale);
         at_end = at_end.max(stiffness * wrong);
         // At the end the velocity is that of the quadrature.
-        inside = inside.max(stiffness * (wrong + model.memory * most(&rows.velocity)));
+        inside = inside.max(stiffness * (wrong + model.memory * most(&rows.rate)));
     }
     trial.error = Estimate::lasting(at_end);
     trial.slow_error = model.inertia * free.missed_mean;
@@ -249,8 +243,8 @@ pub(super) fn estimate_in_flight<const S: usize>(
 /// Whether the error (N) of a trial is explained by rounding of the sums over the modes: after an impact the modal velocities
 /// are large and their sum at the tip is small.
 pub(crate) fn is_rounding<const S: usize>(model: &Model, state: &State, trial: &Trial<S>, error: f64) -> bool {
-    let of_links = model.links.iter().zip(&trial.links).filter_map(|(link, nodes)| {
-        let (displacement, velocity) = sum_rounding(model.ports.get(link.port)?, state);
+    let of_links = model.links.iter().zip(&trial.links).map(|(link, nodes)| {
+        let (displacement, velocity) = sum_rounding(model, link, state);
         let Tangent {
             stiffness,
             damping,
@@ -258,17 +252,19 @@ pub(crate) fn is_rounding<const S: usize>(model: &Model, state: &State, trial: &
         } = nodes.tangent;
         // The force at the first node feeds back only over the time up to it, some 1 / S^2 of the step.
         let reaction = 1.0 + gain / (S * S) as f64;
-        Some((stiffness.abs() * displacement + damping * velocity) / reaction)
+        (stiffness.abs() * displacement + damping * velocity) / reaction
     });
     error <= of_links.sum()
 }
 
-/// Rounding of the displacement (m) and velocity (m/s) of a port, as sums over the modes.
-pub(crate) fn sum_rounding(port: &Port, state: &State) -> (f64, f64) {
+/// Rounding of the displacement (m) and velocity (m/s) of the port of a link, as sums over the modes.
+pub(crate) fn sum_rounding(model: &Model, link: &Link, state: &State) -> (f64, f64) {
     let (mut displacement, mut velocity) = (0.0, 0.0);
-    for (factor, at) in port.shape.iter().zip(&state.modes).take(port.modes.end) {
-        displacement += (factor * at.q).abs();
-        velocity += (factor * at.v).abs();
+    if let Some(port) = model.ports.get(link.port) {
+        for (factor, at) in port.shape.iter().zip(&state.modes).take(port.modes.end) {
+            displacement += (factor * at.q).abs();
+            velocity += (factor * at.v).abs();
+        }
     }
     let rounding = SUM_ROUNDINGS * f64::EPSILON;
     (rounding * displacement, rounding * velocity)

@@ -55,13 +55,13 @@ impl Regime {
 /// A mode over a step: `q'' + c q' + omega^2 q = r(t)`.
 #[derive(Clone, Copy, Debug)]
 pub struct ModeOverStep {
-    pub(super) omega_squared: f64,
-    pub(super) damping: f64,
+    omega_squared: f64,
+    damping: f64,
     /// Step length, s.
-    pub(super) h: f64,
+    h: f64,
     /// Magnitude of the faster root times h.
-    pub(super) fast: f64,
-    pub(super) regime: Regime,
+    fast: f64,
+    regime: Regime,
 }
 
 impl ModeOverStep {
@@ -160,59 +160,52 @@ impl ModeOverStep {
     #[inline(always)]
     fn combination<const S: usize, A: Arithmetic>(&self, shapes: &Shapes<S>) -> Combination {
         let mut factors = Combination::ZERO;
-        let Combination {
-            integrals,
-            terms,
-            derivatives,
-        } = &mut factors;
-        let entries = integrals.q.iter_mut().zip(&mut integrals.v);
-        self.for_integrals::<S, A, _>(shapes, entries, |by_q, by_v, (q, v)| {
-            (*q, *v) = (by_q, by_v);
-            *terms += 1;
-        });
-        let entries = derivatives.q.iter_mut().zip(&mut derivatives.v);
+        self.set_integrals::<S, A>(shapes, &mut factors);
         if shapes.variable == Variable::Time {
-            self.for_derivatives::<S, _>(entries, |by_q, by_v, (q, v)| (*q, *v) = (by_q, by_v));
+            self.set_derivatives::<S>(&mut factors.derivatives);
         }
         factors
     }
 
-    /// Calls `each` with the factors of the n-fold integrals of a load in displacement and velocity, n = 1, 2, ..., and
-    /// those. For slow roots the factors are the derivatives of the impulse response at the start: its power series.
+    /// Sets the factors of the integrals, for slow roots: the derivatives of the impulse response at the start, its power series.
     #[inline(always)]
-    fn for_integrals<const S: usize, A: Arithmetic, T>(
-        &self,
-        shapes: &Shapes<S>,
-        mut integrals: impl Iterator<Item = T>,
-        mut each: impl FnMut(f64, f64, T),
-    ) {
+    fn set_integrals<const S: usize, A: Arithmetic>(&self, shapes: &Shapes<S>, factors: &mut Combination) {
         // At the last node the powers are 1 / n!.
         let sizes = shapes.powers.iter().filter_map(|power| power.last());
+        let Combination {
+            integrals: Pair { q, v },
+            terms,
+            ..
+        } = factors;
+        let mut entries = q.iter_mut().zip(v);
         match self.regime {
             Regime::Slow => {
                 let (c, w) = (-self.damping * self.h, -self.omega_squared * self.h * self.h);
                 // The factor of the velocity is the next one of the displacement.
                 let (mut below, mut value) = (0.0_f64, 1.0_f64);
-                for (size, integral) in sizes.take(TERMS - 1).zip(integrals.by_ref()) {
+                for (size, (q, v)) in sizes.take(TERMS - 1).zip(entries.by_ref()) {
+                    *terms += 1;
+                    *q = below;
                     if below.abs().max(value.abs()) * size < NEGLIGIBLE {
-                        each(below, 0.0, integral);
                         return;
                     }
-                    each(below, value, integral);
+                    *v = value;
                     (below, value) = (value, A::mul_add(c, value, w * below));
                 }
-                if let Some(integral) = integrals.next() {
-                    each(below, 0.0, integral);
+                if let Some((q, _)) = entries.next() {
+                    *terms += 1;
+                    *q = below;
                 }
             }
             Regime::Fast => (),
             Regime::Split(slow, fast) => {
                 let share = 1.0 / (slow - fast);
                 let mut power = share;
-                for (size, integral) in sizes.zip(integrals) {
-                    let by_q = power;
+                for (size, (q, v)) in sizes.zip(entries) {
+                    *terms += 1;
+                    *q = power;
                     power *= slow;
-                    each(by_q, power, integral);
+                    *v = power;
                     if power.abs() * size < NEGLIGIBLE * share {
                         break;
                     }
@@ -221,31 +214,27 @@ impl ModeOverStep {
         }
     }
 
-    /// The same with the m-th derivatives of a load, m = 0, ..., S, for fast roots.
+    /// Sets the factors of the derivatives, for fast roots.
     #[inline(always)]
-    fn for_derivatives<const S: usize, T>(
-        &self,
-        derivatives: impl Iterator<Item = T>,
-        mut each: impl FnMut(f64, f64, T),
-    ) {
-        let derivatives = derivatives.take(S + 1);
+    fn set_derivatives<const S: usize>(&self, factors: &mut Pair<[f64; MAX_SHAPES]>) {
+        let factors = factors.q.iter_mut().zip(&mut factors.v).take(S + 1);
         match self.regime {
             Regime::Slow => (),
             Regime::Fast => {
                 let (c, w) = (self.damping * self.h, self.omega_squared * self.h * self.h);
                 let (mut below, mut value) = (0.0, 1.0 / w);
-                for derivative in derivatives {
-                    each(value, below, derivative);
+                for (q, v) in factors {
+                    (*q, *v) = (value, below);
                     (below, value) = (value, -(c * value + below) / w);
                 }
             }
             Regime::Split(slow, fast) => {
                 let inverse = 1.0 / fast;
                 let mut power = 1.0 / (slow - fast);
-                for derivative in derivatives {
-                    let by_v = power;
+                for (q, v) in factors {
+                    *v = power;
                     power *= inverse;
-                    each(power, by_v, derivative);
+                    *q = power;
                 }
             }
         }

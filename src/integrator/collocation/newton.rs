@@ -18,13 +18,13 @@
 use bytemuck::Zeroable;
 
 use crate::contact::law::Law;
-use crate::integrator::collocation::coefficients::{Columns, ErrorColumn, Response, StepCoefficients};
+use crate::integrator::collocation::coefficients::{Columns, NodalMotion, Response, StepCoefficients};
 use crate::integrator::collocation::elimination::{Equations, Stacked, in_use};
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::Variable;
 use crate::integrator::constants::{ITERATIONS, MOTION_ROUNDING, STALE};
 use crate::link::{CONTACT, LinkLaw, MAX_UNKNOWNS};
-use crate::math::nodal::{Nodal, add, add_columns, add_products, end, greatest, scaled, unit};
+use crate::math::nodal::{Nodal, add, add_products, end, greatest, scaled, unit};
 use crate::math::simd::{Arithmetic, Separate};
 use crate::model::Model;
 use crate::state::State;
@@ -92,37 +92,6 @@ impl Unknowns {
     #[expect(clippy::indexing_slicing, reason = "unknowns in use")]
     pub(crate) fn get(&self, a: usize) -> &Unknown {
         &self.list[a]
-    }
-}
-
-/// Motion of a link or port at the nodes: displacement and velocity.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct NodalMotion<const S: usize> {
-    pub(crate) d: Nodal<S>,
-    pub(crate) rate: Nodal<S>,
-}
-
-impl<const S: usize> NodalMotion<S> {
-    pub(crate) const ZERO: Self = Self {
-        d: [0.0; S],
-        rate: [0.0; S],
-    };
-
-    /// Adds the response to nodal values of a load.
-    #[inline(always)]
-    pub(crate) fn respond<A: Arithmetic>(&mut self, columns: &Columns<S>, load: &Nodal<S>) {
-        // Copies, which stay in registers.
-        let Self { mut d, mut rate } = *self;
-        add_columns::<S, A>(&mut d, &columns.displacement, load);
-        add_columns::<S, A>(&mut rate, &columns.velocity, load);
-        *self = Self { d, rate };
-    }
-
-    /// Adds a multiple of the motion that a defect makes.
-    #[inline(always)]
-    pub(crate) fn add_defect<A: Arithmetic>(&mut self, defect: &ErrorColumn<S>, factor: f64) {
-        add::<S, A>(&mut self.d, factor, &defect.displacement);
-        add::<S, A>(&mut self.rate, factor, &defect.velocity);
     }
 }
 

@@ -9,7 +9,7 @@ use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::{Load, Shapes};
 use crate::integrator::collocation::side_by_side::Loads;
 use crate::integrator::collocation::trial::{LinkEnd, Trial};
-use crate::link::MAX_PORTS;
+use crate::link::{MAX_LINKS, MAX_PORTS};
 use crate::math::nodal::{Nodal, add, dot, end, scaled};
 use crate::math::prediction::value_and_slope;
 use crate::math::simd::{Arithmetic, Separate, compiled_for};
@@ -168,40 +168,23 @@ fn load_on<const S: usize, A: Arithmetic>(shapes: &Shapes<S>, rows: &[Nodal<S>; 
     shapes.load::<A>(&nodal)
 }
 
-/// Shortens a trial from `state` of `length` seconds to its first part, which ends `at` seconds after the start with these
-/// modes.
+/// Shortens a trial from `state` to a `part` of it, which ends with these links and modes.
 pub(crate) fn shorten<const S: usize>(
-    (model, state, drive): (&Model, &State, &Drive),
+    (model, state): (&Model, &State),
     collocation: &Collocation<S>,
     (trial, axial): (&mut Trial<S>, &mut [Nodal<S>]),
-    (length, at): (f64, f64),
-    modes: &ModeStates,
+    part: f64,
+    (ends, modes): (&[Instant; MAX_LINKS], &ModeStates),
 ) {
-    let nodes = collocation.nodes.map(|node| node * (at / length));
+    let nodes = collocation.nodes.map(|node| node * part);
     let rows = nodes.map(|x| collocation.lagrange(x));
     let nodal = |values: &Nodal<S>| rows.map(|row| dot::<S, Separate>(&row, values));
     let with_start = |start: f64, values: &Nodal<S>| {
         let polynomial = collocation.through(model.simd, start, values);
         nodes.map(|x| value_and_slope(&polynomial, x - 1.0).0)
     };
-    for index in 0..model.links.len() {
-        let whole = Whole {
-            model,
-            state,
-            drive,
-            collocation,
-            trial,
-            axial,
-            length,
-        };
-        let Instant { d, rate, .. } = whole.link(index, at, modes);
-        let (Some(link), Some(nodes), Some(start)) = (
-            model.links.get(index),
-            trial.links.get_mut(index),
-            state.links.get(index),
-        ) else {
-            continue;
-        };
+    let links = model.links.iter().zip(&state.links).zip(&mut trial.links);
+    for (((link, start), nodes), Instant { d, rate, .. }) in links.zip(ends) {
         // Near the start the polynomial without it is the worse, the shorter the part.
         nodes.forces = if start.closed && !state.touches_now() {
             with_start(start.force - link.force, &nodes.forces)
@@ -212,11 +195,11 @@ pub(crate) fn shorten<const S: usize>(
         nodes.rates = with_start(start.rate, &nodes.rates);
         nodes.end = LinkEnd {
             force: match link.contact().filter(|_| start.closed) {
-                Some(law) => law.closed_branch(link.approach + d, rate).force - link.force,
+                Some(law) => law.closed_branch(link.approach + d, *rate).force - link.force,
                 None => end(&nodes.forces),
             },
-            approach: d,
-            rate,
+            approach: *d,
+            rate: *rate,
         };
     }
     trial.accelerations = nodal(&trial.accelerations);

@@ -179,20 +179,14 @@ impl<const S: usize> Collocation<S> {
     /// ahead polynomials of high degree lead astray: there it is the parabola that continues the course.
     #[inline(always)]
     pub fn guess<A: Arithmetic>(&self, course: &Prediction, ratio: f64) -> Nodal<S> {
+        let at = scaled(&self.nodes, ratio);
         if ratio > FAR_AHEAD {
             let [value, slope, half_curvature] = parabola_at_end(course);
-            scaled(&self.nodes, ratio).map(|y| value + y * (slope + y * half_curvature))
-        } else {
-            self.evaluate::<A>(course, ratio)
+            return at.map(|y| value + y * (slope + y * half_curvature));
         }
-    }
-
-    /// A polynomial over the last step at the nodes of one `ratio` times as long that follows it.
-    #[inline(always)]
-    fn evaluate<A: Arithmetic>(&self, prediction: &Prediction, ratio: f64) -> Nodal<S> {
-        let at = scaled(&self.nodes, ratio).map(centred);
+        let at = at.map(centred);
         let mut values = [0.0; S];
-        for coefficient in prediction.iter().rev() {
+        for coefficient in course.iter().rev() {
             for (value, y) in values.iter_mut().zip(&at) {
                 *value = A::mul_add(*value, *y, *coefficient);
             }

@@ -5,10 +5,10 @@ use crate::beam::mode::{Modal, ModeState};
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::axial_force::Rounds;
 use crate::integrator::collocation::cache::Prepared;
-use crate::integrator::collocation::coefficients::EndGroup;
+use crate::integrator::collocation::coefficients::{EndGroup, NodalMotion};
 use crate::integrator::collocation::elimination::{Stacked, in_use};
 use crate::integrator::collocation::error::{Judged, estimate_in_flight};
-use crate::integrator::collocation::newton::{Linked, NodalMotion, Solution, Tangent, Unknowns};
+use crate::integrator::collocation::newton::{Linked, Solution, Tangent, Unknowns};
 use crate::integrator::collocation::slip::follow;
 use crate::integrator::collocation::trial::{Estimate, FreeResponse, LinkEnd, Scratch, Source, Trial};
 use crate::link::{MAX_PORTS, MAX_UNKNOWNS};
@@ -59,13 +59,13 @@ fn compute_many<const S: usize, const L: usize>(
 }
 
 /// What a step is computed from.
-pub(super) struct Step<'a, const S: usize> {
-    pub(super) model: &'a Model,
-    pub(super) state: &'a State,
-    pub(super) drive: &'a Drive,
-    pub(super) prepared: Prepared<'a, S>,
-    pub(super) source: Source,
-    pub(super) unknowns: Unknowns,
+struct Step<'a, const S: usize> {
+    model: &'a Model,
+    state: &'a State,
+    drive: &'a Drive,
+    prepared: Prepared<'a, S>,
+    source: Source,
+    unknowns: Unknowns,
 }
 
 impl<const S: usize> Step<'_, S> {
@@ -149,11 +149,11 @@ impl<const S: usize> Step<'_, S> {
             .fold(f64::MIN_POSITIVE, |largest, a| largest.max(a.abs()));
 
         let pushed = scaled(accelerations, -1.0);
-        for ((port, coefficients), motion) in model.ports.iter().zip(step.ports()).zip(&mut free.ports) {
+        for (p, (port, motion)) in model.ports.iter().zip(&mut free.ports).enumerate() {
             // Separate sums for q and v, which the processor computes in parallel.
             let [mut d, mut rate, mut from_v, mut rate_from_v] = [[0.0; S]; 4];
             let states = &state.modes[port.modes.clone()];
-            for (mode, row) in states.iter().zip(coefficients.modes) {
+            for (mode, row) in states.iter().zip(step.free_of_port(p)) {
                 add::<S, A>(&mut d, mode.q, &row.from_q);
                 add::<S, A>(&mut from_v, mode.v, &row.from_v);
                 add::<S, A>(&mut rate, mode.q, &row.rate_from_q);
@@ -166,7 +166,7 @@ impl<const S: usize> Step<'_, S> {
                 *sum += from_v;
             }
             *motion = NodalMotion { d, rate };
-            motion.respond::<A>(&coefficients.acceleration.columns, &pushed);
+            motion.respond::<A>(&step.acceleration(p).columns, &pushed);
         }
         self.set_known::<A>(trial, &mut free.ports);
         free.start_defect = start_defect;
@@ -195,17 +195,10 @@ impl<const S: usize> Step<'_, S> {
                 (None, Source::Given) => {}
             }
             if nodes.forces != [0.0; S] {
-                self.push::<A>(link.port, &scaled(&nodes.forces, link.sense), ports);
+                for (p, motion) in ports.iter_mut().take(self.model.ports.len()).enumerate() {
+                    self.respond::<A>(p, (index, 1.0), &nodes.forces, motion);
+                }
             }
-        }
-    }
-
-    /// Adds the motion of the ports under a force at one of them.
-    #[inline(always)]
-    fn push<A: Arithmetic>(&self, port: usize, force: &Nodal<S>, ports: &mut [NodalMotion<S>; MAX_PORTS]) {
-        let Prepared { step, .. } = self.prepared;
-        for (p, motion) in ports.iter_mut().take(self.model.ports.len()).enumerate() {
-            motion.respond::<A>(&step.response(p, port).columns, force);
         }
     }
 
@@ -229,7 +222,7 @@ impl<const S: usize> Step<'_, S> {
     /// Solves for the unknown forces from the guesses in the trial.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "links of the model, and unknowns in use")]
-    pub(super) fn solve<const L: usize, A: Arithmetic>(
+    fn solve<const L: usize, A: Arithmetic>(
         &self,
         linked: &Linked<S, L>,
         free: &FreeResponse<S>,

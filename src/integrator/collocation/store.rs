@@ -311,18 +311,14 @@ impl<const S: usize> Modes<'_, S> {
         for (i, mode) in model.modes.iter().enumerate() {
             let mode_over_step = ModeOverStep::new(mode.omega_squared, mode.damping, h);
             let response = mode_over_step.response::<S, A>(&collocation.nodes, shapes);
-            let displacement = |p: usize| {
-                let port = model.ports.get(p);
-                port.and_then(|port| port.shape.get(i)).copied().unwrap_or_default()
-            };
             let mut of_port = sums.iter_mut();
             for (p, (port, range)) in model.ports.iter().zip(self.of_port).enumerate() {
-                let b = displacement(p);
+                let b = model.displacement(p, i);
                 for (q, sum) in of_port.by_ref().take(p + 2).enumerate() {
                     let weight = b * if q == 0 {
                         mode.participation
                     } else {
-                        displacement(q - 1)
+                        model.displacement(q - 1, i)
                     };
                     if weight != 0.0 {
                         sum.add::<A>(weight, &response);

@@ -3,8 +3,8 @@
 use bytemuck::Zeroable;
 
 use crate::beam::mode::ModeStates;
-use crate::integrator::collocation::coefficients::ErrorColumn;
-use crate::integrator::collocation::newton::{Joined, NodalMotion, Tangent};
+use crate::integrator::collocation::coefficients::NodalMotion;
+use crate::integrator::collocation::newton::{Joined, Tangent};
 use crate::link::{MAX_LINKS, MAX_PORTS};
 use crate::math::nodal::Nodal;
 use crate::model::Model;
@@ -103,7 +103,7 @@ pub(crate) struct FreeResponse<const S: usize> {
     /// Mean over the step of what that polynomial misses, m/s2.
     pub(crate) missed_mean: f64,
     /// Approach of the contact that the defects of base acceleration and axial loads make, where there are such loads.
-    pub(crate) axial: Option<ErrorColumn<S>>,
+    pub(crate) axial: Option<NodalMotion<S>>,
 }
 
 impl<const S: usize> Default for FreeResponse<S> {

@@ -7,8 +7,7 @@
 
 use crate::excitation::drive::Drive;
 use crate::excitation::generator::Generator;
-use crate::integrator::collocation::polynomial::Collocation;
-use crate::integrator::collocation::trial::Trial;
+use crate::integrator::collocation::part::Whole;
 use crate::integrator::constants::RETURNED;
 use crate::link::{Link, LinkLaw};
 use crate::math::simd::Separate;
@@ -28,15 +27,17 @@ pub(crate) fn conserves(model: &Model, drive: &Drive) -> bool {
         && drive.jerk == 0.0
 }
 
-/// Energy error of a step from `state` (gain beyond the work done), and its rounding, J.
-pub(crate) fn surplus<const S: usize>(
-    model: &Model,
-    state: &State,
-    drive: &Drive,
-    collocation: &Collocation<S>,
-    trial: &Trial<S>,
-    length: f64,
-) -> (f64, f64) {
+/// Energy error of a trial (gain beyond the work done), and its rounding, J.
+pub(crate) fn surplus<const S: usize>(whole: Whole<S>) -> (f64, f64) {
+    let Whole {
+        model,
+        state,
+        drive,
+        collocation,
+        trial,
+        length,
+        ..
+    } = whole;
     let end = |index: usize| trial.links.get(index).map_or(0.0, |nodes| nodes.end.approach);
     let (start, finish) = (model.energy(state), model.energy_at(&trial.modes, state.coil, end));
     let moved = model.modes.iter().zip(state.modes.iter().zip(&trial.modes));
@@ -53,17 +54,17 @@ pub(crate) fn surplus<const S: usize>(
     (finish - start - by_base - by_links, rounding)
 }
 
-/// Whether the energy error of a step exceeds that of a force error of one tolerance along the path of the contacts that are
+/// Whether the energy error of a trial exceeds that of a force error of one tolerance along the path of the contacts that are
 /// closed.
-pub(crate) fn is_broken<const S: usize>(
-    model: &Model,
-    state: &State,
-    drive: &Drive,
-    collocation: &Collocation<S>,
-    trial: &Trial<S>,
-    length: f64,
-) -> bool {
-    let (surplus, rounding) = surplus(model, state, drive, collocation, trial, length);
+pub(crate) fn is_broken<const S: usize>(whole: Whole<S>) -> bool {
+    let (surplus, rounding) = surplus(whole);
+    let Whole {
+        model,
+        state,
+        trial,
+        length,
+        ..
+    } = whole;
     let links = model.links.iter().zip(&state.links).zip(&trial.links);
     let speeds = links.filter(|((_, at), _)| at.closed).map(|((link, at), nodes)| {
         let rate = link.offset(&state.velocities);

@@ -3,9 +3,10 @@
 //! Sign changes alone would miss a grazing contact. Between two samples of indentation and velocity the indentation is
 //! approximated by the Hermite cubic, whose error is estimated at a sample between them. If the maximum of the cubic
 //! stays below first touch by more than this error there is no contact; nor is there any where the bodies part faster than
-//! all that is unseen. Otherwise the interval is bisected. Modes that oscillate or settle faster than the interval resolves are
-//! added with their amplitudes. An interval along which the engagement rises has one closing, which is found on cubics as well: each look at
-//! the motion gives the next one a nearer sample.
+//! all that is unseen. Otherwise the interval is halved, first on the cubic, then by the exact motion. Modes that oscillate faster
+//! than the interval resolves, or settle faster after a jump, are added with their amplitudes. An interval along which the
+//! engagement rises has one closing, which is found on cubics as well, to half the shortest step: each look at the motion gives the
+//! next one a nearer sample.
 
 use crate::contact::law::Law;
 use crate::integrator::collocation::part::{Instant, Whole};
@@ -22,7 +23,7 @@ const ON_CUBIC: u32 = 3;
 
 /// An open contact in which a touch is sought.
 #[derive(Clone, Copy)]
-struct Sought<'a> {
+pub(crate) struct Sought<'a> {
     index: usize,
     link: &'a Link,
     law: &'a Law,
@@ -46,12 +47,8 @@ impl Sought<'_> {
 impl<'a, const S: usize> Locator<'a, S> {
     /// Locates the closing of an open contact; `None` if it stays open.
     pub(crate) fn closing(&mut self, index: usize) -> Option<Cut> {
-        let sought = self.sought(index)?;
-        let samples = self.samples(&sought)?;
+        let (sought, samples) = self.near(index)?;
         let samples = samples.get(..S + 1)?;
-        if self.is_distant(&sought, samples) {
-            return None;
-        }
         self.search.swings.set(self.whole, sought.link);
         // The cubic over two intervals is wrong by more than that over each.
         let mut errors = [0.0_f64; LONG + 1];
@@ -74,45 +71,25 @@ impl<'a, const S: usize> Locator<'a, S> {
         })
     }
 
-    /// Whether an open contact is so far that it stays open; a link that is no contact does.
-    pub(crate) fn is_far(&self, index: usize) -> bool {
-        let Some(sought) = self.sought(index) else {
-            return true;
-        };
-        let samples = self.samples(&sought);
-        samples.is_some_and(|samples| {
-            samples
-                .get(..S + 1)
-                .is_some_and(|samples| self.is_distant(&sought, samples))
-        })
-    }
-
-    fn sought(&self, index: usize) -> Option<Sought<'a>> {
-        let (link, start) = self.link(index)?;
-        Some(Sought {
-            index,
-            link,
-            law: link.contact()?,
-            start,
-            unsure: self.unsure(link, start),
-        })
-    }
-
-    /// Samples at the start and the nodes of the trial.
-    fn samples(&self, sought: &Sought) -> Option<[Instant; LONG + 1]> {
+    /// An open contact with samples at the start and the nodes of the trial; `None` where it is so far that it stays open, or no
+    /// contact.
+    #[inline(always)]
+    pub(crate) fn near(&self, index: usize) -> Option<(Sought<'a>, [Instant; LONG + 1])> {
         let Whole {
             collocation,
             trial,
             length,
             ..
         } = self.whole;
-        let start = Instant {
+        let (link, start) = self.link(index)?;
+        let first = Instant {
             at: 0.0,
-            d: sought.start.approach,
-            rate: sought.start.rate,
+            d: start.approach,
+            rate: start.rate,
         };
-        let mut samples = [start; LONG + 1];
-        let nodes = trial.links.get(sought.index)?;
+        let mut samples = [first; LONG + 1];
+        let (mut lowest, mut highest, mut fastest) = (first.d, first.d, first.rate.abs());
+        let nodes = trial.links.get(index)?;
         let motion = nodes.approaches.iter().zip(&nodes.rates);
         for (entry, (node, (&d, &rate))) in samples.iter_mut().skip(1).zip(collocation.nodes.iter().zip(motion)) {
             *entry = Instant {
@@ -120,24 +97,24 @@ impl<'a, const S: usize> Locator<'a, S> {
                 d,
                 rate,
             };
+            (lowest, highest, fastest) = (lowest.min(d), highest.max(d), fastest.max(rate.abs()));
         }
-        Some(samples)
-    }
-
-    /// Whether the contact is so far that no search is needed.
-    fn is_distant(&self, sought: &Sought, samples: &[Instant]) -> bool {
-        let (mut lowest, mut highest, mut fastest) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
-        for Instant { d, rate, .. } in samples {
-            (lowest, highest, fastest) = (lowest.min(*d), highest.max(*d), fastest.max(rate.abs()));
-        }
-        let reach = DISTANT * (highest - lowest + fastest * self.whole.length);
-        sought.link.engagement(highest + reach, DISTANT * fastest) < 0.0
+        let sought = Sought {
+            index,
+            link,
+            law: link.contact()?,
+            start,
+            unsure: self.unsure(link, start),
+        };
+        let reach = DISTANT * (highest - lowest + fastest * length);
+        let is_far = link.engagement(highest + reach, DISTANT * fastest) < 0.0;
+        (!is_far).then_some((sought, samples))
     }
 
     /// Whether the contact certainly stays open between two open samples, whose cubic is wrong by `error` (m).
     fn is_clear(&self, sought: &Sought, cubic: &Cubic, error: f64) -> bool {
         // A contact whose force is far below the tolerance need not be found.
-        let negligible = sought.law.overlap(self.tolerance.located);
+        let negligible = sought.law.overlap(self.whole.model.tolerance.located);
         let (ripple, length) = (self.search.swings.ripple(cubic), cubic.length());
         let (least, unseen) = (
             negligible.max(sought.unsure),
@@ -233,7 +210,9 @@ impl<'a, const S: usize> Locator<'a, S> {
     fn prolonged(&mut self, sought: &Sought, touch: Instant, mut shortest: f64) -> Instant {
         while touch.at < shortest {
             let end = self.inside(sought.index, shortest);
-            if sought.link.force_at(end.d, end.rate) <= self.tolerance.located || shortest <= self.resolution {
+            if sought.link.force_at(end.d, end.rate) <= self.whole.model.tolerance.located
+                || shortest <= self.resolution
+            {
                 return end;
             }
             shortest *= 0.1;

@@ -1,7 +1,6 @@
 //! Event location of interruptions: where a contact force passes that of the threshold resistance within a step. The
 //! step goes on.
 
-use crate::integrator::accuracy::inaccuracy;
 use crate::integrator::collocation::part::Whole;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::Variable;
@@ -18,19 +17,17 @@ pub(crate) type Passages = [Places; MAX_LINKS];
 impl<const S: usize> Locator<'_, S> {
     /// Finds where in the trial the forces of closed contacts pass those of interruptions; `false` where the step is too long to
     /// tell, unless it `must` be told.
+    // For the sake of the stack: what it takes would lie below the repetition of a step for the balance.
+    #[inline(never)]
     pub(crate) fn find_passages(&mut self, must: bool, passages: &mut Passages) -> bool {
         let count = self.whole.model.links.len();
-        passages.iter_mut().take(count).enumerate().all(|(index, places)| {
-            let found = self.passages_of(index, must);
-            *places = found.unwrap_or_default();
-            found.is_some()
-        })
+        let mut links = passages.iter_mut().take(count).enumerate();
+        links.all(|(index, places)| self.add_passages(index, must, places))
     }
 
     /// The force polynomial is monotone between the places where it turns, so that a dip of any length is found. Where it
     /// is not accurate, the law gives the force at the exact motion under it.
-    fn passages_of(&mut self, index: usize, must: bool) -> Option<Places> {
-        let mut passages = Places::default();
+    fn add_passages(&mut self, index: usize, must: bool, passages: &mut Places) -> bool {
         let Whole {
             model,
             state,
@@ -40,32 +37,32 @@ impl<const S: usize> Locator<'_, S> {
             ..
         } = self.whole;
         let Some((link, start)) = self.link(index).filter(|(_, start)| start.closed) else {
-            return Some(passages);
+            return true;
         };
         let (Some(criterion), Some(law), Some(nodes)) = (&link.criterion, link.contact(), trial.links.get(index))
         else {
-            return Some(passages);
+            return true;
         };
         let mut interrupted = state.circuits.is_interrupted(index);
         let excess = |force: f64| link.force + force - criterion.force;
         let at_start = start.force - link.force;
         let ahead = |force: f64| if interrupted { -excess(force) } else { excess(force) };
         if !Collocation::comes_near_zero(ahead(at_start), &nodes.forces.map(ahead)) {
-            return Some(passages);
+            return true;
         }
         let polynomial = collocation.through(model.simd, at_start, &nodes.forces);
         let value = |y: f64| excess(value_and_slope(&polynomial, y).0);
         let turns = turning_points(model.simd, &polynomial);
-        let inaccuracy = inaccuracy((model, state), collocation, trial, length);
+        let inaccuracy = self.whole.inaccuracy();
         let is_accurate = inaccuracy <= 1.0;
         if !is_accurate && collocation.variable == Variable::Root {
-            return None;
+            return false;
         }
         let is_brief =
             length <= BRIEF * model.scene.solver.effective_tolerance() * model.scene.chatter.minimum_duration;
-        let unsure = inaccuracy * self.tolerance.force;
+        let unsure = inaccuracy * model.tolerance.force;
         if !is_accurate && !must && turns.iter().any(|y| value(y).abs() < unsure) {
-            return None;
+            return false;
         }
         let end = law.without_pull(link.force + nodes.end.force) < criterion.force;
         let mut before = (-1.0, value(-1.0));
@@ -87,7 +84,7 @@ impl<const S: usize> Locator<'_, S> {
                 } else {
                     let force = |d, rate| link.force_at(d, rate) - criterion.force;
                     let from = ((1.0 + before.0) * length, before.1);
-                    let rounding = self.tolerance.at_opening;
+                    let rounding = model.tolerance.at_opening;
                     let found = self.instant(index, force, from, (1.0 + y) * length, rounding);
                     found.at / length - 1.0
                 };
@@ -97,6 +94,6 @@ impl<const S: usize> Locator<'_, S> {
             }
             before = now;
         }
-        Some(passages)
+        true
     }
 }

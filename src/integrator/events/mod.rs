@@ -15,10 +15,9 @@ use crate::contact::law::Law;
 use crate::integrator::collocation::error::sum_rounding;
 use crate::integrator::collocation::part::{Instant, Whole};
 use crate::integrator::constants::ITERATIONS;
-use crate::integrator::tolerance::Tolerance;
 use crate::integrator::workspace::{Budget, Search, work};
 use crate::link::Link;
-use crate::math::prediction::{Prediction, value_and_slope};
+use crate::math::prediction::value_and_slope;
 use crate::math::roots;
 use crate::model::Model;
 use crate::state::{LinkState, State};
@@ -52,24 +51,8 @@ pub(crate) struct Locator<'a, const S: usize> {
     pub(crate) whole: Whole<'a, S>,
     pub(crate) search: &'a mut Search,
     pub(crate) budget: Budget,
-    pub(crate) tolerance: Tolerance,
     /// Rounding of time, s.
     pub(crate) resolution: f64,
-}
-
-/// The polynomials through approach and velocity of a link in a trial.
-struct Course {
-    approach: Prediction,
-    rate: Prediction,
-    length: f64,
-}
-
-impl Course {
-    /// Approach (m) and velocity (m/s) at an instant (s after the start).
-    fn at(&self, at: f64) -> (f64, f64) {
-        let y = at / self.length - 1.0;
-        (value_and_slope(&self.approach, y).0, value_and_slope(&self.rate, y).0)
-    }
 }
 
 impl<'a, const S: usize> Locator<'a, S> {
@@ -80,7 +63,7 @@ impl<'a, const S: usize> Locator<'a, S> {
     }
 
     /// Computes the modes at an instant (s after the start), by the exact motion under the polynomials of the trial.
-    pub(crate) fn look(&mut self, at: f64) {
+    fn look(&mut self, at: f64) {
         if self.search.looked.replace(at) == Some(at) {
             return;
         }
@@ -89,7 +72,7 @@ impl<'a, const S: usize> Locator<'a, S> {
     }
 
     /// A link there.
-    fn inside(&mut self, index: usize, at: f64) -> Instant {
+    pub(crate) fn inside(&mut self, index: usize, at: f64) -> Instant {
         self.look(at);
         self.whole.link(index, at, &self.search.modes)
     }
@@ -105,23 +88,6 @@ impl<'a, const S: usize> Locator<'a, S> {
         latest: f64,
         rounding: f64,
     ) -> Instant {
-        let Some(course) = self.course(index) else {
-            return self.inside(index, latest);
-        };
-        let on_polynomials = |at: f64| {
-            let (d, rate) = course.at(at);
-            value(d, rate)
-        };
-        let end = (latest, on_polynomials(latest));
-        let guess = roots::between(on_polynomials, from, end, 1e-12 * self.whole.length);
-        let at = guess.unwrap_or(latest);
-        let near = at - 1e-4 * (at - from.0);
-        let slope = (on_polynomials(at) - on_polynomials(near)) / (at - near);
-        let exact = |_: &Self, now: &Instant| value(now.d, now.rate);
-        self.refined(index, exact, from, (at, slope), latest, rounding)
-    }
-
-    fn course(&self, index: usize) -> Option<Course> {
         let Whole {
             model,
             collocation,
@@ -129,12 +95,22 @@ impl<'a, const S: usize> Locator<'a, S> {
             length,
             ..
         } = self.whole;
-        let (nodes, (_, start)) = trial.links.get(index).zip(self.link(index))?;
-        Some(Course {
-            approach: collocation.through(model.simd, start.approach, &nodes.approaches),
-            rate: collocation.through(model.simd, start.rate, &nodes.rates),
-            length,
-        })
+        let Some((nodes, (_, start))) = trial.links.get(index).zip(self.link(index)) else {
+            return self.inside(index, latest);
+        };
+        let approach = collocation.through(model.simd, start.approach, &nodes.approaches);
+        let rate = collocation.through(model.simd, start.rate, &nodes.rates);
+        let on_polynomials = |at: f64| {
+            let y = at / length - 1.0;
+            value(value_and_slope(&approach, y).0, value_and_slope(&rate, y).0)
+        };
+        let end = (latest, on_polynomials(latest));
+        let guess = roots::between(on_polynomials, from, end, 1e-12 * length);
+        let at = guess.unwrap_or(latest);
+        let near = at - 1e-4 * (at - from.0);
+        let slope = (on_polynomials(at) - on_polynomials(near)) / (at - near);
+        let exact = |_: &Self, now: &Instant| value(now.d, now.rate);
+        self.refined(index, exact, from, (at, slope), latest, rounding)
     }
 
     /// The same on the exact motion, from a guess and the slope there (1/s times the value): by the secant method, then by
@@ -191,15 +167,12 @@ impl<'a, const S: usize> Locator<'a, S> {
         let stiffness = link
             .contact()
             .map_or(1.0, |law| law.tangent_stiffness(model.force_scale));
-        (self.tolerance.located / stiffness).max(motion_rounding(model, link, state))
+        (self.whole.model.tolerance.located / stiffness).max(motion_rounding(model, link, state))
     }
 }
 
 /// Rounding of the engagement of a contact by the sums over the modes, m.
 pub(crate) fn motion_rounding(model: &Model, link: &Link, state: &State) -> f64 {
-    let (displacement, velocity) = match model.ports.get(link.port) {
-        Some(port) => sum_rounding(port, state),
-        None => (0.0, 0.0),
-    };
+    let (displacement, velocity) = sum_rounding(model, link, state);
     displacement + link.contact().map_or(0.0, Law::by_rate) * velocity
 }

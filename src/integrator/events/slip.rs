@@ -123,7 +123,7 @@ impl<'a, const S: usize> Locator<'a, S> {
         if change.at > 0.0 && change.slope > 0.0 {
             let beyond = |this: &Self, now: &Instant| this.beyond(now, change.phase);
             let (before, guess) = ((0.0, -f64::MIN_POSITIVE), (change.at, change.slope));
-            let (latest, allowed) = (self.whole.length, self.tolerance.step);
+            let (latest, allowed) = (self.whole.length, self.whole.model.tolerance.step);
             let end = self.refined(CONTACT, beyond, before, guess, latest, allowed);
             at = end.at;
             // Else it changes after the trial: the next step starts here.
@@ -143,7 +143,7 @@ impl<'a, const S: usize> Locator<'a, S> {
     /// force for the slip velocity.
     fn is_beyond(&mut self, at: f64, value: f64, phase: Phase) -> bool {
         let rounding = self.slip_rounding();
-        if value <= rounding.max(self.tolerance.located) {
+        if value <= rounding.max(self.whole.model.tolerance.located) {
             return false;
         }
         let damped = self.rubbing().is_some_and(|rubbing| rubbing.law.damping > 0.0);
@@ -202,10 +202,7 @@ impl<'a, const S: usize> Locator<'a, S> {
         else {
             return 0.0;
         };
-        let (displacement, velocity) = match model.ports.get(along.port) {
-            Some(port) => sum_rounding(port, state),
-            None => (0.0, 0.0),
-        };
+        let (displacement, velocity) = sum_rounding(model, along, state);
         let slip = SUM_ROUNDINGS * f64::EPSILON * state.slip.way.abs();
         let moved = slip + displacement + law.damping * velocity;
         let stiffness = law.tangent_stiffness(contact.approach + contact_at.approach);

@@ -91,17 +91,13 @@ impl Swings {
         let moves = |mode: &Mode| !state.kink_is_closing || is_nearly_critical(mode);
         self.0
             .extend(modes.filter(|(_, (mode, _))| moves(mode)).map(|(i, (mode, at))| {
-                let factor = |port: usize| {
-                    let shape = model.ports.get(port).map(|port| &port.shape);
-                    shape.and_then(|shape| shape.get(i)).copied().unwrap_or_default()
-                };
                 let links = model.links.iter().zip(&state.links);
                 let load = links.fold(-mode.participation * acceleration, |load, (link, at)| {
-                    load + link.sense * factor(link.port) * (at.force - link.force)
+                    load + link.sense * model.displacement(link.port, i) * (at.force - link.force)
                 });
                 let swing = Swing::new(mode, at.q - load / mode.omega_squared, at.v);
                 Swing {
-                    amplitude: factor(sought.port).abs() * swing.amplitude,
+                    amplitude: model.displacement(sought.port, i).abs() * swing.amplitude,
                     ..swing
                 }
             }));

@@ -1,0 +1,78 @@
+//! Leaps: first steps after a closing, by the root of the time since.
+
+use crate::error::StepError;
+use crate::integrator::collocation::trial::Trial;
+use crate::integrator::constants::LEAST_LEAP;
+use crate::integrator::grid::{Target, round_down};
+use crate::integrator::step_length::{StepOutcome, growth, shrinkage};
+use crate::integrator::stepper::Stepper;
+use crate::math::nodal::LONG;
+use crate::math::prediction::parabola_in_time;
+use crate::state::State;
+
+impl Stepper<'_> {
+    /// The length of a leap from here, s: where a contact has just closed, and nothing that is known ends it.
+    pub(super) fn leap_length(&mut self) -> Option<f64> {
+        let longest = self.workspace.leaps.as_ref()?.longest;
+        let State {
+            time, links, lengths, ..
+        } = &mut *self.state;
+        let has_closed = links.iter().any(|at| at.closed && at.last_closing == Some(*time));
+        if !has_closed || self.progress.conserves {
+            return None;
+        }
+        let least = LEAST_LEAP * lengths.short;
+        if lengths.leap < least {
+            // The next closing may be gentler.
+            lengths.leap *= 2.0;
+            return None;
+        }
+        let corner = self.model.generator.next_break(*time).unwrap_or(f64::INFINITY);
+        let remaining = self.recorder.read.unwrap_or(self.grid.end()) - *time;
+        let possible = longest.min(self.model.longest_step(*time)).min(remaining);
+        let length = round_down(lengths.leap.min(possible));
+        (length >= least && *time + length < corner).then_some(length)
+    }
+
+    /// One step over `length` (s) after a closing, by the root of the time since: accepted, or to be tried again with another length.
+    pub(super) fn leap(&mut self, length: f64) -> Result<(), StepError> {
+        let target = Target {
+            recurring: true,
+            ..self.grid.cut(length, self.state.time + length)
+        };
+        self.workspace.exchange();
+        let done = self.with_trial(|stepper, trial| stepper.try_leap(trial, &target));
+        self.workspace.exchange();
+        done
+    }
+
+    fn try_leap(&mut self, trial: &mut Trial<LONG>, target: &Target) -> Result<(), StepError> {
+        let length = target.length;
+        let [ratio, _] = self.judge(trial, target);
+        let count = self.model.links.len();
+        let locator = self.locator(trial, length);
+        let mut links = locator.whole.state.links.iter().take(count).enumerate();
+        let mut stay = || {
+            links.all(|(index, at)| {
+                if at.closed {
+                    locator.first_open(index).is_none()
+                } else {
+                    locator.near(index).is_none()
+                }
+            })
+        };
+        let is_possible = ratio <= 1.0 && stay();
+        if !is_possible || !self.commit(trial, target, false)? {
+            self.state.rejected_steps += 1;
+            self.state.lengths.leap = length * shrinkage::<LONG>(ratio.max(1.0));
+            return Ok(());
+        }
+        for at in &mut self.state.links {
+            at.course = parabola_in_time(&at.course);
+        }
+        let lengths = &mut self.state.lengths;
+        lengths.leap = StepOutcome::accepted(length, lengths.leap, growth::<LONG>(ratio)).length;
+        lengths.short = length;
+        Ok(())
+    }
+}
