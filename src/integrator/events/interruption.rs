@@ -17,8 +17,6 @@ pub(crate) type Passages = [Places; MAX_LINKS];
 impl<const S: usize> Locator<'_, S> {
     /// Finds where in the trial the forces of closed contacts pass those of interruptions; `false` where the step is too long to
     /// tell, unless it `must` be told.
-    // For the sake of the stack: what it takes would lie below the repetition of a step for the balance.
-    #[inline(never)]
     pub(crate) fn find_passages(&mut self, must: bool, passages: &mut Passages) -> bool {
         let count = self.whole.model.links.len();
         let mut links = passages.iter_mut().take(count).enumerate();
