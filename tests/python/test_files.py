@@ -207,7 +207,7 @@ corePosition = 1e-4
         ("parameters.beam.file = 'none.toml'\n", "2: .*none.toml: cannot be read"),
         # Parameters that are allowed, but not together.
         ("parameters.effects.secondContact = true\nposition = [{parameters.effects.contactLaw = 'Bonded'}]\n",
-         "3: effects.contactLaw: Linearised and Bonded"),
+         "3: effects.contactLaw = Bonded: not allowed with effects.secondContact = true"),
         ("parameters.tip.mass = 1e-5\nparameters.'tip.mass' = 2e-5\n", "3: parameters.tip.mass = 2e-05: .* twice"),
         ("parameters.tip_mass = 1e-5\n", "2: tip_mass: no such variable; did you mean tip.mass"),
         ("uncertainty.tip_mass = 0.1\n", "2: tip_mass: no such variable; did you mean tip.mass"),
