@@ -1,13 +1,21 @@
 //! Turns `modelDescription.xml` into Rust: one enum for each group of variables, the table of their
 //! properties, the enumeration types, and the GUID. Also writes the plain description, and the C header, with GUID, value
-//! references and choices as constants.
+//! references and choices as constants; and computes the polynomials of a step.
 
+#[path = "build/collocation.rs"]
+mod collocation;
 #[path = "src/fingerprint.rs"]
 mod fingerprint;
 #[path = "build/plain.rs"]
 mod plain;
 #[path = "build/scene.rs"]
 mod scene;
+#[path = "src/math"]
+#[expect(dead_code, reason = "the library uses more of it")]
+mod math {
+    pub mod legendre;
+    pub mod roots;
+}
 
 use std::error::Error;
 use std::fmt::Write as _;
@@ -21,8 +29,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo:rerun-if-changed=build.rs");
     println!("cargo:rerun-if-changed=build");
     println!("cargo:rerun-if-changed=src/fingerprint.rs");
+    println!("cargo:rerun-if-changed=src/math");
     println!("cargo:rerun-if-changed=src/fmi2");
     let out = PathBuf::from(env::var("OUT_DIR")?);
+    fs::write(out.join("collocation.rs"), collocation::all())?;
     let xml = fs::read_to_string("modelDescription.xml")?;
     let guid = identified(&xml, &out.join("modelDescription.xml"))?;
     let plain_guid = identified(&plain::description(&xml)?, &out.join("plain.xml"))?;

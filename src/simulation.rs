@@ -5,7 +5,7 @@ use crate::chatter::{Criterion, Interruptions, Summary};
 use crate::conduction;
 use crate::error::{SceneError, StepError};
 use crate::inputs::Inputs;
-use crate::integrator::collocation::cache::{Common, OF_LONG, OF_SHORT};
+use crate::integrator::collocation::cache::{Left, OF_LONG, OF_SHORT};
 use crate::integrator::communication_step;
 use crate::integrator::extremes::{Extremes, Range};
 use crate::integrator::with_contact;
@@ -39,8 +39,8 @@ pub struct Simulation {
 pub struct Kept {
     _springs: Shared<spring::Known>,
     _slip: Shared<slip_stability::Known>,
-    _short: Shared<Common<SHORT>>,
-    _long: Shared<Common<LONG>>,
+    _short: Shared<Left<SHORT>>,
+    _long: Shared<Left<LONG>>,
 }
 
 impl Default for Kept {

@@ -195,15 +195,14 @@ impl Generator {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::integrator::collocation::polynomial::Collocation;
-    use crate::math::nodal::{LONG, SHORT};
+    use crate::integrator::collocation::polynomial::{LONG_BY_TIME, SHORT_BY_TIME};
+    use crate::math::nodal::Nodal;
 
     /// A step's accelerations, at its start and at its nodes, are those of the instants.
     #[test]
     fn nodes_agree_with_direct_evaluation() {
-        fn check<const S: usize>(scene: &Scene, time: f64, length: f64) {
+        fn check<const S: usize>(nodes: &Nodal<S>, scene: &Scene, time: f64, length: f64) {
             let generator = Generator::new(scene);
-            let nodes = Collocation::<S>::default().nodes;
             let mut turns = Turns::<S>::NONE;
             let e = &scene.excitation;
             let highest = match scene.effects.excitation {
@@ -219,7 +218,7 @@ mod tests {
             // Rounding of time, in radians, and of the sums.
             let allowed = largest * (2.0 * TAU * highest * f64::EPSILON * (time + length) + 1e-13);
             for machine in [Simd::Portable, Simd::detect()] {
-                turns.fill(&generator, length, &nodes);
+                turns.fill(&generator, length, nodes);
                 let found = generator.over_step(machine, time, &turns, &mut Piece::default());
                 let start = generator.acceleration(time);
                 assert!(
@@ -262,8 +261,8 @@ mod tests {
                 (1.3e-3, 1e-9),
                 (2.2e-3, 1e-4),
             ] {
-                check::<SHORT>(&scene, time, length);
-                check::<LONG>(&scene, time, length);
+                check(&SHORT_BY_TIME.nodes, &scene, time, length);
+                check(&LONG_BY_TIME.nodes, &scene, time, length);
             }
         }
         let late = [
@@ -277,10 +276,10 @@ mod tests {
         ];
         for scene in &late {
             for time in [0.1, 17.3, 449.9, 451.2, 899.9] {
-                check::<SHORT>(scene, time, 3e-5);
-                check::<LONG>(scene, time, 3e-5);
+                check(&SHORT_BY_TIME.nodes, scene, time, 3e-5);
+                check(&LONG_BY_TIME.nodes, scene, time, 3e-5);
             }
         }
-        check::<LONG>(&late[0], 7e8, 1e-7);
+        check(&LONG_BY_TIME.nodes, &late[0], 7e8, 1e-7);
     }
 }

@@ -10,10 +10,10 @@ use crate::closed_loop::propagator::{ByLength, Propagator};
 use crate::contact::power::Power;
 use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
-use crate::integrator::collocation::cache::{Cache, Common, OF_LONG, OF_SHORT};
+use crate::integrator::collocation::cache::{Cache, Left, OF_LONG, OF_SHORT};
 use crate::integrator::collocation::modal_response::ModeOverStep;
 use crate::integrator::collocation::part::{Instant, Whole};
-use crate::integrator::collocation::shapes::Variable;
+use crate::integrator::collocation::polynomial::{Collocation, LONG_BY_ROOT, LONG_BY_TIME, SHORT_BY_TIME};
 use crate::integrator::collocation::trial::{Scratch, Trial};
 use crate::integrator::constants::HALVINGS;
 use crate::integrator::events::log::Events;
@@ -76,7 +76,7 @@ impl Leaps {
             .map(ModeOverStep::longest_by_root)
             .fold(f64::INFINITY, f64::min);
         Some(Self {
-            cache: Box::new(Cache::new(model, &OF_LONG, Variable::Root)),
+            cache: Box::new(Cache::new(model, &OF_LONG, &LONG_BY_ROOT)),
             longest,
         })
     }
@@ -107,9 +107,9 @@ pub(crate) struct Search {
 }
 
 impl<const S: usize> Room<S> {
-    fn new(model: &Model, home: &'static Home<Common<S>>) -> Self {
+    fn new(model: &Model, home: &'static Home<Left<S>>, collocation: &'static Collocation<S>) -> Self {
         Self {
-            cache: Box::new(Cache::new(model, home, Variable::Time)),
+            cache: Box::new(Cache::new(model, home, collocation)),
             scratch: Scratch::new(model),
             trial: Some(zeroed_box()),
         }
@@ -151,8 +151,8 @@ impl Workspace {
             .map(|closed_loop| closed_loop.oscillators.len());
         let lengths = if oscillators.is_some() { LENGTHS } else { 0 };
         Self {
-            short: Room::new(model, &OF_SHORT),
-            long: Room::new(model, &OF_LONG),
+            short: Room::new(model, &OF_SHORT, &SHORT_BY_TIME),
+            long: Room::new(model, &OF_LONG, &LONG_BY_TIME),
             leaps: Leaps::new(model),
             half: zeroed_box(),
             search: Search {

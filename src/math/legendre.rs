@@ -1,7 +1,5 @@
 //! Legendre polynomials and the Gauss quadrature built on them.
 
-use crate::math::roots;
-
 /// Values of the Legendre polynomials P_0 ... P_(count-1) at `x` in [-1, 1].
 pub fn polynomials(x: f64, count: usize) -> Vec<f64> {
     let mut values = Vec::with_capacity(count);
@@ -64,25 +62,9 @@ pub fn gauss(count: usize) -> impl Iterator<Item = (f64, f64)> {
     })
 }
 
-/// Nodes of the Radau quadrature with `count` points on [-1, 1] that include 1, ascending: the roots of
-/// P_count - P_(count-1).
-pub fn radau(count: usize) -> Vec<f64> {
-    let difference = |x: f64| match polynomials(x, count + 1).as_slice() {
-        [.., below, top] => top - below,
-        _ => 0.0,
-    };
-    // Its roots other than 1 interlace with those of P_count: one lies between any two neighbouring Gauss nodes.
-    let gauss: Vec<f64> = gauss(count).map(|(x, _)| x).collect();
-    let between = gauss.windows(2).filter_map(|pair| match pair {
-        [a, b] => roots::bracketed(difference, *a, *b),
-        _ => None,
-    });
-    between.chain([1.0]).collect()
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{gauss, radau};
+    use super::gauss;
 
     #[test]
     fn gauss_quadrature_is_exact_to_its_degree() {
@@ -102,21 +84,6 @@ mod tests {
                     "{count} {power}: {sum} {exact}"
                 );
             }
-        }
-    }
-
-    #[test]
-    fn radau_nodes_are_the_published_ones() {
-        // Hairer and Wanner, Solving Ordinary Differential Equations II, table 5.6: (4 -+ sqrt(6)) / 10 and 1 on [0,
-        // 1].
-        let root = 6.0_f64.sqrt();
-        for (found, exact) in radau(3).iter().zip([(4.0 - root) / 10.0, (4.0 + root) / 10.0, 1.0]) {
-            assert!((f64::midpoint(1.0, *found) - exact).abs() < 1e-15, "{found} {exact}");
-        }
-        for count in 1..=9 {
-            let nodes = radau(count);
-            assert_eq!(nodes.len(), count);
-            assert!(nodes.is_sorted());
         }
     }
 }

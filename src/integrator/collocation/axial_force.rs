@@ -205,8 +205,7 @@ mod tests {
     use super::*;
     use crate::excitation::drive::Drive;
     use crate::integrator::collocation::cache::{Cache, OF_LONG};
-    use crate::integrator::collocation::polynomial::Collocation;
-    use crate::integrator::collocation::shapes::Variable;
+    use crate::integrator::collocation::polynomial::LONG_BY_TIME;
     use crate::integrator::collocation::step::compute;
     use crate::integrator::collocation::trial::Scratch;
     use crate::link::CONTACT;
@@ -239,11 +238,11 @@ mod tests {
     fn energy_changes_by_the_work_of_the_axial_force() {
         for (source, given) in [(Source::Laws(1e-12), 0.0), (Source::Given, 0.3)] {
             let (model, mut state) = pushed();
-            let mut cache = Cache::new(&model, &OF_LONG, Variable::Time);
+            let mut cache = Cache::new(&model, &OF_LONG, &LONG_BY_TIME);
             let (mut most, mut wrong) = (0.0_f64, 0.0_f64);
             let start = model.energy(&state);
             let length = 1e-5;
-            let collocation = Collocation::<LONG>::default();
+            let collocation = &LONG_BY_TIME;
             let axial = model.axial.as_ref().unwrap();
             let mut scratch = Scratch::<LONG>::new(&model);
             for _ in 0..100 {

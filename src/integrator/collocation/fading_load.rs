@@ -18,7 +18,7 @@ pub(super) fn convolved<const S: usize, A: Arithmetic>(rate: f64, times: &Nodal<
             power.iter_mut().skip(node).take(1).for_each(|entry| *entry = moment);
         }
     }
-    Table::of_powers::<A>(&shapes.start_derivatives, &powers)
+    Table::of_powers::<A>(shapes.start_derivatives, &powers)
 }
 
 /// The convolutions of `t^(m/2)`, m = 0, 1, ..., with `exp(-rate t)` up to a time. Integrated by parts they follow from each other,

@@ -223,7 +223,7 @@ pub(crate) fn shorten<const S: usize>(
 mod tests {
     use super::*;
     use crate::integrator::collocation::cache::{Cache, OF_LONG};
-    use crate::integrator::collocation::shapes::Variable;
+    use crate::integrator::collocation::polynomial::LONG_BY_TIME;
     use crate::integrator::collocation::step::compute;
     use crate::integrator::collocation::trial::{Scratch, Source};
     use crate::math::nodal::LONG;
@@ -251,7 +251,7 @@ mod tests {
                 state.modes[0].q += lifted / model.modes[0].tip;
                 model.settle(&mut state);
                 assert_eq!(state.is_closed(), lifted == 0.0);
-                let mut cache = Cache::new(&model, &OF_LONG, Variable::Time);
+                let mut cache = Cache::new(&model, &OF_LONG, &LONG_BY_TIME);
                 let mut scratch = Scratch::<LONG>::new(&model);
                 let mut steps = 0;
                 for length in [1e-9, 1e-7, 3e-6, 5e-5, 2e-4] {

@@ -4,13 +4,15 @@
 //! however stiff its damping (Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.5): eight for long
 //! steps, four for short ones (communication steps of a microsecond, the time just after an impact).
 
-use crate::integrator::collocation::shapes::{MAX_SHAPES, Shapes, Variable};
+use crate::integrator::collocation::shapes::{Row, Shapes, Table, Variable};
 use crate::integrator::constants::{FAR_AHEAD, NEAR, SLOWEST_DECAY};
 use crate::integrator::course::turning_points;
-use crate::math::legendre;
-use crate::math::nodal::{LONG, Nodal, add, dot, scaled};
+use crate::math::nodal::{LONG, Nodal, SHORT, add, dot, scaled};
 use crate::math::prediction::{Prediction, centred, parabola_at_end, value_and_slope};
 use crate::math::simd::{Arithmetic, Separate, Simd, compiled_for};
+
+// Computed as the library is built: `build/collocation.rs`.
+include!(concat!(env!("OUT_DIR"), "/collocation.rs"));
 
 /// The polynomials of a step with `S` nodes.
 #[derive(Debug)]
@@ -41,76 +43,12 @@ pub struct Collocation<const S: usize> {
     pub impulse: f64,
     /// Lagrange polynomials of the start and the nodes, by powers of [`centred`] time; the first row is that of the
     /// start.
-    with_start: Vec<Prediction>,
+    with_start: &'static [Prediction],
     /// The same for the nodes without the start.
-    nodal: Vec<Prediction>,
-}
-
-impl<const S: usize> Default for Collocation<S> {
-    fn default() -> Self {
-        Self::new(Variable::Time)
-    }
+    nodal: &'static [Prediction],
 }
 
 impl<const S: usize> Collocation<S> {
-    /// Computes the nodes and shapes.
-    pub fn new(variable: Variable) -> Self {
-        let mut nodes = [0.0; S];
-        for (node, x) in nodes.iter_mut().zip(legendre::radau(S)) {
-            *node = f64::midpoint(1.0, x);
-        }
-        // Derivatives from the Taylor coefficients about `at`.
-        let derivatives_at = |at: f64| -> Vec<_> {
-            let vanishing = nodes
-                .iter()
-                .fold(one(), |shape, node| times(shape, -1.0 / node, (node - at) / node));
-            let through_nodes = lagrange::<MAX_SHAPES>(&nodes.map(|node| node - at));
-            through_nodes
-                .into_iter()
-                .chain([vanishing])
-                .map(by_factorials)
-                .collect()
-        };
-        let mut at_start = [0.0; S];
-        for (start, shape) in at_start.iter_mut().zip(derivatives_at(0.0)) {
-            *start = shape.first().copied().unwrap_or_default();
-        }
-        let leading = nodes.map(|own| {
-            let others = nodes.iter().filter(|node| **node != own);
-            others.map(|node| 1.0 / (own - node)).product()
-        });
-        let shapes = Shapes::new(&nodes, variable, derivatives_at);
-        let impulses = shapes.integrals.first().map_or([0.0; S], |table| table.error);
-        let without = |first: usize| {
-            let mut values = [0.0; S];
-            let fewer = lagrange::<MAX_SHAPES>(nodes.get(first..).unwrap_or_default());
-            for (value, [at_zero, ..]) in values.iter_mut().skip(first).zip(fewer) {
-                *value = at_zero;
-            }
-            values
-        };
-        let places: Vec<_> = [-1.0]
-            .into_iter()
-            .chain(nodes.map(|node| centred(node - 1.0)))
-            .collect();
-        let with_start = lagrange(&places);
-        let nodal = lagrange(places.get(1..).unwrap_or_default());
-        Self {
-            nodes: variable.times(&nodes),
-            variable,
-            places: nodes,
-            at_start,
-            at_start_of_fewer: [without(1), without(2)],
-            weights: shapes.end_integrals.first().copied().unwrap_or([0.0; S]),
-            shapes,
-            leading,
-            quadrature: 0.5 * S as f64 * factorial(S - 1).powi(2) / factorial(2 * S - 1),
-            impulse: impulses.iter().fold(0.0, |most, impulse| most.max(impulse.abs())),
-            with_start,
-            nodal,
-        }
-    }
-
     /// The Lagrange polynomials at a place `x`, 0 to 1 over the step.
     #[inline(always)]
     pub fn lagrange(&self, x: f64) -> Nodal<S> {
@@ -147,7 +85,7 @@ impl<const S: usize> Collocation<S> {
         let below = nodes.find(|(node, value)| **node < until && **value < 0.0);
         let below = below.map(|(node, _)| *node);
         let until = below.unwrap_or(until);
-        let polynomial = combine::<Separate>(&self.nodal, values.iter());
+        let polynomial = combine::<Separate>(self.nodal, values.iter());
         let first = self.places.first().copied().unwrap_or_default();
         let turns = turning_points(Simd::Portable, &polynomial);
         let mut places = turns.iter().map(|y| 1.0 + y).filter(|x| (first..until).contains(x));
@@ -172,7 +110,7 @@ impl<const S: usize> Collocation<S> {
 
     /// The polynomial through the values at the start and at the nodes.
     pub fn through(&self, simd: Simd, start: f64, values: &Nodal<S>) -> Prediction {
-        compiled_for!(simd, A => combine::<A>(&self.with_start, [start].iter().chain(values)))
+        compiled_for!(simd, A => combine::<A>(self.with_start, [start].iter().chain(values)))
     }
 
     /// First guess of a quantity at the nodes of a step `ratio` times as long as the last one, from its course there. Far
@@ -195,19 +133,6 @@ impl<const S: usize> Collocation<S> {
     }
 }
 
-/// Coefficients of the Lagrange polynomials of the points.
-fn lagrange<const N: usize>(points: &[f64]) -> Vec<[f64; N]> {
-    points
-        .iter()
-        .map(|own| {
-            let others = points.iter().filter(|point| *point != own);
-            others.fold(one(), |shape, point| {
-                times(shape, 1.0 / (own - point), -point / (own - point))
-            })
-        })
-        .collect()
-}
-
 /// The interpolation polynomial of the values in a Lagrange basis.
 #[inline(always)]
 fn combine<'a, A: Arithmetic>(basis: &[Prediction], values: impl Iterator<Item = &'a f64>) -> Prediction {
@@ -218,34 +143,26 @@ fn combine<'a, A: Arithmetic>(basis: &[Prediction], values: impl Iterator<Item =
     sum
 }
 
-fn factorial(n: usize) -> f64 {
-    (1..=n).fold(1.0, |product, k| product * k as f64)
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-fn one<const N: usize>() -> [f64; N] {
-    let mut shape = [0.0; N];
-    if let Some(first) = shape.first_mut() {
-        *first = 1.0;
+    /// The nodes with one at the end whose quadrature is exact up to the degree `2 S - 2` are those of Radau.
+    #[test]
+    fn nodes_and_weights_are_those_of_radau() {
+        fn check<const S: usize>(collocation: &Collocation<S>) {
+            assert!(collocation.nodes.is_sorted() && collocation.nodes.ends_with(&[1.0]));
+            for power in 0..2 * S - 1 {
+                let values = collocation.nodes.map(|x| x.powi(i32::try_from(power).unwrap()));
+                let exact = 1.0 / (power as f64 + 1.0);
+                // Roundings of S terms.
+                assert!(
+                    (collocation.mean(&values) - exact).abs() < 1e-15 * S as f64,
+                    "{S} {power}"
+                );
+            }
+        }
+        check(&SHORT_BY_TIME);
+        check(&LONG_BY_TIME);
     }
-    shape
-}
-
-/// The polynomial times `a x + b`.
-fn times<const N: usize>(shape: [f64; N], a: f64, b: f64) -> [f64; N] {
-    let mut below = 0.0;
-    shape.map(|coefficient| {
-        let value = b * coefficient + a * below;
-        below = coefficient;
-        value
-    })
-}
-
-/// Converts coefficients of `x^m` to those of `x^m / m!`.
-fn by_factorials(mut shape: [f64; MAX_SHAPES]) -> [f64; MAX_SHAPES] {
-    let mut factorial = 1.0;
-    for (m, coefficient) in shape.iter_mut().enumerate() {
-        *coefficient *= factorial;
-        factorial *= (m + 1) as f64;
-    }
-    shape
 }

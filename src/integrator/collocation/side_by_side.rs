@@ -258,7 +258,7 @@ impl<const N: usize> Together<N> {
 mod tests {
     use super::*;
     use crate::integrator::collocation::modal_response::ModeOverStep;
-    use crate::integrator::collocation::polynomial::Collocation;
+    use crate::integrator::collocation::polynomial::LONG_BY_TIME;
     use crate::math::nodal::{LONG, dot};
     use crate::math::simd::Separate;
 
@@ -281,7 +281,7 @@ mod tests {
     )]
     fn they_move_as_each_does_alone() {
         let h = 1e-4;
-        let collocation = Collocation::<LONG>::default();
+        let collocation = &LONG_BY_TIME;
         let values: [[f64; LONG]; 2] = [1.0, 3.0].map(|k| std::array::from_fn(|j| (k * (1.0 + j as f64)).sin()));
         let both = values.map(|values| collocation.shapes.load::<Separate>(&values));
         let loads = Loads {

@@ -62,7 +62,7 @@ impl Basis {
 /// Coefficients of steps of several lengths, in places that are made as they are needed: room for all of them is reserved, but
 /// not touched before.
 #[derive(Debug, Default)]
-pub(super) struct Store<const S: usize> {
+pub(crate) struct Store<const S: usize> {
     basis: Basis,
     lengths: Vec<f64>,
     rows: Vec<NodeRows<S>>,

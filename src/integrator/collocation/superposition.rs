@@ -96,7 +96,7 @@ impl<const S: usize> Response<S> {
         }
         if self.fading[0].is_some() {
             let factors = derivatives.q.iter().zip(&derivatives.v);
-            for ((for_q, for_v), values) in factors.zip(&shapes.end_derivatives) {
+            for ((for_q, for_v), values) in factors.zip(shapes.end_derivatives) {
                 add::<S, A>(&mut q, *for_q, values);
                 add::<S, A>(&mut v, *for_v, values);
             }
@@ -187,7 +187,7 @@ impl<const S: usize> Sum<S> {
             add::<S, A>(&mut sum.v, *for_v, column(table));
         }
         let Pair { q, v } = &combination.derivatives;
-        for ((for_q, for_v), table) in q.iter().zip(v).zip(&shapes.derivatives) {
+        for ((for_q, for_v), table) in q.iter().zip(v).zip(shapes.derivatives) {
             add::<S, A>(&mut sum.q, *for_q, column(table));
             add::<S, A>(&mut sum.v, *for_v, column(table));
         }

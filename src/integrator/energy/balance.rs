@@ -41,6 +41,7 @@
 //! times the force scale times the path.
 
 use crate::excitation::drive::Drive;
+use crate::integrator::collocation::polynomial::LONG_BY_TIME;
 use crate::integrator::collocation::shapes::Variable;
 use crate::integrator::collocation::step::compute;
 use crate::integrator::collocation::trial::{Source, Trial};
@@ -69,7 +70,7 @@ where
     let variable = polynomial.variable;
     let long = &workspace.long.cache;
     // Of a leap only the first half begins where its contact has closed.
-    let nodes = [long.collocation().nodes, long.polynomials(Variable::Time).nodes];
+    let nodes = [long.collocation().nodes, LONG_BY_TIME.nodes];
     let in_halves = |values: &Nodal<S>| {
         [(0.0, nodes[0]), (0.5, nodes[1])]
             .map(|(start, nodes)| nodes.map(|node| polynomial.interpolate(values, variable.place(start + 0.5 * node))))
@@ -158,7 +159,7 @@ mod tests {
 
     use super::*;
     use crate::inputs::Inputs;
-    use crate::integrator::collocation::polynomial::Collocation;
+    use crate::integrator::collocation::polynomial::{Collocation, SHORT_BY_TIME};
     use crate::integrator::communication_step::{News, Steps, advance};
     use crate::integrator::grid::Grid;
     use crate::integrator::recorder::Recorder;
@@ -237,10 +238,9 @@ mod tests {
         end: &State,
         drive: Drive,
         length: f64,
-        trial: &Trial<S>,
+        (trial, collocation): (&Trial<S>, &Collocation<S>),
     ) -> f64 {
         const STEPS: u32 = 20_000;
-        let collocation = Collocation::<S>::default();
         // Displacement and velocity of each mode, energy supplied, energy dissipated.
         let rates = |t: f64, y: &Along| {
             let force = collocation.interpolate(&trial.links[CONTACT].forces, t / length);
@@ -286,7 +286,7 @@ mod tests {
             let (model, start, drive) = moving();
             let mut end = start;
             let (entered, trial) = balance::<SHORT>(&model, &mut end, drive, length, |_| ());
-            let sum = summed(&model, &start, &end, drive, length, &trial);
+            let sum = summed(&model, &start, &end, drive, length, (&trial, &SHORT_BY_TIME));
             // The defect at the start excites oscillations of about a microsecond, which the nodes of the half steps do
             // not resolve.
             assert!(
@@ -304,7 +304,7 @@ mod tests {
         let (entered, trial) = balance::<LONG>(&model, &mut end, drive, 6e-5, |trial| {
             trial.links[CONTACT].forces = trial.links[CONTACT].forces.map(|force| force + wrong);
         });
-        let sum = summed(&model, &start, &end, drive, 6e-5, &trial);
+        let sum = summed(&model, &start, &end, drive, 6e-5, (&trial, &LONG_BY_TIME));
         assert!(
             (entered - sum).abs() < 1e-3 * sum.abs(),
             "entered {entered:e} J, summed {sum:e} J"
