@@ -14,8 +14,6 @@ from report.published import ACCELERATION, BEST
 
 RISE, SAMPLES = 20, 64
 """Periods of the gentle start, and samples of the period that is read."""
-PIECES = 16
-"""Of a period of the gentle start."""
 PERIODIC = 1e-7
 """A motion is periodic if the extremes of the force change by less than this part of the preload from one period to the
 next: below the digits shown."""
@@ -97,10 +95,11 @@ class Bench:
         self.contact.begin_anew(values)
         return self.contact.get(output)
 
-    def shaken(self, values: Values, frequency: float, level: float) -> float:
-        """Begin a vibration from rest; return the deflection there, m."""
+    def shaken(self, values: Values, frequency: float, level: float, rise: int = 0) -> float:
+        """Begin a vibration from rest that rises over so many periods; return the deflection at rest, m."""
         sine: Values = {
             "effects.excitation": "Sine", "excitation.frequency": frequency, "excitation.amplitude": level,
+            "excitation.riseTime": rise / frequency,
         }  # fmt: skip
         self.contact.begin_anew({**values, **sine})
         return self.contact.get("tip.displacement")
@@ -121,8 +120,8 @@ class Bench:
         """Return a period of steady vibration, started gently so that it is steady soon."""
         key = repr((sorted(values.items()), frequency, level))
         if key not in self.known:
-            deflection = self.shaken(values, frequency, level)
-            self.contact.rise(frequency, level, RISE, PIECES)
+            deflection = self.shaken(values, frequency, level, RISE)
+            self.contact.step(0.0, RISE / frequency)
             number, repeats = self.settle(frequency)
             self.known[key] = self.period(frequency, level, deflection, number, repeats)
         return self.known[key]

@@ -36,7 +36,6 @@ PEAKS = {1: None, 10: (1250, 5.2), 20: (750, 3.3), 30: (250, 3.1)}
 GRID = np.arange(250.0, 2001.0, 250.0)  # Hz
 PAPER = 98.0  # m/s2
 
-RISE_PIECES = 16  # of a period of the rise, over each of which base.acceleration is linear
 RISE, SETTLED = 5e-3, 25e-3  # s: of the rise, and until the motion of the weakest damping here repeats
 WATCHED = 4  # periods
 TRAVEL, SLOW = 1e-4, 0.2  # m and s: of the fixed contact to and fro, and its period
@@ -131,10 +130,10 @@ class Study:
             "effects.excitation": "Sine",
             "excitation.frequency": frequency,
             "excitation.amplitude": amplitude,
+            "excitation.riseTime": RISE,
         }
         with self.component.started(FRICTION | driven | values) as contact:
-            contact.rise(frequency, amplitude, rise := math.ceil(RISE * frequency), RISE_PIECES)
-            periods = np.arange(rise, rise + math.ceil(SETTLED * frequency) + WATCHED + 1)
+            periods = np.arange(math.ceil((RISE + SETTLED) * frequency) + WATCHED + 1)
             names = ["step.minimumForce", "step.maximumForce", "contact.slipDistance", "friction.energy"]
             rows = contact.drive(periods / frequency, {}, names)
         least, greatest, distance, energy = (rows[name][-WATCHED - 1 :] for name in names)

@@ -1,6 +1,6 @@
 //! The level of a steady vibration that opens the contact.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 use relay_contact::inputs::Inputs;
 use relay_contact::reference::{self, Model};
@@ -25,9 +25,6 @@ const DECADES: f64 = 3.0;
 
 /// Periods in which an opening counts: one that bounces may open in every second one.
 const WATCHED: f64 = 4.0;
-
-/// Linear pieces of a period in which the rise is given: off the sine by 1.2e-3 of the amplitude, and exact at its end.
-const PIECES: u32 = 64;
 
 /// Least amplitude (m/s²) of a sine of this frequency (Hz) at which the contact of a scene opens in steady vibration, and that
 /// of linear theory. The scene's own excitation does not act. Infinite if no level opens it.
@@ -72,34 +69,17 @@ pub fn level(text: &str, frequency: f64) -> Result<[f64; 2], Failure> {
     Ok([high, linear])
 }
 
-/// Whether the contact opens in steady vibration: after it was raised to the level over half a period of a cosine and held,
-/// each for as long as the start takes to die away.
+/// Whether the contact opens in steady vibration: after it has risen to the level and was held, each for as long as the start
+/// takes to die away.
 fn opens(scene: &Scene, inputs: &Inputs) -> Result<bool, Failure> {
-    let mut contact = Simulation::new(scene, inputs, 0.0)?;
-    let (frequency, amplitude) = (scene.excitation.frequency, scene.excitation.amplitude);
-    let natural = TAU * contact.real(RealOutput::PreloadFrequency);
+    let mut scene = scene.clone();
+    let frequency = scene.excitation.frequency;
+    let natural = TAU * Simulation::new(&scene, inputs, 0.0)?.real(RealOutput::PreloadFrequency);
     let decay = 0.5 * (scene.beam.mass_damping + scene.beam.stiffness_damping * natural.powi(2));
     let settling = DECADES * 10.0_f64.ln() / decay;
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a small positive count"
-    )]
-    let periods = (settling * frequency).clamp(2.0, 1000.0).ceil() as u32;
-    // What the rise lacks of the generated sine.
-    let lacking = |piece: u32| {
-        let phase = TAU * f64::from(piece) / f64::from(PIECES);
-        let part = f64::from(piece) / f64::from(PIECES * periods);
-        -0.5 * amplitude * phase.sin() * (1.0 + (PI * part).cos())
-    };
-    let step = 1.0 / (frequency * f64::from(PIECES));
-    for piece in 0..PIECES * periods {
-        let mut inputs = *inputs;
-        inputs.base_acceleration += lacking(piece);
-        inputs.base_acceleration_rate = (lacking(piece + 1) - lacking(piece)) / step;
-        contact.step(&inputs, contact.time(), step)?;
-    }
-    contact.step(inputs, contact.time(), f64::from(periods) / frequency)?;
+    scene.excitation.rise_time = (settling * frequency).clamp(2.0, 1000.0).ceil() / frequency;
+    let mut contact = Simulation::new(&scene, inputs, 0.0)?;
+    contact.step(inputs, 0.0, 2.0 * scene.excitation.rise_time)?;
     let steady = contact.time();
     contact.step(inputs, steady, WATCHED / frequency)?;
     Ok(contact.real(RealOutput::ContactLastOpening) > steady)

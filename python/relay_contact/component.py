@@ -340,18 +340,6 @@ class Contact:
         """
         return drive(self, time, courses, watched)
 
-    def rise(self, frequency: float, amplitude: float, periods: int, pieces: int) -> None:
-        """Start the sine generator, which vibrates at full level from time 0 on, gently over these periods.
-
-        base.acceleration withholds what a rise over half a period of a cosine has not reached, linearly over each of so
-        many pieces of a period: a sudden start may open a contact that stays closed in steady vibration.
-        """
-        time = np.arange(periods * pieces + 1) / pieces / frequency
-        phase = 2 * np.pi * frequency * time
-        missing = -amplitude * np.sin(phase) * (1 + np.cos(phase / (2 * periods))) / 2
-        self.drive(time, {"base.acceleration": missing})
-        self.set("base.acceleration", 0.0)
-
     def get(self, name: str) -> float:
         """Give the value of any variable, of an enumeration its number."""
         kind = self.component.variables[name].type

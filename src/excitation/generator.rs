@@ -16,7 +16,7 @@ use crate::variables::ExcitationKind;
 pub struct Turns<const S: usize> {
     /// Of a sine: sines and cosines of the phase advance from the start of the step to its nodes.
     rotation: [Nodal<S>; 2],
-    /// Of another waveform: nodes, s from the start of the step.
+    /// Of another waveform, or while it rises: nodes, s from the start of the step.
     times: Nodal<S>,
 }
 
@@ -33,6 +33,7 @@ impl<const S: usize> Turns<S> {
             Generator::Sine(sine) => {
                 let angles = scaled(nodes, TAU * sine.frequency * length);
                 self.rotation = [angles.map(f64::sin), angles.map(f64::cos)];
+                self.times = scaled(nodes, length);
             }
             Generator::LogSweep(_) | Generator::Random(_) => self.times = scaled(nodes, length),
             Generator::None => {}
@@ -73,7 +74,7 @@ impl Generator {
     fn value(&self, time: f64) -> f64 {
         match self {
             Self::None => 0.0,
-            Self::Sine(sine) => sine.phasor(time).0,
+            Self::Sine(sine) => sine.reached(time) * sine.phasor(time).0,
             Self::LogSweep(sweep) => sweep.value(time),
             Self::Random(random) => random.value(time),
         }
@@ -99,7 +100,7 @@ impl Generator {
         if active { self.value(time) } else { 0.0 }
     }
 
-    /// Sine and cosine of the generator's phase at `time` (s), times its amplitude; zero if it is not a sine.
+    /// Sine and cosine of the generator's phase at `time` (s), times its amplitude once it has risen; zero if it is not a sine.
     pub(crate) fn phasor(&self, time: f64) -> (f64, f64) {
         match self {
             Self::Sine(sine) if sine.window.is_open_after(time) => sine.phasor(time),
@@ -115,9 +116,13 @@ impl Generator {
         }
     }
 
-    /// Whether linear motion under it is known in closed form: a sine, or none.
+    /// Whether linear motion under it is known in closed form: a sine that begins at once, or none.
     pub(crate) fn is_harmonic(&self) -> bool {
-        matches!(self, Self::None | Self::Sine(_))
+        match self {
+            Self::None => true,
+            Self::Sine(sine) => sine.rise_time == 0.0,
+            Self::LogSweep(_) | Self::Random(_) => false,
+        }
     }
 
     /// Accelerations over a step that begins at `time` (s), with the coefficients of its length. There must be no
@@ -133,13 +138,16 @@ impl Generator {
         let mut nodes = [0.0; S];
         let start = match self {
             Self::None => 0.0,
-            Self::Sine(_) => {
+            Self::Sine(sine) => {
                 let (sin, cos) = self.phasor(time);
                 let [sines, cosines] = &turns.rotation;
                 for ((node, to_sin), to_cos) in nodes.iter_mut().zip(sines).zip(cosines) {
                     *node = sin * to_cos + cos * to_sin;
                 }
-                sin
+                if sine.rises(time) {
+                    raised(sine, time, &turns.times, &mut nodes);
+                }
+                sine.reached(time) * sin
             }
             Self::LogSweep(_) | Self::Random(_) => self.over_step_out_of_line(simd, time, turns, piece, &mut nodes),
         };
@@ -175,7 +183,7 @@ impl Generator {
     pub fn next_break(&self, time: f64) -> Option<f64> {
         match self {
             Self::None => None,
-            Self::Sine(sine) => sine.window.next_end(time),
+            Self::Sine(sine) => sine.next_break(time),
             Self::LogSweep(sweep) => sweep.next_break(time),
             Self::Random(random) => random.window.next_end(time),
         }
@@ -189,6 +197,14 @@ impl Generator {
             Self::Random(random) if random.window.is_open_after(time) => 0.25 / random.highest,
             Self::None | Self::Sine(_) | Self::LogSweep(_) | Self::Random(_) => f64::INFINITY,
         }
+    }
+}
+
+/// Lowers nodal values of a sine to what it has reached at these times from `time` (s) on.
+#[inline(never)]
+fn raised<const S: usize>(sine: &Sine, time: f64, times: &Nodal<S>, nodes: &mut Nodal<S>) {
+    for (node, since) in nodes.iter_mut().zip(times) {
+        *node *= sine.reached(time + since);
     }
 }
 
@@ -247,7 +263,10 @@ mod tests {
             scene
         };
         let early = (3e-4, 2e-3);
+        let mut rising = excited(ExcitationKind::Sine, (1000.0, 0.0), early);
+        rising.excitation.rise_time = 1.2e-3;
         for scene in [
+            rising,
             excited(ExcitationKind::Sine, (1000.0, 0.0), early),
             excited(ExcitationKind::HalfSine, (1000.0, 0.0), early),
             excited(ExcitationKind::LogSweep, (300.0, 3000.0), early),

@@ -1,11 +1,11 @@
 //! A sine, and the half-sine shock pulse.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use crate::excitation::waveform::{Window, displacement_limit, limited, turned};
 use crate::scene::Excitation;
 
-/// `A sin(2 pi f tau + phase)`, `tau = t - t0`, within its window.
+/// `A r sin(2 pi f tau + phase)`, `tau = t - t0`, within its window; `r = (1 - cos(pi tau / T)) / 2` while it rises, then 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sine {
     /// A, m/s2; of either sign, as for every waveform.
@@ -16,6 +16,8 @@ pub struct Sine {
     pub phase: f64,
     /// Interval of time in which it acts.
     pub window: Window,
+    /// T, s; 0: it begins at once.
+    pub rise_time: f64,
 }
 
 impl Sine {
@@ -31,11 +33,12 @@ impl Sine {
             frequency: excitation.frequency,
             phase: excitation.phase,
             window: Window::from(excitation.start_time),
+            rise_time: excitation.rise_time,
         }
     }
 
     /// `A sin(pi tau / D)` for the duration D, in which the velocity changes by `2 A D / pi`: a shock as in MIL-STD-202
-    /// method 213. Neither phase nor displacement limit apply.
+    /// method 213. Neither phase, displacement limit nor rise apply.
     pub fn half(excitation: &Excitation) -> Self {
         Self {
             amplitude: excitation.amplitude,
@@ -45,10 +48,40 @@ impl Sine {
                 start: excitation.start_time,
                 end: excitation.start_time + excitation.duration,
             },
+            rise_time: 0.0,
         }
     }
 
-    /// Sine and cosine of the phase at `time` (s), times the amplitude.
+    /// The instant at which it has risen, s.
+    fn risen(&self) -> f64 {
+        self.window.start + self.rise_time
+    }
+
+    /// Whether it rises at `time` (s) or just after it.
+    pub fn rises(&self, time: f64) -> bool {
+        self.window.start <= time && time < self.risen()
+    }
+
+    /// The share of its amplitude at `time` (s) that it has reached, 1.
+    pub fn reached(&self, time: f64) -> f64 {
+        if self.rises(time) {
+            let half = 0.5 * PI * (time - self.window.start) / self.rise_time;
+            half.sin().powi(2)
+        } else {
+            1.0
+        }
+    }
+
+    /// The next instant after `time` (s) at which it begins, has risen or ends.
+    pub fn next_break(&self, time: f64) -> Option<f64> {
+        if self.rises(time) {
+            Some(self.risen())
+        } else {
+            self.window.next_end(time)
+        }
+    }
+
+    /// Sine and cosine of the phase at `time` (s), times the amplitude once it has risen.
     pub fn phasor(&self, time: f64) -> (f64, f64) {
         let angle = TAU * turned(self.frequency, time - self.window.start) + self.phase;
         let (sin, cos) = angle.sin_cos();

@@ -47,6 +47,12 @@ fn random(start: f64, frequency: f64, end_frequency: f64, density: f64) -> Scene
     scene
 }
 
+fn rising(start: f64, rise_time: f64) -> Scene {
+    let mut scene = excited(ExcitationKind::Sine, start);
+    scene.excitation.rise_time = rise_time;
+    scene
+}
+
 fn limited(mut scene: Scene, limit: f64) -> Scene {
     scene.excitation.displacement_limit = limit;
     scene
@@ -103,7 +109,14 @@ fn closed_form(scene: &Scene, time: f64) -> f64 {
         return 0.0;
     }
     match scene.effects.excitation {
-        ExcitationKind::Sine => within(e.frequency) * (TAU * e.frequency * tau + e.phase).sin(),
+        ExcitationKind::Sine => {
+            let reached = if tau < e.rise_time {
+                0.5 - 0.5 * (PI * tau / e.rise_time).cos()
+            } else {
+                1.0
+            };
+            reached * within(e.frequency) * (TAU * e.frequency * tau + e.phase).sin()
+        }
         ExcitationKind::HalfSine if tau <= e.duration => e.amplitude * (PI * tau / e.duration).sin(),
         ExcitationKind::LogSweep if tau < e.duration => {
             let r = e.end_frequency / e.frequency;
@@ -122,6 +135,7 @@ fn every_waveform() -> Vec<(&'static str, Scene)> {
     vec![
         ("sine", phased(excited(ExcitationKind::Sine, start), 0.7)),
         ("limited sine", limited(excited(ExcitationKind::Sine, start), 1e-6)),
+        ("rising sine", phased(rising(start, 1.7e-3), 0.7)),
         ("half sine", half_sine(start, 300.0, 2e-3)),
         ("sweep up", phased(sweep(start, 300.0, 3000.0, 2e-3), -0.4)),
         ("sweep down", phased(sweep(start, 3000.0, 300.0, 2e-3), 0.4)),

@@ -1,7 +1,7 @@
 """The generators of base acceleration, by the force on a bonded contact: that of their closed forms, exactly."""
 
 from collections.abc import Callable
-from math import exp, log, pi, sin
+from math import cos, exp, log, pi, sin
 
 import numpy as np
 import pytest
@@ -16,6 +16,7 @@ EXTREMES = {"extremes": {"effects.extremes": True}, "exact": {"effects.extremes"
 TOLERANCE = 1e-9
 START, STEP, STEPS = 3e-4, 2e-5, 200
 AMPLITUDE, FREQUENCY, END_FREQUENCY, DURATION, PHASE = 98.0, 400.0, 2500.0, 2e-3, 0.7
+RISE = 1.7e-3
 # The sweep has this amplitude of acceleration at the middle of its duration, 1 kHz.
 LIMIT = AMPLITUDE / (2 * pi * 1000) ** 2
 
@@ -34,6 +35,12 @@ def generated(course: Callable[[float], float]) -> Acceleration:
 def sine(amplitude: float) -> Acceleration:
     """Give a sine."""
     return generated(lambda tau: amplitude * sin(2 * pi * FREQUENCY * tau + PHASE))
+
+
+def rising(tau: float) -> float:
+    """Give a sine that rises by half a period of a cosine."""
+    reached = (1 - cos(pi * tau / RISE)) / 2 if tau < RISE else 1.0
+    return AMPLITUDE * reached * sin(2 * pi * FREQUENCY * tau + PHASE)
 
 
 def half_sine(tau: float) -> float:
@@ -68,6 +75,7 @@ PULLING: Values = {"excitation.amplitude": -AMPLITUDE}
 GENERATORS: dict[str, tuple[Values, Acceleration]] = {
     "sine": (SINE, sine(AMPLITUDE)),
     "limited sine": ({**SINE, **LIMITED}, sine((2 * pi * FREQUENCY) ** 2 * LIMIT)),
+    "rising sine": ({**SINE, "excitation.riseTime": RISE}, generated(rising)),
     "half sine": ({"effects.excitation": "HalfSine"}, generated(half_sine)),
     "sweep up": (UP, sweep(FREQUENCY, END_FREQUENCY, np.inf)),
     "sweep down": (DOWN, sweep(END_FREQUENCY, FREQUENCY, np.inf)),

@@ -116,9 +116,12 @@ def test_what_holds_the_armature_makes_no_other_part_weaker() -> None:
 
 def leaves(values: Values, frequency: float, level: float, step: float) -> bool:
     """Return whether a steady vibration, gently raised, takes the armature from its core, by small steps."""
-    sine: Values = {"effects.excitation": "Sine", "excitation.frequency": frequency, "excitation.amplitude": level}
+    sine: Values = {
+        "effects.excitation": "Sine", "excitation.frequency": frequency, "excitation.amplitude": level,
+        "excitation.riseTime": 12 / frequency,
+    }  # fmt: skip
     with COMPONENT.started({**values, **sine}) as contact, contact.explained():
-        contact.rise(frequency, level, 12, 16)
+        contact.step(0.0, 12 / frequency)
         count = round(6 / frequency / step)
         rows = contact.drive(12 / frequency + step * np.arange(count + 1.0), {}, ["step.minimumStopForce"])
         return bool(rows["step.minimumStopForce"].min() <= 0)

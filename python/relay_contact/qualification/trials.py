@@ -17,14 +17,13 @@ from relay_contact.qualification.parts import CLOSED, CONTACT, OPEN, Part, Rest,
 from relay_contact.qualification.response import Response, fast, stays
 from relay_contact.qualification.standards import Contacts
 
-TOLERANCE = 1e-5  # solver.tolerance, which levels feel by less than their resolution
+TOLERANCE = 1e-4  # solver.tolerance, which levels feel by less than their resolution
 GROWS = 1.5  # power of the time for which a contact fails that grows with the level; 2, did it not bounce
 WATCHED = 10  # periods
 GENTLY, SOON, AT_ONCE = (1.0, 1.0), (0.4, 1.3), (0.0, 1.0)
 """Times in which a vibration rises, and for which it goes on until the start is forgotten, in those that it takes to
 settle. Soon: with less swing off the resonance, where only the level matters that fails."""
 SAMPLES = 64  # of the gap of an open first contact in a period: 0.1 % of its least value may be missed
-PIECES = 16  # of a period of a rise, over each of which base.acceleration is linear
 SUDDEN = 3.0  # factor of its level from which on a vibration may start suddenly: the contact does not fail
 SHOWN = 400  # points of a course of force or gap
 
@@ -181,19 +180,20 @@ def vibrated(
     specimen: Specimen, frequency: float, amplitude: float, start: tuple[float, float] = SOON
 ) -> tuple[Lengths, list[float], float]:
     """Return what `steady` does, and `Specimen.ahead`."""
-    sine: Values = {"effects.excitation": "Sine", "excitation.frequency": frequency, "excitation.amplitude": amplitude}
     settling = max(2.0, specimen.response.settling() * frequency)
     rising, steadily = (int(np.ceil(part * settling)) for part in start)
+    sine: Values = {
+        "effects.excitation": "Sine", "excitation.frequency": frequency, "excitation.amplitude": amplitude,
+        "excitation.riseTime": rising / frequency,
+    }  # fmt: skip
+    time = (rising + steadily) / frequency
     with specimen.start(sine) as contact, contact.explained():
-        if rising:
-            contact.rise(frequency, amplitude, rising, PIECES)
-        contact.step(rising / frequency, steadily / frequency)
+        contact.step(0.0, time)
 
         def totals() -> dict[str, float]:
             return {name: contact.get(total) for name, (_, total, _) in specimen.monitors.items()}
 
         before = totals()
-        time = (rising + steadily) / frequency
         pieces = WATCHED * (SAMPLES if specimen.sampled else 1)
         step = 1 / frequency * WATCHED / pieces
         rows = contact.drive(time + step * np.arange(pieces + 1.0), {}, specimen.watched)
