@@ -1,11 +1,9 @@
 """Command line of the examples, and their pictures. Copy it along with an example that imports it."""
 
 import argparse
-import os
-import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
 import matplotlib as mpl
 
@@ -51,9 +49,3 @@ def save(figure: Figure, path: Path, dpi: int = 150) -> None:
     """Write a picture."""
     figure.savefig(path, dpi=dpi)
     plt.close(figure)
-
-
-def leave(code: int) -> NoReturn:
-    """End without the exit functions: that of PythonFMU 0.7.0 frees its state twice, which may end in an abort."""
-    sys.stdout.flush()
-    os._exit(code)
