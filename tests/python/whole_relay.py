@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 from scipy.linalg import block_diag, eigh
-from scipy.optimize import brentq
+from scipy.optimize import brentq, root
 
 from component import STARTS
 from elements import assembled
@@ -206,41 +206,31 @@ class Relay:
         gap = max(self.get("armature.corePosition") - place, 0.0)
         return float(hold / (1 + gap / constant) ** 2)
 
-    def preload(self, place: float) -> Array:
-        """Return the springs at rest, with the pusher at a place (m)."""
-        springs = self.count - 1 if self.moves else self.count
-        flexible = 1 / self.squares[:springs]
-        contact = self.laws[0]
-        opens = -contact.row[:springs]
-        touched = self.laws[1].row[:springs] if self.has_pusher else 0 * opens
-
-        def bent(force: float) -> Array:
-            pressed = 0.0
-            if self.has_pusher:
-                soft = 1 / self.laws[1].stiffness + float(touched**2 @ flexible)
-                pressed = max(place + float((touched * flexible) @ opens) * force, 0.0) / soft
-            return np.asarray(flexible * (opens * force - touched * pressed))
-
-        def unbalance(force: float) -> float:
-            return contact.elastic(contact.offset - float(opens @ bent(force))) - force
-
-        # Of a closed contact; more than a rigid one has in no case.
-        q = bent(brentq(unbalance, 0.0, 10.0, xtol=1e-16) if unbalance(0.0) > 0 else 0.0)
-        return np.append(q, place * sqrt(self.mass)) if self.moves else q
+    def held(self, place: float, flux: float) -> float:
+        """Return the force on the armature (N) but those of its stops, of the pusher and in proportion to its place."""
+        get = self.get
+        back = get("armature.returnForce") - get("armature.stiffness") * get("armature.restPosition")
+        return self.magnet(place, flux) - float(back)
 
     def at_rest(self) -> Array:
         """Return the equilibrium: of an armature that is held, or of one without current."""
-        if not self.moves:
-            return self.preload(self.laws[1].offset if self.has_pusher else 0.0)
+        core = self.get("armature.corePosition")
 
-        def balance(place: float) -> float:
-            q = self.preload(place)
-            return float(
-                self.forces(0.0, q, np.zeros(self.count), self.states(0.0, q), 0.0)[-1] - self.squares[-1] * q[-1]
-            )
+        def bent(overlaps: Array) -> Array:
+            total = -sum(law.row * law.elastic(d) for law, d in zip(self.laws, overlaps.tolist(), strict=True))
+            if self.moves:
+                total[-1] += self.held(overlaps[2] + core, 0.0) / sqrt(self.mass)
+            return np.asarray(total / self.squares)
+
+        def left(overlaps: Array) -> list[float]:
+            q = bent(overlaps)
+            return [law.overlap(0.0, q) - d for law, d in zip(self.laws, overlaps.tolist(), strict=True)]
 
         stop = self.get("armature.restPosition" if self.coil else "armature.corePosition")
-        return self.preload(brentq(balance, stop - 1e-4, stop + 1e-4, xtol=1e-18))
+        start = [1e-7, 1e-6, stop - core, self.get("armature.restPosition") - stop][: len(self.laws)]
+        found = root(left, start, tol=1e-15)
+        assert np.abs(found.fun).max() < 1e-14
+        return bent(found.x)
 
     def states(self, time: float, q: Array) -> list[int]:
         """Return the states of the laws at rest."""
@@ -253,9 +243,7 @@ class Relay:
             if state == CLOSED:
                 total -= law.row * law.force(law.overlap(time, q), law.rate(time, v))
         if self.moves:
-            get = self.get
-            back = get("armature.returnForce") - get("armature.stiffness") * get("armature.restPosition")
-            total[-1] += (self.magnet(self.place(q), flux) - back) / sqrt(self.mass)
+            total[-1] += self.held(self.place(q), flux) / sqrt(self.mass)
         return total
 
     def base(self, time: float) -> float:
