@@ -16,7 +16,8 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from component import STARTS
-from reference import Acceleration, Reference
+from one_sided import Acceleration
+from reference import Reference
 from relay_contact import Array, Values
 
 MILLISECOND = 1e-3

@@ -31,7 +31,7 @@ from measured import (
     rough_frequency_record,
     scattered,
 )
-from reference import Reference, crossings
+from reference import Reference
 from relay_contact import Array, RelayContactError, Values, identification
 from relay_contact.command import main
 from relay_contact.identification import Identification
@@ -291,9 +291,8 @@ def test_bounces_tell_the_damping_of_the_contact(tmp_path: Path) -> None:
     for speed in speeds:
         relay = Reference({"contact.damping": true, "contact.overtravel": -1e-6})
         stop = 1e-6 / speed + 6e-5
-        force = relay.motion(lambda _: 0.0, stop, 1e-6, speed, 5e-6)
-        opened, closed = crossings(force, 1e-9, np.arange(0.0, stop, 1e-6))
-        lengths.append(closed[1] - opened[0])
+        changes = relay.course(np.array([0.0, stop]), lambda _: 0.0, speed=speed).changes
+        lengths.append(changes["contact", "closes"][1] - changes["contact", "leaves"][0])
     noise = np.exp(0.02 * np.random.default_rng(SEED).standard_normal(len(speeds)))
     data = tmp_path / "bounce.csv"
     rows = [f"{1e3 * speed};{1e6 * length}" for speed, length in zip(speeds, lengths * noise, strict=True)]

@@ -1,0 +1,222 @@
+"""Modes under one-sided laws, such as contacts, pushers and stops, from one change of a law to the next.
+
+Each law is open, closed, or loose: overlapping with a force that its damper has taken to zero. SUNDIALS' CVODE
+integrates between the instants at which one of them changes, which it finds as roots.
+"""
+
+from collections import defaultdict
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from math import pi, sin
+from typing import Any, Literal
+
+import numpy as np
+from scipy.optimize import root
+from sksundae.cvode import CVODE
+
+from relay_contact import Array
+
+FASTEST = 1e4
+"""Angular frequency (1/s) by which the absolute tolerance of velocities follows from that of displacements."""
+OPEN, CLOSED, LOOSE = range(3)
+
+Acceleration = Callable[[float], float]
+ClosedBy = Literal["overlap", "force", "nothing"]
+"""What has to be above zero in a law that is closed: overlap and force, the force alone, or nothing, of power 1."""
+
+
+@dataclass(frozen=True)
+class Law:
+    """A one-sided force k d^n + b n k d^(n-1) d' of the overlap d, which is an offset with a row of the motion."""
+
+    name: str
+    row: Array
+    stiffness: float
+    damping: float
+    power: float = 1.0
+    offset: float = 0.0
+    speed: float = 0.0
+    """Of the offset, from `start` on."""
+    start: float = 0.0
+    limit: float = 0.0
+    """Force whose instants are noted too, N; 0: none."""
+    closed_by: ClosedBy = "overlap"
+
+    def overlap(self, time: float, q: Array) -> float:
+        """Return the overlap, m."""
+        return float(self.offset + self.speed * max(time - self.start, 0.0) + self.row @ q)
+
+    def rate(self, time: float, v: Array) -> float:
+        """Return its derivative, m/s."""
+        return float((self.speed if time >= self.start else 0.0) + self.row @ v)
+
+    def sign(self, d: float, rate: float) -> float:
+        """Return a length with the sign of the force of the closed law."""
+        return d + self.damping * self.power * rate
+
+    def force(self, d: float, rate: float) -> float:
+        """Return the force of the closed law, N."""
+        return float(self.stiffness * max(d, 0.0) ** (self.power - 1) * self.sign(d, rate))
+
+    def elastic(self, d: float) -> float:
+        """Return the force without damping, N."""
+        return float(self.stiffness * max(d, 0.0) ** self.power)
+
+
+@dataclass
+class Course:
+    """What a system did at the instants asked for, by law, and the instants of changes."""
+
+    overlaps: dict[str, Array]
+    forces: dict[str, Array]
+    changes: dict[tuple[str, str], list[float]]
+    """When a law closes and leaves, and its force rises above its limit and falls below, by its name."""
+
+
+def shaking(known: dict[str, Any]) -> tuple[Acceleration, float]:
+    """Return the acceleration of the base by the parameters of a component, and the instant at which it ends (s)."""
+    amplitude, duration = known["excitation.amplitude"], known["excitation.duration"]
+    match known["effects.excitation"]:
+        case "Sine":
+            return lambda time: amplitude * sin(2 * pi * known["excitation.frequency"] * time), np.inf
+        case "HalfSine":
+            return lambda time: amplitude * sin(pi * time / duration) if time < duration else 0.0, duration
+    return lambda _: 0.0, np.inf
+
+
+class System:
+    """Modes of unit mass under their springs, dampers and laws, on a shaken base."""
+
+    def __init__(
+        self, squares: Array, damping: Array, load: Array, laws: Sequence[Law], base: Acceleration, *kinks: float
+    ) -> None:
+        """Take squares of angular frequencies, damping, load per base acceleration, and instants where this breaks."""
+        self.squares, self.damping, self.load, self.laws, self.base = squares, damping, load, list(laws), base
+        self.count, self.kinks = len(squares), [*kinks, *(law.start for law in laws)]
+        self.pull = np.zeros(self.count)
+        """Constant forces on the modes."""
+        self.relative, self.absolute = 1e-9, 1e-16
+        """Tolerances, the absolute one of modal displacements, m sqrt(kg): with 1e-11 and 1e-17 forces of a whole relay
+        change by 8e-6 of the largest."""
+        self.near = [1e-7] * len(self.laws)
+        """Overlaps (m) beside those at rest."""
+
+    def bent(self, overlaps: Array) -> Array:
+        """Return the displacements under constant forces of these overlaps."""
+        force = sum(law.row * law.elastic(d) for law, d in zip(self.laws, overlaps.tolist(), strict=True))
+        return np.asarray((self.pull - force) / self.squares)
+
+    def at_rest(self) -> Array:
+        """Return the displacements in equilibrium."""
+
+        def left(overlaps: Array) -> Array:
+            q = self.bent(overlaps)
+            return np.array([law.overlap(0.0, q) for law in self.laws]) - overlaps
+
+        found = root(left, self.near, tol=1e-15)
+        assert np.abs(found.fun).max() < 1e-14
+        return self.bent(found.x)
+
+    def forces(self, time: float, state: Array, phases: Sequence[int]) -> list[float]:
+        """Return the force of each law, N."""
+        q, v = np.split(state[:-1], 2)
+        pairs = zip(self.laws, phases, strict=True)
+        return [law.force(law.overlap(time, q), law.rate(time, v)) if phase == CLOSED else 0.0 for law, phase in pairs]
+
+    def further(self, q: Array, flux: float, time: float) -> tuple[Array | float, float]:  # noqa: ARG002
+        """Return further forces on the modes, and the derivative of the flux linkage (V)."""
+        return 0.0, 0.0
+
+    def rates(self, time: float, state: Array, phases: Sequence[int], middle: float) -> Array:
+        """Return the derivatives; `middle` is a time on the same side of a kink."""
+        q, v = np.split(state[:-1], 2)
+        pushed = sum(law.row * force for law, force in zip(self.laws, self.forces(time, state, phases), strict=True))
+        force, flows = self.further(q, state[-1], middle)
+        turns = self.pull + force - pushed - self.squares * q - self.damping * v - self.load * self.base(time)
+        return np.concatenate([v, turns, [flows]])
+
+    def integrate(self, phases: list[int], middle: float) -> Any:  # noqa: ANN401
+        """Return a solver of the motion while no law changes."""
+        # Overlap and force; what does not matter in a phase is watched in no direction: by a constant.
+        watched = {
+            "overlap": {OPEN: (1, 0), CLOSED: (0, -1), LOOSE: (-1, 1)}, "force": {CLOSED: (0, -1), LOOSE: (0, 1)},
+            "nothing": {CLOSED: (0, 0)},
+        }  # fmt: skip
+        pairs = zip(self.laws, phases, strict=True)
+        directions = np.array([each for law, phase in pairs for each in watched[law.closed_by][phase]])
+        limits = np.array([law.limit for law in self.laws])
+
+        def into(time: float, state: Array, found: Array) -> None:
+            found[:] = self.rates(time, state, phases, middle)
+
+        def located(time: float, state: Array, found: Array) -> None:
+            q, v = np.split(state[:-1], 2)
+            both = [(d := law.overlap(time, q), law.sign(d, law.rate(time, v))) for law in self.laws]
+            beyond = np.where(limits > 0, self.forces(time, state, phases) - limits, 1.0)
+            found[:] = np.append(np.where(directions == 0, 1.0, np.ravel(both)), beyond)
+
+        count = len(directions) + len(limits)
+        located.direction, located.terminal = [*directions.tolist(), *[0] * len(limits)], [True] * count  # type: ignore[attr-defined]
+        absolute = self.absolute * np.repeat([1.0, FASTEST, FASTEST], [self.count, self.count, 1])
+        return CVODE(into, eventsfn=located, num_events=count, rtol=self.relative, atol=absolute, max_num_steps=500_000)
+
+    def solve(self, times: Array) -> Course:
+        """Return the course at instants (s) from the first, where it is at rest, on."""
+        n, now, solver = self.count, float(times[0]), None
+        state = np.concatenate([self.at_rest(), np.zeros(n + 1)])
+        phases = [self.phase(law, now, state) for law in self.laws]
+        changes: dict[tuple[str, str], list[float]] = defaultdict(list)
+        overlaps, forces = [], []
+        for time in times.tolist():
+            while now < time:
+                kink = min([np.inf, *(each for each in self.kinks if each > now)])
+                stop = min(time, kink)
+                if solver is None:
+                    solver = self.integrate(phases, (now + stop) / 2)
+                    solver.init_step(now, state)
+                found = solver.step(stop, tstop=kink)
+                assert found.success, found.message
+                now, state = float(found.t), np.array(found.y)
+                if found.i_events is not None:
+                    phases = self.changed(now, state, phases, np.atleast_2d(found.i_events)[-1], changes)
+                    solver = None
+                elif now == kink:
+                    solver = None
+            overlaps.append([law.overlap(time, state[:n]) for law in self.laws])
+            forces.append(self.forces(time, state, phases))
+
+        def by_law(rows: list[list[float]]) -> dict[str, Array]:
+            return dict(zip((law.name for law in self.laws), np.transpose(rows), strict=True))
+
+        return Course(by_law(overlaps), by_law(forces), changes)
+
+    def phase(self, law: Law, time: float, state: Array) -> int:
+        """Return the phase of a law at the begin."""
+        q, v = np.split(state[:-1], 2)
+        d, rate = law.overlap(time, q), law.rate(time, v)
+        if law.closed_by == "overlap" and (d < 0 or d == 0 >= rate):
+            return OPEN
+        return CLOSED if law.closed_by == "nothing" or law.sign(d, rate) > 0 else LOOSE
+
+    def changed(
+        self, time: float, state: Array, phases: list[int], turns: Array, changes: dict[tuple[str, str], list[float]]
+    ) -> list[int]:
+        """Return the phases of the laws after those changes that were found, and note them."""
+        after, (q, v) = list(phases), np.split(state[:-1], 2)
+        for at in np.flatnonzero(turns).tolist():
+            number, by_force = divmod(at, 2)
+            if number >= len(self.laws):
+                name = self.laws[at - 2 * len(self.laws)].name
+                changes[name, "rises" if turns[at] > 0 else "falls"].append(time)
+                continue
+            law, old = self.laws[number], phases[number]
+            d, rate = law.overlap(time, q), law.rate(time, v)
+            loose = law.closed_by == "force" or (d > 0 and law.damping > 0)
+            closes = old == (LOOSE if by_force else OPEN)
+            after[number] = CLOSED if closes else LOOSE if by_force and loose else OPEN
+            if CLOSED in (old, after[number]):
+                changes[law.name, "closes" if closes else "leaves"].append(time)
+            # A damped force is above its limit as soon as there is an overlap.
+            if closes and 0 < law.limit < law.force(d, rate):
+                changes[law.name, "rises"].append(time)
+        return after
