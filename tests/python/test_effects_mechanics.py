@@ -99,11 +99,7 @@ AXIAL: dict[str, Values] = {
     "tension": {"effects.axialForce": "Prescribed", "beam.axialForce": -20.0},
     "from preload": {"effects.axialForce": "FromPreload", "contact.overtravel": 4e-3},
     "from deflection": {"effects.axialForce": "FromDeflection", "contact.overtravel": 4e-3},
-    "under gravity": {
-        "effects.axialForce": "FromDeflection",
-        "contact.overtravel": 4e-3,
-        "environment.gravity": 300.0,
-    },
+    "under gravity": {"effects.axialForce": "FromDeflection", "contact.overtravel": 4e-3, "environment.gravity": 300.0},
 }
 
 

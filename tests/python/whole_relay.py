@@ -122,10 +122,7 @@ class Relay(System):
         row[-1] = 1 / sqrt(self.mass)
         damping = 2 * ratio * sqrt(self.mass / stiffness)
         core, rest = get("armature.corePosition"), get("armature.restPosition")
-        return [
-            Law("core", row, stiffness, damping, offset=-core),
-            Law("rest", -row, stiffness, damping, offset=rest),
-        ]
+        return [Law("core", row, stiffness, damping, offset=-core), Law("rest", -row, stiffness, damping, offset=rest)]
 
     def magnet(self, gap: float, flux: float) -> float:
         """Return the force towards the core (N), without a coil that of a held current."""

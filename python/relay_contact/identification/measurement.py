@@ -17,16 +17,7 @@ import numpy as np
 
 from relay_contact.component import Array, Component, Value
 from relay_contact.files import RelayContactError
-from relay_contact.tables import (
-    ACCELERATIONS,
-    FORCES,
-    FREQUENCIES,
-    LENGTHS,
-    TIMES,
-    VELOCITIES,
-    Table,
-    Units,
-)
+from relay_contact.tables import ACCELERATIONS, FORCES, FREQUENCIES, LENGTHS, TIMES, VELOCITIES, Table, Units
 from relay_contact.tables import read as read_table
 
 FORCE, RINGDOWN, RESPONSE, CHATTER = "static force", "ring-down", "frequency response", "chatter level"

@@ -12,15 +12,7 @@ from scipy.linalg import hankel
 
 from relay_contact.component import Array, Component, Contact, Values
 from relay_contact.files import RelayContactError
-from relay_contact.identification.measurement import (
-    BOUNCE,
-    CHATTER,
-    FORCE,
-    FREQUENCY,
-    RESPONSE,
-    RINGDOWN,
-    Measurement,
-)
+from relay_contact.identification.measurement import BOUNCE, CHATTER, FORCE, FREQUENCY, RESPONSE, RINGDOWN, Measurement
 from relay_contact.qualification.level import threshold
 from relay_contact.qualification.response import EXACT, FREE, interrupting_force, respond
 from relay_contact.qualification.standards import Contacts
