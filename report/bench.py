@@ -10,6 +10,7 @@ from typing import TypeVar
 import numpy as np
 
 from relay_contact import Array, Component, Contact, Value, Values
+from relay_contact.component import sine
 from report.published import ACCELERATION, BEST
 
 RISE, SAMPLES = 20, 64
@@ -99,10 +100,7 @@ class Bench:
 
     def shaken(self, values: Values, frequency: float, level: float) -> float:
         """Begin a vibration from rest; return the deflection there, m."""
-        sine: Values = {
-            "effects.excitation": "Sine", "excitation.frequency": frequency, "excitation.amplitude": level,
-        }  # fmt: skip
-        self.contact.begin_anew({**values, **sine})
+        self.contact.begin_anew({**values, **sine(frequency, level)})
         return self.contact.get("tip.displacement")
 
     def period(self, frequency: float, level: float, deflection: float, number: int, repeats: bool = False) -> Period:

@@ -18,6 +18,7 @@ from tqdm import tqdm
 
 from common import parser, read_arguments, save
 from relay_contact import Array, Component, Value, write_table
+from relay_contact.component import sine
 from relay_contact.figures import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY
 
 FRICTION: dict[str, Value] = {"effects.friction": "Coulomb", "effects.axialForce": "None"}
@@ -127,12 +128,7 @@ class Study:
 
     def vibration(self, frequency: float, amplitude: float, values: dict[str, Value]) -> Vibration:
         """Start a vibration gently and give what a period of it has once it is steady."""
-        driven: dict[str, Value] = {
-            "effects.excitation": "Sine",
-            "excitation.frequency": frequency,
-            "excitation.amplitude": amplitude,
-        }
-        with self.component.started(FRICTION | driven | values) as contact:
+        with self.component.started(FRICTION | sine(frequency, amplitude) | values) as contact:
             contact.rise(frequency, amplitude, rise := math.ceil(RISE * frequency), RISE_PIECES)
             periods = np.arange(rise, rise + math.ceil(SETTLED * frequency) + WATCHED + 1)
             names = ["step.minimumForce", "step.maximumForce", "contact.slipDistance", "friction.energy"]

@@ -17,6 +17,7 @@ from component import COMPONENT, ROOT
 from one_sided import shaking
 from reference import Reference
 from relay_contact import Array, RelayContactError, Value
+from relay_contact.component import sine
 
 MARKS = "<!-- independent: written by tests/python/random_relays.py -->", "<!-- end of independent -->"
 PERIODS, SAMPLES = 4, 50
@@ -78,10 +79,7 @@ def draw(number: int) -> Relay:
         level = between(1.5, 4.0) * abs(float(values["contact.overtravel"])) * (2 * pi * frequency) ** 2
     else:
         level = between(1.2, 3.0) * reference.force / abs(reference.force_response(frequency))
-    values |= {
-        "effects.excitation": "Sine", "excitation.frequency": frequency, "excitation.amplitude": min(level, 9e4),
-    }  # fmt: skip
-    return Relay(values, damping)
+    return Relay(values | sine(frequency, min(level, 9e4)), damping)
 
 
 def second(relay: Relay, functions: int) -> tuple[Array, int, float]:

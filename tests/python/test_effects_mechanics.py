@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 from component import run
 from reference import Reference
 from relay_contact import Array, Values
+from relay_contact.component import sine
 
 NO_AXIAL: Values = {"effects.axialForce": "None"}
 POWERS = ("Hertz", "Rough")
@@ -18,16 +19,10 @@ FREQUENCY = 1000.0
 
 def shaken(values: Values, amplitude: float, tolerance: float) -> Values:
     """Give a scene vibrating at 1 kHz."""
-    return {
-        **values,
-        "effects.excitation": "Sine",
-        "excitation.amplitude": amplitude,
-        "excitation.frequency": FREQUENCY,
-        "solver.tolerance": tolerance,
-    }
+    return {**values, **sine(FREQUENCY, amplitude), "solver.tolerance": tolerance}
 
 
-def sine(amplitude: float, time: Array | float) -> float:
+def course(amplitude: float, time: Array | float) -> float:
     """Give the acceleration of such a scene."""
     return amplitude * float(np.sin(2 * np.pi * FREQUENCY * time))
 
@@ -74,7 +69,7 @@ def test_the_force_of_a_law_under_vibration_until_the_contact_closes_again(law: 
     result = run(shaken(values, amplitude, tolerance), stop, 1e-5, ["contact.force"])
     reference = Reference(values)
     # Its own error is a tenth of the tolerance at most.
-    expected = reference.course(result["time"], lambda time: sine(amplitude, time)).forces["contact"]
+    expected = reference.course(result["time"], lambda time: course(amplitude, time)).forces["contact"]
     assert (np.min(expected) < 0) == (law == "Bonded")
     assert np.max(np.abs(result["contact.force"] - expected)) <= tolerance * reference.force_scale
 
@@ -137,7 +132,7 @@ def test_an_axial_force_changes_the_force_under_vibration(name: str) -> None:
     others = [Reference({**AXIAL[name], "effects.axialForce": kind}) for kind in ("None", "FromPreload")]
 
     def solved(model: Reference, own: float) -> Array:
-        return model.course(result["time"], lambda time: sine(amplitude, time), own).forces["contact"]
+        return model.course(result["time"], lambda time: course(amplitude, time), own).forces["contact"]
 
     expected = solved(reference, 1e-12)
     allowed = tolerance * reference.force_scale
@@ -184,7 +179,7 @@ def test_a_term_of_the_beam_does_what_the_equations_say(name: str) -> None:
     values = {**bonded, **TERMS[name]}
     found = run(shaken(values, 98.0, tolerance), steps * step, step, ["contact.force"])["contact.force"]
     expected, without = (
-        Reference(scene).linear_force(lambda time: sine(98.0, time), step, steps) for scene in (values, bonded)
+        Reference(scene).linear_force(lambda time: course(98.0, time), step, steps) for scene in (values, bonded)
     )
     assert np.max(np.abs(found - expected)) <= tolerance * Reference(values).force_scale
     assert np.max(np.abs(expected - without)) > 1e-4

@@ -12,6 +12,7 @@ from elements import assembled
 from one_sided import Law, System, shaking
 from reference import hertz
 from relay_contact import Values
+from relay_contact.component import sine
 
 ELEMENTS = 16
 """Of trunk and of each tongue."""
@@ -55,9 +56,9 @@ def test_trunk_and_tongues_of_finite_elements_give_the_same_forces(
     text = f"fork_position = {FORK}\n[[segment]]\nlength = {length}\nwidth = {width}\nthickness = {thickness}\n"
     (tmp_path / "forked.toml").write_text(text, encoding="utf-8")
     values: Values = {
-        "effects.excitation": "Sine", "excitation.frequency": 800.0, "excitation.amplitude": amplitude,
-        "effects.axialForce": "None", "solver.tolerance": 1e-8, "effects.parallelContact": True,
-        "parallel.offset": offset, "parallel.curvatureRadius": 5e-3, "parallel.damping": 4e-5,
+        **sine(800.0, amplitude), "effects.axialForce": "None", "solver.tolerance": 1e-8,
+        "effects.parallelContact": True, "parallel.offset": offset, "parallel.curvatureRadius": 5e-3,
+        "parallel.damping": 4e-5,
     }  # fmt: skip
     outputs = [f"{name}.force" for name in NAMES]
     found = run({**values, "beam.file": str(tmp_path / "forked.toml")}, 0.003, 1e-5, outputs)

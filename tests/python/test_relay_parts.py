@@ -7,6 +7,7 @@ import pytest
 
 from component import STARTS, run
 from relay_contact import Values
+from relay_contact.component import half_sine, sine
 from whole_relay import Relay
 
 ALLOWED = 5e-5
@@ -19,23 +20,17 @@ LOCATED = 1e-9
 
 # Shaken closed, shaken until it opens, on a fixed spring softer than the moving one; shaken until the spring leaves its
 # pusher; closed by a pusher that moves in; opened by an armature that a shock takes from its core and that comes back.
-SHAKEN: Values = {"effects.excitation": "Sine", "excitation.frequency": 700.0, "solver.tolerance": 1e-8}
+FINE: Values = {"solver.tolerance": 1e-8}
+PUSHED: Values = {**FINE, "contact.overtravel": -5e-5}
 CASES: dict[str, tuple[Values, tuple[float, float] | None, tuple[float, float]]] = {
-    "closed": ({**SHAKEN, "excitation.amplitude": 300.0}, (0.02, 0.15e-3), (0.0, 0.0)),
-    "opening": ({**SHAKEN, "excitation.amplitude": 3000.0}, (0.02, 0.15e-3), (0.0, 0.0)),
-    "pushed": (
-        {**SHAKEN, "excitation.amplitude": 3000.0, "effects.pusher": "Prescribed", "contact.overtravel": -5e-5},
-        None, (7e-5, 0.0),
-    ),
-    "making": (
-        {"solver.tolerance": 1e-8, "effects.pusher": "Prescribed", "contact.overtravel": -5e-5},
-        (0.05, 0.15e-3), (-1e-5, 0.05),
-    ),
+    "closed": ({**FINE, **sine(700.0, 300.0)}, (0.02, 0.15e-3), (0.0, 0.0)),
+    "opening": ({**FINE, **sine(700.0, 3000.0)}, (0.02, 0.15e-3), (0.0, 0.0)),
+    "pushed": ({**PUSHED, **sine(700.0, 3000.0), "effects.pusher": "Prescribed"}, None, (7e-5, 0.0)),
+    "making": ({**PUSHED, "effects.pusher": "Prescribed"}, (0.05, 0.15e-3), (-1e-5, 0.05)),
     "released": (
         {
-            "solver.tolerance": 1e-8, "effects.pusher": "Armature", "contact.overtravel": -5e-5,
-            "effects.excitation": "HalfSine", "excitation.amplitude": -1275.0, "excitation.duration": 1.5e-3,
-            "armature.unbalance": 1.0, "armature.gapConstant": 5e-4,
+            **PUSHED, **half_sine(-1275.0, 1.5e-3), "effects.pusher": "Armature", "armature.unbalance": 1.0,
+            "armature.gapConstant": 5e-4,
         },
         None, (0.0, 0.0),
     ),

@@ -8,6 +8,7 @@ import pytest
 from one_sided import Course, Law, System, shaking
 from reference import Reference, hertz
 from relay_contact import Array, Values
+from relay_contact.component import sine
 from relay_contact.scene import Scene, run
 
 TOLERANCE, STEP = 1e-6, 5e-6
@@ -17,8 +18,6 @@ LOCATED = 1e-9
 CHANGEOVER: Values = {
     "effects.axialForce": "None",
     "effects.secondContact": True,
-    "effects.excitation": "Sine",
-    "excitation.frequency": 1000.0,
     "contact.damping": 1e-6,
     "second.damping": 3e-6,
     "second.curvatureRadius": 5e-3,
@@ -36,8 +35,8 @@ OUTPUTS = [
 # Vibration between fixed contacts at rest; and vibration while both move past the spring, as the armature of a relay
 # moves them, and the second comes closer to the first.
 MOTIONS: dict[str, tuple[Values, tuple[float, float], float]] = {
-    "shaken": ({**CHANGEOVER, "excitation.amplitude": 600.0, "second.gap": 2e-5}, (0.0, 0.0), 3e-3),
-    "moved": ({**CHANGEOVER, "excitation.amplitude": 300.0, "second.gap": 1e-4}, (-0.1, 0.01), 4e-3),
+    "shaken": ({**CHANGEOVER, **sine(1000.0, 600.0), "second.gap": 2e-5}, (0.0, 0.0), 3e-3),
+    "moved": ({**CHANGEOVER, **sine(1000.0, 300.0), "second.gap": 1e-4}, (-0.1, 0.01), 4e-3),
 }
 
 

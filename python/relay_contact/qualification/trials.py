@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from relay_contact.component import Array, Component, Contact, Values
+from relay_contact.component import Array, Component, Contact, Values, sine
 from relay_contact.figures import GRAVITY as G
 from relay_contact.many import side_by_side
 from relay_contact.qualification.excitation import BAND, STEP, Breakpoint, Course, Random, Sine, overall, straight
@@ -181,10 +181,9 @@ def vibrated(
     specimen: Specimen, frequency: float, amplitude: float, start: tuple[float, float] = SOON
 ) -> tuple[Lengths, list[float], float]:
     """Return what `steady` does, and `Specimen.ahead`."""
-    sine: Values = {"effects.excitation": "Sine", "excitation.frequency": frequency, "excitation.amplitude": amplitude}
     settling = max(2.0, specimen.response.settling() * frequency)
     rising, steadily = (int(np.ceil(part * settling)) for part in start)
-    with specimen.start(sine) as contact, contact.explained():
+    with specimen.start(sine(frequency, amplitude)) as contact, contact.explained():
         if rising:
             contact.rise(frequency, amplitude, rising, PIECES)
         contact.step(rising / frequency, steadily / frequency)
