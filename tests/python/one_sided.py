@@ -71,6 +71,8 @@ class Course:
     forces: dict[str, Array]
     changes: dict[tuple[str, str], list[float]]
     """When a law closes and leaves, and its force rises above its limit and falls below, by its name."""
+    rows: Array
+    """What else is observed, by column."""
 
 
 def shaking(known: dict[str, Any]) -> tuple[Acceleration, float]:
@@ -95,9 +97,10 @@ class System:
         self.count, self.kinks = len(squares), [*kinks, *(law.start for law in laws)]
         self.pull = np.zeros(self.count)
         """Constant forces on the modes."""
-        self.relative, self.absolute = 1e-9, 1e-16
-        """Tolerances, the absolute one of modal displacements, m sqrt(kg): with 1e-11 and 1e-17 forces of a whole relay
-        change by 8e-6 of the largest."""
+        self.relative = 1e-9
+        """Tolerance: with 1e-11, and a floor of 1e-17, forces of a whole relay change by 8e-6 of the largest."""
+        self.floor = 1e-16 * np.repeat([1.0, FASTEST, FASTEST], [self.count, self.count, 1])
+        """Absolute tolerances of modal displacements (m sqrt(kg)), velocities and the flux linkage."""
         self.near = [1e-7] * len(self.laws)
         """Overlaps (m) beside those at rest."""
 
@@ -117,62 +120,81 @@ class System:
         assert np.abs(found.fun).max() < 1e-14
         return self.bent(found.x)
 
+    def split(self, state: Array) -> list[Array]:
+        """Return displacements, velocities, and what is beside them."""
+        return np.split(state, [self.count, 2 * self.count])
+
     def forces(self, time: float, state: Array, phases: Sequence[int]) -> list[float]:
         """Return the force of each law, N."""
-        q, v = np.split(state[:-1], 2)
+        q, v, _ = self.split(state)
         pairs = zip(self.laws, phases, strict=True)
         return [law.force(law.overlap(time, q), law.rate(time, v)) if phase == CLOSED else 0.0 for law, phase in pairs]
 
-    def further(self, q: Array, flux: float, time: float) -> tuple[Array | float, float]:  # noqa: ARG002
-        """Return further forces on the modes, and the derivative of the flux linkage (V)."""
-        return 0.0, 0.0
+    def further(self, state: Array, time: float) -> tuple[Array | float, Sequence[float]]:  # noqa: ARG002
+        """Return further forces on the modes, and the derivatives of what is beside the motion, such as flux (V)."""
+        return 0.0, [0.0]
 
     def rates(self, time: float, state: Array, phases: Sequence[int], middle: float) -> Array:
         """Return the derivatives; `middle` is a time on the same side of a kink."""
-        q, v = np.split(state[:-1], 2)
+        q, v, _ = self.split(state)
         pushed = sum(law.row * force for law, force in zip(self.laws, self.forces(time, state, phases), strict=True))
-        force, flows = self.further(q, state[-1], middle)
+        force, others = self.further(state, middle)
         turns = self.pull + force - pushed - self.squares * q - self.damping * v - self.load * self.base(time)
-        return np.concatenate([v, turns, [flows]])
+        return np.concatenate([v, turns, others])
 
-    def integrate(self, phases: list[int], middle: float) -> Any:  # noqa: ANN401
-        """Return a solver of the motion while no law changes."""
-        # Overlap and force; what does not matter in a phase is watched in no direction: by a constant.
-        watched = {
-            "overlap": {OPEN: (1, 0), CLOSED: (0, -1), LOOSE: (-1, 1)}, "force": {CLOSED: (0, -1), LOOSE: (0, 1)},
-            "nothing": {CLOSED: (0, 0)},
+    def ways(self, phases: Sequence[int]) -> list[int | None]:
+        """Return the directions in which what is watched changes a phase: 0 in both, none in no direction."""
+        watched: dict[str, dict[int, list[int | None]]] = {
+            "overlap": {OPEN: [1, None], CLOSED: [None, -1], LOOSE: [-1, 1]},
+            "force": {CLOSED: [None, -1], LOOSE: [None, 1]}, "nothing": {CLOSED: [None, None]},
         }  # fmt: skip
         pairs = zip(self.laws, phases, strict=True)
-        directions = np.array([each for law, phase in pairs for each in watched[law.closed_by][phase]])
-        limits = np.array([law.limit for law in self.laws])
+        own = [each for law, phase in pairs for each in watched[law.closed_by][phase]]
+        return [*own, *(0 if law.limit else None for law in self.laws)]
+
+    def watched(self, time: float, state: Array, phases: Sequence[int]) -> list[float]:
+        """Return what is watched: overlap and sign of the force of each law, then the forces above their limits."""
+        q, v, _ = self.split(state)
+        own = [(d := law.overlap(time, q), law.sign(d, law.rate(time, v))) for law in self.laws]
+        forces = zip(self.laws, self.forces(time, state, phases), strict=True)
+        return [*(each for pair in own for each in pair), *(force - law.limit for law, force in forces)]
+
+    def integrate(self, state: Array, phases: Sequence[int], middle: float) -> Any:  # noqa: ANN401, ARG002
+        """Return a solver of the motion from a state while no law changes."""
+        ways = self.ways(phases)
+        ignored = np.array([way is None for way in ways])
 
         def into(time: float, state: Array, found: Array) -> None:
             found[:] = self.rates(time, state, phases, middle)
 
         def located(time: float, state: Array, found: Array) -> None:
-            q, v = np.split(state[:-1], 2)
-            both = [(d := law.overlap(time, q), law.sign(d, law.rate(time, v))) for law in self.laws]
-            beyond = np.where(limits > 0, self.forces(time, state, phases) - limits, 1.0)
-            found[:] = np.append(np.where(directions == 0, 1.0, np.ravel(both)), beyond)
+            found[:] = np.where(ignored, 1.0, self.watched(time, state, phases))
 
-        count = len(directions) + len(limits)
-        located.direction, located.terminal = [*directions.tolist(), *[0] * len(limits)], [True] * count  # type: ignore[attr-defined]
-        absolute = self.absolute * np.repeat([1.0, FASTEST, FASTEST], [self.count, self.count, 1])
-        return CVODE(into, eventsfn=located, num_events=count, rtol=self.relative, atol=absolute, max_num_steps=500_000)
+        located.direction, located.terminal = [way or 0 for way in ways], [True] * len(ways)  # type: ignore[attr-defined]
+        return CVODE(into, eventsfn=located, num_events=len(ways), rtol=self.relative, atol=self.floor,
+                     max_num_steps=500_000)  # fmt: skip
+
+    def start(self, now: float) -> tuple[Array, list[int]]:
+        """Return the state at rest with its phases."""
+        state = np.concatenate([self.at_rest(), np.zeros(len(self.floor) - self.count)])
+        return state, [self.phase(law, now, state) for law in self.laws]
+
+    def observed(self, state: Array) -> list[float]:  # noqa: ARG002
+        """Return what else is to be known of a state."""
+        return []
 
     def solve(self, times: Array) -> Course:
         """Return the course at instants (s) from the first, where it is at rest, on."""
-        n, now, solver = self.count, float(times[0]), None
-        state = np.concatenate([self.at_rest(), np.zeros(n + 1)])
-        phases = [self.phase(law, now, state) for law in self.laws]
+        now, solver = float(times[0]), None
+        state, phases = self.start(now)
         changes: dict[tuple[str, str], list[float]] = defaultdict(list)
-        overlaps, forces = [], []
+        overlaps, forces, rows = [], [], []
         for time in times.tolist():
             while now < time:
                 kink = min([np.inf, *(each for each in self.kinks if each > now)])
                 stop = min(time, kink)
                 if solver is None:
-                    solver = self.integrate(phases, (now + stop) / 2)
+                    solver = self.integrate(state, phases, (now + stop) / 2)
                     solver.init_step(now, state)
                 found = solver.step(stop, tstop=kink)
                 assert found.success, found.message
@@ -182,17 +204,18 @@ class System:
                     solver = None
                 elif now == kink:
                     solver = None
-            overlaps.append([law.overlap(time, state[:n]) for law in self.laws])
+            overlaps.append([law.overlap(time, state[: self.count]) for law in self.laws])
             forces.append(self.forces(time, state, phases))
+            rows.append(self.observed(state))
 
         def by_law(rows: list[list[float]]) -> dict[str, Array]:
             return dict(zip((law.name for law in self.laws), np.transpose(rows), strict=True))
 
-        return Course(by_law(overlaps), by_law(forces), changes)
+        return Course(by_law(overlaps), by_law(forces), changes, np.transpose(rows))
 
     def phase(self, law: Law, time: float, state: Array) -> int:
         """Return the phase of a law at the begin."""
-        q, v = np.split(state[:-1], 2)
+        q, v, _ = self.split(state)
         d, rate = law.overlap(time, q), law.rate(time, v)
         if law.closed_by == "overlap" and (d < 0 or d == 0 >= rate):
             return OPEN
@@ -202,7 +225,7 @@ class System:
         self, time: float, state: Array, phases: list[int], turns: Array, changes: dict[tuple[str, str], list[float]]
     ) -> list[int]:
         """Return the phases of the laws after those changes that were found, and note them."""
-        after, (q, v) = list(phases), np.split(state[:-1], 2)
+        after, (q, v, _) = list(phases), self.split(state)
         for at in np.flatnonzero(turns).tolist():
             number, by_force = divmod(at, 2)
             if number >= len(self.laws):

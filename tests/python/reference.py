@@ -6,6 +6,7 @@ any other it is integrated by SUNDIALS CVODE from one event to the next.
 Names and units are those of the component.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi, sin, sqrt
 from typing import Any
@@ -239,7 +240,7 @@ class Reference:
         row, closed_by = -self.modes().tip, by.get(self.law, "overlap")
         contact = Law("contact", row, factor, self.contact_damping, power, offset, speed, 0.0, limit, closed_by)
         spring = Spring(self, contact, near, base)
-        spring.relative, spring.absolute = tolerance, 1e-7 * tolerance
+        spring.relative, spring.floor = tolerance, 1e9 * tolerance * spring.floor
         return spring.solve(times)
 
     def frequency_following(self) -> float:
@@ -262,9 +263,10 @@ class Spring(System):
         super().__init__(self.modes.omega_squared, self.modes.damping, self.modes.participation, [contact], base)
         self.pull, self.near = -relay.gravity * self.load, [near]
 
-    def further(self, q: Array, flux: float, time: float) -> tuple[Array | float, float]:  # noqa: ARG002
+    def further(self, state: Array, time: float) -> tuple[Array | float, Sequence[float]]:
         """Return what the axial force adds that follows the deflection."""
         if self.relay.axial != "FromDeflection":
-            return 0.0, 0.0
+            return super().further(state, time)
+        q = state[: self.count]
         change = self.relay.axial_force_at(float(self.modes.tip @ q)) - self.relay.axial_force
-        return change * self.modes.slopes @ q, 0.0
+        return change * self.modes.slopes @ q, [0.0]

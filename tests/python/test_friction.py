@@ -1,8 +1,9 @@
 """Friction between the contacts, by motions solved by other means (frictional.py)."""
 
 import re
+from dataclasses import dataclass
 from functools import cache
-from math import pi, sin
+from math import pi
 
 import numpy as np
 import pytest
@@ -50,39 +51,33 @@ MOTIONS: dict[str, tuple[Values, float]] = {
     "no friction": ({**SHAKEN, "friction.coefficient": 0.0}, 2e-3),
 }
 OPENING = {"opens", "shock", "slips at once", "closes while indented"}
-CLOSED = {Phase.STICK, Phase.FORTH, Phase.BACK}
 FORCES, WAYS, ENERGY = OUTPUTS[:2], OUTPUTS[2:4], OUTPUTS[4]
 
 
-def solved(name: str, tolerance: float) -> FrictionalMotion:
-    """Solve the equations of motion."""
-    values, stop = MOTIONS[name]
-    reference = Frictional(values)
-    known = reference.values
-    amplitude, omega = known["excitation.amplitude"], 2 * pi * known["excitation.frequency"]
+@dataclass
+class Results:
+    """What component and reference give."""
 
-    def acceleration(time: float) -> float:
-        if known["effects.excitation"] == "Sine":
-            return float(amplitude * sin(omega * time))
-        duration = known["excitation.duration"]
-        return float(amplitude * sin(pi * time / duration)) if time < duration else 0.0
-
-    return FrictionalMotion(reference, acceleration, stop, tolerance)
+    found: dict[str, Array]
+    expected: dict[str, Array]
+    changes: dict[tuple[str, str], list[float]]
+    motion: FrictionalMotion
+    reference: Frictional
 
 
 @cache
-def results(name: str) -> tuple[dict[str, Array], FrictionalMotion, Frictional]:
-    """Run the component; give the reference too."""
+def results(name: str) -> Results:
+    """Run the component and the reference."""
     values, stop = MOTIONS[name]
     found = run(Scene("", stop, STEP, OUTPUTS, dict(values), {})).columns
-    return found, solved(name, 2e-10), Frictional(values)
+    motion = FrictionalMotion(Frictional(values), 1e-12)
+    return Results(found, *motion.outputs(found["time"]), motion, motion.relay)
 
 
-def allowed(name: str, expected: dict[str, Array]) -> dict[str, float]:
+def allowed(reference: Frictional, expected: dict[str, Array]) -> dict[str, float]:
     """Give the errors allowed in outputs: the tolerance relative to the largest force, and to what belongs to it."""
-    _, _, reference = results(name)
     force = TOLERANCE * max(reference.force_scale, np.max(expected["contact.force"]))
-    limit = reference.friction.coefficient * reference.force
+    limit = reference.coefficient * reference.force
     # What the tangential spring yields before it slips counts where the contact sticks.
     yields = limit / reference.tangential
     ways = {each: TOLERANCE * max(yields, np.max(np.abs(expected[each]))) for each in WAYS}
@@ -91,12 +86,13 @@ def allowed(name: str, expected: dict[str, Array]) -> dict[str, float]:
 
 @pytest.mark.parametrize("name", MOTIONS)
 def test_forces_slip_and_energy(name: str) -> None:
-    found, motion, _ = results(name)
+    own = results(name)
+    found, expected = own.found, own.expected
     # Where the contact opens or closes forces change as a root of time, and a sample may be on either side.
-    changes = np.concatenate([[0.0], *openings_and_closings(motion)])
+    changes = np.concatenate([[0.0], *own.changes.values()])
     away = np.min(np.abs(found["time"][:, None] - changes), axis=1) > 2 * LOCATED
-    expected, coarser = (each.outputs(found["time"]) for each in (motion, solved(name, 1e-9)))
-    for output, error in allowed(name, expected).items():
+    coarser, _ = FrictionalMotion(own.reference, 1e-11).outputs(found["time"])
+    for output, error in allowed(own.reference, expected).items():
         # In flight, where slip makes no force, no step is as short as its course would need.
         seen = away & (expected["contact.force"] > 0) if output == "contact.slip" else away
         # The reference's own error is less than this difference.
@@ -104,30 +100,24 @@ def test_forces_slip_and_energy(name: str) -> None:
         assert np.max(np.abs(found[output] - expected[output])[seen]) <= error, output
 
 
-def openings_and_closings(motion: FrictionalMotion) -> tuple[Array, Array]:
-    """Give their instants, s."""
-    return motion.instants(CLOSED, {Phase.OPEN}), motion.instants({Phase.OPEN}, CLOSED)
-
-
 @pytest.mark.parametrize("name", MOTIONS)
 def test_the_instants_of_opening_and_closing(name: str) -> None:
-    found, motion, _ = results(name)
-    expected = openings_and_closings(motion)
-    assert bool(len(expected[0])) == (name in OPENING)
+    own = results(name)
+    expected = [own.changes.get(("contact", what), []) for what in ("leaves", "closes")]
+    assert bool(expected[0]) == (name in OPENING)
     for output, instants in zip(OUTPUTS[5:], expected, strict=True):
-        seen = np.unique(found[output])
+        seen = np.unique(own.found[output])
         assert seen[seen > 0] == pytest.approx(instants, rel=0, abs=LOCATED)
 
 
 def test_the_motions_are_what_their_names_say() -> None:
-    phases = {name: {piece.phase for piece in results(name)[1].pieces} for name in MOTIONS}
+    phases = {name: set(results(name).motion.phases) for name in MOTIONS}
     assert phases["sticks"] == {Phase.STICK}
     for name in ("slips", "slips without damping of the contact", "slips on a high contact"):
-        assert phases[name] == CLOSED
+        assert phases[name] == {Phase.STICK, Phase.FORTH, Phase.BACK}
     assert all(phases[name] == set(Phase) for name in OPENING)
-    _, motion, reference = results("closes while indented")
-    _, closings = openings_and_closings(motion)
-    assert max(motion.outputs(closings)["contact.indentation"]) > 0.1 * reference.indentation
+    own = results("closes while indented")
+    assert max(own.motion.depths) > 0.1 * own.reference.indentation
 
 
 @pytest.mark.parametrize(

@@ -59,7 +59,8 @@ def solved(name: str, places: int, tolerance: float) -> tuple[Course, Reference]
         )
     ]
     spring = System(modes.omega_squared, modes.damping, modes.participation, laws, *shaking(known))
-    spring.relative, spring.absolute, spring.near = tolerance, 1e-7 * tolerance, [1e-7, -known["second.gap"]]
+    spring.relative, spring.floor = tolerance, 1e9 * tolerance * spring.floor
+    spring.near = [1e-7, -known["second.gap"]]
     return spring.solve(np.linspace(0.0, stop, round(stop / STEP) * places + 1)), relay
 
 

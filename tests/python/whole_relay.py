@@ -4,6 +4,7 @@ The springs are finite elements in their own modes, under the one-sided laws of 
 shared with the component but names and units.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import atan2, exp, sqrt
 from typing import Any
@@ -138,11 +139,12 @@ class Relay(System):
             q[-1] += self.magnet(-overlaps[2], 0.0) / sqrt(self.mass) / self.squares[-1]
         return q
 
-    def further(self, q: Array, flux: float, time: float) -> tuple[Array | float, float]:
+    def further(self, state: Array, time: float) -> tuple[Array | float, Sequence[float]]:
         """Return the force of the magnet on the modes, and the derivative of the flux linkage (V)."""
         if not self.moves:
-            return 0.0, 0.0
+            return 0.0, [0.0]
+        q, _, (flux,) = self.split(state)
         force, gap, coil = np.zeros(self.count), -self.laws[2].overlap(time, q), self.coil
         force[-1] = self.magnet(gap, flux) / sqrt(self.mass)
         voltage = coil.voltage if coil and coil.on <= time < coil.off else 0.0
-        return force, coil.slope(flux, gap, voltage) if coil else 0.0
+        return force, [coil.slope(flux, gap, voltage) if coil else 0.0]
