@@ -178,16 +178,8 @@ def draw(path: Path, elements: Elements, basis: Basis, rows: list[Row], response
     where = np.arange(len(rows))
     for shift, which, colour, label in ((-0.2, 0, BLUE, "modes"), (0.2, 1, ORANGE, "segments")):
         parts = [100 * row.deviations()[which] for row in rows]
-        bars.barh(where + shift, parts, 0.38, color=colour, label=label)
-        for y, part in zip(where + shift, parts, strict=True):
-            bars.text(
-                part,
-                y,
-                f" {percent(part / 100)} ",
-                va="center",
-                ha="left" if part >= 0 else "right",
-                fontsize="x-small",
-            )
+        drawn = bars.barh(where + shift, parts, 0.38, color=colour, label=label)
+        bars.bar_label(drawn, [percent(part / 100) for part in parts], padding=2, fontsize="x-small")
     bars.set_yticks(where, [row.name for row in rows], fontsize="small")
     bars.invert_yaxis()
     bars.margins(x=0.25)

@@ -211,7 +211,7 @@ def pole(values: Values) -> Array:
 @pytest.mark.parametrize("is_open", [True, False])
 def test_the_pole_of_a_ring_down_is_that_of_the_second_solution(is_open: bool) -> None:
     none, laboratory = np.zeros(1), Laboratory(COMPONENT)
-    ring = Measurement(Path("ring.csv"), "ring-down", none, "force", "N", none, none, "", is_open, 0.0)
+    ring = Measurement(Path("ring.csv"), "ring-down", none, "force", "N", none, is_open=is_open)
     chance = np.random.default_rng(SEED)
     for _ in range(20):
         values: Values = {
