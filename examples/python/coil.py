@@ -25,7 +25,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from tqdm import tqdm
 
-from common import parser, read_arguments, save, within
+from common import parser, read_arguments, save
 from relay_contact import Array, Component, Values, write_table
 from relay_contact.figures import BLUE, GREEN, ORANGE, PURPLE, RED
 
@@ -125,12 +125,9 @@ def draw(run: Run, found: dict[str, float], path: Path) -> None:
 
 def main() -> None:
     """Run it with several steps, compare."""
-    line = parser("Switch a contact by its coil. Takes some seconds.")
-    line.add_argument("--quick", action="store_true", help="steps of 5 and 10 µs in place of 2, 4 and 8")
-    text = "of the source [V], 1 to 100 (%(default)s)"
-    line.add_argument("--voltage", type=within(1, 100, "V"), default=12.0, help=text)
-    text = "of the armature [kg], 1e-4 to 0.1 (%(default)s)"
-    line.add_argument("--mass", type=within(1e-4, 0.1, "kg"), default=2e-3, help=text)
+    voltage, mass = (12.0, 1.0, 100.0, "V", "of the source"), (2e-3, 1e-4, 0.1, "kg", "of the armature")
+    quick = "steps of 5 and 10 µs in place of 2, 4 and 8"
+    line = parser("Switch a contact by its coil. Takes some seconds.", quick, voltage=voltage, mass=mass)
     given = read_arguments(line)
     component, coil = Component(given.fmu), Coil(given.voltage)
     steps = [5, 10] if given.quick else [2, 4, 8]  # µs

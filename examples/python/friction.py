@@ -238,9 +238,7 @@ def draw(path: Path, frequencies: Array, responses: Array, loop: Array, slips: A
 
 def main() -> None:
     """Run the study."""
-    line = parser(str(__doc__).splitlines()[0], epilog="Takes about a minute.")
-    line.add_argument("--quick", action="store_true", help="few frequencies and levels")
-    given = read_arguments(line)
+    given = read_arguments(parser(__doc__, "few frequencies and levels", "about a minute"))
     study = Study(Component(given.fmu))
     quick = given.quick
     frequencies = [

@@ -205,9 +205,7 @@ def draw(path: Path, elements: Elements, basis: Basis, rows: list[Row], response
 
 def main() -> None:
     """Solve, reduce, run and compare."""
-    line = parser(str(__doc__).splitlines()[0], epilog="Takes a minute or two.")
-    line.add_argument("--quick", action="store_true", help="elements of 1 mm instead of 0.4 mm, fewer frequencies")
-    given = read_arguments(line)
+    given = read_arguments(parser(__doc__, "elements of 1 mm instead of 0.4 mm, fewer frequencies", "a minute or two"))
     if lacking := missing():
         raise SystemExit(lacking)
     bar = tqdm(total=5, unit="stage", bar_format="{desc}: {n_fmt} of {total_fmt} [{elapsed}]")
