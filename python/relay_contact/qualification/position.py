@@ -18,7 +18,7 @@ from relay_contact.qualification.excitation import Random, Sine, Test, Transient
 from relay_contact.qualification.level import ROUGHLY, threshold
 from relay_contact.qualification.parts import CONTACT, Rest, at_rest
 from relay_contact.qualification.relay import NORMAL, Model, Relay
-from relay_contact.qualification.response import CALM, Response, answers, margin, spread
+from relay_contact.qualification.response import CALM, Response, answers, spread
 from relay_contact.qualification.results import Chance
 from relay_contact.qualification.standards import Contacts
 from relay_contact.spring import is_entry
@@ -152,17 +152,23 @@ class Position:
         return self.linear(self.specimen.response, test) >= MOST
 
     def linear(self, response: Response, test: Test) -> float:
-        """Return the margin by linear theory, of a course by its pieces; MOST at most."""
+        """Return the margin by linear theory, MOST at most: of noise by a chance of one half, of courses by pieces."""
         if response.reserve <= 0:
             return 0.0
         lasting = self.specimen.lasting
-        if isinstance(test, Transient):
-            found = [
-                response.course(piece.course, test.directions[way], lasting)
-                for way, own in self.pieces[test.name].items() for piece in own
-            ]  # fmt: skip
-            return min(*found, MOST)
-        return min(margin(response, test, lasting), MOST)
+        match test:
+            case Sine():
+                found = [float(response.sine(test, lasting)[1].min())]
+            case Random():
+                found = [response.random(test, lasting)]
+            case Transient():
+                found = [
+                    response.course(piece.course, test.directions[way], lasting)
+                    for way, own in self.pieces[test.name].items() for piece in own
+                ]  # fmt: skip
+            case _:
+                raise TypeError(test)
+        return min(*found, MOST)
 
     def scores(self, draws: int) -> Array:
         """Return independent scores of the uncertain parameters for which the component answers, in columns.

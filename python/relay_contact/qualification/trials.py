@@ -119,12 +119,8 @@ class Specimen:
         """The outputs that tell force and gap, and what was left of them in a step."""
         least = ["step.minimumForce", "step.minimumGap"][: len(self.monitors)]
         first = ["contact.indentation"] if self.is_open else ["contact.force", "second.force", *least]
-        return list(dict.fromkeys([*first, *self.watched_of_held]))
-
-    @cached_property
-    def watched_of_held(self) -> list[str]:
-        """The outputs that tell what was left of the forces that hold parts."""
-        return [name for part in self.held for name in ([part.least] if part.least else part.outputs)]
+        held = [name for part in self.held for name in ([part.least] if part.least else part.outputs)]
+        return list(dict.fromkeys([*first, *held]))
 
     def observed(self, rows: dict[str, Array]) -> Array:
         """Return columns of the force (N) of the closed contact less that of the open one, and what is left of each.
